@@ -1,0 +1,110 @@
+# `make` lists the targets. Everything happens in .venv; nothing is installed outside this folder.
+VENV ?= .venv
+PYTHON ?= python3
+P ?=
+SITE ?=
+ROLE ?=
+RUNTIME ?= native
+# Debian's client first: it needs no plugin to build.
+DOCKER ?= $(firstword $(wildcard /usr/bin/docker) docker)
+COMPOSE ?= $(DOCKER) compose
+NAV2_DISTRO ?= jazzy
+LOCK ?= requirements-dev.lock
+export NAV2_DISTRO
+UV := $(VENV)/bin/uv
+PY := $(VENV)/bin/python
+TMS := $(VENV)/bin/tms $(if $(SITE),--site $(SITE))
+# A sourced ROS installation would mix its libraries into the venv's.
+unexport PYTHONPATH LD_LIBRARY_PATH AMENT_PREFIX_PATH CMAKE_PREFIX_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE
+.DEFAULT_GOAL := help
+.PHONY: help setup interfaces demo test up down status logs restart lint conformance bench soak drill test-docker system clean
+
+help: ## this list
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
+
+setup: $(VENV)/.ready $(VENV)-store/.ready ## everything that the other targets need (they call it)
+
+system:
+	@sh deploy/system-packages.sh
+
+$(UV): | system
+	$(PYTHON) -m venv $(VENV)
+	$(VENV)/bin/pip install -q --disable-pip-version-check uv==0.13.8
+
+$(VENV)/.requirements: requirements.lock requirements-dev.lock | $(UV)
+	$(UV) pip install -q -p $(PY) --require-hashes -r $(LOCK)
+	@touch $@
+
+$(VENV)-store/.ready: requirements-store.lock | $(UV)
+	$(PYTHON) -m venv $(VENV)-store
+	$(UV) pip install -q -p $(VENV)-store/bin/python --require-hashes -r requirements-store.lock
+	@touch $@
+
+$(VENV)/.interfaces-$(NAV2_DISTRO): $(VENV)/.requirements build.lock interfaces.txt $(shell find services/interfaces -type f)
+	@echo "building the ROS interface packages (about a minute)"
+	$(UV) pip install -q -p $(PY) --no-deps --build-constraints build.lock -r interfaces.txt
+	@rm -f $(VENV)/.interfaces-*
+	@touch $@
+
+$(VENV)/.ready: $(VENV)/.interfaces-$(NAV2_DISTRO) pyproject.toml
+	$(UV) pip install -q -p $(PY) --no-deps --build-constraints build.lock -e .
+	@touch $@
+
+interfaces: $(VENV)/.interfaces-$(NAV2_DISTRO) ## build the .msg/.srv/.action packages (NAV2_DISTRO=humble for Humble machines)
+
+demo: setup ## an excavator digs: set-up, mesh, task, SUCCESS; leaves the mesh running
+	@$(TMS) demo
+
+ifeq ($(RUNTIME),docker)
+COMPOSE_UP = TMS_SITE_NAME=$(SITE) TMS_PC=$(ROLE) $(COMPOSE) -p tms-$(ROLE) -f deploy/compose/$(ROLE).yml
+up: ## start the mesh of this PC (SITE=name, ROLE=PC of a site with several, RUNTIME=docker)
+	@test -n "$(SITE)" -a -f "deploy/compose/$(ROLE).yml" || { echo "usage: make up SITE=yard ROLE=cps RUNTIME=docker (roles: $(patsubst deploy/compose/%.yml,%,$(wildcard deploy/compose/*.yml)))" >&2; exit 2; }
+	@$(COMPOSE_UP) up --detach --build
+down: ## end the mesh of this PC; no process stays
+	@$(COMPOSE_UP) down
+else
+up: setup ## start the mesh of this PC (SITE=name, ROLE=PC of a site with several, RUNTIME=docker)
+	@$(TMS) up $(if $(ROLE),--role $(ROLE))
+
+down: ## end the mesh of this PC; no process stays
+	@test -x $(VENV)/bin/tms || { echo "nothing is set up here, so nothing runs"; exit 0; }; $(TMS) down
+endif
+
+status: setup ## does everything work?
+	@$(TMS) status
+
+logs: setup ## last log lines (P=name)
+	@$(TMS) logs $(P)
+
+restart: setup ## restart one process (P=name)
+	@test -n "$(P)" || { echo "usage: make restart P=zx200:rc (make status lists the names)" >&2; exit 2; }
+	@$(TMS) restart $(P)
+
+test: setup ## all tests that a laptop can run
+	@sh deploy/system-packages.sh chromium
+	$(PY) -m pytest
+
+lint: setup ## ruff, mypy, import-linter
+	$(VENV)/bin/ruff check .
+	$(VENV)/bin/ruff format --check .
+	$(VENV)/bin/mypy services
+	cd services && ../$(VENV)/bin/lint-imports --config ../pyproject.toml
+
+conformance: setup ## replay behaviour-tree cases (CASES=path LEVEL=required|strict)
+	@$(PY) tests/conformance/replay.py "$(or $(CASES),tests/conformance/cases.jsonl)" --level "$(or $(LEVEL),required)"
+
+drill: setup ## kill every process of a simulated site while it moves (QUICK=1, ROUNDS=4, REPORT=file.md)
+	@$(TMS) drill $(if $(QUICK),--quick) $(if $(ROUNDS),--rounds $(ROUNDS)) $(if $(REPORT),--report $(REPORT))
+
+bench: setup ## benchmarks with ratios to a floor of the same run (ONLY=group)
+	@$(PY) tests/bench $(if $(ONLY),--only "$(ONLY)")
+
+soak: setup ## the two-machine demo over and over; nothing may grow (MINUTES=120)
+	@$(PY) tests/soak.py $(if $(MINUTES),--minutes "$(MINUTES)")
+
+test-docker: setup ## a site of four PCs as containers; starts a Docker engine where none runs
+	@started=$$(DOCKER=$(DOCKER) sh deploy/engine.sh); trap '[ -z "$$started" ] || kill $$started' EXIT; \
+	  DOCKER=$(DOCKER) $(PY) -m pytest -p no:randomly -m docker tests/docker
+
+clean: down ## remove the environments and all state of the demo
+	rm -rf $(VENV) $(VENV)-store .state
