@@ -1,0 +1,1 @@
+"""The shared library of all services: configuration, process table, ROS wrapper, subtask base."""

@@ -1,0 +1,57 @@
+"""The errors that cross a border, one tree.
+
+TmsError                 code and one line: what is wrong, where, what to do next
+├── ConfigError          a file of configs/ is wrong: fix the file
+├── TaskError            a task's XML is wrong: fix it in the editor
+├── RosError             a peer did not answer or is not there: retry, see `tms ps`
+├── DbError              the database refused or is away
+└── SubtaskFailed        the machine cannot, or must not, do what was asked
+"""
+
+
+class TmsError(Exception):
+    """An error that a person reads: `code` for programs, the message for people."""
+
+    code = "FAILED"
+
+    def __init__(self, message: str, code: str | None = None) -> None:
+        super().__init__(message)
+        if code is not None:
+            self.code = code
+
+
+class ConfigError(TmsError):
+    """A configuration file is wrong; the message names the file and the key."""
+
+    code = "BAD_CONFIG"
+
+
+class TaskError(TmsError):
+    """A task (behaviour tree) cannot be loaded; the message names the line."""
+
+    code = "BAD_TASK"
+
+
+class RosError(TmsError):
+    """A ROS peer is missing or silent."""
+
+    code = "NO_ANSWER"
+
+
+class DbError(TmsError):
+    """The database module refused a request or cannot reach its store."""
+
+    code = "DB_FAILED"
+
+
+class SubtaskFailed(TmsError):
+    """A subtask cannot do what its goal asks.
+
+    Written `SubtaskFailed(code, message)`, as authors of subtasks think: the code first.
+    """
+
+    def __init__(self, code: str, message: str) -> None:
+        super().__init__(message, code)
+
+    def __str__(self) -> str:
+        return f"{self.code}: {self.args[0]}"

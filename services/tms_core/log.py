@@ -1,0 +1,75 @@
+"""One line per event: `key=value` for people, or a JSON object for Loki; the process, run and goal are bound to it.
+
+A goal's worker thread calls `bind`, so everything that it logs carries the ids; threads that it starts do not.
+"""
+
+import contextvars
+import json
+import logging
+import re
+import sys
+from typing import Any
+
+FIELD = re.compile(r"(?<!\S)([a-z_]+)=('(?:[^'\\]|\\.)*'|\"(?:[^\"\\]|\\.)*\"|\S+)")
+BREAKS = str.maketrans({"\n": "\\n", "\r": "\\r"})  # an event is one line, whatever its text holds
+
+_bound: contextvars.ContextVar[dict[str, str]] = contextvars.ContextVar("bound")
+
+
+def bind(**fields: str) -> None:
+    """Add fields (run, goal) to everything that this thread logs from now on."""
+    _bound.set({**_bound.get({}), **fields})
+
+
+class Line(logging.Formatter):
+    """`2026-01-31T06:00:00.123 INFO process=zx200:rc machine=zx200 goal=1f.. event=.. ..`; tracebacks in `trace=`."""
+
+    def __init__(self, fields: dict[str, str]) -> None:
+        super().__init__(datefmt="%Y-%m-%dT%H:%M:%S")
+        self._fields = fields
+
+    def format(self, record: logging.LogRecord) -> str:
+        """The record on one line."""
+        time, level = f"{self.formatTime(record, self.datefmt)}.{int(record.msecs):03d}", record.levelname
+        message = record.getMessage()
+        fields = {key: value for key, value in self.fields().items() if f"{key}=" not in message}
+        words = [time, level, *(f"{key}={value}" for key, value in fields.items()), message]
+        if record.exc_info:
+            words.append(f"trace={self.formatException(record.exc_info)!r}")
+        return " ".join(words).translate(BREAKS)
+
+    def fields(self) -> dict[str, str]:
+        """What is bound to the process and to this thread."""
+        return {**self._fields, **_bound.get({})}
+
+
+class Json(Line):
+    """The same as a JSON object; `key=value` words of the message become keys, the text stays as `message`."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        """The record as one JSON object."""
+        message = record.getMessage()
+        row: dict[str, Any] = {
+            "time": f"{self.formatTime(record, self.datefmt)}.{int(record.msecs):03d}",
+            "level": record.levelname,
+            **self.fields(),
+        }
+        row.update({key: _plain(value) for key, value in FIELD.findall(message) if key not in ("time", "level")})
+        row["message"] = message
+        if record.exc_info:
+            row["trace"] = self.formatException(record.exc_info)
+        return json.dumps(row, ensure_ascii=False)
+
+
+def setup(process: str, machine: str | None = None, *, level: str = "INFO", as_json: bool = False) -> logging.Logger:
+    """Send everything to stdout, which supervisord keeps and rotates; returns the process's logger."""
+    fields = {"process": process, **({"machine": machine} if machine else {})}
+    handler = logging.StreamHandler(sys.stdout)
+    handler.setFormatter(Json(fields) if as_json else Line(fields))
+    logging.basicConfig(level=level, handlers=[handler], force=True)
+    logging.captureWarnings(True)
+    return logging.getLogger(process)
+
+
+def _plain(value: str) -> str:
+    return value[1:-1] if len(value) > 1 and value[0] == value[-1] and value[0] in "'\"" else value

@@ -1,0 +1,141 @@
+"""What configs/machines/<model>.yaml may hold: a machine's body, its limits, its border names, its subtasks."""
+
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+Backend = Literal["sim", "opera", "physx"]
+Kind = Literal["backhoe", "crawler_dump", "bulldozer"]
+NAME = r"^[a-z][a-z0-9_]*$"
+# Action that brings one joint to an angle -> the names that models have for this joint.
+TURNED = {"set_dump_angle": ("vessel_pin_joint", "dump_joint"), "set_swing_angle": ("rotate_joint",)}
+
+
+class Settings(BaseModel):
+    """Base of all configuration: frozen, and unknown keys are refused."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class Joint(Settings):
+    """Limits of one joint; `min` and `max` are absent for a joint that turns for ever."""
+
+    min: float | None = None  # rad
+    max: float | None = None  # rad
+    velocity: float = Field(gt=0)  # rad/s
+    acceleration: float = Field(gt=0)  # rad/s^2
+    jerk: float = Field(gt=0)  # rad/s^3
+
+    def violation(self, angle: float) -> str | None:
+        """Which bound `angle` [rad] breaks, as text, or None."""
+        if self.min is not None and angle < self.min - 1e-6:
+            return f"{angle:.3f} rad is below its limit {self.min:.3f} rad"
+        if self.max is not None and angle > self.max + 1e-6:
+            return f"{angle:.3f} rad is above its limit {self.max:.3f} rad"
+        return None
+
+
+class Origin(Settings):
+    """Where a joint sits on its parent link (URDF joint origin) and about what it turns."""
+
+    parent: str
+    child: str
+    xyz: tuple[float, float, float]  # m
+    pitch: float = 0.0  # rad
+    axis: Literal["x", "y", "z"] = "y"
+
+
+class Box(Settings):
+    """A box along the axes of a frame, or of the frame turned about y by `pitch`."""
+
+    min: tuple[float, float, float]  # m
+    max: tuple[float, float, float]  # m
+    pitch: float = 0.0  # rad
+
+
+class Drive(Settings):
+    """How the machine travels: what its navigation and its stand-in may use."""
+
+    velocity: float = Field(gt=0)  # m/s
+    acceleration: float = Field(gt=0)  # m/s^2
+    turn_velocity: float = Field(gt=0)  # rad/s
+    turn_acceleration: float = Field(gt=0)  # rad/s^2
+
+
+class Still(Settings):
+    """When the machine counts as standing."""
+
+    velocity: float = Field(gt=0)  # rad/s, every joint below it ...
+    linear: float = Field(gt=0, default=0.02)  # m/s, ... and, where there is odometry, the machine below this ...
+    angular: float = Field(gt=0, default=0.02)  # rad/s, ... and this ...
+    seconds: float = Field(gt=0, default=0.2)  # s, ... for this long
+
+
+class Border(Settings):
+    """Names at the machine's own border, relative to its namespace; absent: the machine has no such thing."""
+
+    # actions; the gateway offers each under /<machine>/rc/<key>, the trajectory as follow_joint_trajectory
+    trajectory: str | None = None
+    navigate_to_pose: str | None = None
+    navigate_through_poses: str | None = None
+    follow_waypoints: str | None = None
+    set_dump_angle: str | None = None
+    set_swing_angle: str | None = None
+    # topics
+    joint_states: str | None = None
+    odom: str | None = None
+    cmd_vel: str | None = None
+    emg_stop: str | None = None
+    joint_cmd: str | None = None  # com3_msgs/JointCmd; what a controller of the machine sends, nothing of ours
+    joint_angles: dict[str, str] = {}  # joint -> topic of std_msgs/Float64 [rad], as some simulated machines take them
+    dump_returns: bool = False  # a goal for the vessel is a whole cycle there: it tips, waits, and comes back by itself
+    # frames; {name} is the machine, so that two machines of one model never share a frame
+    frame_prefix: str = "{name}/"
+    base_frame: str = "{name}/base_link"  # child of `map` that tells where the machine is
+    joints: dict[str, str] = {}  # joint of the model -> its name here, where they differ
+
+
+class SubtaskUse(Settings):
+    """Which subtask file serves an action name, and the fixed inputs of this variant."""
+
+    run: str = Field(pattern=NAME)
+    inputs: dict[str, Any] = {}
+    max_age: float = Field(ge=0, default=0.0)  # s that a dynamic record may be old; 0: as the record itself says
+    example: str | None = None  # a record of configs/parameters that shows its use; the contract test runs it
+
+
+class MachineModel(Settings):
+    """A type of machine: configs/machines/<model>.yaml."""
+
+    kind: Kind
+    joints: dict[str, Joint]
+    geometry: dict[str, Origin]
+    footprint: dict[str, Box] = {}  # what other machines must not touch, base_link
+    shapes: dict[str, Box] = {}  # link -> its body in its own frame, for the planner
+    drive: Drive | None = None
+    initial: dict[str, float] = {}  # rad, the simulator's start pose
+    start: tuple[float, float, float] = (0.0, 0.0, 0.0)  # x m, y m, yaw rad, simulator, frame map
+    still: Still
+    borders: dict[Backend, Border]
+    subtasks: dict[str, SubtaskUse | str] = {}
+
+    def subtask(self, action: str) -> SubtaskUse:
+        """The use behind an action name; the short form `action: file` is filled in."""
+        use = self.subtasks[action]
+        return SubtaskUse(run=use) if isinstance(use, str) else use
+
+    def turned(self, action: str) -> str | None:
+        """The joint that an action like set_dump_angle moves; None if the model has none."""
+        return next((name for name in TURNED.get(action, ()) if name in self.joints), None)
+
+    @model_validator(mode="after")
+    def _names_fit(self) -> "MachineModel":
+        links = {origin.child for origin in self.geometry.values()} | {"base_link"}
+        strange = [name for name in self.shapes if name not in links]
+        strange += [name for name in (*self.initial, *self._border_joints()) if name not in self.joints]
+        if strange:
+            raise ValueError(f"'{strange[0]}' is neither a link of geometry: nor a joint of joints:")
+        return self
+
+    def _border_joints(self) -> list[str]:
+        return [name for border in self.borders.values() for name in (*border.joints, *border.joint_angles)]

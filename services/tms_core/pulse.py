@@ -1,0 +1,109 @@
+"""A thread of its own that beats at a fixed rate, and knows how late it was.
+
+Leases are asserted here and not on the executor thread: its timers come late when callbacks are long, and each of
+their wake-ups costs ten times as much. What the executor does is still what counts: a process whose executor has
+stood still for long asserts nothing. Whoever judges others by their silence asks first whether this process itself,
+or the whole PC, did not run meanwhile.
+"""
+
+import threading
+import time
+from collections.abc import Callable
+
+BEAT = 0.05  # s
+LATE = 0.1  # s that a beat may come late before it tells of a PC that is too busy
+REMEMBERED = 1.0  # s for which a late beat is remembered
+ASK = 0.1  # s between questions to the executor whether it runs
+STUCK = 0.18  # s without its answer after which nothing is asserted; with the lease that stays below 0.7 s
+
+Step = Callable[[], None]
+
+
+class Lateness:
+    """When beats came late. Pure logic, for one writing thread and any reader; times are monotonic [s]."""
+
+    def __init__(self) -> None:
+        self._last: float | None = None
+        self._late_at = float("-inf")
+
+    def beat(self, now: float) -> None:
+        """Note a beat."""
+        if self._overdue(now):
+            self._late_at = now
+        self._last = now
+
+    def late(self, now: float) -> bool:
+        """Whether a beat came late a moment ago, or one is overdue now."""
+        return self._overdue(now) or now - self._late_at < REMEMBERED
+
+    def pause(self) -> None:
+        """Nothing beats for a while, on purpose."""
+        self._last = None
+
+    def _overdue(self, now: float) -> bool:
+        last = self._last  # read once: another thread may reset it
+        return last is not None and now - last > BEAT + LATE
+
+
+class Pulse:
+    """One a process. Without steps its thread sleeps, so an idle process costs nothing."""
+
+    def __init__(self, on_executor: Callable[[Step], None]) -> None:
+        """`on_executor` has a step run on the executor thread, soon."""
+        self._on_executor = on_executor
+        self._steps: tuple[Step, ...] = ()
+        self._changing = threading.Lock()
+        self._wanted, self._closed = threading.Event(), threading.Event()
+        self._asked = self._answered = 0.0
+        self._lateness = Lateness()
+        self._thread = threading.Thread(target=self._run, name="pulse", daemon=True)
+        self._thread.start()
+
+    def add(self, step: Step) -> None:
+        """Call `step` at every beat from now on, in the pulse's thread; it must be quick."""
+        with self._changing:
+            if not self._steps:
+                self._asked = self._answered = time.monotonic()
+            self._steps = (*(other for other in self._steps if other != step), step)
+            self._wanted.set()
+
+    def remove(self, step: Step) -> None:
+        """Not any more; one call may still be under way."""
+        with self._changing:
+            self._steps = tuple(other for other in self._steps if other != step)
+            if not self._steps:
+                self._wanted.clear()
+
+    def late(self) -> bool:
+        """Whether this process, or the whole PC, did not run for a moment just now."""
+        return self._lateness.late(time.monotonic())
+
+    def works(self) -> bool:
+        """Whether the executor has run a moment ago."""
+        return time.monotonic() - self._answered < STUCK
+
+    def close(self) -> None:
+        """End the thread, after a beat that is under way."""
+        self._closed.set()
+        self._wanted.set()
+        self._thread.join(1.0)
+
+    def _run(self) -> None:
+        while not self._closed.is_set():
+            if not self._wanted.is_set():
+                self._lateness.pause()
+                self._wanted.wait()
+            now = time.monotonic()
+            self._lateness.beat(now)
+            self._ask(now)
+            for step in self._steps:
+                step()
+            self._closed.wait(BEAT)
+
+    def _ask(self, now: float) -> None:
+        if self._answered >= self._asked and now - self._asked >= ASK:
+            self._asked = now
+            self._on_executor(self._answer)
+
+    def _answer(self) -> None:
+        self._answered = time.monotonic()

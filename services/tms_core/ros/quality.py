@@ -1,0 +1,36 @@
+"""Qualities of service, and why they are as they are."""
+
+from collections.abc import Sequence
+
+from rclpy.duration import Duration
+from rclpy.qos import DurabilityPolicy, LivelinessPolicy, QoSProfile, ReliabilityPolicy, qos_profile_services_default
+
+# With the default depth 10, twenty goals at once lose requests for ever.
+SERVICE = QoSProfile(depth=100, durability=qos_profile_services_default.durability)
+
+
+def lease(seconds: float) -> QoSProfile:
+    """Latched; readers are told when a writer has not asserted itself for `seconds`."""
+    return QoSProfile(
+        depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL, liveliness=LivelinessPolicy.MANUAL_BY_TOPIC,
+        liveliness_lease_duration=Duration(seconds=seconds),
+    )  # fmt: skip
+
+
+def topic(depth: int, latched: bool, best_effort: bool = False) -> QoSProfile:
+    """`latched` keeps the last messages for late comers."""
+    durability = DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE
+    reliability = ReliabilityPolicy.BEST_EFFORT if best_effort else ReliabilityPolicy.RELIABLE
+    return QoSProfile(depth=depth, durability=durability, reliability=reliability)
+
+
+def as_offered(offered: Sequence[QoSProfile]) -> QoSProfile:
+    """For topics that this system did not define.
+
+    A reliable reader would not hear a best-effort writer, and a volatile one not what was said before it came.
+    """
+    latched = bool(offered) and all(one.durability == DurabilityPolicy.TRANSIENT_LOCAL for one in offered)
+    found = topic(10, latched)
+    if any(one.reliability == ReliabilityPolicy.BEST_EFFORT for one in offered):
+        found.reliability = ReliabilityPolicy.BEST_EFFORT
+    return found

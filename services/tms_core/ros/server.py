@@ -1,0 +1,165 @@
+"""Goals that this process serves: a worker thread each.
+
+Blocking callbacks in a MultiThreadedExecutor starve cancels, and `async` execute callbacks hang (measured with the
+rclpy in use); so rclpy's execute callback is never used.
+"""
+
+import threading
+import time
+from collections.abc import Awaitable, Callable
+from typing import TYPE_CHECKING, Any
+
+from prometheus_client import Counter, Histogram
+from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.action.server import ServerGoalHandle
+
+from tms_core import log
+from tms_core.fence import parse
+from tms_core.ros.goals import LOST_TEXT, Accept, Ended, InterfaceType, Message, Outcome, Request
+from tms_core.ros.quality import SERVICE
+
+if TYPE_CHECKING:
+    from tms_core.ros.node import Ros
+
+RESULT_KEPT = 10  # s that a server keeps a result; every status message lists all kept goals
+POLL = 0.02  # s
+
+GOALS = Counter("tms_action_goals_total", "Goals served, by action and outcome", ["action", "outcome"])
+SECONDS = Histogram(
+    "tms_action_goal_seconds", "From the acceptance of a goal to its end", ["action"],
+    buckets=(0.1, 0.5, 1, 2, 5, 10, 30, 60, 300, 1800),
+)  # fmt: skip
+
+
+class Goal:
+    """A goal that this process serves, as its worker thread sees it."""
+
+    def __init__(self, handle: ServerGoalHandle, action_type: InterfaceType) -> None:
+        self._handle, self._type = handle, action_type
+        self.request: Request = handle.request
+        self.uuid = bytes(handle.goal_id.uuid)
+        self.id = self.uuid.hex()
+        self.cancelled = threading.Event()
+        self.on_cancel: Callable[[], None] | None = None  # called once, on the executor thread
+
+    def publish(self, feedback: Message) -> None:
+        """Send feedback; does nothing once the goal has ended."""
+        if self._handle.is_active:
+            self._handle.publish_feedback(feedback)
+
+    def say(self, text: str) -> None:
+        """Send a reason as feedback, where the type of feedback has room for one."""
+        kind = self._type.Feedback
+        for field in ("status", "state"):
+            if field in kind.get_fields_and_field_types():
+                self.publish(kind(**{field: text}))
+
+    def cancel(self) -> None:
+        """What a cancel request does; also called when the process stops."""
+        first = not self.cancelled.is_set()
+        self.cancelled.set()
+        if first and self.on_cancel is not None:
+            self.on_cancel()
+
+
+class _Server(ActionServer):  # type: ignore[misc]
+    """An action server that tells its goal callback which goal id is arriving."""
+
+    arriving: Any = None
+
+    async def _execute_goal_request(self, request_header_and_message: Any) -> None:
+        self.arriving = request_header_and_message[1].goal_id
+        await super()._execute_goal_request(request_header_and_message)
+
+
+class Served:
+    """The actions that one node serves, and their open goals."""
+
+    def __init__(self, ros: "Ros") -> None:
+        self._ros = ros
+        self._goals: set[Goal] = set()
+        self._leaving = False
+
+    def leave(self, seconds: float) -> None:
+        """Cancel what is served and give the workers `seconds` to stop their motions."""
+        self._leaving = True
+        for goal in list(self._goals):
+            goal.cancel()
+        deadline = time.monotonic() + seconds
+        while self._goals and time.monotonic() < deadline:
+            time.sleep(POLL)
+
+    def serve(
+        self,
+        action_type: InterfaceType,
+        name: str,
+        run: Callable[[Goal], Ended],
+        accept: Accept | None = None,
+    ) -> None:
+        """See `Ros.serve`."""
+        reasons = self._ros.node.create_publisher(action_type.Impl.FeedbackMessage, f"{name}/_action/feedback", 10)
+
+        async def decide(request: Request) -> GoalResponse:
+            goal_id = server.arriving  # valid until the first await
+            verdict = accept(request) if accept is not None else None
+            if isinstance(verdict, Awaitable):
+                verdict = await verdict
+            if verdict is None:
+                return GoalResponse.ACCEPT
+            GOALS.labels(name, "rejected").inc()
+            self._ros.node.get_logger().debug(f"{name}: {verdict.code}: {verdict.text}")
+            if hasattr(action_type.Feedback(), "status"):
+                feedback = action_type.Feedback(status=f"{verdict.code}: {verdict.text}")
+                reasons.publish(action_type.Impl.FeedbackMessage(goal_id=goal_id, feedback=feedback))
+            return GoalResponse.REJECT
+
+        def accepted(handle: ServerGoalHandle) -> None:
+            goal = Goal(handle, action_type)
+            handle.tms_goal = goal
+            self._goals.add(goal)
+            threading.Thread(target=self._work, args=(action_type, run, goal, name), name=name, daemon=True).start()
+
+        def cancel(handle: ServerGoalHandle) -> CancelResponse:
+            handle.tms_goal.cancel()
+            return CancelResponse.ACCEPT
+
+        server = _Server(
+            self._ros.node, action_type, name, execute_callback=_never, goal_callback=decide,
+            handle_accepted_callback=accepted, cancel_callback=cancel, result_timeout=RESULT_KEPT,
+            callback_group=self._ros.group,
+            goal_service_qos_profile=SERVICE, result_service_qos_profile=SERVICE,
+            cancel_service_qos_profile=SERVICE,
+        )  # fmt: skip
+
+    def _work(self, action_type: InterfaceType, run: Callable[[Goal], Ended], goal: Goal, name: str) -> None:
+        owner = parse(goal.uuid)
+        log.bind(goal=goal.id, **({"run_number": str(owner.run)} if owner is not None else {}))
+        begun = time.monotonic()
+        ended: Ended = (Outcome.ABORTED, action_type.Result())
+        try:
+            ended = run(goal)
+        finally:
+            SECONDS.labels(name).observe(time.monotonic() - begun)
+            GOALS.labels(name, ended[0].name.lower()).inc()
+            self._ros.on_executor(lambda: self._deliver(goal, *ended))
+
+    def _deliver(self, goal: Goal, outcome: Outcome, result: Message) -> None:
+        asked = goal._handle.is_cancel_requested
+        if self._leaving and outcome is Outcome.CANCELED and not asked:
+            goal.say(f"{LOST_TEXT}: {self._ros.node.get_name()} was stopped during its goal")
+
+        def finish(handle: ServerGoalHandle) -> Message:
+            if outcome is Outcome.SUCCEEDED:
+                handle.succeed()
+            elif outcome is Outcome.CANCELED and asked:
+                handle.canceled()
+            else:  # rcl allows CANCELED only after a cancel request
+                handle.abort()
+            return result
+
+        self._goals.discard(goal)
+        goal._handle.execute(finish)
+
+
+def _never(handle: ServerGoalHandle) -> Message:
+    raise AssertionError("goals are executed by their own worker threads")

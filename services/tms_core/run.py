@@ -1,0 +1,115 @@
+"""`python -m tms_core.run <group:name>`: the one entry of every process."""
+
+import contextlib
+import ctypes
+import importlib
+import os
+import platform
+import signal
+import sys
+import threading
+from typing import TYPE_CHECKING
+
+from tms_core import discovery, environment, log, metrics, store
+from tms_core.config import Site, load_site, version
+from tms_core.errors import ConfigError
+from tms_core.metrics import Health
+from tms_core.processes import Process, find
+
+if TYPE_CHECKING:
+    from tms_core.ros import Ros
+
+EXIT_LIMIT = 2.0  # s from SIGTERM to the end, whatever hangs
+PR_SET_PDEATHSIG = 1
+GRAPH_PERIOD = 5.0  # s between looks at the ROS graph for the metrics
+FIRST = ("rc", "ts")  # on a busy PC these must not miss a beat of their permits
+NICE = -10
+
+
+def main(name: str) -> int:
+    """Run one process of the table until SIGTERM or SIGINT; 0 on a clean end."""
+    try:
+        site = load_site()
+        row = find(site, name)
+        _die_with_parent()
+        if row.name == "store":
+            store.become(site)
+        if row.name == "discovery":
+            discovery.become(site)
+        environment.enter(site)
+        return _serve(site, row)
+    except ConfigError as error:
+        print(f"{name}: {error}", file=sys.stderr)
+        return 1
+
+
+def _serve(site: Site, row: Process) -> int:
+    metrics.BUILD.info({"version": version(), "python": platform.python_version()})
+    from tms_core.app import App  # rclpy reads the environment when it is imported first
+    from tms_core.ros import Ros
+
+    logger = log.setup(row.full, row.machine, level=site.file.log.level, as_json=site.file.log.json_lines)
+    app_box: list[App] = []
+    health = Health(
+        row.address,
+        row.port,
+        unready=lambda: app_box[0].unready() if app_box else "starting",
+        hangs=lambda: app_box[0].ros.hangs() if app_box else None,
+    )
+    stop = threading.Event()
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, lambda _number, _frame: stop.set())
+    if row.name in FIRST:
+        _come_first()
+    ros = Ros(row.full.replace(":", "_"))
+    app = App(site, row, ros, logger)
+    importlib.import_module(row.module).start(app)
+    app_box.append(app)
+    ros.every(GRAPH_PERIOD, lambda: _measure_graph(ros))
+    logger.info("event=started pid=%d", os.getpid())
+    while not stop.wait(0.5) and not ros.failed.is_set():
+        pass
+    killer = threading.Timer(EXIT_LIMIT, _give_up)
+    killer.daemon = True
+    killer.start()
+    app.stop()
+    ros.close()
+    health.close()
+    logger.info("event=stopped")
+    killer.cancel()
+    return 1 if ros.failed.is_set() else 0
+
+
+def _measure_graph(ros: "Ros") -> None:
+    readers, writers, nodes = ros.ends()
+    metrics.ENDPOINTS.labels("readers").set(readers)
+    metrics.ENDPOINTS.labels("writers").set(writers)
+    metrics.NODES.set(nodes)
+
+
+def _come_first() -> None:
+    with contextlib.suppress(
+        PermissionError
+    ):  # needs CAP_SYS_NICE; without it a busy PC may stop a machine for nothing
+        os.setpriority(os.PRIO_PROCESS, 0, NICE)
+
+
+def _give_up() -> None:
+    """Something hangs in the clean-up: end all the same; supervisord would kill us anyway."""
+    os.write(2, b"clean-up took too long, leaving\n")
+    os._exit(1)
+
+
+def _die_with_parent() -> None:
+    """After a `kill -9` of supervisord no orphan may live on beside the processes of the next one."""
+    parent = os.getppid()
+    ctypes.CDLL(None, use_errno=True).prctl(PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)
+    if os.getppid() != parent:
+        raise ConfigError("supervisord ended while this process started")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        print("usage: python -m tms_core.run <group:name>, for example zx200:rc; `tms ps` lists them", file=sys.stderr)
+        sys.exit(2)
+    sys.exit(main(sys.argv[1]))

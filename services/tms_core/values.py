@@ -1,0 +1,73 @@
+"""Values of records: Python on one side, rcl_interfaces/Parameter on the wire, types kept."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+
+Value = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
+
+# Python type -> (number of the type, field) for a value alone and for an array of it
+ALONE: dict[type, tuple[int, str]] = {
+    bool: (ParameterType.PARAMETER_BOOL, "bool_value"),
+    int: (ParameterType.PARAMETER_INTEGER, "integer_value"),
+    float: (ParameterType.PARAMETER_DOUBLE, "double_value"),
+    str: (ParameterType.PARAMETER_STRING, "string_value"),
+}
+ARRAY: dict[type, tuple[int, str]] = {
+    bool: (ParameterType.PARAMETER_BOOL_ARRAY, "bool_array_value"),
+    int: (ParameterType.PARAMETER_INTEGER_ARRAY, "integer_array_value"),
+    float: (ParameterType.PARAMETER_DOUBLE_ARRAY, "double_array_value"),
+    str: (ParameterType.PARAMETER_STRING_ARRAY, "string_array_value"),
+}
+FIELD_ALONE = dict(ALONE.values())
+FIELD_ARRAY = dict(ARRAY.values())
+
+
+def can_travel(value: Any) -> bool:
+    """Whether a value has a type that parameters know: no nested documents, bytes or dates."""
+    return _kind_of_all(value) is not None if isinstance(value, list) else _kind(value) is not None
+
+
+def to_parameters(fields: Mapping[str, Any]) -> list[Parameter]:
+    """Fields as parameters; integers and doubles mixed in one array become doubles.
+
+    Raises:
+        TypeError: a value that `can_travel` refuses.
+    """
+    return [Parameter(name=name, value=_to_value(name, value)) for name, value in fields.items()]
+
+
+def from_parameters(parameters: Iterable[Parameter]) -> dict[str, Value]:
+    """Parameters as Python values; unset ones and bytes are left out."""
+    return {parameter.name: value for parameter in parameters if (value := from_value(parameter.value)) is not None}
+
+
+def from_value(value: ParameterValue) -> Value | None:
+    """One value; None when it is not set or is bytes."""
+    if value.type in FIELD_ALONE:
+        alone: Value = getattr(value, FIELD_ALONE[value.type])
+        return alone
+    return list(getattr(value, FIELD_ARRAY[value.type])) if value.type in FIELD_ARRAY else None
+
+
+def _to_value(name: str, value: Any) -> ParameterValue:
+    kind = _kind_of_all(value) if isinstance(value, list) else _kind(value)
+    if kind is None:
+        raise TypeError(f"{name}: a {type(value).__name__} cannot travel as a parameter")
+    number, field = (ARRAY if isinstance(value, list) else ALONE)[kind]
+    plain = [kind(part) for part in value] if isinstance(value, list) else kind(value)
+    return ParameterValue(type=number, **{field: plain})
+
+
+def _kind(value: Any) -> type | None:
+    """Base type of a value; bool before int, since True is an int, and the store's own integers are ints."""
+    return next((kind for kind in ALONE if isinstance(value, kind)), None)
+
+
+def _kind_of_all(values: list[Any]) -> type | None:
+    """The one type of an array; integers among doubles count as doubles, and so does an empty array."""
+    kinds = {_kind(value) for value in values} or {float}
+    if kinds == {int, float}:
+        return float
+    return kinds.pop() if len(kinds) == 1 else None

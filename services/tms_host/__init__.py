@@ -1,0 +1,1 @@
+"""Processes of one PC: supervisord on one side, ROS on the other."""

@@ -1,0 +1,71 @@
+"""/diagnostics for the tools of ROS (rqt_robot_monitor, diagnostic_aggregator): one status a process of this PC."""
+
+import threading
+from typing import Any
+
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+
+from tms_core import metrics
+from tms_core.app import App
+from tms_core.processes import Process, table
+from tms_host.supervisor import Running
+
+PERIOD = 1.0  # s between messages
+LOOK = 5.0  # s between questions to a process whether it is ready: each costs a few milliseconds
+ANSWER = 0.5  # s
+OK, WARN, ERROR, STALE = 0, 1, 2, 3
+
+
+class Diagnostics:
+    """Publishes in a thread of its own; `rows` and `restarts` are what supervisord said last."""
+
+    def __init__(self, app: App) -> None:
+        self._app = app
+        self._table = {row.full: row for row in table(app.site)}
+        self._publisher = app.ros.publisher(DiagnosticArray, "/diagnostics")
+        self._reasons: dict[str, str | None] = {}
+        self._rows: list[Running] = []
+        self._restarts: dict[str, int] = {}
+        threading.Thread(target=self._tell, name="diagnostics", daemon=True).start()
+
+    def update(self, rows: list[Running], restarts: dict[str, int]) -> None:
+        """From the thread that looks at supervisord."""
+        self._rows, self._restarts = rows, dict(restarts)
+
+    def _tell(self) -> None:
+        looks = 0
+        while not self._app.stopping.wait(PERIOD):
+            rows = self._rows
+            if looks % round(LOOK / PERIOD) == 0:
+                self._reasons = {row.name: self._ask(row) for row in rows if row.state == "RUNNING"}
+            looks += 1
+            message = DiagnosticArray(status=[self._status(row) for row in rows])
+            message.header.stamp = self._app.ros.now()
+            self._publisher.publish(message)
+
+    def _ask(self, row: Running) -> str | None:
+        process = self._table.get(row.name)
+        if process is None or not process.ours:
+            return None
+        return metrics.unready(process.address, process.port, ANSWER)
+
+    def _status(self, row: Running) -> Any:
+        level, text = judge(row, self._table.get(row.name), self._reasons.get(row.name))
+        values = {"state": row.state, "pid": row.pid, "restarts": self._restarts.get(row.name, 0),
+                  "uptime_seconds": round(row.uptime)}  # fmt: skip
+        return DiagnosticStatus(
+            level=bytes([level]), name=f"tms: {row.name}", hardware_id=row.name.partition(":")[0], message=text,
+            values=[KeyValue(key=key, value=str(value)) for key, value in values.items()],
+        )  # fmt: skip
+
+
+def judge(row: Running, process: Process | None, reason: str | None) -> tuple[int, str]:
+    """Level and text of one process; a subtask that nobody has asked for yet is in order."""
+    if row.state == "RUNNING":
+        return (OK, "ready") if reason is None else (WARN, reason)
+    if row.state == "STARTING":
+        return WARN, "starting"
+    if row.state == "STOPPED":
+        waits = process is not None and not process.autostart
+        return (OK, "starts when a task names it") if waits else (STALE, "stopped")
+    return ERROR, f"{row.state}: {row.detail}"

@@ -1,0 +1,72 @@
+"""Notices processes that live but do not answer: frozen, or with a ROS thread that hangs.
+
+supervisord sees only processes that end. Each process tells on its health port whether it runs; one that has told so
+and then does not for some seconds is restarted. A process that has never answered is still starting.
+"""
+
+import http.client
+import threading
+import time
+from collections.abc import Callable, Sequence
+
+from tms_core.app import App
+from tms_core.errors import TmsError
+from tms_core.processes import table
+from tms_host.supervisor import Running, Supervisor
+
+PERIOD = 2.0  # s between rounds; a question costs about a millisecond of both processes
+ANSWER_LIMIT = 2.0  # s
+
+
+class Answers:
+    """When each process answered last. Pure logic; times are monotonic [s]."""
+
+    def __init__(self, limit: float) -> None:
+        self._limit = limit
+        self._last: dict[str, tuple[int, float]] = {}  # name -> pid, time
+
+    def frozen(self, name: str, pid: int, answered: bool, now: float) -> bool:
+        """Take the result of a question; whether the process has been silent for too long."""
+        if answered:
+            self._last[name] = (pid, now)
+            return False
+        known = self._last.get(name)
+        return known is not None and known[0] == pid and now - known[1] > self._limit
+
+
+class Watchdog:
+    """A thread that asks every running process of this PC, and restarts those that are frozen."""
+
+    def __init__(self, app: App, running: Callable[[], Sequence[Running]]) -> None:
+        """`running` gives the processes as supervisord saw them last."""
+        self._app, self._running = app, running
+        self._ports = {row.full: row.port for row in table(app.site) if row.full != app.process.full}
+        self._answers = Answers(app.site.file.on_loss.frozen)
+        if app.site.file.on_loss.frozen:
+            threading.Thread(target=self._watch, name="watchdog", daemon=True).start()
+
+    def _watch(self) -> None:
+        supervisor = Supervisor(self._app.site)
+        while not self._app.stopping.wait(PERIOD):
+            for row in self._running():
+                if row.state != "RUNNING" or row.name not in self._ports or row.name == "tms:store":
+                    continue
+                if self._answers.frozen(row.name, row.pid, self._answer(row.name), time.monotonic()):
+                    self._restart(supervisor, row)
+
+    def _answer(self, name: str) -> bool:
+        asked = http.client.HTTPConnection(self._app.site.file.bind, self._ports[name], timeout=ANSWER_LIMIT)
+        try:
+            asked.request("GET", "/healthz")
+            return asked.getresponse().status == http.HTTPStatus.OK
+        except (OSError, http.client.HTTPException):
+            return False
+        finally:
+            asked.close()
+
+    def _restart(self, supervisor: Supervisor, row: Running) -> None:
+        self._app.log.error("event=frozen target=%s pid=%d action='restarted'", row.name, row.pid)
+        try:
+            supervisor.control("restart", row.name)
+        except TmsError as error:
+            self._app.log.error("event=not_restarted target=%s reason=%r", row.name, str(error))

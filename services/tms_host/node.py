@@ -1,0 +1,116 @@
+"""Process `tms:host`: tells the site which processes run on this PC, and starts and stops them on request."""
+
+import socket
+import threading
+import time
+
+from prometheus_client import REGISTRY
+from tms_msg_host.msg import Process, Processes
+from tms_msg_host.srv import ControlProcess, ReadLog
+
+from tms_core.app import App
+from tms_core.errors import TmsError
+from tms_host.diagnostics import Diagnostics
+from tms_host.facts import Facts
+from tms_host.frozen import Watchdog
+from tms_host.supervisor import Running, Supervisor, SupervisorDown
+from tms_host.usage import Usage
+
+HEARTBEAT = 2.0  # s between messages when nothing changes, so that a dead PC can be told from a quiet one
+LOG_BYTES, MOST_LOG_BYTES = 16_384, 262_144
+PERIOD = 0.25  # s between looks at supervisord: its socket has no events
+
+
+def start(app: App) -> None:
+    """Publish /tms/host/processes and offer /tms/host/<host name>/control and /log."""
+    host = Host(app)
+    app.ros.offer_slow(ControlProcess, f"/tms/host/{host.name}/control", host.control)
+    app.ros.offer_slow(ReadLog, f"/tms/host/{host.name}/log", host.log)
+    app.on_stop(host.close)
+    Watchdog(app, lambda: host.rows)
+    app.ready_when(lambda: None if host.seen else "supervisord does not answer")
+
+
+class Host:
+    """Looks at supervisord in a thread of its own and publishes what changed."""
+
+    def __init__(self, app: App) -> None:
+        self.name = "".join(c if c.isalnum() else "_" for c in socket.gethostname().lower()) or "pc"
+        self.seen = False
+        self.rows: list[Running] = []  # as supervisord told last
+        self._app = app
+        self._publisher = app.ros.publisher(Processes, "/tms/host/processes", depth=10, latched=True)
+        self._restarts: dict[str, int] = {}
+        self._usage = Usage()
+        self._pids: dict[str, int] = {}
+        self._calls = threading.Lock()  # one RPC connection for control calls
+        self._control = Supervisor(app.site)
+        self._facts = Facts(app.site.state)
+        REGISTRY.register(self._facts)
+        self._diagnostics = Diagnostics(app)
+        self._closing = threading.Event()
+        threading.Thread(target=self._watch, name="supervisord", daemon=True).start()
+
+    def close(self) -> None:
+        self._closing.set()
+
+    def control(self, request: ControlProcess.Request, response: ControlProcess.Response) -> ControlProcess.Response:
+        """start, stop or restart one process of this PC."""
+        if request.command not in ("start", "stop", "restart"):
+            response.error_code = "BAD_COMMAND"
+            response.error_msg = f"'{request.command}' is none of start, stop, restart"
+            return response
+        try:
+            with self._calls:
+                self._control.control(request.command, request.name)
+            self._app.log.info("event=%s target=%s", request.command, request.name)
+        except TmsError as error:
+            response.error_code, response.error_msg = error.code, str(error)
+        return response
+
+    def log(self, request: ReadLog.Request, response: ReadLog.Response) -> ReadLog.Response:
+        """The end of a process's log."""
+        try:
+            with self._calls:
+                response.text = self._control.log(request.name, min(request.bytes or LOG_BYTES, MOST_LOG_BYTES))
+        except TmsError as error:
+            response.error_code, response.error_msg = error.code, str(error)
+        return response
+
+    def _watch(self) -> None:
+        supervisor = Supervisor(self._app.site)
+        last: list[tuple[str, str, int]] = []
+        told = 0.0
+        while not self._closing.wait(PERIOD):
+            try:
+                rows = supervisor.processes()
+            except SupervisorDown:
+                self.seen = False
+                supervisor = Supervisor(self._app.site)
+                continue
+            self.seen, self.rows = True, rows
+            self._count(rows)
+            self._facts.update(rows, self._restarts)
+            self._diagnostics.update(rows, self._restarts)
+            now = [(row.name, row.state, row.pid) for row in rows]
+            if now != last or time.monotonic() - told > HEARTBEAT:
+                last, told = now, time.monotonic()
+                self._publisher.publish(self._message(rows))
+
+    def _count(self, rows: list[Running]) -> None:
+        for row in rows:
+            if row.pid and self._pids.get(row.name, row.pid) != row.pid:
+                self._restarts[row.name] = self._restarts.get(row.name, 0) + 1
+            if row.pid:
+                self._pids[row.name] = row.pid
+
+    def _message(self, rows: list[Running]) -> Processes:
+        processes = []
+        for row in rows:
+            cpu, memory = self._usage.of(row.pid) if row.pid else (0.0, 0)
+            processes.append(Process(
+                name=row.name, state=row.state, pid=row.pid, restarts=self._restarts.get(row.name, 0),
+                uptime=row.uptime, detail=row.detail, cpu=cpu, memory=memory,
+            ))  # fmt: skip
+        self._usage.keep({row.pid for row in rows})
+        return Processes(host=self.name, processes=processes)

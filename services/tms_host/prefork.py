@@ -1,0 +1,95 @@
+"""supervisord whose programs of ours are forks of itself, with the libraries already loaded.
+
+A start by `execve` spends most of its time and half of its memory on importing the same libraries once more. A fork
+shares them, and supervisord still supervises the real pid. None of the modules that a process runs are loaded here: a
+restarted process always runs the code and configuration that are on disk now. Nothing here opens a ROS context, whose
+threads would not survive the fork (those of LTTng, which rclpy brings, are not missed).
+"""
+
+import ctypes
+import gc
+import importlib
+import logging
+import os
+import signal
+import sys
+from typing import NoReturn
+
+import setproctitle
+from supervisor.options import ServerOptions
+from supervisor.supervisord import go
+
+MODULE = "tms_core.run"  # programs that are forked; others (none today) are executed as usual
+LIBRARIES = (
+    "rclpy", "rclpy.action", "rclpy.executors", "rclpy.event_handler", "rclpy.serialization",
+    "prometheus_client", "pydantic", "yaml", "http.server", "concurrent.futures",
+)  # fmt: skip
+INTERFACES = ("tms_msg_ts", "tms_msg_db", "tms_msg_rc", "tms_msg_host", "control_msgs", "nav2_msgs", "com3_msgs",
+              "geometry_msgs", "nav_msgs", "sensor_msgs", "std_msgs", "std_srvs", "trajectory_msgs")  # fmt: skip
+MIDDLEWARE = "librmw_fastrtps_cpp.so"
+HANDLED = (signal.SIGTERM, signal.SIGINT, signal.SIGQUIT, signal.SIGHUP, signal.SIGCHLD, signal.SIGUSR2)
+
+
+class Options(ServerOptions):  # type: ignore[misc]
+    """supervisord's dealings with the operating system, but for one call."""
+
+    def execve(self, filename: str, argv: list[str], env: dict[str, str]) -> None:
+        """In the child: become the program. Pipes, group and working folder are set by supervisord already."""
+        if argv[1:2] == ["-m"] and argv[2:3] == [MODULE]:
+            become(argv, env)
+        super().execve(filename, argv, env)
+
+
+def become(argv: list[str], env: dict[str, str]) -> NoReturn:
+    """Run `python -m tms_core.run NAME` in this fork, and end with its exit code."""
+    gc.freeze()  # what supervisord held is never collected here: its file numbers belong to others now
+    for number in HANDLED:
+        signal.signal(number, signal.SIG_DFL)
+    setproctitle.setproctitle(" ".join(argv))  # before the environment goes: it looks for its place there
+    os.environ.clear()
+    os.environ.update(env)
+    sys.argv = argv[2:]
+    code = 1
+    try:
+        code = importlib.import_module(MODULE).main(*argv[3:])
+    except BaseException:  # as the interpreter does at the end of a program
+        sys.excepthook(*sys.exc_info())
+    logging.shutdown()
+    sys.stdout.flush()
+    os._exit(code)
+
+
+def load() -> None:
+    """Import what most processes use."""
+    for name in LIBRARIES:
+        importlib.import_module(name)
+    for package in INTERFACES:
+        for kind in ("msg", "srv", "action"):
+            _load_types(f"{package}.{kind}")
+    ctypes.CDLL(MIDDLEWARE, mode=ctypes.RTLD_GLOBAL)
+
+
+def _load_types(name: str) -> None:
+    try:
+        module = importlib.import_module(name)
+    except ModuleNotFoundError as missing:
+        if missing.name != name:
+            raise
+        return
+    for each in vars(module).values():
+        load_support = getattr(type(each), "__import_type_support__", None)
+        if load_support is not None:
+            each.__import_type_support__()
+
+
+def main() -> None:
+    """Run supervisord with the arguments of the command line."""
+    load()
+    options = Options()
+    options.realize(doc=__doc__)
+    options.first, options.test = True, False
+    go(options)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,203 @@
+"""supervisord: its configuration from the process table, and its RPC over a unix socket of mode 0600."""
+
+import hashlib
+import os
+import sys
+import tempfile
+import xmlrpc.client
+from dataclasses import dataclass
+from pathlib import Path
+
+from supervisor.xmlrpc import SupervisorTransport
+
+from tms_core.config import PROJECT, Site
+from tms_core.environment import environment
+from tms_core.errors import ConfigError, TmsError
+from tms_core.processes import Process, here
+
+START_SECONDS = 1  # a process that ends sooner counts as failed to start
+STOP_SECONDS = 3  # the runtime ends within 2
+LOG_SIZE, LOG_FILES = "10MB", 3
+
+
+class SupervisorDown(TmsError):
+    """supervisord does not run or does not answer."""
+
+    code = "MESH_DOWN"
+
+
+@dataclass(frozen=True)
+class Running:
+    """A process as supervisord sees it."""
+
+    name: str  # group:name
+    state: str
+    pid: int
+    uptime: float  # s
+    detail: str
+
+
+def runtime_folder() -> Path:
+    """Private folder for sockets and locks: unix socket paths may hold 107 characters at most.
+
+    Raises:
+        ConfigError: somebody else owns it.
+    """
+    base = Path(os.environ.get("XDG_RUNTIME_DIR") or tempfile.gettempdir())
+    folder = base / f"tms-{os.getuid()}"
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    facts = folder.stat()
+    if facts.st_uid != os.getuid() or facts.st_mode & 0o077:
+        raise ConfigError(f"{folder}: is not private to you: remove it or set XDG_RUNTIME_DIR")
+    return folder
+
+
+def socket_path(site: Site) -> Path:
+    """supervisord's socket for the mesh whose state is in `site.state`."""
+    return runtime_folder() / f"{hashlib.sha256(str(site.state).encode()).hexdigest()[:16]}.sock"
+
+
+def render(site: Site, rows: tuple[Process, ...] | None = None) -> str:
+    """supervisord.conf for these rows (default: those of this PC)."""
+    rows = here(site) if rows is None else rows
+    parts = [_daemon(site), *(_program(site, row) for row in rows)]
+    for group in dict.fromkeys(row.group for row in rows):
+        members = ",".join(_section(row) for row in rows if row.group == group)
+        parts.append(f"[group:{group}]\nprograms={members}\n")
+    return "\n".join(parts)
+
+
+def _daemon(site: Site) -> str:
+    words = ",".join(f'{key}="{_escape(value)}"' for key, value in environment(site).items())
+    folder = _escape(str(site.state))
+    return f"""[supervisord]
+logfile={folder}/log/supervisord.log
+logfile_maxbytes={LOG_SIZE}
+logfile_backups={LOG_FILES}
+pidfile={folder}/supervisord.pid
+childlogdir={folder}/log
+identifier=tms-{site.name}
+directory={_escape(str(PROJECT))}
+environment={words}
+strip_ansi=true
+
+[unix_http_server]
+file={_escape(str(socket_path(site)))}
+chmod=0600
+
+[rpcinterface:supervisor]
+supervisor.rpcinterface_factory=supervisor.rpcinterface:make_main_rpcinterface
+"""
+
+
+def _program(site: Site, row: Process) -> str:
+    log = _escape(str(site.state / "log" / f"{row.group}.{row.name}.log"))
+    return f"""[program:{_section(row)}]
+process_name={row.name}
+command="{_escape(sys.executable)}" -m tms_core.run {row.full}
+autostart={str(row.autostart).lower()}
+autorestart=true
+startsecs={START_SECONDS}
+startretries=3
+stopsignal=TERM
+stopwaitsecs={STOP_SECONDS}
+stopasgroup=false
+killasgroup=true
+stdout_logfile={log}
+stdout_logfile_maxbytes={LOG_SIZE}
+stdout_logfile_backups={LOG_FILES}
+redirect_stderr=true
+"""
+
+
+def _section(row: Process) -> str:
+    return f"{row.group}.{row.name}"
+
+
+def _escape(text: str) -> str:
+    """supervisord expands %(name)s in values."""
+    if '"' in text or "\n" in text:
+        raise ConfigError(f"the path {text!r} holds a quote or a line break: choose another folder")
+    return text.replace("%", "%%")
+
+
+class Supervisor:
+    """Calls to the supervisord of a site. Not thread safe: one object a thread."""
+
+    def __init__(self, site: Site) -> None:
+        self._path = socket_path(site)
+        self._proxy = self._connect()
+
+    def _connect(self) -> xmlrpc.client.ServerProxy:
+        transport = SupervisorTransport(None, None, f"unix://{self._path}")
+        return xmlrpc.client.ServerProxy("http://127.0.0.1", transport=transport)
+
+    def _call(self, method: str, *words: object) -> object:
+        try:
+            return getattr(self._proxy.supervisor, method)(*words)
+        except xmlrpc.client.Fault as fault:
+            raise TmsError(f"supervisord: {fault.faultString} {words}", "SUPERVISOR") from fault
+        except (OSError, xmlrpc.client.ProtocolError) as error:
+            self._proxy("close")()
+            self._proxy = self._connect()  # the broken connection of the old one cannot be used again
+            raise SupervisorDown("the mesh does not run here: start it with `make up`") from error
+
+    def close(self) -> None:
+        """Free the connection."""
+        self._proxy("close")()
+
+    def alive(self) -> bool:
+        """Whether supervisord answers."""
+        try:
+            self._call("getState")
+        except SupervisorDown:
+            return False
+        return True
+
+    def pid(self) -> int:
+        """supervisord's own pid."""
+        pid = self._call("getPID")
+        assert isinstance(pid, int)
+        return pid
+
+    def processes(self) -> list[Running]:
+        """All processes of this PC."""
+        rows = self._call("getAllProcessInfo")
+        assert isinstance(rows, list)
+        return [_running(row) for row in rows]
+
+    def control(self, command: str, name: str) -> None:
+        """start, stop or restart one process; already started or stopped is no error.
+
+        Raises:
+            TmsError: it cannot be started; the message says where its log is.
+        """
+        states = {row.name: row.state for row in self.processes()}
+        if name not in states:
+            raise TmsError(f"no process '{name}' on this PC: `tms ps` lists them", "NO_PROCESS")
+        up = states[name] in ("RUNNING", "STARTING")
+        if command in ("stop", "restart") and up:
+            self._call("stopProcess", name, True)
+        if command in ("start", "restart") and not (command == "start" and up):
+            self._call("startProcess", name, False)
+
+    def log(self, name: str, size: int) -> str:
+        """Whole lines from the end of a process's log, `size` bytes at most.
+
+        Raises:
+            TmsError: there is no such process, or it has no log yet.
+        """
+        text = str(self._call("readProcessStdoutLog", name, -size, 0))
+        begun = text.find("\n") + 1 if len(text.encode()) >= size else 0
+        return text[begun:]
+
+    def shutdown(self) -> None:
+        """Stop all processes at once (groups one after another take three times as long), then supervisord."""
+        self._call("stopAllProcesses", True)
+        self._call("shutdown")
+
+
+def _running(row: dict[str, object]) -> Running:
+    uptime = float(str(row["now"])) - float(str(row["start"])) if row["statename"] == "RUNNING" else 0.0
+    name = f"{row['group']}:{row['name']}"
+    return Running(name, str(row["statename"]), int(str(row["pid"])), uptime, str(row["description"]))

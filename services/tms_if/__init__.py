@@ -1,0 +1,1 @@
+"""Borders to other stacks: the TCP bridge that OperaSim-PhysX connects to. Mapping only, no decisions."""

@@ -1,0 +1,75 @@
+"""System commands of the ROS-TCP protocol: frames whose destination begins with two underscores. Pure logic."""
+
+import json
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
+
+from tms_core.config import explain
+from tms_if.framing import encode
+
+VERSION = "v0.7.0"  # the simulator wants v0.7; of its protocol, not of this project
+NAME = r"^/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*$"
+DEEPEST_QUEUE = 1000  # messages; a client may ask for more
+
+
+class CommandError(Exception):
+    """A command cannot be carried out; the text goes back to the client."""
+
+
+class Registration(BaseModel):
+    """What a client wants to publish, hear, call or offer."""
+
+    model_config = ConfigDict(frozen=True)
+
+    topic: str = Field(pattern=NAME, max_length=255)
+    message_name: str = Field(pattern=r"^\w+/(\w+/)?\w+$", max_length=255)
+    queue_size: int = 10
+    latch: bool = False
+
+    @field_validator("queue_size")
+    @classmethod
+    def _bounded(cls, size: int) -> int:
+        return min(max(size, 1), DEEPEST_QUEUE)
+
+
+class Removal(BaseModel):
+    """A registration that ends."""
+
+    topic: str = Field(pattern=NAME, max_length=255)
+
+
+class ServiceId(BaseModel):
+    """The next frame is a service request or response with this number."""
+
+    srv_id: int = Field(ge=-(2**31), lt=2**31)
+
+
+T = TypeVar("T", bound=BaseModel)
+
+
+def parse(kind: type[T], command: str, payload: bytes) -> T:
+    """What a command says; the simulator ends its JSON with a NUL.
+
+    Raises:
+        CommandError: it is no JSON or not what the command needs.
+    """
+    try:
+        return kind.model_validate_json(payload.rstrip(b"\0"))
+    except ValidationError as error:
+        raise CommandError(f"{command}: {explain(error)}") from error
+
+
+def command(name: str, **fields: Any) -> bytes:
+    """A command as a frame."""
+    return encode(name, json.dumps(fields).encode())
+
+
+def handshake() -> bytes:
+    """What the simulator wants first; the metadata are JSON in a string of JSON."""
+    return command("__handshake", version=VERSION, metadata=json.dumps({"protocol": "ROS2"}))
+
+
+def full_name(topic: str) -> str:
+    """The simulator's names have no leading slash; they are resolved in the root namespace."""
+    return f"/{topic.removeprefix('/')}"

@@ -1,0 +1,214 @@
+"""The ROS side of one client: its publishers, subscriptions and services, and nothing that outlives it."""
+
+import itertools
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, TypeVar
+
+from tms_core.errors import RosError
+from tms_core.ros import Ros, pack, unpack
+from tms_if import joint_cmd
+from tms_if.commands import CommandError, Registration, command, full_name
+from tms_if.framing import encode
+from tms_if.interfaces import interface, short_name
+from tms_if.names import refusal
+
+ROS_LIMIT = 5.0  # s for the ROS thread to make or remove something
+ANSWER_LIMIT = 30.0  # s for a service to answer, on either side
+OPEN_CALLS = 100  # calls under way, on either side
+
+T = TypeVar("T")
+
+
+@dataclass
+class Asked:
+    """A request that the client has to answer."""
+
+    topic: str
+    type: Any
+    response: Any = None
+    over: threading.Event = field(default_factory=threading.Event)
+
+
+class Ends:
+    """`send` takes a frame and whether it may be dropped; `say` takes a trouble that is no one's fault but worth a
+    line. Topics are keyed as the client writes them, since that is how they are echoed."""
+
+    def __init__(
+        self,
+        ros: Ros,
+        layout: joint_cmd.Layout,
+        commands: frozenset[str],
+        send: Callable[[bytes, bool], None],
+        say: Callable[[str], None],
+    ) -> None:
+        self._ros, self._layout, self._commands, self._send, self._say = ros, layout, commands, send, say
+        self._published: dict[str, tuple[Any, Any]] = {}  # publisher, type
+        self._heard: dict[str, Any] = {}
+        self._called: dict[str, Any] = {}  # type
+        self._offered: dict[str, tuple[Any, Any]] = {}  # service, type
+        self._asked: dict[int, Asked] = {}
+        self._numbers = itertools.count(1001)
+        self._calls = 0
+        self._closed = False
+
+    # registrations
+
+    def publish(self, wanted: Registration) -> None:
+        kind = interface(wanted.message_name, "msg")
+        self._may_speak(wanted.topic)
+        self.remove_publisher(wanted.topic)
+        made = self._on_ros(
+            lambda: self._ros.publisher(kind, full_name(wanted.topic), wanted.queue_size, wanted.latch), wanted
+        )
+        self._published[wanted.topic] = made, kind
+
+    def subscribe(self, wanted: Registration) -> None:
+        kind = interface(wanted.message_name, "msg")
+        self.remove_subscriber(wanted.topic)
+
+        def heard(data: bytes) -> None:
+            try:
+                self._send(encode(wanted.topic, self._for_client(kind, bytes(data))), True)
+            except joint_cmd.LayoutError as error:
+                self._say(f"{wanted.topic}: {error}")
+
+        name = full_name(wanted.topic)
+        self._heard[wanted.topic] = self._on_ros(lambda: self._ros.subscribe_raw(kind, name, heard), wanted)
+
+    def ros_service(self, wanted: Registration) -> None:
+        kind = interface(wanted.message_name, "srv")
+        self._may_speak(wanted.topic)
+        self._called[wanted.topic] = kind
+
+    def unity_service(self, wanted: Registration) -> None:
+        kind = interface(wanted.message_name, "srv")
+        self._may_speak(wanted.topic)
+        self.remove_unity_service(wanted.topic)
+
+        def answer(request: Any, _response: Any) -> Any:
+            return self._ask_client(Asked(wanted.topic, kind), request)
+
+        made = self._on_ros(lambda: self._ros.offer_slow(kind, full_name(wanted.topic), answer), wanted)
+        self._offered[wanted.topic] = made, kind
+
+    def remove_publisher(self, topic: str) -> None:
+        if (gone := self._published.pop(topic, None)) is not None:
+            self._drop(lambda: self._ros.node.destroy_publisher(gone[0]))
+
+    def remove_subscriber(self, topic: str) -> None:
+        if (gone := self._heard.pop(topic, None)) is not None:
+            self._drop(lambda: self._ros.node.destroy_subscription(gone))
+
+    def remove_ros_service(self, topic: str) -> None:
+        self._called.pop(topic, None)
+
+    def remove_unity_service(self, topic: str) -> None:
+        if (gone := self._offered.pop(topic, None)) is not None:
+            self._drop(lambda: self._ros.node.destroy_service(gone[0]))
+
+    def close(self) -> None:
+        """Remove everything; whoever still waits for the client gets no answer."""
+        self._closed = True
+        for asked in list(self._asked.values()):
+            asked.over.set()
+        for topics, remove in (
+            (self._published, self.remove_publisher), (self._heard, self.remove_subscriber),
+            (self._offered, self.remove_unity_service),
+        ):  # fmt: skip
+            for topic in list(topics):
+                remove(topic)
+
+    # traffic
+
+    def message(self, topic: str, payload: bytes) -> None:
+        """Publish what the client sent, byte for byte, once it is known to be what it should be."""
+        if topic not in self._published:
+            raise CommandError(f"Not registered to publish topic '{topic}'! Send __publish first")
+        publisher, kind = self._published[topic]
+        if self._foreign(kind):
+            try:
+                payload = joint_cmd.convert(payload, joint_cmd.OURS)
+            except joint_cmd.LayoutError as error:
+                raise CommandError(f"{topic}: {error}") from error
+        _read(payload, kind, topic)
+        publisher.publish(payload)
+
+    def request(self, topic: str, payload: bytes, number: int) -> None:
+        """Call a ROS service for the client; returns at once."""
+        if topic not in self._called:
+            raise CommandError(f"Not registered to call service '{topic}'! Send __ros_service first")
+        if self._calls >= OPEN_CALLS:
+            raise CommandError(f"{topic}: {OPEN_CALLS} calls are under way, none more until one is answered")
+        kind = self._called[topic]
+        wanted = _read(payload, kind.Request, topic)
+
+        async def call() -> None:
+            self._calls += 1
+            answer = await self._ros.ask(kind, full_name(topic), wanted, ANSWER_LIMIT)
+            self._calls -= 1
+            if answer is None:
+                self._say(f"service {full_name(topic)} did not answer within {ANSWER_LIMIT:.0f} s: is it there?")
+            else:
+                self._send(command("__response", srv_id=number) + encode(topic, pack(answer)), False)
+
+        self._ros.start(call)
+
+    def response(self, payload: bytes, number: int) -> None:
+        """The client's answer to a request that it got."""
+        asked = self._asked.get(number)
+        if asked is None:
+            raise CommandError(f"a response to request {number}, which nobody waits for (any more)")
+        try:
+            asked.response = _read(payload, asked.type.Response, asked.topic)
+        finally:
+            asked.over.set()
+
+    def topics(self) -> tuple[list[str], list[str]]:
+        """All topics of the graph and their types."""
+        known = sorted(self._ros.node.get_topic_names_and_types())
+        return [name for name, _ in known], [short_name(types[0]) for _, types in known]
+
+    def _ask_client(self, asked: Asked, request: Any) -> Any:
+        """In a thread of this call. None, which is no answer, when the client gives none."""
+        if self._closed or len(self._asked) >= OPEN_CALLS:
+            return None
+        number = next(self._numbers)
+        self._asked[number] = asked
+        try:
+            self._send(command("__request", srv_id=number) + encode(asked.topic, pack(request)), False)
+            asked.over.wait(ANSWER_LIMIT)
+        finally:
+            del self._asked[number]
+        if asked.response is None and not self._closed:
+            self._say(f"the client did not answer {full_name(asked.topic)} within {ANSWER_LIMIT:.0f} s")
+        return asked.response
+
+    def _for_client(self, kind: Any, data: bytes) -> bytes:
+        return joint_cmd.convert(data, self._layout) if self._foreign(kind) else data
+
+    def _foreign(self, kind: Any) -> bool:
+        """Whether the client writes messages of this type in another layout."""
+        return self._layout != joint_cmd.OURS and f"{kind.__module__.split('.')[0]}/{kind.__name__}" == joint_cmd.TYPE
+
+    def _may_speak(self, topic: str) -> None:
+        if (why := refusal(full_name(topic), self._commands)) is not None:
+            raise CommandError(why)
+
+    def _on_ros(self, step: Callable[[], T], wanted: Registration) -> T:
+        try:
+            return self._ros.do(step, ROS_LIMIT)
+        except (RosError, RuntimeError, ValueError) as error:
+            raise CommandError(f"{wanted.topic} ({wanted.message_name}): {error}") from error
+
+    def _drop(self, step: Callable[[], Any]) -> None:
+        self._ros.on_executor(step)
+
+
+def _read(payload: bytes, kind: Any, topic: str) -> Any:
+    """Decode a message: whatever is damaged must not get any further."""
+    try:
+        return unpack(payload, kind)
+    except RuntimeError as error:
+        raise CommandError(f"{topic}: what came is no {kind.__name__}, or is damaged") from error

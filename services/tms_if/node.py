@@ -1,0 +1,77 @@
+"""Process `tms:if`: the ROS-TCP endpoint that OperaSim-PhysX dials, so that it needs no other ROS installation."""
+
+import socket
+import threading
+
+from tms_core.app import App
+from tms_core.errors import ConfigError
+from tms_if.client import Client
+from tms_if.ends import Ends
+from tms_if.names import reserved
+
+MOST = 16  # clients at a time
+PAUSE = 1.0  # s after the system could not accept a connection
+
+
+def start(app: App) -> None:
+    """Listen for simulators."""
+    settings = app.site.bridge
+    try:
+        server = socket.create_server((settings.bind, settings.port), backlog=MOST)
+    except OSError as error:
+        raise ConfigError(
+            f"{settings.bind}:{settings.port} cannot be listened on ({error.strerror}): stop the other program, "
+            "or change services.if.port or .bind in the site file"
+        ) from error
+    bridge = Endpoint(app, server)
+    threading.Thread(target=bridge.accept, name="accept", daemon=True).start()
+    app.on_stop(bridge.close)
+    app.ready_when(lambda: None)
+    app.log.info("event=listening address=%s:%d joint_cmd=%s", settings.bind, settings.port, settings.joint_cmd)
+
+
+class Endpoint:
+    """Takes connections; each has ROS ends of its own, so that two simulators do not know of each other."""
+
+    def __init__(self, app: App, server: socket.socket) -> None:
+        self._app, self._server = app, server
+        self._commands = reserved(app.site)
+        self._clients: set[Client] = set()
+
+    def accept(self) -> None:
+        """Until the process stops."""
+        while not self._app.stopping.is_set():
+            try:
+                connection, (host, port, *_) = self._server.accept()
+            except OSError as error:
+                if not self._app.stopping.is_set():
+                    self._app.log.error("event=not_accepted reason=%r", error.strerror)
+                    self._app.stopping.wait(PAUSE)
+                continue
+            if len(self._clients) >= MOST:
+                self._app.log.warning(
+                    "event=client_refused client=%s:%d reason='%d others are there'", host, port, MOST
+                )
+                connection.close()
+                continue
+            threading.Thread(
+                target=self._serve, args=(connection, f"{host}:{port}"), name="client", daemon=True
+            ).start()
+
+    def close(self) -> None:
+        """End all connections."""
+        self._server.close()
+        for client in list(self._clients):
+            client.close("the bridge stops")
+
+    def _serve(self, connection: socket.socket, name: str) -> None:
+        settings = self._app.site.bridge
+        client = Client(
+            connection, name, self._app.log, settings.message_limit,
+            lambda send, say: Ends(self._app.ros, settings.joint_cmd, self._commands, send, say),
+        )  # fmt: skip
+        self._clients.add(client)
+        try:
+            client.run()
+        finally:
+            self._clients.discard(client)
