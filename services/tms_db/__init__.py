@@ -1,0 +1,1 @@
+"""The database module: the only process that opens MongoDB."""

@@ -1,0 +1,69 @@
+"""How every service of tms:db answers: counted, timed, and with errors as code and text."""
+
+import time
+from collections.abc import Awaitable, Callable
+from typing import Any
+
+from prometheus_client import Counter, Histogram
+
+from tms_core.app import App
+from tms_core.errors import TmsError
+from tms_db.connection import Connection
+
+REQUESTS = Counter("tms_db_requests", "Requests answered", ["service", "code"])
+SECONDS = Histogram("tms_db_request_seconds", "Time from request to answer", ["service"])
+
+Handler = Callable[[Any, Any], None]
+LaterHandler = Callable[[Any, Any], Awaitable[None]]
+
+
+class Answering:
+    """Offers handlers as services below /tms/db/."""
+
+    def __init__(self, app: App, connection: Connection) -> None:
+        self._app, self._connection = app, connection
+
+    def quick(self, service_type: Any, name: str, handler: Handler) -> None:
+        """A handler for one document, about a millisecond; on the executor thread these keep their order."""
+        self._app.ros.offer(service_type, f"/tms/db/{name}", self._guard(name, handler))
+
+    def slow(self, service_type: Any, name: str, handler: Handler) -> None:
+        """A handler that may block; each call has a thread of its own."""
+        self._app.ros.offer_slow(service_type, f"/tms/db/{name}", self._guard(name, handler))
+
+    def later(self, service_type: Any, name: str, handler: LaterHandler) -> None:
+        """A coroutine on the executor thread: it begins in order, and others are answered while it waits."""
+
+        async def answer(request: Any, response: Any) -> Any:
+            begin = time.monotonic()
+            try:
+                with self._connection.use():
+                    await handler(request, response)
+            except TmsError as error:
+                self._refused(name, response, error)
+            self._count(name, response, begin)
+            return response
+
+        self._app.ros.offer(service_type, f"/tms/db/{name}", answer)
+
+    def _guard(self, name: str, handler: Handler) -> Callable[[Any, Any], Any]:
+        def answer(request: Any, response: Any) -> Any:
+            begin = time.monotonic()
+            try:
+                with self._connection.use():
+                    handler(request, response)
+            except TmsError as error:
+                self._refused(name, response, error)
+            self._count(name, response, begin)
+            return response
+
+        return answer
+
+    def _refused(self, name: str, response: Any, error: TmsError) -> None:
+        response.error_code, response.error_msg = error.code, str(error)
+        self._app.log.info("event=refused service=%s code=%s %s", name, error.code, error)
+
+    @staticmethod
+    def _count(name: str, response: Any, begin: float) -> None:
+        REQUESTS.labels(name, response.error_code or "OK").inc()
+        SECONDS.labels(name).observe(time.monotonic() - begin)

@@ -1,0 +1,145 @@
+"""Writes many small updates in few steps: readable at once, acknowledged when stored, the newest value wins.
+
+The store takes about a millisecond for each update however they are sent, so what comes for one record within a
+moment becomes one update. Callers wait for the writer's next round; what failed they send again.
+"""
+
+import logging
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any
+
+from prometheus_client import Counter, Gauge, Histogram
+from pymongo import UpdateOne
+from pymongo.errors import BulkWriteError
+
+from tms_core.errors import DbError
+from tms_db.connection import Connection
+from tms_db.heads import Key
+from tms_db.records import Document, Value
+from tms_db.store import Db, errors
+
+LINGER = 0.25  # s that updates of sensing wait for company
+WAITING = 10_000  # records whose updates may wait at the same time
+SETTLE_LIMIT = 4.0  # s for a round of the writer, a little more than the store may take to answer
+
+SECONDS = Histogram("tms_db_batch_seconds", "Duration of a write of many updates")
+SIZE = Histogram("tms_db_batch_records", "Records in one write", buckets=(1, 2, 5, 10, 20, 50, 100, 500, 1000))
+MERGED = Counter("tms_db_updates_merged_total", "Updates that a newer one replaced before they were written")
+PENDING = Gauge("tms_db_updates_pending", "Records whose newest values are not stored yet")
+
+Done = Callable[[DbError | None], None]  # called on the writer's thread
+
+
+@dataclass
+class Update:
+    """Values on their way into one record."""
+
+    id: Any
+    fields: dict[str, Value]
+    updated_at: datetime
+    source: str
+
+    def stored(self) -> Document:
+        return {**self.fields, "updated_at": self.updated_at, "source": self.source}
+
+
+class Batches:
+    """Updates that are not stored yet, and the thread that stores them."""
+
+    def __init__(self, db: Db, connection: Connection, log: logging.Logger) -> None:
+        self._records, self._connection, self._log = db["parameter"], connection, log
+        self._changed = threading.Condition()
+        self._waiting: dict[Key, Update] = {}
+        self._written: dict[Key, Update] = {}  # by the round that runs now
+        self._callers: list[Done] = []
+        self._hurry = self._stopping = False
+        self.gone = threading.Event()  # a record was not there any more
+        self._thread = threading.Thread(target=self._run, name="batches", daemon=True)
+
+    def start(self) -> None:
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Write what waits and end."""
+        with self._changed:
+            self._stopping = True
+            self._changed.notify_all()
+        self._thread.join(1.0)
+
+    def put(self, updates: dict[Key, Update], done: Done, hurry: bool) -> None:
+        """Take updates; `done` is told when they are stored or why not.
+
+        Raises:
+            DbError: BUSY; too much waits.
+        """
+        with self._changed:
+            if len(self._waiting) > WAITING:
+                raise DbError("too many records wait for the store: send less, or see `tms ps` for the store", "BUSY")
+            for key, update in updates.items():
+                self._add(key, update)
+            self._callers.append(done)
+            self._hurry |= hurry
+            PENDING.set(len(self._waiting))
+            self._changed.notify_all()
+
+    def _add(self, key: Key, update: Update) -> None:
+        before = self._waiting.get(key)
+        if before is not None and before.id == update.id:
+            MERGED.inc()
+            update.fields = {**before.fields, **update.fields}
+        self._waiting[key] = update
+
+    def newest(self, key: Key) -> Document:
+        """Fields of a record that are newer than what the store has."""
+        with self._changed:
+            rounds = [found for found in (self._written.get(key), self._waiting.get(key)) if found is not None]
+        return {name: value for update in rounds for name, value in update.stored().items()}
+
+    def settle(self, key: Key) -> None:
+        """Wait until the store has all updates of a record: for what must be done by the store itself.
+
+        Raises:
+            DbError: STORE_DOWN; it takes too long.
+        """
+        with self._changed:
+            self._hurry |= key in self._waiting
+            self._changed.notify_all()
+            if not self._changed.wait_for(lambda: not (key in self._waiting or key in self._written), SETTLE_LIMIT):
+                raise DbError("the store does not get done with earlier updates: see `tms ps`", "STORE_DOWN")
+
+    def _run(self) -> None:
+        while True:
+            with self._changed:
+                self._changed.wait_for(lambda: self._callers or self._stopping)
+                if not self._callers:
+                    return
+                self._changed.wait_for(lambda: self._hurry or self._stopping, LINGER)
+                callers, self._callers = self._callers, []
+                self._written, self._waiting, self._hurry = self._waiting, {}, False
+                PENDING.set(0)
+            problem = self._write(list(self._written.values()))
+            with self._changed:
+                self._written = {}
+                self._changed.notify_all()
+            for done in callers:
+                done(problem)
+
+    def _write(self, updates: list[Update]) -> DbError | None:
+        if not updates:
+            return None
+        SIZE.observe(len(updates))
+        steps = [UpdateOne({"_id": update.id}, {"$set": update.stored()}) for update in updates]
+        try:
+            with SECONDS.time(), self._connection.use(), errors():
+                found = self._records.bulk_write(steps, ordered=False).matched_count
+        except BulkWriteError as error:  # a subclass that errors() lets pass as it is
+            return DbError(f"the store refused an update ({error.details}): see the log of tms:db", "STORE_REFUSED")
+        except DbError as error:
+            return error
+        if found < len(updates):
+            self.gone.set()
+            self._log.warning("event=record_gone %d of %d updated records were removed", len(updates) - found, found)
+        return None

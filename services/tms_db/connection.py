@@ -1,0 +1,104 @@
+"""Keeps the store's connection: knows whether it is up, and brings it back in the background."""
+
+import logging
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from prometheus_client import Gauge
+from pymongo.errors import PyMongoError
+
+from tms_core.errors import DbError
+from tms_db import store
+
+FIRST_WAIT = 0.2  # s after a failed attempt; doubles up to LAST_WAIT
+LAST_WAIT = 2.0
+UP = Gauge("tms_db_store_up", "1 while the store answers")
+LOOK = 2.0  # s between looks at a store that nobody asks
+
+
+class Connection:
+    """One store. While it is away every use fails at once instead of waiting for a time-out each."""
+
+    def __init__(self, db: store.Db, address: str, log: logging.Logger) -> None:
+        self._db, self._address, self._log = db, address, log
+        self._trouble: DbError | None = store.down()  # until the first attempt says otherwise
+        self._told = ""  # code of the trouble that the log has told, so that it tells it once
+        self._lost = threading.Event()
+        self._stopping = threading.Event()
+        self._thread = threading.Thread(target=self._keep, name="store", daemon=True)
+
+    def start(self) -> None:
+        """Begin to connect; returns at once."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        self._stopping.set()
+        self._lost.set()
+        self._db.client.close()
+
+    def unready(self) -> str | None:
+        """Why the store cannot be used now, or None."""
+        trouble = self._trouble
+        return str(trouble) if trouble else None
+
+    @contextmanager
+    def use(self) -> Iterator[None]:
+        """Around each use of the database.
+
+        Raises:
+            DbError: the store is away, or was lost just now.
+        """
+        if self._trouble is not None:
+            raise DbError(str(self._trouble), self._trouble.code)
+        try:
+            yield
+        except DbError as error:
+            if error.code == "STORE_DOWN":
+                self._lose(error)
+            raise
+
+    def _lose(self, trouble: DbError) -> None:
+        self._tell(trouble)
+        self._trouble = trouble
+        UP.set(False)
+        self._lost.set()
+
+    def _keep(self) -> None:
+        wait = FIRST_WAIT
+        while not self._stopping.is_set():
+            self._lost.clear()
+            trouble = self._attempt()
+            self._tell(trouble)
+            self._trouble = trouble
+            UP.set(trouble is None)
+            if trouble is None:
+                wait = FIRST_WAIT
+                self._lost.wait(LOOK)
+            else:
+                self._stopping.wait(wait)
+                wait = min(2 * wait, LAST_WAIT)
+
+    def _attempt(self) -> DbError | None:
+        try:
+            if self._trouble is None:
+                with store.errors():
+                    self._db.command("ping")
+            else:
+                store.prepare(self._db)
+        except DbError as error:
+            return error
+        except (PyMongoError, RuntimeError):  # the client was closed meanwhile
+            if not self._stopping.is_set():
+                raise
+        return None
+
+    def _tell(self, trouble: DbError | None) -> None:
+        if self._stopping.is_set():
+            return
+        if trouble is None and self._trouble is not None:
+            self._log.info("event=store_up address=%s", self._address)
+            self._told = ""
+        elif trouble is not None and trouble.code != self._told:
+            self._log.warning("event=store_away code=%s address=%s %s", trouble.code, self._address, trouble)
+            self._told = trouble.code

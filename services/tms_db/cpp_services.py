@@ -1,0 +1,65 @@
+"""The C++ system's services under their names, for its nodes and tools; they know no error codes."""
+
+import json
+from typing import Any
+
+from tms_msg_db.msg import Tmsdb
+from tms_msg_db.srv import TmsdbGetData, TmsdbGetTask
+
+from tms_core.app import App
+from tms_core.errors import TmsError
+from tms_db import store
+from tms_db.connection import Connection
+from tms_db.parameters import Parameters
+from tms_db.records import Document
+from tms_db.tasks import Tasks
+
+POSE = ("x", "y", "z", "qx", "qy", "qz", "qw", "Release_Count")
+NOT_FLAGS = {"_id", "type", "record_name", "updated_at", "source"}
+
+
+class CppServices:
+    """Answers as the C++ readers do, except that no document makes them crash."""
+
+    def __init__(self, app: App, db: store.Db, connection: Connection) -> None:
+        self._app, self._connection = app, connection
+        self._tasks, self._parameters = Tasks(db), Parameters(db)
+
+    def offer(self) -> None:
+        self._app.ros.offer(TmsdbGetTask, "tms_db_reader_task", self.get_task)
+        self._app.ros.offer(TmsdbGetData, "tms_db_param_reader", self.get_data)
+
+    def get_task(self, request: Any, response: Any) -> Any:
+        """The task's text, "" if there is none."""
+        try:
+            with self._connection.use():
+                response.task = self._tasks.get(request.task_id).task_sequence
+        except TmsError as error:
+            self._app.log.warning("event=refused service=tms_db_reader_task code=%s %s", error.code, error)
+        return response
+
+    def get_data(self, request: Any, response: Any) -> Any:
+        """Records by name as JSON; those that are not there are left out."""
+        try:
+            with self._connection.use():
+                for name in [request.name] if request.name else request.recordnames:
+                    response.tmsdbs += self._found(name, request.flgorparam)
+        except TmsError as error:
+            self._app.log.warning("event=refused service=tms_db_param_reader code=%s %s", error.code, error)
+        return response
+
+    def _found(self, name: str, what: str) -> list[Any]:
+        documents = self._parameters.named(name)
+        if not documents:
+            self._app.log.warning("event=refused service=tms_db_param_reader there is no record %s", name)
+            return []
+        first = documents[0]  # the C++ reader knows no model_name either
+        text = json.dumps(content(first, what), ensure_ascii=False, default=str)
+        return [Tmsdb(type=str(first.get("type") or ""), name=name, msg=text)]
+
+
+def content(document: Document, what: str) -> Document:
+    """What a reader of `what` ("param" or "flg") gets; a missing pose field is an empty list, as it is today."""
+    if what == "param":
+        return {key: document.get(key, []) for key in POSE}
+    return {key: value for key, value in document.items() if key not in NOT_FLAGS}

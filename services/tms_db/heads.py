@@ -1,0 +1,161 @@
+"""What tms:db remembers for a moment of records that change: they are checked and read without asking the store.
+
+The store does one thing at a time, so a read behind a write of fifty records would wait for all of them.
+"""
+
+import threading
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from tms_core.errors import DbError
+from tms_core.ros import Ros
+from tms_db.parameters import Parameters
+from tms_db.records import RESERVED, Document, Value, bad, title
+
+KEPT = 2.0  # s: others may write to the same database
+Key = tuple[str, str]
+
+
+@dataclass
+class Head:
+    """A record as it is, with what was not stored yet."""
+
+    document: Document
+    until: float  # monotonic; after that it is read again, while this one is still used
+    since: Document | None = None  # what was changed since that reading began
+
+    def change(self, fields: Document) -> None:
+        """New values that are on their way into the store."""
+        self.document.update(fields)
+        if self.since is not None:
+            self.since.update(fields)
+
+    @property
+    def id(self) -> Any:
+        return self.document["_id"]
+
+    @property
+    def type(self) -> str:
+        return str(self.document.get("type") or "")
+
+    def fit(self, where: str, values: Mapping[str, Value], loose: bool) -> dict[str, Value]:
+        """The values as the record can take them.
+
+        A loose update names fields in whatever case and drops what the record does not have.
+
+        Raises:
+            DbError: BAD_RECORD for another kind of value than the stored one, or none that fits.
+        """
+        if loose:
+            by_name = {name.lower(): value for name, value in values.items()}
+            fields = [name for name in self.document if name not in RESERVED and name.lower() in by_name]
+            values = {name: by_name[name.lower()] for name in fields}
+            if not values:
+                raise bad(f"{where} has none of the fields {', '.join(by_name)}: add them with `tms param set`")
+        return {
+            name: _fitting(f"{where}, field {name}", self.document.get(name), value) for name, value in values.items()
+        }
+
+
+class Heads:
+    """Heads by key; used on the executor thread, but for the reading again."""
+
+    def __init__(self, parameters: Parameters, newest: Callable[[Key], Document], ros: Ros) -> None:
+        """`newest`: fields of a record that are not stored yet."""
+        self._parameters, self._newest, self._ros = parameters, newest, ros
+        self._heads: dict[Key, Head] = {}
+        self._reading = False
+
+    def known(self, key: Key) -> Head | None:
+        """The head of a record that was changed lately."""
+        head = self._heads.get(key)
+        return head if head is not None and time.monotonic() < head.until + KEPT else None
+
+    def get(self, key: Key) -> Head:
+        """The head of a stored record, to change it.
+
+        Raises:
+            DbError: RECORD_MISSING, or the store is away.
+        """
+        head = self.known(key)
+        if head is None:
+            self._heads.pop(key, None)
+            head = Head(self.read(key), time.monotonic() + KEPT)
+            self._heads[key] = head
+        elif time.monotonic() > head.until and not self._reading:
+            self._read_again()
+        return head
+
+    def _read_again(self) -> None:
+        """All heads that are due, in the background: others may have changed, made or removed these records."""
+        now = time.monotonic()
+        self._heads = {key: head for key, head in self._heads.items() if now < head.until + KEPT}
+        due = {key: head for key, head in self._heads.items() if now > head.until - KEPT / 2}
+        for key, head in due.items():
+            head.since = self._newest(key)
+        self._reading = True
+        threading.Thread(target=self._look, args=(due,), name="heads", daemon=True).start()
+
+    def _look(self, due: dict[Key, Head]) -> None:
+        try:
+            found = {document["_id"]: document for document in self._parameters.by_id([h.id for h in due.values()])}
+        except DbError:  # whoever writes next is told
+            found = None
+        self._ros.on_executor(lambda: self._read(due, found))
+
+    def _read(self, due: dict[Key, Head], found: dict[Any, Document] | None) -> None:
+        self._reading = False
+        for key, head in due.items():
+            since, head.since = head.since or {}, None
+            if found is None or self._heads.get(key) is not head:
+                continue
+            if head.id in found:
+                head.document, head.until = {**found[head.id], **since}, time.monotonic() + KEPT
+            else:
+                del self._heads[key]
+
+    def read(self, key: Key) -> Document:
+        """The record with what is not stored yet; that is looked at first, so that nothing falls in between.
+
+        Raises:
+            DbError: RECORD_MISSING, or the store is away.
+        """
+        newer = self._newest(key)
+        return {**self._parameters.get(*key), **newer}
+
+    def dynamic(self, key: Key) -> Head:
+        """The head of a record that may change while runs use it.
+
+        Raises:
+            DbError: STATIC_RECORD, or as `get`.
+        """
+        head = self.get(key)
+        if head.type == "static":
+            text = f"{title(*key)} is static, so sensing does not write it: `tms param set --type dynamic`"
+            raise DbError(text, "STATIC_RECORD")
+        return head
+
+    def forget(self) -> None:
+        """Look again next time: records were made, changed by hand or removed, or updates could not be stored."""
+        self._heads.clear()
+
+
+def _fitting(where: str, stored: Any, value: Value) -> Value:
+    if stored is None or stored == []:
+        return value
+    kinds = _kind(stored), _kind(value)
+    if kinds[0] != kinds[1]:
+        raise bad(f"{where} holds {kinds[0]}, not {kinds[1]}: send the same kind, or change the record")
+    if isinstance(stored, float) and isinstance(value, int):
+        return float(value)
+    return value
+
+
+def _kind(value: Any) -> str:
+    if isinstance(value, (list, tuple)):
+        return "an array"
+    if isinstance(value, bool):
+        return "true/false"
+    return "a number" if isinstance(value, (int, float)) else "a text"

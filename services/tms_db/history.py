@@ -1,0 +1,150 @@
+"""History in the database: runs and their events in order; writing a batch twice changes nothing."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from datetime import datetime
+from typing import Any
+
+from pymongo.errors import BulkWriteError, DuplicateKeyError
+
+from tms_core.errors import DbError
+from tms_db.records import Value
+from tms_db.store import Db, errors
+
+RUNS = 50
+EVENTS = 1000
+MOST = 10_000  # of one answer, so that it stays a few MB
+ATTEMPTS = 20
+
+
+@dataclass(frozen=True)
+class Run:
+    """Header of one run; `ended_at` is None while it runs."""
+
+    run_id: str
+    task_id: int
+    description: str
+    state: str
+    reason: str
+    machines: tuple[str, ...]
+    started_at: datetime
+    ended_at: datetime | None
+    records: tuple[str, ...] = ()  # that the tree names: MODEL/RECORD; MODEL/* where only the run decides
+
+
+@dataclass(frozen=True)
+class Event:
+    """One entry of a run's journal; `number` counts from 1 in each run."""
+
+    run_id: str
+    number: int
+    stamp: datetime
+    kind: str
+    node: str = ""
+    text: str = ""
+    values: dict[str, Value] = field(default_factory=dict)
+
+
+class History:
+    """The `run` and `event` collections."""
+
+    def __init__(self, db: Db) -> None:
+        self._runs, self._events = db["run"], db["event"]
+
+    def write(self, runs: Sequence[Run], events: Sequence[Event]) -> None:
+        """Store run headers (the last one counts) and events.
+
+        The end of a run is written after its events: a run that says it has ended has its whole journal.
+
+        Raises:
+            DbError: BAD_JOURNAL, or the store is away; then the whole batch may be sent again.
+        """
+        for run in runs:
+            if not run.run_id:
+                raise DbError("a run has no run_id: give it one", "BAD_JOURNAL")
+        for event in events:
+            _check(event)
+        self._write_runs(run for run in runs if run.ended_at is None)
+        self._write_events(events)
+        self._write_runs(run for run in runs if run.ended_at is not None)
+
+    def runs(self, limit: int = 0) -> list[Run]:
+        """Runs, newest first."""
+        with errors():
+            found = self._runs.find({}, {"_id": 0}).sort([("started_at", -1), ("run_id", -1)])
+            return [_run(document) for document in found.limit(min(limit or RUNS, MOST))]
+
+    def events(self, run_id: str, after: int = 0, limit: int = 0) -> list[Event]:
+        """Events of a run with a number above `after`, in order.
+
+        Raises:
+            DbError: RUN_MISSING.
+        """
+        with errors():
+            found = self._events.find({"run_id": run_id, "number": {"$gt": after}}, {"_id": 0}).sort("number", 1)
+            events = [_event(document) for document in found.limit(min(limit or EVENTS, MOST))]
+            if not events and self._runs.find_one({"run_id": run_id}, {"_id": 1}) is None:
+                raise DbError(f"there is no run {run_id!r}: `tms runs` lists them", "RUN_MISSING")
+        return events
+
+    def _write_runs(self, runs: Iterable[Run]) -> None:
+        for run in runs:
+            document = {**vars(run), "machines": list(run.machines), "records": list(run.records)}
+            for _ in range(ATTEMPTS):
+                with errors():
+                    try:
+                        self._runs.replace_one({"run_id": run.run_id}, document, upsert=True)
+                        break
+                    except DuplicateKeyError:  # two upserts of a new run at once: the second time it is there
+                        continue
+            else:
+                raise _rival()
+
+    def _write_events(self, events: Sequence[Event]) -> None:
+        for _ in range(ATTEMPTS):
+            missing = self._not_stored(events)
+            if not missing:
+                return
+            with errors():
+                try:
+                    self._events.insert_many(missing)
+                    return
+                except BulkWriteError as error:
+                    if any(one.get("code") != 11000 for one in error.details["writeErrors"]):
+                        raise
+        raise _rival()
+
+    def _not_stored(self, events: Sequence[Event]) -> list[dict[str, Any]]:
+        by_key = {(event.run_id, event.number): event for event in events}
+        for run_id in {event.run_id for event in events}:
+            numbers = [number for run, number in by_key if run == run_id]
+            span = {"$gte": min(numbers), "$lte": max(numbers)}
+            with errors():
+                for stored in self._events.find({"run_id": run_id, "number": span}, {"number": 1}):
+                    by_key.pop((run_id, stored["number"]), None)
+        return [_document(event) for event in by_key.values()]
+
+
+def _check(event: Event) -> None:
+    if not event.run_id or event.number < 1:
+        raise DbError(
+            f"event {event.number} of run {event.run_id!r}: needs a run_id and a number from 1", "BAD_JOURNAL"
+        )
+
+
+def _document(event: Event) -> dict[str, Any]:
+    # Pairs, since names of values may hold what field names may not (dots, a leading $).
+    return {**vars(event), "values": [{"name": name, "value": value} for name, value in event.values.items()]}
+
+
+def _event(document: dict[str, Any]) -> Event:
+    return Event(**{**document, "values": {pair["name"]: pair["value"] for pair in document["values"]}})
+
+
+def _rival() -> DbError:
+    return DbError("somebody else writes the same journal: only one scheduler may run", "BUSY")
+
+
+def _run(document: dict[str, Any]) -> Run:
+    lists = {"machines": tuple(document["machines"]), "records": tuple(document.get("records", ()))}
+    return Run(**{**document, **lists})

@@ -1,0 +1,46 @@
+"""Where machines were: the collections machine_pose and machine_joints of the C++ system, kept for a while."""
+
+import json
+from collections.abc import Sequence
+from datetime import datetime
+from typing import Any
+
+from tms_db.records import Document, bad
+from tms_db.store import Db, errors
+
+MACHINE = 3012  # the C++ system's id of everything about machines
+COLLECTIONS = ("machine_pose", "machine_joints")
+
+
+class MachineStates:
+    def __init__(self, db: Db) -> None:
+        self._db = db
+
+    def write(self, documents: Sequence[Document]) -> None:
+        """Add states.
+
+        Raises:
+            DbError: the store is away.
+        """
+        for collection in COLLECTIONS:
+            wanted = [document for document in documents if document["type"] == collection]
+            if wanted:
+                with errors():
+                    self._db[collection].insert_many(wanted)
+
+
+def envelope(collection: str, machine: str, stamp: datetime, text: str) -> Document:
+    """One state as the C++ system writes it.
+
+    Raises:
+        DbError: BAD_RECORD; there is no such collection, or the text is no JSON object.
+    """
+    if collection not in COLLECTIONS:
+        raise bad(f"there is no collection {collection!r} for machine states (there: {', '.join(COLLECTIONS)})")
+    try:
+        message: Any = json.loads(text)
+    except json.JSONDecodeError as error:
+        raise bad(f"{collection} of {machine}: is no JSON ({error.msg})") from error
+    if not isinstance(message, dict):
+        raise bad(f"{collection} of {machine}: must be a JSON object")
+    return {"time": stamp.isoformat(), "type": collection, "id": MACHINE, "name": machine, "msg": message}

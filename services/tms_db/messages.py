@@ -1,0 +1,78 @@
+"""Tasks, records and history as ROS messages."""
+
+from typing import Any
+
+from tms_msg_db import msg
+
+from tms_db.history import Event, Run
+from tms_db.machine_states import envelope
+from tms_db.records import Document
+from tms_db.tasks import Task
+from tms_db.values import from_parameters, from_time, to_parameters, to_time
+
+
+def task(task: Task) -> Any:
+    return msg.Task(**{**vars(task), "added_at": to_time(task.added_at)})
+
+
+def record(document: Document) -> tuple[Any, list[str]]:
+    """The record, and the names of fields that cannot travel."""
+    values, left_out = to_parameters(document)
+    heads = ("model_name", "record_name", "type", "description", "source")
+    texts = {key: str(document.get(key) or "") for key in heads}
+    limit = document.get("max_age")
+    max_age = float(limit) if isinstance(limit, (int, float)) else 0.0
+    return msg.Record(**texts, updated_at=to_time(document.get("updated_at")), max_age=max_age, values=values), left_out
+
+
+def run(run: Run) -> Any:
+    times = {"started_at": to_time(run.started_at), "ended_at": to_time(run.ended_at)}
+    lists = {"machines": list(run.machines), "records": list(run.records)}
+    return msg.Run(**{**vars(run), **lists, **times})
+
+
+def stored_run(message: Any) -> Run:
+    ended = message.ended_at
+    return Run(
+        run_id=message.run_id,
+        task_id=message.task_id,
+        description=message.description,
+        state=message.state,
+        reason=message.reason,
+        machines=tuple(message.machines),
+        records=tuple(message.records),
+        started_at=from_time(message.started_at),
+        ended_at=from_time(ended) if ended.sec or ended.nanosec else None,
+    )
+
+
+def event(event: Event) -> Any:
+    values, _ = to_parameters(event.values, hidden=())
+    return msg.Event(**{**vars(event), "stamp": to_time(event.stamp), "values": values})
+
+
+def stored_event(message: Any) -> Event:
+    return Event(
+        run_id=message.run_id,
+        number=message.number,
+        stamp=from_time(message.stamp),
+        kind=message.kind,
+        node=message.node,
+        text=message.text,
+        values=from_parameters(f"event {message.number} of run {message.run_id}", message.values),
+    )
+
+
+def past(change: dict[str, Any]) -> Any:
+    """One change of a record."""
+    values, _ = to_parameters(change["values"], hidden=())
+    return msg.PastValues(stamp=to_time(change["stamp"]), source=change["source"], values=values)
+
+
+def machine_state(message: Any) -> Document:
+    """A state in the form of the C++ system's collections.
+
+    Raises:
+        DbError: BAD_RECORD; it is no JSON object.
+    """
+    return envelope(message.collection, message.machine, from_time(message.stamp), message.msg)

@@ -1,0 +1,92 @@
+"""`tms:db`: offers tasks, parameters and history as ROS services; stays up while the store is away."""
+
+from typing import Any
+
+from tms_msg_db.srv import (
+    AddTask,
+    GetTask,
+    ListEvents,
+    ListRuns,
+    ListTasks,
+    RemoveTask,
+    WriteJournal,
+    WriteMachineStates,
+)
+
+from tms_core.app import App
+from tms_db import messages, store
+from tms_db.answering import Answering
+from tms_db.connection import Connection
+from tms_db.cpp_services import CppServices
+from tms_db.history import History
+from tms_db.machine_states import MachineStates
+from tms_db.parameter_services import ParameterServices
+from tms_db.task_text import MODELS
+from tms_db.tasks import Tasks
+
+
+class Services:
+    """Tasks and history."""
+
+    def __init__(self, app: App, db: store.Db) -> None:
+        self._app = app
+        self._tasks, self._history = Tasks(db), History(db)
+        self._states = MachineStates(db)
+        self._models = {*MODELS, *app.site.models}
+
+    def offer(self, answering: Answering) -> None:
+        answering.quick(GetTask, "get_task", self.get_task)
+        answering.quick(RemoveTask, "remove_task", self.remove_task)
+        answering.quick(WriteJournal, "write_journal", self.write_journal)
+        answering.slow(WriteMachineStates, "write_machine_states", self.write_machine_states)
+        answering.slow(AddTask, "add_task", self.add_task)
+        answering.slow(ListTasks, "list_tasks", self.list_tasks)
+        answering.slow(ListRuns, "list_runs", self.list_runs)
+        answering.slow(ListEvents, "list_events", self.list_events)
+
+    def add_task(self, request: Any, response: Any) -> None:
+        added = self._tasks.add(request.task_sequence, request.description, self._models)
+        response.task_id, response.model_name = added.task_id, added.model_name
+        response.already_stored = added.already_stored
+        self._app.log.info("event=task_added task=%d stored_before=%s", added.task_id, added.already_stored)
+
+    def get_task(self, request: Any, response: Any) -> None:
+        response.task = messages.task(self._tasks.get(request.task_id))
+
+    def list_tasks(self, _: Any, response: Any) -> None:
+        response.tasks = [messages.task(task) for task in self._tasks.all()]
+
+    def remove_task(self, request: Any, _: Any) -> None:
+        self._tasks.remove(request.task_id)
+        self._app.log.info("event=task_removed task=%d", request.task_id)
+
+    def write_journal(self, request: Any, _: Any) -> None:
+        runs = [messages.stored_run(run) for run in request.runs]
+        self._history.write(runs, [messages.stored_event(event) for event in request.events])
+
+    def list_runs(self, request: Any, response: Any) -> None:
+        response.runs = [messages.run(run) for run in self._history.runs(request.limit)]
+
+    def list_events(self, request: Any, response: Any) -> None:
+        found = self._history.events(request.run_id, request.after, request.limit)
+        response.events = [messages.event(event) for event in found]
+
+    def write_machine_states(self, request: Any, _: Any) -> None:
+        self._states.write([messages.machine_state(state) for state in request.states])
+
+
+def start(app: App) -> None:
+    """Offer the services; connecting goes on in the background.
+
+    Raises:
+        ConfigError: the store's address is wrong.
+    """
+    db = store.connect(app.site.store_uri, app.site.file.store.database)
+    connection = Connection(db, store.redact(app.site.store_uri), app.log)
+    app.ready_when(connection.unready)
+    app.on_stop(connection.stop)
+    answering = Answering(app, connection)
+    Services(app, db).offer(answering)
+    ParameterServices(app, db, connection).offer(answering)
+    CppServices(app, db, connection).offer()
+    connection.start()

@@ -1,0 +1,192 @@
+"""The services for parameter records: reading, changing, batches of sensing, and what tells readers of changes.
+
+All of them run on the executor thread, which is what keeps their order: a value that was read or acknowledged is never
+followed by an older one.
+"""
+
+import time
+from collections.abc import Callable, Iterable
+from datetime import datetime, timedelta, timezone
+from typing import Any
+
+from tms_msg_db.msg import RecordChanges, Refusal
+from tms_msg_db.srv import (
+    GetParameter,
+    ListParameterHistory,
+    ListParameters,
+    RemoveParameter,
+    SetParameter,
+    UpdateParameters,
+)
+
+from tms_core.app import App
+from tms_core.errors import DbError
+from tms_core.record_lock import holder
+from tms_db import freshness, messages
+from tms_db.answering import Answering
+from tms_db.batches import Batches, Update
+from tms_db.connection import Connection
+from tms_db.heads import Heads, Key
+from tms_db.parameters import Change, Parameters
+from tms_db.past import Past
+from tms_db.records import Document, check_values, title
+from tms_db.store import Db
+from tms_db.values import from_parameters
+
+CHANGES_KEPT = 100  # messages for a reader that is slow
+
+
+class ParameterServices:
+    """Everything below /tms/db/ that is about parameter records."""
+
+    def __init__(self, app: App, db: Db, connection: Connection) -> None:
+        self._app, self._ros = app, app.ros
+        self._parameters = Parameters(db)
+        self._batches = Batches(db, connection, app.log)
+        self._heads = Heads(self._parameters, self._batches.newest, app.ros)
+        self._past = Past(db, connection, app.log)
+        self._changes = app.ros.publisher(RecordChanges, "/tms/db/changes", depth=CHANGES_KEPT)
+
+    def offer(self, answering: Answering) -> None:
+        answering.quick(GetParameter, "get_parameter", self.get)
+        answering.slow(ListParameters, "list_parameters", self.list)
+        answering.later(SetParameter, "set_parameter", self.set)
+        answering.later(UpdateParameters, "update_parameters", self.update)
+        answering.quick(RemoveParameter, "remove_parameter", self.remove)
+        answering.slow(ListParameterHistory, "list_parameter_history", self.history)
+        self._batches.start()
+        self._past.start()
+        self._app.on_stop(self._past.stop)
+        self._app.on_stop(self._batches.stop)
+
+    def get(self, request: Any, response: Any) -> None:
+        key = (request.model_name, request.record_name)
+        head = self._heads.known(key)
+        document = head.document if head is not None else self._heads.read(key)
+        freshness.check(document, request.max_age)
+        response.record = self._record(document)
+
+    def list(self, request: Any, response: Any) -> None:
+        response.records = [
+            self._record({**document, **self._batches.newest(_key(document))})
+            for document in self._parameters.all(request.model_name)
+        ]
+
+    async def set(self, request: Any, response: Any) -> None:
+        key = (request.model_name, request.record_name)
+        where = title(*key)
+        change = Change(
+            from_parameters(where, request.values), request.type, request.description, request.source,
+            tuple(request.remove), request.max_age, from_parameters(where, request.expected),
+        )  # fmt: skip
+        if change.plain and self._may_batch(key):
+            change.check(where)
+            update = Update(self._heads.get(key).id, dict(change.values), _now(), request.source)
+            await self._put({key: update}, hurry=True)
+        else:
+            self._batches.settle(key)
+            response.created = self._parameters.set(*key, change, request.create)
+            self._heads.forget()
+            self._past.note(key, _now(), request.source, change.values)
+            self._tell([key])
+
+    async def update(self, request: Any, response: Any) -> None:
+        taken: dict[Key, Update] = {}
+        for index, wanted in enumerate(request.updates):
+            key = (wanted.model_name, wanted.record_name)
+            try:
+                self._take(taken, key, wanted)
+            except DbError as error:
+                if error.code == "STORE_DOWN":
+                    raise
+                response.refused.append(Refusal(index=index, code=error.code, text=str(error)))
+        if taken:
+            await self._put(taken, hurry=False)
+
+    def remove(self, request: Any, _: Any) -> None:
+        key = (request.model_name, request.record_name)
+        self._batches.settle(key)
+        self._parameters.remove(*key)
+        self._heads.forget()
+        self._tell([key])
+        self._app.log.info("event=removed %s", title(*key))
+
+    def history(self, request: Any, response: Any) -> None:
+        key = (request.model_name, request.record_name)
+        response.changes = [messages.past(change) for change in self._past.changes(key, request.limit)]
+        if not response.changes:
+            self._parameters.get(*key)  # says so when there is no such record
+
+    def _take(self, taken: dict[Key, Update], key: Key, wanted: Any) -> None:
+        """One update of a batch."""
+        if self._batches.gone.is_set():
+            self._batches.gone.clear()
+            self._heads.forget()
+        where = title(*key)
+        values = from_parameters(where, wanted.values)
+        check_values(where, values)
+        head = self._heads.dynamic(key)
+        if (owner := holder(head.document, time.time())) is not None:
+            raise DbError(f"{where} is locked by {owner} until the machine has moved with it", "LOCKED_RECORD")
+        fitting = head.fit(where, values, wanted.loose)
+        fields = {name: value for name, value in fitting.items() if name not in wanted.keep}
+        stamp = _now() - timedelta(seconds=max(0.0, wanted.age))
+        if wanted.expected:  # only the store can tell and write in one step
+            self._batches.settle(key)
+            change = Change(fields, source=wanted.source, expected=from_parameters(where, wanted.expected))
+            self._parameters.set(*key, change)
+            self._past.note(key, stamp, wanted.source, fields, often=True)
+            self._tell([key])
+            return
+        if key in taken:
+            fields = {**taken[key].fields, **fields}
+        taken[key] = Update(self._heads.get(key).id, fields, stamp, wanted.source)
+
+    def _may_batch(self, key: Key) -> bool:
+        try:
+            return self._heads.get(key).type != "static"
+        except DbError as error:
+            if error.code == "RECORD_MISSING":
+                return False  # to be made, or to be refused by the store
+            raise
+
+    async def _put(self, updates: dict[Key, Update], hurry: bool) -> None:
+        """Make updates readable, and wait until they are stored.
+
+        Raises:
+            DbError: the store is away.
+        """
+        promise = self._ros.promise()
+        tell: Callable[[DbError | None], None] = lambda problem: self._ros.on_executor(  # noqa: E731
+            lambda: promise.set_result(problem)
+        )
+        self._batches.put(updates, tell, hurry)
+        for key, update in updates.items():
+            self._heads.get(key).change(update.stored())
+            self._past.note(key, update.updated_at, update.source, update.fields, often=not hurry)
+        self._tell(updates)
+        problem = await promise
+        if problem is not None:
+            self._heads.forget()
+            raise DbError(str(problem), problem.code)
+
+    def _tell(self, keys: Iterable[Key]) -> None:
+        """Readers of shared records look again."""
+        names = [name for model, name in keys if not model]
+        if names:
+            self._changes.publish(RecordChanges(record_names=names))
+
+    def _record(self, document: Document) -> Any:
+        message, left_out = messages.record(document)
+        if left_out:
+            where = title(message.model_name, message.record_name)
+            self._app.log.warning("event=left_out %s: no ROS type for %s", where, ", ".join(left_out))
+        return message
+
+
+def _key(document: Document) -> Key:
+    return str(document.get("model_name") or ""), str(document.get("record_name"))
+
+
+def _now() -> datetime:
+    return datetime.now(timezone.utc)

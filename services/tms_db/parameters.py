@@ -1,0 +1,232 @@
+"""Parameter records in the database: one per (model_name, record_name), changed field by field."""
+
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass, field
+from datetime import datetime, timezone
+from typing import Any
+
+from pymongo.errors import DuplicateKeyError
+
+from tms_core.errors import DbError
+from tms_db.records import (
+    Document,
+    Record,
+    Value,
+    bad,
+    check_field,
+    check_key,
+    check_max_age,
+    check_type,
+    check_values,
+    title,
+)
+from tms_db.store import Db, errors
+
+ATTEMPTS = 20  # somebody creates and removes the record between our steps: does not go on for long
+
+
+@dataclass(frozen=True)
+class Change:
+    """What to do to one record. An empty `type` or `description` and a `max_age` of 0 keep what is there."""
+
+    values: Mapping[str, Value]
+    type: str = ""
+    description: str = ""
+    source: str = ""
+    remove: Collection[str] = ()
+    max_age: float = 0.0  # s; below 0 = no limit
+    expected: Mapping[str, Value] = field(default_factory=dict)  # nothing is done unless these hold
+
+    @property
+    def plain(self) -> bool:
+        """Whether it only sets fields, whatever they hold now."""
+        return not (self.type or self.description or self.remove or self.max_age or self.expected)
+
+    def check(self, where: str) -> None:
+        check_values(where, self.values)
+        for name in self.remove:
+            check_field(where, name)
+            if name in self.values:
+                raise bad(f"{where}: field {name} is to be set and removed: choose one")
+        check_values(where, self.expected)
+        check_max_age(where, self.max_age, self.type)
+        if self.type:
+            check_type(where, self.type)
+
+    def fields(self) -> Document:
+        kept = {"type": self.type, "description": self.description, "max_age": max(0.0, self.max_age)}
+        return {
+            **self.values,
+            **{key: value for key, value in kept.items() if value or (key == "max_age" and self.max_age)},
+            "updated_at": datetime.now(timezone.utc),
+            "source": self.source,
+        }
+
+
+@dataclass(frozen=True)
+class Loaded:
+    """Names of what a load did."""
+
+    created: list[str]
+    changed: list[str]
+    unchanged: list[str]
+
+
+class Parameters:
+    """The `parameter` collection."""
+
+    def __init__(self, db: Db) -> None:
+        self._records = db["parameter"]
+        self._runs = db["run"]
+
+    def get(self, model_name: str, record_name: str) -> Document:
+        """The stored document.
+
+        Raises:
+            DbError: RECORD_MISSING.
+        """
+        with errors():
+            document: Document | None = self._records.find_one(_key(model_name, record_name))
+        if document is None:
+            raise _missing(model_name, record_name)
+        return document
+
+    def all(self, model_name: str = "") -> list[Document]:
+        """Documents of one model, or all, by key."""
+        wanted = {"model_name": model_name} if model_name else {}
+        with errors():
+            return list(self._records.find(wanted).sort([("model_name", 1), ("record_name", 1)]))
+
+    def by_id(self, ids: list[Any]) -> list[Document]:
+        """Documents by their `_id`; those that are gone are left out."""
+        with errors():
+            return list(self._records.find({"_id": {"$in": ids}}))
+
+    def named(self, record_name: str) -> list[Document]:
+        """Documents of this record name, whatever their model, oldest first: what the C++ system's reader looks for."""
+        with errors():
+            return list(self._records.find({"record_name": record_name}).sort("_id", 1))
+
+    def set(self, model_name: str, record_name: str, change: Change, create: bool = False) -> bool:
+        """Change the given fields in one atomic step, or make the record; tells whether it was made.
+
+        Raises:
+            DbError: BAD_RECORD, RECORD_MISSING, CONFLICT, or STATIC_RECORD while a run uses the record.
+        """
+        check_key(model_name, record_name)
+        where = title(model_name, record_name)
+        change.check(where)
+        fields = change.fields()
+        update: Document = {"$set": fields}
+        if change.remove:
+            update["$unset"] = dict.fromkeys(change.remove, "")
+        for _ in range(ATTEMPTS):
+            with errors():
+                key = self._writable(model_name, record_name)
+                if key is not None and self._records.update_one({**key, **change.expected}, update).matched_count:
+                    return False
+                if key is not None and change.expected and self._records.find_one(key) is not None:
+                    raise self._conflict(key, where, change.expected)
+                if not create or change.expected:
+                    raise _missing(model_name, record_name)
+                if self._insert(model_name, record_name, fields):
+                    return True
+        raise DbError(f"{where} is being made and removed by others: try again", "BUSY")
+
+    def remove(self, model_name: str, record_name: str) -> None:
+        """Take a record away.
+
+        Raises:
+            DbError: RECORD_MISSING, or STATIC_RECORD while a run uses the record.
+        """
+        with errors():
+            key = self._writable(model_name, record_name)
+            if key is not None and self._records.delete_one(key).deleted_count:
+                return
+        raise _missing(model_name, record_name)
+
+    def load(self, records: Iterable[Record], source: str) -> Loaded:
+        """Make or change records as a file gives them; a record that says the same already is not written.
+
+        Fields that the file does not name stay: sensing may have added them.
+        """
+        done = Loaded([], [], [])
+        for record in records:
+            change = Change(record.values, record.type, record.description, source, max_age=record.max_age)
+            if self._says(record):
+                done.unchanged.append(record.name)
+            elif self.set(record.model_name, record.record_name, change, create=True):
+                done.created.append(record.name)
+            else:
+                done.changed.append(record.name)
+        return done
+
+    def _writable(self, model_name: str, record_name: str) -> Document | None:
+        """The key to write with, None if there is no such record.
+
+        Two steps, since the embedded store scans the collection when a filter holds more than the key; a record
+        that becomes static in between is changed once more.
+        """
+        key = _key(model_name, record_name)
+        stored = self._records.find_one(key, {"type": 1})
+        if stored is None:
+            return None
+        if stored.get("type") == "static":
+            names = [f"{model_name}/{record_name}", f"{model_name}/*"]
+            run = self._runs.find_one({"ended_at": None, "records": {"$in": names}}, {"run_id": 1})
+            if run is not None:
+                raise _static(title(model_name, record_name), run["run_id"])
+        return key
+
+    def _conflict(self, key: Document, where: str, expected: Mapping[str, Value]) -> DbError:
+        stored = self._records.find_one(key) or {}
+        other = [f"{name} is {stored.get(name)!r}, not {want!r}" for name, want in expected.items()
+                 if not _same(stored.get(name), want)]  # fmt: skip
+        return DbError(f"{where} was not changed: {', '.join(other) or 'its fields were others'}", "CONFLICT")
+
+    def _says(self, record: Record) -> bool:
+        with errors():
+            stored = self._records.find_one(_key(record.model_name, record.record_name)) or {}
+        wanted = {**record.values, "type": record.type}
+        if record.description:
+            wanted["description"] = record.description
+        if record.max_age:
+            wanted["max_age"] = record.max_age
+        return all(_same(stored.get(name), value) for name, value in wanted.items())
+
+    def _insert(self, model_name: str, record_name: str, fields: Document) -> bool:
+        head = {"model_name": model_name} if model_name else {}
+        new = {**head, "type": "dynamic", "record_name": record_name, "description": "", **fields}
+        try:
+            self._records.insert_one(new)
+        except DuplicateKeyError:  # made by somebody else since our update: update that one
+            return False
+        return True
+
+
+def _key(model_name: str, record_name: str) -> Document:
+    # Shared records of the C++ system have no model_name at all.
+    return {"model_name": model_name if model_name else {"$in": [None, ""]}, "record_name": record_name}
+
+
+def _same(stored: Any, wanted: Any) -> bool:
+    """Equal in value and type: 1, 1.0 and true are three different things to a reader."""
+    if isinstance(wanted, list):
+        return isinstance(stored, list) and len(stored) == len(wanted) and all(map(_same, stored, wanted))
+    return (
+        bool(stored == wanted)
+        and isinstance(stored, float) == isinstance(wanted, float)
+        and (isinstance(stored, bool) == isinstance(wanted, bool))
+    )
+
+
+def _missing(model_name: str, record_name: str) -> DbError:
+    return DbError(
+        f"there is no {title(model_name, record_name)}: `tms param list` shows what is stored, "
+        "`tms param set` or `tms param load` makes it",
+        "RECORD_MISSING",
+    )
+
+
+def _static(where: str, run: str) -> DbError:
+    return DbError(f"{where} is static and run {run} uses it: wait until the run has ended", "STATIC_RECORD")

@@ -1,0 +1,96 @@
+"""The last changes of each record, with their time and source: a short memory for people, not a log.
+
+Kept in memory and stored now and then, so that it costs a fast record next to nothing; a crash may lose the last ones.
+"""
+
+import logging
+import threading
+from collections.abc import Mapping
+from datetime import datetime
+from typing import Any
+
+from pymongo import UpdateOne
+
+from tms_core.errors import DbError
+from tms_db.connection import Connection
+from tms_db.heads import Key
+from tms_db.records import Value
+from tms_db.store import Db, errors
+
+KEPT = 50  # changes a record
+PERIOD = 2.0  # s between writes; what sensing changes in between counts as one change
+
+Change = dict[str, Any]  # stamp, source, values
+
+
+class Past:
+    """The `parameter_history` collection: one document a record."""
+
+    def __init__(self, db: Db, connection: Connection, log: logging.Logger) -> None:
+        self._stored, self._connection, self._log = db["parameter_history"], connection, log
+        self._lock = threading.Lock()
+        self._new: dict[Key, list[Change]] = {}
+        self._stopping = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="past", daemon=True)
+
+    def start(self) -> None:
+        self._thread.start()
+
+    def stop(self) -> None:
+        self._stopping.set()
+        self._thread.join(1.0)
+
+    def note(self, key: Key, stamp: datetime, source: str, values: Mapping[str, Value], often: bool = False) -> None:
+        """Remember one change; returns at once. One that comes `often` takes the place of the one before."""
+        change = {"stamp": stamp, "source": source, "values": dict(values)}
+        with self._lock:
+            changes = self._new.setdefault(key, [])
+            if often and changes and changes[-1]["source"] == source:
+                change["values"] = {**changes.pop()["values"], **values}
+            changes.append(change)
+            del changes[:-KEPT]
+
+    def changes(self, key: Key, limit: int = 0) -> list[Change]:
+        """Changes of a record, newest first.
+
+        Raises:
+            DbError: the store is away.
+        """
+        with self._lock:
+            new = list(self._new.get(key, ()))
+        return [*self._load(key), *new][-KEPT:][::-1][: limit or KEPT]
+
+    def _load(self, key: Key) -> list[Change]:
+        with errors():
+            found = self._stored.find_one({"model_name": key[0], "record_name": key[1]}) or {}
+        changes: list[Change] = found.get("changes", [])
+        return changes
+
+    def _run(self) -> None:
+        ending = False
+        while not ending:
+            ending = self._stopping.wait(PERIOD)
+            with self._lock:
+                new, self._new = self._new, {}
+            try:
+                if new:
+                    with self._connection.use():
+                        self._save(new)
+            except DbError as error:  # kept in memory until the store is back
+                self._log.info("event=history_waits %s", error)
+                with self._lock:
+                    for key, later in self._new.items():
+                        new[key] = [*new.get(key, []), *later][-KEPT:]
+                    self._new = new
+
+    def _save(self, new: Mapping[Key, list[Change]]) -> None:
+        steps = [
+            UpdateOne(
+                {"model_name": model, "record_name": record},
+                {"$push": {"changes": {"$each": changes, "$slice": -KEPT}}},
+                upsert=True,
+            )
+            for (model, record), changes in new.items()
+        ]
+        with errors():
+            self._stored.bulk_write(steps, ordered=False)

@@ -1,0 +1,137 @@
+"""Opens the database: connection with short time-outs, unique indexes, and errors that a person can act on."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+from urllib.parse import urlsplit
+
+from pymongo import ASCENDING, DESCENDING, MongoClient
+from pymongo.database import Database
+from pymongo.errors import (
+    ConfigurationError,
+    ConnectionFailure,
+    DocumentTooLarge,
+    DuplicateKeyError,
+    InvalidURI,
+    NetworkTimeout,
+    OperationFailure,
+    PyMongoError,
+)
+from pymongo.uri_parser import parse_uri
+
+from tms_core.errors import ConfigError, DbError
+
+Db = Database[dict[str, Any]]
+
+FIND_SERVER_MS = 2000
+ANSWER_MS = 3000
+AUTH_CODES = {13, 18, 8000}  # Unauthorized, AuthenticationFailed, Atlas
+DISK_CODES = {14031, 28}  # OutOfDiskSpace, ENOSPC passed on by an engine
+
+# Collection -> (fields, unique). `sparse` lets tasks of the C++ system, which have no text hash, stand.
+INDEXES: dict[str, list[tuple[list[tuple[str, int]], dict[str, Any]]]] = {
+    "task": [
+        ([("task_id", ASCENDING)], {"unique": True}),
+        ([("text_sha256", ASCENDING)], {"unique": True, "sparse": True}),
+    ],
+    "parameter": [
+        ([("model_name", ASCENDING), ("record_name", ASCENDING)], {"unique": True}),
+        ([("record_name", ASCENDING)], {}),  # the C++ system's reader knows no model
+    ],
+    "run": [([("run_id", ASCENDING)], {"unique": True}), ([("started_at", DESCENDING)], {})],
+    "parameter_history": [([("model_name", ASCENDING), ("record_name", ASCENDING)], {"unique": True})],
+    "machine_pose": [([("time", DESCENDING)], {})],
+    "machine_joints": [([("time", DESCENDING)], {})],
+    "event": [([("run_id", ASCENDING), ("number", ASCENDING)], {"unique": True})],
+}
+
+
+def redact(uri: str) -> str:
+    """The URI without user, password and options, fit for a message or a log."""
+    parts = urlsplit(uri)
+    return f"{parts.scheme}://{parts.netloc.rpartition('@')[2]}" if parts.netloc else "(store address)"
+
+
+def connect(uri: str, database: str) -> Db:
+    """The database behind `uri`; opens no connection yet. Call once a process.
+
+    Raises:
+        ConfigError: the URI is wrong; the message holds no password.
+    """
+    try:
+        given = {key.lower() for key in parse_uri(uri)["options"]}
+        # A single server has no second node to retry on, and a stand-alone mongod refuses retryable writes.
+        # All our writes may be repeated by the caller; a site with a replica set can ask for them in the URI.
+        retry: dict[str, Any] = {} if "retrywrites" in given else {"retryWrites": False}
+        client: MongoClient[dict[str, Any]] = MongoClient(
+            uri, w="majority", journal=True, wTimeoutMS=ANSWER_MS, tz_aware=True,
+            serverSelectionTimeoutMS=FIND_SERVER_MS, connectTimeoutMS=FIND_SERVER_MS, socketTimeoutMS=ANSWER_MS,
+            appname="tms_db", **retry,
+        )  # fmt: skip
+    except (InvalidURI, ConfigurationError, ValueError) as error:
+        # pymongo's own text may quote the URI, so neither it nor the exception goes on.
+        kind = type(error).__name__
+        raise ConfigError(
+            f"the store's address {redact(uri)} is wrong ({kind}): "
+            "write mongodb://host:port in TMS_MONGODB_URI or store.uri, with % codes for special characters"
+        ) from None
+    return client[database]
+
+
+def prepare(db: Db) -> None:
+    """Create what is missing of the unique indexes.
+
+    Raises:
+        DbError: STORE_DOWN, or STORE_CONFLICT when stored documents break a key.
+    """
+    for collection, indexes in INDEXES.items():
+        for fields, options in indexes:
+            try:
+                with errors():
+                    db[collection].create_index(fields, **options)
+            except DuplicateKeyError as error:
+                key = (error.details or {}).get("keyValue") or " and ".join(name for name, _ in fields)
+                raise DbError(
+                    f"database {db.name}, collection {collection}: two documents with the same key {key}: "
+                    "remove one of them, then start again",
+                    "STORE_CONFLICT",
+                ) from error
+
+
+@contextmanager
+def errors() -> Iterator[None]:
+    """Turn pymongo's errors into DbError; a duplicate key passes, since the caller knows what it means."""
+    try:
+        yield
+    except DuplicateKeyError:
+        raise
+    except NetworkTimeout as error:  # reached, yet silent: what the embedded store does when its disk is full
+        raise DbError(
+            f"the store gave no answer in {ANSWER_MS / 1000:.0f} s: see whether its disk is full or the PC overloaded",
+            "STORE_DOWN",
+        ) from error
+    except ConnectionFailure as error:
+        raise down() from error
+    except DocumentTooLarge as error:
+        raise DbError("the document is larger than the store's 16 MB: make it smaller", "TOO_LARGE") from error
+    except OperationFailure as error:
+        raise _refused(error) from error
+    except PyMongoError as error:
+        raise DbError(f"the store could not do it ({type(error).__name__}): see the log of tms:db") from error
+
+
+def down() -> DbError:
+    return DbError(
+        "the store does not answer: start it (`tms start tms:store`, or MongoDB of the site); "
+        "the database module reconnects by itself",
+        "STORE_DOWN",
+    )
+
+
+def _refused(error: OperationFailure) -> DbError:
+    text = str((error.details or {}).get("errmsg", type(error).__name__)).splitlines()[0][:200]
+    if error.code in AUTH_CODES:
+        return DbError("the store refuses our login: check user and password in TMS_MONGODB_URI", "STORE_DOWN")
+    if error.code in DISK_CODES or "no space" in text.lower():
+        return DbError("the store's disk is full: free some space, then try again", "STORE_FULL")
+    return DbError(f"the store refused the request ({text}): see the log of tms:db", "STORE_REFUSED")

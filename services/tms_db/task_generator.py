@@ -1,0 +1,69 @@
+"""Registers a task file: the ROS node of the paper, with the parameter `bt_tree_xml_file_name`.
+
+python -m tms_db.task_generator --ros-args -p bt_tree_xml_file_name:=one_loading_cycle -p description:="Loads once"
+"""
+
+import sys
+from pathlib import Path
+from typing import Any
+
+from tms_core import environment
+from tms_core.config import CONFIGS, load_site
+from tms_core.errors import DbError, TaskError, TmsError
+from tms_db import task_text
+
+TASKS = CONFIGS / "tasks"
+ANSWER = 10.0  # s
+
+
+def find(name: str) -> Path:
+    """The file of that name: a path, or a name below configs/tasks/ with or without .xml.
+
+    Raises:
+        TaskError: there is none.
+    """
+    if not name:
+        raise TaskError("no file is given: add --ros-args -p bt_tree_xml_file_name:=NAME")
+    for path in (Path(name), TASKS / f"{name}.xml", TASKS / name):
+        if path.is_file():
+            return path
+    raise TaskError(f"no file '{name}' here and no '{name}.xml' in {TASKS}: check bt_tree_xml_file_name")
+
+
+def main() -> int:
+    """Register and print the number; 0 when the task is stored (also when it was before)."""
+    try:
+        environment.enter(load_site())
+        sys.stdout.write(f"{_register()}\n")
+    except TmsError as error:
+        sys.stderr.write(f"{error}\n")
+        return 1
+    return 0
+
+
+def _register() -> str:
+    from rcl_interfaces.msg import ParameterDescriptor  # after the environment is set, which rclpy reads
+    from tms_msg_db.srv import AddTask
+
+    from tms_core.ros import Ros
+
+    ros = Ros("task_generator")
+    try:
+        loose = ParameterDescriptor(dynamic_typing=True)  # a name or text that looks like a number is fine
+
+        def given(name: str) -> str:
+            value: Any = ros.node.declare_parameter(name, "", loose).value
+            return str(value)
+
+        text = task_text.read_file(find(given("bt_tree_xml_file_name")))
+        request = AddTask.Request(task_sequence=text, description=given("description"))
+        answer = ros.call(AddTask, "/tms/db/add_task", request, ANSWER)
+    finally:
+        ros.close()
+    if answer.error_code:
+        raise DbError(answer.error_msg, answer.error_code)
+    return f"task {answer.task_id}" + (" (was stored before)" if answer.already_stored else "")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

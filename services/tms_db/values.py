@@ -1,0 +1,51 @@
+"""Documents <-> ROS messages: what of a document travels, and what of a message is stored."""
+
+from collections.abc import Iterable, Mapping
+from datetime import datetime, timezone
+from typing import Any
+
+from builtin_interfaces.msg import Time
+
+from tms_core import values
+from tms_db.records import RESERVED, Value, bad
+
+LAST_SECOND = 2**31 - 1  # of builtin_interfaces/Time
+
+
+def to_parameters(document: Mapping[str, Any], hidden: Iterable[str] = RESERVED) -> tuple[list[Any], list[str]]:
+    """The document's values as messages, and the names of those that cannot travel (nested, binary, dates)."""
+    hidden = frozenset(hidden)
+    shown = {name: value for name, value in document.items() if name not in hidden}
+    left_out = [name for name, value in shown.items() if not values.can_travel(value)]
+    return values.to_parameters({name: shown[name] for name in shown if name not in left_out}), left_out
+
+
+def from_parameters(where: str, parameters: Iterable[Any]) -> dict[str, Value]:
+    """Values by name.
+
+    Raises:
+        DbError: BAD_RECORD; a value is not set or is bytes, or a name is there twice.
+    """
+    found: dict[str, Value] = {}
+    for parameter in parameters:
+        name, value = parameter.name, values.from_value(parameter.value)
+        if name in found:
+            raise bad(f"{where}: field {name} is there twice: send it once")
+        if value is None:
+            raise bad(f"{where}, field {name}: no value, or bytes: use a number, true/false, text or an array of these")
+        found[name] = value
+    return found
+
+
+def to_time(moment: object) -> Any:
+    """A stored date as Time; zero for anything else."""
+    if not isinstance(moment, datetime):
+        return Time()
+    second = int(moment.replace(microsecond=0).timestamp())
+    return Time(sec=min(max(second, 0), LAST_SECOND), nanosec=moment.microsecond * 1000)
+
+
+def from_time(time: Any) -> datetime:
+    """Time as a date; the store keeps milliseconds."""
+    milliseconds = time.nanosec // 1_000_000
+    return datetime.fromtimestamp(time.sec, timezone.utc).replace(microsecond=milliseconds * 1000)

@@ -1,0 +1,43 @@
+"""Whether everyone behind a goal is still there: scheduler, subtask, planner. Pure logic."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from tms_core.fence import Owner
+
+SCHEDULER = "ts"
+
+
+@dataclass(frozen=True)
+class Gap:
+    """Why a goal has no permit; `late` when waiting cannot help."""
+
+    text: str
+    late: bool = False
+
+
+def gap(owner: Owner | None, held: Mapping[str, Owner]) -> Gap | None:
+    """What is missing behind a goal; `held` is what each living process stands behind.
+
+    A goal of a foreign client (owner None) needs nobody, but a run that holds the machine shuts it out.
+    """
+    run = held.get(SCHEDULER)
+    if owner is None:
+        return None if run is None else Gap("the machine is held by a run: cancel it first", late=True)
+    if run is None:
+        return Gap("no scheduler stands behind its run")
+    if run.run != owner.run:
+        text = f"its fencing number {owner.run} is not the present run's ({run.run}): a goal of an abandoned run"
+        return Gap(text, late=owner.run < run.run)
+    for hop in range(owner.hop):
+        if Owner(owner.run, owner.leaf, hop) not in held.values():
+            return Gap("the planner does not stand behind it" if hop else "the subtask does not stand behind it")
+    return None
+
+
+def members(owner: Owner | None, held: Mapping[str, Owner]) -> dict[str, Owner]:
+    """The processes that a goal depends on, with what each of them holds."""
+    if owner is None:
+        return {}
+    chain = {Owner(owner.run, owner.leaf, hop) for hop in range(owner.hop)}
+    return {name: what for name, what in held.items() if what in chain or name == SCHEDULER}

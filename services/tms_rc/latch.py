@@ -1,0 +1,99 @@
+"""Whether a machine may move: armed, held for its own run, or latched until a person re-arms it. Pure logic.
+
+A stop latches. Only one kind of stop does not: when a subtask, the planner or the gateway itself is lost during a
+run, the machine is *held*: the run that it was lost from may go on with a new leaf goal, nobody else may move the
+machine, and if that run is lost too, the hold becomes a latch. An orderly end of the run ends the hold.
+"""
+
+import secrets
+import threading
+from dataclasses import dataclass
+
+from tms_core.fence import Owner
+
+TOKEN_SECONDS = 60.0  # s that a person has between the two steps
+
+
+@dataclass(frozen=True)
+class Hold:
+    """A stop that its own run may leave."""
+
+    cause: str
+    run: int
+    leaf: int
+
+
+class Latch:
+    """Safe to call from several threads; never waits for anything but its own short lock."""
+
+    def __init__(self, cause: str = "") -> None:
+        self._lock = threading.Lock()
+        self._cause = cause
+        self._hold: Hold | None = None
+        self._token: tuple[str, float] | None = None
+
+    @property
+    def cause(self) -> str:
+        """Why the machine is latched, empty if it is not."""
+        return self._cause
+
+    @property
+    def hold(self) -> str:
+        """Why the machine is held, empty if it is not."""
+        hold = self._hold
+        return hold.cause if hold is not None else ""
+
+    def close(self, cause: str) -> None:
+        """Latch. The first cause stays; a token that somebody got before is worth nothing any more."""
+        with self._lock:
+            self._cause = self._cause or cause
+            self._hold = self._token = None
+
+    def keep(self, cause: str, owner: Owner) -> None:
+        """Hold the machine for the run that just lost one of its processes."""
+        with self._lock:
+            if not self._cause:
+                self._hold = Hold(cause, owner.run, owner.leaf)
+
+    def refusal(self, owner: Owner | None) -> str | None:
+        """Why a goal may not move the machine; a goal that may leave a hold ends it."""
+        with self._lock:
+            if self._cause:
+                return f"stopped ({self._cause}): re-arm it first with `tms rearm`"
+            hold = self._hold
+            if hold is None:
+                return None
+            if owner is not None and owner.run == hold.run and owner.leaf != hold.leaf:
+                self._hold = None
+                return None
+            return f"held ({hold.cause}): only a new goal of the same run may move it"
+
+    def run_is(self, run: int | None) -> None:
+        """Tell which run holds the machine; its orderly change ends a hold for another one."""
+        with self._lock:
+            if self._hold is not None and self._hold.run != run:
+                self._hold = None
+
+    def run_lost(self) -> None:
+        """The scheduler behind the hold is gone as well."""
+        with self._lock:
+            if self._hold is not None:
+                self._cause, self._hold = f"{self._hold.cause}, then the scheduler was lost", None
+
+    def request(self, now: float) -> str:
+        """First step of re-arming: a token for the second."""
+        with self._lock:
+            token = secrets.token_hex(4)
+            self._token = (token, now + TOKEN_SECONDS)
+            return token
+
+    def confirm(self, token: str, now: float) -> str | None:
+        """Second step; returns why it is refused, None when the machine is armed."""
+        with self._lock:
+            known, self._token = self._token, None
+            if known is None or not secrets.compare_digest(known[0].encode(), token.encode()):
+                return "this token is not valid (any more): ask for a new one, look at the machine, and confirm again"
+            if now > known[1]:
+                return f"the token is older than {TOKEN_SECONDS:.0f} s: ask for a new one"
+            self._cause, self._hold = "", None
+            return None

@@ -1,0 +1,77 @@
+"""Checks motions against the machine model, before they leave and while they run. Pure logic."""
+
+import math
+from collections.abc import Mapping, Sequence
+
+from tms_core.config import MachineModel
+
+UNIT = 0.01  # how far the length of a quaternion may be from 1
+MARGIN = 0.05  # rad beyond a limit, and further out than at the start, that a moving joint may be seen
+
+
+def problem(
+    model: MachineModel,
+    joints: Sequence[str],
+    points: Sequence[Sequence[float]],
+    present: Mapping[str, float] | None = None,
+) -> str | None:
+    """What is wrong with a trajectory (points x joints, rad), with the joint and the bound; None if nothing.
+
+    `present` are the joints now [rad]: one that sags beyond its limit must be able to come back, so points that
+    are no further out than it is are allowed.
+    """
+    unknown = [name for name in joints if name not in model.joints]
+    if unknown:
+        return f"joint '{unknown[0]}' is not one of {', '.join(model.joints)}"
+    if not points:
+        return "the trajectory has no points"
+    for number, point in enumerate(points):
+        if len(point) != len(joints):
+            return f"point {number} has {len(point)} positions for {len(joints)} joints"
+        for name, angle in zip(joints, point, strict=True):
+            broken = "is not a number" if not math.isfinite(angle) else model.joints[name].violation(angle)
+            if broken and not _inside(model, name, angle, (present or {}).get(name)):
+                return f"{f'point {number}: ' if len(points) > 1 else ''}{name}: {broken}"
+    return None
+
+
+def angle_problem(model: MachineModel, action: str, angle: float, present: Mapping[str, float]) -> str | None:
+    """What is wrong with the angle [rad] of an action that turns one joint."""
+    joint = model.turned(action)
+    if joint is None:
+        return f"the model has no joint for {action}"
+    return problem(model, [joint], [[angle]], present)
+
+
+def pose_problem(poses: Sequence[tuple[float, ...]]) -> str | None:
+    """What is wrong with poses as x, y, z [m], qx, qy, qz, qw; a navigation would go somewhere with it."""
+    if not poses:
+        return "there is no pose in the goal"
+    for number, pose in enumerate(poses):
+        if not all(map(math.isfinite, pose)):
+            return f"pose {number} holds a value that is not a number"
+        length = math.hypot(*pose[3:])
+        if abs(length - 1.0) > UNIT:
+            return f"pose {number}: its quaternion has the length {length:.3f}, not 1"
+    return None
+
+
+def _inside(model: MachineModel, name: str, angle: float, present: float | None) -> bool:
+    """Whether an angle beyond a limit is on the same side as the joint now, and no further out."""
+    if present is None or not math.isfinite(angle):
+        return False
+    joint = model.joints[name]
+    if joint.min is not None and angle < joint.min:
+        return present <= angle + 1e-6
+    return joint.max is not None and angle > joint.max and present >= angle - 1e-6
+
+
+def escaped(model: MachineModel, now: Mapping[str, float], start: Mapping[str, float]) -> str | None:
+    """The joint that a running motion has taken out of its limits; `start` is where the motion began."""
+    for name, angle in now.items():
+        joint, began = model.joints[name], start.get(name, 0.0)
+        if joint.min is not None and angle < min(joint.min, began) - MARGIN:
+            return f"{name} is at {angle:.3f} rad, below its limit {joint.min:.3f} rad"
+        if joint.max is not None and angle > max(joint.max, began) + MARGIN:
+            return f"{name} is at {angle:.3f} rad, above its limit {joint.max:.3f} rad"
+    return None

@@ -1,0 +1,71 @@
+"""What a planner can be asked for, without ROS types."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from tms_core.errors import SubtaskFailed
+
+
+@dataclass(frozen=True)
+class TipGoal:
+    """Bucket tip in base_link [m], bucket angle `theta_w` [rad, 0 outward, pi/2 down] and `offset` [m].
+
+    Only excavating uses the offset: it moves the point away from the machine (positive) or towards it.
+    """
+
+    x: float
+    y: float
+    z: float
+    theta_w: float
+    offset: float = 0.0
+
+
+@dataclass(frozen=True)
+class LinkGoal:
+    """Pose of bucket_end_link in base_link: position [m] and orientation (quaternion)."""
+
+    x: float
+    y: float
+    z: float
+    qx: float
+    qy: float
+    qz: float
+    qw: float
+
+
+@dataclass(frozen=True)
+class ChangePose:
+    """Targets one after another; exactly one of the three is given.
+
+    `joints` holds joint name -> angle [rad]; an angle beyond +-2 pi, or a joint left out, keeps its present value.
+    """
+
+    joints: tuple[Mapping[str, float], ...] = ()
+    links: tuple[LinkGoal, ...] = ()
+    tips: tuple[TipGoal, ...] = ()
+
+
+def joint_goal(names: Sequence[str], positions: Sequence[float]) -> dict[str, float]:
+    """One trajectory point as joint name -> angle [rad].
+
+    Raises:
+        SubtaskFailed: BAD_GOAL, the two lists do not fit.
+    """
+    if len(names) != len(positions):
+        raise SubtaskFailed(
+            "BAD_GOAL", f"trajectory: {len(names)} joint names but {len(positions)} positions: give one for each"
+        )
+    if len(set(names)) != len(names):
+        raise SubtaskFailed("BAD_GOAL", f"trajectory: a joint is named twice in {', '.join(names)}")
+    return dict(zip(names, positions, strict=True))
+
+
+def finite(what: str, *values: float) -> None:
+    """Refuse NaN and infinity.
+
+    Raises:
+        SubtaskFailed: BAD_GOAL, names `what`.
+    """
+    if not all(math.isfinite(value) for value in values):
+        raise SubtaskFailed("BAD_GOAL", f"{what}: a value is not a number: send finite numbers")

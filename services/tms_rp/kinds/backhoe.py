@@ -1,0 +1,180 @@
+"""Excavators: goals for the bucket become joint targets, each inside the joint limits."""
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from tms_core.config import MachineModel
+from tms_core.errors import ConfigError, SubtaskFailed
+from tms_rp.goals import ChangePose, LinkGoal, TipGoal, finite
+from tms_rp.linkage import Linkage, Pose, Tip, wrap
+
+NAMES = ("swing_joint", "boom_joint", "arm_joint", "bucket_joint")
+TOOL = "bucket_end_joint"  # a frame, not a joint: no command moves it
+
+DEPTH = 1.0  # m, from a record's z (the ground) down to where the bucket digs
+SEARCH_STEP = 0.01  # rad, of theta_w
+CURLED = 1.7  # rad, bucket joint that holds the soil
+CLEAR_ARM = 0.1  # rad, arm curls in by this much when the bucket closes or opens
+CLEAR_BOOM = -0.15  # rad, boom rises by this much when the bucket opens
+OUT_OF_PLANE = 0.05  # rad, how far an orientation may point out of the arm's plane
+
+
+@dataclass(frozen=True)
+class Moves:
+    """Joint targets one after another, each reached at rest, and what the planner changed in the goal."""
+
+    targets: tuple[Pose, ...]
+    note: str = ""
+
+
+class Backhoe:
+    """Plans for one excavator model. Methods take the present joints and raise SubtaskFailed with a code.
+
+    Codes: BAD_GOAL the goal makes no sense, OUT_OF_REACH the arm is too short or too long for the point,
+    OUT_OF_RANGE a joint would have to leave its limits.
+    """
+
+    def __init__(self, model: MachineModel) -> None:
+        missing = [name for name in (*NAMES, TOOL) if name not in model.joints or name not in model.geometry]
+        if missing:
+            raise ConfigError(f"a backhoe needs {', '.join(missing)} under joints: and geometry: of its machine file")
+        self.limits = {name: model.joints[name] for name in NAMES}
+        self.linkage = Linkage.of(model.geometry)
+
+    def change_pose(self, now: Pose, goal: ChangePose) -> Moves:
+        """Go through joint targets, link poses or bucket tips, whichever the goal gives."""
+        given = [part for part in (goal.joints, goal.links, goal.tips) if part]
+        if len(given) != 1:
+            raise SubtaskFailed(
+                "BAD_GOAL",
+                f"give exactly one of trajectory, pose_sequence and position_with_angle_sequence, not {len(given)}",
+            )
+        targets: list[Pose] = []
+        for values in goal.joints:
+            targets.append(self._joints(now, targets, values))
+        for tip in (*(self._link_tip(link) for link in goal.links), *(_tip(tip) for tip in goal.tips)):
+            targets.append(_short_way(targets[-1] if targets else now, self.reach(tip)))
+        return Moves(tuple(targets))
+
+    def excavate(self, now: Pose, goal: TipGoal) -> Moves:
+        """Swing over the point, reach it with the nearest possible bucket angle, then curl the bucket in.
+
+        The bucket digs DEPTH below the goal's z, `offset` further out on the line from the machine's origin.
+        """
+        theta_w = wrap(_tip(goal).theta_w - math.pi / 2) + math.pi / 2  # the turn that holds 0 to pi
+        bearing = math.atan2(goal.y, goal.x)
+        dig = Tip(
+            goal.x + goal.offset * math.cos(bearing), goal.y + goal.offset * math.sin(bearing),
+            goal.z - DEPTH, theta_w,
+        )  # fmt: skip
+        found, chosen = self._search(dig)
+        reach = _short_way(now, found)
+        notes = [] if chosen == theta_w else [f"theta_w {chosen:.2f} instead of {theta_w:.2f} rad"]
+        arm = self._clip("arm_joint", reach.arm + CLEAR_ARM, notes)
+        curl = self._allowed(reach, reach._replace(arm=arm, bucket=CURLED))
+        return Moves((now._replace(swing=reach.swing), reach, curl), "; ".join(notes))
+
+    def release(self, now: Pose, angle: float) -> Moves:
+        """Open the bucket to `angle` [rad] in two moves; the second also brings arm and boom up for clearance."""
+        finite("target_angle", angle)
+        notes: list[str] = []
+        arm = self._clip("arm_joint", now.arm + CLEAR_ARM, notes)
+        boom = self._clip("boom_joint", now.boom + CLEAR_BOOM, notes)
+        end = self._allowed(now, Pose(now.swing, boom, arm, angle))
+        return Moves((now._replace(bucket=(now.bucket + angle) / 2), end), "; ".join(notes))
+
+    def reach(self, tip: Tip) -> Pose:
+        """Joints inside their limits that bring the bucket tip there; swing in (-pi, pi]."""
+        pose = self.linkage.joints(tip)
+        bucket = self.limits["bucket_joint"]
+        for turn in (math.tau, -math.tau):  # theta_w is an angle: full turns more or less are the same bucket
+            if bucket.violation(pose.bucket) and not bucket.violation(pose.bucket + turn):
+                pose = pose._replace(bucket=pose.bucket + turn)
+        broken = self._broken(zip(NAMES, pose, strict=True))
+        if broken:
+            raise SubtaskFailed(
+                "OUT_OF_RANGE",
+                f"point ({tip.x:.3f}, {tip.y:.3f}, {tip.z:.3f}) m with theta_w {tip.theta_w:.2f} rad needs {broken}: "
+                "choose another point or theta_w",
+            )
+        return pose
+
+    def _search(self, tip: Tip) -> tuple[Pose, float]:
+        """Joints for the point with the possible theta_w nearest to the asked one, and that theta_w [rad]."""
+        refused: list[SubtaskFailed] = []
+        for theta_w in _outward(tip.theta_w):
+            try:
+                return self.reach(tip._replace(theta_w=theta_w)), theta_w
+            except SubtaskFailed as error:
+                refused.append(error)
+        nearest = refused[0]
+        raise SubtaskFailed(nearest.code, f"no bucket angle from 0 to pi digs there: {nearest.args[0]}")
+
+    def _joints(self, now: Pose, before: list[Pose], values: Mapping[str, float]) -> Pose:
+        unknown = [name for name in values if name not in (*NAMES, TOOL)]
+        if unknown:
+            raise SubtaskFailed("BAD_GOAL", f"trajectory: no joint '{unknown[0]}': use {', '.join(NAMES)}")
+        finite("trajectory", *values.values())
+        kept = {name: angle for name, angle in values.items() if name in NAMES and abs(angle) <= math.tau}
+        target = Pose(*(kept.get(name, angle) for name, angle in zip(NAMES, now, strict=True)))
+        return self._allowed(now, _short_way(before[-1] if before else now, target))
+
+    def _link_tip(self, link: LinkGoal) -> Tip:
+        """The tip that a pose of bucket_end_link asks for; theta_w is its pitch in the plane of the arm."""
+        finite("pose_sequence", *vars(link).values())
+        norm = math.hypot(link.qx, link.qy, link.qz, link.qw)
+        if norm < 1e-3:
+            raise SubtaskFailed("BAD_GOAL", "pose_sequence: the orientation is empty: give a quaternion of length 1")
+        qx, qy, qz, qw = (q / norm for q in (link.qx, link.qy, link.qz, link.qw))
+        x, y, z = 1 - 2 * (qy * qy + qz * qz), 2 * (qx * qy + qw * qz), 2 * (qx * qz - qw * qy)
+        swing = self.linkage.swing_to(link.x, link.y)
+        out, aside = x * math.cos(swing) + y * math.sin(swing), y * math.cos(swing) - x * math.sin(swing)
+        if abs(aside) > math.sin(OUT_OF_PLANE):
+            raise SubtaskFailed(
+                "BAD_GOAL",
+                f"pose_sequence: the orientation points {math.asin(max(-1.0, min(1.0, aside))):.2f} rad out of the "
+                f"arm's plane: turn it to yaw {swing:.2f} rad",
+            )
+        return Tip(link.x, link.y, link.z, wrap(math.atan2(-z, out) - self.linkage.level))
+
+    def _allowed(self, now: Pose, target: Pose) -> Pose:
+        """The target, if every joint that it moves stays inside its limits."""
+        moved = ((n, b) for n, a, b in zip(NAMES, now, target, strict=True) if a != b)
+        broken = self._broken(moved)
+        if broken:
+            raise SubtaskFailed("OUT_OF_RANGE", f"{broken}: choose a target inside the limits")
+        return target
+
+    def _broken(self, angles: Iterable[tuple[str, float]]) -> str:
+        found = ((name, self.limits[name].violation(angle)) for name, angle in angles)
+        return "; ".join(f"{name} {text}" for name, text in found if text)
+
+    def _clip(self, name: str, angle: float, notes: list[str]) -> float:
+        """The angle [rad] of a clearance move, cut at the joint's limit."""
+        joint = self.limits[name]
+        low, high = (-math.inf if joint.min is None else joint.min), (math.inf if joint.max is None else joint.max)
+        cut = max(low, min(high, angle))
+        if cut != angle:
+            notes.append(f"{name} clearance cut at its limit {cut:.2f} rad")
+        return cut
+
+
+def _tip(goal: TipGoal) -> Tip:
+    finite("position_with_angle", goal.x, goal.y, goal.z, goal.theta_w, goal.offset)
+    return Tip(goal.x, goal.y, goal.z, goal.theta_w)
+
+
+def _short_way(before: Pose, target: Pose) -> Pose:
+    """The target with its swing on the turn that is nearest to where the upper body is."""
+    return target._replace(swing=before.swing + wrap(target.swing - before.swing))
+
+
+def _outward(theta_w: float) -> Iterable[float]:
+    """Angles [rad] in the order in which they are tried: away from `theta_w`, up first, inside 0 to pi."""
+    for step in range(math.ceil(math.pi / SEARCH_STEP)):
+        away = step * SEARCH_STEP
+        if theta_w + away <= math.pi:
+            yield theta_w + away
+        if away > 0 and theta_w - away >= 0:
+            yield theta_w - away

@@ -1,0 +1,96 @@
+"""Has the machine's gateway execute a trajectory, and watches it to its end."""
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+from tms_core.errors import SubtaskFailed
+from tms_core.fence import derived
+from tms_core.ros import LOST_TEXT, Call, Goal, Outcome, Peer
+from tms_rp.messages import follow
+from tms_rp.trajectory import Trajectory
+
+SERVER_LIMIT = 3.0  # s for the gateway to be there
+ACCEPT_LIMIT = 5.0  # s for it to answer; it asks nobody before it does
+OVERRUN = 20.0  # s beyond the trajectory's own duration: the gateway gives up after 10 s and needs 5 s to stop
+STOP_LIMIT = 8.0  # s for a cancelled motion to have ended; the gateway gives itself 5 s
+LOOK = 0.5  # s between looks whether the gateway is still there
+
+
+class Mover:
+    """The way to one machine's gateway."""
+
+    def __init__(self, peer: Peer) -> None:
+        self._peer = peer
+
+    def move(self, goal: Goal, made: Trajectory, say: Callable[[str], None]) -> Outcome:
+        """Execute `made` for `goal`, saying how far it is; SUCCEEDED, or CANCELED once the machine has stopped.
+
+        Raises:
+            SubtaskFailed, RosError: anything else, with the reason; the motion was cancelled then.
+        """
+        self._peer.wait_ready(SERVER_LIMIT)
+        if goal.cancelled.is_set():
+            return Outcome.CANCELED
+        progress = _Progress(made, say)
+        call = self._peer.send(follow(made), goal_id=derived(goal.uuid), on_feedback=progress)
+        goal.on_cancel = call.changed  # wakes the waits below
+        call.wait_for(lambda: call.accepted or _over(goal, call), ACCEPT_LIMIT)
+        if not call.accepted and not _over(goal, call):
+            self._stop(call)
+            raise SubtaskFailed("NO_ANSWER", f"{self._peer.name} did not answer within {ACCEPT_LIMIT:.0f} s")
+        lost = self._watch(goal, call, time.monotonic() + made.duration + OVERRUN)
+        if call.outcome is None:
+            self._stop(call)
+        if lost:
+            raise SubtaskFailed(*lost)
+        return _verdict(goal, call, self._peer.name)
+
+    def _watch(self, goal: Goal, call: Call, deadline: float) -> tuple[str, str] | None:
+        """Wait for the end of the motion or for a cancel; code and reason when neither came."""
+        while not _over(goal, call):
+            if time.monotonic() > deadline:
+                return "TIMEOUT", f"{self._peer.name} was not done {OVERRUN:.0f} s after the end of the trajectory"
+            if not self._peer.ready():
+                return "LOST", f"{self._peer.name} went away during the motion: see `tms ps`"
+            call.wait_for(lambda: _over(goal, call), min(LOOK, deadline - time.monotonic()))
+        return None
+
+    def _stop(self, call: Call) -> None:
+        """Cancel the motion and wait until it has ended."""
+        self._peer.cancel(call)
+        if not call.wait_for(lambda: call.outcome is not None, STOP_LIMIT):
+            raise SubtaskFailed("NOT_STOPPED", f"{self._peer.name} did not end the motion within {STOP_LIMIT:.0f} s")
+
+
+class _Progress:
+    """Turns the controller's feedback into texts, each said once."""
+
+    def __init__(self, made: Trajectory, say: Callable[[str], None]) -> None:
+        self._made, self._say, self._said = made, say, ""
+        self._begun = time.monotonic()
+
+    def __call__(self, feedback: Any) -> None:
+        at = feedback.desired.time_from_start
+        # Not every controller fills in its time; then the clock tells it.
+        seconds = at.sec + at.nanosec * 1e-9 or time.monotonic() - self._begun
+        number, percent = self._made.progress(seconds)
+        text = f"MOVING {number}/{len(self._made.stops)} {percent} %"
+        if text != self._said:
+            self._said = text
+            self._say(text)
+
+
+def _over(goal: Goal, call: Call) -> bool:
+    return call.outcome is not None or goal.cancelled.is_set()
+
+
+def _verdict(goal: Goal, call: Call, name: str) -> Outcome:
+    if call.outcome is Outcome.SUCCEEDED and not goal.cancelled.is_set():
+        return Outcome.SUCCEEDED
+    if goal.cancelled.is_set() and call.outcome is not Outcome.ABORTED:
+        return Outcome.CANCELED  # also when it arrived, or was refused, just before: nothing moves
+    if call.outcome is Outcome.LOST:
+        raise SubtaskFailed(LOST_TEXT, f"the process behind {name} was lost during the motion")
+    reason = getattr(call.result, "error_string", "") or "no reason given"
+    raise SubtaskFailed("MOTION_FAILED", f"{name} {call.outcome.name if call.outcome else 'LOST'}: {reason}")

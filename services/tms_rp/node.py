@@ -1,0 +1,190 @@
+"""Process `<machine>:rp`: plans an excavator's motions and has the machine's gateway execute them."""
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from control_msgs.action import FollowJointTrajectory
+from prometheus_client import Histogram
+from sensor_msgs.msg import JointState
+from tms_msg_rp.action import TmsRpZx200ChangePose, TmsRpZx200ExcavateSimple, TmsRpZx200ReleaseSimple
+from tms_msg_rp.msg import TmsRpErrorCodes
+
+from tms_core.app import App
+from tms_core.errors import SubtaskFailed, TmsError
+from tms_core.permit import Permit, watch_server
+from tms_core.ros import Ended, Goal, Outcome, Rejection
+from tms_rp import messages
+from tms_rp.clearance import Clearance
+from tms_rp.kinds.backhoe import NAMES, Backhoe, Moves
+from tms_rp.linkage import Pose
+from tms_rp.mover import Mover
+from tms_rp.neighbours import Neighbours
+from tms_rp.trajectory import Trajectory, trajectory
+
+FRESH = 1.0  # s, older joint states are no start for a motion
+
+PLANNING = Histogram("tms_rp_planning_seconds", "From goal to trajectory", buckets=(0.001, 0.005, 0.02, 0.05, 0.2, 1))
+
+Plan = Callable[[Backhoe, Pose, Any], Moves]
+
+
+@dataclass(frozen=True)
+class Action:
+    """One action that is served: how its goal becomes moves, and whether they are executed."""
+
+    name: str
+    type: Any
+    plan: Plan
+    moves: bool
+
+
+def _change_pose(planner: Backhoe, now: Pose, request: Any) -> Moves:
+    return planner.change_pose(now, messages.change_pose(request))
+
+
+def _excavate(planner: Backhoe, now: Pose, request: Any) -> Moves:
+    return planner.excavate(now, messages.tip(request.position_with_angle))
+
+
+def _release(planner: Backhoe, now: Pose, request: Any) -> Moves:
+    return planner.release(now, request.target_angle)
+
+
+ACTIONS = (
+    Action("change_pose", TmsRpZx200ChangePose, _change_pose, True),
+    Action("change_pose_plan", TmsRpZx200ChangePose, _change_pose, False),
+    Action("excavate_simple", TmsRpZx200ExcavateSimple, _excavate, True),
+    Action("excavate_simple_plan", TmsRpZx200ExcavateSimple, _excavate, False),
+    Action("release_simple", TmsRpZx200ReleaseSimple, _release, True),
+)
+
+
+def start(app: App) -> None:
+    """Serve `/<machine>/tms_rp_<model>_<action>`."""
+    planner, model = Planner(app), app.site.file.machines[app.machine].model
+    border = app.site.border(app.machine)
+    app.ros.subscribe(JointState, f"/{app.machine}/{border.joint_states}", planner.heard)
+    for action in ACTIONS:
+        planner.serve(action, f"/{app.machine}/tms_rp_{model}_{action.name}")
+    app.ready_when(planner.unready)
+
+
+class Planner:
+    """Plans for one machine; one goal at a time may move it, plans without motion always work."""
+
+    def __init__(self, app: App) -> None:
+        self._app = app
+        self._model = app.site.model_of(app.machine)
+        self._backhoe = Backhoe(self._model)
+        self._clearance, self._neighbours = Clearance(self._model), Neighbours(app)
+        self._rc = app.ros.peer(FollowJointTrajectory, f"/{app.machine}/rc/follow_joint_trajectory")
+        watch_server(app.ros, app.machine, "rc")(self._rc)
+        self._permit = Permit(app.ros, app.machine, "rp")
+        self._mover = Mover(self._rc)
+        self._renamed = app.site.border(app.machine).joints
+        self._busy = False  # set on the executor thread, which accepts one goal after another
+        self._now: tuple[float, Pose] | None = None  # monotonic time [s], joints
+
+    def heard(self, message: JointState) -> None:
+        """Joint states are matched by name: backends order them differently."""
+        found = dict(zip(message.name, message.position, strict=False))
+        found.update({name: found[own] for name, own in self._renamed.items() if own in found})
+        angles = [found.get(name, math.nan) for name in NAMES]
+        if all(map(math.isfinite, angles)):
+            self._now = (time.monotonic(), Pose(*angles))
+
+    def unready(self) -> str | None:
+        """Why no motion can be planned and executed now."""
+        try:
+            self.joints()
+        except SubtaskFailed as error:
+            return str(error)
+        return None if self._rc.ready() else f"{self._rc.name} is not there"
+
+    def joints(self) -> Pose:
+        """Where the arm is.
+
+        Raises:
+            SubtaskFailed: NO_JOINT_STATE, nothing heard, or too long ago.
+        """
+        last = self._now
+        topic = f"/{self._app.machine}/{self._app.site.border(self._app.machine).joint_states}"
+        if last is None:
+            raise SubtaskFailed("NO_JOINT_STATE", f"nothing on {topic} with {', '.join(NAMES)}: is the machine on?")
+        age = time.monotonic() - last[0]
+        if age > FRESH:
+            raise SubtaskFailed("NO_JOINT_STATE", f"last message on {topic} is {age:.1f} s old: is the machine on?")
+        return last[1]
+
+    def serve(self, action: Action, name: str) -> None:
+        """Offer one action under its full name."""
+
+        def accept(_request: Any) -> Rejection | None:
+            if action.moves and self._busy:
+                self._app.log.warning("event=refused action=%s reason='another goal moves the machine'", action.name)
+                return Rejection("BUSY", f"{self._app.machine} is still moved by another goal")
+            self._busy = self._busy or action.moves
+            return None
+
+        self._app.ros.serve(action.type, name, lambda goal: self._run(action, goal), accept)
+
+    def _run(self, action: Action, goal: Goal) -> Ended:
+        outcome = Outcome.ABORTED
+        if action.moves:
+            self._permit.hold(goal.uuid)
+        try:
+            outcome = self._execute(action, goal)
+        finally:
+            if action.moves:
+                self._permit.drop()
+                self._busy = False
+        code = TmsRpErrorCodes.SUCCESS if outcome is Outcome.SUCCEEDED else TmsRpErrorCodes.FAILURE
+        return outcome, action.type.Result(error_code=TmsRpErrorCodes(val=code))
+
+    def _execute(self, action: Action, goal: Goal) -> Outcome:
+        def say(state: str) -> None:
+            goal.publish(action.type.Feedback(state=state))
+
+        say("PLANNING")
+        try:
+            made, note = self._plan(action, goal)
+            suffix = f" ({note})" if note else ""
+            if not action.moves:
+                say(f"PLANNED {made.duration:.1f} s{suffix}")
+                outcome = Outcome.SUCCEEDED
+            else:
+                outcome = self._mover.move(goal, made, lambda text: say(text + suffix))
+        except TmsError as error:
+            reason = f"{error.code}: {error.args[0]}"
+            self._app.log.warning("event=failed action=%s goal=%s reason=%r", action.name, goal.id, reason)
+            say(f"ABORTED: {reason}")
+            return Outcome.ABORTED
+        say(outcome.name)
+        return outcome
+
+    def _plan(self, action: Action, goal: Goal) -> tuple[Trajectory, str]:
+        """The trajectory, and what of the goal was changed for it."""
+        begun = time.monotonic()
+        now = self.joints()
+        moves = action.plan(self._backhoe, now, goal.request)
+        made = self._trajectory(now, moves)
+        self._clearance.check(made, self._neighbours.obstacles())
+        seconds = time.monotonic() - begun
+        PLANNING.observe(seconds)
+        self._app.log.info(
+            "event=planned action=%s goal=%s moves=%d duration=%.2f planning=%.4f note=%r",
+            action.name, goal.id, len(moves.targets), made.duration, seconds, moves.note,
+        )  # fmt: skip
+        return made, moves.note
+
+    def _trajectory(self, now: Pose, moves: Moves) -> Trajectory:
+        """Through all targets; joints that no kind of goal moves (the tool frame) stay at 0."""
+
+        def all_joints(pose: Pose) -> tuple[float, ...]:
+            angles = dict(zip(NAMES, pose, strict=True))
+            return tuple(angles.get(name, 0.0) for name in self._model.joints)
+
+        return trajectory(self._model.joints, all_joints(now), [all_joints(pose) for pose in moves.targets])

@@ -1,0 +1,129 @@
+"""Joint trajectories from rest to rest, as fast as position, velocity, acceleration and jerk limits allow.
+
+The computation is ruckig's, move by move. Its intermediate waypoints are not used: they would be sent to a
+remote service, and a machine must not depend on one. The stops between the moves are wanted anyway.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ruckig import InputParameter, Result, Ruckig, RuckigError, Synchronization
+from ruckig import Trajectory as Profile
+
+from tms_core.config import Joint
+from tms_core.errors import SubtaskFailed
+
+STEP = 0.05  # s, at most, between two samples
+ROUNDING = 1e-6  # of the limit: what floating-point arithmetic may add
+
+Joints = tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Sample:
+    """State of all joints at one time [s] from the start; rad, rad/s, rad/s^2."""
+
+    time: float
+    positions: Joints
+    velocities: Joints
+    accelerations: Joints
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """Samples of one or more moves, each of which ends at rest."""
+
+    names: tuple[str, ...]
+    samples: tuple[Sample, ...]
+    stops: tuple[float, ...]  # s, when each move ends
+
+    @property
+    def duration(self) -> float:
+        """Seconds from start to end."""
+        return self.samples[-1].time
+
+    def progress(self, seconds: float) -> tuple[int, int]:
+        """Number of the move, from 1, and percent of it, at a time from the start."""
+        begin = 0.0
+        for number, end in enumerate(self.stops, 1):
+            if seconds < end or number == len(self.stops):
+                done = (seconds - begin) / (end - begin) if end > begin else 1.0
+                return number, round(100 * max(0.0, min(1.0, done)))
+            begin = end
+        return 0, 100
+
+
+def trajectory(
+    joints: dict[str, Joint], start: Sequence[float], targets: Sequence[Sequence[float]], step: float = STEP
+) -> Trajectory:
+    """The trajectory from `start` [rad] over `targets` [rad], at rest in each; joint order is that of `joints`.
+
+    A move between equal poses takes no time. A start outside its limits is allowed, so that a joint that sags past
+    its bound can come back; it never gets further out.
+
+    Raises:
+        SubtaskFailed: PLAN_FAILED, no trajectory keeps the limits.
+    """
+    limits = tuple(joints.values())
+    samples = [_rest(0.0, tuple(start))]
+    stops = []
+    for target in targets:
+        samples += _move(limits, samples[-1], tuple(target), step)
+        stops.append(samples[-1].time)
+    if len(samples) == 1:  # nothing moves: a controller still wants a second point
+        samples.append(_rest(step, samples[0].positions))
+    _check(joints, samples, targets)
+    return Trajectory(tuple(joints), tuple(samples), tuple(stops))
+
+
+def _rest(time: float, positions: Joints) -> Sample:
+    still = (0.0,) * len(positions)
+    return Sample(time, positions, still, still)
+
+
+def _move(limits: Sequence[Joint], begin: Sample, target: Joints, step: float) -> list[Sample]:
+    """Samples after `begin` up to the rest in `target`."""
+    if all(abs(a - b) < 1e-9 for a, b in zip(begin.positions, target, strict=True)):
+        return []
+    profile = _profile(limits, begin.positions, target)
+    count = math.ceil(profile.duration / step)
+    samples = []
+    for i in range(1, count):
+        seconds = profile.duration * i / count
+        p, v, a = profile.at_time(seconds)
+        samples.append(Sample(begin.time + seconds, tuple(p), tuple(v), tuple(a)))
+    return [*samples, _rest(begin.time + profile.duration, target)]
+
+
+def _profile(limits: Sequence[Joint], start: Joints, target: Joints) -> Profile:
+    size = len(limits)
+    wanted, profile = InputParameter(size), Profile(size)
+    wanted.current_position, wanted.target_position = list(start), list(target)
+    wanted.max_velocity = [joint.velocity for joint in limits]
+    wanted.max_acceleration = [joint.acceleration for joint in limits]
+    wanted.max_jerk = [joint.jerk for joint in limits]
+    # Straight in joint space where that costs no time: easier to foresee than joints that only arrive together.
+    wanted.synchronization = Synchronization.Phase
+    try:
+        result = Ruckig(size).calculate(wanted, profile)
+    except RuckigError as error:
+        reason = " ".join(str(error).split())
+        raise SubtaskFailed("PLAN_FAILED", f"no trajectory inside the limits: {reason}") from error
+    if result not in (Result.Working, Result.Finished):
+        raise SubtaskFailed("PLAN_FAILED", f"no trajectory inside the limits: the generator says {result.name}")
+    return profile
+
+
+def _check(joints: dict[str, Joint], samples: Sequence[Sample], targets: Sequence[Sequence[float]]) -> None:
+    """Refuse samples outside the limits, whatever made them."""
+    for i, (name, joint) in enumerate(joints.items()):
+        reached = [samples[0].positions[i], *(target[i] for target in targets)]
+        low = min(reached) if joint.min is None else min(joint.min, *reached)
+        high = max(reached) if joint.max is None else max(joint.max, *reached)
+        for sample in samples:
+            inside = low - ROUNDING <= sample.positions[i] <= high + ROUNDING
+            slow = abs(sample.velocities[i]) <= joint.velocity * (1 + ROUNDING)
+            gentle = abs(sample.accelerations[i]) <= joint.acceleration * (1 + ROUNDING)
+            if not (inside and slow and gentle):
+                raise SubtaskFailed("PLAN_FAILED", f"{name} would leave its limits after {sample.time:.2f} s")

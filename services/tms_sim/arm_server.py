@@ -1,0 +1,49 @@
+"""The joint trajectory controller's action."""
+
+from typing import Any
+
+from builtin_interfaces.msg import Duration
+from control_msgs.action import FollowJointTrajectory
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+from tms_sim.controller import Controller, PathMotion
+from tms_sim.motion import Verdict
+from tms_sim.path import Point
+from tms_sim.servers import Served
+
+
+def trajectory_server(controller: Controller) -> Served:
+    """FollowJointTrajectory on a controller."""
+
+    def begin(request: Any) -> PathMotion:
+        wanted, late = request.trajectory, request.goal_time_tolerance
+        return controller.begin(list(wanted.joint_names), _points(wanted), late.sec + late.nanosec * 1e-9)
+
+    def refusal(request: Any) -> tuple[int, str] | None:
+        return controller.refusal(list(request.trajectory.joint_names), _points(request.trajectory))
+
+    def feedback(motion: PathMotion) -> Any:
+        arm = controller.arm
+        desired, actual = list(motion.path.at(arm.elapsed)), list(arm.positions)
+        return FollowJointTrajectory.Feedback(
+            joint_names=list(arm.joints),
+            desired=JointTrajectoryPoint(positions=desired, time_from_start=_duration(arm.elapsed)),
+            actual=JointTrajectoryPoint(positions=actual, velocities=list(arm.velocities)),
+            error=JointTrajectoryPoint(positions=[d - a for d, a in zip(desired, actual, strict=True)]),
+        )
+
+    def result(_motion: PathMotion, verdict: Verdict) -> Any:
+        return FollowJointTrajectory.Result(error_code=verdict.code, error_string=verdict.text)
+
+    return Served("trajectory", FollowJointTrajectory, refusal, begin, controller.cancel, feedback, result)
+
+
+def _points(trajectory: JointTrajectory) -> list[Point]:
+    return [
+        Point(p.time_from_start.sec + p.time_from_start.nanosec * 1e-9, tuple(p.positions), tuple(p.velocities))
+        for p in trajectory.points
+    ]
+
+
+def _duration(seconds: float) -> Duration:
+    return Duration(sec=int(seconds), nanosec=int(seconds % 1 * 1e9))

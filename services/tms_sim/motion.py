@@ -1,0 +1,29 @@
+"""One goal while a stand-in works on it, and how it ended."""
+
+import threading
+from dataclasses import dataclass, field
+
+SUCCEEDED, CANCELED, ABORTED = "SUCCEEDED", "CANCELED", "ABORTED"
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """How a motion ended."""
+
+    outcome: str  # SUCCEEDED, CANCELED or ABORTED
+    code: int = 0  # of the action's own result
+    text: str = ""
+
+
+@dataclass(kw_only=True)
+class Motion:
+    """`verdict` is set before `over`."""
+
+    verdict: Verdict | None = None
+    over: threading.Event = field(default_factory=threading.Event)
+
+    def end(self, verdict: Verdict) -> None:
+        """Set the verdict; the first one counts."""
+        if not self.over.is_set():
+            self.verdict = verdict
+            self.over.set()

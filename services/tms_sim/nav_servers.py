@@ -1,0 +1,93 @@
+"""The navigation's actions, with the messages of Jazzy or of Humble, whichever are built."""
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from builtin_interfaces.msg import Duration
+from geometry_msgs.msg import PoseStamped
+from nav2_msgs.action import FollowWaypoints, NavigateThroughPoses, NavigateToPose
+
+from tms_sim.base import Leg
+from tms_sim.frames import MAP, about
+from tms_sim.machine import StandIn
+from tms_sim.motion import Verdict
+from tms_sim.servers import Served
+from tms_sim.travel import MISSED, Travel, Trip
+
+
+def nav_servers(machine: StandIn, travel: Travel) -> list[Served]:
+    """All three."""
+
+    def served(field: str, action: Any, poses: Callable[[Any], Sequence[Any]], through: bool = False) -> Served:
+        def begin(request: Any) -> Trip:
+            waypoints = field == "follow_waypoints"
+            miss = machine.fault.miss if waypoints else ()
+            return travel.begin(_legs(poses(request), through), waypoints=waypoints, miss=miss)
+
+        def refusal(request: Any) -> str | None:
+            return _strange_frame(poses(request)) or travel.refusal(_legs(poses(request), through))
+
+        return Served(field, action, refusal, begin, travel.cancel, lambda trip: _feedback(action, travel, trip),
+                      lambda trip, verdict: _result(action, trip, verdict))  # fmt: skip
+
+    return [
+        served("navigate_to_pose", NavigateToPose, lambda request: [request.pose]),
+        served("navigate_through_poses", NavigateThroughPoses, lambda request: request.poses, through=True),
+        served("follow_waypoints", FollowWaypoints, lambda request: request.poses),
+    ]
+
+
+def _strange_frame(poses: Sequence[Any]) -> str | None:
+    frames = {pose.header.frame_id for pose in poses} - {MAP, ""}
+    return f"poses in frame '{frames.pop()}': only '{MAP}' is known" if frames else None
+
+
+def _legs(poses: Sequence[Any], through: bool) -> list[Leg]:
+    """Poses that are only passed have no yaw, but for the last."""
+    last = len(poses) - 1
+    return [_leg(stamped.pose, not through or i == last) for i, stamped in enumerate(poses)]
+
+
+def _leg(pose: Any, stands: bool) -> Leg:
+    q = pose.orientation
+    yaw = math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
+    return Leg(pose.position.x, pose.position.y, yaw if stands else None)
+
+
+def _feedback(action: Any, travel: Travel, trip: Trip) -> Any:
+    if action is FollowWaypoints:
+        return FollowWaypoints.Feedback(current_waypoint=travel.current(trip))
+    base, away = travel.base, travel.base.left()
+    now = PoseStamped()
+    now.header.frame_id = MAP
+    now.pose.position.x, now.pose.position.y = base.x, base.y
+    _, _, now.pose.orientation.z, now.pose.orientation.w = about("z", base.yaw)
+    told = action.Feedback(
+        current_pose=now, navigation_time=_duration(trip.seconds), distance_remaining=away,
+        estimated_time_remaining=_duration(away / base.drive.velocity),
+    )  # fmt: skip
+    if action is NavigateThroughPoses:
+        told.number_of_poses_remaining = len(base.legs)
+    return told
+
+
+def _result(action: Any, trip: Trip, verdict: Verdict) -> Any:
+    told = action.Result()
+    if hasattr(told, "error_code"):  # Humble's results tell no reason
+        told.error_code, told.error_msg = verdict.code, verdict.text
+    if action is FollowWaypoints and trip.missed:
+        told.missed_waypoints = _missed(trip.missed)
+    return told
+
+
+def _missed(numbers: Sequence[int]) -> Any:
+    if not hasattr(FollowWaypoints.Result(), "error_code"):
+        return list(numbers)
+    from nav2_msgs.msg import MissedWaypoint  # Humble has no such message
+
+    return [MissedWaypoint(index=number, error_code=MISSED) for number in numbers]
+
+
+def _duration(seconds: float) -> Duration:
+    return Duration(sec=int(seconds), nanosec=int(seconds % 1 * 1e9))

@@ -1,0 +1,69 @@
+"""Process `sim:<machine>`: stands in for one machine under the names of its border; absent names are not offered."""
+
+import os
+from collections.abc import Callable
+from typing import Any
+
+from com3_msgs.msg import JointCmd
+from geometry_msgs.msg import Twist
+from pydantic import ValidationError
+from std_msgs.msg import Bool, Float64, String
+
+from tms_core.app import App
+from tms_core.config import Border, Fault, explain
+from tms_sim.arm_server import trajectory_server
+from tms_sim.joint_commands import POSITION
+from tms_sim.machine import StandIn
+from tms_sim.nav_servers import nav_servers
+from tms_sim.servers import Served, Server
+from tms_sim.telemetry import PERIOD, Telemetry
+from tms_sim.turn_server import TYPES, turn_server
+
+
+def start(app: App) -> None:
+    """Actions, commands and telemetry of one machine; /<machine>/sim/fault takes a Fault as JSON."""
+    site, name = app.site, app.machine
+    border, model, settings = site.border(name), site.model_of(name), site.file.sim
+    fault = settings.faults.get(name, Fault())
+    machine = StandIn(model, site.start_of(name), settings.seed, fault, lambda: os._exit(1), border)
+    for served in _served(machine, border):
+        server = Server(app, machine, served)
+        app.ros.serve(served.type, f"/{name}/{getattr(border, served.field)}", server.run, server.accept)
+    if border.emg_stop:
+        app.ros.subscribe(Bool, f"/{name}/{border.emg_stop}", lambda m: machine.stop(m.data), depth=10)
+    if border.cmd_vel:
+        topic = f"/{name}/{border.cmd_vel}"
+        app.ros.subscribe(Twist, topic, lambda m: machine.drive(m.linear.x, m.angular.z), depth=10)
+    if border.joint_cmd:
+        topic = f"/{name}/{border.joint_cmd}"
+        app.ros.subscribe(
+            JointCmd, topic, lambda m: machine.turn(m.joint_name, m.control_type, m.position, m.velocity), depth=10
+        )
+    for joint, topic in border.joint_angles.items():
+        app.ros.subscribe(Float64, f"/{name}/{topic}", _angle_of(machine, joint), depth=10)
+    app.ros.subscribe(String, f"/{name}/sim/fault", lambda m: _break(app, machine, m.data), depth=10)
+    app.ros.every(PERIOD, Telemetry(app, machine, name).tick)
+    app.ready_when(lambda: None)
+
+
+def _angle_of(machine: StandIn, joint: str) -> Callable[[Any], None]:
+    return lambda message: machine.turn([joint], POSITION, [message.data], [])
+
+
+def _served(machine: StandIn, border: Border) -> list[Served]:
+    """The actions that this border has."""
+    found = [trajectory_server(machine.controller)]
+    found += [turn_server(field, machine.turner) for field in TYPES if getattr(border, field)]
+    if machine.travel is not None:
+        found += nav_servers(machine, machine.travel)
+    return [served for served in found if getattr(border, served.field)]
+
+
+def _break(app: App, machine: StandIn, text: str) -> None:
+    """Change what goes wrong, from now on; an empty object is a machine in order."""
+    try:
+        machine.fault = Fault.model_validate_json(text or "{}")
+    except ValidationError as error:
+        app.log.error("event=bad_fault text=%r reason=%r", text, explain(error))
+        return
+    app.log.warning("event=fault fault=%r", machine.fault)

@@ -1,0 +1,99 @@
+"""The reference that a trajectory controller interpolates between the points of a goal. Pure logic."""
+
+import bisect
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from tms_core.config import Joint
+
+INVALID_GOAL, INVALID_JOINTS = -1, -2  # control_msgs/FollowJointTrajectory result codes
+
+
+@dataclass(frozen=True)
+class Point:
+    """One point of a trajectory: time [s] from its start, rad, rad/s (empty: not given)."""
+
+    time: float
+    positions: tuple[float, ...]
+    velocities: tuple[float, ...] = ()
+
+
+def refusal(joints: Mapping[str, Joint], names: Sequence[str], points: Sequence[Point]) -> tuple[int, str] | None:
+    """Result code and reason why a trajectory cannot be followed, or None; as strict as ros2_control's."""
+    if sorted(names) != sorted(joints):
+        return INVALID_JOINTS, f"joints {', '.join(names) or '(none)'} given, {', '.join(joints)} expected"
+    if not points:
+        return INVALID_GOAL, "the trajectory has no points"
+    before = -1.0
+    for number, point in enumerate(points):
+        if len(point.positions) != len(names) or len(point.velocities) not in (0, len(names)):
+            return INVALID_GOAL, f"point {number} does not have one position (and velocity) for each joint"
+        if not all(map(math.isfinite, (*point.positions, *point.velocities))):
+            return INVALID_GOAL, f"point {number} holds a value that is not a number"
+        if point.time <= before or point.time < 0:
+            return INVALID_GOAL, f"point {number} is at {point.time:.3f} s, not after the one before it"
+        before = point.time
+    return None
+
+
+class Path:
+    """Positions over time: cubic between points with velocities, straight between others."""
+
+    def __init__(
+        self, joints: Mapping[str, Joint], start: Point, names: Sequence[str], points: Sequence[Point]
+    ) -> None:
+        """`start` is the arm now, in the order of `joints`; `points` are in the order of `names`."""
+        order = [names.index(name) for name in joints]
+        turns = self._turns(joints, start, points[0], order)
+        sorted_points = [
+            Point(
+                p.time,
+                tuple(p.positions[i] + turn for i, turn in zip(order, turns, strict=True)),
+                tuple(p.velocities[i] for i in order) if p.velocities else (),
+            )
+            for p in points
+        ]
+        self._points = sorted_points if points[0].time == 0 else [start, *sorted_points]
+        self._times = [p.time for p in self._points]
+
+    @staticmethod
+    def _turns(joints: Mapping[str, Joint], start: Point, first: Point, order: Sequence[int]) -> list[float]:
+        """Whole turns [rad] to add to joints that turn for ever, so that none is unwound."""
+        offsets = []
+        for joint, now, i in zip(joints.values(), start.positions, order, strict=True):
+            apart = round((now - first.positions[i]) / math.tau) if joint.min is None and joint.max is None else 0
+            offsets.append(apart * math.tau)
+        return offsets
+
+    @property
+    def duration(self) -> float:
+        """Time of the last point [s]."""
+        return self._times[-1]
+
+    @property
+    def end(self) -> tuple[float, ...]:
+        """Positions of the last point [rad]."""
+        return self._points[-1].positions
+
+    def at(self, time: float) -> tuple[float, ...]:
+        """Reference positions [rad]."""
+        if time >= self.duration:
+            return self.end
+        i = max(1, bisect.bisect_right(self._times, time))
+        if i >= len(self._points):
+            return self._points[0].positions
+        a, b = self._points[i - 1], self._points[i]
+        gap = b.time - a.time
+        share = (time - a.time) / gap
+        if not (a.velocities and b.velocities):
+            return tuple(p + (q - p) * share for p, q in zip(a.positions, b.positions, strict=True))
+        return tuple(
+            _cubic(share, gap, *ends) for ends in zip(a.positions, b.positions, a.velocities, b.velocities, strict=True)
+        )
+
+
+def _cubic(s: float, gap: float, p: float, q: float, v: float, w: float) -> float:
+    """Hermite interpolation at share `s` between positions p, q with velocities v, w."""
+    u = 1 - s
+    return u * u * (1 + 2 * s) * p + s * s * (3 - 2 * s) * q + gap * s * u * (u * v - s * w)

@@ -1,0 +1,63 @@
+"""The action servers of a stand-in: each turns goals of one type into a motion of the machine, with its faults."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from tms_core.app import App
+from tms_core.ros import Ended, Goal, Outcome, Rejection
+from tms_sim.machine import StandIn
+from tms_sim.motion import Motion, Verdict
+
+FEEDBACK = 0.1  # s
+
+
+@dataclass(frozen=True)
+class Served:
+    """One action. `begin` gets the request, the others what `begin` gave."""
+
+    field: str  # under borders:
+    type: Any
+    refusal: Callable[[Any], tuple[int, str] | str | None]
+    begin: Callable[[Any], Any]
+    cancel: Callable[[Any], None]
+    feedback: Callable[[Any], Any]
+    result: Callable[[Any, Verdict], Any]
+
+
+class Server:
+    """Runs the goals of one action."""
+
+    def __init__(self, app: App, machine: StandIn, served: Served) -> None:
+        self._log, self._machine, self._served = app.log, machine, served
+
+    def accept(self, request: Any) -> Rejection | None:
+        """Refuse what cannot be done, as the real servers do: without a result, the reason in the log."""
+        refused = self._served.refusal(request)
+        if self._served.field in self._machine.fault.refuse:
+            refused = "the fault 'refuse' is on"
+        if refused is None:
+            return None
+        code, text = refused if isinstance(refused, tuple) else (0, refused)
+        self._log.warning("event=refused action=%s code=%d reason=%r", self._served.field, code, text)
+        return Rejection(str(code), text)
+
+    def run(self, goal: Goal) -> Ended:
+        """Follow one goal to its end."""
+        machine, served = self._machine, self._served
+        due = machine.time + machine.fault.late
+        while machine.time < due:
+            if goal.cancelled.wait(FEEDBACK / 5):
+                return Outcome.CANCELED, served.type.Result()
+        motion: Motion = served.begin(goal.request)
+        goal.on_cancel = lambda: machine.later(lambda: served.cancel(motion))
+        if goal.cancelled.is_set():  # it came before there was something to cancel
+            served.cancel(motion)
+        while not motion.over.wait(FEEDBACK):
+            if not machine.fault.drop_feedback:
+                goal.publish(served.feedback(motion))
+        verdict = motion.verdict or Verdict("ABORTED")
+        self._log.info(
+            "event=ended action=%s goal=%s outcome=%s reason=%r", served.field, goal.id, verdict.outcome, verdict.text
+        )
+        return Outcome[verdict.outcome], served.result(motion, verdict)

@@ -1,0 +1,29 @@
+"""The actions that bring a carrier's vessel or upper body to an angle."""
+
+from typing import Any
+
+from com3_msgs.action import SetDumpAngle, SetSwingAngle
+
+from tms_core.models import TURNED
+from tms_sim.motion import SUCCEEDED, Verdict
+from tms_sim.servers import Served
+from tms_sim.turner import Turn, Turner
+
+TYPES = {"set_dump_angle": SetDumpAngle, "set_swing_angle": SetSwingAngle}
+
+
+def turn_server(field: str, turner: Turner) -> Served:
+    """SetDumpAngle or SetSwingAngle on one joint."""
+    joint = next(name for name in TURNED[field] if name in turner.arm.joints)
+    action = TYPES[field]
+
+    def feedback(turn: Turn) -> Any:
+        return action.Feedback(current_error=turn.target - turner.angle(joint))
+
+    def result(_turn: Turn, verdict: Verdict) -> Any:
+        return action.Result(success=verdict.outcome == SUCCEEDED)
+
+    return Served(
+        field, action, lambda request: turner.refusal(joint, request.target_angle),
+        lambda request: turner.begin(joint, request.target_angle), turner.cancel, feedback, result,
+    )  # fmt: skip

@@ -1,0 +1,109 @@
+"""Joints that go to an angle on request, as the servers of a carrier's vessel and upper body do."""
+
+import math
+import threading
+from dataclasses import dataclass
+
+from tms_sim.arm import Arm
+from tms_sim.motion import ABORTED, CANCELED, SUCCEEDED, Motion, Verdict
+
+TOLERANCE = 0.005  # rad
+HELD = 3.0  # s that a vessel stays tipped before it returns by itself
+
+
+@dataclass
+class Turn(Motion):
+    """One goal for one joint."""
+
+    joint: str
+    target: float  # rad
+    braking: Verdict | None = None  # verdict once the joint stands
+    held: float = 0.0  # s at the target, where the joint then returns to 0
+
+
+class Turner:
+    """Goals in, motion of single joints out; a new goal for a joint preempts the old one."""
+
+    def __init__(self, arm: Arm, returns: bool = False) -> None:
+        """`returns`: a goal tips, waits and comes back to 0, and nothing ends it on the way, as OPERA's helper for
+        the simulator has it."""
+        self.arm, self._returns = arm, returns
+        self._turns: dict[str, Turn] = {}
+        self._lock = threading.Lock()
+        self.emergency = False
+
+    @property
+    def busy(self) -> bool:
+        """Whether a goal is open."""
+        return bool(self._turns)
+
+    def refusal(self, joint: str, angle: float) -> str | None:
+        """Why a goal is not taken, or None."""
+        if self.emergency:
+            return "the emergency stop is on: publish false on emg_stop to release it"
+        if not math.isfinite(angle):
+            return f"{joint}: the angle is not a number"
+        broken = self.arm.joints[joint].violation(angle)
+        return f"{joint}: {broken}" if broken else None
+
+    def begin(self, joint: str, angle: float) -> Turn:
+        """Turn a joint that was not refused; one that turns for ever takes the shorter way."""
+        limits = self.arm.joints[joint]
+        if limits.min is None and limits.max is None:
+            now = self.angle(joint)
+            angle = now + math.remainder(angle - now, math.tau)
+        with self._lock:
+            before = self._turns.pop(joint, None)
+            if before is not None:
+                before.end(Verdict(ABORTED, text="preempted by a newer goal"))
+            turn = self._turns[joint] = Turn(joint, angle)
+            self.arm.targets[joint] = angle
+            self.arm.speeds.pop(joint, None)
+            if self.emergency:  # pressed between the check and now
+                self._brake(turn, Verdict(ABORTED, text="emergency stop"))
+            return turn
+
+    def cancel(self, turn: Turn) -> None:
+        """Brake; the goal ends CANCELED once the joint stands."""
+        with self._lock:
+            if self._turns.get(turn.joint) is turn and not self._returns:
+                self._brake(turn, Verdict(CANCELED, text="stopped on request"))
+
+    def stop(self, on: bool) -> None:
+        """Level of the emergency stop."""
+        with self._lock:
+            self.emergency = on
+            for turn in self._turns.values():
+                if on and turn.braking is None:
+                    self._brake(turn, Verdict(ABORTED, text="emergency stop"))
+
+    def angle(self, joint: str) -> float:
+        """Where a joint is [rad]."""
+        return self.arm.positions[list(self.arm.joints).index(joint)]
+
+    def _brake(self, turn: Turn, verdict: Verdict) -> None:
+        self.arm.targets.pop(turn.joint, None)
+        turn.braking = verdict
+
+    def step(self, seconds: float) -> None:
+        """End what is due; the arm itself has been stepped."""
+        with self._lock:
+            for turn in list(self._turns.values()):
+                i = list(self.arm.joints).index(turn.joint)
+                if abs(self.arm.velocities[i]) > 1e-3:
+                    continue
+                there = abs(self.arm.positions[i] - turn.target) <= TOLERANCE
+                if there and self._returns and turn.target != 0.0:
+                    there = self._return(turn, seconds)
+                verdict = turn.braking or (Verdict(SUCCEEDED) if there else None)
+                if verdict is not None:
+                    self.arm.targets.pop(turn.joint, None)
+                    del self._turns[turn.joint]
+                    turn.end(verdict)
+
+    def _return(self, turn: Turn, seconds: float) -> bool:
+        """Wait at the target, then go back; it is not there yet."""
+        turn.held += seconds
+        if turn.held >= HELD:
+            turn.target = self.arm.targets[turn.joint] = 0.0
+        return False

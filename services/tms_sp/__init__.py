@@ -1,0 +1,1 @@
+"""TMS_SP: what sensing PCs measure becomes parameter records."""

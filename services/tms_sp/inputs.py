@@ -1,0 +1,123 @@
+"""One sensing input: hears its topic, refuses what must not be written, and knows how it is."""
+
+import math
+import time
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+from prometheus_client import Counter, Gauge
+from tms_msg_sp.msg import InputState
+
+from tms_core.sensing import Input
+from tms_sp.clock import SourceClock
+from tms_sp.mapping import Key, Mapping, Reading, Refused
+from tms_sp.outbox import Counts, Post
+
+MESSAGES = Counter("tms_sp_messages_total", "Messages by what became of them", ["input", "result"])
+OFFSET = Gauge("tms_sp_clock_offset_seconds", "How far our clock is ahead of the source's", ["input"])
+AGE = Gauge("tms_sp_input_age_seconds", "Time since the last accepted message", ["input"])
+SILENT_PERIODS = 10  # of the declared rate
+ARRIVALS = 50  # for the rate
+RECORDS_TOLD = 20
+RECORDS_KNOWN = 5000  # whose stamps are remembered
+
+
+class SensingInput:
+    """Used on the executor thread."""
+
+    def __init__(self, name: str, given: Input, mapping: Mapping, clock_limit: float, put: Callable[[Post], bool]):
+        self.name, self.given, self.counts = name, given, Counts()
+        self.loose, self.only_if = mapping.loose, given.only_if
+        self._mapping, self._put, self._clock = mapping, put, SourceClock(clock_limit)
+        self._clock_limit = clock_limit
+        self._stamps: dict[Key, float] = {}
+        self._taken: dict[Key, float] = {}
+        self._arrivals: deque[float] = deque(maxlen=ARRIVALS)
+        self._began = time.monotonic()
+        self.accepted = self.refused = 0
+        self.last_refusal = ""
+        self.news = ""  # a refusal that the log has not told
+
+    def hear(self, message: Any) -> None:
+        """One message."""
+        try:
+            result = self._take(message)
+        except Refused as refusal:
+            self.refuse(refusal.code, str(refusal))
+            return
+        MESSAGES.labels(self.name, result).inc()
+
+    def refuse(self, code: str, text: str) -> None:
+        """Count and remember a refusal."""
+        self.refused += 1
+        self.last_refusal = self.news = f"{code}: {text}"
+        MESSAGES.labels(self.name, code).inc()
+
+    def _take(self, message: Any) -> str:
+        reading = self._mapping.read(message)
+        now, wall = time.monotonic(), time.time()
+        age = self._age(reading, wall)
+        if self.given.max_hz and now - self._taken.get(reading.key, -math.inf) < 1.0 / self.given.max_hz:
+            return "thinned"
+        if len(self._stamps) > RECORDS_KNOWN and reading.key not in self._stamps:
+            raise Refused("TOO_MANY", f"more than {RECORDS_KNOWN} records: is {self.given.record} right?")
+        if not self._put(Post(self.name, reading.key, reading.values, now - age, reading.keep)):
+            raise Refused("TOO_MANY", "too many records wait for the database")
+        self._taken[reading.key] = now
+        self._stamps[reading.key] = reading.stamp if reading.stamp is not None else wall
+        self._arrivals.append(now)
+        self.accepted += 1
+        return "accepted"
+
+    def _age(self, reading: Reading, wall: float) -> float:
+        """s since the measurement.
+
+        Raises:
+            Refused: FUTURE or OLD.
+        """
+        if reading.stamp is None:
+            return 0.0
+        ahead = self._clock.ahead(reading.stamp, wall)
+        if ahead > 0:
+            text = f"its stamp lies {ahead + self._clock_limit:.1f} s in the future: set the clock of the sensing PC"
+            raise Refused("FUTURE", text)
+        before = self._stamps.get(reading.key)
+        if before is not None and reading.stamp < before:
+            raise Refused("OLD", f"it was measured {before - reading.stamp:.3f} s before the one that came earlier")
+        return self._clock.age(reading.stamp, wall)
+
+    def judge(self) -> str:
+        """waiting, alive, silent or clock."""
+        last = self._arrivals[-1] if self._arrivals else None
+        if last is None:
+            return "waiting"
+        if self.given.hz and time.monotonic() - last > SILENT_PERIODS / self.given.hz:
+            return "silent"
+        return "clock" if self._clock.off else "alive"
+
+    def state(self) -> Any:
+        """For the topic of input states; also brings the metrics up to date."""
+        now = time.monotonic()
+        age = now - self._arrivals[-1] if self._arrivals else -1.0
+        offset = self._clock.offset
+        AGE.labels(self.name).set(age if age >= 0 else now - self._began)
+        OFFSET.labels(self.name).set(math.nan if offset is None else offset)
+        for code, text in self.counts.unwanted:
+            self.refuse(code, text)
+        self.counts.unwanted.clear()
+        return InputState(
+            name=self.name, topic=self.given.topic, type=self.given.type, hz_expected=self.given.hz, hz=self._rate(now),
+            state=self.judge(), age=age, clock_offset=math.nan if offset is None else offset, accepted=self.accepted,
+            written=self.counts.written, superseded=self.counts.superseded, refused=self.refused,
+            last_refusal=self.last_refusal, records=[f"{model}/{record}" for model, record in self._told()],
+        )  # fmt: skip
+
+    def _told(self) -> list[Key]:
+        return sorted(self._taken)[:RECORDS_TOLD]
+
+    def _rate(self, now: float) -> float:
+        """Messages a second over the last ones, and over the silence since."""
+        if len(self._arrivals) < 2:
+            return 0.0
+        return (len(self._arrivals) - 1) / max(now - self._arrivals[0], 1e-3)

@@ -1,0 +1,55 @@
+"""Where the site's machines are, at a low rate, into the collections that the C++ system's readers know."""
+
+import json
+from typing import Any
+
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import JointState
+from tms_msg_db.msg import MachineState
+from tms_msg_db.srv import WriteMachineStates
+
+from tms_core.app import App
+
+
+class MachineStates:
+    """Looks at the topics of all machines; messages in between cost nothing."""
+
+    def __init__(self, app: App, hz: float) -> None:
+        self._ros = app.ros
+        self._topics = []
+        for machine in app.site.file.machines:
+            border = app.site.border(machine)
+            if border.odom:
+                self._topics.append(("machine_pose", machine, app.ros.sample(Odometry, f"/{machine}/{border.odom}")))
+            if border.joint_states:
+                topic = f"/{machine}/{border.joint_states}"
+                self._topics.append(("machine_joints", machine, app.ros.sample(JointState, topic)))
+        self._waiting = False
+        if self._topics:
+            app.ros.every(1.0 / hz, self._look)
+
+    def _look(self) -> None:
+        if self._waiting:  # for the database: a state that is not written now is written with the next look
+            self._waiting = False
+            return
+        states = [
+            MachineState(collection=collection, machine=machine, stamp=self._ros.now(), msg=json.dumps(plain(message)))
+            for collection, machine, newest in self._topics
+            if (message := newest()) is not None
+        ]
+        if states:
+            request = WriteMachineStates.Request(states=states)
+            sent = self._ros.request(WriteMachineStates, "/tms/db/write_machine_states", request, self._written)
+            self._waiting = sent is not None
+
+    def _written(self, _: Any) -> None:
+        self._waiting = False
+
+
+def plain(message: Any) -> Any:
+    """A ROS message as dictionaries and lists."""
+    if hasattr(message, "get_fields_and_field_types"):
+        return {name: plain(getattr(message, name)) for name in message.get_fields_and_field_types()}
+    if isinstance(message, (bool, int, float, str)):
+        return message
+    return [plain(one) for one in (message.tolist() if hasattr(message, "tolist") else message)]

@@ -1,0 +1,136 @@
+"""From a message to new values of a record, or to the reason why not; a message is whatever has fields."""
+
+import math
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from tms_core.sensing import FieldRule, Input
+
+Key = tuple[str, str]  # model, record
+Getter = Callable[[Any], Any]
+PART = re.compile(r"(\w+)(?:\[([^\]]+)\])?")
+
+
+class Refused(Exception):
+    """A message that must not change anything; `code` is counted, the text is shown."""
+
+    def __init__(self, code: str, text: str) -> None:
+        super().__init__(text)
+        self.code = code
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What one message says."""
+
+    key: Key
+    values: dict[str, Any]
+    keep: tuple[str, ...]
+    stamp: float | None  # s, clock of the source
+
+
+class Mapping:
+    """One input's way from messages to readings."""
+
+    def __init__(self, given: Input, fields: dict[str, str]) -> None:
+        """`fields`: names and types of the message's fields, as the message class tells them.
+
+        Raises:
+            ValueError: the message has no such field; names it.
+        """
+        self._input = given
+        self._model, self._record = _name(given.model, fields), _name(given.record, fields)
+        self._keep = _getter(given.keep, fields) if given.keep else None
+        stamp = given.stamp or ("header.stamp" if fields.get("header") == "std_msgs/Header" else None)
+        self._stamp = _getter(stamp, fields) if stamp else None
+        self.loose = not given.fields
+        taken = {text[1:] for text in (given.model, given.record) if text.startswith("$")} | {given.keep, "header"}
+        rules = given.fields or {name: FieldRule(path=name) for name in fields if name not in taken}
+        self._rules = [(name, rule, _getter(rule.path, fields)) for name, rule in rules.items()]
+
+    def read(self, message: Any) -> Reading:
+        """The values of a message.
+
+        Raises:
+            Refused: NO_RECORD, NO_FIELD, NOT_FINITE, OUT_OF_RANGE or WRONG_SIZE.
+        """
+        key = self._model(message), self._record(message)
+        if not key[1].strip():
+            raise Refused("NO_RECORD", "the message names no record")
+        values = {name: self._value(name, rule, getter, message) for name, rule, getter in self._rules}
+        self._check_sizes(values)
+        keep = tuple(map(str, self._keep(message))) if self._keep else ()
+        return Reading(key, values, keep, _seconds(self._stamp(message)) if self._stamp else None)
+
+    def _value(self, name: str, rule: FieldRule, getter: Getter, message: Any) -> Any:
+        value = getter(message)
+        many = not isinstance(value, (bool, int, float, str))
+        if not many:
+            return self._checked(name, _scaled(value, rule.factor))
+        parts = list(value.tolist() if hasattr(value, "tolist") else value)
+        if not all(isinstance(part, (bool, int, float, str)) for part in parts):
+            raise Refused("NO_FIELD", f"{rule.path} is a {type(value).__name__}: name one of its fields")
+        if rule.size is not None and len(parts) != rule.size:
+            raise Refused("WRONG_SIZE", f"{name} has {len(parts)} values, not {rule.size}")
+        return [self._checked(name, _scaled(part, rule.factor)) for part in parts]
+
+    def _checked(self, name: str, value: Any) -> Any:
+        if isinstance(value, float) and not math.isfinite(value):
+            raise Refused("NOT_FINITE", f"{name} is {value}")
+        limits = self._input.range.get(name.lower() if self.loose else name)
+        if limits is not None and not isinstance(value, str) and not limits[0] <= value <= limits[1]:
+            raise Refused("OUT_OF_RANGE", f"{name} is {value:g}, not from {limits[0]:g} to {limits[1]:g}")
+        return value
+
+    def _check_sizes(self, values: dict[str, Any]) -> None:
+        """Arrays of one message belong together: the n-th elements of x, y and z are one point."""
+        sizes = {name: len(value) for name, value in values.items() if isinstance(value, list)}
+        if len(set(sizes.values())) > 1:
+            told = ", ".join(f"{name} {size}" for name, size in sizes.items())
+            raise Refused("WRONG_SIZE", f"the arrays have different lengths: {told}")
+        if 0 in sizes.values():
+            raise Refused("WRONG_SIZE", f"{', '.join(sizes)}: no values")
+
+
+def _name(text: str, fields: dict[str, str]) -> Callable[[Any], str]:
+    if not text.startswith("$"):
+        return lambda _: text
+    getter = _getter(text[1:], fields)
+    return lambda message: str(getter(message))
+
+
+def _getter(path: str, fields: dict[str, str]) -> Getter:
+    steps = [found.groups() for found in PART.finditer(path)]
+    if steps[0][0] not in fields:
+        raise ValueError(f"the message has no field '{steps[0][0]}' (there: {', '.join(fields)})")
+
+    def get(message: Any) -> Any:
+        found = message
+        for name, index in steps:
+            if not hasattr(found, name):
+                raise Refused("NO_FIELD", f"{path}: there is no {name}")
+            parent, found = found, getattr(found, name)
+            if index is not None:
+                found = _element(path, parent, found, index)
+        return found
+
+    return get
+
+
+def _element(path: str, parent: Any, array: Any, index: str) -> Any:
+    names = getattr(parent, "name", ())
+    number = int(index) if index.isdigit() else list(names).index(index) if index in names else -1
+    if not 0 <= number < len(array):
+        raise Refused("WRONG_SIZE", f"{path}: no such element among {len(array)}")
+    value = array[number]
+    return value.item() if hasattr(value, "item") else value
+
+
+def _scaled(value: Any, factor: float) -> Any:
+    return value if factor == 1.0 or isinstance(value, (bool, str)) else value * factor
+
+
+def _seconds(stamp: Any) -> float:
+    return float(stamp) if isinstance(stamp, (int, float)) else float(stamp.sec + stamp.nanosec * 1e-9)

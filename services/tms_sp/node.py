@@ -1,0 +1,189 @@
+"""`tms:sp`: hears the declared sensing inputs and keeps parameter records up to date; waits for no machine."""
+
+import importlib
+import time
+from typing import Any
+
+from tms_msg_db.msg import RecordUpdate
+from tms_msg_db.srv import UpdateParameters
+from tms_msg_sp.msg import InputStates
+
+from tms_core.app import App
+from tms_core.errors import ConfigError
+from tms_core.sensing import Input, load_sensing, sensing_path
+from tms_core.values import to_parameters
+from tms_sp.inputs import SensingInput
+from tms_sp.machine_states import MachineStates
+from tms_sp.mapping import Mapping
+from tms_sp.outbox import Outbox, Post
+
+GAP = 0.015  # s between batches; what comes in between goes together
+RETRY = 0.5  # s between attempts while the database or its store is away
+ANSWER_LIMIT = 5.0  # s for the database to answer a batch
+STATE_PERIOD = 1.0  # s between messages about the inputs
+LOOK = 0.5  # s between looks at who publishes a topic that several inputs share
+
+
+def start(app: App) -> None:
+    """Hear the inputs.
+
+    Raises:
+        ConfigError: sensing.yaml is wrong.
+    """
+    sensing = load_sensing(app.site)
+    sender = Sender(app)
+    inputs = [_input(app, name, given, sensing.clock_limit, sender) for name, given in sensing.inputs.items()]
+    sender.inputs = {one.name: one for one in inputs}
+    by_topic: dict[str, list[SensingInput]] = {}
+    for one in inputs:
+        by_topic.setdefault(one.given.topic, []).append(one)
+    for topic, sharing in by_topic.items():
+        Listener(app, topic, sharing)
+    if sensing.machine_state.hz:
+        MachineStates(app, sensing.machine_state.hz)
+    publisher = app.ros.publisher(InputStates, "/tms/sp/inputs", depth=1, latched=True)
+    app.ros.every(STATE_PERIOD, lambda: publisher.publish(InputStates(inputs=[_state(app, one) for one in inputs])))
+    app.ready_when(sender.unready)
+
+
+def message_class(name: str) -> Any:
+    """The class of `package/msg/Name`.
+
+    Raises:
+        LookupError: it is not installed.
+    """
+    package, _, kind = name.split("/")
+    try:
+        return getattr(importlib.import_module(f"{package}.msg"), kind)
+    except (ImportError, AttributeError) as error:
+        raise LookupError(f"no message type {name}: is its package built?") from error
+
+
+def _input(app: App, name: str, given: Input, clock_limit: float, sender: "Sender") -> SensingInput:
+    try:
+        fields = message_class(given.type).get_fields_and_field_types()
+        return SensingInput(name, given, Mapping(given, fields), clock_limit, sender.put)
+    except (LookupError, ValueError) as error:
+        raise ConfigError(f"{sensing_path(app.site)}: inputs.{name}: {error}") from error
+
+
+def _state(app: App, one: SensingInput) -> Any:
+    state = one.state()
+    if one.news:
+        app.log.warning("event=refused input=%s refused=%d %s", one.name, one.refused, one.news)
+        one.news = ""
+    return state
+
+
+class Listener:
+    """The subscription of one topic. Inputs that share a topic have different types: the one that comes is heard."""
+
+    def __init__(self, app: App, topic: str, inputs: list[SensingInput]) -> None:
+        self._ros, self._log, self._topic, self._inputs = app.ros, app.log, topic, inputs
+        self._heard: SensingInput | None = None
+        self._subscription: Any = None
+        if len(inputs) == 1:
+            self._hear(inputs[0])
+        else:
+            app.ros.every(LOOK, self._look)
+
+    def _look(self) -> None:
+        types = {info.topic_type for info in self._ros.node.get_publishers_info_by_topic(self._topic)}
+        there = [one for one in self._inputs if one.given.type in types]
+        if there and self._heard not in there:
+            self._hear(there[0])
+
+    def _hear(self, one: SensingInput) -> None:
+        if self._subscription is not None:
+            self._ros.node.destroy_subscription(self._subscription)
+        given, self._heard = one.given, one
+        self._subscription = self._ros.subscribe(
+            message_class(given.type), given.topic, one.hear, given.depth, best_effort=given.reliability != "reliable"
+        )
+        self._log.info("event=listening input=%s topic=%s type=%s", one.name, given.topic, given.type)
+
+
+class Sender:
+    """Carries the outbox to the database: a batch at most every GAP, several on their way at the same time."""
+
+    def __init__(self, app: App) -> None:
+        self._ros, self._log = app.ros, app.log
+        self.inputs: dict[str, SensingInput] = {}
+        self._outbox = Outbox(lambda name: self.inputs[name].counts)
+        self._flights: dict[int, float] = {}  # number -> when it is given up
+        self._forget: dict[int, Any] = {}
+        self._not_before = 0.0
+        self._trouble = ""
+        self._clock = app.ros.every(GAP, self._send)  # stands while nothing waits
+        self._clock.cancel()
+        app.ros.every(RETRY, self._look)
+
+    def unready(self) -> str | None:
+        """Why values do not reach the database."""
+        if self._trouble:
+            return self._trouble
+        there = self._ros.has_service(UpdateParameters, "/tms/db/update_parameters")
+        return None if there else "tms:db is not there"
+
+    def put(self, post: Post) -> bool:
+        """Take values to be written soon."""
+        taken = self._outbox.put(post)
+        if self._clock.is_canceled() and time.monotonic() >= self._not_before:
+            self._clock.reset()
+        return taken
+
+    def _send(self) -> None:
+        now = time.monotonic()
+        if not self._outbox.ready or now < self._not_before:
+            self._clock.cancel()
+            return
+        number, posts = self._outbox.take()
+        request = UpdateParameters.Request(updates=[self._update(post, now) for post in posts])
+        self._flights[number] = now + ANSWER_LIMIT
+        forget = self._ros.request(
+            UpdateParameters, "/tms/db/update_parameters", request, lambda answer: self._answered(number, answer)
+        )
+        if forget is None:
+            self._fail(number, "tms:db is not there")
+        else:
+            self._forget[number] = forget
+
+    def _update(self, post: Post, now: float) -> Any:
+        one = self.inputs[post.source]
+        return RecordUpdate(
+            model_name=post.key[0], record_name=post.key[1], source=f"sp {post.source}", age=now - post.measured,
+            loose=one.loose, keep=list(post.keep), values=to_parameters(post.values),
+            expected=to_parameters(one.only_if),
+        )  # fmt: skip
+
+    def _answered(self, number: int, answer: Any) -> None:
+        if number not in self._flights:
+            return
+        if answer.error_code:
+            self._fail(number, answer.error_msg)
+            return
+        del self._flights[number], self._forget[number]
+        self._outbox.stored(number, [(one.index, one.code, one.text) for one in answer.refused])
+        if self._trouble:
+            self._log.info("event=database_back")
+            self._trouble = ""
+
+    def _fail(self, number: int, why: str) -> None:
+        """Keep the values and wait a moment."""
+        self._flights.pop(number, None)
+        forget = self._forget.pop(number, None)
+        if forget is not None:
+            forget()
+        self._outbox.failed(number)
+        self._not_before = time.monotonic() + RETRY
+        if not self._trouble:
+            self._log.warning("event=database_away %s", why)
+        self._trouble = why
+
+    def _look(self) -> None:
+        now = time.monotonic()
+        for number, limit in list(self._flights.items()):
+            if now > limit:
+                self._fail(number, "tms:db does not answer")
+        if self._outbox.ready and now >= self._not_before:
+            self._clock.reset()

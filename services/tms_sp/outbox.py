@@ -1,0 +1,92 @@
+"""The newest values of each record on their way to the database: bounded, sent again until they are stored."""
+
+import itertools
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from typing import Any
+
+RECORDS = 5000  # that may wait at the same time
+BATCH = 200  # updates in one request
+FLIGHTS = 30  # requests without an answer
+
+
+@dataclass(frozen=True)
+class Post:
+    """New values for a record from one input."""
+
+    source: str  # name of the input
+    key: tuple[str, str]  # model, record
+    values: dict[str, Any]
+    measured: float  # s, monotonic clock of this PC
+    keep: tuple[str, ...] = ()
+
+
+@dataclass
+class Counts:
+    """Of one input."""
+
+    written: int = 0
+    superseded: int = 0
+    unwanted: list[tuple[str, str]] = field(default_factory=list)  # code and text of the database's refusals
+
+
+Place = tuple[str, str, str]
+
+
+class Outbox:
+    """Used on one thread."""
+
+    def __init__(self, counts: Callable[[str], Counts]) -> None:
+        self._counts = counts
+        self._waiting: dict[Place, Post] = {}
+        self._flights: dict[int, list[Post]] = {}
+        self._last: dict[Place, int] = {}  # flight of the newest values sent
+        self._numbers = itertools.count()
+
+    def put(self, post: Post) -> bool:
+        """Take values; older ones of the same record that still wait are left out. False: too much waits."""
+        place = _place(post)
+        if place in self._waiting:
+            self._counts(post.source).superseded += 1
+        elif len(self._waiting) >= RECORDS:
+            return False
+        self._waiting[place] = post
+        return True
+
+    @property
+    def ready(self) -> bool:
+        """Whether something should be sent now."""
+        return bool(self._waiting) and len(self._flights) < FLIGHTS
+
+    def take(self) -> tuple[int, list[Post]]:
+        """A batch to send, oldest first, and its number."""
+        places = list(itertools.islice(self._waiting, BATCH))
+        number = next(self._numbers)
+        self._flights[number] = [self._waiting.pop(place) for place in places]
+        self._last.update(dict.fromkeys(places, number))
+        return number, self._flights[number]
+
+    def stored(self, number: int, refused: Iterable[tuple[int, str, str]]) -> None:
+        """The database has a batch, but for what it refused: (index, code, text)."""
+        posts = self._flights.pop(number, [])
+        unwanted = {index: (code, text) for index, code, text in refused}
+        for index, post in enumerate(posts):
+            if index in unwanted:
+                self._counts(post.source).unwanted.append(unwanted[index])
+            else:
+                self._counts(post.source).written += 1
+
+    def failed(self, number: int) -> None:
+        """Nobody knows whether a batch was stored: send it again, where nothing newer is there."""
+        again: dict[Place, Post] = {}
+        for post in self._flights.pop(number, []):
+            place = _place(post)
+            if place in self._waiting or self._last[place] > number:
+                self._counts(post.source).superseded += 1
+            else:
+                again[place] = post
+        self._waiting = {**again, **self._waiting}
+
+
+def _place(post: Post) -> Place:
+    return post.source, *post.key

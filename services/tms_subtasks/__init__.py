@@ -1,0 +1,1 @@
+"""The catalogue of what machines can do: one file a subtask."""

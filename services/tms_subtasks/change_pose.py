@@ -1,0 +1,53 @@
+"""Move the arm to the joint angles, the pose or the bucket position of a record."""
+
+from geometry_msgs.msg import Point, Pose, Quaternion
+
+from tms_core.subtask import Machine, Params, Progress, SubtaskFailed, subtask
+
+ARM = ("swing_joint", "boom_joint", "arm_joint", "bucket_joint", "bucket_end_joint")
+
+
+class Target(Params):
+    """One of the three flags says which fields count."""
+
+    plan_only: bool = False  # an input of the variant: ask whether it can be reached, and do not move
+    trajectory: float = 0.0  # flag: joint angles [rad]
+    pose: float = 0.0  # flag: position [m] and orientation, base_link
+    position_with_angle: float = 0.0  # flag: position [m] and theta_w [rad], base_link
+    swing_joint: float | None = None
+    boom_joint: float | None = None
+    arm_joint: float | None = None
+    bucket_joint: float | None = None
+    bucket_end_joint: float | None = None
+    x: float | None = None
+    y: float | None = None
+    z: float | None = None
+    qx: float | None = None
+    qy: float | None = None
+    qz: float | None = None
+    qw: float | None = None
+    theta_w: float | None = None
+
+    def numbers(self, *names: str) -> list[float]:
+        """The fields of these names, all of which must be there."""
+        missing = [name for name in names if getattr(self, name) is None]
+        if missing:
+            raise SubtaskFailed("BAD_RECORD", f"field '{missing[0]}' is missing; set it with `tms param set`")
+        return [getattr(self, name) for name in names]
+
+
+@subtask(timeout=120)
+def change_pose(machine: Machine, want: Target, progress: Progress) -> None:
+    if want.trajectory > 0.5:
+        joints = dict(zip(ARM, want.numbers(*ARM), strict=True))
+        machine.change_pose(progress, joints=joints, plan_only=want.plan_only)
+    elif want.pose > 0.5:
+        x, y, z, *turn = want.numbers("x", "y", "z", "qx", "qy", "qz", "qw")
+        orientation = Quaternion(x=turn[0], y=turn[1], z=turn[2], w=turn[3])
+        pose = Pose(position=Point(x=x, y=y, z=z), orientation=orientation)
+        machine.change_pose(progress, pose=pose, plan_only=want.plan_only)
+    elif want.position_with_angle > 0.5:
+        x, y, z, theta_w = want.numbers("x", "y", "z", "theta_w")
+        machine.change_pose(progress, tip=(x, y, z, theta_w), plan_only=want.plan_only)
+    else:
+        raise SubtaskFailed("BAD_RECORD", "one of trajectory, pose and position_with_angle must be 1")

@@ -1,0 +1,18 @@
+"""Dig at a point: swing there, lower the bucket, scoop."""
+
+from tms_core.subtask import Machine, Params, Progress, subtask
+
+
+class Place(Params):
+    plan_only: bool = False  # an input of the variant: ask whether it can be dug, and do not move
+    position_with_angle: float  # must be there, as in the C++ system
+    x: float  # m, base_link
+    y: float  # m, base_link
+    z: float  # m, base_link, ground level: the bucket goes 1 m below
+    theta_w: float  # rad, wished angle of the bucket; the nearest one that can be reached is taken
+    offset: float = 0.0  # m, further out
+
+
+@subtask(timeout=180)
+def excavate_simple(machine: Machine, want: Place, progress: Progress) -> None:
+    machine.excavate(progress, (want.x, want.y, want.z), want.theta_w, want.offset, want.plan_only)

@@ -1,0 +1,9 @@
+"""Drive to each waypoint of a record in turn; one that is not reached is a failure that names it."""
+
+from tms_core.places import Path
+from tms_core.subtask import Machine, Progress, subtask
+
+
+@subtask(timeout=1800)
+def follow_waypoints(machine: Machine, want: Path, progress: Progress) -> None:
+    machine.follow(progress, want.poses())

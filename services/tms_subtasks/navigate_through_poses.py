@@ -1,0 +1,9 @@
+"""Drive through the poses of a record without a stop."""
+
+from tms_core.places import Path
+from tms_core.subtask import Machine, Progress, subtask
+
+
+@subtask(timeout=1800)
+def navigate_through_poses(machine: Machine, want: Path, progress: Progress) -> None:
+    machine.navigate_through(progress, want.poses())

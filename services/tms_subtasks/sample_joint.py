@@ -1,0 +1,27 @@
+"""Move one joint of the arm to the angle of a record; the others stay."""
+
+import math
+from typing import Any
+
+from pydantic import model_validator
+
+from tms_core.subtask import Machine, Params, Progress, subtask
+
+
+class Angle(Params):
+    joint: str  # an input of the variant
+    field: str  # an input of the variant: the field of the record that holds the angle
+    angle: float  # deg, taken from there
+
+    @model_validator(mode="before")
+    @classmethod
+    def _pick(cls, fields: dict[str, Any]) -> dict[str, Any]:
+        if fields.get("field") not in fields:
+            raise ValueError(f"field '{fields.get('field')}' is missing")
+        return {**fields, "angle": fields[fields["field"]]}
+
+
+@subtask(timeout=120)
+def sample_joint(machine: Machine, want: Angle, progress: Progress) -> None:
+    machine.joint(want.joint)
+    machine.change_pose(progress, joints={want.joint: math.radians(want.angle)})

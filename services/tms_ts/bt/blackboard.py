@@ -1,0 +1,122 @@
+"""Blackboards: typed entries, shared with a parent blackboard through remaps.
+
+The first port that names a key decides its type ("strong"); an entry without a type ("weak") takes whatever comes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from tms_ts.bt.convert import CPP_NAMES, FROM_TEXT, MISSING, Missing, kind_of
+from tms_ts.bt.errors import TickError, TreeError
+
+
+class Entry:
+    """One value; the same object stands in every blackboard that shares the key."""
+
+    __slots__ = ("has_converter", "kind", "value")
+
+    def __init__(self, kind: Any, *, has_converter: bool) -> None:
+        self.kind = kind  # Any: weak
+        self.has_converter = has_converter
+        self.value: Any = MISSING
+
+
+class Blackboard:
+    __slots__ = ("_auto", "_entries", "_keep_private", "_parent", "_remaps")
+
+    def __init__(self, parent: Blackboard | None = None) -> None:
+        self._entries: dict[str, Entry] = {}
+        self._parent = parent
+        self._remaps: dict[str, str] = {}
+        self._auto = False
+        self._keep_private = False
+
+    def remap(self, inner: str, outer: str) -> None:
+        self._remaps[inner] = outer
+
+    def remap_all(self, *, but_private: bool = False) -> None:
+        self._auto, self._keep_private = True, but_private
+
+    def _outer(self, key: str) -> str | None:
+        if self._parent is None:
+            return None
+        outer = self._remaps.get(key)
+        if outer is None and self._auto and not (self._keep_private and key.startswith("_")):
+            return key
+        return outer
+
+    def find(self, key: str) -> Entry | None:
+        entry = self._entries.get(key)
+        if entry is not None or self._parent is None:
+            return entry
+        outer = self._outer(key)
+        return None if outer is None else self._parent.find(outer)
+
+    def touch(self, key: str, kind: Any, *, has_converter: bool) -> Entry:
+        """The entry of a key, made (here, or at the far end of its remap) if there is none."""
+        entry = self._entries.get(key)
+        if entry is None:
+            outer = self._outer(key)
+            if outer is None or self._parent is None:
+                entry = Entry(kind, has_converter=has_converter)
+            else:
+                entry = self._parent.touch(outer, kind, has_converter=has_converter)
+            self._entries[key] = entry
+        return entry
+
+    def declare(self, key: str, kind: Any) -> None:
+        """What loading does for every port that points at a key."""
+        known = self.find(key)
+        entry = self.touch(key, kind, has_converter=True)
+        if known is None or Any in (entry.kind, kind) or entry.kind in (kind, str):
+            return
+        raise TreeError(
+            f"the key {key!r} is of type {CPP_NAMES[entry.kind]} already and is used here as {CPP_NAMES[kind]}",
+            hint="use another key, or the same type at both ports",
+        )
+
+    def get(self, key: str) -> Any:
+        entry = self.find(key)
+        return MISSING if entry is None else entry.value
+
+    def set(self, key: str, value: Any, kind: Any = None) -> None:
+        """Write by the library's typing rules; `kind` is the type of the port that writes."""
+        kind = kind_of(value) if kind in (None, Any) else kind
+        known = self.find(key)
+        entry = self.touch(key, Any if kind is str else kind, has_converter=False)
+        if known is None or entry.kind in (Any, kind):
+            entry.value = value
+            return
+        if kind is not str or not entry.has_converter:
+            raise TickError(
+                f"the key {key!r} is of type {CPP_NAMES[entry.kind]} and cannot become {CPP_NAMES[kind]}",
+                hint="once declared, the type of a key does not change",
+            )
+        converted = FROM_TEXT[entry.kind](value)
+        if isinstance(converted, Missing):
+            raise TickError(f"the text {value!r} does not fit the key {key!r}, which is {CPP_NAMES[entry.kind]}")
+        entry.value = converted
+
+    def copy(self, source: str, target: str) -> None:
+        """Value and type of one entry to another, without any check."""
+        origin = self.find(source)
+        if origin is None:
+            return
+        self.touch(target, origin.kind, has_converter=origin.has_converter).value = origin.value
+
+    def replace(self, key: str, value: Any) -> bool:
+        """Write by the same rules, but where they refuse change the key's type; True if that was so."""
+        try:
+            self.set(key, value)
+        except TickError:
+            kind = kind_of(value)
+            entry = self.touch(key, kind, has_converter=False)
+            entry.kind, entry.has_converter, entry.value = kind, False, value
+            return True
+        return False
+
+    def items(self) -> Iterator[tuple[str, Any]]:
+        """Keys seen here that have a value; may be asked while another thread ticks."""
+        return ((key, entry.value) for key, entry in list(self._entries.items()) if entry.value is not MISSING)

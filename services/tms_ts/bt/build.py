@@ -1,0 +1,125 @@
+"""From a verified document to nodes, in document order, subtree content directly after its SubTree node."""
+
+from __future__ import annotations
+
+from lxml import etree
+
+from tms_ts.bt.blackboard import Blackboard
+from tms_ts.bt.context import Context
+from tms_ts.bt.convert import Missing, text_to_bool
+from tms_ts.bt.document import Document, TreeElement, children
+from tms_ts.bt.errors import TreeError
+from tms_ts.bt.node import Birth, Node
+from tms_ts.bt.ports import RESERVED, Pointer, bind
+from tms_ts.bt.source import MAX_DEPTH, line_of
+from tms_ts.bt.verify import Rules, Use
+
+MAX_NODES = 20_000
+
+
+class Builder:
+    def __init__(self, document: Document, rules: Rules, context: Context) -> None:
+        self.document = document
+        self.rules = rules
+        self.context = context
+        self.trees = document.by_id()
+        self.nodes: list[Node] = []  # pre-order
+        self.blackboards: list[Blackboard] = []  # in creation order
+        self.open_trees: list[str] = []
+
+    def build(self, blackboard: Blackboard) -> Node:
+        self.blackboards.append(blackboard)
+        main = self.trees[self.document.main]
+        return self.tree(main, blackboard, "0", main.element)
+
+    def tree(self, tree: TreeElement, blackboard: Blackboard, path: str, caller: etree._Element) -> Node:
+        if tree.id in self.open_trees:
+            chain = " -> ".join([*self.open_trees[self.open_trees.index(tree.id) :], tree.id])
+            raise TreeError(f"the tree {tree.id!r} contains itself ({chain})", line=line_of(caller), path=path)
+        self.open_trees.append(tree.id)
+        node = self.node(next(children(tree.element)), tree, blackboard, path)
+        self.open_trees.pop()
+        return node
+
+    def node(self, element: etree._Element, tree: TreeElement, blackboard: Blackboard, path: str) -> Node:
+        line = line_of(element)
+        if len(self.nodes) >= MAX_NODES:
+            raise TreeError(f"the tree has more than {MAX_NODES} nodes", line=line, path=path)
+        if path.count(".") >= MAX_DEPTH:
+            raise TreeError(f"the tree is deeper than {MAX_DEPTH} nodes", line=line, path=path)
+        use = self.rules.use(element, tree)
+        if use.subtree:
+            return self.subtree(use, element, tree, blackboard, path)
+        assert use.cls is not None  # verified
+        bindings = {k: bind(k, v, v4=tree.v4) for k, v in use.attributes.items() if k not in RESERVED}
+        self.declare(use.cls, bindings, blackboard, line, path)
+        name = use.attributes.get("name", use.id)
+        node = use.cls(Birth(use.id, name, self.context, blackboard, bindings, path, line))
+        if use.id in self.rules.adopted:
+            node.warn(f"{use.id} is not known here; its entry in TreeNodesModel says that it is a leaf node")
+        self.nodes.append(node)
+        for position, child in enumerate(children(element)):
+            self.attach(self.node(child, tree, blackboard, f"{path}.{position}"), node)
+        return node
+
+    @staticmethod
+    def attach(child: Node, parent: Node) -> None:
+        child.parent = parent
+        parent.children.append(child)
+
+    @staticmethod
+    def declare(
+        cls: type[Node], bindings: dict[str, Pointer | str], blackboard: Blackboard, line: int, path: str
+    ) -> None:
+        for port, bound in bindings.items():
+            if isinstance(bound, Pointer):
+                try:
+                    blackboard.declare(bound.key, cls.ports[port].kind)
+                except TreeError as error:
+                    error.line, error.path = line, path
+                    raise
+
+    # --- subtrees
+
+    def subtree(self, use: Use, element: etree._Element, tree: TreeElement, blackboard: Blackboard, path: str) -> Node:
+        line = line_of(element)
+        if use.id not in self.trees:
+            raise TreeError(f"there is no tree {use.id!r}", line=line, path=path)
+        cls = self.rules.registry[use.subtree]
+        name = use.attributes.get("name", use.id) if tree.v4 else use.id
+        node = cls(Birth(use.subtree, name, self.context, blackboard, {}, path, line))
+        self.nodes.append(node)
+        try:
+            inner = self.inner_blackboard(use, blackboard, v4=tree.v4)
+        except TreeError as error:
+            error.line, error.path = line, path
+            raise
+        self.attach(self.tree(self.trees[use.id], inner, f"{path}.0", element), node)
+        return node
+
+    def inner_blackboard(self, use: Use, outer: Blackboard, *, v4: bool) -> Blackboard:
+        if use.subtree == "SubTree" and self.flag(use, "__shared_blackboard"):
+            return outer
+        inner = Blackboard(outer)
+        self.blackboards.append(inner)
+        for key, value in use.attributes.items():
+            if key in RESERVED or key == "__shared_blackboard":
+                continue
+            if use.subtree == "SubTree":
+                if key != "__autoremap":
+                    inner.remap(key, value)
+            elif key == "__autoremap":
+                if self.flag(use, key):
+                    inner.remap_all(but_private=v4)
+            elif isinstance(bound := bind(key, value, v4=v4), Pointer) and bound.text != "=":
+                inner.remap(key, bound.key)
+            else:  # once, now; after __autoremap it goes to the outer blackboard, as in the library
+                inner.set(key, value)
+        return inner
+
+    @staticmethod
+    def flag(use: Use, key: str) -> bool:
+        value = text_to_bool(use.attributes.get(key, "false"))
+        if isinstance(value, Missing):
+            raise TreeError(f"{key}={use.attributes[key]!r} is not true or false")
+        return value

@@ -1,0 +1,54 @@
+"""What the nodes of one tree share: clock, world, observers, timers and the work allowed in one tick."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Protocol
+
+from tms_ts.bt.errors import short
+from tms_ts.bt.node import Observer
+from tms_ts.world import World
+
+ENDLESS_ROUNDS = 100  # rounds that one endless loop may make in a tick
+ALL_ROUNDS = 10_000  # rounds of all loops of the tree together in a tick
+TICK_SECONDS = 0.02  # a loop that finds the tick older than this yields
+MAX_WARNINGS = 500
+
+
+class Timer(Protocol):
+    deadline: float | None
+
+    def expire(self) -> None: ...
+
+
+class Context:
+    __slots__ = ("_rounds_left", "_told", "_yield_at", "clock", "observers", "quirks", "timers", "warnings", "world")
+
+    def __init__(self, world: World | None, clock: Callable[[], float] | None = None, *, quirks: bool = False) -> None:
+        self.world = world
+        self.clock = clock or (world.clock if world else time.monotonic)
+        self.quirks = quirks
+        self.observers: list[Observer] = []
+        self.timers: list[Timer] = []  # armed ones
+        self.warnings: list[tuple[int, str]] = []
+        self._told: set[tuple[int, str]] = set()
+        self._rounds_left = ALL_ROUNDS
+        self._yield_at = float("inf")
+
+    def begin_tick(self) -> None:
+        self._rounds_left = ALL_ROUNDS
+        self._yield_at = self.clock() + TICK_SECONDS
+
+    def may_loop(self, rounds: int, *, endless: bool) -> bool:
+        """Whether a loop that has made so many rounds in this tick may go on in it."""
+        self._rounds_left -= 1
+        if endless and rounds >= ENDLESS_ROUNDS:
+            return False
+        return self._rounds_left > 0 and self.clock() < self._yield_at
+
+    def warn(self, line: int, text: str) -> None:
+        note = (line, short(text))
+        if note not in self._told and len(self.warnings) < MAX_WARNINGS:
+            self._told.add(note)
+            self.warnings.append(note)

@@ -1,0 +1,146 @@
+"""A tree document with everything it includes: which trees there are, and what the editor's palette says."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from lxml import etree
+
+from tms_ts.bt.errors import TreeError
+from tms_ts.bt.source import MAX_BYTES, MAX_DEPTH, Source, line_of, parse, read_file
+
+MAX_FILES = 50
+
+
+@dataclass(slots=True)
+class TreeElement:
+    """One <BehaviorTree> and the document it stands in."""
+
+    id: str
+    element: etree._Element
+    source: Source
+    v4: bool
+
+
+@dataclass(slots=True)
+class Document:
+    sources: list[Source] = field(default_factory=list)
+    trees: list[TreeElement] = field(default_factory=list)  # all of them, first registered first
+    models: dict[str, frozenset[str]] = field(default_factory=dict)  # ID -> ports, by TreeNodesModel
+    warnings: list[tuple[int, str]] = field(default_factory=list)
+
+    def by_id(self) -> dict[str, TreeElement]:
+        found: dict[str, TreeElement] = {}
+        for tree in self.trees:
+            found.setdefault(tree.id, tree)
+        return found
+
+    @property
+    def text(self) -> str:
+        return self.sources[0].text
+
+    @property
+    def main(self) -> str:
+        """The ID of the tree to run."""
+        wanted = self.sources[0].attributes(self.sources[0].root).get("main_tree_to_execute")
+        ids = list(self.by_id())
+        if wanted is None and len(ids) == 1:
+            return ids[0]
+        if wanted is None:
+            what = f"one of {', '.join(ids)}" if ids else "there is no <BehaviorTree> in it"
+            raise TreeError("main_tree_to_execute is not given", line=1, hint=what)
+        return wanted
+
+
+def children(element: etree._Element) -> Iterator[etree._Element]:
+    return (child for child in element if isinstance(child.tag, str))
+
+
+def read(data: bytes | str, *, folder: Path | None = None, file: str = "", limit: int = MAX_BYTES) -> Document:
+    """Read a document and its includes, which must stay inside `folder`."""
+    document = Document()
+    _Reader(document, folder.resolve() if folder else None, limit).read(data, folder, file)
+    return document
+
+
+class _Reader:
+    def __init__(self, document: Document, folder: Path | None, limit: int) -> None:
+        self.document = document
+        self.folder = folder
+        self.limit = limit
+        self.open_files: list[Path] = []
+        self.unnamed = 0
+
+    def read(self, data: bytes | str, here: Path | None, file: str) -> None:
+        source = parse(data, file=file, limit=self.limit)
+        self.document.sources.append(source)
+        if source.root.tag != "root":
+            raise TreeError(
+                f"the outermost element must be <root>, it is <{source.root.tag}>", line=line_of(source.root), file=file
+            )
+        check_depth(source)
+        for child in children(source.root):
+            if child.tag == "include":
+                self.include(child, source, here)
+        v4 = source.attributes(source.root).get("BTCPP_format", "").strip().startswith("4")
+        self.trees(source, v4=v4)
+        self.palette(source)
+
+    def trees(self, source: Source, *, v4: bool) -> None:
+        known = {tree.id for tree in self.document.trees}
+        for child in children(source.root):
+            if child.tag != "BehaviorTree":
+                continue
+            name = source.attributes(child).get("ID")
+            if name is None:
+                name, self.unnamed = f"BehaviorTree_{self.unnamed}", self.unnamed + 1
+            if name in known:
+                line = line_of(child)
+                self.document.warnings.append((line, f"there are two trees {name!r}; the first one is used"))
+            known.add(name)
+            self.document.trees.append(TreeElement(name, child, source, v4))
+
+    def palette(self, source: Source) -> None:
+        models = [child for child in children(source.root) if child.tag == "TreeNodesModel"]
+        if len(models) > 1:
+            raise TreeError("there is more than one <TreeNodesModel>", line=line_of(models[1]), file=source.file)
+        for element in models[0] if models else ():
+            if isinstance(element.tag, str) and (name := element.get("ID")):
+                ports = [port.get("name") for port in children(element) if str(port.tag).endswith("_port")]
+                self.document.models.setdefault(name, frozenset(str(port).strip() for port in ports if port))
+
+    def include(self, element: etree._Element, source: Source, here: Path | None) -> None:
+        given = source.attributes(element)
+        line, name = line_of(element), given.get("path", "")
+        if "ros_pkg" in given:
+            raise TreeError("include with ros_pkg is not supported", line=line, file=source.file, hint="use a path")
+        if not name:
+            raise TreeError("include needs a path", line=line, file=source.file)
+        if self.folder is None or here is None:
+            raise TreeError(f"cannot include {name!r}: this tree comes from no folder", line=line, file=source.file)
+        path = (here / name).resolve()
+        if Path(name).is_absolute() or not path.is_relative_to(self.folder):
+            raise TreeError(f"include {name!r} is outside the tree's folder", line=line, file=source.file)
+        if path in self.open_files:
+            raise TreeError(f"include {name!r} includes itself", line=line, file=source.file)
+        if len(self.document.sources) >= MAX_FILES:
+            raise TreeError(f"more than {MAX_FILES} files are included", line=line, file=source.file)
+        self.open_files.append(path)
+        try:
+            data = read_file(path, self.limit)
+        except TreeError as error:
+            raise TreeError(f"cannot include {name!r}: {error.message}", line=line, file=source.file) from error
+        self.read(data, path.parent, name)
+        self.open_files.pop()
+
+
+def check_depth(source: Source) -> None:
+    """Refuse deep nesting before anything recurses over it."""
+    depth = 0
+    for event, element in etree.iterwalk(source.root, events=("start", "end")):
+        depth += 1 if event == "start" else -1
+        if depth > MAX_DEPTH:
+            message = f"the elements are nested deeper than {MAX_DEPTH}"
+            raise TreeError(message, line=line_of(element), file=source.file)

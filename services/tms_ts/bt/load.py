@@ -1,0 +1,98 @@
+"""The two entries: `load` makes a tree, `check` only tells what is in a document and what is wrong with it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+from tms_ts.bt.advice import advise
+from tms_ts.bt.blackboard import Blackboard
+from tms_ts.bt.build import Builder
+from tms_ts.bt.context import Context
+from tms_ts.bt.document import Document, read
+from tms_ts.bt.errors import TreeError
+from tms_ts.bt.registry import Registry
+from tms_ts.bt.registry import registry as all_nodes
+from tms_ts.bt.source import MAX_BYTES, read_file
+from tms_ts.bt.tree import LeafGoal, Tree
+from tms_ts.bt.verify import Rules
+from tms_ts.world import World
+
+MAX_ERRORS = 100  # more than that helps nobody
+
+
+def load(
+    tree: str | bytes | Path,
+    *,
+    registry: Registry | None = None,
+    world: World | None = None,
+    blackboard: Mapping[str, Any] | None = None,
+    folder: Path | None = None,
+    clock: Callable[[], float] | None = None,
+    quirks: bool = False,
+    limit: int = MAX_BYTES,
+) -> Tree:
+    """Make a tree from text, or from a file if `tree` is a Path; the first error of the document is raised.
+
+    folder: includes are looked for here and nowhere else (default: the file's own folder; none for text)
+    quirks: copy the known defects of the C library too (a halted Timeout forgets to clear its timer)
+    """
+    document = _read(tree, folder, limit)
+    rules = Rules(document, registry or all_nodes())
+    error = next(rules.errors(), None)
+    if error is not None:
+        raise error
+    return _build(document, rules, Context(world, clock, quirks=quirks), blackboard)
+
+
+def _read(tree: str | bytes | Path, folder: Path | None, limit: int) -> Document:
+    if isinstance(tree, Path):
+        return read(read_file(tree, limit), folder=folder or tree.parent, file=tree.name, limit=limit)
+    return read(tree, folder=folder, limit=limit)
+
+
+def _build(document: Document, rules: Rules, context: Context, values: Mapping[str, Any] | None) -> Tree:
+    outermost = Blackboard()
+    for key, value in (values or {}).items():
+        outermost.set(key, value)
+    context.warnings.extend(document.warnings)
+    builder = Builder(document, rules, context)
+    root = builder.build(outermost)
+    advise(builder.nodes)
+    return Tree(root, builder.nodes, builder.blackboards, context, document.text, document.main)
+
+
+@dataclass(slots=True)
+class Report:
+    """What `check` found; nothing was run."""
+
+    goals: list[LeafGoal] = field(default_factory=list)
+    warnings: list[tuple[int, str]] = field(default_factory=list)
+    errors: list[TreeError] = field(default_factory=list)
+    nodes: int = 0
+
+    @property
+    def ok(self) -> bool:
+        return not self.errors
+
+
+def check(
+    tree: str | bytes | Path, *, registry: Registry | None = None, folder: Path | None = None, limit: int = MAX_BYTES
+) -> Report:
+    """Load without running: leaf goals, warnings and all errors with their lines."""
+    report = Report()
+    try:
+        document = _read(tree, folder, limit)
+        rules = Rules(document, registry or all_nodes())
+        report.errors.extend(islice(rules.errors(), MAX_ERRORS))
+        report.warnings = list(document.warnings)
+        if report.ok:
+            loaded = _build(document, rules, Context(None), None)
+            report.goals, report.warnings = loaded.leaf_goals(), loaded.warnings
+            report.nodes = len(loaded.nodes)
+    except TreeError as error:
+        report.errors.append(error)
+    return report

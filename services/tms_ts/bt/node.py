@@ -1,0 +1,229 @@
+"""The base of every node: a py_trees behaviour that is ticked by plain recursion.
+
+py_trees' own tick is a generator per node and visit, some fifty times slower than the C library; here a parent calls
+`execute_tick` of its child. Everything py_trees needs to display a tree (name, children, status) is in place.
+"""
+
+from __future__ import annotations
+
+import uuid
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from py_trees.common import BlackBoxLevel
+from py_trees.common import Status as PyTreesStatus
+
+from tms_ts.bt.blackboard import Blackboard
+from tms_ts.bt.convert import FROM_TEXT, MISSING, convert
+from tms_ts.bt.errors import TickError
+from tms_ts.bt.ports import Direction, Pointer, Port
+from tms_ts.bt.status import IDLE, PY_TREES, RUNNING, Kind, Status
+
+if TYPE_CHECKING:
+    from tms_ts.bt.context import Context
+
+    class Behaviour:
+        """For type checkers only: `tick` and `status` of our nodes are not py_trees' ones."""
+
+else:
+    from py_trees.behaviour import Behaviour
+
+
+@dataclass(slots=True)
+class Birth:
+    """What a node is told when it is made."""
+
+    registration_name: str
+    name: str
+    context: Context
+    blackboard: Blackboard
+    bindings: Mapping[str, Pointer | str] = field(default_factory=dict)
+    path: str = "0"  # child positions from the root, e.g. 0.1.2
+    line: int = 0
+    uid: int = 0
+
+
+AtOnce = tuple[bool, bool]  # may succeed, may fail
+
+
+class Node(Behaviour):
+    """A node of a tree; `state` is its stored status, `status` the same in py_trees' words."""
+
+    __slots__ = (
+        "bindings",
+        "blackboard",
+        "children",
+        "context",
+        "line",
+        "name",
+        "parent",
+        "path",
+        "reason",
+        "registration_name",
+        "state",
+        "uid",
+    )
+    kind: ClassVar[Kind] = Kind.UNDEFINED
+    builtin: ClassVar[bool] = False  # part of the engine, known to Groot
+    ports: ClassVar[Mapping[str, Port]] = {}
+    required: ClassVar[frozenset[str]] = frozenset()  # ports without which it is not even loaded
+    needs: ClassVar[tuple[str, ...]] = ()  # ports without which it throws
+    asking: ClassVar[bool] = False  # RUNNING only because an answer is not there yet
+
+    def __init__(self, birth: Birth) -> None:  # not super().__init__(): its logger and generator cost 2 KB a node
+        self.name = birth.name
+        self.registration_name = birth.registration_name
+        self.context = birth.context
+        self.blackboard = birth.blackboard
+        self.bindings = birth.bindings
+        self.path = birth.path
+        self.line = birth.line
+        self.uid = birth.uid
+        self.state: Status = IDLE
+        self.reason = ""  # why it is RUNNING or has failed, for the operator
+        self.parent: Node | None = None
+        self.children: list[Node] = []
+        self.prepare()
+
+    def endless(self) -> bool:
+        """Whether it runs its child again and again, without an end that the document tells."""
+        return False
+
+    def prepare(self) -> None:
+        """For node authors: set the node's own fields once, when the tree is made."""
+
+    # --- tick and halt
+
+    def tick(self) -> Status:
+        raise NotImplementedError
+
+    def execute_tick(self) -> Status:
+        status = self.tick()
+        if status is not self.state:
+            self.set_state(status)
+        return status
+
+    def halt(self) -> None:
+        """Called on a RUNNING node that has to stop, and on every node when the whole tree is halted."""
+
+    def set_state(self, new: Status) -> None:
+        old = self.state
+        if new is not old:
+            self.state = new
+            for observer in self.context.observers:
+                observer(self, old, new)
+            if new is IDLE and self.reason:
+                self.reason = ""
+
+    def reset(self) -> None:
+        """What parents do to a child: halt it if it is RUNNING, and make it IDLE even if its halt raises."""
+        try:
+            if self.state is RUNNING:
+                self.halt()
+        finally:
+            self.set_state(IDLE)
+
+    def only_asks(self) -> bool:
+        """Whether everything RUNNING here does no more than wait for an answer."""
+        running = [child for child in self.children if child.state is RUNNING]
+        return all(child.only_asks() for child in running) if running else self.asking
+
+    # --- ports
+
+    def read(self, port: str) -> Any:
+        """The value of an input, or MISSING if it cannot be read."""
+        bound = self.bindings.get(port)
+        spec = self.ports[port]
+        if bound is None:
+            return spec.default
+        if isinstance(bound, Pointer):
+            value = self.blackboard.get(bound.key)
+            return value if value is MISSING else convert(value, spec.kind)
+        return FROM_TEXT[spec.kind](bound)
+
+    def require(self, port: str) -> Any:
+        value = self.read(port)
+        if value is MISSING:
+            raise TickError(f"{self.registration_name}: missing parameter {port!r}", hint=self._why_missing(port))
+        return value
+
+    def write(self, port: str, value: Any) -> None:
+        """Write an output; a port that is bound to plain text uses the text as the key."""
+        bound = self.bindings.get(port)
+        if bound is None:
+            raise TickError(f"{self.registration_name}: the output {port!r} is not connected")
+        key = bound.key if isinstance(bound, Pointer) else bound
+        self.blackboard.set(key, value, self.ports[port].kind)
+
+    def store(self, key: str, value: Any) -> None:
+        """Write a key whose name the node worked out, whatever type it had."""
+        if self.blackboard.replace(key, value):
+            self.warn(f"the key {key!r} changes its type; the C++ system throws here")
+
+    def literal(self, port: str) -> str | None:
+        """The text of a port that does not point at the blackboard."""
+        bound = self.bindings.get(port)
+        if isinstance(bound, str):
+            return bound
+        default = self.ports[port].default
+        return default if bound is None and isinstance(default, str) else None
+
+    def assigned(self) -> dict[str, str]:
+        """Port assignments as written in the document."""
+        return {port: b.text if isinstance(b, Pointer) else b for port, b in self.bindings.items()}
+
+    def _why_missing(self, port: str) -> str:
+        bound = self.bindings.get(port)
+        if bound is None:
+            return f"add {port}=... to line {self.line}"
+        if isinstance(bound, Pointer):
+            return f"the key {bound.key!r} has no value that fits"
+        return f"{bound!r} does not fit"
+
+    def inputs(self) -> list[Port]:
+        return [port for port in self.ports.values() if port.direction is not Direction.OUTPUT]
+
+    def warn(self, text: str) -> None:
+        self.context.warn(self.line, text)
+
+    # --- preflight
+
+    def at_once(self, children: list[AtOnce]) -> AtOnce:
+        """Whether it may succeed and may fail within one tick in the library, given what its children may."""
+        return False, False
+
+    def may_hang(self, children: list[AtOnce]) -> bool:
+        return False
+
+    def preflight(self, texts: Mapping[str, str]) -> list[str]:
+        """What the author should know; `texts` are the keys that SetBlackboard gives a text."""
+        return []
+
+    # --- what py_trees looks at
+
+    @property
+    def status(self) -> PyTreesStatus:
+        return PY_TREES[self.state]
+
+    @property
+    def id(self) -> uuid.UUID:
+        return uuid.UUID(int=self.uid)
+
+    @property
+    def qualified_name(self) -> str:
+        return f"{self.registration_name}/{self.name}"
+
+    @property
+    def feedback_message(self) -> str:
+        return self.reason
+
+    def update(self) -> PyTreesStatus:
+        self.execute_tick()
+        return self.status
+
+    blackbox_level = BlackBoxLevel.NOT_A_BLACKBOX
+    blackboards: ClassVar[list[Any]] = []
+
+
+Observer = Callable[[Node, Status, Status], None]

@@ -1,0 +1,37 @@
+"""Status and kind of a node; the numbers are those that Groot expects on the wire."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+from py_trees.common import Status as PyTreesStatus
+
+
+class Status(IntEnum):
+    IDLE = 0
+    RUNNING = 1
+    SUCCESS = 2
+    FAILURE = 3
+
+    @property
+    def completed(self) -> bool:
+        return self >= 2
+
+
+class Kind(IntEnum):
+    UNDEFINED = 0
+    ACTION = 1
+    CONDITION = 2
+    CONTROL = 3
+    DECORATOR = 4
+    SUBTREE = 5
+
+
+IDLE, RUNNING, SUCCESS, FAILURE = Status.IDLE, Status.RUNNING, Status.SUCCESS, Status.FAILURE
+
+PY_TREES = {
+    IDLE: PyTreesStatus.INVALID,
+    RUNNING: PyTreesStatus.RUNNING,
+    SUCCESS: PyTreesStatus.SUCCESS,
+    FAILURE: PyTreesStatus.FAILURE,
+}

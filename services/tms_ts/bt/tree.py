@@ -1,0 +1,177 @@
+"""A loaded tree: tick it, halt it, look at it."""
+
+from __future__ import annotations
+
+import itertools
+import threading
+from dataclasses import dataclass
+from types import TracebackType
+from typing import ClassVar, Protocol, cast, runtime_checkable
+
+from py_trees.behaviour import Behaviour
+
+from tms_ts.bt.blackboard import Blackboard
+from tms_ts.bt.context import Context
+from tms_ts.bt.errors import TickError, TreeError
+from tms_ts.bt.node import Node, Observer
+from tms_ts.bt.status import IDLE, Status
+
+MAX_UID = 65_535  # 16 bit on Groot's wire
+_next_uid = itertools.count()
+_uid_lock = threading.Lock()
+
+
+@dataclass(frozen=True, slots=True)
+class LeafGoal:
+    """What a leaf will ask of a machine; a part that only the run decides reads as its {key}."""
+
+    machine: str
+    subtask: str
+    record: str
+    path: str
+    line: int
+
+
+@runtime_checkable
+class SendsGoal(Protocol):
+    """A leaf that sends a goal to a machine."""
+
+    def goal_asked(self) -> tuple[str, str, str]: ...  # machine, subtask, record
+
+
+@runtime_checkable
+class UsesRecord(Protocol):
+    """A leaf that reads or writes a field of a shared record."""
+
+    writes: ClassVar[bool]
+
+    def record_asked(self) -> tuple[str, str]: ...  # record, field; a part that only the run decides is its {key}
+
+
+@dataclass(frozen=True, slots=True)
+class SharedValue:
+    """A field of a shared record that a leaf reads or writes."""
+
+    record: str
+    field: str
+    writes: bool
+    path: str
+    line: int
+    looped: bool  # again and again, as long as it takes
+
+
+class Tree:
+    def __init__(
+        self, root: Node, nodes: list[Node], blackboards: list[Blackboard], context: Context, xml: str, name: str = ""
+    ) -> None:
+        self.name = name  # ID of the main tree
+        self.root = root
+        self.nodes = nodes  # pre-order
+        self.blackboards = blackboards  # in creation order, the root's first
+        self.context = context
+        self.xml = xml
+        with _uid_lock:
+            for node in nodes:
+                node.uid = next(_next_uid) % MAX_UID + 1
+
+    @property
+    def observers(self) -> list[Observer]:
+        """Called with (node, old, new) at every change of a stored status, in order."""
+        return self.context.observers
+
+    @property
+    def warnings(self) -> list[tuple[int, str]]:
+        """What this engine does more kindly than the library: (line, text)."""
+        return self.context.warnings
+
+    def tick(self) -> Status:
+        """One tick of the root. An exception out of a node leaves statuses as they are: halt the tree then."""
+        self.context.begin_tick()
+        try:
+            self.poll()
+            status = self.root.execute_tick()
+        except TreeError as error:
+            _place(error)
+            raise
+        except Exception as error:
+            found = TickError(f"{type(error).__name__}: {error}").with_traceback(error.__traceback__)
+            raise _place(found) from error
+        if status.completed:
+            self.root.set_state(IDLE)
+        return status
+
+    def poll(self) -> None:
+        """Let timers expire that are due; a Timeout halts its child here."""
+        context = self.context
+        if context.timers:
+            now = context.clock()
+            due = [(timer.deadline, timer) for timer in context.timers if timer.deadline is not None]
+            for deadline, timer in sorted(due, key=lambda item: item[0]):
+                if deadline <= now and timer.deadline is not None:  # not disarmed by an earlier one
+                    timer.expire()
+
+    def next_deadline(self) -> float | None:
+        """When the next timer expires, on the tree's clock."""
+        return min((t.deadline for t in self.context.timers if t.deadline is not None), default=None)
+
+    def halt(self) -> None:
+        """Halt the whole tree. A node that raises does not keep the others from being halted."""
+        problems: list[Exception] = []
+        for node in [self.root, *self.nodes]:
+            try:
+                try:
+                    node.halt()
+                finally:
+                    node.set_state(IDLE)
+            except Exception as error:  # a machine that cannot be told must not keep another one moving
+                problems.append(error)
+        if problems:
+            first = problems[0]
+            found = first if isinstance(first, TreeError) else TickError(f"{type(first).__name__}: {first}")
+            raise _place(found.with_traceback(first.__traceback__)) from first
+
+    def halt_root(self) -> None:
+        """What the library's `root.halt()` alone does: the root keeps its own status."""
+        self.root.halt()
+
+    @property
+    def py_trees(self) -> Behaviour:
+        """The root for py_trees' displays, e.g. `py_trees.display.unicode_tree(tree.py_trees)`."""
+        return cast(Behaviour, self.root)
+
+    def leaf_goals(self) -> list[LeafGoal]:
+        return [
+            LeafGoal(*node.goal_asked(), node.path, node.line) for node in self.nodes if isinstance(node, SendsGoal)
+        ]
+
+    def shared_values(self) -> list[SharedValue]:
+        return [
+            SharedValue(*node.record_asked(), node.writes, node.path, node.line, _looped(node))
+            for node in self.nodes
+            if isinstance(node, UsesRecord)
+        ]
+
+    def running(self) -> list[Node]:
+        """The leaves that are RUNNING now."""
+        return [node for node in self.nodes if not node.children and node.state is Status.RUNNING]
+
+
+def _looped(node: Node) -> bool:
+    above = node.parent
+    while above is not None and not above.endless():
+        above = above.parent
+    return above is not None
+
+
+def _place(error: TreeError) -> TreeError:
+    """Give an error the node that raised it: the innermost one on the way out."""
+    trace: TracebackType | None = error.__traceback__
+    thrower: Node | None = None
+    while trace is not None:
+        owner = trace.tb_frame.f_locals.get("self")
+        if isinstance(owner, Node):
+            thrower = owner
+        trace = trace.tb_next
+    if thrower is not None and not error.path:
+        error.path, error.line = thrower.path, thrower.line
+    return error

@@ -1,0 +1,189 @@
+"""The loading rules of the library, applied to every tree of a document; nothing is made or run here."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from lxml import etree
+
+from tms_ts.bt import v4
+from tms_ts.bt.convert import MISSING
+from tms_ts.bt.document import Document, TreeElement, children
+from tms_ts.bt.errors import TreeError, did_you_mean
+from tms_ts.bt.node import Node
+from tms_ts.bt.ports import RESERVED
+from tms_ts.bt.registry import Registry
+from tms_ts.bt.source import line_of
+from tms_ts.bt.status import Kind
+
+CATEGORIES = frozenset({"Action", "Condition", "Control", "Decorator"})
+SUBTREES = frozenset({"SubTree", "SubTreePlus"})
+NEED_CHILDREN = frozenset({"Sequence", "SequenceStar", "Fallback"})
+HINTS = {
+    "ManualSelector": "it asks on a terminal, and this engine has none",
+    "RetryUntilSuccesful": "did you mean 'RetryUntilSuccessful'? (the old spelling is not registered in v3.8)",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Use:
+    """What one element asks for."""
+
+    tag: str  # as written
+    id: str  # registration ID, or tree ID of a subtree
+    attributes: dict[str, str]
+    cls: type[Node] | None
+    subtree: str  # SubTree or SubTreePlus; empty for other nodes
+
+
+class Rules:
+    """Which class an element means, and what is wrong with it."""
+
+    def __init__(self, document: Document, registry: Registry) -> None:
+        self.document = document
+        self.registry = registry
+        self.tree_ids = frozenset(document.by_id())
+        self.adopted: dict[str, type[Node] | None] = {}
+
+    def use(self, element: etree._Element, tree: TreeElement) -> Use:
+        attributes = tree.source.attributes(element)
+        tag = str(element.tag)
+        name = tag
+        if tree.v4:
+            name, attributes = v4.translated(tag, attributes)
+        if name in SUBTREES:
+            return Use(tag, attributes.get("ID", ""), attributes, None, name)
+        if name in CATEGORIES:
+            name = attributes.get("ID", "")
+            if tree.v4:
+                name, attributes = v4.translated(name, attributes)
+        if name not in self.registry and name in self.tree_ids and tag in CATEGORIES:
+            return Use(tag, attributes.get("name", name), attributes, None, "SubTree")
+        return Use(tag, name, attributes, self.class_of(name), "")
+
+    def class_of(self, name: str) -> type[Node] | None:
+        cls = self.registry.get(name)
+        if cls is None and name in self.document.models:
+            if name not in self.adopted:
+                self.adopted[name] = self.registry.stand_in_for(name, self.document.models[name])
+            cls = self.adopted[name]
+        return None if cls is not None and cls.kind is Kind.SUBTREE else cls
+
+    # --- checks
+
+    def errors(self) -> Iterator[TreeError]:
+        """Every broken rule, in document order.
+
+        As in the library, a tree that the main tree does not lead to must be well formed, but need not be makeable.
+        """
+        used = self.used_trees()
+        for tree in self.document.trees:
+            count = sum(1 for _ in children(tree.element))
+            if count != 1:
+                yield self.error(tree, tree.element, f"a BehaviorTree must have exactly one child, it has {count}")
+            for child in children(tree.element):
+                yield from self.tree_errors(tree, child, used=id(tree) in used)
+        try:
+            main = self.document.main
+        except TreeError as error:
+            yield error
+            return
+        if main not in self.tree_ids:
+            hint = did_you_mean(main, self.tree_ids) or f"there is {', '.join(sorted(self.tree_ids)) or 'no tree'}"
+            yield TreeError(f"main_tree_to_execute names an unknown tree {main!r}", line=1, hint=hint)
+
+    def tree_errors(self, tree: TreeElement, top: etree._Element, *, used: bool) -> Iterator[TreeError]:
+        for element in top.iter("*"):
+            use = self.use(element, tree)
+            count = sum(1 for _ in children(element))
+            broken = self.broken_form(use, count, tree)
+            problem = broken or self.cannot_be_made(use, count, tree)
+            if problem is None:
+                continue
+            unused = f"the tree {tree.id!r} is not used" if not used else ""
+            if any(above.tag == "SubTreePlus" for above in element.iterancestors()):
+                unused = "what is inside a SubTreePlus is ignored"
+            if broken or not unused:
+                yield self.error(tree, element, *problem)
+            else:
+                self.document.warnings.append((line_of(element), f"{unused}, and could not be used: {problem[0]}"))
+
+    def used_trees(self) -> set[int]:
+        """The `id` of the trees that the main tree leads to; of all trees if there is no main tree."""
+        trees = self.document.by_id()
+        try:
+            open_ids = [self.document.main]
+        except TreeError:
+            open_ids = []
+        if not open_ids or open_ids[0] not in trees:
+            return {id(tree) for tree in self.document.trees}
+        found: set[int] = set()
+        while open_ids:
+            tree = trees.get(open_ids.pop())
+            if tree is None or id(tree) in found:
+                continue
+            found.add(id(tree))
+            uses = (self.use(element, tree) for element in tree.element.iter(*SUBTREES, *CATEGORIES))
+            open_ids.extend(use.id for use in uses if use.subtree)
+        return found
+
+    def error(self, tree: TreeElement, element: etree._Element, message: str, hint: str = "") -> TreeError:
+        names = [str(element.tag)] + [str(above.tag) for above in element.iterancestors()]
+        path = "/".join([tree.id, *reversed(names[: max(len(names) - 2, 0)])])
+        return TreeError(message, line=line_of(element), path=path, hint=hint, file=tree.source.file)
+
+    def broken_form(self, use: Use, count: int, tree: TreeElement) -> tuple[str, str] | None:
+        """What the library finds in any tree of a document, used or not."""
+        if not use.id:
+            return f"<{use.tag}> needs an ID", ""
+        if use.subtree:
+            return ("a SubTree has no children", "") if count and use.subtree == "SubTree" else None
+        if use.cls is not None:
+            return self.children_problem(use, use.cls, count)
+        return None if use.tag in CATEGORIES else self.v4_feature(use, tree) or self.unknown(use)
+
+    def cannot_be_made(self, use: Use, count: int, tree: TreeElement) -> tuple[str, str] | None:
+        """What the library finds when it makes the nodes."""
+        feature = self.v4_feature(use, tree)
+        if feature:
+            return feature
+        if tree.v4 and use.id == "WhileDoElse" and count == 2:
+            return "WhileDoElse with 2 children is a feature of BehaviorTree.CPP v4", "add a third child"
+        if use.subtree:
+            known = use.id in self.tree_ids
+            return None if known else (f"there is no tree {use.id!r}", did_you_mean(use.id, self.tree_ids))
+        return self.unknown(use) if use.cls is None else self.port_problem(use, use.cls)
+
+    @staticmethod
+    def v4_feature(use: Use, tree: TreeElement) -> tuple[str, str] | None:
+        feature = v4.feature(use.tag if use.tag not in CATEGORIES else use.id, use.attributes, v4=tree.v4)
+        return (feature, "this engine runs v3 trees, as Groot 1 writes them") if feature else None
+
+    def unknown(self, use: Use) -> tuple[str, str]:
+        if use.id in self.tree_ids:
+            return f"<{use.tag}> is a tree, not a node", f'write <SubTree ID="{use.id}"/>'
+        hint = HINTS.get(use.id) or did_you_mean(use.id, [*self.registry, *CATEGORIES, *SUBTREES])
+        return f"there is no node {use.id!r}", hint
+
+    @staticmethod
+    def children_problem(use: Use, cls: type[Node], count: int) -> tuple[str, str] | None:
+        if (use.tag == "Decorator" or cls.kind is Kind.DECORATOR) and count != 1:
+            return f"the decorator {use.id} must have exactly one child, it has {count}", ""
+        leaf = cls.kind in (Kind.ACTION, Kind.CONDITION)
+        if count and (leaf or use.tag in ("Action", "Condition")):
+            return f"{use.id} has no children", ""
+        if not count and (use.tag == "Control" or use.tag in NEED_CHILDREN):
+            return f"{use.id} needs at least one child", ""
+        return None
+
+    @staticmethod
+    def port_problem(use: Use, cls: type[Node]) -> tuple[str, str] | None:
+        for key in use.attributes:
+            if key not in RESERVED and key not in cls.ports:
+                hint = did_you_mean(key, cls.ports) or f"its ports are: {', '.join(cls.ports) or 'none'}"
+                return f"{use.id} has no port {key!r}, possibly a typo", hint
+        for port in sorted(cls.required):
+            if port not in use.attributes and cls.ports[port].default is MISSING:
+                return f"{use.id} needs {port!r}", ""
+        return None

@@ -1,0 +1,124 @@
+"""The scheduler's side of the gateways: its permits, their states and receipts, and a stop when one is lost."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from std_msgs.msg import Bool
+from tms_msg_rc.msg import MachineState, StopReceipt
+
+from tms_core.app import App
+from tms_core.border import Controls
+from tms_core.fence import Owner
+from tms_core.permit import NOBODY, Link, Permit
+
+SETTLE = 0.3  # s from the first word of a new gateway until it has discovered us as well
+SOFTWARE_STOP = "software stop"
+
+
+@dataclass(frozen=True)
+class Holder:
+    """A run as the gateways' news reach it; all are called on the executor thread and must be quick."""
+
+    stopped: Callable[[str, str], None]  # machine, cause: it was stopped from outside and stays so
+    receipt: Callable[[Any], None]
+    alive: Callable[[], bool]
+
+
+class Gateways:
+    """All machines of the site."""
+
+    def __init__(self, app: App) -> None:
+        self._app = app
+        self._states: dict[str, Any] = {}
+        self._links: dict[str, Link] = {}
+        self._controls: dict[str, Controls] = {}
+        self._permits: dict[str, Permit] = {}
+        self._holders: dict[str, Holder] = {}
+        self.late_receipt: Callable[[Any], None] = lambda receipt: None  # of a machine that no run holds
+        for machine in app.site.file.machines:
+            self._attend(machine)
+        app.ros.subscribe(Bool, "/emergency_signal", self._signal)
+
+    def _attend(self, machine: str) -> None:
+        ros = self._app.ros
+        self._controls[machine] = Controls(ros, machine, self._app.site.border(machine))
+        self._permits[machine] = Permit(ros, machine, "ts", lambda: self._alive(machine))
+        self._links[machine] = Link(ros, machine, "rc", lambda link: self._gateway_changed(machine, link))
+        ros.subscribe(MachineState, f"/{machine}/rc/state", lambda state: self._state(machine, state), latched=True)
+        ros.subscribe(StopReceipt, f"/{machine}/rc/receipts", self._receipt, depth=20, latched=True)
+
+    # permits
+
+    def hold(self, machines: list[str], number: int, run_id: str, holder: Holder) -> None:
+        """Stand behind a run that moves these machines."""
+        for machine in machines:
+            if machine in self._permits:
+                self._holders[machine] = holder
+                self._permits[machine].hold(Owner(number).goal_id(), run_id)
+
+    def drop(self, machines: list[str]) -> None:
+        """The run is over and its machines were stopped."""
+        for machine in machines:
+            if self._holders.pop(machine, None) is not None:
+                self._permits[machine].drop()
+
+    def _alive(self, machine: str) -> bool:
+        holder = self._holders.get(machine)
+        return holder is not None and holder.alive()
+
+    # news
+
+    def obstacle(self, machine: str) -> str:
+        """Why a goal would not move the machine now; empty if it would, or if nothing is known of it."""
+        link, state = self._links.get(machine), self._states.get(machine)
+        if link is None or state is None:
+            return ""
+        if not link.alive:
+            return f"process {machine}:rc is not there, see `tms logs {machine}:rc`"
+        if state.latch:
+            return f"{machine} is stopped ({state.latch})"
+        return "" if state.ready else f"{machine} is not ready: {state.reason}"
+
+    def wait_alive(self, machine: str, seconds: float) -> None:
+        """Give a gateway that is being restarted a moment, so that a request to it does not get lost."""
+        link, deadline = self._links.get(machine), time.monotonic() + seconds
+        if link is None or link.alive:
+            return
+        while time.monotonic() < deadline:
+            time.sleep(0.02)
+            if self._links[machine].alive:
+                time.sleep(SETTLE)
+                return
+
+    def latch(self, machine: str) -> str:
+        """Why the machine is stopped until it is re-armed; empty if it is not."""
+        state = self._states.get(machine)
+        return str(state.latch) if state is not None else ""
+
+    def _state(self, machine: str, state: Any) -> None:
+        self._states[machine] = state
+        holder = self._holders.get(machine)
+        if holder is not None and state.latch:
+            holder.stopped(machine, state.latch)
+
+    def _receipt(self, receipt: Any) -> None:
+        holder = self._holders.get(receipt.machine)
+        if holder is not None:
+            holder.receipt(receipt)
+        else:
+            self.late_receipt(receipt)
+
+    def _signal(self, message: Any) -> None:
+        if message.data:
+            for machine, holder in list(self._holders.items()):
+                holder.stopped(machine, SOFTWARE_STOP)
+
+    def _gateway_changed(self, machine: str, link: Link) -> None:
+        """A lost gateway cannot stop its machine: do what it would do. Its successor does the same, but later."""
+        if link.alive or link.goal == NOBODY:
+            return
+        self._controls[machine].zero()
+        self._controls[machine].cancel_everything()
+        self._app.log.warning("event=gateway_lost machine=%s action='cancelled its goals'", machine)

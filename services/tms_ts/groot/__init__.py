@@ -1,0 +1,1 @@
+"""Groot as monitor: publishers for Groot 1 and Groot 2 that only look at the tree of a run."""

@@ -1,0 +1,70 @@
+"""What runs where, as the host agents tell, and the way to have a process started."""
+
+import time
+from collections.abc import Callable
+
+from tms_msg_host.msg import Process, Processes
+from tms_msg_host.srv import ControlProcess
+
+from tms_core.errors import RosError
+from tms_core.ros import Ros
+
+START_LIMIT = 10.0  # s
+
+
+class Hosts:
+    """The last message of every host agent."""
+
+    def __init__(self, ros: Ros) -> None:
+        self._ros = ros
+        self._known: dict[str, tuple[str, Process]] = {}  # process name -> host, row
+        ros.subscribe(Processes, "/tms/host/processes", self._heard, depth=10, latched=True)
+
+    def _heard(self, message: Processes) -> None:
+        others = {name: row for name, row in self._known.items() if row[0] != message.host}
+        self._known = {**others, **{row.name: (message.host, row) for row in message.processes}}
+
+    def pid(self, machine: str, subtask: str) -> int | None:
+        """pid of a subtask's process, 0 if it does not run; None for a server that no host agent knows."""
+        found = self._known.get(f"{machine}:{subtask}")
+        return None if found is None else int(found[1].pid)
+
+    def fatal(self, machine: str, process: str) -> str:
+        """Why supervisord has given up a process; empty if it has not."""
+        name = f"{machine}:{process}"
+        found = self._known.get(name)
+        return f"process {name} is FATAL, see `tms logs {name}`" if found and found[1].state == "FATAL" else ""
+
+    def trouble(self, machine: str, subtask: str) -> str:
+        """What is wrong with a subtask's process, for the operator; empty if nothing is known."""
+        name = f"{machine}:{subtask}"
+        found = self._known.get(name)
+        if found is None or found[1].state == "RUNNING":
+            return ""
+        return f"process {name} is {found[1].state}, see `tms logs {name}`"
+
+    def start(self, names: list[str], give_up: Callable[[], bool]) -> str:
+        """Have processes started that do not run; returns what went wrong, or an empty text.
+
+        Processes that no host agent knows are left alone: they may be servers of another system.
+        """
+        for name in names:
+            host, row = self._known.get(name, ("", None))
+            if row is None or row.state in ("RUNNING", "STARTING"):
+                continue
+            request = ControlProcess.Request(name=name, command="start")
+            try:
+                answer = self._ros.call(ControlProcess, f"/tms/host/{host}/control", request, START_LIMIT)
+            except RosError as error:
+                return f"{name} cannot be started: {error}"
+            if answer.error_code:
+                return f"{name} cannot be started: {answer.error_msg}"
+            if give_up():
+                return "cancelled"
+        return ""
+
+    def wait_known(self, seconds: float) -> None:
+        """Wait until a host agent has been heard; without one, processes cannot be started on demand."""
+        deadline = time.monotonic() + seconds
+        while not self._known and time.monotonic() < deadline:
+            time.sleep(0.02)

@@ -1,0 +1,121 @@
+"""Runs that a lost scheduler left open: closed as `interrupted` by its successor, then resumed or abandoned."""
+
+import threading
+from typing import Any
+
+from builtin_interfaces.msg import Time
+from tms_msg_db.msg import Event, Run
+from tms_msg_ts.srv import CancelRun, ResumePlan
+
+from tms_core.app import App
+from tms_core.errors import TaskError
+from tms_ts.journal import Journal
+from tms_ts.machines import receipt_text
+from tms_ts.record import Header, Key, Past, Records
+
+SETTLE = 1.5  # s after the start in which gateways tell how they stopped the machines
+
+
+class Interrupted:
+    """Looks at the records of this PC; runs that are active again are not its business."""
+
+    def __init__(self, app: App, journal: Journal, records: Records) -> None:
+        self._app, self._journal, self._records = app, journal, records
+        self._active: set[str] = set()
+        self._receipts: list[Any] = []
+        self._lock = threading.Lock()
+        threading.Thread(target=self._close_all, name="interrupted", daemon=True).start()
+
+    # closing
+
+    def receipt(self, receipt: Any) -> None:
+        """A gateway tells of a stop that belongs to no active run."""
+        with self._lock:
+            self._receipts.append(receipt)
+
+    def _close_all(self) -> None:
+        left = [past for past in self._records.past() if not past.closed]
+        self._app.stopping.wait(SETTLE)
+        for past in left:
+            if past.header is not None and past.header.run_id not in self._active:
+                self._close(past, past.header)
+
+    def _close(self, past: Past, header: Header) -> None:
+        record, number = self._records.open(header.run_id), past.last_event
+        with self._lock:
+            seen = {(r.machine, r.stamp.sec, r.stamp.nanosec): r for r in self._receipts if r.run == header.number}
+        texts = [("stop", receipt_text(r)) for r in seen.values() if _seconds(r.stamp) > past.last_time - 1.0]
+        reason = "the scheduler was lost; the gateways stopped the machines: `tms resume` or `tms abandon` it"
+        for kind, text in [*texts, ("run", f"interrupted: {reason}")]:
+            number += 1
+            record.event(number)
+            stamp = self._app.ros.now()
+            self._journal.put(Event(run_id=header.run_id, number=number, stamp=stamp, kind=kind, text=text))
+        self._journal.put(_row(header, "interrupted", reason, self._app.ros.now()))
+        record.interrupted()
+        self._app.log.warning("event=interrupted run=%s", header.run_id)
+
+    # what a person does about it
+
+    def begin(self, run_id: str) -> tuple[Past, Header]:
+        """The run that is to be resumed now.
+
+        Raises:
+            TaskError: NO_RUN.
+        """
+        past, header = self._find(run_id)
+        self._active.add(header.run_id)
+        return past, header
+
+    def over(self, run_id: str) -> None:
+        """A resumed run has ended, in whatever way."""
+        self._active.discard(run_id)
+
+    def plan(self, request: ResumePlan.Request, response: ResumePlan.Response) -> ResumePlan.Response:
+        """What resuming would do first."""
+        try:
+            past, header = self._find(request.run_id)
+        except TaskError as error:
+            response.error_code, response.error_msg = error.code, str(error)
+            return response
+        response.task_id = header.task_id
+        response.done = [_words(key) + ("" if succeeded else " (failed)") for key, succeeded in past.ended]
+        response.next = [_words(key) for key in past.open]
+        return response
+
+    def abandon(self, request: CancelRun.Request, response: CancelRun.Response) -> CancelRun.Response:
+        """Give an interrupted run up for good."""
+        try:
+            past, header = self._find(request.run_id)
+        except TaskError as error:
+            response.error_code, response.error_msg = error.code, str(error)
+            return response
+        stamp = self._app.ros.now()
+        event = Event(run_id=header.run_id, number=past.last_event + 1, stamp=stamp, kind="run", text="abandoned")
+        self._journal.put(event)
+        self._journal.put(_row(header, "abandoned", "given up by an operator after an interruption", stamp))
+        self._records.open(header.run_id).remove()
+        return response
+
+    def _find(self, run_id: str) -> tuple[Past, Header]:
+        past = self._records.find(run_id)
+        if past is None or past.header is None or not past.closed or past.header.run_id in self._active:
+            known = ", ".join(p.header.run_id for p in self._records.past() if p.header and p.closed) or "none"
+            raise TaskError(f"no run '{run_id}' is interrupted (interrupted: {known})", "NO_RUN")
+        return past, past.header
+
+
+def _words(key: Key) -> str:
+    node, machine, subtask, record = key
+    return f"{node}: /{machine}/{subtask}, record {record}"
+
+
+def _seconds(stamp: Any) -> float:
+    return float(stamp.sec + stamp.nanosec * 1e-9)
+
+
+def _row(header: Header, state: str, reason: str, ended: Any) -> Run:
+    return Run(
+        run_id=header.run_id, task_id=header.task_id, description=header.description, state=state, reason=reason,
+        machines=header.machines, started_at=Time(sec=header.started[0], nanosec=header.started[1]), ended_at=ended,
+    )  # fmt: skip

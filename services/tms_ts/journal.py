@@ -1,0 +1,98 @@
+"""The history of runs: kept in a file of this PC first, then written through TMS_DB by a thread of its own.
+
+A tick never waits for the database, and nothing is lost while the database is away or when this process is killed:
+what was not delivered is delivered in order later, if need be by the next process. Writing an entry twice changes
+nothing in the database.
+"""
+
+import base64
+import logging
+import threading
+import time
+from pathlib import Path
+
+from prometheus_client import Counter, Gauge
+from tms_msg_db.msg import Event, Run
+from tms_msg_db.srv import WriteJournal
+
+from tms_core.errors import RosError
+from tms_core.ros import Ros, pack, unpack
+from tms_ts.spool import Spool
+
+BATCH = 200
+RETRY = 0.5  # s
+KINDS = {b"R": Run, b"E": Event}
+
+WAITING = Gauge("tms_ts_journal_waiting_bytes", "Journal entries not yet written to the database")
+LOST = Counter("tms_ts_journal_lost_total", "Journal entries that could not even be kept on disk")
+
+
+class Journal:
+    """Keeps the order; repeats a batch until the database has it."""
+
+    def __init__(self, ros: Ros, log: logging.Logger, state: Path) -> None:
+        self._ros, self._log = ros, log
+        self._spool = Spool(state / "ts" / "journal")
+        self._news = threading.Event()
+        self._closing = threading.Event()
+        self._thread = threading.Thread(target=self._write, name="journal", daemon=True)
+        self._thread.start()
+
+    def put(self, entry: Run | Event) -> None:
+        """Take an entry; waits for nobody."""
+        kind = b"R" if isinstance(entry, Run) else b"E"
+        try:
+            self._spool.put(kind + base64.b64encode(pack(entry)))
+        except OSError as error:
+            LOST.inc()
+            self._log.error("event=journal_lost run=%s reason=%r", entry.run_id, str(error))
+        self._news.set()
+
+    def close(self) -> None:
+        """Give the last entries a moment to be written; the rest waits on disk."""
+        deadline = time.monotonic() + 0.5
+        while self._spool.waiting() and time.monotonic() < deadline:
+            time.sleep(0.01)
+        self._closing.set()
+
+    def _write(self) -> None:
+        away = False
+        while not self._closing.is_set():
+            lines, end = self._spool.batch(BATCH)
+            WAITING.set(self._spool.waiting())
+            if not lines:
+                self._news.wait(0.2)
+                self._news.clear()
+                continue
+            problem = self._deliver(lines)
+            if problem is None:
+                self._spool.done(end)
+            elif not away:
+                self._log.warning("event=journal_waits reason=%r", problem)
+            away = problem is not None
+            if away:
+                self._closing.wait(RETRY)
+
+    def _deliver(self, lines: list[bytes]) -> str | None:
+        """Write a batch; returns why it could not be written."""
+        request = WriteJournal.Request()
+        for line in lines:
+            entry = self._entry(line)
+            if isinstance(entry, Run):
+                request.runs.append(entry)
+            elif entry is not None:
+                request.events.append(entry)
+        try:
+            answer = self._ros.call(WriteJournal, "/tms/db/write_journal", request)
+        except RosError as error:
+            return str(error)
+        return answer.error_msg if answer.error_code else None
+
+    def _entry(self, line: bytes) -> Run | Event | None:
+        try:
+            entry: Run | Event = unpack(base64.b64decode(line[1:], validate=True), KINDS[line[:1]])
+        except (KeyError, ValueError, RuntimeError) as error:
+            if line:
+                self._log.error("event=journal_unreadable reason=%r", str(error))
+            return None
+        return entry

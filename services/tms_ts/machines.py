@@ -1,0 +1,312 @@
+"""Leaf nodes' way to the subtasks: goals as action clients, one stopped machine before the next goal."""
+
+import threading
+import time
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+from prometheus_client import Histogram
+from tms_msg_rc.msg import StopReceipt
+from tms_msg_rc.srv import StopMachine
+from tms_msg_ts.action import LeafNodeBase
+
+from tms_core.errors import RosError
+from tms_core.fence import LEAVES, Owner
+from tms_core.ros import LOST_TEXT, Call, Outcome, Peer, Ros
+from tms_ts.gateways import Gateways
+from tms_ts.hosts import Hosts
+from tms_ts.record import Key, Record, Replay
+from tms_ts.world import GoalState
+
+ACCEPT_LIMIT = 5.0  # s for a subtask to take or refuse a goal
+SERVER_LIMIT = 10.0  # s for a subtask's server to be there
+STOP_LIMIT = 8.0  # s for a gateway to answer a stop
+GATEWAY_LIMIT = 3.0  # s for a gateway that was lost to be back
+DATABASE_LIMIT = 15.0  # s that a leaf waits for a database that is away
+ASK_AGAIN = 0.5  # s
+AWAY = ("NO_DATABASE", "STORE_DOWN")  # how a subtask begins its refusal when its record cannot be read now
+RECOVERY = 15.0  # s after a loss
+UNREACHED = (
+    "NO_ANSWER",
+    "NO_SERVER",
+    "REJECTED",
+    "NO_JOINT_STATE",
+    "no motion permit",
+)  # what a goal ends with while a process comes back
+
+HANDOVER = Histogram(
+    "tms_ts_handover_seconds", "From the result of one leaf of a run to the acceptance of the next goal",
+    buckets=(0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.5, 1, 5),
+)  # fmt: skip
+
+Tell = Callable[[str, str, str], None]  # kind, node path, text: for the journal
+
+
+class SentGoal:
+    """One goal of one leaf; fields change on the executor thread and in `Machines.advance`."""
+
+    def __init__(self, machine: str, subtask: str, record: str, node: str) -> None:
+        self.machine, self.subtask, self.record, self.node = machine, subtask, record, node
+        self.name = f"/{machine}/{subtask}"
+        self.state = GoalState.SENDING
+        self.reason = ""
+        self.cancelled = False
+        self.begun = time.monotonic()
+        self.call: Call | None = None
+        self.peer: Peer | None = None
+        self.pid: int | None = None  # of the subtask's process when the goal was sent
+        self.not_before = 0.0  # monotonic time of the next attempt
+        self.waits_since: float | None = None  # for the database
+        self.lost_at = 0.0
+        self.losses = 0  # times that a process was lost during this goal
+
+    @property
+    def key(self) -> Key:
+        """What tells this goal from others of the same run."""
+        return self.node, self.machine, self.subtask, self.record
+
+    @property
+    def feedback(self) -> str:
+        return getattr(self.call.feedback, "status", "") if self.call is not None else ""
+
+    def cancel(self) -> None:
+        """Ask for the end; `Machines` keeps watching until the goal is terminal."""
+        self.cancelled = True
+        if self.call is None:
+            self.state = GoalState.CANCELLED  # never sent, so nothing moves
+        elif self.peer is not None:
+            self.peer.cancel(self.call)
+
+
+@dataclass(frozen=True)
+class Identity:
+    """Of the run whose goals these are."""
+
+    number: int  # fencing number
+    retries: int  # times that a goal is sent again after a loss
+    record: Record
+    replay: Replay
+
+
+class Machines:
+    """The goals of one run. Called by the run's thread; answers come on the executor thread and wake it."""
+
+    def __init__(
+        self, ros: Ros, hosts: Hosts, gateways: Gateways, wake: Callable[[], None], tell: Tell, identity: Identity
+    ) -> None:
+        self._ros, self._hosts, self._gateways = ros, hosts, gateways
+        self._wake, self._tell = wake, tell
+        self._number, self._retries = identity.number, identity.retries
+        self._record, self._replay = identity.record, identity.replay
+        self._leaves = 0  # goals sent so far
+        self._handed_over: float | None = None  # monotonic time of the last result that no acceptance has followed
+        self._told: set[tuple[str, int, int]] = set()  # receipts in the journal
+        self._open: list[SentGoal] = []
+        self._stopping: set[str] = set()  # machines that are being stopped after a lost goal
+
+    def peer(self, machine: str, subtask: str) -> Peer:
+        """A subtask's action server; asking early lets discovery happen before the first goal."""
+        return self._ros.peer(LeafNodeBase, f"/{machine}/{subtask}")
+
+    def send(self, machine: str, subtask: str, record: str, node: str) -> SentGoal:
+        """Begin a goal; it leaves at once when the machine is free and the server is there."""
+        goal = SentGoal(machine, subtask, record, node)
+        before = self._replay.take(goal.key)
+        if before is not None:
+            goal.state, goal.reason = (GoalState.SUCCEEDED, "") if before else (GoalState.FAILED, "failed before")
+            self._tell("goal", node, f"{goal.name} is not repeated: {goal.state.value} before the interruption")
+            return goal
+        goal.peer = self.peer(machine, subtask)
+        self._open.append(goal)
+        self._try_send(goal)
+        return goal
+
+    def advance(self) -> None:
+        """Send what waits, notice what is lost, forget what has ended."""
+        for goal in list(self._open):
+            if goal.call is None and not goal.state.final:
+                self._try_send(goal)
+            elif goal.call is not None and goal.call.outcome is None:
+                self._look_for_loss(goal, goal.call)
+            if goal.state.final and (goal.call is None or goal.call.outcome is not None):
+                self._open.remove(goal)
+
+    def settled(self) -> bool:
+        """Whether every goal is terminal and no machine is being stopped."""
+        self.advance()
+        return not self._open and not self._stopping
+
+    def open_goals(self) -> list[str]:
+        """Names of the goals that have not ended."""
+        return [goal.name for goal in self._open]
+
+    def stop(self, machine: str, cause: str) -> StopReceipt:
+        """Have the gateway stop the machine and watch it stand. Blocks; never raises."""
+        request = StopMachine.Request(cause=cause, orderly=True)
+        self._gateways.wait_alive(machine, GATEWAY_LIMIT)
+        try:
+            answer = self._ros.call(StopMachine, f"/{machine}/rc/stop", request, STOP_LIMIT)
+        except RosError as error:
+            return StopReceipt(machine=machine, confirmed=False, cause=cause, detail=str(error), stamp=self._ros.now())
+        receipt: StopReceipt = answer.receipt
+        return receipt
+
+    def stop_all(self, machines: Sequence[str], cause: str) -> list[StopReceipt]:
+        """`stop` for several machines at the same time."""
+        if not machines:
+            return []
+        with ThreadPoolExecutor(len(machines), "stop") as pool:
+            return list(pool.map(lambda machine: self.stop(machine, cause), machines))
+
+    def receipt(self, receipt: StopReceipt) -> None:
+        """A stop into the journal, once, from wherever it is heard first."""
+        key = (receipt.machine, receipt.stamp.sec, receipt.stamp.nanosec)
+        if key not in self._told:
+            self._told.add(key)
+            self._tell("stop", "", receipt_text(receipt))
+
+    def _try_send(self, goal: SentGoal) -> None:
+        assert goal.peer is not None
+        if time.monotonic() < goal.not_before:
+            return
+        goal.reason = self._obstacle(goal)
+        if goal.reason:
+            gone = self._gone_for_good(goal)
+            if gone:
+                self._end(goal, GoalState.FAILED, gone)
+            elif time.monotonic() - goal.begun > SERVER_LIMIT:
+                self._end(goal, GoalState.FAILED, f"{goal.reason}, for {SERVER_LIMIT:.0f} s")
+            return
+        goal.pid = self._hosts.pid(goal.machine, goal.subtask)
+        request = LeafNodeBase.Goal(model_name=goal.machine, record_name=goal.record)
+        goal.begun = time.monotonic()
+        self._tell("goal", goal.node, f"sent to {goal.name}, record {goal.record}")
+        self._leaves = self._leaves % LEAVES + 1
+        goal_id = Owner(self._number, self._leaves).goal_id()
+        self._record.sent(goal.key)
+        goal.call = goal.peer.send(request, goal_id=goal_id, on_change=lambda call: self._changed(goal, call))
+
+    def _obstacle(self, goal: SentGoal) -> str:
+        """Why the goal cannot leave now."""
+        if goal.machine in self._stopping:
+            return f"{goal.machine} is being stopped"
+        before = [other for other in self._open if other.cancelled and other.machine == goal.machine]
+        if any(other.call is not None and other.call.outcome is None for other in before):
+            return f"{goal.machine} has not ended its last goal yet"
+        for process in ("rc", "rp", goal.subtask):
+            trouble = self._hosts.trouble(goal.machine, process)
+            if trouble and (goal.losses or process == goal.subtask):
+                return trouble
+        if goal.peer is not None and not goal.peer.ready():
+            return f"{goal.name} is not there"
+        return self._gateways.obstacle(goal.machine)
+
+    def _gone_for_good(self, goal: SentGoal) -> str:
+        """A process that supervisord has given up, or a machine that only a person can arm again."""
+        latch = self._gateways.latch(goal.machine)
+        if latch:
+            return f"{goal.machine} is stopped ({latch}): re-arm it with `tms rearm {goal.machine}`"
+        fatal = next(filter(None, (self._hosts.fatal(goal.machine, p) for p in ("rc", "rp", goal.subtask))), "")
+        if fatal:
+            self._tell("alarm", goal.node, fatal)
+        return fatal
+
+    def _changed(self, goal: SentGoal, call: Call) -> None:
+        """A step of the action protocol, on the executor thread."""
+        if call.outcome is Outcome.LOST if goal.call is None else call is not goal.call:
+            return  # of a goal that is sent again (None alone is a goal whose sending is just being booked)
+        if call.outcome is not None and not goal.state.final:
+            self._ended(goal, call)
+        elif call.accepted and goal.state is GoalState.SENDING:
+            goal.state = GoalState.RUNNING
+            if self._handed_over is not None:
+                HANDOVER.observe(time.monotonic() - self._handed_over)
+                self._handed_over = None
+            self._tell("goal", goal.node, f"{goal.name} accepted")
+        self._wake()
+
+    def _ended(self, goal: SentGoal, call: Call) -> None:
+        if call.outcome is Outcome.SUCCEEDED:
+            self._end(goal, GoalState.SUCCEEDED, "")
+            self._handed_over = time.monotonic()
+        elif call.outcome is Outcome.CANCELED:
+            self._end(goal, GoalState.CANCELLED, f"{goal.name} was cancelled")
+        elif goal.feedback.startswith(AWAY) and self._may_wait(goal):
+            goal.reason, goal.state = goal.feedback, GoalState.SENDING
+            goal.call, goal.begun, goal.not_before = None, time.monotonic(), time.monotonic() + ASK_AGAIN
+        elif self._may_ask_again(goal):
+            goal.reason, goal.state = goal.feedback, GoalState.SENDING
+            goal.call, goal.begun, goal.not_before = None, time.monotonic(), time.monotonic() + ASK_AGAIN
+        elif LOST_TEXT in goal.feedback:
+            self._lost(goal, f"{goal.name}: {goal.feedback}")
+        else:
+            word = "refused the goal" if call.outcome is Outcome.REJECTED else "gave up"
+            self._end(goal, GoalState.FAILED, f"{goal.name} {word}: {goal.feedback or 'no reason given'}")
+
+    def _may_ask_again(self, goal: SentGoal) -> bool:
+        """Soon after a loss the processes below may not have found each other yet; that is no further loss."""
+        soon = goal.losses > 0 and time.monotonic() - goal.lost_at < RECOVERY
+        return soon and not goal.cancelled and any(word in goal.feedback for word in UNREACHED)
+
+    def _may_wait(self, goal: SentGoal) -> bool:
+        """Whether a subtask that cannot read its record is asked again: the database may be coming back."""
+        goal.waits_since = goal.waits_since or time.monotonic()
+        return not goal.cancelled and time.monotonic() - goal.waits_since < DATABASE_LIMIT
+
+    def _end(self, goal: SentGoal, state: GoalState, reason: str) -> None:
+        goal.reason, goal.state = reason, state
+        if state is not GoalState.CANCELLED and not goal.cancelled:
+            self._record.done(goal.key, state is GoalState.SUCCEEDED)
+        self._tell("goal", goal.node, f"{goal.name} {state.value}" + (f": {reason}" if reason else ""))
+
+    def _look_for_loss(self, goal: SentGoal, call: Call) -> None:
+        """A server that is gone never answers: end the goal, and stop what it may have left moving."""
+        why = self._loss(goal, call)
+        if not why:
+            return
+        final = goal.state.final
+        goal.call = None if not final else call
+        call.end(Outcome.LOST)
+        if not final:
+            self._lost(goal, why)
+
+    def _lost(self, goal: SentGoal, why: str) -> None:
+        """A process ended during a goal: have the machine seen to stand, then send the goal again, a few times."""
+        goal.losses += 1
+        goal.lost_at = time.monotonic()
+        self._stopping.add(goal.machine)
+        if goal.cancelled:
+            self._end(goal, GoalState.CANCELLED, why)
+        elif goal.losses > self._retries:
+            self._end(goal, GoalState.FAILED, f"{why} (for the {goal.losses}. time)")
+        else:
+            goal.call, goal.state, goal.begun = None, GoalState.SENDING, time.monotonic()
+            goal.not_before = goal.begun + ASK_AGAIN * goal.losses
+            goal.reason = f"{why}; sent again when the process is back"
+            self._tell("loss", goal.node, f"{why}; sent again when the process is back ({goal.losses}/{self._retries})")
+        threading.Thread(target=self._stop_after_loss, args=(goal.machine, why), daemon=True).start()
+
+    def _loss(self, goal: SentGoal, call: Call) -> str:
+        if not call.accepted and time.monotonic() - goal.begun > ACCEPT_LIMIT:
+            return f"{goal.name} did not answer the goal within {ACCEPT_LIMIT:.0f} s"
+        now = self._hosts.pid(goal.machine, goal.subtask)
+        if goal.pid is not None and now is not None and now != goal.pid:
+            if goal.peer is not None:
+                goal.peer.lost()
+            return f"process {goal.machine}:{goal.subtask} ended during its goal, see `tms logs {goal.subtask}`"
+        gone = goal.peer is not None and not goal.peer.ready()
+        return f"{goal.name} went away during its goal" if gone else ""
+
+    def _stop_after_loss(self, machine: str, cause: str) -> None:
+        receipt = self.stop(machine, cause)
+        self.receipt(receipt)
+        self._stopping.discard(machine)
+        self._wake()
+
+
+def receipt_text(receipt: StopReceipt) -> str:
+    """A receipt in one line."""
+    if receipt.confirmed:
+        return f"{receipt.machine} stood after {receipt.seconds:.2f} s and {receipt.travel:.3f} rad ({receipt.cause})"
+    return f"{receipt.machine}: STOP UNCONFIRMED: {receipt.detail} ({receipt.cause})"

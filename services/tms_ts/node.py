@@ -1,0 +1,322 @@
+"""Process `tms:ts`: runs stored tasks, one after another and several at once."""
+
+import threading
+import time
+import uuid
+from collections import Counter
+from datetime import datetime, timezone
+from typing import Any
+
+from builtin_interfaces.msg import Time
+from prometheus_client import Gauge
+from tms_msg_db.srv import GetTask
+from tms_msg_ts.action import ExecuteTask
+from tms_msg_ts.msg import RunStates
+from tms_msg_ts.srv import AnswerQuestion, CancelRun, CheckTask, ResumePlan
+
+from tms_core import log
+from tms_core.app import App
+from tms_core.errors import TaskError, TmsError
+from tms_core.ros import Ended, Goal, Outcome
+from tms_ts import bt
+from tms_ts.flags import Flags
+from tms_ts.gateways import Gateways, Holder
+from tms_ts.groot.monitor import Monitors
+from tms_ts.hosts import Hosts
+from tms_ts.interrupted import Interrupted
+from tms_ts.journal import Journal
+from tms_ts.machines import Identity, Machines
+from tms_ts.numbers import Numbers
+from tms_ts.preflight import Findings, machines_of, preflight, processes_of, records_of
+from tms_ts.questions import Clicks, Questions
+from tms_ts.record import Header, Past, Records, Replay
+from tms_ts.run import Facts, Run
+from tms_ts.shared_records import SharedRecords
+from tms_ts.surroundings import Around, Sensing
+from tms_ts.world import World
+
+DB_LIMIT = 5.0  # s
+SERVERS_LIMIT = 15.0  # s for the subtasks' servers to be there after their start ...
+SERVER_START = 3.0  # s, ... and this for each of them: many starting at once share the cores
+STATES = ("preparing", "running", "stopping")
+ACTIVE = Gauge("tms_ts_active_runs", "Active runs by state", ["state"])
+NODES = Gauge("tms_ts_tree_nodes", "Nodes of the active runs' trees by status", ["status"])
+RUNS_LONGEST = 0.5  # s between messages on the topic of active runs ...
+RUNS_SHORTEST = 0.05  # s ... and when something changes all the time
+MEASURE = 1.0  # s between looks at the runs for metrics
+
+
+def start(app: App) -> None:
+    """Serve /tms/execute_task and what belongs to it."""
+    scheduler = Scheduler(app)
+    app.ros.serve(ExecuteTask, "/tms/execute_task", scheduler.execute)
+    app.ros.offer(CancelRun, "/tms/cancel_run", scheduler.cancel)
+    app.ros.offer_slow(CheckTask, "/tms/check_task", scheduler.check)
+    app.ros.offer_slow(ResumePlan, "/tms/resume_plan", scheduler.interrupted.plan)
+    app.ros.offer_slow(CancelRun, "/tms/abandon_run", scheduler.interrupted.abandon)
+    app.ros.offer(AnswerQuestion, "/tms/answer", scheduler.answer)
+    app.ros.every(MEASURE, scheduler.measure)
+    app.on_stop(scheduler.close)
+    app.ready_when(scheduler.unready)
+
+
+class Scheduler:
+    """All active runs."""
+
+    def __init__(self, app: App) -> None:
+        self._app, self._ros = app, app.ros
+        self._hosts = Hosts(app.ros)
+        self._gateways = Gateways(app)
+        self._monitors = Monitors(app.log, app.site.file.groot.bind, app.site.file.ports.groot)
+        self._numbers = Numbers(app.site.state)
+        self._journal = Journal(app.ros, app.log, app.site.state)
+        self._records = Records(app.site.state)
+        self._shared = SharedRecords(app.ros)
+        self._sensing = Sensing(app)
+        self.interrupted = Interrupted(app, self._journal, self._records)
+        self._gateways.late_receipt = self.interrupted.receipt
+        self._runs: dict[str, Run] = {}
+        self._holders: dict[str, str] = {}  # machine -> run that moves it
+        self._lock = threading.Lock()  # over the two above; held for moments only
+        self._news, self._closing = threading.Event(), threading.Event()
+        self._questions = Questions(app.ros, self._news.set)
+        self._publisher = app.ros.publisher(RunStates, "/tms/runs", depth=1, latched=True)
+        threading.Thread(target=self._tell, name="runs", daemon=True).start()
+
+    def unready(self) -> str | None:
+        """The scheduler works only with the database."""
+        return None if self._ros.has_service(GetTask, "/tms/db/get_task") else "tms:db is not there"
+
+    def states(self) -> RunStates:
+        """Active runs and open questions."""
+        with self._lock:
+            runs = [run.state() for run in self._runs.values()]
+        return RunStates(runs=runs, questions=self._questions.messages())
+
+    def _tell(self) -> None:
+        """Publish what changed at once, but not more often than anybody can see."""
+        while not self._closing.wait(RUNS_SHORTEST):
+            self._news.wait(RUNS_LONGEST - RUNS_SHORTEST)
+            self._news.clear()
+            if not self._closing.is_set():
+                self._publisher.publish(self.states())
+
+    def answer(self, request: AnswerQuestion.Request, response: AnswerQuestion.Response) -> AnswerQuestion.Response:
+        """Take an operator's answer to a WaitForClick node."""
+        if not self._questions.answer(request.id, request.yes, request.by or "an operator"):
+            response.error_code = "NO_QUESTION"
+            response.error_msg = f"nobody asks '{request.id}' any more: it was answered, timed out or its run has ended"
+        return response
+
+    def measure(self) -> None:
+        """The metrics of the active runs."""
+        with self._lock:
+            runs = list(self._runs.values())
+        for state in STATES:
+            ACTIVE.labels(state).set(sum(run.facts.state == state for run in runs))
+        counted = Counter(status.name.lower() for run in runs for status in run.statuses())
+        for status in ("idle", "running", "success", "failure"):
+            NODES.labels(status).set(counted[status])
+
+    def close(self) -> None:
+        """The process ends: runs stop their machines; the runtime waits a moment for their threads."""
+        with self._lock:
+            runs = list(self._runs.values())
+        for run in runs:
+            run.cancel("interrupted", "the scheduler was stopped")
+        deadline = time.monotonic() + 1.0
+        for run in runs:
+            run.ended.wait(max(0.0, deadline - time.monotonic()))
+        self._closing.set()
+        self._journal.close()
+
+    def cancel(self, request: CancelRun.Request, response: CancelRun.Response) -> CancelRun.Response:
+        """Ask a run to stop; its end comes with its result."""
+        with self._lock:
+            run = self._runs.get(request.run_id)
+            active = ", ".join(self._runs) or "none"
+        if run is None:
+            response.error_code = "NO_RUN"
+            response.error_msg = f"no run '{request.run_id}' is active (active: {active}); `tms runs` lists all"
+        else:
+            run.cancel()
+        return response
+
+    def check(self, request: CheckTask.Request, response: CheckTask.Response) -> CheckTask.Response:
+        """Preflight of a stored task or of XML, without running."""
+        try:
+            xml = request.xml if request.task_id == 0 else self._task(request.task_id).task_sequence
+            report = bt.check(xml)
+            if report.ok:
+                found = self._preflight(bt.load(xml, world=None), present=True)
+                response.errors, response.warnings = found.errors, found.warnings
+            else:
+                response.errors = [str(error) for error in report.errors]
+                response.warnings = [f"line {line}: {text}" for line, text in report.warnings]
+        except TmsError as error:
+            response.error_code, response.error_msg = error.code, str(error)
+        return response
+
+    # a run
+
+    def execute(self, goal: Goal) -> Ended:
+        """One ExecuteTask goal, from the database to the machines' stand-still."""
+        try:
+            past = self.interrupted.begin(goal.request.resume)[0] if goal.request.resume else None
+        except TaskError as error:
+            return _refused(goal.request.resume, error.code, str(error))
+        facts = self._facts(goal, past)
+        log.bind(run=facts.run_id)
+        run = Run(
+            self._ros, self._journal, self._app.log, goal, facts, self._records.open(facts.run_id), self._news.set
+        )
+        run.number = past.last_event if past is not None else 0
+        goal.publish(ExecuteTask.Feedback(run_id=facts.run_id, state=facts.state))  # the client can ask for it now
+        goal.on_cancel = run.cancel
+        if goal.cancelled.is_set():
+            run.cancel()
+        with self._lock:
+            self._runs[facts.run_id] = run
+        try:
+            return self._execute(run, goal, past)
+        except TmsError as error:
+            run.refuse(error.code, str(error))
+            return _refused(facts.run_id, error.code, str(error))
+        finally:
+            if run.flags is not None:
+                run.flags.close()
+            self._gateways.drop(self._held_by(facts.run_id))
+            with self._lock:
+                del self._runs[facts.run_id]
+                for machine in [name for name, holder in self._holders.items() if holder == facts.run_id]:
+                    del self._holders[machine]
+            self._news.set()
+            self.interrupted.over(facts.run_id)
+            run.ended.set()
+
+    def _facts(self, goal: Goal, past: Past | None) -> Facts:
+        number = self._numbers.next()
+        if past is not None and past.header is not None:
+            old = past.header
+            started = Time(sec=old.started[0], nanosec=old.started[1])
+            return Facts(old.run_id, number, old.task_id, old.description, old.machines, started)
+        stamp = datetime.now(timezone.utc).strftime("%Y%m%d-%H%M%S")
+        run_id = f"{stamp}-{uuid.uuid4().hex[:4]}"
+        return Facts(run_id, number, goal.request.task_id, "", [], self._ros.now())
+
+    def _execute(self, run: Run, goal: Goal, past: Past | None) -> Ended:
+        facts = run.facts
+        goal.publish(ExecuteTask.Feedback(run_id=facts.run_id, state=facts.state))  # so that it can be cancelled
+        if past is not None and past.header is not None:
+            xml = past.header.xml
+        else:
+            task = self._task(facts.task_id)
+            facts.description, xml = task.description, task.task_sequence
+        replay = Replay(past.ended if past is not None else [])
+        identity = Identity(facts.number, self._app.site.file.on_loss.retries, run.record, replay)
+        machines = Machines(self._ros, self._hosts, self._gateways, run.wake.set, run.tell, identity)
+        run.flags = Flags(self._ros, self._shared, run.wake.set, facts.run_id)
+        clicks = Clicks(self._questions, facts.run_id, run.wake.set, run.tell)
+        world = World(machines, run.flags, clicks)
+        tree = bt.load(xml, world=world)
+        facts.machines, facts.records = machines_of(tree), records_of(tree)
+        facts.writes = {(value.record, value.field) for value in tree.shared_values() if value.writes}
+        started = (facts.started.sec, facts.started.nanosec)
+        run.record.begin(
+            Header(facts.run_id, facts.number, facts.task_id, facts.description, facts.machines, xml, started)
+        )
+        run.enter("preparing", "resumed" if past is not None else "")
+        run.tell_tree(tree)
+        self._refuse_errors(run, self._preflight(tree), goal.request.ignore_warnings)
+        self._hold(run)
+        holder = Holder(run.stopped, machines.receipt, run.alive)
+        self._gateways.hold(facts.machines, facts.number, facts.run_id, holder)
+        self._prepare(run, processes_of(tree, self._app.site), machines)
+        with self._monitors.watch(facts.run_id, tree):
+            outcome = run.execute(tree, machines)
+        return _ended(facts, outcome)
+
+    def _refuse_errors(self, run: Run, found: Findings, ignore_warnings: bool) -> None:
+        for text in found.warnings:
+            run.tell("warning", "", text)
+        if found.errors:
+            more = f" (and {len(found.errors) - 1} more: `tms task check`)" if len(found.errors) > 1 else ""
+            raise TaskError(found.errors[0] + more, "PREFLIGHT")
+
+    def _hold(self, run: Run) -> None:
+        """One machine in one run at a time."""
+        with self._lock:
+            for machine in run.facts.machines:
+                holder = self._holders.get(machine)
+                if holder is not None:
+                    raise TaskError(f"{machine} is in run {holder}: wait or `tms cancel {holder}`", "MACHINE_BUSY")
+                latch = self._gateways.latch(machine)
+                if latch:
+                    text = f"{machine} is stopped ({latch}): re-arm it with `tms rearm {machine}`"
+                    raise TaskError(text, "NOT_ARMED")
+            self._holders.update(dict.fromkeys(run.facts.machines, run.facts.run_id))
+
+    def _held_by(self, run_id: str) -> list[str]:
+        with self._lock:
+            return [machine for machine, holder in self._holders.items() if holder == run_id]
+
+    def _prepare(self, run: Run, processes: list[str], machines: Machines) -> None:
+        """Start the subtasks that the tree names and wait until their servers are there."""
+        self._hosts.wait_known(3.0)
+        problem = self._hosts.start(processes, run.cancelled.is_set)
+        if problem and not run.cancelled.is_set():
+            raise TaskError(problem, "NO_PROCESS")
+        waiting = {name: machines.peer(*name.split(":", 1)) for name in processes}
+        limit = SERVERS_LIMIT + SERVER_START * len(waiting)
+        deadline = time.monotonic() + limit
+        while waiting and not run.cancelled.is_set():
+            waiting = {name: peer for name, peer in waiting.items() if not peer.ready()}
+            if waiting and time.monotonic() > deadline:
+                name = next(iter(waiting))
+                raise TaskError(f"{name} is not there after {limit:.0f} s: see `tms logs {name}`", "NO_SERVER")
+            run.wake.wait(0.02)
+
+    # the database
+
+    def _task(self, task_id: int) -> Any:
+        answer = self._ros.call(GetTask, "/tms/db/get_task", GetTask.Request(task_id=task_id), DB_LIMIT)
+        if answer.error_code:
+            raise TaskError(answer.error_msg, answer.error_code)
+        return answer.task
+
+    def _preflight(self, tree: bt.Tree, present: bool = False) -> Findings:
+        """`present`: also say what keeps the machines from moving now; a run is refused for that later."""
+        problem = self._problem if present else _no_problem
+        return preflight(tree, self._app.site, Around(self._app, self._sensing, problem, self._written))
+
+    def _problem(self, machine: str) -> str:
+        with self._lock:
+            holder = self._holders.get(machine)
+        return f"{machine} is in run {holder}" if holder is not None else self._gateways.obstacle(machine)
+
+    def _written(self, record: str, field: str) -> bool:
+        """Whether an active run writes a shared value."""
+        with self._lock:
+            return any((record, field) in run.facts.writes for run in self._runs.values())
+
+
+def _no_problem(_machine: str) -> str:
+    return ""
+
+
+def _ended(facts: Facts, outcome: str) -> Ended:
+    codes = {
+        "success": "",
+        "failure": "FAILED",
+        "cancelled": "CANCELLED",
+        "stop_unconfirmed": "STOP_UNCONFIRMED",
+        "interrupted": "INTERRUPTED",
+    }
+    result = ExecuteTask.Result(run_id=facts.run_id, outcome=outcome, error_code=codes[outcome], error_msg=facts.reason)
+    how = {"success": Outcome.SUCCEEDED, "cancelled": Outcome.CANCELED}
+    return how.get(outcome, Outcome.ABORTED), result
+
+
+def _refused(run_id: str, code: str, text: str) -> Ended:
+    result = ExecuteTask.Result(run_id=run_id, outcome="refused", error_code=code, error_msg=text)
+    return Outcome.ABORTED, result

@@ -1,0 +1,1 @@
+"""Custom nodes, one file each; the file list is the catalogue."""

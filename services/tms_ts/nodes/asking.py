@@ -1,0 +1,53 @@
+"""The base of leaves that wait for an answer which the C++ system waits for inside the tick.
+
+There the whole tree stands still until the answer is there. Here the leaf is RUNNING meanwhile; parents that start
+over at every tick (ReactiveSequence, ReactiveFallback) know such a leaf by `asking` and go on where they were.
+"""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from tms_ts.bt.errors import TickError
+from tms_ts.bt.leaf import PlainAction
+from tms_ts.bt.status import FAILURE, RUNNING, Status
+from tms_ts.world import Pending, World
+
+
+class Asking(PlainAction):
+    __slots__ = ("pending",)
+    asking: ClassVar[bool] = True
+
+    def prepare(self) -> None:
+        self.pending: Pending[Any] | None = None
+
+    @property
+    def world(self) -> World:
+        if self.context.world is None:
+            raise TickError(f"{self.registration_name}: this tree was loaded without a world to ask")
+        return self.context.world
+
+    def ask(self) -> Pending[Any] | None:
+        """Put the question; None fails the node, with the reason set."""
+        raise NotImplementedError
+
+    def answered(self, value: Any) -> Status:
+        raise NotImplementedError
+
+    def tick(self) -> Status:
+        if self.pending is None:
+            self.reason = "waits for an answer"
+            self.pending = self.ask()
+            if self.pending is None:
+                return FAILURE
+        if not self.pending.done:
+            return RUNNING
+        pending, self.pending = self.pending, None
+        if pending.error is not None:
+            self.reason = pending.error
+            return FAILURE
+        self.reason = ""
+        return self.answered(pending.value)
+
+    def halt(self) -> None:
+        self.pending = None

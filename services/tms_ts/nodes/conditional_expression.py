@@ -1,0 +1,62 @@
+"""Decide by an expression over blackboard values."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+from tms_ts.bt.convert import MISSING
+from tms_ts.bt.leaf import SyncAction
+from tms_ts.bt.ports import In
+from tms_ts.bt.registry import node
+from tms_ts.bt.status import FAILURE, SUCCESS, Status
+from tms_ts.nodes.expression import TRUTH, Invalid, Scalar, evaluate, names
+
+
+class Deciding(SyncAction):
+    __slots__ = ()
+    text_port: ClassVar[str] = ""
+
+    def lookup(self, key: str) -> Scalar:
+        value = self.blackboard.get(key)
+        if isinstance(value, int) and not -(2**31) <= value < 2**31:
+            self.warn(f"{key} is too big for 32 bits; the C++ system does not put such a number into an expression")
+        return "" if value is MISSING else value
+
+    def tick(self) -> Status:
+        text = self.read(self.text_port)
+        try:
+            if not isinstance(text, str):
+                raise Invalid("there is no expression")
+            return SUCCESS if evaluate(text, self.lookup, self.warn) else FAILURE
+        except Invalid as error:
+            self.reason = str(error)
+            return FAILURE
+
+    def preflight(self, texts: Mapping[str, str]) -> list[str]:
+        text = self.literal(self.text_port)
+        if text is None:
+            return []
+        try:
+            keys = names(text)
+        except Invalid as error:
+            return [f"{error}, so {self.registration_name} always fails"]
+        return [
+            f"SetBlackboard stores the text {texts[key]!r} in {key!r}: the C++ system fails here, this engine takes it "
+            "as a boolean"
+            for key in sorted(keys & texts.keys())
+            if texts[key] in TRUTH
+        ]
+
+
+@node
+class ConditionalExpression(Deciding):
+    """Succeed while an expression over blackboard keys is true; fail if it is false or cannot be evaluated.
+
+    conditional_expression: e.g. (ARRIVAL_FLG == true or LOADED_FLG == true) and CURRENT_LOCATION == 2
+    """
+
+    __slots__ = ()
+    text_port = "conditional_expression"
+    needs = ("conditional_expression",)
+    conditional_expression: In[str]

@@ -1,0 +1,33 @@
+"""Decide by an expression over boolean blackboard values; kept for older trees."""
+
+from __future__ import annotations
+
+from tms_ts.bt.ports import In
+from tms_ts.bt.registry import node
+from tms_ts.nodes.conditional_expression import Deciding
+from tms_ts.nodes.expression import TRUTH, Invalid, Scalar
+
+
+@node
+class ConditionalExpressionBool(Deciding):
+    """Succeed while an expression over boolean blackboard keys is true; other keys are unknown to it.
+
+    conditional_expression_bool: e.g. CONTINUE_FLG == true
+    """
+
+    __slots__ = ()
+    text_port = "conditional_expression_bool"
+    needs = ("conditional_expression_bool",)
+    conditional_expression_bool: In[str]
+
+    def lookup(self, key: str) -> Scalar:
+        value = self.blackboard.get(key)
+        if isinstance(value, bool):
+            return value
+        if isinstance(value, int | float):
+            self.warn(f"{key} is a number; the C++ system does not know it in {self.registration_name}")
+            return value
+        if isinstance(value, str) and value in TRUTH:
+            self.warn(f"the text {value!r} of {key!r} counts as a boolean; the C++ system does not know the key here")
+            return TRUTH[value]
+        raise Invalid(f"{key} is not a boolean key")

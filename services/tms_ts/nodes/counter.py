@@ -1,0 +1,34 @@
+"""Count up the number at a key."""
+
+from __future__ import annotations
+
+from tms_ts.bt.convert import Missing, text_to_int, to_text
+from tms_ts.bt.leaf import SyncAction
+from tms_ts.bt.ports import In
+from tms_ts.bt.registry import node
+from tms_ts.bt.status import FAILURE, SUCCESS, Status
+
+
+@node
+class Counter(SyncAction):
+    """Add one to the number at a key (kept as text, if it is one); fail if there is no number.
+
+    key: the name of the key
+    """
+
+    __slots__ = ()
+    key: In[str]
+
+    def tick(self) -> Status:
+        stored = self.blackboard.get(self.key)
+        text = to_text(stored)
+        number = text if isinstance(text, Missing) else text_to_int(text)
+        if isinstance(number, Missing):
+            self.reason = f"{self.key} holds no number"
+            return FAILURE
+        if isinstance(stored, int) and not isinstance(stored, bool):
+            self.warn(f"{self.key} holds a number, not a text; the C++ system throws here if nothing else declares it")
+            self.store(self.key, number + 1)
+        else:
+            self.store(self.key, str(number + 1))
+        return SUCCESS

@@ -1,0 +1,148 @@
+"""Expressions over blackboard values: identifiers, numbers, true, false, == != < > <= >=, and, or, parentheses.
+
+Evaluated by simpleeval with nothing but those operations allowed. The rules are those of the C++ system: every part
+is evaluated (no short cut), a key without a value is the empty text, text compares with text and numbers with numbers
+(true is 1), and an expression that breaks this is invalid as a whole.
+"""
+
+from __future__ import annotations
+
+import ast
+import operator
+import re
+import threading
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Any
+
+from simpleeval import InvalidExpression, SimpleEval  # type: ignore[import-untyped,unused-ignore]
+
+MAX_LENGTH = 4000
+MAX_NESTING = 60
+_ALLOWED = re.compile(r"[\w\s()=!<>.\-]*", re.ASCII)
+_IDENTIFIER = re.compile(r"(?<![\w.])[A-Za-z_]\w*", re.ASCII)
+_NUMBER = re.compile(r"(?<![\w.])0*([0-9]+(?:\.[0-9]*)?(?:[eE]-?[0-9]+)?)(and|or|)(?![\w.])", re.ASCII)
+_NO_NUMBER = re.compile(r"(?<![\w.])[0-9][0-9.]*(?![eE]-?[0-9]+(?![\w.]))[A-Za-z_]", re.ASCII)
+_WORDS = frozenset({"and", "or"})
+_PREFIX = "k_"  # keeps Python's own words from meaning anything
+TRUTH = {"true": True, "false": False}
+
+_local = threading.local()  # an evaluator a thread: making one costs more than most expressions
+
+Lookup = Callable[[str], Any]  # value of a key, "" if there is none
+Scalar = str | bool | int | float
+
+
+class Invalid(Exception):
+    """The expression cannot be evaluated; for a condition that is a failure."""
+
+
+@lru_cache(maxsize=1024)
+def parse(text: str) -> ast.expr:
+    """The syntax tree of an expression; Invalid if it is none."""
+    if len(text) > MAX_LENGTH or text.count("(") > MAX_NESTING or text.count("-") > MAX_NESTING:
+        raise Invalid("the expression is too long")
+    if not _ALLOWED.fullmatch(text):
+        raise Invalid("only names, numbers, == != < > <= >= and or ( ) are allowed")
+    flat = _NUMBER.sub(r"\1 \2", " ".join(text.split()))  # 01 is 1, and "1and" is two words, as in C++
+    if _NO_NUMBER.search(flat):
+        raise Invalid("a name begins with a digit")
+    named = _IDENTIFIER.sub(lambda word: word[0] if word[0] in _WORDS else _PREFIX + word[0], flat)
+    try:
+        body = ast.parse(named, mode="eval").body
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+        raise Invalid("the expression cannot be read") from error
+    return body
+
+
+def names(text: str) -> frozenset[str]:
+    """The keys that an expression reads; Invalid if it is none."""
+    found = {node.id.removeprefix(_PREFIX) for node in ast.walk(parse(text)) if isinstance(node, ast.Name)}
+    return frozenset(found - TRUTH.keys())
+
+
+class _Evaluator(SimpleEval):  # type: ignore[misc,unused-ignore]
+    """simpleeval, reduced to comparisons and logic, with the C++ system's rules for types."""
+
+    lookup: Lookup
+    warn: Callable[[str], None]
+
+    def __init__(self) -> None:
+        super().__init__(operators={}, functions={}, names={})
+        self.nodes = {
+            ast.Constant: self.constant,
+            ast.Name: self.name,
+            ast.Compare: self.compare,
+            ast.BoolOp: self.logic,
+            ast.UnaryOp: self.minus,
+        }
+
+    def constant(self, node: ast.Constant) -> Scalar:
+        if not isinstance(node.value, int | float):
+            raise Invalid(f"{node.value!r} is not a number")
+        return node.value
+
+    def name(self, node: ast.Name) -> Scalar:
+        key = node.id.removeprefix(_PREFIX)
+        if key in TRUTH:
+            return TRUTH[key]
+        value = self.lookup(key)
+        return round(value, 6) if isinstance(value, float) else value if isinstance(value, Scalar) else ""
+
+    def minus(self, node: ast.UnaryOp) -> Scalar:
+        value: Scalar = self._eval(node.operand)
+        if not isinstance(node.op, ast.USub) or isinstance(value, str):
+            raise Invalid("only numbers can be negative")
+        return -value
+
+    def logic(self, node: ast.BoolOp) -> bool:
+        values = [self.truth(self._eval(part)) for part in node.values]  # all of them, as in C++
+        return all(values) if isinstance(node.op, ast.And) else any(values)
+
+    def compare(self, node: ast.Compare) -> bool:
+        left = self._eval(node.left)
+        for op, part in zip(node.ops, node.comparators, strict=True):
+            left = self.compare_two(op, left, self._eval(part))
+        return bool(left)
+
+    def compare_two(self, op: ast.cmpop, left: Scalar, right: Scalar) -> bool:
+        if isinstance(left, str) != isinstance(right, str):
+            left, right = self.as_bool(left, right), self.as_bool(right, left)
+        function = _COMPARISONS.get(type(op))
+        if function is None or (isinstance(left, str) and not isinstance(op, ast.Eq | ast.NotEq)):
+            raise Invalid("only == != < > <= >= compare values")
+        return bool(function(left, right))
+
+    def as_bool(self, value: Scalar, other: Scalar) -> Scalar:
+        """A text true or false that meets a boolean counts as one; any other text next to a number is invalid."""
+        if not isinstance(value, str):
+            return value
+        if isinstance(other, bool) and value in TRUTH:
+            self.warn(f"the text {value!r} counts as a boolean here; the C++ system calls the expression invalid")
+            return TRUTH[value]
+        raise Invalid(f"the text {value!r} is compared with {other!r}" if value else "a key has no value yet")
+
+    def truth(self, value: Scalar) -> bool:
+        return bool(self.as_bool(value, True))
+
+
+_COMPARISONS: dict[type[ast.cmpop], Callable[[Any, Any], Any]] = {
+    ast.Eq: operator.eq,
+    ast.NotEq: operator.ne,
+    ast.Lt: operator.lt,
+    ast.Gt: operator.gt,
+    ast.LtE: operator.le,
+    ast.GtE: operator.ge,
+}
+
+
+def evaluate(text: str, lookup: Lookup, warn: Callable[[str], None] = lambda text: None) -> bool:
+    """Whether an expression is true; Invalid if that cannot be said."""
+    evaluator: _Evaluator | None = getattr(_local, "evaluator", None)
+    if evaluator is None:
+        evaluator = _local.evaluator = _Evaluator()
+    evaluator.lookup, evaluator.warn = lookup, warn
+    try:
+        return evaluator.truth(evaluator.eval(text, parse(text)))
+    except InvalidExpression as error:
+        raise Invalid(str(error)) from error

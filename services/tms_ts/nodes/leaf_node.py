@@ -1,0 +1,79 @@
+"""The leaf that makes a machine do a subtask; one subclass per machine model, which is its name and its ports.
+
+On halt it asks for the cancel and goes; that the machine has stopped is confirmed by the goal, which the scheduler
+keeps watching, not by a loop in here.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+
+from tms_ts.bt.errors import TickError
+from tms_ts.bt.leaf import PlainAction
+from tms_ts.bt.node import AtOnce
+from tms_ts.bt.ports import In
+from tms_ts.bt.registry import stand_in
+from tms_ts.bt.status import FAILURE, RUNNING, SUCCESS, Status
+from tms_ts.world import Goal, GoalState
+
+_ROS_NAME = re.compile(r"[A-Za-z_/~][A-Za-z0-9_/]*", re.ASCII)
+
+
+@stand_in
+class LeafNode(PlainAction):
+    """Let a machine do a subtask with the parameters of a record.
+
+    model_name: the machine, e.g. zx200
+    record_name: the record of parameters, as text or {key}
+    subtask_name: the subtask, e.g. st_zx200_follow_waypoints
+    """
+
+    __slots__ = ("goal",)
+    required = frozenset({"model_name", "subtask_name"})
+    needs = ("record_name",)
+    model_name: In[str]
+    record_name: In[str]
+    subtask_name: In[str]
+
+    def prepare(self) -> None:
+        self.goal: Goal | None = None
+
+    def goal_asked(self) -> tuple[str, str, str]:
+        """Machine, subtask and record, as far as the document tells."""
+        return self.told("model_name"), self.told("subtask_name"), self.told("record_name")
+
+    def tick(self) -> Status:
+        return self.start() if self.goal is None else self.look(self.goal)
+
+    def start(self) -> Status:
+        machine, subtask, record = self.model_name, self.subtask_name, self.record_name
+        if self.context.world is None:
+            raise TickError(f"{self.registration_name}: this tree was loaded without machines")
+        self.goal = self.context.world.machines.send(machine, subtask, record, self.path)
+        return self.look(self.goal)
+
+    def look(self, goal: Goal) -> Status:
+        state = goal.state
+        if not state.final:
+            self.reason = goal.reason or goal.feedback or state.value
+            return RUNNING
+        self.reason = goal.reason
+        self.goal = None
+        return SUCCESS if state is GoalState.SUCCEEDED else FAILURE
+
+    def halt(self) -> None:
+        goal, self.goal = self.goal, None
+        if goal is not None:
+            goal.cancel()
+
+    def at_once(self, children: list[AtOnce]) -> AtOnce:
+        return False, False
+
+    def preflight(self, texts: Mapping[str, str]) -> list[str]:
+        names = {port: self.literal(port) or "" for port in ("model_name", "subtask_name")}
+        return [
+            f"{port}={name!r} has characters that no ROS name can have"
+            for port, name in names.items()
+            if name and not _ROS_NAME.fullmatch(name)
+        ]

@@ -1,0 +1,47 @@
+"""Store a typed value in the local blackboard."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from tms_ts.bt.convert import MISSING
+from tms_ts.bt.errors import TickError
+from tms_ts.bt.leaf import SyncAction
+from tms_ts.bt.ports import In, InOut, Pointer
+from tms_ts.bt.registry import node
+from tms_ts.bt.status import SUCCESS, Status
+
+
+def typed(text: str) -> str | bool | int | float:
+    if text in ("true", "false"):
+        return text == "true"
+    if re.fullmatch(r"-?[0-9]{1,18}", text):
+        return int(text)
+    return float(text) if re.fullmatch(r"-?[0-9]+\.[0-9]+", text) else text
+
+
+@node
+class SetLocalBlackboard(SyncAction):
+    """Store a value with its type: true and false, whole numbers, decimal numbers, else a text.
+
+    value: the value
+    output_key: the name of the key
+    """
+
+    __slots__ = ()
+    value: In[Any]
+    output_key: InOut[Any]
+
+    def tick(self) -> Status:
+        value, key = self.read("value"), self.key_name()
+        if value is MISSING:
+            raise TickError("SetLocalBlackboard: missing parameter 'value'")
+        self.store(key, typed(value) if isinstance(value, str) else value)
+        return SUCCESS
+
+    def key_name(self) -> str:
+        bound = self.bindings.get("output_key")
+        if bound is None:
+            raise TickError("SetLocalBlackboard: missing parameter 'output_key'")
+        return bound.key if isinstance(bound, Pointer) else bound

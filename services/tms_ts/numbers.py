@@ -1,0 +1,24 @@
+"""Fencing numbers of runs: always growing, also over restarts and when the clock goes back."""
+
+import time
+from pathlib import Path
+
+
+class Numbers:
+    """Milliseconds since 1970, or one more than the last number kept in `<state>/ts/number`."""
+
+    def __init__(self, folder: Path) -> None:
+        self._path = folder / "ts" / "number"
+
+    def next(self) -> int:
+        """A number for a new run; fits into 48 bits until the year 10889."""
+        try:
+            last = int(self._path.read_text(encoding="ascii"))
+        except (FileNotFoundError, ValueError):
+            last = 0
+        number = max(last + 1, time.time_ns() // 1_000_000)
+        self._path.parent.mkdir(parents=True, exist_ok=True)
+        part = self._path.with_suffix(".part")
+        part.write_text(str(number), encoding="ascii")
+        part.replace(self._path)
+        return number

@@ -1,0 +1,93 @@
+"""Questions of WaitForClick nodes: shown wherever an operator looks, answered once by whoever is first."""
+
+import itertools
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from builtin_interfaces.msg import Time
+from tms_msg_ts.msg import Question
+
+from tms_core.ros import Ros
+from tms_ts.flags import Answer
+
+Tell = Callable[[str, str, str], None]  # kind, node, text
+
+
+@dataclass(slots=True)
+class Asked:
+    """An open question and who waits for it."""
+
+    message: Question
+    answer: Answer[bool]
+    clicks: "Clicks"
+
+
+class Questions:
+    """All open questions of this scheduler."""
+
+    def __init__(self, ros: Ros, changed: Callable[[], None]) -> None:
+        self._ros, self._changed = ros, changed
+        self._numbers = itertools.count(1)
+        self._open: dict[str, Asked] = {}
+        self._lock = threading.Lock()
+
+    def messages(self) -> list[Question]:
+        """For the topic of active runs."""
+        with self._lock:
+            return [asked.message for asked in self._open.values()]
+
+    def put(self, clicks: "Clicks", title: str, text: str, node: str, seconds: float | None) -> Answer[bool]:
+        now = self._ros.now()
+        name = f"{clicks.run_id}-{next(self._numbers)}"
+        until = Time() if seconds is None else _later(now, seconds)
+        message = Question(
+            id=name, run_id=clicks.run_id, node=node, title=title, text=text, asked_at=now, until=until
+        )  # fmt: skip
+        answer: Answer[bool] = Answer()
+        with self._lock:
+            self._open[name] = Asked(message, answer, clicks)
+        clicks.tell("question", node, text or title)
+        self._changed()
+        return answer
+
+    def answer(self, name: str, yes: bool, by: str) -> bool:
+        """Take an answer; False when nobody asks that any more."""
+        with self._lock:
+            asked = self._open.pop(name, None)
+        if asked is None:
+            return False
+        word = "yes" if yes else "no"
+        asked.clicks.tell("answer", asked.message.node, f"{word}, by {by}")
+        asked.answer.settle(yes)
+        asked.clicks.wake()
+        self._changed()
+        return True
+
+    def withdraw(self, answer: object) -> None:
+        with self._lock:
+            gone = [name for name, asked in self._open.items() if asked.answer is answer]
+            for name in gone:
+                asked = self._open.pop(name)
+                asked.clicks.tell("answer", asked.message.node, "none: the question was withdrawn or timed out")
+        if gone:
+            self._changed()
+
+
+class Clicks:
+    """What the nodes of one run see of it."""
+
+    def __init__(self, questions: Questions, run_id: str, wake: Callable[[], None], tell: Tell) -> None:
+        self.run_id, self.wake, self.tell = run_id, wake, tell
+        self._questions = questions
+
+    def ask(self, title: str, text: str, node: str, seconds: float | None) -> Answer[bool]:
+        return self._questions.put(self, title, text, node, seconds)
+
+    def withdraw(self, question: object) -> None:
+        self._questions.withdraw(question)
+
+
+def _later(stamp: Time, seconds: float) -> Time:
+    whole = stamp.sec * 10**9 + stamp.nanosec + round(seconds * 1e9)
+    return Time(sec=whole // 10**9, nanosec=whole % 10**9)

@@ -1,0 +1,147 @@
+"""What this PC keeps of a run until it has ended: enough to close it after a crash, and to resume it. Pure logic.
+
+One file a run, one JSON object a line: first the run, then every event's number and every leaf goal that was sent
+or has ended. A run that ended in order leaves no file.
+"""
+
+import json
+import os
+import time
+from collections import defaultdict, deque
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+Key = tuple[str, str, str, str]  # node path, machine, subtask, record
+
+
+@dataclass(frozen=True)
+class Header:
+    """The run, as far as it is known before its first tick."""
+
+    run_id: str
+    number: int  # fencing number
+    task_id: int
+    description: str
+    machines: list[str]
+    xml: str
+    started: tuple[int, int]  # s, ns
+
+
+class Record:
+    """Written by the run; each line is one write, so a crash cuts off the last line at most."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        path.parent.mkdir(parents=True, exist_ok=True)
+        self._file = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
+
+    def _line(self, data: dict[str, Any]) -> None:
+        if self._file < 0:
+            return  # news of a run that is over
+        os.write(self._file, json.dumps({**data, "t": time.time()}).encode() + b"\n")
+
+    def begin(self, header: Header) -> None:
+        self._line({"run": asdict(header)})
+
+    def event(self, number: int) -> None:
+        self._line({"n": number})
+
+    def sent(self, key: Key) -> None:
+        self._line({"sent": key})
+
+    def done(self, key: Key, succeeded: bool) -> None:
+        self._line({"done": key, "ok": succeeded})
+
+    def interrupted(self) -> None:
+        """The history says now that the run was interrupted."""
+        self._line({"interrupted": True})
+
+    def remove(self) -> None:
+        """The run has ended in order."""
+        file, self._file = self._file, -1
+        os.close(file)
+        self.path.unlink(missing_ok=True)
+
+
+class Replay:
+    """Leaf goals that have ended before: asked for again, in the same order, they are not repeated."""
+
+    def __init__(self, ended: list[tuple[Key, bool]]) -> None:
+        self._ended: dict[Key, deque[bool]] = defaultdict(deque)
+        for key, succeeded in ended:
+            self._ended[key].append(succeeded)
+
+    def take(self, key: Key) -> bool | None:
+        """How that leaf goal ended, once; None if it has to be done now."""
+        found = self._ended.get(key)
+        return found.popleft() if found else None
+
+
+class Past:
+    """A record as it is read after a crash."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.header: Header | None = None
+        self.last_event = 0
+        self.last_time = 0.0  # s since 1970
+        self.closed = False
+        self.ended: list[tuple[Key, bool]] = []
+        self.open: list[Key] = []  # sent, but not ended
+        for line in _lines(path):
+            self._take(line)
+
+    def _take(self, line: dict[str, Any]) -> None:
+        self.last_time = line.get("t", self.last_time)
+        if "run" in line:
+            self.header = Header(**{**line["run"], "started": tuple(line["run"]["started"])})
+            self.closed = False
+        elif "n" in line:
+            self.last_event = max(self.last_event, line["n"])
+        elif "sent" in line:
+            key = _key(line["sent"])
+            self.open += [key] if key not in self.open else []
+        elif "done" in line:
+            key = _key(line["done"])
+            self.ended.append((key, line["ok"]))
+            if key in self.open:
+                self.open.remove(key)
+        self.closed = self.closed or "interrupted" in line
+
+
+def _key(words: list[str]) -> Key:
+    node, machine, subtask, record = words
+    return node, machine, subtask, record
+
+
+def _lines(path: Path) -> Iterator[dict[str, Any]]:
+    for text in path.read_bytes().split(b"\n"):
+        try:
+            line = json.loads(text)
+        except ValueError:
+            continue  # the last line, cut short by the crash
+        if isinstance(line, dict):
+            yield line
+
+
+class Records:
+    """All records of this PC, in `<state>/ts/runs/`."""
+
+    def __init__(self, state: Path) -> None:
+        self._folder = state / "ts" / "runs"
+
+    def open(self, run_id: str) -> Record:
+        """The record of a run, new or continued."""
+        return Record(self._folder / f"{run_id}.jsonl")
+
+    def past(self) -> list[Past]:
+        """Runs that did not end in order, oldest first."""
+        found = [Past(path) for path in sorted(self._folder.glob("*.jsonl"))]
+        return [past for past in found if past.header is not None]
+
+    def find(self, run_id: str) -> Past | None:
+        """The interrupted run called `run_id`; the beginning of the id is enough when only one fits."""
+        hits = [past for past in self.past() if past.header and past.header.run_id.startswith(run_id)]
+        return hits[0] if len(hits) == 1 and run_id else None

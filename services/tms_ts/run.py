@@ -1,0 +1,307 @@
+"""One run of a task: ticks its tree, records every change, and ends with every machine seen to stand."""
+
+import logging
+import threading
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from builtin_interfaces.msg import Time
+from prometheus_client import Counter, Histogram
+from tms_msg_db.msg import Event
+from tms_msg_db.msg import Run as RunRow
+from tms_msg_ts.action import ExecuteTask
+from tms_msg_ts.msg import NodeStatus, RunState
+
+from tms_core.ros import Goal, Ros
+from tms_core.values import to_parameters
+from tms_ts.bt import IDLE, Node, Status, Tree, TreeError
+from tms_ts.flags import Flags
+from tms_ts.gateways import SOFTWARE_STOP
+from tms_ts.journal import Journal
+from tms_ts.machines import Machines, receipt_text
+from tms_ts.record import Record
+
+PERIOD = 0.05  # s between ticks when nothing wakes the loop
+FEEDBACK_PERIOD = 0.1  # s between messages to the client
+CHANGES_A_TICK = 200  # node changes recorded of one tick; an endless loop makes thousands
+CHANGES_A_MESSAGE = 1000
+TICK_LIMIT = 0.4  # s without a tick after which the scheduler does not stand behind its motions any more
+SETTLE_LIMIT = 12.0  # s for goals to become terminal after a halt
+WIRE = {"IDLE": 0, "RUNNING": 1, "SUCCESS": 2, "FAILURE": 3}
+
+RUNS = Counter("tms_ts_runs_total", "Runs by outcome", ["outcome"])
+TICKS = Histogram("tms_ts_tick_seconds", "Duration of a tick", buckets=(0.001, 0.005, 0.01, 0.05, 0.1, 0.25, 0.5))
+ALARMS = Counter("tms_ts_alarms_total", "Stops that were not seen, and processes given up during a run")
+OVERRUNS = Counter("tms_ts_tick_overruns_total", "Ticks that took longer than the tick period")
+
+
+@dataclass
+class Facts:
+    """What is told of a run; changed by its own thread only."""
+
+    run_id: str
+    number: int  # fencing number
+    task_id: int
+    description: str
+    machines: list[str]
+    started: Time
+    records: list[str] = field(default_factory=list)  # that the tree names
+    writes: set[tuple[str, str]] = field(default_factory=set)  # shared records and fields that it writes
+    state: str = "preparing"
+    reason: str = ""
+    nodes_told: bool = False
+    changes: list[NodeStatus] = field(default_factory=list)  # to tell the client, in order
+
+
+class Run:
+    """Lives as long as its ExecuteTask goal."""
+
+    def __init__(
+        self, ros: Ros, journal: Journal, log: logging.Logger, goal: Goal, facts: Facts, record: Record,
+        changed: Callable[[], None],
+    ) -> None:  # fmt: skip
+        self.facts = facts
+        self._changed = changed  # there is something new in state()
+        self.wake = threading.Event()
+        self.cancelled = threading.Event()
+        self.ended = threading.Event()
+        self._ros, self._journal, self._log, self._goal = ros, journal, log, goal
+        self.record = record
+        self.flags: Flags | None = None  # of its tree
+        self._resumed = bool(goal.request.resume)
+        self.number = 0  # of the last event
+        self._numbering = threading.Lock()  # events come from the executor thread too
+        self._failure = ""
+        self._next_feedback = 0.0
+        self._changes_of_tick = 0
+        self._ending = ("cancelled", "")  # outcome and reason of a run that is ended from outside
+        self._states = b""  # of every node, for who looks
+        self._leaf = ""
+        self._tree: Tree | None = None  # once it is ticked
+        self._ticked: float | None = None  # when the last tick ended; None while nothing ticks
+
+    def cancel(self, outcome: str = "cancelled", reason: str = "") -> None:
+        """Ask the run to stop; returns at once. The first one says why."""
+        if not self.cancelled.is_set():
+            self._ending = (outcome, reason)
+        self.cancelled.set()
+        self.wake.set()
+
+    def stopped(self, machine: str, cause: str) -> None:
+        """A machine was stopped from outside, and stays so until somebody re-arms it."""
+        self.cancel("cancelled" if SOFTWARE_STOP in cause else "failure", f"{machine} was stopped: {cause}")
+
+    def alive(self) -> bool:
+        """Whether the loop that decides about motions still runs."""
+        ticked = self._ticked
+        return ticked is None or time.monotonic() - ticked < TICK_LIMIT
+
+    def statuses(self) -> list[Status]:
+        """Of every node, as it is now."""
+        tree = self._tree
+        return [node.state for node in tree.nodes] if tree is not None else []
+
+    # what is told
+
+    def tell(self, kind: str, node: str, text: str, values: Mapping[str, Any] | None = None) -> None:
+        """One event into the journal and the log."""
+        with self._numbering:
+            self.number += 1
+            self.record.event(self.number)
+            event = Event(
+                run_id=self.facts.run_id, number=self.number, stamp=self._ros.now(), kind=kind, node=node, text=text,
+                values=to_parameters(dict(values or {})),
+            )  # fmt: skip
+            self._journal.put(event)
+        if kind == "alarm":
+            ALARMS.inc()
+        if kind != "node":
+            self._log.info("event=%s run=%s node=%s %s", kind, self.facts.run_id, node, text)
+
+    def enter(self, state: str, reason: str = "", ended: bool = False) -> None:
+        """Change the run's state."""
+        self.facts.state, self.facts.reason = state, reason
+        self._journal.put(self._row(ended))
+        self.tell("run", "", f"{state}: {reason}" if reason else state)
+        self._changed()
+
+    def _row(self, ended: bool) -> RunRow:
+        facts = self.facts
+        return RunRow(
+            run_id=facts.run_id, task_id=facts.task_id, description=facts.description, state=facts.state,
+            reason=facts.reason, machines=facts.machines, records=facts.records, started_at=facts.started,
+            ended_at=self._ros.now() if ended else Time(),
+        )  # fmt: skip
+
+    def state(self) -> RunState:
+        """For the topic of active runs."""
+        facts = self.facts
+        return RunState(
+            run_id=facts.run_id, task_id=facts.task_id, state=facts.state, machines=facts.machines,
+            reason=facts.reason, started_at=facts.started, leaf=self._leaf, nodes=self._states,
+        )  # fmt: skip
+
+    def tell_tree(self, tree: Tree) -> None:
+        """The shape of the tree, once: what shows states later, live or from the history, draws them on it."""
+        nodes = tree.nodes
+        values = {
+            "paths": [node.path for node in nodes],
+            "names": [node.name for node in nodes],
+            "types": [node.registration_name for node in nodes],
+            "kinds": [node.kind.name.lower() for node in nodes],
+            "ports": [" ".join(f'{port}="{text}"' for port, text in node.assigned().items()) for node in nodes],
+        }
+        self.tell("tree", "", f"{len(nodes)} nodes", values)
+
+    # the loop
+
+    def execute(self, tree: Tree, machines: Machines) -> str:
+        """Tick to the end and stop what still moves; returns the outcome."""
+        self._tree = tree
+        tree.observers.append(self._node_changed)
+        self.enter("running")
+        outcome = "failure"
+        try:
+            outcome = self._tick_to_end(tree, machines)
+        except TreeError as error:
+            self._failure = str(error)
+            self.tell("error", error.path or "", str(error))
+        finally:
+            outcome = self._settle(tree, machines, outcome)
+        return outcome
+
+    def _tick_to_end(self, tree: Tree, machines: Machines) -> str:
+        next_tick = self._ticked = time.monotonic()
+        while not self.cancelled.is_set():
+            machines.advance()
+            begun = time.monotonic()
+            self._changes_of_tick = 0
+            status = tree.tick()
+            self._ticked = time.monotonic()
+            took = self._ticked - begun
+            self._tell_flood()
+            self._look(tree)
+            TICKS.observe(took)
+            self._tell_client(tree)
+            if status.completed:
+                return "success" if status is Status.SUCCESS else "failure"
+            if took > PERIOD:
+                OVERRUNS.inc()
+            next_tick = max(next_tick + PERIOD, begun)
+            self.wake.wait(max(0.0, next_tick - time.monotonic()))
+            self.wake.clear()
+        outcome, self._failure = self._ending
+        return outcome
+
+    def _settle(self, tree: Tree, machines: Machines, outcome: str) -> str:
+        """After a success nothing moves; after anything else the machines are stopped and watched."""
+        self._ticked = None
+        if outcome != "success":
+            self.enter("stopping", self._failure or outcome)
+        tree.halt()
+        self._look(tree)
+        self._tell_client(tree, last=True)
+        if outcome == "success":
+            return self._end(outcome, "")
+        # Straight to the gateways, beside the cancels on their way through subtask and planner: a stop takes
+        # the shortest way, and its receipt measures from here.
+        receipts = machines.stop_all(self.facts.machines, outcome)
+        for receipt in receipts:
+            machines.receipt(receipt)
+        deadline = time.monotonic() + SETTLE_LIMIT
+        while not machines.settled() and time.monotonic() < deadline:
+            self.wake.wait(PERIOD)
+            self.wake.clear()
+        reason = self._failure
+        unseen = [receipt_text(receipt) for receipt in receipts if not receipt.confirmed]
+        unseen += [f"{name} has not ended its goal" for name in machines.open_goals()]
+        for text in unseen:
+            self.tell("alarm", "", text)
+        if unseen:
+            return self._end("stop_unconfirmed", "; ".join([*unseen, *([reason] if reason else [])]))
+        return self._end(outcome, reason)
+
+    def _end(self, outcome: str, reason: str) -> str:
+        self.enter(outcome, reason, ended=True)
+        self.close_record(outcome)
+        RUNS.labels(outcome).inc()
+        return outcome
+
+    def close_record(self, outcome: str) -> None:
+        """Only an interrupted run can be resumed."""
+        if outcome == "interrupted":
+            self.record.interrupted()
+        else:
+            self.record.remove()
+
+    def refuse(self, code: str, reason: str) -> None:
+        """End before anything moved."""
+        if self._resumed:  # the run stays what it was: interrupted
+            self.enter("interrupted", f"not resumed: {code}: {reason}", ended=True)
+            self.record.interrupted()
+            return
+        self.enter("refused", f"{code}: {reason}", ended=True)
+        self.record.remove()
+        RUNS.labels("refused").inc()
+
+    # nodes
+
+    def _node_changed(self, node: Node, old: Status, new: Status) -> None:
+        if new is Status.FAILURE and node.reason and not node.children:
+            self._failure = f"{node.name} ({node.path}): {node.reason}"
+        self._changes_of_tick += 1
+        if self._changes_of_tick > CHANGES_A_TICK:
+            return
+        self.facts.changes.append(_message(node, new))
+        text = f"{old.name} -> {new.name}" + (f": {node.reason}" if new is not IDLE and node.reason else "")
+        self.tell("node", node.path, f"{node.name}: {text}")
+
+    def _tell_flood(self) -> None:
+        """A loop over children that finish at once must not fill the history with its rounds."""
+        more = self._changes_of_tick - CHANGES_A_TICK
+        if more > 0:
+            self.facts.nodes_told = False  # the client gets the state of every node instead
+            self.tell("node", "", f"{more} further changes in this tick: a loop spins")
+
+    def _look(self, tree: Tree) -> None:
+        """Keep what state() tells of the nodes."""
+        states = bytes(node.state for node in tree.nodes)
+        running = next((node for node in tree.running() if node.reason), None)
+        leaf, reason = (running.path, running.reason) if running is not None else ("", "")
+        if self.facts.state != "running":
+            reason = self.facts.reason
+        if (states, leaf, reason) != (self._states, self._leaf, self.facts.reason):
+            self._states, self._leaf, self.facts.reason = states, leaf, reason
+            self._changed()
+
+    def _tell_client(self, tree: Tree, last: bool = False) -> None:
+        now = time.monotonic()
+        if now < self._next_feedback and not last:
+            return
+        facts = self.facts
+        running = [node for node in tree.running() if node.reason]
+        if facts.nodes_told and not facts.changes and not running and now < self._next_feedback + 1.0:
+            return
+        facts.reason = running[0].reason if running else facts.reason if facts.state == "stopping" else ""
+        message = ExecuteTask.Feedback(
+            run_id=facts.run_id, state=facts.state, running_leaf=running[0].path if running else "",
+            reason=facts.reason, nodes=self._nodes(tree, running),
+        )  # fmt: skip
+        self._goal.publish(message)
+        facts.nodes_told, facts.changes, self._next_feedback = True, [], now + FEEDBACK_PERIOD
+
+    def _nodes(self, tree: Tree, running: list[Node]) -> list[NodeStatus]:
+        """Every node in the first message; later the changes in their order, and what the running leaves say."""
+        if not self.facts.nodes_told or len(self.facts.changes) > CHANGES_A_MESSAGE:
+            return [_message(node, node.state) for node in tree.nodes]
+        return [*self.facts.changes, *(_message(node, node.state) for node in running)]
+
+
+def _message(node: Node, status: Status) -> NodeStatus:
+    return NodeStatus(
+        uid=node.uid, parent=node.parent.uid if node.parent is not None else 0, name=node.name,
+        type=node.registration_name, status=WIRE[status.name],
+        reason=node.reason if status in (Status.RUNNING, Status.FAILURE) else "",
+    )  # fmt: skip

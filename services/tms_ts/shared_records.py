@@ -1,0 +1,80 @@
+"""What this scheduler knows of shared records (the global blackboard), so that waiting for a flag asks nobody.
+
+A record is read once and kept until tms:db tells of a change, or for KEPT at most: somebody may write to the store past
+tms:db, and a message may get lost with a process.
+"""
+
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from tms_msg_db.msg import RecordChanges
+
+from tms_core.ros import Ros
+
+KEPT = 1.0  # s
+CHANGES_KEPT = 100  # messages that may wait
+
+
+@dataclass(frozen=True)
+class Kept:
+    """A record as it was read."""
+
+    fields: dict[str, Any]
+    until: float  # monotonic
+
+
+class SharedRecords:
+    """Used by the threads of all runs and by the executor."""
+
+    def __init__(self, ros: Ros) -> None:
+        self._lock = threading.Lock()
+        self._kept: dict[str, Kept] = {}
+        self._changes: dict[str, int] = {}  # how often each record has changed
+        self._readers: dict[str, set[Callable[[], None]]] = {}
+        ros.subscribe(RecordChanges, "/tms/db/changes", self._changed, depth=CHANGES_KEPT)
+
+    def kept(self, record: str) -> dict[str, Any] | None:
+        """The fields of a record, if they are known."""
+        with self._lock:
+            found = self._kept.get(record)
+            return found.fields if found is not None and time.monotonic() < found.until else None
+
+    def asked(self, record: str) -> int:
+        """Before reading a record: what `keep` needs to know whether it has changed meanwhile."""
+        with self._lock:
+            return self._changes.get(record, 0)
+
+    def keep(self, record: str, asked: int, fields: dict[str, Any], max_age: float) -> None:
+        """Remember a record that was just read; one that may get too old is asked for every time."""
+        with self._lock:
+            if self._changes.get(record, 0) == asked and max_age <= 0:
+                self._kept[record] = Kept(fields, time.monotonic() + KEPT)
+
+    def forget(self, record: str) -> None:
+        """It was changed from here."""
+        with self._lock:
+            self._kept.pop(record, None)
+            self._changes[record] = self._changes.get(record, 0) + 1
+
+    def watch(self, record: str, wake: Callable[[], None]) -> None:
+        """Call `wake` at every change of a record."""
+        with self._lock:
+            self._readers.setdefault(record, set()).add(wake)
+
+    def unwatch(self, wake: Callable[[], None]) -> None:
+        """Of all records."""
+        with self._lock:
+            for readers in self._readers.values():
+                readers.discard(wake)
+            self._readers = {record: readers for record, readers in self._readers.items() if readers}
+
+    def _changed(self, message: Any) -> None:
+        for record in message.record_names:
+            self.forget(record)
+            with self._lock:
+                readers = list(self._readers.get(record, ()))
+            for wake in readers:
+                wake()

@@ -1,0 +1,62 @@
+"""A queue of lines in a file: what was put survives the process, and is taken in order. Pure logic."""
+
+import os
+import threading
+from pathlib import Path
+
+LARGEST = 256 * 2**20  # bytes; some days of a database that is away
+
+
+class SpoolFull(OSError):
+    """The file has reached its bound."""
+
+
+class Spool:
+    """Lines are put by any thread and taken by one; a line is forgotten only when it is said to be `done`."""
+
+    def __init__(self, path: Path, largest: int = LARGEST) -> None:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        self._lock = threading.Lock()  # held for one write to the page cache
+        self._file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o600)
+        self._largest = largest
+        self._size = os.fstat(self._file).st_size
+        self._taken = 0  # bytes that are done
+        if self._size and os.pread(self._file, 1, self._size - 1) != b"\n":
+            self._append(b"\n")  # cut short by a crash: the reader skips that line
+
+    def put(self, line: bytes) -> None:
+        """Add a line (without line break).
+
+        Raises:
+            OSError: the disk is full or the file has reached its bound.
+        """
+        with self._lock:
+            if self._size > self._largest:
+                raise SpoolFull(f"{self._size} bytes wait already")
+            self._append(line + b"\n")
+
+    def _append(self, data: bytes) -> None:
+        os.write(self._file, data)
+        self._size += len(data)
+
+    def waiting(self) -> int:
+        """Bytes that were not taken yet."""
+        return self._size - self._taken
+
+    def batch(self, most: int, limit: int = 2**20) -> tuple[list[bytes], int]:
+        """The next lines, and what to give to `done` once they are delivered."""
+        data = os.pread(self._file, limit, self._taken)
+        lines = data.split(b"\n")[:-1][:most]
+        return lines, self._taken + sum(len(line) + 1 for line in lines)
+
+    def done(self, end: int) -> None:
+        """Forget everything up to `end`; an empty queue is an empty file."""
+        with self._lock:
+            self._taken = end
+            if self._taken >= self._size:
+                os.ftruncate(self._file, 0)
+                self._taken = self._size = 0
+
+    def close(self) -> None:
+        """Free the file; what is left waits for the next process."""
+        os.close(self._file)

@@ -1,0 +1,94 @@
+"""What preflight asks: the records as they are now, the servers, machines, runs and sensing inputs that are there."""
+
+import time
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from pydantic import ValidationError
+from tms_msg_db.srv import ListParameters
+from tms_msg_sp.msg import InputStates
+
+from tms_core.app import App
+from tms_core.config import explain
+from tms_core.errors import RosError
+from tms_core.subtask import load
+from tms_core.values import from_parameters
+from tms_ts.preflight import Stored
+
+DB_LIMIT = 5.0  # s
+DISCOVERY_LIMIT = 1.5  # s, for one preflight as a whole
+LOOK = 0.05  # s
+DEAF = ("silent", "waiting")  # states of an input that writes nothing
+
+
+class Sensing:
+    """The sensing inputs as tms:sp tells of them."""
+
+    def __init__(self, app: App) -> None:
+        self._inputs: list[Any] = []
+        app.ros.subscribe(InputStates, "/tms/sp/inputs", self._heard, latched=True)
+
+    def _heard(self, message: Any) -> None:
+        self._inputs = list(message.inputs)
+
+    def writes(self, record: str) -> bool:
+        """Whether an input has written a record (MODEL/RECORD) lately."""
+        return any(record in one.records and one.state not in DEAF for one in self._inputs)
+
+    def silent(self, record: str) -> str:
+        """An input that has written a record and has stopped to."""
+        return next((one.name for one in self._inputs if record in one.records and one.state in DEAF), "")
+
+
+class Around:
+    """The surroundings of one preflight; reads all records once.
+
+    Raises:
+        RosError: the database does not answer.
+    """
+
+    def __init__(
+        self, app: App, sensing: Sensing, problem: Callable[[str], str], writers: Callable[[str, str], bool]
+    ) -> None:
+        self._app, self._sensing, self.problem, self._writers = app, sensing, problem, writers
+        answer = app.ros.call(ListParameters, "/tms/db/list_parameters", ListParameters.Request(), DB_LIMIT)
+        if answer.error_code:
+            raise RosError(answer.error_msg, answer.error_code)
+        now = time.time()
+        self._found_by = time.monotonic() + DISCOVERY_LIMIT
+        self._records = {(record.model_name, record.record_name): _stored(record, now) for record in answer.records}
+
+    def record(self, machine: str, record: str) -> Stored | None:
+        return self._records.get((machine, record))
+
+    def served(self, machine: str, subtask: str) -> bool:
+        """Whether an action server of that name is in the ROS graph, whoever runs it; one may have begun just now."""
+        status, count = f"/{machine}/{subtask}/_action/status", self._app.ros.node.count_publishers
+        while not (found := count(status)) and time.monotonic() < self._found_by:
+            time.sleep(LOOK)
+        return bool(found)
+
+    def written(self, record: str, field: str) -> bool:
+        return self._writers(record, field) or self._sensing.writes(f"/{record}")
+
+    def silent(self, machine: str, record: str) -> str:
+        return self._sensing.silent(f"{machine}/{record}")
+
+    def unfit(self, machine: str, subtask: str, values: Mapping[str, Any]) -> str:
+        use = self._app.site.model_of(machine).subtask(subtask)
+        params = load(use.run).params
+        try:
+            if params is not None:
+                params.model_validate({**values, **use.inputs})
+        except ValidationError as error:
+            return explain(error)
+        return ""
+
+    def oldest(self, machine: str, subtask: str) -> float:
+        return self._app.site.model_of(machine).subtask(subtask).max_age
+
+
+def _stored(record: Any, now: float) -> Stored:
+    stamp = record.updated_at
+    age = now - stamp.sec - stamp.nanosec * 1e-9 if stamp.sec else None
+    return Stored(from_parameters(record.values), record.type, age, record.max_age)

@@ -1,0 +1,86 @@
+"""What leaf nodes ask of the outside. Every call returns at once: a leaf asks, and looks at the answer later."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any, Protocol, TypeVar
+
+Value = str | bool | int | float
+T_co = TypeVar("T_co", covariant=True)
+
+
+class GoalState(Enum):
+    SENDING = "sending"
+    RUNNING = "running"
+    SUCCEEDED = "succeeded"
+    FAILED = "failed"  # aborted, rejected or not deliverable
+    CANCELLED = "cancelled"
+
+    @property
+    def final(self) -> bool:
+        return self in (GoalState.SUCCEEDED, GoalState.FAILED, GoalState.CANCELLED)
+
+
+class Goal(Protocol):
+    """One goal sent to a subtask."""
+
+    @property
+    def state(self) -> GoalState: ...
+
+    @property
+    def reason(self) -> str: ...  # why it waits or ended
+
+    @property
+    def feedback(self) -> str: ...
+
+    def cancel(self) -> None: ...
+
+
+class Machines(Protocol):
+    def send(self, machine: str, subtask: str, record: str, node: str) -> Goal:
+        """Send a goal; `node` is the node's path, for the journal."""
+        ...
+
+
+class Pending(Protocol[T_co]):
+    """An answer that may not be there yet."""
+
+    @property
+    def done(self) -> bool: ...
+
+    @property
+    def value(self) -> T_co: ...  # when done without error
+
+    @property
+    def error(self) -> str | None: ...
+
+
+class SharedFlags(Protocol):
+    """Parameter records that several tasks read and write."""
+
+    def read(self, record: str, field: str) -> Pending[Any]: ...
+
+    def write(self, record: str, field: str, value: Value, expected: Value | None = None) -> Pending[None]:
+        """`expected`: the field must hold this value, or nothing is written and the answer is an error."""
+        ...
+
+
+class Clicks(Protocol):
+    """Questions to the operator."""
+
+    def ask(self, title: str, text: str, node: str, seconds: float | None) -> Pending[bool]:
+        """Show a question; `node` is the path of the node, `seconds` its time-out from now, None if it has none."""
+        ...
+
+    def withdraw(self, question: Pending[bool]) -> None: ...
+
+
+@dataclass(slots=True)
+class World:
+    machines: Machines
+    flags: SharedFlags
+    clicks: Clicks
+    clock: Callable[[], float] = time.monotonic  # s
