@@ -1,0 +1,1 @@
+"""The `tms` command: one file a verb."""

@@ -1,0 +1,58 @@
+"""How `tms task check` shows what it found."""
+
+from collections.abc import Iterable
+
+import click
+
+from tms_cli import session
+from tms_cli.check_task import Checked
+
+
+def show_one(found: Checked, *, as_json: bool) -> bool:
+    """Whether a task has no errors."""
+    if as_json:
+        session.show_json(found.as_dict())
+    else:
+        for line in goal_table(found):
+            click.echo(line)
+        for word, lines in (("error", found.errors), ("warning", found.warnings)):
+            for line in lines:
+                click.echo(f"{found.what}: {word}: {line}")
+        if not found.errors:
+            click.echo(f"{found.what}: {'can run' if found.by == 'scheduler' else 'its structure is right'}")
+    tell_unchecked([found])
+    return not found.errors
+
+
+def goal_table(found: Checked) -> list[str]:
+    """The goals of a task as a table, in document order."""
+    rows = [(str(goal.line), goal.machine, goal.subtask, goal.record, goal.path) for goal in found.goals]
+    rows = [("LINE", "MACHINE", "SUBTASK", "RECORD", "NODE"), *rows] if rows else []
+    widths = [max(len(cell) for cell in column) for column in zip(*rows, strict=True)]
+    return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
+
+
+def show_folder(files: Iterable[Checked], *, as_json: bool) -> bool:
+    """Whether no file of a folder has errors; each is shown as soon as it is checked."""
+    done = []
+    for found in files:
+        done.append(found)
+        if not as_json:
+            click.echo(f"{found.what}: {found.verdict()}")
+    wrong, none = sum(bool(found.errors) for found in done), sum(bool(found.no_task) for found in done)
+    warned = sum(bool(found.warnings and not found.errors) for found in done)
+    counts = {"files": len(done), "ok": len(done) - wrong - none - warned, "warnings": warned, "errors": wrong}
+    if as_json:
+        files_ = [{"file": found.what, "no_task": found.no_task, **found.as_dict()} for found in done]
+        session.show_json({"ok": not wrong, "files": files_, "summary": {**counts, "no_task": none}})
+    tell_unchecked(done)
+    if not as_json:
+        click.echo(f"{len(done)} files: {counts['ok']} ok, {warned} with warnings, {wrong} with errors, {none} no task")
+    return not wrong
+
+
+def tell_unchecked(done: list[Checked]) -> None:
+    if any(found.by != "scheduler" and not found.errors and not found.no_task for found in done):
+        click.echo("no scheduler answers: records and subtasks are unchecked", err=True)
+    elif any(found.by != "scheduler" and found.errors and not found.no_task for found in done):
+        click.echo("records and subtasks are unchecked where the structure is wrong", err=True)

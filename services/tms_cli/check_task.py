@@ -1,0 +1,160 @@
+"""What `tms task check` finds in a task: structure here, records and subtasks by the scheduler if a mesh runs."""
+
+import time
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, ExitStack
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+import click
+from tms_msg_db.srv import GetTask
+from tms_msg_ts.srv import CheckTask
+
+from tms_cli import session
+from tms_cli.commands.task import read
+from tms_core.errors import RosError, TaskError, TmsError
+from tms_ts import bt
+from tms_ts.bt.source import parse
+
+PROGRESS = 2.0  # s between two lines that tell how far a folder is checked
+
+
+@dataclass
+class Checked:
+    """One file or stored task; errors and warnings are lines that begin with their place."""
+
+    what: str
+    nodes: int = 0
+    goals: list[bt.LeafGoal] = field(default_factory=list)
+    errors: list[str] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+    no_task: str = ""  # why it is none
+    by: str = "structure"  # or scheduler
+
+    def as_dict(self) -> dict[str, Any]:
+        return {
+            "ok": not self.errors and not self.no_task,
+            "errors": self.errors,
+            "warnings": self.warnings,
+            "nodes": self.nodes,
+            "goals": [asdict(goal) for goal in self.goals],
+            "checked_by": self.by,
+        }
+
+    def verdict(self) -> str:
+        """One line: what a folder's list shows."""
+        if self.no_task:
+            return f"no task: {self.no_task}"
+        counts = [
+            f"{len(lines)} {word}{'s' if len(lines) > 1 else ''}"
+            for word, lines in (("error", self.errors), ("warning", self.warnings))
+            if lines
+        ]
+        first = f": {' '.join(self.errors[0].split())}" if self.errors else ""
+        return (", ".join(counts) or "ok") + first
+
+
+class Scheduler(AbstractContextManager["Scheduler"]):
+    """The scheduler of the mesh; when it is not there, it is not asked a second time."""
+
+    def __init__(self) -> None:
+        self._open = ExitStack()
+        self._node: Any = None
+        self._absent = False
+
+    def __exit__(self, *_: object) -> None:
+        self._open.close()
+
+    def node(self) -> Any:
+        if self._node is None:
+            self._node = self._open.enter_context(session.ros())
+        return self._node
+
+    def look(self, found: Checked, **task: Any) -> None:
+        """Let it check what is right by its structure."""
+        if self._absent or found.errors:
+            return
+        try:
+            answer = session.call(self.node(), CheckTask, "/tms/check_task", **task)
+        except RosError:
+            self._absent = True
+            return
+        except TmsError as error:
+            if error.code != TaskError.code:
+                raise
+            found.errors = [str(error)]
+        else:
+            found.errors, found.warnings = list(answer.errors), list(answer.warnings)
+        found.by = "scheduler"
+
+
+def structure(what: str, text: str, folder: Path | None = None) -> Checked:
+    report = bt.check(text, folder=folder)
+    warnings = [f"line {line}: {warning}" for line, warning in report.warnings]
+    if report.ok and "<include" in text:
+        warnings += [f"it cannot be stored as a task: {error}" for error in bt.check(text).errors]
+    return Checked(what, report.nodes, report.goals, [str(error) for error in report.errors], warnings)
+
+
+def stored(scheduler: Scheduler, task_id: int) -> Checked:
+    if not 0 < task_id < 2**31:
+        raise TaskError(f"there is no task {task_id}: `tms task list` shows the numbers", "NO_TASK")
+    task = session.call(scheduler.node(), GetTask, "/tms/db/get_task", task_id=task_id).task
+    found = structure(str(task_id), task.task_sequence)
+    scheduler.look(found, task_id=task_id)
+    return found
+
+
+def file(scheduler: Scheduler, path: Path) -> Checked:
+    """Check one file.
+
+    Raises:
+        TaskError: it cannot be read.
+    """
+    text = read(str(path))
+    why = no_task(text)
+    found = Checked(str(path), errors=[f"this is no task: {why}"], no_task=why) if why else None
+    found = found or structure(str(path), text, path.parent)
+    scheduler.look(found, xml=text)
+    return found
+
+
+def no_task(text: str) -> str:
+    """Why a well-formed document is no task; empty if it is one, or is broken."""
+    try:
+        root = parse(text).root
+    except bt.TreeError:
+        return ""
+    if root.tag != "root":
+        return f"its outermost element is <{root.tag}>, not <root>"
+    if root.find("BehaviorTree") is not None or root.find("include") is not None:
+        return ""
+    palette = root.find("TreeNodesModel") is not None
+    return "it has a TreeNodesModel only (a palette for Groot)" if palette else "there is no <BehaviorTree> in it"
+
+
+def folder(scheduler: Scheduler, path: Path, *, recursive: bool) -> Iterator[Checked]:
+    """Check the XML files of a folder, in the order of their names.
+
+    Raises:
+        TaskError: there are none.
+    """
+    names = path.rglob("*") if recursive else path.iterdir()
+    files = sorted(name for name in names if name.suffix.lower() == ".xml" and not name.is_dir())
+    if not files:
+        where = "in it or its folders" if recursive else "in it (--recursive looks into its folders, too)"
+        raise TaskError(f"{path}: there are no .xml files {where}")
+    told = time.monotonic()
+    for count, name in enumerate(files):
+        if time.monotonic() - told >= PROGRESS:
+            told = time.monotonic()
+            click.echo(f"{count} of {len(files)} files checked", err=True)
+        try:
+            found = file(scheduler, name)
+        except TaskError as error:
+            found = Checked(str(name), errors=[str(error).removeprefix(f"{name}: ")])
+        found.what = str(name.relative_to(path))
+        if found.no_task:
+            found.errors = []
+        yield found

@@ -1,0 +1,1 @@
+"""One file a verb; the file name is the verb, `_` for `-`."""

@@ -1,0 +1,27 @@
+"""`tms abandon`: give up an interrupted run."""
+
+import click
+
+from tms_cli import session
+
+
+@click.command()
+@click.argument("run")
+@session.json_option
+def command(run: str, as_json: bool) -> None:
+    """Give up an interrupted run for good; it cannot be resumed afterwards.
+
+    RUN is its id or the beginning of it.
+
+    \b
+    Example:
+      tms abandon 20260131-060000-1a2b
+    """
+    from tms_msg_ts.srv import CancelRun
+
+    with session.ros() as node:
+        session.call(node, CancelRun, "/tms/abandon_run", run_id=run)
+    if as_json:
+        session.show_json({"run_id": run, "state": "abandoned"})
+    else:
+        click.echo(f"run {run} is abandoned")

@@ -1,0 +1,87 @@
+"""`tms answer`: what runs ask the operator (WaitForClick), and the answer."""
+
+import getpass
+import socket
+import threading
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from tms_cli import live, session
+from tms_core.errors import RosError, TmsError
+
+if TYPE_CHECKING:
+    from tms_core.ros import Ros
+
+LIMIT = 5.0  # s for the scheduler to say what is asked
+
+
+@click.command()
+@click.argument("reply", required=False, type=click.Choice(["yes", "no"]))
+@click.option("--question", metavar="ID", help="Which one, when several are open; the beginning is enough.")
+@session.json_option
+def command(reply: str | None, question: str | None, as_json: bool) -> None:
+    """Show what runs ask (WaitForClick nodes), or answer it. The first answer counts, wherever it is given.
+
+    \b
+    Examples:
+      tms answer
+      tms answer yes
+      tms answer no --question 20261121-104918-7419-1
+    """
+    from tms_msg_ts.srv import AnswerQuestion
+
+    with session.ros() as node:
+        asked = [one for one in open_questions(node) if question is None or one.id.startswith(question)]
+        if reply is not None:
+            one = _only(asked, question)
+            by = f"{getpass.getuser()} at {socket.gethostname()}"
+            session.call(node, AnswerQuestion, "/tms/answer", id=one.id, yes=reply == "yes", by=by)
+    if as_json:
+        session.show_json([_as_dict(one) for one in asked])
+    elif reply is not None:
+        click.echo(f"answered {reply}: {asked[0].text or asked[0].title}")
+    else:
+        for one in asked:
+            until = f", until {live.clock_time(one.until)}" if one.until.sec else ""
+            click.echo(f"{one.id}  {one.title}: {one.text}{until}")
+        if not asked:
+            click.echo("nobody asks anything", err=True)
+
+
+def open_questions(node: "Ros") -> list[Any]:
+    """Questions as the scheduler lists them.
+
+    Raises:
+        RosError: it says nothing.
+    """
+    from tms_msg_ts.msg import RunStates
+
+    heard: list[Any] = []
+    there = threading.Event()
+
+    def take(message: Any) -> None:
+        heard.append(message)
+        there.set()
+
+    node.subscribe(RunStates, "/tms/runs", take, latched=True)
+    if not there.wait(LIMIT):
+        raise RosError("the scheduler (tms:ts) says nothing: see `tms status`", "NO_ANSWER")
+    return list(heard[-1].questions)
+
+
+def _only(asked: list[Any], question: str | None) -> Any:
+    if len(asked) == 1:
+        return asked[0]
+    if not asked:
+        what = "nobody asks anything" if question is None else f"nobody asks '{question}'"
+        raise TmsError(f"{what}: `tms answer` lists open questions", "NO_QUESTION")
+    names = ", ".join(one.id for one in asked)
+    raise TmsError(f"{len(asked)} questions are open: choose with --question ({names})", "AMBIGUOUS")
+
+
+def _as_dict(one: Any) -> dict[str, Any]:
+    return {
+        "id": one.id, "run_id": one.run_id, "node": one.node, "title": one.title, "text": one.text,
+        "asked_at": live.iso(one.asked_at), "until": live.iso(one.until) if one.until.sec else None,
+    }  # fmt: skip

@@ -1,0 +1,75 @@
+"""`tms cancel`: end a run; it has ended when its machines were seen to stand still."""
+
+import time
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from tms_cli import session
+from tms_cli.commands.runs import MOST, as_dict, find_run, has_ended, history, recent
+from tms_core.errors import TmsError
+
+if TYPE_CHECKING:
+    from tms_core.ros import Ros
+
+END_LIMIT = 30.0  # s for the machines to stand still
+LOOK = 0.2  # s
+
+
+def _which(node: "Ros", word: str) -> str:
+    """The id that is meant; without the database, whatever was given: a cancel must not depend on it."""
+    try:
+        runs = history(node, MOST)
+    except TmsError:
+        if word == "last":
+            raise
+        return word
+    active = [run for run in runs if not has_ended(run)]
+    if word == "last" and not active:
+        raise TmsError("no run is active: `tms runs` shows how they ended", "NO_RUN")
+    run = find_run(active if word == "last" else runs, word)
+    if has_ended(run):
+        raise TmsError(f"run {run.run_id} has ended already: {run.state}", "RUN_ENDED")
+    return str(run.run_id)
+
+
+def _wait(node: "Ros", run_id: str) -> Any:
+    deadline = time.monotonic() + END_LIMIT
+    while time.monotonic() < deadline:
+        run = recent(node, run_id)
+        if run is not None and has_ended(run):
+            return run
+        time.sleep(LOOK)
+    raise TmsError(
+        f"run {run_id} has not ended {END_LIMIT:.0f} s after the cancel: look at the machine, "
+        f"then at `tms events {run_id}`",
+        "STOP_UNCONFIRMED",
+    )
+
+
+@click.command()
+@click.argument("run")
+@session.json_option
+@click.pass_context
+def command(ctx: click.Context, run: str, as_json: bool) -> None:
+    """Cancel a run and wait until its machines were seen to stand still.
+
+    RUN is its id, the beginning of it, or `last` for the newest active run. Exit code 0 only when the stop is
+    confirmed.
+
+    \b
+    Example:
+      tms cancel last
+    """
+    from tms_msg_ts.srv import CancelRun
+
+    with session.ros() as node:
+        run_id = _which(node, run)
+        session.call(node, CancelRun, "/tms/cancel_run", run_id=run_id)
+        click.echo(f"run {run_id} is being cancelled", err=True)
+        ended = _wait(node, run_id)
+    if as_json:
+        session.show_json(as_dict(ended))
+    else:
+        click.echo(f"run {run_id}: {ended.state}{f' ({ended.reason})' if ended.reason else ''}")
+    ctx.exit(0 if ended.state == "cancelled" else 1)

@@ -1,0 +1,32 @@
+"""`tms check`: is the site's configuration right?"""
+
+import click
+
+from tms_cli import session
+from tms_core.config import load_site
+from tms_core.processes import table
+from tms_core.sensing import load_sensing
+
+
+@click.command()
+@click.option("--site", "chosen", metavar="NAME|FILE", help="Site to check (default: the one in use).")
+@session.json_option
+def command(chosen: str | None, as_json: bool) -> None:
+    """Check the configuration; nothing is started.
+
+    \b
+    Examples:
+      tms check
+      tms check --site configs/sites/yard.yaml
+    """
+    site = load_site(chosen) if chosen else session.site()
+    rows = table(site)
+    inputs = load_sensing(site).inputs
+    if as_json:
+        session.show_json(
+            {"site": site.name, "file": str(site.path), "processes": [row.full for row in rows], "inputs": list(inputs)}
+        )
+        return
+    click.echo(
+        f"{site.path}: right ({len(site.file.machines)} machines, {len(rows)} processes, {len(inputs)} sensing inputs)"
+    )

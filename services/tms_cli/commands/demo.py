@@ -1,0 +1,45 @@
+"""`tms demo`: from nothing to a simulated excavator that has done one loading cycle."""
+
+import shutil
+
+import click
+
+from tms_cli import live, mesh, session, stored_records
+from tms_cli.commands import run, task
+from tms_core.config import CONFIGS
+
+PARAMETERS = CONFIGS / "parameters" / "zx200.yaml"
+TASK = CONFIGS / "tasks" / "one_loading_cycle.xml"
+
+
+@click.command()
+@session.json_option
+@click.pass_context
+def command(ctx: click.Context, as_json: bool) -> None:
+    """Start the mesh, store the records and the sample task of the zx200, run it, and show how.
+
+    The mesh is left running; exit code 0 only if the task succeeded. May be repeated.
+
+    \b
+    Example:
+      tms demo
+    """
+    site = session.site()
+    started = mesh.up(site)
+    _say(f"mesh '{site.name}' {'started' if started else 'already runs'}, state in {site.state}")
+    mesh.wait_ready(site, lambda line: _say(f"  {line}"))
+    with session.ros() as node:
+        _say(f"records: {stored_records.summary(stored_records.load_file(node, PARAMETERS))}")
+        stored = task.store(node, str(TASK), "One loading cycle of the zx200")
+        _say(f"task {stored.task_id}: {'already stored' if stored.already_stored else 'stored'}")
+        end = run.Runner(node, stored.task_id, ignore_warnings=False).finish(live.display(as_json))
+    run.report(end, as_json)
+    _say(f"console and API: http://{site.file.bind}:{site.file.ports.console}")
+    if shutil.which("tms") is None:
+        _say("`. .venv/bin/activate` puts the command tms on the path")
+    _say("the mesh goes on running: `make status` looks at it, `make down` ends it")
+    ctx.exit(end.exit_code)
+
+
+def _say(text: str) -> None:
+    click.echo(text, err=True)

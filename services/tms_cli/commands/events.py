@@ -1,0 +1,97 @@
+"""`tms events`: the journal of one run."""
+
+import time
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from tms_cli import live, session
+from tms_cli.commands.runs import MOST, find_run, has_ended, history, recent
+
+if TYPE_CHECKING:
+    from tms_core.ros import Ros
+
+PAGE = 1000
+LOOK = 0.5  # s between looks with --follow
+COLOURS = {"run": "cyan", "goal": "yellow", "stop": "red"}
+
+
+def journal(node: "Ros", run_id: str, after: int = 0) -> Iterator[Any]:
+    """All events of a run with a number above `after`, page by page (tms_msg_db/Event)."""
+    from tms_msg_db.srv import ListEvents
+
+    while True:
+        page = session.call(node, ListEvents, "/tms/db/list_events", run_id=run_id, after=after, limit=PAGE).events
+        yield from page
+        if len(page) < PAGE:
+            return
+        after = page[-1].number
+
+
+def _follow(node: "Ros", run_id: str) -> None:
+    """Show events as they come until the run has ended."""
+    after = 0
+    while True:
+        # Asked before the events: the end of a run is stored after its last event.
+        run = recent(node, run_id)
+        ended = run is None or has_ended(run)
+        for event in journal(node, run_id, after):
+            click.echo(_line(event))
+            after = event.number
+        if ended:
+            return
+        time.sleep(LOOK)
+
+
+def _as_dict(event: Any) -> dict[str, Any]:
+    from tms_core.values import from_parameters
+
+    return {
+        "run_id": event.run_id,
+        "number": event.number,
+        "stamp": live.iso(event.stamp),
+        "kind": event.kind,
+        "node": event.node,
+        "text": event.text,
+        "values": from_parameters(event.values),
+    }
+
+
+def _line(event: Any) -> str:
+    from tms_core.values import from_parameters
+
+    when = live.moment(event.stamp)
+    clock = when.strftime("%H:%M:%S.") + f"{when.microsecond // 1000:03}" if when else "-" * 12
+    kind = click.style(f"{event.kind:<6}", fg=COLOURS.get(event.kind))
+    values = "  ".join(f"{name}={value}" for name, value in from_parameters(event.values).items())
+    return "  ".join(part for part in (f"{event.number:>5} {clock} {kind}", event.node, event.text, values) if part)
+
+
+@click.command()
+@click.argument("run")
+@click.option("-f", "--follow", is_flag=True, help="Go on until the run has ended.")
+@session.json_option
+def command(run: str, follow: bool, as_json: bool) -> None:
+    """Show what happened in a run, in order.
+
+    RUN is its id, the beginning of it, or `last` for the newest run.
+
+    \b
+    Examples:
+      tms events last
+      tms events last --follow
+    """
+    if follow and as_json:
+        raise click.UsageError("--follow and --json do not go together: --json is one finished document")
+    with session.ros() as node:
+        run_id = find_run(history(node, MOST), run).run_id
+        if follow:
+            _follow(node, run_id)
+            return
+        events = list(journal(node, run_id))
+    if as_json:
+        session.show_json([_as_dict(event) for event in events])
+        return
+    for event in events:
+        click.echo(_line(event))

@@ -1,0 +1,69 @@
+"""`tms resume`: go on with an interrupted run; leaves that have ended are not repeated."""
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from tms_cli import live, session
+from tms_cli.commands.run import Runner, report
+
+if TYPE_CHECKING:
+    from tms_core.ros import Ros
+
+SHOWN = 3  # of the leaves that are not repeated
+
+
+def plan(node: "Ros", run_id: str) -> Any:
+    """What resuming would do (tms_msg_ts/ResumePlan response).
+
+    Raises:
+        TmsError: NO_RUN.
+    """
+    from tms_msg_ts.srv import ResumePlan
+
+    return session.call(node, ResumePlan, "/tms/resume_plan", run_id=run_id)
+
+
+def _say(text: str) -> None:
+    click.echo(text, err=True)
+
+
+def _explain(found: Any) -> None:
+    _say(f"{len(found.done)} leaves have ended and are not repeated" + (":" if found.done else ""))
+    if len(found.done) > SHOWN:
+        _say("  ...")
+    for text in found.done[-SHOWN:]:
+        _say(f"  {text}")
+    if found.next:
+        _say("these were at work when the scheduler was lost, and begin again first:")
+        for text in found.next:
+            _say(f"  {text}")
+    else:
+        _say("no leaf was at work: it goes on with the next one")
+    _say("flags and blackboard values are worked out anew from the tree's first node")
+
+
+@click.command()
+@click.argument("run")
+@click.option("--yes", is_flag=True, help="Do not ask.")
+@click.option("--wait", is_flag=True, help="Show the progress until the run has ended; Ctrl-C cancels it.")
+@session.json_option
+@click.pass_context
+def command(ctx: click.Context, run: str, yes: bool, wait: bool, as_json: bool) -> None:
+    """Resume an interrupted run: says what it will do first, and asks.
+
+    RUN is its id or the beginning of it. Machines that were stopped have to be re-armed before.
+
+    \b
+    Example:
+      tms resume 20260131-060000-1a2b --wait
+    """
+    with session.ros() as node:
+        found = plan(node, run)
+        _explain(found)
+        if not yes:
+            click.confirm("Resume it now?", abort=True, err=True)
+        runner = Runner(node, found.task_id, ignore_warnings=True, resume=run)
+        end = runner.finish(live.display(as_json)) if wait else runner.begin()
+    report(end, as_json)
+    ctx.exit(end.exit_code)

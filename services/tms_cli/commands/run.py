@@ -1,0 +1,237 @@
+"""`tms run`: execute a stored task and show how it goes."""
+
+import queue
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from tms_cli import live, session
+from tms_cli.commands.runs import has_ended, recent
+from tms_core.errors import TmsError
+
+if TYPE_CHECKING:
+    from tms_core.ros import Ros
+
+ACTION = "/tms/execute_task"
+SERVER_LIMIT = 5.0  # s
+LOOK = 0.1  # s between looks
+SILENT = 10.0  # s without a word of the scheduler, which lists its runs twice a second
+FORGOTTEN = 5.0  # s of lists without this run: it was another scheduler process that began it
+INTERRUPTED = 130
+
+
+@dataclass(frozen=True)
+class End:
+    """How a run ended, or how it stands when nobody waits for its end."""
+
+    run_id: str
+    outcome: str
+    error_code: str
+    error_msg: str
+    seconds: float
+    interrupted: bool = False
+
+    @property
+    def exit_code(self) -> int:
+        if self.interrupted:
+            return INTERRUPTED
+        return 0 if self.outcome in ("success", "running", "stopping") else 1
+
+
+class Runner:
+    """Sends one task to the scheduler and follows it."""
+
+    def __init__(self, node: "Ros", task_id: int, ignore_warnings: bool, resume: str = "") -> None:
+        from tms_msg_ts.action import ExecuteTask
+        from tms_msg_ts.msg import RunStates
+
+        self._node = node
+        self._news: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        self._heard_at = self._listed_at = time.monotonic()
+        self._asked_again = False
+        self._told: Any = None  # the run as the history has it, should its result never come
+        self.view = _view(node, task_id)
+        self._peer = node.peer(ExecuteTask, ACTION)
+        self._peer.wait_ready(SERVER_LIMIT)
+        goal = ExecuteTask.Goal(task_id=task_id, ignore_warnings=ignore_warnings, resume=resume)
+        self._call = self._peer.send(goal, on_feedback=self._news.put)
+        self._heard_at = self._listed_at = time.monotonic()
+        node.subscribe(RunStates, "/tms/runs", self._list_heard, latched=True)
+
+    def begin(self) -> End:
+        """Return when the run has begun or was refused. Ctrl-C asks for its cancel."""
+        return self._until(None, lambda: bool(self.view.run_id) and self.view.state != "preparing")
+
+    def finish(self, display: live.Display) -> End:
+        """Show the run until it has ended. Ctrl-C asks for its cancel and goes on showing; a second one leaves."""
+        with display:
+            end = self._until(display, lambda: False)
+            display.show(self.view, self.view.close(end.outcome))
+            return end
+
+    def _until(self, display: live.Display | None, enough: Callable[[], bool]) -> End:
+        interrupted = False
+        try:
+            self._follow(display, enough)
+        except KeyboardInterrupt:
+            interrupted = True
+            self._cancel()
+            self._follow(display, lambda: False)
+        return self._end(interrupted)
+
+    def _follow(self, display: live.Display | None, enough: Callable[[], bool]) -> None:
+        while not (self._over() and self._news.empty()) and not enough():
+            try:
+                feedback = self._news.get(timeout=LOOK)
+            except queue.Empty:
+                self._look_after_scheduler()
+                changed: list[live.Node] = []
+            else:
+                self._heard_at = self._listed_at = time.monotonic()
+                changed = self.view.heard(feedback)
+            if display is not None:
+                display.show(self.view, changed)
+
+    def _cancel(self) -> None:
+        from tms_msg_ts.srv import CancelRun
+
+        click.echo("\ncancelling; waiting until the machines stand still (Ctrl-C again leaves)", err=True)
+        if not self.view.run_id:
+            self._peer.cancel(self._call)
+            return
+        try:
+            session.call(self._node, CancelRun, "/tms/cancel_run", run_id=self.view.run_id)
+        except TmsError as error:
+            click.echo(f"tms: the cancel did not get through: {error}; trying the action itself", err=True)
+            self._peer.cancel(self._call)
+
+    def _list_heard(self, message: Any) -> None:
+        """The scheduler's active runs; called on ROS's thread."""
+        now = time.monotonic()
+        view = self.view
+        if any(run.run_id == view.run_id if view.run_id else run.task_id == view.task_id for run in message.runs):
+            self._listed_at = now
+        self._heard_at = now
+
+    def _look_after_scheduler(self) -> None:
+        """A scheduler that was killed never sends a result."""
+        if time.monotonic() - self._heard_at > SILENT:
+            what = f"has said nothing for {SILENT:.0f} s"
+        elif self._heard_at - self._listed_at > FORGOTTEN / 2 and not self._asked_again:
+            self._asked_again = True
+            self._peer.ask_again(self._call)
+            return
+        elif self._heard_at - self._listed_at > FORGOTTEN:
+            self._told = self._in_history()
+            if self._told is not None:
+                return
+            what = "was restarted and does not know the run any more"
+        else:
+            return
+        raise TmsError(
+            f"the scheduler {what} (run {self.view.run_id or 'without id'}): look at the machine, then at "
+            f"`tms status` and `tms logs tms:ts`",
+            "SCHEDULER_LOST",
+        )
+
+    def _over(self) -> bool:
+        return self._call.outcome is not None or self._told is not None
+
+    def _in_history(self) -> Any:
+        """The run there, when it has ended."""
+        try:
+            run = recent(self._node, self.view.run_id)
+        except TmsError:
+            return None
+        return run if run is not None and has_ended(run) else None
+
+    def _end(self, interrupted: bool) -> End:
+        from tms_core.ros import Outcome
+
+        result, view = self._call.result, self.view
+        if self._call.outcome is None and self._told is not None:
+            code = "" if self._told.state == "success" else "FAILED"
+            return End(view.run_id, self._told.state, code, self._told.reason, view.elapsed, interrupted)
+        if self._call.outcome is None:
+            return End(view.run_id, view.state, "", "", view.elapsed, interrupted)
+        if self._call.outcome in (Outcome.REJECTED, Outcome.LOST) or result is None:
+            why = "the scheduler did not take the task: see `tms logs tms:ts`"
+            return End(view.run_id, "refused", self._call.outcome.name, why, view.elapsed, interrupted)
+        run_id = result.run_id or view.run_id
+        return End(run_id, result.outcome, result.error_code, result.error_msg, view.elapsed, interrupted)
+
+
+def _view(node: "Ros", task_id: int) -> live.View:
+    """The display, filled with what the task's text tells: machines to watch and goals of the leaves."""
+    from tms_msg_db.srv import GetTask
+    from tms_msg_rc.msg import MachineState
+
+    task = session.call(node, GetTask, "/tms/db/get_task", task_id=task_id).task
+    view = live.View(task_id, task.description, _goals(task.task_sequence))
+    for machine in session.site().file.machines:
+        if f'"{machine}"' in task.task_sequence:
+            node.subscribe(MachineState, f"/{machine}/rc/state", view.machine_heard, latched=True)
+    return view
+
+
+def _goals(text: str) -> list[tuple[str, str]]:
+    """(node type, goal) of every node in document order; nothing for a tree that does not load here."""
+    from tms_ts.bt import TreeError, load
+    from tms_ts.bt.tree import SendsGoal
+
+    try:
+        nodes = load(text).nodes
+    except TreeError:
+        return []  # the scheduler refuses it, with the reason
+    return [(n.registration_name, " · ".join(n.goal_asked()) if isinstance(n, SendsGoal) else "") for n in nodes]
+
+
+def report(end: End, as_json: bool) -> None:
+    """Say how it ended and where to read more."""
+    if as_json:
+        session.show_json({key: value for key, value in asdict(end).items() if key != "interrupted"})
+    elif end.outcome == "running":
+        click.echo(f"run {end.run_id} has begun: `tms events {end.run_id} --follow` shows it")
+        return
+    else:
+        word = click.style(end.outcome.upper(), fg=live.OUTCOME_COLOURS.get(end.outcome, "red"), bold=True)
+        click.echo(f"{word} after {end.seconds:.1f} s, run {end.run_id or '-'}")
+        if end.run_id:
+            click.echo(f"history: tms events {end.run_id}")
+    if end.exit_code:
+        click.echo(f"tms: {_why(end)}", err=True)
+
+
+def _why(end: End) -> str:
+    """One line for a run that did not succeed."""
+    if end.outcome == "cancelled":
+        return f"run {end.run_id} was cancelled and its machines were seen to stand still"
+    code = f" ({end.error_code})" if end.error_code else ""
+    return f"{end.outcome}{code}: {end.error_msg or 'no reason given: see `tms logs tms:ts`'}"
+
+
+@click.command()
+@click.argument("task_id", type=click.IntRange(1), metavar="ID")
+@click.option("--wait", is_flag=True, help="Show the progress until the task has ended; Ctrl-C cancels it.")
+@click.option("--ignore-warnings", is_flag=True, help="Start although the check before the run warns.")
+@session.json_option
+@click.pass_context
+def command(ctx: click.Context, task_id: int, wait: bool, ignore_warnings: bool, as_json: bool) -> None:
+    """Run a stored task.
+
+    Without --wait it returns as soon as the run has begun. Exit code 0: success (or begun), 1: refused or
+    failed, 130: interrupted by Ctrl-C, which cancels the run and waits until the machines stand still.
+
+    \b
+    Examples:
+      tms run 1 --wait
+      tms run 1 --json
+    """
+    with session.ros() as node:
+        runner = Runner(node, task_id, ignore_warnings)
+        end = runner.finish(live.display(as_json)) if wait else runner.begin()
+    report(end, as_json)
+    ctx.exit(end.exit_code)

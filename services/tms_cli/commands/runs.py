@@ -1,0 +1,106 @@
+"""`tms runs`: what ran, newest first."""
+
+import time
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from tms_cli import live, session
+from tms_core.errors import TmsError
+
+if TYPE_CHECKING:
+    from tms_core.ros import Ros
+
+RECENT = 100
+MOST = 10_000  # runs that the database lists at most
+
+
+def history(node: "Ros", limit: int) -> list[Any]:
+    """Runs as the database has them, newest first (tms_msg_db/Run)."""
+    from tms_msg_db.srv import ListRuns
+
+    return list(session.call(node, ListRuns, "/tms/db/list_runs", limit=limit).runs)
+
+
+def recent(node: "Ros", run_id: str) -> Any:
+    """A run among the newest ones as it stands now, None if it is not there."""
+    return next((run for run in history(node, RECENT) if run.run_id == run_id), None)
+
+
+def has_ended(run: Any) -> bool:
+    """Whether a run of the history is over."""
+    return live.moment(run.ended_at) is not None
+
+
+def find_run(runs: list[Any], word: str) -> Any:
+    """The run meant by an id, the beginning of one, or `last`.
+
+    Raises:
+        TmsError: none or several fit.
+    """
+    if word == "last":
+        hits = runs[:1]
+    else:
+        hits = [run for run in runs if run.run_id == word] or [run for run in runs if run.run_id.startswith(word)]
+    if not hits:
+        raise TmsError(f"there is no run '{word}': `tms runs` lists them", "RUN_MISSING")
+    if len(hits) > 1:
+        some = ", ".join(run.run_id for run in hits[:4])
+        raise TmsError(f"'{word}' fits {len(hits)} runs ({some}...): give more of the id", "RUN_AMBIGUOUS")
+    return hits[0]
+
+
+def as_dict(run: Any) -> dict[str, Any]:
+    """A run for --json."""
+    return {
+        "run_id": run.run_id,
+        "task_id": run.task_id,
+        "description": run.description,
+        "state": run.state,
+        "reason": run.reason,
+        "machines": list(run.machines),
+        "started_at": live.iso(run.started_at),
+        "ended_at": live.iso(run.ended_at),
+        "seconds": round(_seconds(run), 3),
+    }
+
+
+def _seconds(run: Any) -> float:
+    begun, ended = live.moment(run.started_at), live.moment(run.ended_at)
+    if begun is None:
+        return 0.0
+    return (ended.timestamp() if ended else time.time()) - begun.timestamp()
+
+
+def line(run: Any) -> str:
+    """A run as one line of the table."""
+    colour = live.OUTCOME_COLOURS.get(run.state, "red")
+    state = click.style(f"{run.state:<16}", fg=colour)
+    note = f"  ({run.reason})" if run.reason else ""
+    return (
+        f"{run.run_id:<28} {run.task_id:>5}  {state} {live.clock_time(run.started_at)} "
+        f"{live.duration(_seconds(run)):>9}  {run.description}{note}"
+    )
+
+
+@click.command()
+@click.option("--limit", default=20, show_default=True, type=click.IntRange(1, MOST), help="How many.")
+@session.json_option
+def command(limit: int, as_json: bool) -> None:
+    """List runs of tasks, newest first.
+
+    \b
+    Examples:
+      tms runs
+      tms runs --limit 5 --json
+    """
+    with session.ros() as node:
+        found = history(node, limit)
+    if as_json:
+        session.show_json([as_dict(run) for run in found])
+        return
+    click.echo(f"{'RUN':<28} {'TASK':>5}  {'STATE':<16} {'STARTED':<19} {'DURATION':>9}  DESCRIPTION")
+    for run in found:
+        click.echo(line(run))
+    if not found:
+        click.echo("nothing has run yet: `tms run ID --wait` runs a task of `tms task list`", err=True)

@@ -1,0 +1,83 @@
+"""`tms sensing`: how the sensing inputs are."""
+
+import math
+import threading
+from typing import Any
+
+import click
+
+from tms_cli import session
+from tms_core.errors import TmsError
+
+LIMIT = 5.0  # s for tms:sp to tell
+
+
+@click.command()
+@session.json_option
+def command(as_json: bool) -> None:
+    """Show the sensing inputs: what is heard, at which rate, and what was refused and why.
+
+    An input is waiting (nothing came yet), alive, silent (10 periods of its declared rate without a message) or
+    clock (the clock of its PC is off). configs/sensing.yaml declares the inputs.
+
+    \b
+    Examples:
+      tms sensing
+      tms sensing --json
+    """
+    rows = [_row(one) for one in _inputs()]
+    if as_json:
+        session.show_json(rows)
+        return
+    click.echo(f"{'INPUT':<28} {'STATE':<8} {'HZ':>7} {'AGE':>9} {'ACCEPTED':>9} {'REFUSED':>8} {'CLOCK':>8}  TOPIC")
+    for row in rows:
+        age = "-" if row["age"] is None else f"{row['age']:.1f} s"
+        clock = "-" if row["clock_offset"] is None else f"{row['clock_offset']:+.2f} s"
+        click.echo(
+            f"{row['name']:<28} {row['state']:<8} {row['hz']:>7.1f} {age:>9} {row['accepted']:>9} {row['refused']:>8} "
+            f"{clock:>8}  {row['topic']}"
+        )
+        if row["last_refusal"]:
+            click.echo(f"    last refused: {row['last_refusal']}")
+
+
+def _inputs() -> list[Any]:
+    """The inputs as tms:sp tells of them.
+
+    Raises:
+        TmsError: it does not.
+    """
+    from tms_msg_sp.msg import InputStates
+
+    heard: list[Any] = []
+    there = threading.Event()
+
+    def hear(message: Any) -> None:
+        heard.append(message)
+        there.set()
+
+    with session.ros() as node:
+        node.subscribe(InputStates, "/tms/sp/inputs", hear, latched=True)
+        if not there.wait(LIMIT):
+            text = "tms:sp says nothing: is `sp` under services: of the site file, and does `tms ps` show it running?"
+            raise TmsError(text, "NO_ANSWER")
+    return list(heard[-1].inputs)
+
+
+def _row(one: Any) -> dict[str, Any]:
+    return {
+        "name": one.name,
+        "topic": one.topic,
+        "type": one.type,
+        "state": one.state,
+        "hz": round(one.hz, 2),
+        "hz_expected": one.hz_expected or None,
+        "age": round(one.age, 3) if one.age >= 0 else None,
+        "clock_offset": None if math.isnan(one.clock_offset) else round(one.clock_offset, 3),
+        "accepted": one.accepted,
+        "written": one.written,
+        "superseded": one.superseded,
+        "refused": one.refused,
+        "last_refusal": one.last_refusal,
+        "records": list(one.records),
+    }

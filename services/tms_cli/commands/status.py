@@ -1,0 +1,35 @@
+"""`tms status`: does the mesh run, and what is not as it should be?"""
+
+import click
+
+from tms_cli import mesh, session
+from tms_core.processes import table
+from tms_host.supervisor import Supervisor
+
+
+@click.command()
+@session.json_option
+@click.pass_context
+def command(ctx: click.Context, as_json: bool) -> None:
+    """Say in one look whether everything works; exit code 1 if not.
+
+    \b
+    Example:
+      tms status
+    """
+    site = session.site()
+    states = {row.name: row.state for row in Supervisor(site).processes()}
+    shown = ("RUNNING", "FATAL")
+    rows = [row for row in table(site) if (row.full in states and row.autostart) or states.get(row.full) in shown]
+    reasons = {
+        row.full: (mesh.unready(row) if states.get(row.full) == "RUNNING" else states.get(row.full, "UNKNOWN"))
+        for row in rows
+        if row.ours
+    }
+    bad = {name: reason for name, reason in reasons.items() if reason is not None}
+    if as_json:
+        session.show_json({"site": site.name, "ready": not bad, "processes": reasons})
+    else:
+        for name, reason in reasons.items():
+            click.echo(f"{name:42} {reason or 'ready'}")
+    ctx.exit(1 if bad else 0)

@@ -1,0 +1,82 @@
+"""`tms stop`: software stop of all machines or of one; each stays stopped until it is re-armed."""
+
+from concurrent.futures import ThreadPoolExecutor
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from tms_cli import live, session
+from tms_core.errors import ConfigError, RosError
+
+if TYPE_CHECKING:
+    from tms_core.ros import Ros
+
+ANSWER_LIMIT = 8.0  # s; a gateway gives itself 5 s to see the machine stand
+CAUSE = "software stop by an operator"
+
+
+def stop(node: "Ros", machine: str) -> Any:
+    """The gateway's receipt (tms_msg_rc/StopReceipt), or one that says why there is none."""
+    from tms_msg_rc.msg import StopReceipt
+    from tms_msg_rc.srv import StopMachine
+
+    try:
+        request = StopMachine.Request(cause=CAUSE)
+        return node.call(StopMachine, f"/{machine}/rc/stop", request, ANSWER_LIMIT).receipt
+    except RosError as error:
+        return StopReceipt(machine=machine, confirmed=False, cause=CAUSE, detail=str(error))
+
+
+def stop_all(node: "Ros", machines: list[str]) -> list[Any]:
+    """All machines at the same time, each by the shortest way: straight to its gateway."""
+    with ThreadPoolExecutor(max(1, len(machines)), "stop") as pool:
+        return list(pool.map(lambda machine: stop(node, machine), machines))
+
+
+def as_dict(receipt: Any) -> dict[str, Any]:
+    """A receipt for --json."""
+    return {
+        "machine": receipt.machine,
+        "confirmed": receipt.confirmed,
+        "seconds": round(receipt.seconds, 3),
+        "travel": round(receipt.travel, 4),
+        "latched": receipt.latched,
+        "cause": receipt.cause,
+        "detail": receipt.detail,
+        "stamp": live.iso(receipt.stamp),
+    }
+
+
+def _line(receipt: Any) -> str:
+    if receipt.confirmed:
+        return f"{receipt.machine}: stands, after {receipt.seconds:.2f} s and {receipt.travel:.3f} rad or m; latched"
+    return click.style(f"{receipt.machine}: STOP UNCONFIRMED: {receipt.detail}", fg="red", bold=True)
+
+
+@click.command()
+@click.argument("machine", required=False)
+@session.json_option
+@click.pass_context
+def command(ctx: click.Context, machine: str | None, as_json: bool) -> None:
+    """Software stop: stop every machine, or one, and keep it stopped until `tms rearm`.
+
+    Runs that use a stopped machine end. This is no emergency stop in the sense of ISO 13850. Exit code 0 only when
+    every machine was seen to stand still.
+
+    \b
+    Examples:
+      tms stop
+      tms stop zx200
+    """
+    machines = list(session.site().file.machines)
+    if machine is not None and machine not in machines:
+        raise ConfigError(f"the site has no machine '{machine}' (there: {', '.join(machines) or 'none'})")
+    with session.ros() as node:
+        receipts = stop_all(node, machines if machine is None else [machine])
+    if as_json:
+        session.show_json([as_dict(receipt) for receipt in receipts])
+    else:
+        for receipt in receipts:
+            click.echo(_line(receipt))
+        click.echo("`tms rearm MACHINE` lets a machine move again", err=True)
+    ctx.exit(0 if all(receipt.confirmed for receipt in receipts) else 1)

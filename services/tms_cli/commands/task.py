@@ -1,0 +1,177 @@
+"""`tms task`: tasks (behaviour trees) in the database."""
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from tms_cli import live, session
+from tms_core.errors import TaskError, TmsError
+
+task_id_argument = click.argument("task_id", type=click.IntRange(1), metavar="ID")
+
+
+@click.group()
+def command() -> None:
+    """Store, list, show, check and remove tasks.
+
+    \b
+    Examples:
+      tms task add configs/tasks/one_loading_cycle.xml
+      tms task list
+      tms task check my_task.xml
+    """
+
+
+def read(file: str) -> str:
+    """Text of a task file.
+
+    Raises:
+        TaskError: it is missing, no file, too big or no text.
+    """
+    from tms_db import task_text
+
+    path = Path(file)
+    if path.exists() and not path.is_file():
+        raise TaskError(f"{file}: is {'a folder' if path.is_dir() else 'no regular file'}: give a task's XML file")
+    return task_text.read_file(path)
+
+
+@command.command()
+@click.argument("file")
+@click.option("--description", default="", help="One line for people.  [default: No Commented.]")
+@session.json_option
+def add(file: str, description: str, as_json: bool) -> None:
+    """Store a task that Groot saved; the database gives it a number.
+
+    The same file twice is reported, not stored twice.
+
+    \b
+    Examples:
+      tms task add configs/tasks/one_loading_cycle.xml --description "one cycle"
+    """
+    with session.ros() as node:
+        answer = store(node, file, description)
+    if as_json:
+        session.show_json(
+            {"task_id": answer.task_id, "already_stored": answer.already_stored, "model_name": answer.model_name}
+        )
+    elif answer.already_stored:
+        click.echo(f"already stored as task {answer.task_id}")
+    else:
+        click.echo(f"stored as task {answer.task_id}: run it with `tms run {answer.task_id} --wait`")
+
+
+def store(node: Any, file: str, description: str) -> Any:
+    """Store a file as a task; the answer of AddTask.
+
+    Raises:
+        TmsError: the file is no task, or the database refused it.
+    """
+    from tms_msg_db.srv import AddTask
+
+    text = read(file)
+    try:
+        return session.call(node, AddTask, "/tms/db/add_task", task_sequence=text, description=description)
+    except TmsError as error:
+        if error.code != TaskError.code:
+            raise
+        raise TaskError(f"{file}: {error}") from error
+
+
+@command.command("list")
+@session.json_option
+def list_(as_json: bool) -> None:
+    """List the stored tasks."""
+    from tms_msg_db.srv import ListTasks
+
+    with session.ros() as node:
+        tasks = session.call(node, ListTasks, "/tms/db/list_tasks").tasks
+    if as_json:
+        session.show_json([_as_dict(task) for task in tasks])
+        return
+    click.echo(f"{'TASK':>5}  {'MODEL':<10} {'STORED':<19}  DESCRIPTION")
+    for task in tasks:
+        click.echo(f"{task.task_id:>5}  {task.model_name:<10} {live.clock_time(task.added_at):<19}  {task.description}")
+    if not tasks:
+        click.echo("none yet: `tms task add FILE` stores one", err=True)
+
+
+@command.command()
+@task_id_argument
+@session.json_option
+def show(task_id: int, as_json: bool) -> None:
+    """Print a task's XML, for example into a file that Groot can open.
+
+    \b
+    Example:
+      tms task show 1 > task.xml
+    """
+    from tms_msg_db.srv import GetTask
+
+    with session.ros() as node:
+        task = session.call(node, GetTask, "/tms/db/get_task", task_id=task_id).task
+    if as_json:
+        session.show_json({**_as_dict(task), "task_sequence": task.task_sequence})
+        return
+    click.echo(f"task {task.task_id}, {task.model_name or 'no model'}: {task.description}", err=True)
+    click.echo(task.task_sequence.rstrip())
+
+
+@command.command()
+@task_id_argument
+@session.json_option
+def rm(task_id: int, as_json: bool) -> None:
+    """Remove a task; its number becomes free."""
+    from tms_msg_db.srv import RemoveTask
+
+    with session.ros() as node:
+        session.call(node, RemoveTask, "/tms/db/remove_task", task_id=task_id)
+    if as_json:
+        session.show_json({"removed": task_id})
+    else:
+        click.echo(f"task {task_id} removed")
+
+
+@command.command()
+@click.argument("what", metavar="WHAT")
+@click.option("--recursive", is_flag=True, help="Also the folders inside a folder.")
+@session.json_option
+@click.pass_context
+def check(ctx: click.Context, what: str, recursive: bool, as_json: bool) -> None:
+    """Check a file, a stored task (its number) or a folder of files, without running; exit code 1 if there are errors.
+
+    Lists every goal that a leaf would send to a machine, errors and warnings with their lines; of a folder one line
+    a file. The scheduler also looks for the records and subtasks that a task names. While no mesh runs, the
+    structure alone is checked, and the output says so.
+
+    \b
+    Examples:
+      tms task check my_task.xml
+      tms task check 1 --json
+      tms task check configs/tasks
+    """
+    from tms_cli import check_report, check_task
+
+    folder = Path(what).is_dir()
+    if recursive and not folder:
+        raise click.UsageError(f"--recursive is for folders, and {what} is none")
+    with check_task.Scheduler() as scheduler:
+        if folder:
+            right = check_report.show_folder(
+                check_task.folder(scheduler, Path(what), recursive=recursive), as_json=as_json
+            )
+        elif what.isascii() and what.isdigit():
+            right = check_report.show_one(check_task.stored(scheduler, int(what)), as_json=as_json)
+        else:
+            right = check_report.show_one(check_task.file(scheduler, Path(what)), as_json=as_json)
+    ctx.exit(0 if right else 1)
+
+
+def _as_dict(task: Any) -> dict[str, Any]:
+    return {
+        "task_id": task.task_id,
+        "model_name": task.model_name,
+        "description": task.description,
+        "added_at": live.iso(task.added_at),
+    }

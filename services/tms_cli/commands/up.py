@@ -1,0 +1,36 @@
+"""`tms up`: start the mesh of this PC and wait until its processes can work."""
+
+import os
+
+import click
+
+from tms_cli import mesh, session
+from tms_core.errors import ConfigError
+from tms_core.processes import here
+
+
+@click.command()
+@click.option("--role", metavar="PC", help="Which PC of the site this is: a key under pcs: of the site file.")
+@click.option("--foreground", is_flag=True, help="Become supervisord instead: for containers and systemd.")
+@click.option("--no-wait", is_flag=True, help="Return as soon as supervisord runs.")
+def command(role: str | None, foreground: bool, no_wait: bool) -> None:
+    """Start the mesh of this PC; harmless when it already runs.
+
+    \b
+    Examples:
+      tms up
+      tms --site yard up --role cps
+      tms --site yard up --role cps --foreground
+    """
+    if role is not None:
+        os.environ["TMS_PC"] = role
+    site = session.site()
+    if role is not None and not site.file.pcs:
+        raise ConfigError(f"{site.path}: has no pcs:, so this PC runs all of it: leave ROLE away")
+    started = mesh.up(site, foreground)
+    where = f" on PC '{site.pc}'" if site.pc else ""
+    click.echo(f"mesh '{site.name}'{where} {'started' if started else 'already runs'}, state in {site.state}", err=True)
+    if not no_wait:
+        mesh.wait_ready(site, lambda text: click.echo(text, err=True))
+        console = any(row.name == "ur" for row in here(site))
+        click.echo(f"ready: http://{site.file.bind}:{site.file.ports.console}" if console else "ready", err=True)

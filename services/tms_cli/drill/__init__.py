@@ -1,0 +1,1 @@
+"""The drill: kills processes while a simulated machine moves, and measures what happens."""

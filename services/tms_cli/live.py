@@ -1,0 +1,271 @@
+"""How a run is shown while it goes on: as a live tree on a terminal, as one line per change on a pipe."""
+
+import math
+import re
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from datetime import datetime, timezone
+from types import TracebackType
+from typing import Any, Protocol
+
+import click
+
+IDLE, RUNNING, SUCCESS, FAILURE = 0, 1, 2, 3  # tms_msg_ts/NodeStatus
+WORDS = {IDLE: "idle", RUNNING: "running", SUCCESS: "success", FAILURE: "failure"}
+MARKS = {IDLE: "·", RUNNING: "▶", SUCCESS: "✔", FAILURE: "✘"}
+COLOURS = {IDLE: "bright_black", RUNNING: "dark_orange", SUCCESS: "green", FAILURE: "red"}  # as in Groot
+OUTCOME_COLOURS = {"success": "green", "running": "yellow", "preparing": "yellow", "stopping": "yellow"}
+DIGITS = re.compile(r"[0-9]+")
+ALL_SUCCEED = frozenset({"Sequence", "SequenceStar", "Repeat", "SubTree", "SubTreePlus"})  # when they do themselves
+MOST_ROWS = 40  # of a tree on the screen; longer ones show the part that works
+
+
+@dataclass
+class Node:
+    """One node of the tree as last heard of."""
+
+    uid: int
+    parent: int
+    name: str
+    type: str
+    status: int = IDLE
+    reason: str = ""
+    goal: str = ""  # what a leaf asks of a machine, as far as the task's text tells
+    result: int = IDLE  # how it ended last: a control node sets its children back to idle when it ends
+
+    def take(self, status: int, reason: str) -> None:
+        """A new state; the reason stays when only the state goes back to idle."""
+        self.status, self.reason = status, reason
+        if status != IDLE:
+            self.result = status if status in (SUCCESS, FAILURE) else IDLE
+
+    @property
+    def title(self) -> str:
+        label = self.name or self.type
+        if self.type and self.type != label:
+            label = f"{label} ({self.type})"
+        return f"{label}  {self.goal}" if self.goal else label
+
+
+@dataclass
+class View:
+    """What is known of one run; fed with the feedback of ExecuteTask."""
+
+    task_id: int
+    description: str = ""
+    goals: Sequence[tuple[str, str]] = ()  # (node type, goal) of all nodes in document order
+    clock: Callable[[], float] = time.monotonic
+    run_id: str = ""
+    state: str = "preparing"
+    leaf: str = ""
+    reason: str = ""
+    nodes: dict[int, Node] = field(default_factory=dict)
+    machines: dict[str, Any] = field(default_factory=dict)  # name -> tms_msg_rc/MachineState
+    over: bool = False
+    begun: float = 0.0
+
+    def __post_init__(self) -> None:
+        self.begun = self.clock()
+
+    @property
+    def elapsed(self) -> float:
+        return self.clock() - self.begun
+
+    def heard(self, feedback: Any) -> list[Node]:
+        """Take a feedback; returns the changes of nodes in order."""
+        self.run_id, self.state = feedback.run_id or self.run_id, feedback.state or self.state
+        self.leaf, self.reason = feedback.running_leaf, feedback.reason
+        if not self.nodes:
+            self._first(feedback.nodes)
+        changed = []
+        for status in feedback.nodes:
+            node = self.nodes.setdefault(status.uid, Node(status.uid, status.parent, status.name, status.type))
+            before = node.status
+            node.take(status.status, status.reason)
+            if node.status != before:
+                changed.append(replace(node))
+        return changed
+
+    def close(self, outcome: str) -> list[Node]:
+        """The run has ended. Returns nodes that went idle before their success was heard of, where it is sure."""
+        self.state, self.leaf, self.reason, self.over = outcome, "", "", True
+        found, sure = [], {0}  # parents whose success means that their children succeeded
+        for _, node in self.rows() if outcome == "success" else ():
+            if node.parent in sure or node.parent not in self.nodes:
+                if node.type in ALL_SUCCEED:
+                    sure.add(node.uid)
+                if node.result == IDLE:
+                    node.result = SUCCESS
+                    found.append(replace(node, status=SUCCESS))
+        return found[::-1]  # children end before their parents
+
+    def _first(self, statuses: Sequence[Any]) -> None:
+        """The first message holds the whole tree: if it is the one we read ourselves, leaves get their goals."""
+        same = [status.type for status in statuses] == [kind for kind, _ in self.goals]
+        goals = [goal for _, goal in self.goals] if same else [""] * len(statuses)
+        for status, goal in zip(statuses, goals, strict=True):
+            self.nodes[status.uid] = Node(status.uid, status.parent, status.name, status.type, goal=goal)
+
+    def machine_heard(self, state: Any) -> None:
+        """Take a tms_msg_rc/MachineState; called on ROS's thread."""
+        self.machines[state.machine] = state
+
+    def rows(self) -> Iterator[tuple[int, Node]]:
+        """Nodes with their depth, parents before children, in the order in which they came."""
+        children: dict[int, list[Node]] = {}
+        for node in self.nodes.values():
+            children.setdefault(node.parent if node.parent in self.nodes else 0, []).append(node)
+        waiting = [(0, node) for node in reversed(children.get(0, []))]
+        while waiting:
+            depth, node = waiting.pop()
+            yield depth, node
+            waiting += [(depth + 1, child) for child in reversed(children.get(node.uid, []))]
+
+
+def tree_rows(view: View, most: int = MOST_ROWS) -> list[tuple[int, str]]:
+    """The tree as (status, line); a tree longer than `most` is cut around the first running leaf."""
+    rows = list(view.rows())
+    if len(rows) > most:
+        active = max((i for i, (_, node) in enumerate(rows) if node.status == RUNNING), default=0)
+        start = min(max(0, active - most // 2), len(rows) - most)
+        rows = rows[start : start + most]
+    return [(_colour(view, node), f"{'  ' * depth}{_mark(node)} {node.title}{_why(node)}") for depth, node in rows]
+
+
+def _colour(view: View, node: Node) -> int:
+    """As in Groot while it runs; afterwards, when all are idle, how each ended."""
+    return node.result if view.over else node.status
+
+
+def _mark(node: Node) -> str:
+    return MARKS[node.status or node.result]
+
+
+def _why(node: Node) -> str:
+    return f"  — {node.reason}" if node.reason and node.status in (RUNNING, FAILURE) else ""
+
+
+def joint_lines(machines: Mapping[str, Any]) -> list[str]:
+    """Joint angles of machines, in rad and degrees."""
+    lines = []
+    for name, machine in sorted(dict(machines).items()):
+        state = "moving" if machine.moving else ("standing" if machine.ready else f"not ready: {machine.reason}")
+        lines.append(f"{name}: {state}")
+        for joint, angle in zip(machine.joint_names, machine.positions, strict=False):
+            lines.append(f"  {joint:<18} {angle:8.3f} rad {math.degrees(angle):8.1f}°")
+    return lines
+
+
+def change_line(view: View, node: Node) -> str:
+    """One line for a pipe or a log."""
+    return f"{view.elapsed:7.1f} s  {WORDS[node.status]:<8} {node.title}{_why(node)}"
+
+
+class Display(Protocol):
+    """Where the progress of a run goes."""
+
+    def __enter__(self) -> "Display": ...
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None: ...
+
+    def show(self, view: View, changed: Sequence[Node]) -> None:
+        """Called after every feedback and several times a second."""
+
+
+class Lines:
+    """One line per node that changed, and per new reason to wait."""
+
+    def __init__(self, err: bool = False) -> None:
+        self._err = err
+        self._state = self._reason = ""
+
+    def __enter__(self) -> "Lines":
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        return
+
+    def show(self, view: View, changed: Sequence[Node]) -> None:
+        if view.run_id and view.state != self._state and not view.over:
+            self._state = view.state
+            click.echo(f"{view.elapsed:7.1f} s  run {view.run_id}: {view.state}", err=self._err)
+        for node in changed:
+            if node.status != IDLE:  # going back to idle is no news
+                click.echo(change_line(view, node), err=self._err)
+        reason = DIGITS.sub("", view.reason)  # a percentage that grows is no news
+        if reason and reason != self._reason and not any(node.reason == view.reason for node in changed):
+            click.echo(f"{view.elapsed:7.1f} s  {'':8} {view.reason}", err=self._err)
+        self._reason = reason
+
+
+class Screen:
+    """The whole tree, drawn anew on a terminal."""
+
+    def __init__(self) -> None:
+        from rich.console import Console
+        from rich.live import Live
+
+        self._console = Console()
+        self._live = Live(console=self._console, auto_refresh=False, vertical_overflow="crop")
+
+    def __enter__(self) -> "Screen":
+        self._live.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._live.stop()
+
+    def show(self, view: View, changed: Sequence[Node]) -> None:
+        from rich.text import Text
+
+        joints = joint_lines(view.machines)
+        text = Text(no_wrap=True, overflow="ellipsis")
+        text.append(f"task {view.task_id} {view.description}\n", style="bold")
+        text.append(f"run {view.run_id or '-'}  {view.state}  {view.elapsed:.1f} s\n")
+        for status, line in tree_rows(view, max(5, self._console.height - len(joints) - 5)):
+            text.append(line + "\n", style=COLOURS[status])
+        text.append((view.reason or "") + "\n", style="yellow")
+        text.append("\n".join(joints), style="cyan")
+        self._live.update(text, refresh=True)
+
+
+def display(as_json: bool) -> Display:
+    """The screen for people, lines for pipes; with --json stdout is kept free for the document."""
+    if as_json:
+        return Lines(err=True)
+    return Screen() if sys.stdout.isatty() else Lines()
+
+
+def moment(stamp: Any) -> datetime | None:
+    """A builtin_interfaces/Time as local time; None for zero, which means never."""
+    if not stamp.sec and not stamp.nanosec:
+        return None
+    return datetime.fromtimestamp(stamp.sec + stamp.nanosec / 1e9, timezone.utc).astimezone()
+
+
+def iso(stamp: Any) -> str | None:
+    """The same for machines."""
+    when = moment(stamp)
+    return when.isoformat(timespec="milliseconds") if when else None
+
+
+def clock_time(stamp: Any) -> str:
+    """The same for people."""
+    when = moment(stamp)
+    return when.strftime("%Y-%m-%d %H:%M:%S") if when else "-"
+
+
+def duration(seconds: float) -> str:
+    """A length of time in the unit that suits it."""
+    for size, unit in ((86400, "d"), (3600, "h"), (60, "min")):
+        if seconds >= 2 * size:
+            return f"{seconds / size:.0f} {unit}"
+    return f"{seconds:.1f} s"

@@ -1,0 +1,72 @@
+"""Entry of `tms`: finds the verbs by listing commands/, loads one only when it is used, maps errors to exit codes."""
+
+import importlib
+import pkgutil
+import sys
+
+import click
+
+from tms_cli import commands, words
+from tms_core.errors import TmsError
+
+INTERRUPTED = 130
+
+
+class Verbs(click.Group):
+    """Verbs are the modules of tms_cli.commands; each has a click command called `command`."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return sorted(found.name.replace("_", "-") for found in pkgutil.iter_modules(commands.__path__))
+
+    def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
+        if name not in self.list_commands(ctx):
+            return None
+        module = importlib.import_module(f"tms_cli.commands.{name.replace('-', '_')}")
+        verb: click.Command = module.command
+        return verb
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """The list of verbs, in the language of the locale."""
+        found = [(name, self.get_command(ctx, name)) for name in self.list_commands(ctx)]
+        rows = [(name, words.summary(name, verb.get_short_help_str(70))) for name, verb in found if verb is not None]
+        with formatter.section("コマンド" if words.japanese() else "Commands"):
+            formatter.write_dl(rows)
+
+
+@click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.option("--site", metavar="NAME|FILE", help="Site to talk to (default: TMS_SITE, else the demo).")
+@click.version_option("0.1.0", prog_name="tms")
+@click.pass_context
+def tms(ctx: click.Context, site: str | None) -> None:
+    """ROS2-TMS for Construction: run tasks on excavators and dump trucks.
+
+    \b
+    Examples:
+      tms task add configs/tasks/one_loading_cycle.xml
+      tms run 1 --wait
+      tms ps
+    """
+    ctx.obj = site
+
+
+def main() -> None:
+    """0 done, 1 refused or failed, 2 usage, 130 interrupted."""
+    try:
+        sys.exit(tms(standalone_mode=False, prog_name="tms") or 0)
+    except click.UsageError as error:
+        error.show()
+        sys.exit(2)
+    except click.exceptions.Abort:
+        sys.exit(INTERRUPTED)
+    except KeyboardInterrupt:
+        sys.exit(INTERRUPTED)
+    except click.ClickException as error:
+        error.show()
+        sys.exit(1)
+    except TmsError as error:
+        print(f"tms: {error}", file=sys.stderr)
+        sys.exit(1)
+
+
+if __name__ == "__main__":
+    main()

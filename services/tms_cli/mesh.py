@@ -1,0 +1,245 @@
+"""Starts and ends the mesh of this PC: checks first, then supervisord."""
+
+import fcntl
+import json
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import psutil
+
+from tms_cli import monitoring
+from tms_core import metrics, pcs, store
+from tms_core.config import Site
+from tms_core.environment import environment
+from tms_core.errors import ConfigError, TmsError
+from tms_core.processes import Process, here
+from tms_host.supervisor import Supervisor, render, runtime_folder
+
+NEEDED_BYTES = 100 * 2**20  # for logs
+READY_LIMIT = 60.0  # s for all processes to be able to work
+START_LIMIT = 10.0  # s for supervisord to answer
+STOP_LIMIT = 20.0  # s for everything to end
+
+
+@dataclass(frozen=True)
+class Owner:
+    """Who uses a ROS domain on this PC."""
+
+    pid: int
+    started: float
+    state: str
+
+    def alive(self) -> bool:
+        """Whether that very process still runs (a pid alone may have been given to another)."""
+        try:
+            return abs(psutil.Process(self.pid).create_time() - self.started) < 1.0
+        except psutil.NoSuchProcess:
+            return False
+
+
+def check(site: Site) -> tuple[Process, ...]:
+    """Everything that can be known to be wrong before a process starts; returns the rows.
+
+    Raises:
+        ConfigError: the first thing that is wrong and what to do.
+    """
+    rows = here(site)
+    environment(site)
+    if any(row.name == "store" for row in rows):  # another PC of the site has no need of it
+        store.check(site)
+    try:
+        (site.state / "log").mkdir(parents=True, exist_ok=True)
+        (site.state / "ros").mkdir(exist_ok=True)
+        free = shutil.disk_usage(site.state).free
+    except OSError as error:
+        raise ConfigError(f"{site.state}: cannot be written ({error.strerror}): set TMS_STATE") from error
+    if free < NEEDED_BYTES:
+        raise ConfigError(f"{site.state}: only {free / 2**20:.0f} MB free: free some space or set TMS_STATE")
+    return rows
+
+
+def up(site: Site, foreground: bool = False) -> bool:
+    """Start supervisord for this site; False when it already runs. Does not wait for the processes.
+
+    In the foreground this process becomes supervisord, as containers and systemd want it.
+
+    Raises:
+        ConfigError, TmsError: a port or the ROS domain is taken, or supervisord does not start.
+    """
+    rows = check(site)
+    if site.pc is not None:
+        (site.state / pcs.CHOICE).write_text(site.pc, encoding="utf-8")  # for the verbs that follow
+    monitoring.render(site, site.state / "prometheus")
+    supervisor = Supervisor(site)
+    with _domain(site.domain) as lock:
+        if supervisor.alive():
+            return False
+        _refuse_other_mesh(site, lock)
+        _refuse_taken_ports(site, rows)
+        conf = site.state / "supervisord.conf"
+        conf.write_text(render(site, rows), encoding="utf-8")
+        if foreground:
+            _write(lock, Owner(os.getpid(), psutil.Process().create_time(), str(site.state)))
+            _become(site, conf)
+        _start(site, conf)
+        _wait(supervisor.alive, START_LIMIT, f"supervisord did not start: see {site.state}/log/supervisord.log")
+        pid = supervisor.pid()
+        _write(lock, Owner(pid, psutil.Process(pid).create_time(), str(site.state)))
+    return True
+
+
+def down(site: Site) -> bool:
+    """Stop every process and supervisord; False when nothing ran.
+
+    Raises:
+        TmsError: something is left.
+    """
+    supervisor = Supervisor(site)
+    if not supervisor.alive():
+        return False
+    pid = supervisor.pid()
+    ours = [psutil.Process(pid), *psutil.Process(pid).children(recursive=True)]
+    supervisor.shutdown()
+    _, left = psutil.wait_procs(ours, STOP_LIMIT)
+    for process in left:  # children of ours that did not listen to supervisord's own kill
+        process.send_signal(signal.SIGKILL)
+    _, left = psutil.wait_procs(left, 2.0)
+    if left:
+        raise TmsError(f"pid {', '.join(str(p.pid) for p in left)} did not end: see {site.state}/log")
+    return True
+
+
+def _start(site: Site, conf: Path) -> None:
+    words = [sys.executable, "-m", "tms_host.prefork", "-c", str(conf)]
+    done = subprocess.run(
+        words, env={**os.environ, **environment(site)}, capture_output=True, text=True, timeout=30, check=False
+    )
+    if done.returncode != 0:
+        detail = (done.stderr.strip() or done.stdout.strip()).splitlines()
+        raise TmsError(f"supervisord did not start: {detail[-1] if detail else 'no reason given'}")
+
+
+def _become(site: Site, conf: Path) -> None:
+    """Does not return. The lock of the domain is freed by exec: its file closes."""
+    words = [sys.executable, "-m", "tms_host.prefork", "--nodaemon", "-c", str(conf)]
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os.execve(sys.executable, words, {**os.environ, **environment(site)})
+
+
+def _refuse_other_mesh(site: Site, lock: Path) -> None:
+    owner = _read(lock)
+    if owner is not None and owner.alive() and owner.state != str(site.state):
+        raise ConfigError(
+            f"ROS domain {site.domain} is used by another mesh on this PC (pid {owner.pid}, state in {owner.state}): "
+            "run `make down` there, or give this one another domain and ports in its site file"
+        )
+
+
+def _refuse_taken_ports(site: Site, rows: tuple[Process, ...]) -> None:
+    wanted = {row.port: (row.address, f"metrics of {row.full}") for row in rows if row.ours}
+    here_too = {row.name for row in rows}
+    if "ur" in here_too:
+        wanted[site.file.ports.console] = (site.file.bind, "console")
+    if "store" in here_too:
+        wanted[site.file.ports.store] = ("127.0.0.1", "embedded store")
+    for port, (address, purpose) in wanted.items():
+        with socket.socket() as probe:
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            try:
+                probe.bind((address, port))
+            except OSError as error:
+                raise ConfigError(
+                    f"port {port} ({purpose}) is taken by {_holder(port)}: stop it, "
+                    f"or change ports: in {site.path} ({error.strerror})"
+                ) from error
+
+
+def _holder(port: int) -> str:
+    """Who listens on a port, as far as this user may know."""
+    for connection in psutil.net_connections("tcp"):
+        if connection.status == psutil.CONN_LISTEN and connection.laddr[1:] == (port,) and connection.pid:
+            process = psutil.Process(connection.pid)
+            return f"{process.name()} (pid {connection.pid}, in {process.cwd()})"
+    return "another program"
+
+
+@contextmanager
+def _domain(domain: int) -> Iterator[Path]:
+    """Exclusive use of the note that says which mesh has a ROS domain on this PC."""
+    path = runtime_folder() / f"domain-{domain}.json"
+    with path.with_suffix(".lock").open("w") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        yield path
+
+
+def _read(path: Path) -> Owner | None:
+    try:
+        return Owner(**json.loads(path.read_text()))
+    except (FileNotFoundError, ValueError, TypeError):
+        return None  # no note, or one cut short by a crash: nobody owns the domain
+
+
+def _write(path: Path, owner: Owner) -> None:
+    path.write_text(json.dumps(owner.__dict__))
+
+
+def _wait(holds: Callable[[], bool], seconds: float, otherwise: str) -> None:
+    deadline = time.monotonic() + seconds
+    while not holds():
+        if time.monotonic() > deadline:
+            raise TmsError(otherwise)
+        time.sleep(0.05)
+
+
+def wait_ready(site: Site, say: Callable[[str], None]) -> None:
+    """Wait until every process that starts by itself can do its job; `say` gets one line per process.
+
+    Raises:
+        TmsError: names the first process that did not get ready, why, and where its log is.
+    """
+    waiting = {row.full: row for row in here(site) if row.autostart and row.ours}
+    deadline = time.monotonic() + READY_LIMIT
+    reasons: dict[str, str] = {}
+    while waiting:
+        for name, row in list(waiting.items()):
+            reason = unready(row)
+            if reason is None:
+                del waiting[name]
+                say(f"{name} ready")
+            else:
+                reasons[name] = reason
+        if waiting and time.monotonic() > deadline:
+            name = next(iter(waiting))
+            raise TmsError(f"{name} is not ready after {READY_LIMIT:.0f} s: {reasons[name]}; see `tms logs {name}`")
+        time.sleep(0.1)
+
+
+def unready(row: Process) -> str | None:
+    """Why a process cannot work now, as it says itself; None when it can."""
+    return metrics.unready(row.address, row.port)
+
+
+def wait_running(site: Site, name: str) -> None:
+    """Wait until supervisord calls a process RUNNING.
+
+    Raises:
+        TmsError: it is FATAL or took too long; says where its log is.
+    """
+
+    def state() -> str:
+        return next((row.state for row in supervisor.processes() if row.name == name), "UNKNOWN")
+
+    supervisor = Supervisor(site)
+    _wait(lambda: state() in ("RUNNING", "FATAL"), START_LIMIT, f"{name} does not start: see `tms logs {name}`")
+    if state() == "FATAL":
+        raise TmsError(f"{name} ends again and again: see `tms logs {name}`")

@@ -1,0 +1,56 @@
+"""Prometheus' folder for a site: its configuration, the rules, and the targets of the process table."""
+
+import json
+import shutil
+from pathlib import Path
+
+from tms_core.config import PROJECT, Site
+from tms_core.errors import ConfigError
+from tms_core.processes import table
+
+SOURCE = PROJECT / "deploy" / "prometheus"
+COPIED = ("prometheus.yml", "rules.yml")
+
+
+def targets(site: Site) -> list[dict[str, object]]:
+    """One entry a process, in the form of Prometheus' file_sd; all PCs of the site."""
+    return [
+        {
+            "targets": [f"{row.address}:{row.port}"],
+            "labels": {
+                "site": site.name,
+                "process": row.full,
+                "role": row.role,
+                "machine": row.machine or "",
+                "pc": row.pc,
+                "on_demand": "no" if row.autostart else "yes",
+            },
+        }
+        for row in table(site)
+        if row.ours
+    ]
+
+
+def render(site: Site, folder: Path, alertmanager: str | None = None) -> None:
+    """Write everything that `prometheus --config.file=FOLDER/prometheus.yml` reads; it notices new targets itself.
+
+    Raises:
+        ConfigError: the folder cannot be written.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name in COPIED:
+            shutil.copyfile(SOURCE / name, folder / name)
+        _replace(folder / "targets.json", json.dumps(targets(site), indent=1))
+        if alertmanager or not (folder / "alertmanagers.json").exists():
+            chosen = [{"targets": [alertmanager]}] if alertmanager else []
+            _replace(folder / "alertmanagers.json", json.dumps(chosen))
+    except OSError as error:
+        raise ConfigError(f"{folder}: cannot be written ({error.strerror})") from error
+
+
+def _replace(path: Path, text: str) -> None:
+    """At once: Prometheus may read at any moment."""
+    new = path.with_suffix(".new")
+    new.write_text(text, encoding="utf-8")
+    new.replace(path)

@@ -1,0 +1,56 @@
+"""What verbs share: the site, a short-lived ROS node, typed calls to the services, output for people or machines."""
+
+import json
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from tms_core import environment
+from tms_core.config import Site, load_site
+from tms_core.errors import TmsError
+
+if TYPE_CHECKING:
+    from tms_core.ros import Ros
+
+CALL_LIMIT = 5.0  # s
+
+
+def site() -> Site:
+    """The site that the user chose with --site or TMS_SITE."""
+    return load_site(click.get_current_context().find_root().obj)
+
+
+@contextmanager
+def ros() -> Iterator["Ros"]:
+    """A node for the length of one command; rclpy is imported only by verbs that need it."""
+    environment.enter(site())
+    from tms_core.ros import Ros
+
+    node = Ros(f"tms_cli_{os.getpid()}")
+    try:
+        yield node
+    finally:
+        node.close()
+
+
+def call(node: "Ros", service_type: Any, name: str, **fields: Any) -> Any:
+    """Call a service of ours and raise what it reports.
+
+    Raises:
+        TmsError: the service refused, is not there, or did not answer.
+    """
+    answer = node.call(service_type, name, service_type.Request(**fields), CALL_LIMIT)
+    if answer.error_code:
+        raise TmsError(answer.error_msg, answer.error_code)
+    return answer
+
+
+def show_json(data: Any) -> None:
+    """The one JSON document that --json promises on stdout."""
+    click.echo(json.dumps(data, ensure_ascii=False, indent=2))
+
+
+json_option = click.option("--json", "as_json", is_flag=True, help="One JSON document on stdout.")

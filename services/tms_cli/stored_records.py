@@ -1,0 +1,126 @@
+"""Records as verbs need them: asked of tms:db, written, loaded from a file, and shown."""
+
+import os
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tms_cli import live, session
+from tms_core.errors import TmsError
+
+if TYPE_CHECKING:
+    from tms_core.ros import Ros
+    from tms_db.records import Record
+
+
+def source() -> str:
+    """Who writes, as the records show it."""
+    return f"cli {os.environ.get('USER', '')}".strip()
+
+
+def records(node: "Ros", model: str = "") -> list[Any]:
+    """Stored records (tms_msg_db/Record)."""
+    from tms_msg_db.srv import ListParameters
+
+    return list(session.call(node, ListParameters, "/tms/db/list_parameters", model_name=model).records)
+
+
+def write(
+    node: "Ros", key: tuple[str, str], values: Mapping[str, Any], expected: Mapping[str, Any] | None = None, **more: Any
+) -> bool:
+    """Set fields of a record, if others hold what is expected; tells whether the record was made."""
+    from tms_msg_db.srv import SetParameter
+
+    from tms_core.values import to_parameters
+
+    model, record = key
+    answer = session.call(
+        node, SetParameter, "/tms/db/set_parameter", model_name=model, record_name=record, source=source(),
+        values=to_parameters(values), expected=to_parameters(expected or {}), **more,
+    )  # fmt: skip
+    return bool(answer.created)
+
+
+def load_file(node: "Ros", file: Path) -> dict[str, list[str]]:
+    """Load a file; record names by what was done with them.
+
+    Raises:
+        TmsError: the file is wrong (nothing is written), or a record was refused (says how far it got).
+    """
+    from tms_db.records import read_file
+
+    wanted = read_file(file)
+    stored = {(record.model_name, record.record_name): record for record in records(node)}
+    done: dict[str, list[str]] = {"created": [], "changed": [], "unchanged": []}
+    for record in wanted:
+        key = (record.model_name, record.record_name)
+        if key in stored and _says(stored[key], record):
+            done["unchanged"].append("/".join(key))
+            continue
+        try:
+            more: dict[str, Any] = {"type": record.type, "description": record.description, "max_age": record.max_age}
+            created = write(node, key, record.values, create=True, **more)
+        except TmsError as error:
+            raise TmsError(f"{error} (before that: {summary(done)})", error.code) from error
+        done["created" if created else "changed"].append("/".join(key))
+    return done
+
+
+def _says(stored: Any, wanted: "Record") -> bool:
+    """Whether a stored record has all that a file says, types included."""
+    from tms_core.values import to_parameters
+
+    there = {value.name: value.value for value in stored.values}
+    return (
+        stored.type == wanted.type
+        and wanted.description in ("", stored.description)
+        and wanted.max_age in (0.0, stored.max_age)
+        and all(there.get(value.name) == value.value for value in to_parameters(wanted.values))
+    )
+
+
+def summary(done: Mapping[str, list[str]]) -> str:
+    """What a load did, in one line."""
+    return ", ".join(f"{len(names)} {what}" for what, names in done.items())
+
+
+def title(record: Any) -> str:
+    """MODEL/RECORD of a stored record."""
+    return f"{record.model_name}/{record.record_name}"
+
+
+def as_dict(record: Any) -> dict[str, Any]:
+    """A record for --json."""
+    from tms_core.values import from_parameters
+
+    updated = live.moment(record.updated_at)
+    return {
+        "model_name": record.model_name,
+        "record_name": record.record_name,
+        "type": record.type,
+        "description": record.description,
+        "source": record.source,
+        "max_age": record.max_age or None,
+        "updated_at": live.iso(record.updated_at),
+        "age": round(time.time() - updated.timestamp(), 3) if updated else None,
+        "values": from_parameters(record.values),
+    }
+
+
+def age(record: Any) -> str:
+    """How old a record's values are, in words."""
+    updated = live.moment(record.updated_at)
+    return f"{live.duration(max(0.0, time.time() - updated.timestamp()))} old" if updated else "age unknown"
+
+
+def text(value: Any) -> str:
+    """A value as people write it."""
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def kind(value: Any) -> str:
+    """The type of a value in words."""
+    if isinstance(value, list):
+        return f"{kind(value[0])} array" if value else "empty array"
+    return {bool: "true/false", int: "integer", float: "decimal"}.get(type(value), "text")

@@ -1,0 +1,202 @@
+"""Who may do what: users of a file, passwords and tokens as argon2 hashes, sessions, and a brake on guessing."""
+
+import hashlib
+import secrets
+import threading
+import time
+from collections import OrderedDict
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from argon2 import PasswordHasher
+from argon2.exceptions import InvalidHashError, VerificationError
+from pydantic import Field, model_validator
+
+from tms_core.config import parse
+from tms_core.errors import ConfigError, TmsError
+from tms_core.models import Settings
+
+Role = Literal["viewer", "operator", "admin"]
+RANK: dict[Role, int] = {"viewer": 0, "operator": 1, "admin": 2}
+HASHER = PasswordHasher(time_cost=2, memory_cost=19_456, parallelism=1)  # OWASP's least: a site PC has other work
+SESSION_IDLE = 12 * 3600.0  # s: one shift
+MOST_SESSIONS = 500
+FREE_TRIES = 3  # wrong passwords without a wait, for one address and for one name
+LONGEST_WAIT = 60.0  # s
+FORGET = 900.0  # s after which wrong passwords count no more
+MOST_SOURCES = 1000
+
+
+class User(Settings):
+    """One person or program."""
+
+    role: Role
+    password: str | None = Field(default=None, pattern=r"^\$argon2id\$")  # hash
+    token: str | None = Field(default=None, pattern=r"^\$argon2id\$")  # hash
+
+    @model_validator(mode="after")
+    def _some_way_in(self) -> "User":
+        if self.password is None and self.token is None:
+            raise ValueError("needs a password or a token: `tms user add`")
+        return self
+
+
+class Users(Settings):
+    """The file that `tms user` writes."""
+
+    users: dict[str, User] = Field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Person:
+    """Who asks."""
+
+    name: str
+    role: Role
+
+    def may(self, role: Role) -> bool:
+        return RANK[self.role] >= RANK[role]
+
+
+class Throttled(TmsError):
+    """Too many wrong passwords; `seconds` until the next try."""
+
+    code = "THROTTLED"
+
+    def __init__(self, seconds: float) -> None:
+        super().__init__(f"too many wrong passwords: try again in {seconds:.0f} s")
+        self.seconds = seconds
+
+
+class Brake:
+    """Doubles the wait with every failure of one source."""
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
+        self._failures: OrderedDict[str, tuple[int, float]] = OrderedDict()
+
+    def wait(self, source: str) -> float:
+        """Seconds until this source may try again."""
+        count, last = self._failures.get(source, (0, 0.0))
+        if count <= FREE_TRIES:
+            return 0.0
+        return max(0.0, last + min(LONGEST_WAIT, 2.0 ** (count - FREE_TRIES)) - self._clock())
+
+    def failed(self, source: str) -> None:
+        count, last = self._failures.pop(source, (0, self._clock()))
+        if self._clock() - last > FORGET:
+            count = 0
+        self._failures[source] = (count + 1, self._clock())
+        while len(self._failures) > MOST_SOURCES:
+            self._failures.popitem(last=False)
+
+    def passed(self, source: str) -> None:
+        self._failures.pop(source, None)
+
+
+class Access:
+    """All that is known of users; thread safe."""
+
+    def __init__(self, file: Path | None, clock: Callable[[], float] = time.monotonic) -> None:
+        """Read the users.
+
+        Raises:
+            ConfigError: the file cannot be read, is wrong, or may be read by everybody.
+        """
+        self.asks = file is not None
+        self._users: dict[str, User] = {} if file is None else _read(file)
+        self._clock = clock
+        self._brake = Brake(clock)
+        self._decoy = hashed(secrets.token_urlsafe()) if self.asks else ""
+        self._sessions: OrderedDict[str, tuple[Person, float]] = OrderedDict()  # digest of the key -> since when idle
+        self._tokens: OrderedDict[str, Person] = OrderedDict()  # digest of a token that was verified
+        self._lock = threading.Lock()
+
+    def login(self, name: str, password: str, source: str) -> tuple[str, Person]:
+        """A new session's key.
+
+        Raises:
+            TmsError: LOGIN, or THROTTLED.
+        """
+        user = self._users.get(name)
+        person = self._verified(name, user, user.password if user else None, password, source)
+        key = secrets.token_urlsafe(32)
+        with self._lock:
+            self._sessions[_digest(key)] = (person, self._clock())
+            while len(self._sessions) > MOST_SESSIONS:
+                self._sessions.popitem(last=False)
+        return key, person
+
+    def logout(self, key: str) -> None:
+        with self._lock:
+            self._sessions.pop(_digest(key), None)
+
+    def session(self, key: str) -> Person | None:
+        """Whose session this is; every use prolongs it."""
+        digest = _digest(key)
+        with self._lock:
+            person, used = self._sessions.pop(digest, (None, 0.0))
+            if person is None or self._clock() - used > SESSION_IDLE:
+                return None
+            self._sessions[digest] = (person, self._clock())
+            return person
+
+    def known_token(self, text: str) -> Person | None:
+        """Whose token this is, if it was verified before: quick."""
+        with self._lock:
+            return self._tokens.get(_digest(text))
+
+    def token(self, text: str, source: str) -> Person:
+        """Whose token `name:secret` this is; slow.
+
+        Raises:
+            TmsError: LOGIN, or THROTTLED.
+        """
+        name, _, secret = text.partition(":")
+        user = self._users.get(name)
+        person = self._verified(name, user, user.token if user else None, secret, source)
+        with self._lock:
+            self._tokens[_digest(text)] = person
+            while len(self._tokens) > MOST_SESSIONS:
+                self._tokens.popitem(last=False)
+        return person
+
+    def _verified(self, name: str, user: User | None, kept: str | None, secret: str, source: str) -> Person:
+        sources = (f"from {source}", f"as {name}")
+        with self._lock:
+            wait = max(map(self._brake.wait, sources))
+        if wait > 0:
+            raise Throttled(wait)
+        right = _matches(kept or self._decoy, secret)  # a name that is not there takes as long as one that is
+        with self._lock:
+            for one in sources:
+                self._brake.passed(one) if right and user else self._brake.failed(one)
+        if not right or user is None or kept is None:
+            raise TmsError("the name or the password is wrong", "LOGIN")
+        return Person(name, user.role)
+
+
+def hashed(secret: str) -> str:
+    """What the users file keeps of a password or token."""
+    return HASHER.hash(secret)
+
+
+def _matches(kept: str, secret: str) -> bool:
+    try:
+        return HASHER.verify(kept, secret)
+    except (VerificationError, InvalidHashError):
+        return False
+
+
+def _digest(key: str) -> str:
+    return hashlib.sha256(key.encode()).hexdigest()
+
+
+def _read(file: Path) -> dict[str, User]:
+    if not file.exists():
+        raise ConfigError(f"{file}: the users file of console.users is not there: `tms user add NAME --role admin`")
+    if file.stat().st_mode & 0o007:
+        raise ConfigError(f"{file}: everybody on this PC may read it: `chmod 600 {file}`")
+    return parse(file, Users).users

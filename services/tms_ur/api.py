@@ -1,0 +1,101 @@
+"""The HTTP API and the console's files; `/openapi.json` describes it."""
+
+import logging
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from http import HTTPStatus
+from pathlib import Path as File
+from typing import TYPE_CHECKING
+
+import anyio.to_thread
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse
+from fastapi.staticfiles import StaticFiles
+from starlette.exceptions import HTTPException
+
+from tms_core.config import Site
+from tms_core.errors import TmsError
+from tms_ur import commands, reading, sessions
+from tms_ur.access import Access, Throttled
+from tms_ur.guard import SECURITY, Guard
+from tms_ur.problems import problem, problems
+
+if TYPE_CHECKING:
+    from tms_ur.audit import Audit
+    from tms_ur.gateway import Gateway
+
+STATIC = File(__file__).parent / "static"
+WORKERS = 8  # threads for calls that wait for a module
+
+# What is not here is a refusal (409): asked well, but not possible now.
+STATUS = {
+    **dict.fromkeys(("TASK_MISSING", "RUN_MISSING", "RECORD_MISSING", "NO_RUN", "NO_TREE"), HTTPStatus.NOT_FOUND),
+    **dict.fromkeys(("NO_QUESTION", "NO_PROCESS", "NO_MACHINE"), HTTPStatus.NOT_FOUND),
+    **dict.fromkeys(("NO_SERVER", "NO_ANSWER", "STORE_DOWN", "STORE_FULL", "TOO_MANY"), HTTPStatus.SERVICE_UNAVAILABLE),
+    "LOGIN": HTTPStatus.UNAUTHORIZED,
+    "ROLE": HTTPStatus.FORBIDDEN,
+    "THROTTLED": HTTPStatus.TOO_MANY_REQUESTS,
+}  # fmt: skip
+log = logging.getLogger(__name__)
+
+
+def create_app(gateway: "Gateway", audit: "Audit", site: Site, access: Access) -> FastAPI:
+    """The application for one site."""
+    app = FastAPI(
+        title="ROS2-TMS for Construction, task management", version="0.1.0", lifespan=_lifespan,
+        docs_url=None, redoc_url=None,  # they load scripts from elsewhere, and a site may be offline
+        # nothing leaves the site because of an environment variable
+        telemetry={"tracing": False, "metrics": False, "logs": False, "auto_configure": False},
+        responses=problems(400, 401, 422),
+    )  # fmt: skip
+    reading.add(app, gateway, site)
+    commands.add(app, gateway, audit, site)
+    sessions.add(app, access, audit, secure=site.file.console.tls is not None)
+    app.add_exception_handler(TmsError, _tms_error)
+    app.add_exception_handler(HTTPException, _http_error)
+    app.add_exception_handler(RequestValidationError, _bad_request)
+    app.add_exception_handler(500, _bug)
+    app.add_middleware(Guard, bind=site.file.bind, access=access, names=site.file.console.names)
+    app.mount("/", StaticFiles(directory=STATIC, html=True), name="console")
+    return app
+
+
+@asynccontextmanager
+async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
+    anyio.to_thread.current_default_thread_limiter().total_tokens = WORKERS
+    yield
+
+
+# errors
+
+
+def _tms_error(_request: Request, error: Exception) -> JSONResponse:
+    assert isinstance(error, TmsError)
+    answer = problem(STATUS.get(error.code, HTTPStatus.CONFLICT), error.code, str(error))
+    if isinstance(error, Throttled):
+        answer.headers["Retry-After"] = str(round(error.seconds) + 1)
+    return answer
+
+
+def _http_error(request: Request, error: Exception) -> JSONResponse:
+    assert isinstance(error, HTTPException)
+    code = HTTPStatus(error.status_code).name
+    message = f"{request.method} {request.url.path}: {error.detail}: see /openapi.json"
+    answer = problem(error.status_code, code, message)
+    answer.headers.update(error.headers or {})
+    return answer
+
+
+def _bad_request(_request: Request, error: Exception) -> JSONResponse:
+    assert isinstance(error, RequestValidationError)
+    first = error.errors()[0]
+    where = ".".join(str(part) for part in first["loc"])
+    return problem(422, "BAD_REQUEST", f"{where}: {first['msg']}: see /openapi.json")
+
+
+def _bug(_request: Request, error: Exception) -> JSONResponse:
+    """The traceback goes to the log; the server writes it."""
+    answer = problem(500, "INTERNAL", f"{type(error).__name__} in the console: see `tms logs tms:ur`")
+    answer.headers.update(SECURITY)  # it is made outside the guard
+    return answer

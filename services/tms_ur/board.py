@@ -1,0 +1,127 @@
+"""The latest of what the site says, with its age: fed by the gateway's ROS thread, read by the web server's."""
+
+import threading
+import time
+from collections.abc import Callable, Iterable
+from datetime import datetime, timezone
+
+from tms_ur.models import ActiveRun, Host, Machine, Place, Process, Question, Scheduler, State
+
+MACHINE_SILENT = 2.0  # s, ten periods of a machine's gateway
+SCHEDULER_SILENT = 5.0  # s, ten periods of the scheduler's list of runs
+
+
+class Board:
+    """Keeps one snapshot's worth of state and tells listeners when its content, not only an age, has changed."""
+
+    def __init__(self, machines: Iterable[str], clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
+        self._lock = threading.Lock()
+        self._machines: dict[str, tuple[Machine, float | None]] = {n: (Machine(name=n), None) for n in machines}
+        self._runs: list[ActiveRun] = []
+        self._questions: list[Question] = []
+        self._places: dict[str, Place] = {}
+        self._runs_at: float | None = None
+        self._hosts: dict[str, tuple[Host, float]] = {}
+        self._listeners: list[Callable[[], None]] = []
+        self.closed = False
+
+    # fed
+
+    def put_machine(self, machine: Machine) -> None:
+        """A machine's report; `joint_age` is what the gateway measured."""
+        with self._lock:
+            before, _ = self._machines.get(machine.name, (None, None))
+            self._machines[machine.name] = (machine, self._clock())
+        if before is None or _content(before) != _content(machine):
+            self._tell()
+
+    def put_place(self, name: str, place: Place) -> None:
+        """Where a machine stands."""
+        with self._lock:
+            changed = self._places.get(name) != place
+            self._places[name] = place
+        if changed:
+            self._tell()
+
+    def put_runs(self, runs: list[ActiveRun], questions: list[Question] | None = None) -> None:
+        """The scheduler's whole lists."""
+        asked = questions or []
+        with self._lock:
+            changed = runs != self._runs or asked != self._questions or self._runs_at is None
+            self._runs, self._questions, self._runs_at = runs, asked, self._clock()
+        if changed:
+            self._tell()
+
+    def put_host(self, host: Host) -> None:
+        """All processes of one PC; its agent sends only changes."""
+        with self._lock:
+            self._hosts[host.name] = (host, self._clock())
+        self._tell()
+
+    def close(self) -> None:
+        """No more news: listeners let their clients go."""
+        self.closed = True
+        self._tell()
+
+    def host_of(self, process: str) -> str | None:
+        """The PC that a process runs on."""
+        with self._lock:
+            names = {row.name: pc for pc, (host, _) in self._hosts.items() for row in host.processes}
+        return names.get(process)
+
+    # read
+
+    def on_change(self, listener: Callable[[], None]) -> None:
+        """Call `listener` after every change, on the thread that brought it; it must be quick."""
+        self._listeners.append(listener)
+
+    def snapshot(self) -> State:
+        """Everything as it stands now."""
+        with self._lock:
+            now = self._clock()
+            return State(
+                time=datetime.now(timezone.utc),
+                machines=[
+                    _aged(machine, now, at, self._places.get(name)) for name, (machine, at) in self._machines.items()
+                ],
+                scheduler=_scheduler(now, self._runs_at),
+                runs=self._runs,
+                questions=self._questions,
+                hosts=[_host(host, now - at) for _, (host, at) in sorted(self._hosts.items())],
+            )
+
+    def _tell(self) -> None:
+        for listener in self._listeners:
+            listener()
+
+
+def _content(machine: Machine) -> Machine:
+    return machine.model_copy(update={"joint_age": None})
+
+
+def _aged(machine: Machine, now: float, at: float | None, place: Place | None) -> Machine:
+    if at is None:
+        why = f"{machine.name}:rc has not been heard yet: see the processes"
+        return machine.model_copy(update={"reason": why, "place": place})
+    age = now - at
+    joint_age = None if machine.joint_age is None else round(machine.joint_age + age, 1)
+    update: dict[str, object] = {"place": place, "age": round(age, 1), "joint_age": joint_age}
+    if age > MACHINE_SILENT:
+        update |= {"state": "silent", "reason": f"{machine.name}:rc has said nothing for {age:.0f} s"}
+    return machine.model_copy(update=update)
+
+
+def _scheduler(now: float, at: float | None) -> Scheduler:
+    return Scheduler() if at is None else Scheduler(alive=now - at < SCHEDULER_SILENT, age=round(now - at, 1))
+
+
+def _host(host: Host, age: float) -> Host:
+    processes = [_running(process, age) for process in host.processes]
+    return host.model_copy(update={"age": round(age, 1), "processes": processes})
+
+
+def _running(process: Process, age: float) -> Process:
+    if process.state != "RUNNING":
+        return process
+    return process.model_copy(update={"uptime": round(process.uptime + age, 1)})

@@ -1,0 +1,179 @@
+"""Endpoints that change something: each says who may, and each is audited."""
+
+import threading
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Annotated, Any
+
+import anyio
+import anyio.to_thread
+from fastapi import FastAPI, Path, Request
+
+from tms_core.config import Site
+from tms_core.errors import TmsError
+from tms_ur.access import Person
+from tms_ur.guard import source
+from tms_ur.models import (
+    Added,
+    AnswerGiven,
+    FieldGiven,
+    Nothing,
+    RearmAsked,
+    Rearmed,
+    Receipt,
+    RecordGiven,
+    RunAsked,
+    StartRun,
+    StopAsked,
+    TaskGiven,
+)  # fmt: skip
+from tms_ur.problems import Admin, Operator, Viewer, problems
+from tms_ur.reading import ProcessName, RunId, TaskId
+
+if TYPE_CHECKING:
+    from tms_ur.audit import Audit
+    from tms_ur.gateway import Gateway
+
+ANSWERS = problems(403, 404, 409, 411, 413, 415, 503)
+STOPS = 4  # stops at the same time, each with a thread a machine: no worker that waits is in their way
+MachineName = Annotated[str, Path(pattern=r"^[a-z][a-z0-9_]{0,63}$")]
+QuestionId = Annotated[str, Path(pattern=r"^[0-9A-Za-z_-]{1,100}$")]
+
+
+def add(app: FastAPI, gateway: "Gateway", audit: "Audit", site: Site) -> None:
+    """Put them into the application."""
+    note = _Note(audit)
+    _runs(app, gateway, note)
+    _machines(app, gateway, note, site)
+    _stored(app, gateway, note)
+    _processes(app, gateway, note)
+
+
+class _Note:
+    """Audits what a request asked for."""
+
+    def __init__(self, audit: "Audit") -> None:
+        self._audit = audit
+
+    def __call__(self, request: Request, person: Person, what: str, target: object) -> str:
+        where = source(request.scope)
+        self._audit.put(person.name, where, what, str(target))
+        return f"{person.name} at {where}"
+
+
+def _runs(app: FastAPI, gateway: "Gateway", note: _Note) -> None:
+    starting = _Once()
+
+    @app.post("/api/runs", status_code=202, summary="Run a task; answers when it has begun", responses=ANSWERS)
+    def start_run(request: Request, wanted: StartRun, person: Operator) -> RunAsked:
+        note(request, person, "start_run", f"task {wanted.task_id}")
+        with starting.only(wanted.task_id):
+            return RunAsked(run_id=gateway.start_run(wanted.task_id, wanted.ignore_warnings))
+
+    @app.post("/api/runs/{run_id}/cancel", status_code=202, summary="Ask a run to stop", responses=ANSWERS)
+    def cancel_run(request: Request, run_id: RunId, _: Nothing, person: Operator) -> RunAsked:
+        note(request, person, "cancel_run", run_id)
+        gateway.cancel_run(run_id)
+        return RunAsked(run_id=run_id)
+
+    @app.post("/api/questions/{question_id}", summary="Answer a question of a run; the first answer counts",
+              responses=ANSWERS)  # fmt: skip
+    def answer(request: Request, question_id: QuestionId, given: AnswerGiven, person: Operator) -> AnswerGiven:
+        who = note(request, person, "answer", f"{question_id} {'yes' if given.yes else 'no'}")
+        gateway.answer(question_id, given.yes, who)
+        return given
+
+
+class _Once:
+    """One start of a task at a time, so that a double click starts one run."""
+
+    def __init__(self) -> None:
+        self._open: set[int] = set()
+        self._lock = threading.Lock()
+
+    @contextmanager
+    def only(self, task_id: int) -> Iterator[None]:
+        with self._lock:
+            if task_id in self._open:
+                raise TmsError(f"task {task_id} is being started already", "STARTING")
+            self._open.add(task_id)
+        try:
+            yield
+        finally:
+            with self._lock:
+                self._open.discard(task_id)
+
+
+def _machines(app: FastAPI, gateway: "Gateway", note: _Note, site: Site) -> None:
+    names = list(site.file.machines)
+    stops = anyio.CapacityLimiter(STOPS)
+
+    @app.post("/api/stop", summary="Software stop of all machines or of one; answers when they stand",
+              responses=problems(403, 404, 411, 413, 415))  # fmt: skip
+    async def stop(request: Request, asked: StopAsked, person: Viewer) -> list[Receipt]:
+        machines = [_known(asked.machine, names)] if asked.machine else names
+        who = note(request, person, "stop", asked.machine or "all machines")
+        return await anyio.to_thread.run_sync(_stop_all, gateway, machines, who, limiter=stops)
+
+    @app.post("/api/machines/{name}/rearm", summary="Re-arm a stopped machine, in two steps", responses=ANSWERS)
+    def rearm(
+        request: Request, name: MachineName, asked: RearmAsked, person: Operator
+    ) -> Rearmed:  # fmt: skip
+        note(request, person, "rearm" if asked.token else "rearm_asked", _known(name, names))
+        return gateway.rearm(name, asked.token)
+
+
+def _known(machine: str, names: list[str]) -> str:
+    if machine not in names:
+        raise TmsError(f"the site has no machine '{machine}' (there: {', '.join(names) or 'none'})", "NO_MACHINE")
+    return machine
+
+
+def _stop_all(gateway: "Gateway", machines: list[str], who: str) -> list[Receipt]:
+    cause = f"software stop by {who}"
+    with ThreadPoolExecutor(max(1, len(machines)), "stop") as pool:
+        return list(pool.map(lambda machine: gateway.stop(machine, cause), machines))
+
+
+def _stored(app: FastAPI, gateway: "Gateway", note: _Note) -> None:
+    @app.post("/api/tasks", status_code=201, summary="Store a tree as a task", responses=ANSWERS)
+    def add_task(request: Request, given: TaskGiven, person: Admin) -> Added:
+        number, there = gateway.add_task(given.xml, given.description)
+        note(request, person, "add_task", f"task {number}")
+        return Added(id=number, already_stored=there)
+
+    @app.post("/api/tasks/{task_id}/remove", summary="Take a task out; its number becomes free", responses=ANSWERS)
+    def remove_task(request: Request, task_id: TaskId, _: Nothing, person: Admin) -> Nothing:
+        note(request, person, "remove_task", f"task {task_id}")
+        gateway.remove_task(task_id)
+        return Nothing()
+
+    @app.post("/api/parameters", summary="Set fields of a record in one step", responses=ANSWERS)
+    def set_parameter(request: Request, given: RecordGiven, person: Admin) -> Nothing:
+        values = {field.name: _typed(field) for field in given.fields}
+        told = ", ".join(f"{name}={value}" for name, value in values.items())
+        who = note(request, person, "set_parameter", f"{given.model_name}/{given.record_name} {told}"[:500])
+        gateway.set_parameter(given.model_name, given.record_name, values, who, given.create, given.type)
+        return Nothing()
+
+
+def _typed(field: FieldGiven) -> Any:
+    """The value as its type says: JSON writes 3.0 as 3."""
+    kinds: dict[str, tuple[type, ...]] = {"bool": (bool,), "int": (int,), "double": (int, float), "string": (str,)}
+    kind = field.type.removesuffix("[]")
+    several = field.type.endswith("[]")
+    values = field.value if isinstance(field.value, list) else [field.value]
+    wrong = [one for one in values if not isinstance(one, kinds[kind]) or isinstance(one, bool) != (kind == "bool")]
+    if wrong or several != isinstance(field.value, list):
+        raise TmsError(f"{field.name}: {field.value!r} is no {field.type}", "BAD_VALUE")
+    typed = [float(one) if kind == "double" else one for one in values]
+    return typed if several else typed[0]
+
+
+def _processes(app: FastAPI, gateway: "Gateway", note: _Note) -> None:
+    @app.post("/api/processes/{name}/restart", summary="Restart a process", responses=ANSWERS)
+    def restart(request: Request, name: ProcessName, _: Nothing, person: Operator) -> Nothing:
+        note(request, person, "restart", name)
+        gateway.restart(name)
+        return Nothing()

@@ -1,0 +1,210 @@
+"""What the API asks of ROS: blocking calls for worker threads, and topics that feed the board."""
+
+import math
+from typing import Any
+
+from tf2_msgs.msg import TFMessage
+from tms_msg_db.srv import AddTask, GetTask, ListEvents, ListParameters, ListRuns, ListTasks, RemoveTask, SetParameter
+from tms_msg_host.msg import Processes
+from tms_msg_host.srv import ControlProcess, ReadLog
+from tms_msg_rc.msg import MachineState
+from tms_msg_rc.srv import Rearm, StopMachine
+from tms_msg_ts.action import ExecuteTask
+from tms_msg_ts.msg import RunStates
+from tms_msg_ts.srv import AnswerQuestion, CancelRun, CheckTask
+
+from tms_core.config import Site
+from tms_core.errors import RosError, TmsError
+from tms_core.ros import Ros
+from tms_core.values import to_parameters
+from tms_ur import messages
+from tms_ur.board import Board
+from tms_ur.models import Event, Host, Place, Rearmed, Receipt, Record, Run, Task, TaskText
+
+CALL_LIMIT = 4.0  # s for an answer of a module
+STOP_LIMIT = 8.0  # s; a machine's gateway gives itself 5 s to see it stand
+START_LIMIT = 30.0  # s for a run to begin: the scheduler may start its subtasks first
+PROCESS_LIMIT = 15.0  # s for a process to end and to be started
+MAP = "map"
+
+
+class Gateway:
+    """The site as the API sees it."""
+
+    def __init__(self, ros: Ros, site: Site) -> None:
+        names = list(site.file.machines)
+        self._ros = ros
+        self.board = Board(names)
+        self._scheduler = ros.peer(ExecuteTask, "/tms/execute_task")
+        self._frames = {site.border(name).base_frame: name for name in names}
+        for name in names:
+            ros.subscribe(MachineState, f"/{name}/rc/state", self._machine_heard, latched=True)
+        ros.subscribe(RunStates, "/tms/runs", self._runs_heard, latched=True)
+        ros.subscribe(Processes, "/tms/host/processes", self._host_heard, depth=10, latched=True)
+        ros.subscribe(TFMessage, "/tf", self._frames_heard, depth=20)
+
+    # topics
+
+    def _machine_heard(self, message: Any) -> None:
+        self.board.put_machine(messages.machine(message))
+
+    def _runs_heard(self, message: Any) -> None:
+        runs = [messages.active_run(run) for run in message.runs]
+        self.board.put_runs(runs, [messages.question(asked) for asked in message.questions])
+
+    def _host_heard(self, message: Any) -> None:
+        self.board.put_host(Host(name=message.host, processes=[messages.process(row) for row in message.processes]))
+
+    def _frames_heard(self, message: Any) -> None:
+        for one in message.transforms:
+            name = self._frames.get(one.child_frame_id)
+            if name is not None and one.header.frame_id == MAP:
+                at, q = one.transform.translation, one.transform.rotation
+                yaw = math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
+                self.board.put_place(name, Place(x=round(at.x, 2), y=round(at.y, 2), yaw=round(yaw, 3)))
+
+    # the database
+
+    def tasks(self) -> list[Task]:
+        """All stored tasks."""
+        return [Task(**messages.task(task)) for task in self._ask(ListTasks, "/tms/db/list_tasks").tasks]
+
+    def task(self, task_id: int) -> TaskText:
+        """One task with its tree."""
+        task = self._ask(GetTask, "/tms/db/get_task", task_id=task_id).task
+        return TaskText(**messages.task(task), xml=task.task_sequence)
+
+    def add_task(self, xml: str, description: str) -> tuple[int, bool]:
+        """Store a task; returns its number and whether the same text was there already."""
+        answer = self._ask(AddTask, "/tms/db/add_task", task_sequence=xml, description=description)
+        return answer.task_id, answer.already_stored
+
+    def remove_task(self, task_id: int) -> None:
+        """Take a task out; its number becomes free."""
+        self._ask(RemoveTask, "/tms/db/remove_task", task_id=task_id)
+
+    def runs(self, limit: int) -> list[Run]:
+        """The history, newest first."""
+        return [messages.run(run) for run in self._ask(ListRuns, "/tms/db/list_runs", limit=limit).runs]
+
+    def events(self, run_id: str, after: int, limit: int) -> list[Event]:
+        """The journal of a run behind number `after`."""
+        answer = self._ask(ListEvents, "/tms/db/list_events", run_id=run_id, after=after, limit=limit)
+        return [messages.event(event) for event in answer.events]
+
+    def parameters(self, model_name: str) -> list[Record]:
+        """Records of one machine, of all with an empty name."""
+        answer = self._ask(ListParameters, "/tms/db/list_parameters", model_name=model_name)
+        return [messages.record(record) for record in answer.records]
+
+    def set_parameter(
+        self, model_name: str, record_name: str, values: dict[str, Any], source: str, create: bool, kind: str
+    ) -> None:
+        """Set fields of one record in one atomic step."""
+        self._ask(
+            SetParameter, "/tms/db/set_parameter", model_name=model_name, record_name=record_name, type=kind,
+            source=source, create=create, values=to_parameters(values),
+        )  # fmt: skip
+
+    # the scheduler
+
+    def check_task(self, xml: str) -> tuple[list[str], list[str]]:
+        """Errors and warnings of a tree; nothing is stored and nothing runs."""
+        answer = self._ask(CheckTask, "/tms/check_task", xml=xml)
+        return list(answer.errors), list(answer.warnings)
+
+    def start_run(self, task_id: int, ignore_warnings: bool) -> str:
+        """Start a task and return the run's id once it has begun.
+
+        Raises:
+            TmsError: refused, with the scheduler's reason; or the scheduler is away. Nothing runs then.
+        """
+        self._scheduler.wait_ready(CALL_LIMIT)
+        call = self._scheduler.send(ExecuteTask.Goal(task_id=task_id, ignore_warnings=ignore_warnings))
+        call.wait_for(lambda: _begun(call) or call.outcome is not None, START_LIMIT)
+        if call.outcome is None and call.feedback is not None:  # it runs, or goes on preparing for long
+            return str(call.feedback.run_id)
+        if call.outcome is None:  # whoever is told "no" must not see it start later
+            self._scheduler.cancel(call)
+            raise RosError(f"the run did not begin within {START_LIMIT:.0f} s: see `tms logs tms:ts`", "NO_ANSWER")
+        if call.result is None:
+            raise TmsError("the scheduler did not take the task: see `tms logs tms:ts`", "REFUSED")
+        if call.result.outcome == "refused":
+            raise TmsError(call.result.error_msg, call.result.error_code)
+        return str(call.result.run_id)  # it was over before anything was told of it
+
+    def cancel_run(self, run_id: str) -> None:
+        """Ask a run to stop; its state tells when it has.
+
+        Raises:
+            TmsError: NO_RUN, or the scheduler is away.
+        """
+        self._ask(CancelRun, "/tms/cancel_run", run_id=run_id)
+
+    def answer(self, question: str, yes: bool, by: str) -> None:
+        """Answer a WaitForClick node.
+
+        Raises:
+            TmsError: NO_QUESTION, or the scheduler is away.
+        """
+        self._ask(AnswerQuestion, "/tms/answer", id=question, yes=yes, by=by)
+
+    # machines
+
+    def stop(self, machine: str, cause: str) -> Receipt:
+        """Stop one machine by the shortest way, straight to its gateway; no answer is a receipt, too."""
+        try:
+            request = StopMachine.Request(cause=cause)
+            answer = self._ros.call(StopMachine, f"/{machine}/rc/stop", request, STOP_LIMIT)
+        except RosError as error:
+            return Receipt(
+                machine=machine, confirmed=False, seconds=0.0, travel=0.0, cause=cause, detail=str(error), latched=False
+            )
+        return messages.receipt(answer.receipt)
+
+    def rearm(self, machine: str, token: str) -> Rearmed:
+        """One step of re-arming.
+
+        Raises:
+            TmsError: refused, with the reason.
+        """
+        answer = self._ask(Rearm, f"/{machine}/rearm", token=token)
+        return Rearmed(token=answer.token, cause=answer.cause, armed=answer.armed)
+
+    # processes
+
+    def restart(self, process: str) -> None:
+        """Restart one process.
+
+        Raises:
+            TmsError: no host agent knows it, or it cannot be started.
+        """
+        host = self._host_of(process)
+        request = ControlProcess.Request(name=process, command="restart")
+        _checked(self._ros.call(ControlProcess, f"/tms/host/{host}/control", request, PROCESS_LIMIT))
+
+    def log(self, process: str, size: int) -> str:
+        """The end of a process's log."""
+        request = ReadLog.Request(name=process, bytes=size)
+        answer = self._ros.call(ReadLog, f"/tms/host/{self._host_of(process)}/log", request, CALL_LIMIT)
+        return str(_checked(answer).text)
+
+    def _host_of(self, process: str) -> str:
+        host = self.board.host_of(process)
+        if host is None:
+            raise TmsError(f"no PC of the site has a process '{process}': `tms ps` lists them", "NO_PROCESS")
+        return host
+
+    def _ask(self, service_type: Any, name: str, **fields: Any) -> Any:
+        return _checked(self._ros.call(service_type, name, service_type.Request(**fields), CALL_LIMIT))
+
+
+def _checked(answer: Any) -> Any:
+    if answer.error_code:
+        raise TmsError(answer.error_msg, answer.error_code)
+    return answer
+
+
+def _begun(call: Any) -> bool:
+    """Whether the run was not refused: until then it only prepares."""
+    return call.feedback is not None and call.feedback.state != "preparing"

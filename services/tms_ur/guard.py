@@ -1,0 +1,172 @@
+"""What stands before every request: whom we answer, who asks, what a command must look like, security headers.
+
+The browser must not become a way in for foreign pages: only our own names are answered (a foreign name that resolves
+to this PC is DNS rebinding), and commands are JSON (which a foreign page cannot send without asking first) from our
+own pages or from no page at all. Without users, commands are taken only where nobody but this PC can connect.
+"""
+
+import ipaddress
+from dataclasses import dataclass
+from urllib.parse import urlsplit
+
+import anyio.to_thread
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.responses import JSONResponse
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from tms_core.errors import TmsError
+from tms_ur.access import Access, Person, Throttled
+
+LOCAL_NAMES = frozenset({"localhost", "127.0.0.1", "::1"})
+MOST_BODY = 16 * 1024  # bytes of a command ...
+MOST_TASK = 6 * 2**20  # ... and of one that carries a tree
+OPEN = frozenset({"/api/session", "/api/login"})  # what is answered before a login
+COOKIE = "tms_session"
+LOCAL = Person("local", "admin")  # without users: whoever sits at this PC
+GUEST = Person("guest", "viewer")  # without users, and others can connect
+
+SECURITY = {
+    "Content-Security-Policy": "default-src 'self'; object-src 'none'; base-uri 'none'; form-action 'none'; "
+    "frame-ancestors 'none'",
+    "X-Content-Type-Options": "nosniff",
+    "X-Frame-Options": "DENY",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Resource-Policy": "same-origin",
+}
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """Why a request is not let through."""
+
+    status: int
+    code: str
+    message: str
+    headers: dict[str, str] | None = None
+
+
+class Guard:
+    """ASGI middleware around the whole application."""
+
+    def __init__(self, app: ASGIApp, bind: str, access: Access, names: tuple[str, ...] = ()) -> None:
+        self._app, self._bind, self._access = app, bind, access
+        self._names = LOCAL_NAMES | {bind.lower(), *(name.lower() for name in names)}
+        self._loopback = is_loopback(bind)
+        self._hashing = anyio.CapacityLimiter(1)  # each takes 19 MB
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+
+        async def secured(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                headers = MutableHeaders(raw=message["headers"])
+                headers.update(SECURITY)
+                headers["Cache-Control"] = "no-store" if scope["path"].startswith("/api/") else "no-cache"
+            await send(message)
+
+        refusal = self._refusal(scope) or await self._stranger(scope)
+        if refusal is None:
+            await self._app(scope, receive, secured)
+        else:
+            body = {"code": refusal.code, "message": refusal.message}
+            await JSONResponse(body, refusal.status, refusal.headers)(scope, receive, secured)
+
+    def _refusal(self, scope: Scope) -> Refusal | None:
+        headers = Headers(scope=scope)
+        host = headers.get("host", "")
+        if not self._ours(host):
+            text = f"this console does not answer to the name '{host}': open http://{self._bind} or http://localhost, "
+            text += "or add the name to console.names of the site file"
+            return Refusal(400, "FOREIGN_HOST", text)
+        if scope["method"] != "POST":  # nothing is changed by any other one; the router refuses what it does not know
+            return None
+        return self._command_refusal(headers, host, MOST_TASK if scope["path"].startswith("/api/tasks") else MOST_BODY)
+
+    async def _stranger(self, scope: Scope) -> Refusal | None:
+        """Find out who asks, for the endpoints; everything of the API but the login needs somebody."""
+        try:
+            person = await self._person(Headers(scope=scope), source(scope))
+        except Throttled as error:
+            return Refusal(429, error.code, str(error), {"Retry-After": str(round(error.seconds) + 1)})
+        except TmsError as error:
+            return Refusal(401, error.code, str(error))
+        scope.setdefault("state", {})["person"] = person
+        if person is None and scope["path"].startswith("/api/") and scope["path"] not in OPEN:
+            return Refusal(401, "LOGIN", "log in first: POST /api/login, or send `Authorization: Bearer NAME:TOKEN`")
+        return None
+
+    async def _person(self, headers: Headers, where: str) -> Person | None:
+        if not self._access.asks:
+            return LOCAL if self._loopback else GUEST
+        kind, _, token = headers.get("authorization", "").partition(" ")
+        if kind.lower() == "bearer":
+            known = self._access.known_token(token)
+            return known or await anyio.to_thread.run_sync(self._access.token, token, where, limiter=self._hashing)
+        key = session_key(headers)
+        return self._access.session(key) if key else None
+
+    def _command_refusal(self, headers: Headers, host: str, most: int) -> Refusal | None:
+        if not self._loopback and not self._access.asks:
+            text = f"commands are refused because the console listens on {self._bind}, where others can connect, and "
+            text += "has no users: name a file under console.users of the site file (`tms user add`), or set "
+            text += "`bind: 127.0.0.1`, or use `tms` on this PC"
+            return Refusal(403, "NO_ACCESS_CONTROL", text)
+        origin = headers.get("origin")
+        if origin is not None and _split(origin) != host.lower():
+            return Refusal(403, "FOREIGN_ORIGIN", f"commands from pages of '{origin}' are refused: use our own console")
+        if headers.get("content-type", "").partition(";")[0].strip().lower() != "application/json":
+            return Refusal(415, "NOT_JSON", "send commands with `Content-Type: application/json`")
+        length = headers.get("content-length", "0" if "transfer-encoding" not in headers else "")
+        if not length.isdigit():
+            return Refusal(411, "NO_LENGTH", "send commands with a Content-Length")
+        if int(length) > most:
+            return Refusal(413, "TOO_LARGE", f"this command has {most} bytes at most")
+        return None
+
+    def _ours(self, host: str) -> bool:
+        name = _name(host)
+        if name in self._names:
+            return True
+        # Bound to all addresses: by number, which no foreign name server can make up.
+        return self._bind in ("0.0.0.0", "::") and name is not None and _is_address(name)
+
+
+def source(scope: Scope) -> str:
+    """Address of whoever asks."""
+    client = scope.get("client")
+    return str(client[0]) if client else "-"
+
+
+def session_key(headers: Headers) -> str:
+    """Our cookie, empty if there is none."""
+    pairs = (part.strip().partition("=") for part in headers.get("cookie", "").split(";"))
+    return next((value for name, _, value in pairs if name == COOKIE), "")
+
+
+def is_loopback(bind: str) -> bool:
+    """Whether only this PC can connect to `bind`."""
+    return bind == "localhost" or (_is_address(bind) and ipaddress.ip_address(bind).is_loopback)
+
+
+def _is_address(name: str) -> bool:
+    try:
+        ipaddress.ip_address(name)
+    except ValueError:
+        return False
+    return True
+
+
+def _name(host: str) -> str | None:
+    """The name in a Host header, None if it is malformed."""
+    try:
+        return urlsplit(f"//{host}").hostname
+    except ValueError:
+        return None
+
+
+def _split(origin: str) -> str | None:
+    """host:port of an http origin; None for `null` and for other schemes."""
+    scheme, _, netloc = origin.lower().partition("://")
+    return netloc if scheme in ("http", "https") and netloc else None

@@ -1,0 +1,98 @@
+"""ROS messages as the API's models."""
+
+from datetime import datetime, timezone
+from typing import Any
+
+from rcl_interfaces.msg import ParameterType
+
+from tms_core.values import from_parameters
+from tms_ur.models import ActiveRun, Event, Joint, Machine, Process, Question, Receipt, Record, Run
+from tms_ur.models import MachineState as Shown
+
+NEVER = 1e8  # s, a larger age means that there was nothing yet
+TYPES = {
+    ParameterType.PARAMETER_BOOL: "bool", ParameterType.PARAMETER_INTEGER: "int",
+    ParameterType.PARAMETER_DOUBLE: "double", ParameterType.PARAMETER_STRING: "string",
+    ParameterType.PARAMETER_BOOL_ARRAY: "bool[]", ParameterType.PARAMETER_INTEGER_ARRAY: "int[]",
+    ParameterType.PARAMETER_DOUBLE_ARRAY: "double[]", ParameterType.PARAMETER_STRING_ARRAY: "string[]",
+}  # fmt: skip
+
+
+def when(stamp: Any) -> datetime | None:
+    """A builtin_interfaces/Time; None for zero, which means never."""
+    if not stamp.sec and not stamp.nanosec:
+        return None
+    return datetime.fromtimestamp(stamp.sec + stamp.nanosec * 1e-9, timezone.utc)
+
+
+def machine(message: Any) -> Machine:
+    joints = zip(message.joint_names, message.positions, message.velocities, strict=False)
+    state: Shown = "not_ready" if not message.ready else "moving" if message.moving else "standing"
+    return Machine(
+        name=message.machine, state=state, reason=message.reason, goal=message.goal, owner=message.owner,
+        joints=[Joint(name=name, position=round(p, 4), velocity=round(v, 4)) for name, p, v in joints],
+        joint_age=message.age if message.age < NEVER else None,
+        armed=message.armed, latch=message.latch, hold=message.hold,
+    )  # fmt: skip
+
+
+def active_run(run: Any) -> ActiveRun:
+    return ActiveRun(
+        run_id=run.run_id, task_id=run.task_id, state=run.state, machines=list(run.machines), reason=run.reason,
+        started_at=when(run.started_at), leaf=run.leaf, nodes="".join(map(str, run.nodes)),
+    )  # fmt: skip
+
+
+def question(asked: Any) -> Question:
+    return Question(
+        id=asked.id, run_id=asked.run_id, node=asked.node, title=asked.title, text=asked.text,
+        asked_at=when(asked.asked_at), until=when(asked.until),
+    )  # fmt: skip
+
+
+def receipt(made: Any) -> Receipt:
+    return Receipt(
+        machine=made.machine, confirmed=made.confirmed, seconds=round(made.seconds, 3), travel=round(made.travel, 4),
+        cause=made.cause, detail=made.detail, latched=made.latched,
+    )  # fmt: skip
+
+
+def process(row: Any) -> Process:
+    return Process(
+        name=row.name,
+        state=row.state,
+        pid=row.pid,
+        restarts=row.restarts,
+        uptime=row.uptime,
+        detail=row.detail,
+        cpu=round(row.cpu, 1),
+        memory=row.memory,
+    )
+
+
+def task(task: Any) -> dict[str, Any]:
+    return {"id": task.task_id, "model_name": task.model_name, "description": task.description,
+            "added_at": when(task.added_at)}  # fmt: skip
+
+
+def run(run: Any) -> Run:
+    return Run(
+        run_id=run.run_id, task_id=run.task_id, description=run.description, state=run.state, reason=run.reason,
+        machines=list(run.machines), started_at=when(run.started_at), ended_at=when(run.ended_at),
+    )  # fmt: skip
+
+
+def event(event: Any) -> Event:
+    return Event(
+        number=event.number, stamp=when(event.stamp), kind=event.kind, node=event.node, text=event.text,
+        values={**from_parameters(event.values)},
+    )  # fmt: skip
+
+
+def record(record: Any) -> Record:
+    return Record(
+        model_name=record.model_name, record_name=record.record_name, type=record.type,
+        description=record.description, source=record.source, updated_at=when(record.updated_at),
+        values={**from_parameters(record.values)},
+        types={one.name: TYPES[one.value.type] for one in record.values if one.value.type in TYPES},
+    )  # fmt: skip

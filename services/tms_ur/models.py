@@ -1,0 +1,335 @@
+"""What the API answers, with units; no ROS types go beyond the gateway."""
+
+from datetime import datetime
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Value = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
+MachineState = Literal["moving", "standing", "not_ready", "silent"]
+INT32 = 2**31 - 1
+
+
+class Model(BaseModel):
+    """Base of all answers; what a client sends is checked as strictly as configuration."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=True)
+
+
+class Problem(Model):
+    """Every error of the API."""
+
+    code: str = Field(description="for programs, for example TASK_MISSING")
+    message: str = Field(description="for people: what is wrong and what to do next")
+
+
+class Joint(Model):
+    name: str
+    position: float = Field(description="rad")
+    velocity: float = Field(description="rad/s")
+
+
+class Place(Model):
+    """Where a machine stands, frame `map`."""
+
+    x: float = Field(description="m")
+    y: float = Field(description="m")
+    yaw: float = Field(description="rad")
+
+
+class Machine(Model):
+    """A machine as its gateway sees it."""
+
+    name: str
+    state: MachineState = Field(
+        default="silent", description="silent: its gateway says nothing, what else is here is old"
+    )
+    reason: str = Field(default="", description="why it is not ready or silent")
+    goal: str = Field(default="", description="id of the goal that it executes now, empty if none")
+    owner: str = Field(default="", description="who sent the goal")
+    armed: bool = Field(default=False, description="motions are accepted")
+    latch: str = Field(default="", description="why it is stopped until somebody re-arms it, empty if it is armed")
+    hold: str = Field(default="", description="why it is held until its run goes on")
+    place: Place | None = Field(default=None, description="null: /tf has not told")
+    joints: list[Joint] = []
+    joint_age: float | None = Field(default=None, description="s since the last joint states, null: never")
+    age: float | None = Field(default=None, description="s since the gateway was heard, null: never")
+
+
+class ActiveRun(Model):
+    """A run that goes on now."""
+
+    run_id: str
+    task_id: int
+    state: str = Field(description="preparing, running or stopping")
+    machines: list[str] = []
+    reason: str = Field(default="", description="why it does not move on, in one sentence")
+    started_at: datetime | None = None
+    leaf: str = Field(default="", description="path of the leaf that works or waits")
+    nodes: str = Field(default="", description="a digit a node in the order of its tree: 0 idle, 1 running, 2 success, "
+                       "3 failure")  # fmt: skip
+
+
+class Question(Model):
+    """A run waits for an operator's yes or no."""
+
+    id: str
+    run_id: str
+    node: str = Field(description="path of the node")
+    title: str
+    text: str
+    asked_at: datetime | None = None
+    until: datetime | None = Field(default=None, description="when a Timeout ends it, null: never")
+
+
+class Scheduler(Model):
+    """How fresh the list of active runs is."""
+
+    alive: bool = False
+    age: float | None = Field(default=None, description="s since the scheduler was heard, null: never")
+
+
+class Process(Model):
+    name: str = Field(description="group:name")
+    state: str = Field(description="as supervisord names it: RUNNING, STOPPED, FATAL, ...")
+    pid: int = 0
+    restarts: int = Field(default=0, description="since the host agent started")
+    uptime: float = Field(default=0.0, description="s")
+    cpu: float = Field(default=0.0, description="% of one core, over the last seconds")
+    memory: int = Field(default=0, description="bytes in RAM")
+    detail: str = ""
+
+
+class Host(Model):
+    """One PC of the site; its agent speaks only when something changes."""
+
+    name: str
+    age: float = Field(default=0.0, description="s since its last change")
+    processes: list[Process] = []
+
+
+class State(Model):
+    """Everything that goes on now."""
+
+    time: datetime = Field(description="when this was put together, by the clock of this PC")
+    machines: list[Machine]
+    scheduler: Scheduler
+    runs: list[ActiveRun] = Field(description="active runs")
+    questions: list[Question] = []
+    hosts: list[Host]
+
+
+class Task(Model):
+    """A stored task (behaviour tree)."""
+
+    id: int
+    model_name: str
+    description: str
+    added_at: datetime | None = None
+
+
+class TaskText(Task):
+    xml: str = Field(description="the tree as Groot draws it")
+
+
+class Run(Model):
+    """A run as the history keeps it."""
+
+    run_id: str
+    task_id: int
+    description: str
+    state: str
+    reason: str
+    machines: list[str]
+    started_at: datetime | None = None
+    ended_at: datetime | None = Field(default=None, description="null while it runs")
+
+
+class Event(Model):
+    """One entry of a run's journal."""
+
+    number: int = Field(description="counts from 1 in each run")
+    stamp: datetime | None = None
+    kind: str = Field(description="run, node, goal, stop, ...")
+    node: str = Field(description="path of the node, empty if none")
+    text: str
+    values: dict[str, Value | None] = Field(default={}, description="null: not a number, or infinite")
+
+
+class Record(Model):
+    """A parameter record; values keep their types."""
+
+    model_name: str = Field(description="empty for records that all machines share")
+    record_name: str
+    type: str = Field(description="static or dynamic")
+    description: str
+    source: str = Field(description="who wrote it last")
+    updated_at: datetime | None = None
+    values: dict[str, Value | None] = Field(default={}, description="null: not a number, or infinite")
+    types: dict[str, str] = Field(default={}, description="of each value: JSON does not tell 3 from 3.0")
+
+
+class Tree(Model):
+    """The shape of a run's tree: one entry a node in each list, in the order of `nodes` of a state."""
+
+    paths: list[str] = Field(description="child positions from the root, for example 0.1.2")
+    names: list[str]
+    types: list[str]
+    kinds: list[str] = Field(description="control, decorator, subtree, action or condition")
+    ports: list[str] = Field(description="as written")
+
+
+class Receipt(Model):
+    """A stop as a measured fact."""
+
+    machine: str
+    confirmed: bool = Field(description="the machine was seen to stand still")
+    seconds: float = Field(description="s from the request until it stood")
+    travel: float = Field(description="largest motion meanwhile: rad of a joint, m of the machine")
+    cause: str
+    detail: str
+    latched: bool = Field(description="nothing moves until it is re-armed")
+
+
+class Box(Model):
+    """Corners of a box."""
+
+    min: list[float] = Field(description="m")
+    max: list[float] = Field(description="m")
+
+
+class Link(Model):
+    """A joint of an arm, as its side view needs it."""
+
+    joint: str
+    x: float = Field(description="m, on the parent link")
+    z: float = Field(description="m, on the parent link")
+    pitch: float = Field(description="rad, at joint angle 0")
+
+
+class SiteMachine(Model):
+    name: str
+    model: str
+    kind: str
+    footprint: list[Box] = Field(description="in its base frame")
+    arm: list[Link] = Field(description="from the turning body to the tool, empty if it has no arm")
+
+
+class SiteInfo(Model):
+    """What does not change while the console runs."""
+
+    name: str
+    backend: str
+    machines: list[SiteMachine]
+
+
+class Session(Model):
+    """Who you are to the console."""
+
+    name: str | None = Field(description="null: log in first")
+    role: Literal["viewer", "operator", "admin"] | None
+    login: bool = Field(description="whether this site has users")
+
+
+class Finding(Model):
+    """Something that the check found."""
+
+    line: int | None = None
+    text: str
+
+
+class Checked(Model):
+    """Result of a check; nothing was stored and nothing ran."""
+
+    errors: list[Finding]
+    warnings: list[Finding]
+
+
+class Added(Model):
+    id: int
+    already_stored: bool = Field(description="the same text was there under this number")
+
+
+class Diff(Model):
+    text: str = Field(description="unified diff from the stored tree to the given one, empty if they are equal")
+
+
+class Log(Model):
+    text: str = Field(description="the last lines")
+
+
+class Rearmed(Model):
+    """First step: cause and a token. Second step, with the token: armed."""
+
+    token: str
+    cause: str
+    armed: bool
+
+
+class Command(Model):
+    """Base of what clients send."""
+
+    model_config = ConfigDict(strict=True)
+
+
+class Login(Command):
+    name: str = Field(max_length=64)
+    password: str = Field(max_length=200)
+
+
+class TaskGiven(Command):
+    xml: str = Field(max_length=5 * 2**20)
+    description: str = Field(default="", max_length=1000)
+
+
+class Xml(Command):
+    xml: str = Field(max_length=5 * 2**20)
+
+
+class StopAsked(Command):
+    machine: str = Field(default="", pattern=r"^[a-z0-9_]{0,64}$", description="empty: all machines")
+
+
+class RearmAsked(Command):
+    token: str = Field(default="", max_length=100, description="of the first step, empty in the first step")
+
+
+class AnswerGiven(Command):
+    yes: bool
+
+
+class FieldGiven(Command):
+    """A value with its type."""
+
+    name: str = Field(min_length=1, max_length=100)
+    type: Literal["bool", "int", "double", "string", "bool[]", "int[]", "double[]", "string[]"]
+    value: Value
+
+
+class RecordGiven(Command):
+    """Fields to set, in one atomic step; the others stay."""
+
+    model_name: str = Field(pattern=r"^[0-9A-Za-z_]{0,64}$")
+    record_name: str = Field(min_length=1, max_length=200)
+    fields: list[FieldGiven] = Field(max_length=200)
+    create: bool = False
+    type: Literal["", "static", "dynamic"] = Field(default="", description="of a new record; empty keeps it")
+
+
+class Nothing(Command):
+    """An empty object."""
+
+
+class StartRun(Model):
+    """Which task to run."""
+
+    model_config = ConfigDict(strict=True)
+
+    task_id: int = Field(ge=1, le=INT32)
+    ignore_warnings: bool = Field(default=False, description="start although the check before the run warns")
+
+
+class RunAsked(Model):
+    """A command about a run was taken; its state tells how it goes on."""
+
+    run_id: str

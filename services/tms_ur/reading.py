@@ -1,0 +1,195 @@
+"""Endpoints that only show something; every role may ask them."""
+
+import difflib
+import re
+import time
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from fastapi import FastAPI, Path, Query, Request, Response
+
+from tms_core.config import Site
+from tms_core.errors import TmsError
+from tms_ur import export
+from tms_ur.models import (
+    INT32,
+    Box,
+    Checked,
+    Diff,
+    Event,
+    Finding,
+    Link,
+    Log,
+    Record,
+    Run,
+    SiteInfo,
+    SiteMachine,
+    State,
+    Task,
+    TaskText,
+    Tree,
+    Xml,
+)  # fmt: skip
+from tms_ur.problems import Viewer, problems
+from tms_ur.stream import Stream, StreamResponse
+
+if TYPE_CHECKING:
+    from tms_ur.gateway import Gateway
+
+UINT32 = 2**32 - 1
+PAGE = 1000  # events of one answer
+MOST_EVENTS = 200_000  # of an export
+BEGINNING = 50  # events among which the shape of the tree is
+AUDIT = "audit"
+
+RunId = Annotated[str, Path(pattern=r"^[0-9A-Za-z_-]{1,64}$", description="id of a run")]
+TaskId = Annotated[int, Path(ge=1, le=INT32)]
+ProcessName = Annotated[str, Path(pattern=r"^[0-9A-Za-z_]{1,64}:[0-9A-Za-z_]{1,64}$", description="group:name")]
+
+
+def add(app: FastAPI, gateway: "Gateway", site: Site) -> None:
+    """Put them into the application."""
+    _live(app, gateway, site)
+    _stored(app, gateway)
+    _tasks(app, gateway)
+
+
+def _live(app: FastAPI, gateway: "Gateway", site: Site) -> None:
+    stream = Stream(gateway.board)
+    shown = _site(site)
+
+    # `async` where nothing waits, so that these answer even when all workers wait for a module
+    @app.get("/api/state", summary="Machines, active runs, questions and processes as they are now")
+    async def state() -> State:
+        return gateway.board.snapshot()
+
+    @app.get("/api/site", summary="The site's machines and their bodies")
+    async def site_info() -> SiteInfo:
+        return shown
+
+    @app.get(
+        "/api/events",
+        summary="The state as server-sent events `state`: on change, at most 10/s, at least every second",
+        status_code=200,
+        response_class=StreamResponse,
+        responses=problems(503) | {200: {"content": {"text/event-stream": {"schema": {"type": "string"}}}}},
+    )
+    async def events(request: Request) -> StreamResponse:
+        return StreamResponse(stream)
+
+    @app.get("/api/processes/{name}/log", summary="The end of a process's log", responses=problems(404, 409, 503))
+    def log(
+        name: ProcessName, size: Annotated[int, Query(ge=100, le=200_000, description="bytes at most")] = 16_384
+    ) -> Log:
+        return Log(text=gateway.log(name, size))
+
+
+def _stored(app: FastAPI, gateway: "Gateway") -> None:
+    @app.get("/api/runs", summary="The history, newest first", responses=problems(503))
+    def runs(limit: Annotated[int, Query(ge=1, le=1000)] = 20) -> list[Run]:
+        return gateway.runs(limit)
+
+    @app.get("/api/runs/{run_id}/events", summary="The journal of a run, in order", responses=problems(404, 503))
+    def run_events(
+        run_id: RunId,
+        after: Annotated[int, Query(ge=0, le=UINT32, description="only events with a greater number")] = 0,
+        limit: Annotated[int, Query(ge=1, le=PAGE)] = PAGE,
+    ) -> list[Event]:
+        return gateway.events(run_id, after, limit)
+
+    @app.get("/api/runs/{run_id}/tree", summary="The shape of a run's tree", responses=problems(404, 503))
+    def run_tree(run_id: RunId) -> Tree:
+        for event in gateway.events(run_id, 0, BEGINNING):
+            if event.kind == "tree":
+                return Tree.model_validate(event.values)
+        raise TmsError(f"the journal of run {run_id} holds no tree: it was refused, or is older than this", "NO_TREE")
+
+    @app.get(
+        "/api/runs/{run_id}/export",
+        summary="The journal as a file",
+        responses=problems(404, 503) | {200: {"content": {kind: {} for kind in export.TYPES.values()}}},
+        response_class=Response,
+    )
+    def run_export(run_id: RunId, form: Literal["json", "csv", "mcap"] = "json") -> Response:
+        found = _all_events(gateway, run_id)
+        name = f'attachment; filename="{run_id}.{form}"'
+        return Response(export.FORMS[form](run_id, found), 200, {"Content-Disposition": name}, export.TYPES[form])
+
+    @app.get("/api/audit", summary="Who did what, oldest first", responses=problems(503))
+    def audit(
+        hours: Annotated[float, Query(gt=0, le=24 * 366)] = 24, limit: Annotated[int, Query(ge=1, le=PAGE)] = PAGE
+    ) -> list[Event]:
+        try:
+            return gateway.events(AUDIT, max(0, int(time.time() - hours * 3600)), limit)
+        except TmsError as error:
+            if error.code == "RUN_MISSING":  # nothing in that time
+                return []
+            raise
+
+    @app.get("/api/parameters", summary="Parameter records", responses=problems(503))
+    def parameters(
+        model_name: Annotated[str, Query(pattern=r"^[0-9A-Za-z_]{0,64}$", description="empty: of all machines")] = "",
+    ) -> list[Record]:
+        return gateway.parameters(model_name)
+
+
+def _tasks(app: FastAPI, gateway: "Gateway") -> None:
+    @app.get("/api/tasks", summary="Stored tasks", responses=problems(503))
+    def tasks() -> list[Task]:
+        return gateway.tasks()
+
+    @app.get("/api/tasks/{task_id}", summary="One task with its tree", responses=problems(404, 503))
+    def task(task_id: TaskId) -> TaskText:
+        return gateway.task(task_id)
+
+    @app.post("/api/tasks/check", summary="Check a tree; stores and runs nothing",
+              responses=problems(403, 409, 411, 413, 415, 503))  # fmt: skip
+    def check(given: Xml, person: Viewer) -> Checked:
+        errors, warnings = gateway.check_task(given.xml)
+        return Checked(errors=list(map(_finding, errors)), warnings=list(map(_finding, warnings)))
+
+    @app.post("/api/tasks/{task_id}/diff", summary="What differs between the stored tree and a given one",
+              responses=problems(403, 404, 409, 411, 413, 415, 503))  # fmt: skip
+    def diff(task_id: TaskId, given: Xml, person: Viewer) -> Diff:
+        stored = gateway.task(task_id).xml.splitlines()
+        lines = difflib.unified_diff(stored, given.xml.splitlines(), f"task {task_id}", "this file", lineterm="")
+        return Diff(text="\n".join(lines))
+
+
+def _all_events(gateway: "Gateway", run_id: str) -> list[Event]:
+    found: list[Event] = []
+    while len(found) < MOST_EVENTS:
+        page = gateway.events(run_id, found[-1].number if found else 0, PAGE)
+        found += page
+        if len(page) < PAGE:
+            break
+    return found
+
+
+def _finding(text: str) -> Finding:
+    line = re.search(r"\bline (\d+)", text)
+    return Finding(line=int(line[1]) if line else None, text=text)
+
+
+def _site(site: Site) -> SiteInfo:
+    return SiteInfo(
+        name=site.name,
+        backend=site.file.backend,
+        machines=[
+            SiteMachine(
+                name=name, model=use.model, kind=site.models[use.model].kind, arm=_arm(site, name),
+                footprint=[Box(min=list(box.min), max=list(box.max))
+                           for box in site.models[use.model].footprint.values()],
+            )
+            for name, use in site.file.machines.items()
+        ],
+    )  # fmt: skip
+
+
+def _arm(site: Site, machine: str) -> list[Link]:
+    """The joints about y, from the body outwards: what moves in a side view."""
+    geometry = site.model_of(machine).geometry
+    return [
+        Link(joint=name, x=origin.xyz[0], z=origin.xyz[2], pitch=origin.pitch)
+        for name, origin in geometry.items()
+        if (origin.axis == "y" and origin.parent != "base_link") or name == "bucket_end_joint"
+    ]

@@ -1,0 +1,57 @@
+"""Endpoints for logging in and out."""
+
+from typing import TYPE_CHECKING
+
+import anyio
+import anyio.to_thread
+from fastapi import FastAPI, Request, Response
+
+from tms_core.errors import TmsError
+from tms_ur.access import Access, Person
+from tms_ur.guard import COOKIE, session_key, source
+from tms_ur.models import Login, Nothing, Session
+from tms_ur.problems import problems
+
+if TYPE_CHECKING:
+    from tms_ur.audit import Audit
+
+
+def add(app: FastAPI, access: Access, audit: "Audit", secure: bool) -> None:
+    """Put them into the application; `secure`: cookies travel over TLS only."""
+    hashing = anyio.CapacityLimiter(1)  # each takes 19 MB
+
+    @app.get("/api/session", summary="Who you are to the console")
+    async def session(request: Request) -> Session:
+        return _session(access, request.state.person)
+
+    @app.post(
+        "/api/login",
+        summary="Begin a session; the answer sets its cookie",
+        responses=problems(403, 409, 411, 413, 415, 429),
+    )
+    async def login(request: Request, response: Response, wanted: Login) -> Session:
+        if not access.asks:
+            raise TmsError("this site has no users: nobody needs to log in", "NO_USERS")
+        where = source(request.scope)
+        try:
+            key, person = await anyio.to_thread.run_sync(
+                access.login, wanted.name, wanted.password, where, limiter=hashing
+            )
+        except TmsError as error:
+            audit.put(wanted.name, where, "login_refused", error.code)
+            raise
+        audit.put(person.name, where, "login", "")
+        response.set_cookie(COOKIE, key, httponly=True, samesite="strict", secure=secure, path="/")
+        return _session(access, person)
+
+    @app.post("/api/logout", summary="End the session", responses=problems(403, 411, 413, 415))
+    async def logout(request: Request, response: Response, _: Nothing) -> Session:
+        access.logout(session_key(request.headers))
+        response.delete_cookie(COOKIE, path="/")
+        return _session(access, None if access.asks else request.state.person)
+
+
+def _session(access: Access, person: Person | None) -> Session:
+    if person is None:
+        return Session(name=None, role=None, login=access.asks)
+    return Session(name=person.name, role=person.role, login=access.asks)

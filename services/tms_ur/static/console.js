@@ -1,0 +1,124 @@
+// The console's frame: login, pages, connection, questions, and the software stop that is always in reach.
+import { at, keep, make, relabelAll, say, setText } from "./dom.js";
+import * as data from "./pages/data.js";
+import * as history from "./pages/history.js";
+import * as run from "./pages/run.js";
+import * as site from "./pages/site.js";
+import * as system from "./pages/system.js";
+import * as tasks from "./pages/tasks.js";
+import * as tree from "./pages/tree.js";
+import { buildQuestion, fillQuestion } from "./questions.js";
+import { ask, watch } from "./server.js";
+import { stop } from "./stop.js";
+import { onLanguage, switchLanguage, t, translatePage } from "./strings.js";
+
+const PAGES = { run, tree, site, history, data, system, tasks };
+let shown = null; // name of the page on the screen
+let state = null;
+
+// pages: each has build(root), update(state), and where it asks for lists: load()
+
+function open() {
+  const [name, ...rest] = location.hash.slice(1).split("/");
+  const next = name in PAGES ? name : "run";
+  if (next !== shown) {
+    shown = next;
+    at("page").replaceChildren();
+    at("page").dataset.page = next;
+    PAGES[next].build(at("page"));
+    translatePage();
+  }
+  for (const link of at("pages").children) {
+    link.ariaCurrent = link.hash === `#${next}` ? "page" : "false";
+  }
+  PAGES[next].open?.(rest.map(decodeURIComponent));
+  PAGES[next].load?.();
+  if (state !== null) {
+    PAGES[next].update(state);
+  }
+}
+
+function heard(now) {
+  const ids = (one) => one?.runs.map((each) => `${each.run_id} ${each.state}`).join();
+  const changed = state !== null && ids(state) !== ids(now);
+  state = now;
+  keep(at("questions"), now.questions, (one) => one.id, buildQuestion, fillQuestion);
+  PAGES[shown].update(now);
+  if (changed) {
+    PAGES[shown].load?.();
+  }
+}
+
+function linked(there) {
+  at("connecting").hidden = true;
+  at("lost").hidden = there;
+  document.body.classList.toggle("old", !there);
+  if (there) {
+    PAGES[shown].load?.();
+  }
+}
+
+// life
+
+async function enter() {
+  const session = await ask("/api/session");
+  at("login").hidden = session.name !== null;
+  if (session.name === null) {
+    at("connecting").hidden = true;
+    at("stop").hidden = true;
+    at("login_name").focus();
+    return;
+  }
+  at("stop").hidden = false;
+  at("logout").hidden = !session.login;
+  const who = () => setText(at("who"), session.login ? `${session.name} (${t(session.role)})` : "");
+  who();
+  onLanguage(who);
+  document.body.dataset.role = session.role;
+  for (const name of Object.keys(PAGES)) {
+    at("pages").append(make("a", { href: `#${name}`, data: { t: `p_${name}` } }));
+  }
+  translatePage();
+  open();
+  addEventListener("hashchange", open);
+  watch(heard, linked);
+}
+
+at("login").addEventListener("submit", async (event) => {
+  event.preventDefault();
+  try {
+    await ask("/api/login", { name: at("login_name").value, password: at("login_password").value });
+    location.reload();
+  } catch (error) {
+    at("login_password").value = "";
+    say(error.message, true);
+  }
+});
+at("logout").addEventListener("click", () => ask("/api/logout", {}).then(() => location.reload()));
+at("language").addEventListener("click", switchLanguage);
+at("stop").addEventListener("click", () => stop());
+at("skip").addEventListener("click", (event) => {
+  event.preventDefault(); // the hash is the page's name
+  at("main").focus();
+});
+onLanguage(() => {
+  relabelAll();
+  if (state !== null) {
+    PAGES[shown].redraw?.();
+    heard(state);
+    PAGES[shown].load?.();
+  }
+});
+translatePage();
+
+async function begin() {
+  try {
+    await enter();
+  } catch {
+    at("connecting").hidden = true;
+    at("lost").hidden = false;
+    setTimeout(begin, 1000);
+  }
+}
+
+begin();

@@ -1,0 +1,150 @@
+// Building blocks of all pages.
+import { t } from "./strings.js";
+
+const MARKS = { moving: "▶", running: "▶", RUNNING: "▶", standing: "■", success: "✔", STOPPED: "■", stopping: "…",
+  preparing: "…", STARTING: "…", STOPPING: "…", armed: "✔", held: "…" };
+const GOOD = new Set(["moving", "standing", "running", "success", "RUNNING", "armed"]);
+const CALM = new Set(["STOPPED", "EXITED", "cancelled", "preparing", "stopping", "STARTING", "STOPPING", "held"]);
+const SVG = "http://www.w3.org/2000/svg";
+
+export const at = (id) => document.getElementById(id);
+
+/** A new element; text goes in as text only, so nothing that a site stores can become markup. */
+export function make(tag, options = {}, ...children) {
+  const { data, label, ...properties } = options;
+  const element = Object.assign(document.createElement(tag), properties);
+  Object.assign(element.dataset, data);
+  if (label !== undefined) {
+    element.setAttribute("aria-label", label);
+  }
+  element.append(...children);
+  return element;
+}
+
+/** A new SVG element. */
+export function draw(tag, attributes = {}, ...children) {
+  const element = document.createElementNS(SVG, tag);
+  change(element, attributes);
+  element.append(...children);
+  return element;
+}
+
+export function change(element, attributes) {
+  for (const [name, value] of Object.entries(attributes)) {
+    if (element.getAttribute(name) !== String(value)) {
+      element.setAttribute(name, value);
+    }
+  }
+}
+
+/** Keeps one child per item, in order, and reuses it: buttons keep their focus while the state streams in. */
+export function keep(parent, items, key, build, fill) {
+  const old = new Map([...parent.children].map((child) => [child.dataset.key, child]));
+  items.forEach((item, index) => {
+    const name = String(key(item));
+    const child = old.get(name) ?? build(item);
+    child.dataset.key = name;
+    old.delete(name);
+    fill(child, item);
+    if (parent.children[index] !== child) {
+      parent.insertBefore(child, parent.children[index] ?? null);
+    }
+  });
+  old.forEach((child) => child.remove());
+}
+
+/** An answer may come when its page has gone; then there is no element to fill. */
+export function setText(element, text) {
+  if (element !== null && element.textContent !== text) {
+    element.textContent = text;
+  }
+}
+
+export function setBadge(element, state) {
+  setText(element, `${MARKS[state] ?? "!"} ${t(state)}`);
+  element.className = `badge ${GOOD.has(state) ? "good" : CALM.has(state) ? "calm" : "bad"}`;
+}
+
+export function part(element, name) {
+  return element.querySelector(`[data-part="${name}"]`);
+}
+
+export function parts(tag, names) {
+  return names.map((name) => make(tag, { data: { part: name } }));
+}
+
+/** A button whose text and spoken name follow the language: `text` and `label` are [key, values]. */
+export function button(text, className, onclick, label = text) {
+  const element = make("button", { type: "button", className, onclick });
+  element.relabel = () => {
+    setText(element, t(...[text].flat()));
+    element.setAttribute("aria-label", t(...[label].flat()));
+  };
+  element.dataset.relabel = "";
+  element.relabel();
+  return element;
+}
+
+export function relabelAll() {
+  document.querySelectorAll("[data-relabel]").forEach((element) => element.relabel());
+}
+
+/** A table in a box that scrolls: keys of the heads, and the body's id. */
+export function table(id, heads) {
+  const cells = heads.map((head) => make("th", { scope: "col", data: { t: head } }));
+  const body = make("tbody", { id });
+  return make("div", { className: "scroll", tabIndex: 0, role: "region", data: { label: heads[0] } },
+    make("table", {}, make("thead", {}, make("tr", {}, ...cells)), body));
+}
+
+export function heading(key, level = "h2") {
+  return make(level, { data: { t: key } });
+}
+
+export function duration(seconds) {
+  if (seconds === null) {
+    return t("never");
+  }
+  if (seconds < 120) {
+    return `${seconds.toFixed(seconds < 10 ? 1 : 0)} s`;
+  }
+  return seconds < 7200 ? `${Math.floor(seconds / 60)} min` : `${(seconds / 3600).toFixed(1)} h`;
+}
+
+export function number(value, digits) {
+  return value === null ? "-" : value.toFixed(digits);
+}
+
+export function say(text, bad = false) {
+  at("message").className = bad ? "bad" : "good";
+  setText(at("message"), text);
+}
+
+/** Asks before something that cannot be taken back; resolves to true or false. */
+export function confirmed(text) {
+  const dialog = at("dialog");
+  setText(at("dialog_text"), text);
+  dialog.returnValue = "no";
+  dialog.showModal();
+  return new Promise((resolve) => {
+    dialog.addEventListener("close", () => resolve(dialog.returnValue === "yes"), { once: true });
+  });
+}
+
+/** Runs a command once: the button is dead until the answer is there. `work` returns what to say. */
+export async function once(element, work) {
+  if (element.disabled) {
+    return;
+  }
+  element.disabled = true;
+  try {
+    const text = await work();
+    if (text) {
+      say(text);
+    }
+  } catch (error) {
+    say(error.message, true);
+  } finally {
+    element.disabled = false;
+  }
+}

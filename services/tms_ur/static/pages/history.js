@@ -1,0 +1,133 @@
+// History: past runs, their journal, and a slider that replays the tree.
+import { at, button, duration, heading, keep, make, part, parts, setBadge, setText, table } from "../dom.js";
+import { ask } from "../server.js";
+import { clock, t, when } from "../strings.js";
+import { TreeView } from "../treeview.js";
+import { zoomBar } from "./tree.js";
+
+const PAGE = 1000;
+const MOST = 20000; // events that a browser replays
+const CODES = { IDLE: 0, RUNNING: 1, SUCCESS: 2, FAILURE: 3 };
+let view = null;
+let journal = [];
+let chosen = null;
+
+export function build(root) {
+  const box = make("div", { className: "treebox", tabIndex: 0, role: "region", data: { label: "tree_label" } });
+  const slider = make("input", { type: "range", id: "slider", min: 0, max: 0, value: 0, oninput: () => replay(Number(at("slider").value)) });
+  root.append(
+    heading("history"), make("p", { id: "lists_problem", className: "bad", role: "status" }),
+    make("p", { id: "none_history", hidden: true, data: { t: "none_history" } }),
+    table("list_history", ["task", "started_at", "state", "duration", "reason", "show"]),
+    make("section", { id: "past", hidden: true },
+      make("h2", { id: "past_title" }), make("div", { id: "exports", className: "bar" }),
+      make("h3", { data: { t: "receipts" } }), make("ul", { id: "receipts", className: "plain" }),
+      make("p", {}, make("label", { className: "wide" }, make("span", { data: { t: "timeline" } }), slider), make("output", { id: "moment" })),
+      zoomBar(() => view), box, make("h3", { data: { t: "journal" } }), table("list_events", ["at_time", "event", "node", "text"])),
+  );
+  view = new TreeView(box);
+  if (chosen !== null) {
+    showRun(chosen);
+  }
+}
+
+export async function load() {
+  try {
+    const runs = await ask("/api/runs?limit=50");
+    setText(at("lists_problem"), "");
+    at("none_history").hidden = runs.length > 0;
+    keep(at("list_history"), runs, (run) => run.run_id, buildRun, fillRun);
+  } catch (error) {
+    if (at("lists_problem") !== null) {
+      setText(at("lists_problem"), error.message);
+    }
+  }
+}
+
+export function update() {}
+
+function buildRun(run) {
+  return make("tr", {}, ...parts("td", ["task", "started"]), make("td", {}, ...parts("span", ["state"])), ...parts("td", ["duration", "reason"]),
+    make("td", {}, button("show", "", () => showRun(run.run_id), ["show_run", { id: run.run_id }])));
+}
+
+function fillRun(row, run) {
+  setText(part(row, "task"), `${run.task_id} ${run.description}`);
+  setText(part(row, "started"), when(run.started_at));
+  setBadge(part(row, "state"), run.state);
+  const seconds = run.ended_at && (new Date(run.ended_at) - new Date(run.started_at)) / 1000;
+  setText(part(row, "duration"), seconds === null ? "-" : duration(seconds));
+  setText(part(row, "reason"), run.reason);
+}
+
+async function showRun(id) {
+  chosen = id;
+  try {
+    journal = await allEvents(id);
+  } catch (error) {
+    setText(at("lists_problem"), error.message);
+    return;
+  }
+  const tree = journal.find((event) => event.kind === "tree");
+  at("past").hidden = false;
+  setText(at("past_title"), `${t("run")} ${id}`);
+  at("exports").replaceChildren(make("span", {}, `${t("export")}:`), ...["json", "csv", "mcap"].map((form) => (
+    make("a", { className: "button", href: `/api/runs/${encodeURIComponent(id)}/export?form=${form}`, download: "" }, form.toUpperCase()))));
+  const stops = journal.filter((event) => event.kind === "stop");
+  at("receipts").replaceChildren(...(stops.length === 0 ? [make("li", {}, t("no_receipts"))]
+    : stops.map((event) => make("li", {}, `${clock(event.stamp)} ${event.text}`))));
+  if (tree !== undefined) {
+    view.show(tree.values);
+  }
+  at("slider").max = Math.max(0, journal.length - 1);
+  at("slider").value = at("slider").max;
+  replay(journal.length - 1);
+  at("past").scrollIntoView();
+}
+
+async function allEvents(id) {
+  const found = [];
+  for (;;) {
+    const after = found.length > 0 ? found[found.length - 1].number : 0;
+    const page = await ask(`/api/runs/${encodeURIComponent(id)}/events?after=${after}&limit=${PAGE}`);
+    found.push(...page);
+    if (page.length < PAGE || found.length >= MOST) {
+      return found;
+    }
+  }
+}
+
+/** The tree as it was after event number `index` of the journal. */
+function replay(index) {
+  const event = journal[index];
+  setText(at("moment"), event === undefined ? "" : `${clock(event.stamp)} ${event.node} ${event.text}`);
+  const nearby = journal.slice(Math.max(0, index - 100), index + 1).filter((one) => one.kind !== "tree").reverse();
+  keep(at("list_events"), nearby, (one) => one.number, () => make("tr", {}, ...parts("td", ["time", "kind", "node", "text"])), (row, one) => {
+    setText(part(row, "time"), clock(one.stamp));
+    setText(part(row, "kind"), one.kind);
+    setText(part(row, "node"), one.node);
+    setText(part(row, "text"), one.text);
+  });
+  if (view.tree === null) {
+    return;
+  }
+  const states = view.tree.paths.map(() => 0);
+  const numbers = new Map(view.tree.paths.map((path, number) => [path, number]));
+  view.forget();
+  let current = "";
+  for (const one of journal.slice(0, index + 1)) {
+    const change = one.kind === "node" && / (IDLE|RUNNING|SUCCESS|FAILURE) -> (IDLE|RUNNING|SUCCESS|FAILURE)/.exec(` ${one.text}`);
+    if (change && numbers.has(one.node)) {
+      states[numbers.get(one.node)] = CODES[change[2]];
+      view.last.set(one.node, CODES[change[2]] || CODES[change[1]]);
+      current = one.node;
+    }
+  }
+  view.paint(states.join(""), current);
+}
+
+export function redraw() {
+  if (view?.tree) {
+    view.rebuild();
+  }
+}

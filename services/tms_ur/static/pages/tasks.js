@@ -1,0 +1,124 @@
+// Tasks: a file from Groot is checked, compared and stored here.
+import { at, button, confirmed, heading, keep, make, once, part, parts, say, setText, table } from "../dom.js";
+import { ask } from "../server.js";
+import { t, when } from "../strings.js";
+import { showFindings } from "./run.js";
+
+let given = null; // { name, xml } of the chosen file
+let found = null; // its check
+let stored = [];
+
+export function build(root) {
+  const file = make("input", { type: "file", id: "file", accept: ".xml,text/xml", onchange: read });
+  const compare = make("select", { id: "compare", onchange: (event) => once(event.currentTarget, showDifference) });
+  const store = button("store", "go", (event) => once(event.currentTarget, storeTask));
+  store.id = "store";
+  root.append(
+    heading("upload"), make("label", {}, make("span", { data: { t: "upload" } }), file), make("div", { id: "findings", role: "status" }),
+    make("section", { id: "chosen", hidden: true },
+      make("label", {}, make("span", { data: { t: "description" } }), make("input", { id: "description", maxLength: 1000 })), store,
+      make("label", {}, make("span", { data: { t: "compare" } }), compare), make("pre", { id: "difference", tabIndex: 0, hidden: true }),
+      heading("file_text", "h3"), make("ol", { id: "source", className: "source", tabIndex: 0 })),
+    heading("tasks"), make("p", { id: "lists_problem", className: "bad", role: "status" }),
+    make("p", { id: "none_tasks", hidden: true, data: { t: "none_tasks" } }),
+    table("list_tasks", ["task", "model", "description", "started_at", "download"]),
+  );
+  given = found = null;
+}
+
+export async function load() {
+  try {
+    stored = await ask("/api/tasks");
+    setText(at("lists_problem"), "");
+  } catch (error) {
+    if (at("lists_problem") !== null) {
+      setText(at("lists_problem"), error.message);
+    }
+    return;
+  }
+  if (at("compare") === null) {
+    return;
+  }
+  at("none_tasks").hidden = stored.length > 0;
+  keep(at("list_tasks"), stored, (task) => task.id, buildTask, fillTask);
+  keep(at("compare"), [{ id: "" }, ...stored], (task) => task.id, (task) => make("option", { value: task.id }),
+    (option, task) => setText(option, task.id === "" ? "-" : `${task.id} ${task.description}`));
+}
+
+export function update() {}
+
+// the file
+
+async function read() {
+  const file = at("file").files[0];
+  if (file === undefined) {
+    return;
+  }
+  given = { name: file.name, xml: await file.text() };
+  at("chosen").hidden = false;
+  try {
+    found = await ask("/api/tasks/check", { xml: given.xml });
+    showFindings(at("findings"), found);
+  } catch (error) {
+    found = null;
+    at("findings").replaceChildren(make("p", { className: "bad" }, error.message));
+  }
+  const bad = new Set(found?.errors.map((one) => one.line) ?? []);
+  const warned = new Set(found?.warnings.map((one) => one.line) ?? []);
+  at("source").replaceChildren(...given.xml.split("\n").map((line, index) => (
+    make("li", { className: bad.has(index + 1) ? "errors" : warned.has(index + 1) ? "warnings" : "" }, line || " "))));
+  await showDifference();
+}
+
+async function storeTask() {
+  if (found?.errors.length > 0 && !(await confirmed(t("store_ask")))) {
+    return "";
+  }
+  const added = await ask("/api/tasks", { xml: given.xml, description: at("description").value });
+  await load();
+  return t(added.already_stored ? "stored_before" : "stored", added);
+}
+
+async function showDifference() {
+  const id = at("compare").value;
+  const box = at("difference");
+  box.hidden = id === "" || given === null;
+  if (!box.hidden) {
+    const { text } = await ask(`/api/tasks/${id}/diff`, { xml: given.xml });
+    box.replaceChildren(...(text === "" ? [t("equal")] : text.split("\n").map((line) => (
+      make("span", { className: line.startsWith("+") ? "added" : line.startsWith("-") ? "removed" : "" }, `${line}\n`)))));
+  }
+  return "";
+}
+
+// stored ones
+
+function buildTask(task) {
+  const remove = (event) => once(event.currentTarget, async () => {
+    if (!(await confirmed(t("remove_ask", { id: task.id })))) {
+      return "";
+    }
+    await ask(`/api/tasks/${task.id}/remove`, {});
+    await load();
+    return t("removed", { id: task.id });
+  });
+  const download = (event) => once(event.currentTarget, () => save(task.id));
+  return make("tr", {}, ...parts("td", ["id", "model", "description", "added"]), make("td", { className: "bar" },
+    button("download", "", download, ["download_task", { id: task.id }]), button("remove", "", remove, ["remove_task", { id: task.id }])));
+}
+
+function fillTask(row, task) {
+  setText(part(row, "id"), String(task.id));
+  setText(part(row, "model"), task.model_name);
+  setText(part(row, "description"), task.description);
+  setText(part(row, "added"), when(task.added_at));
+}
+
+async function save(id) {
+  const { xml } = await ask(`/api/tasks/${id}`);
+  const url = URL.createObjectURL(new Blob([xml], { type: "text/xml" }));
+  make("a", { href: url, download: `task_${id}.xml` }).click();
+  URL.revokeObjectURL(url);
+  say("");
+  return "";
+}

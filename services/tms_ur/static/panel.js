@@ -1,0 +1,57 @@
+// The panel of one task: a green start, a red software stop, and what the run asks.
+import { at, keep, once, say, setText } from "./dom.js";
+import { buildQuestion, fillQuestion } from "./questions.js";
+import { ask, watch } from "./server.js";
+import { stop } from "./stop.js";
+import { onLanguage, switchLanguage, t, translatePage } from "./strings.js";
+
+const id = Number(new URLSearchParams(location.search).get("task"));
+let task = null;
+let state = null;
+
+function heard(now) {
+  state = now;
+  const run = now.runs.find((one) => one.task_id === id);
+  keep(at("questions"), now.questions.filter((one) => one.run_id === run?.run_id), (one) => one.id, buildQuestion, fillQuestion);
+  const latched = now.machines.filter((machine) => machine.latch);
+  const stopped = latched.map((machine) => `${machine.name}: ${t("why_latched", { cause: machine.latch })}`).join(" ");
+  setText(at("machines"), stopped);
+  at("machines").className = stopped ? "bad" : "";
+  setText(at("state"), run ? `${t(run.state)}: ${run.reason || t(run.state === "running" ? "moving_on" : run.state)}` : t("panel_ready"));
+  at("start").disabled = run !== undefined;
+}
+
+async function name() {
+  try {
+    task = await ask(`/api/tasks/${id}`);
+  } catch (error) {
+    say(error.message, true);
+  }
+  setText(at("task"), id ? `${t("task")} ${id} ${task?.description ?? ""}` : t("panel_none"));
+}
+
+at("start").addEventListener("click", (event) => once(event.currentTarget, async () => {
+  const answer = await ask("/api/runs", { task_id: id });
+  return t("started", { id: answer.run_id });
+}));
+at("stop").addEventListener("click", () => stop());
+at("language").addEventListener("click", switchLanguage);
+onLanguage(() => {
+  name();
+  if (state !== null) {
+    heard(state);
+  }
+});
+translatePage();
+
+ask("/api/session").then((session) => {
+  if (session.name === null) {
+    location.href = "/"; // log in there first
+    return;
+  }
+  name();
+  watch(heard, (there) => {
+    at("lost").hidden = there;
+    document.body.classList.toggle("old", !there);
+  });
+}, (error) => say(error.message, true));

@@ -1,0 +1,20 @@
+// Questions of WaitForClick nodes, with their buttons.
+import { button, make, once, part, parts, setText } from "./dom.js";
+import { ask } from "./server.js";
+import { t } from "./strings.js";
+
+export function buildQuestion(asked) {
+  const reply = (yes) => (event) => once(event.currentTarget, async () => {
+    await ask(`/api/questions/${encodeURIComponent(asked.id)}`, { yes });
+    return t("answered");
+  });
+  return make("section", { className: "question" }, ...parts("strong", ["title"]), ...parts("p", ["text"]), ...parts("span", ["left"]),
+    button("yes", "go", reply(true)), button("no", "", reply(false)));
+}
+
+export function fillQuestion(box, asked) {
+  setText(part(box, "title"), asked.title || t("question"));
+  setText(part(box, "text"), asked.text);
+  const left = asked.until && Math.max(0, Math.round((new Date(asked.until) - Date.now()) / 1000));
+  setText(part(box, "left"), left === null ? "" : t("seconds_left", { seconds: left }));
+}

@@ -1,0 +1,82 @@
+// The server as the console sees it: commands, lists, and the live state with its watchdog.
+import { t } from "./strings.js";
+
+const SILENCE = 1700; // ms without a state: the server sends one every 0.7 s at least
+const RETRY = 1000; // ms between attempts to connect
+
+/** An answer of the API; throws an Error whose message people can read. */
+export async function ask(path, body) {
+  const post = { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) };
+  let response;
+  let answer;
+  try {
+    response = await fetch(path, body === undefined ? {} : post);
+    answer = await response.json();
+  } catch {
+    throw new Error(t("unreachable"));
+  }
+  if (response.status === 401 && path !== "/api/login") {
+    location.reload(); // the session is over: the page begins with the login
+  }
+  if (!response.ok) {
+    throw new Error(answer.message);
+  }
+  return answer;
+}
+
+/** Calls onState with every state and onLink(true or false) when the connection comes and goes. */
+export function watch(onState, onLink) {
+  let source = null;
+  let connected = null;
+  let heard = performance.now();
+  let tried = -RETRY;
+
+  function link(now) {
+    if (connected !== now) {
+      connected = now;
+      onLink(now);
+    }
+  }
+
+  function connect() {
+    source?.close();
+    tried = performance.now();
+    source = new EventSource("/api/events");
+    source.addEventListener("state", (event) => {
+      heard = performance.now();
+      link(true);
+      onState(JSON.parse(event.data));
+    });
+    source.addEventListener("error", () => link(false));
+  }
+
+  // EventSource retries by itself only after some kinds of loss, and never notices silence.
+  function check() {
+    const now = performance.now();
+    if (now - heard > SILENCE) {
+      link(false);
+    }
+    if (connected === false && now - tried > RETRY) {
+      connect();
+    }
+  }
+
+  connect();
+  setInterval(check, 250);
+}
+
+const trees = new Map();
+
+/** The shape of a run's tree; asked once, and again a second later as long as the history has none. */
+export function treeOf(runId) {
+  const known = trees.get(runId);
+  if (known !== undefined && (known.tree !== null || performance.now() - known.asked < 1000)) {
+    return known.tree;
+  }
+  trees.set(runId, { tree: null, asked: performance.now() });
+  ask(`/api/runs/${encodeURIComponent(runId)}/tree`).then(
+    (tree) => trees.set(runId, { tree }),
+    () => {}, // not written yet, or the database is away: the next state asks again
+  );
+  return null;
+}

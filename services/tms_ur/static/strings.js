@@ -1,0 +1,58 @@
+// The language of the page: texts, dates, and who wants to know when it changes.
+import { WORDS } from "./words.js";
+
+const KEPT = "tms.language";
+const listeners = [];
+let language = remembered() ?? (navigator.language.startsWith("ja") ? "ja" : "en");
+
+function remembered() {
+  try {
+    const kept = localStorage.getItem(KEPT);
+    return kept in WORDS ? kept : null;
+  } catch {
+    return null; // a browser may forbid storage; the switch still works for this page
+  }
+}
+
+/** A text in the present language with {name} filled in; a key that nobody knows is shown as it is. */
+export function t(key, values = {}) {
+  const text = WORDS[language][key] ?? key;
+  return text.replace(/\{(\w+)\}/g, (_, name) => String(values[name] ?? ""));
+}
+
+/** Date and time as the language writes them. */
+export function when(iso) {
+  return iso ? new Date(iso).toLocaleString(language === "ja" ? "ja-JP" : "en-GB") : "-";
+}
+
+/** Time of day with tenths, for events. */
+export function clock(iso) {
+  return iso ? new Date(iso).toLocaleTimeString(language === "ja" ? "ja-JP" : "en-GB", { fractionalSecondDigits: 1 }) : "-";
+}
+
+/** Texts that stand in the page itself: elements with data-t. */
+export function translatePage() {
+  document.documentElement.lang = language;
+  document.title = `${t("title")} - ROS2-TMS`;
+  for (const element of document.querySelectorAll("[data-t]")) {
+    element.textContent = t(element.dataset.t);
+  }
+  for (const element of document.querySelectorAll("[data-label]")) {
+    element.setAttribute("aria-label", t(element.dataset.label));
+  }
+}
+
+export function onLanguage(listener) {
+  listeners.push(listener);
+}
+
+export function switchLanguage() {
+  language = language === "ja" ? "en" : "ja";
+  try {
+    localStorage.setItem(KEPT, language);
+  } catch {
+    // not remembered then
+  }
+  translatePage();
+  listeners.forEach((listener) => listener());
+}

@@ -1,0 +1,143 @@
+"""Server-sent events: one snapshot made for all clients, a bounded number of them, each with one slot.
+
+A snapshot holds everything, so a client needs only the newest: its queue is a single slot that a newer snapshot
+overwrites, and memory stays bounded however slowly it reads. A client that does not take one for SLOW_LIMIT is dropped.
+"""
+
+import asyncio
+import logging
+
+import anyio
+from prometheus_client import Counter, Gauge
+from starlette.responses import Response
+from starlette.types import Receive, Scope, Send
+
+from tms_core.errors import TmsError
+from tms_ur.board import Board
+
+MOST_CLIENTS = 50
+SHORTEST = 0.1  # s between snapshots
+LONGEST = 0.7  # s without a change; the console calls the connection lost after 1.7
+SLOW_LIMIT = 5.0  # s to take one snapshot
+
+CLIENTS = Gauge("tms_ur_stream_clients", "Connected consoles")
+DROPPED = Counter("tms_ur_stream_dropped_total", "Consoles dropped because they read too slowly")
+HEADERS = [(b"content-type", b"text/event-stream; charset=utf-8"), (b"x-accel-buffering", b"no")]
+log = logging.getLogger(__name__)
+
+
+class Client:
+    """The slot of one client; used on the event loop only."""
+
+    def __init__(self) -> None:
+        self._news = asyncio.Event()
+        self._text: bytes = b""
+        self._ended = False
+
+    def put(self, text: bytes) -> None:
+        self._text = text
+        self._news.set()
+
+    def end(self) -> None:
+        self._ended = True
+        self._news.set()
+
+    async def next(self) -> bytes | None:
+        """The newest snapshot once there is one that was not sent yet; None at the end."""
+        await self._news.wait()
+        self._news.clear()
+        return None if self._ended else self._text
+
+
+class Stream:
+    """Makes snapshots while somebody looks."""
+
+    def __init__(self, board: Board) -> None:
+        self._board = board
+        self._clients: set[Client] = set()
+        self._changed = asyncio.Event()
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._pump: asyncio.Task[None] | None = None
+        self._last = b""
+        board.on_change(self._wake)
+
+    def join(self) -> Client:
+        """A new client, which gets a snapshot at once.
+
+        Raises:
+            TmsError: there are too many.
+        """
+        if len(self._clients) >= MOST_CLIENTS:
+            raise TmsError(f"{MOST_CLIENTS} consoles are connected already: close one of them", "TOO_MANY")
+        client = Client()
+        self._clients.add(client)
+        CLIENTS.set(len(self._clients))
+        client.put(self._text())
+        if self._pump is None or self._pump.done():
+            self._loop = asyncio.get_running_loop()
+            self._pump = self._loop.create_task(self._run())
+        return client
+
+    def leave(self, client: Client) -> None:
+        self._clients.discard(client)
+        CLIENTS.set(len(self._clients))
+
+    def _wake(self) -> None:
+        """Called on any thread."""
+        loop = self._loop
+        if loop is not None and not loop.is_closed():
+            loop.call_soon_threadsafe(self._changed.set)
+
+    def _text(self) -> bytes:
+        return b"event: state\ndata: " + self._board.snapshot().model_dump_json().encode() + b"\n\n"
+
+    async def _run(self) -> None:
+        while self._clients and not self._board.closed:
+            with anyio.move_on_after(LONGEST):
+                await self._changed.wait()
+            self._changed.clear()
+            text = self._text()
+            for client in self._clients:
+                client.put(text)
+            await asyncio.sleep(SHORTEST)
+        for client in self._clients:
+            client.end()
+
+
+class StreamResponse(Response):
+    """Sends what a client's slot holds until either side goes away."""
+
+    media_type = "text/event-stream"
+
+    def __init__(self, stream: Stream) -> None:
+        super().__init__()
+        self._stream = stream
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        client = self._stream.join()
+        watcher = asyncio.create_task(_end_when_gone(receive, client))
+        try:
+            await send({"type": "http.response.start", "status": 200, "headers": HEADERS})
+            while (text := await client.next()) is not None:
+                if not await _sent(send, text):
+                    DROPPED.inc()
+                    log.warning("event=console_dropped from=%s reason='reads too slowly'", scope.get("client"))
+                    return  # without the end of the answer: the server cuts the connection
+            await send({"type": "http.response.body", "body": b"", "more_body": False})
+        finally:
+            watcher.cancel()
+            self._stream.leave(client)
+
+
+async def _sent(send: Send, text: bytes) -> bool:
+    with anyio.move_on_after(SLOW_LIMIT):
+        await send({"type": "http.response.body", "body": text, "more_body": True})
+        return True
+    return False
+
+
+async def _end_when_gone(receive: Receive, client: Client) -> None:
+    """The server's send says nothing of a client that has gone, its receive does."""
+    while (await receive())["type"] != "http.disconnect":
+        pass
+    client.end()
