@@ -1,0 +1,163 @@
+"""What a person at the console feels: five runs whose nodes change twice a second, in a real mesh and a real Chromium.
+
+From a node's change, by the scheduler's clock, to the picture: the page itself takes the time when the state of a node
+is in the document and painted. The floor is an answer of the same server to the same page. The cost of consoles is the
+processor time of `tms:ur` with twenty of them less that without; its floor is the latter.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+import socket
+import tempfile
+import threading
+import time
+import urllib.request
+from collections.abc import Iterable, Iterator
+from contextlib import ExitStack
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import psutil
+import yaml
+
+from bench.runner import Figure
+from conftest import Mesh, claimed_domain, ports_of, site_data
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+RUNS, CONSOLES, SECONDS, ROUNDS = 5, 20, 10, 20
+TREE = """<root main_tree_to_execute="M"><BehaviorTree ID="M"><KeepRunningUntilFailure><Sequence name="run {number}">
+<Delay delay_msec="500"><AlwaysSuccess name="a"/></Delay><Delay delay_msec="500"><AlwaysSuccess name="b"/></Delay>
+</Sequence></KeepRunningUntilFailure></BehaviorTree></root>"""
+FLAGS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking"]
+# Notes when each node became running in the document, at the next frame.
+WATCH = """() => {
+  window.seen = [];
+  new MutationObserver((changes) => requestAnimationFrame(() => {
+    const now = Date.now() / 1000;
+    for (const { target } of changes) {
+      if (target.dataset.state === "running") window.seen.push([target.dataset.path, now]);
+    }
+  })).observe(document.getElementById("tree_box"),
+    { subtree: true, attributes: true, attributeFilter: ["data-state"] });
+}"""
+PING = """async (rounds) => {
+  const times = [];
+  for (let i = 0; i < rounds; i += 1) {
+    const begun = performance.now();
+    await (await fetch("/api/session")).json();
+    times.push(performance.now() - begun);
+  }
+  return times.sort((a, b) => a - b)[Math.floor(rounds * 0.95)];
+}"""
+
+
+def measure() -> Iterable[Figure]:
+    with ExitStack() as stack:
+        domain, folder = stack.enter_context(claimed_domain()), Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        port = ports_of(domain)
+        site = folder / "site.yaml"
+        site.write_text(yaml.safe_dump(site_data(domain, port)))
+        mesh = Mesh(site, folder / "state")
+        stack.callback(mesh.tms, "down")
+        mesh.tms("up")
+        runs = [_start(mesh, folder, number) for number in range(RUNS)]
+        address = f"http://127.0.0.1:{port + 90}"
+        yield from _pages(stack, mesh, address, runs[0])
+        yield _consoles(mesh, port + 90)
+
+
+def _start(mesh: Mesh, folder: Path, number: int) -> str:
+    file = folder / f"{number}.xml"
+    file.write_text(TREE.format(number=number))
+    task = json.loads(mesh.tms("task", "add", str(file), "--json").stdout)["task_id"]
+    return str(json.loads(mesh.tms("run", str(task), "--json").stdout)["run_id"])
+
+
+def _pages(stack: ExitStack, mesh: Mesh, address: str, run: str) -> Iterator[Figure]:
+    from playwright.sync_api import sync_playwright
+
+    program = shutil.which("chromium") or shutil.which("chromium-browser")
+    browser = stack.enter_context(sync_playwright()).chromium.launch(executable_path=program, args=FLAGS)
+    page = browser.new_page(locale="en-GB")
+    sizes: list[int] = []
+    page.on("response", lambda answer: sizes.append(int(answer.headers.get("content-length", 0))))
+    page.goto(f"{address}/icon.svg")
+    floor = _opened(page, f"{address}/icon.svg", "svg")
+    sizes.clear()
+    usable = _opened(page, f"{address}/#run", "#list_tasks tr")
+    yield Figure("first page", "KB", sum(sizes) / 1000, 300.0, (sizes[0] or 1) / 1000)
+    yield Figure("first page usable", "ms", usable, 1000.0, floor, usual_floor=60.0)
+    page.goto(f"{address}/#tree/{run}")
+    page.wait_for_selector("#tree_box [data-state=running]")
+    page.evaluate(WATCH)
+    time.sleep(SECONDS)
+    delays = sorted(_delays(page.evaluate("window.seen"), _journal(address, run)))
+    yield Figure("node to pixel p95", "ms", delays[int(len(delays) * 0.95)] * 1000, 200.0, page.evaluate(PING, ROUNDS),
+                 usual_floor=20.0)  # fmt: skip
+    browser.close()
+
+
+def _opened(page: Page, url: str, selector: str) -> float:
+    begun = time.perf_counter()
+    page.goto(url)
+    page.wait_for_selector(selector)
+    return (time.perf_counter() - begun) * 1000
+
+
+def _journal(address: str, run: str) -> list[tuple[str, float]]:
+    """(path, time) of every node that became running."""
+    found: list[dict[str, Any]] = []
+    while True:
+        after = found[-1]["number"] if found else 0
+        with urllib.request.urlopen(f"{address}/api/runs/{run}/events?after={after}", timeout=30) as answer:
+            page = json.load(answer)
+        found += page
+        if len(page) < 1000:
+            break
+    changes = [event for event in found if event["kind"] == "node" and " -> RUNNING" in event["text"]]
+    return [(event["node"], datetime.fromisoformat(event["stamp"].replace("Z", "+00:00")).timestamp())
+            for event in changes]  # fmt: skip
+
+
+def _delays(seen: list[tuple[str, float]], told: list[tuple[str, float]]) -> Iterator[float]:
+    """From the last change of that node before it was seen; nodes change twice a second, so none is mistaken."""
+    for path, at in seen:
+        before = [stamp for node, stamp in told if node == path and stamp <= at]
+        if before:
+            yield at - before[-1]
+
+
+def _consoles(mesh: Mesh, port: int) -> Figure:
+    rows = json.loads(mesh.tms("ps", "--json").stdout)
+    rows = rows if isinstance(rows, list) else rows["processes"]
+    server = psutil.Process(next(row["pid"] for row in rows if row["name"] == "tms:ur"))
+    floor = _load(server)
+    leave = threading.Event()
+    threads = [threading.Thread(target=_look, args=(port, leave), daemon=True) for _ in range(CONSOLES)]
+    for thread in threads:
+        thread.start()
+    time.sleep(2)
+    busy = _load(server)
+    leave.set()
+    for thread in threads:
+        thread.join(10)
+    return Figure(f"{CONSOLES} consoles", "%", busy - floor, 10.0, floor)
+
+
+def _load(process: psutil.Process) -> float:
+    """Per cent of a core."""
+    before, begun = sum(process.cpu_times()[:2]), time.monotonic()
+    time.sleep(SECONDS)
+    return (sum(process.cpu_times()[:2]) - before) / (time.monotonic() - begun) * 100
+
+
+def _look(port: int, leave: threading.Event) -> None:
+    with socket.create_connection(("127.0.0.1", port), 10) as console:
+        console.sendall(f"GET /api/events HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n\r\n".encode())
+        while not leave.is_set():
+            console.recv(262_144)

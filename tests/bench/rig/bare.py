@@ -1,0 +1,167 @@
+"""Plain rclpy processes, the floor of the figures: nothing of ours but the interface types.
+
+python bare.py node                      a node that does nothing
+python bare.py serve                     an action /bare/act that succeeds at once and a service /bare/get
+python bare.py act COUNT                 one goal after another; prints their milliseconds as JSON
+python bare.py get SERVICE MODEL RECORD COUNT   one GetParameter after another; the same
+"""
+
+from __future__ import annotations
+
+import ctypes
+import json
+import os
+import signal
+import sys
+import time
+from typing import Any
+
+import rclpy
+from rclpy.action import ActionClient, ActionServer, CancelResponse
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+from tms_msg_db.msg import Record
+from tms_msg_db.srv import GetParameter
+from tms_msg_ts.action import LeafNodeBase
+
+DEPTH = QoSProfile(depth=100)
+LIMIT = 60.0  # s for a floor to be measured
+BEGUN = time.perf_counter()  # everything is imported; the node is made now
+WARM = 10  # rounds that do not count
+
+
+def serve(node: Node) -> None:
+    def act(handle: Any) -> LeafNodeBase.Result:
+        handle.succeed()
+        return LeafNodeBase.Result(result=True)
+
+    def get(_: Any, response: GetParameter.Response) -> GetParameter.Response:
+        response.record = Record(model_name="m", record_name="r", type="static")
+        return response
+
+    node.kept = [
+        ActionServer(node, LeafNodeBase, "/bare/act", act, result_timeout=5),
+    ]
+    node.create_service(GetParameter, "/bare/get", get, qos_profile=DEPTH)
+    rclpy.spin(node)
+
+
+def crowd(node: Node, first: str, count: str) -> None:
+    """The documented pattern: an accepted goal waits for its cancel, which ends it."""
+
+    def cancel(handle: Any) -> CancelResponse:
+        node.executor.create_task(handle.execute, lambda goal: (goal.canceled(), LeafNodeBase.Result())[1])
+        return CancelResponse.ACCEPT
+
+    node.kept = [
+        ActionServer(
+            node, LeafNodeBase, f"/crowd_{number}/act", lambda _: None, result_timeout=5, cancel_callback=cancel,
+            handle_accepted_callback=lambda _: None, goal_service_qos_profile=DEPTH, result_service_qos_profile=DEPTH,
+            cancel_service_qos_profile=DEPTH,
+        )
+        for number in range(int(first), int(first) + int(count))
+    ]  # fmt: skip
+    print("ready", flush=True)
+    rclpy.spin(node)
+
+
+class Rounds:
+    """Times rounds that end in a callback, each started by the end of the last one."""
+
+    def __init__(self, count: int) -> None:
+        self.left, self.times = count + WARM, []  # type: ignore[var-annotated]
+
+    def begin(self) -> None:
+        self._begun = time.perf_counter()
+
+    def end(self) -> bool:
+        self.times.append((time.perf_counter() - self._begun) * 1000)
+        self.left -= 1
+        return self.left > 0
+
+
+def act(node: Node, count: str) -> list[float]:
+    client, rounds = ActionClient(node, LeafNodeBase, "/bare/act"), Rounds(int(count))
+
+    def send() -> None:
+        rounds.begin()
+        client.send_goal_async(LeafNodeBase.Goal()).add_done_callback(accepted)
+
+    def accepted(future: Any) -> None:
+        future.result().get_result_async().add_done_callback(lambda _: send() if rounds.end() else None)
+
+    return _run(node, client.server_is_ready, send, rounds)
+
+
+def get(node: Node, service: str, model: str, record: str, count: str) -> list[float]:
+    client, rounds = node.create_client(GetParameter, service, qos_profile=DEPTH), Rounds(int(count))
+    wanted = GetParameter.Request(model_name=model, record_name=record)
+
+    def send() -> None:
+        rounds.begin()
+        client.call_async(wanted).add_done_callback(answered)
+
+    def answered(future: Any) -> None:
+        assert not future.result().error_code, future.result().error_msg
+        if rounds.end():
+            send()
+
+    return _run(node, client.service_is_ready, send, rounds)
+
+
+def find(node: Node, count: str) -> list[float]:
+    while len(node.get_node_names()) <= int(count):
+        rclpy.spin_once(node, timeout_sec=0.005)
+        assert time.perf_counter() - BEGUN < LIMIT, f"only {len(node.get_node_names()) - 1} of {count} found"
+    return [(time.perf_counter() - BEGUN) * 1000]
+
+
+def fleet(count: str) -> None:
+    """Forks, so that the imports are paid once; each child leaves when its parent does."""
+    left, right = os.pipe()
+    for number in range(int(count)):
+        if os.fork() == 0:
+            ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
+            rclpy.init()
+            node = _node(f"fleet_{number}")
+            os.write(right, b".")
+            rclpy.spin(node)
+            return
+    for _ in range(int(count)):
+        os.read(left, 1)
+    print("ready", flush=True)
+    signal.pause()
+
+
+def _node(name: str) -> Node:
+    return rclpy.create_node(name, start_parameter_services=False, enable_rosout=False)
+
+
+def _run(node: Node, ready: Any, first: Any, rounds: Rounds) -> list[float]:
+    deadline = time.monotonic() + LIMIT
+    while not ready():
+        rclpy.spin_once(node, timeout_sec=0.05)
+        assert time.monotonic() < deadline, "the other side is not there"
+    first()
+    while rounds.left and time.monotonic() < deadline:
+        rclpy.spin_once(node, timeout_sec=1.0)
+    assert not rounds.left, "an answer got lost"
+    return rounds.times[WARM:]
+
+
+def main(what: str, *words: str) -> None:
+    if what == "fleet":
+        return fleet(*words)
+    rclpy.init()
+    node = _node(f"bare_{what}")
+    if what == "crowd":
+        return crowd(node, *words)
+    if what in ("node", "serve"):
+        print("ready", flush=True)
+        serve(node) if what == "serve" else rclpy.spin(node)
+    else:
+        print(json.dumps({"act": act, "get": get, "find": find}[what](node, *words)), flush=True)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

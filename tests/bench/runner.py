@@ -1,0 +1,117 @@
+"""Runs the benchmark groups and compares their figures with limits and with a floor of the same run.
+
+A group is a file in groups(): its `measure` yields figures. A limit is meant for a usual PC; where the floor shows that
+this PC is slower (or busy), the limit grows by as much.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import json
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from datetime import datetime, timezone
+from pathlib import Path
+from typing import Any
+
+HERE = Path(__file__).resolve().parent
+PROJECT = HERE.parents[1]
+HISTORY = PROJECT / ".state/bench/history.jsonl"
+COLUMNS = ("GROUP", "FIGURE", "VALUE", "FLOOR", "RATIO", "ALLOWED", "")
+
+
+@dataclass(frozen=True)
+class Figure:
+    """Less is better."""
+
+    name: str
+    unit: str
+    value: float
+    limit: float
+    floor: float  # the same work without what is measured
+    usual_floor: float | None = None  # on a usual PC; None: the floor says nothing about the speed of this PC
+
+    @property
+    def ratio(self) -> float:
+        return self.value / self.floor
+
+    @property
+    def allowed(self) -> float:
+        return self.limit * max(1.0, self.floor / self.usual_floor) if self.usual_floor else self.limit
+
+    @property
+    def held(self) -> bool:
+        return self.value <= self.allowed
+
+    def as_dict(self) -> dict[str, Any]:
+        names = ("name", "unit", "value", "floor", "ratio", "limit", "allowed", "held")
+        found = {name: getattr(self, name) for name in names}
+        return {key: float(f"{value:.4g}") if isinstance(value, float) else value for key, value in found.items()}
+
+
+def milliseconds(work: Callable[[], object], rounds: int) -> float:
+    """The median of several rounds."""
+    times = []
+    for _ in range(rounds):
+        start = time.perf_counter()
+        work()
+        times.append(time.perf_counter() - start)
+    return sorted(times)[rounds // 2] * 1000
+
+
+def groups() -> list[str]:
+    """Files in this folder, but the runner and tests."""
+    names = sorted(path.stem for path in HERE.glob("*.py"))
+    return [name for name in names if name not in ("runner", "__main__") and not name.startswith("test_")]
+
+
+def row(group: str, figure: Figure) -> tuple[str, ...]:
+    value, floor, allowed = (f"{number:.3g} {figure.unit}" if number < 1000 else f"{number:.0f} {figure.unit}"
+                             for number in (figure.value, figure.floor, figure.allowed))  # fmt: skip
+    return group, figure.name, value, floor, f"{figure.ratio:.2f}", allowed, "held" if figure.held else "SHORT"
+
+
+def show(cells: Iterable[str]) -> None:
+    widths = (8, 16, 10, 10, 7, 10, 0)
+    print("".join(cell.ljust(width) for cell, width in zip(cells, widths, strict=True)).rstrip(), flush=True)
+
+
+def commit() -> str:
+    found = subprocess.run(
+        ["git", "describe", "--always", "--dirty", "--abbrev=12", "--exclude=*"],
+        cwd=PROJECT, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    return found.stdout.strip() or "unknown"
+
+
+def remember(file: Path, figures: list[tuple[str, Figure]]) -> None:
+    """Append one line, so that commits can be compared."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    now = datetime.now(timezone.utc).isoformat(timespec="seconds")
+    line = {"commit": commit(), "at": now, "figures": [{"group": group, **f.as_dict()} for group, f in figures]}
+    with file.open("a", encoding="utf-8") as history:
+        history.write(json.dumps(line) + "\n")
+
+
+def main(words: list[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(prog="bench", description="Benchmarks; exit code 1 if a figure is short.")
+    parser.add_argument("--only", metavar="GROUP", help=f"one of: {', '.join(groups())}")
+    parser.add_argument("--json", type=Path, metavar="FILE", default=HISTORY, help="the history to append a line to")
+    given = parser.parse_args(words)
+    if given.only is not None and given.only not in groups():
+        print(f"bench: there is no group {given.only!r}; there is: {', '.join(groups())}", file=sys.stderr)
+        return 2
+    show(COLUMNS)
+    figures = []
+    for group in [given.only] if given.only else groups():
+        for figure in importlib.import_module(f"bench.{group}").measure():
+            figures.append((group, figure))
+            show(row(group, figure))
+    remember(given.json, figures)
+    held = sum(figure.held for _, figure in figures)
+    print(f"{held} held, {len(figures) - held} short")
+    return 0 if held == len(figures) else 1

@@ -1,0 +1,148 @@
+"""From the press of the software stop, and from the kill of a scheduler, to the commands that stop the machines.
+
+Twenty real gateways with a goal each, and both cores busy. Times are taken where they count: the press just before it
+is published, the command by the time stamp that DDS gives it when the gateway writes it. The floor of a press is a
+plain node that relays one message; of a kill, the lease of 500 ms itself; of a spinning tree, an event that wakes
+another thread.
+"""
+
+from __future__ import annotations
+
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from bench.runner import Figure
+from conftest import claimed_domain
+from tms_core.permit import LEASE
+from tms_ts.bt import load
+from unit.tms_ts.fakes import FakeMachines, FakeWorld
+
+if TYPE_CHECKING:
+    from bench.yard.machines import Yard
+
+PRESSES, KILLS, SPINS, RELAYED = 10, 5, 50, 100
+RELAY = str(Path(__file__).parent / "yard/relay.py")
+HOLDER = str(Path(__file__).parent / "yard/holder.py")
+SPIN = (
+    '<root main_tree_to_execute="T"><BehaviorTree ID="T"><RetryUntilSuccessful num_attempts="-1"><AlwaysFailure/>'
+    "</RetryUntilSuccessful></BehaviorTree></root>"
+)
+
+
+def measure() -> Iterable[Figure]:
+    from bench.yard.machines import BURN, make_site, names, process  # rclpy reads the environment when it is imported
+
+    with ExitStack() as stack:
+        domain, folder = stack.enter_context(claimed_domain()), Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        site = make_site(folder, domain)
+        for name in names():
+            log = stack.enter_context((folder / f"{name}.log").open("w"))
+            stack.enter_context(process("-m", "tms_core.run", f"{name}:rc", stdout=log, stderr=log))
+        yield from _stops(stack, site, process, BURN)
+
+
+def _stops(stack: ExitStack, site: object, process: Callable[..., object], burn: str) -> Iterator[Figure]:
+    from bench.yard.machines import Yard
+
+    yard = Yard(site)
+    stack.callback(yard.ros.close)
+    yard.arm()
+    for _ in range(2):
+        stack.enter_context(process("-c", burn))
+    presses = [late for _ in range(PRESSES) for late in _press(yard)]
+    with process(RELAY):
+        floor = _relayed(yard)
+    yield Figure("press p99", "ms", _p99(presses), 50.0, _p99(floor), usual_floor=4.0)
+    yield Figure("spin p99", "ms", _p99([_spin() for _ in range(SPINS)]), 100.0, _p99([_wake() for _ in range(SPINS)]))
+    kills = [late for number in range(KILLS) for late in _kill(yard, number + 1, process)]
+    yield Figure("kill max", "ms", max(kills), 700.0, LEASE * 1000)
+
+
+def _press(yard: Yard) -> list[float]:
+    yard.move()
+    late = yard.press()
+    yard.arm()
+    return late
+
+
+def _kill(yard: Yard, run: int, process: Callable[..., object]) -> list[float]:
+    with process(HOLDER, str(run)) as holder:
+        yard.wait_moving()
+        begun = time.time_ns()
+        holder.kill()
+        late = yard.stopped_since(begun)
+    yard.arm()
+    return late
+
+
+def _relayed(yard: Yard) -> list[float]:
+    """ms from a message to the answer of a plain node, many times."""
+    from geometry_msgs.msg import Twist
+    from std_msgs.msg import Bool
+
+    answered: list[int] = []
+    there = threading.Event()
+
+    def heard(_zero: Twist, info: dict[str, int]) -> None:
+        answered.append(info["source_timestamp"])
+        there.set()
+
+    yard.ros.subscribe(Twist, "/bench/zero", heard)
+    button = yard.ros.publisher(Bool, "/bench/press", depth=1)
+    while not there.wait(0.2):  # until both sides have found each other
+        button.publish(Bool())
+    late = []
+    for _ in range(RELAYED):
+        there.clear()
+        begun = time.time_ns()
+        button.publish(Bool())
+        assert there.wait(10.0)
+        late.append((answered[-1] - begun) / 1e6)
+        time.sleep(0.01)
+    return late
+
+
+def _spin() -> float:
+    """ms from the press until a tree that spins in an endless Retry is halted, in the loop that runs use."""
+    tree = load(SPIN, world=FakeWorld(FakeMachines()).world())
+    pressed, halted = threading.Event(), threading.Event()
+
+    def loop() -> None:
+        while not pressed.is_set():
+            tree.tick()
+        tree.halt()
+        halted.set()
+
+    return _until(loop, pressed, halted)
+
+
+def _wake() -> float:
+    """ms from an event until another thread that waits for it has set one."""
+    pressed, woken = threading.Event(), threading.Event()
+
+    def loop() -> None:
+        pressed.wait()
+        woken.set()
+
+    return _until(loop, pressed, woken)
+
+
+def _until(loop: Callable[[], None], pressed: threading.Event, over: threading.Event) -> float:
+    thread = threading.Thread(target=loop, daemon=True)
+    thread.start()
+    time.sleep(0.05)
+    begun = time.perf_counter()
+    pressed.set()
+    assert over.wait(10.0)
+    late = (time.perf_counter() - begun) * 1000
+    thread.join()
+    return late
+
+
+def _p99(values: list[float]) -> float:
+    return sorted(values)[max(0, -(-99 * len(values) // 100) - 1)]

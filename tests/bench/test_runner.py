@@ -1,0 +1,58 @@
+"""The runner of benchmarks: verdicts, groups, history. Nothing is timed here."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+from bench import runner
+from bench.runner import Figure
+
+
+@pytest.fixture
+def made_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    module = ModuleType("bench.made_up")
+    module.measure = lambda: [Figure("fast", "ms", 1.0, 2.0, 0.5), Figure("slow", "ms", 1234.0, 2.0, 0.5)]
+    monkeypatch.setitem(sys.modules, "bench.made_up", module)
+    monkeypatch.setattr(runner, "groups", lambda: ["made_up"])
+
+
+def test_a_limit_grows_only_with_a_slower_pc() -> None:
+    assert Figure("f", "ms", 1.9, 1.0, floor=2.0, usual_floor=1.0).held
+    assert not Figure("f", "ms", 2.1, 1.0, floor=2.0, usual_floor=1.0).held
+    assert Figure("f", "ms", 1.0, 1.0, floor=0.1, usual_floor=1.0).held
+    assert not Figure("f", "B", 1.1, 1.0, floor=2.0).held
+    assert Figure("f", "B", 3.0, 1.0, floor=2.0).ratio == 1.5
+
+
+def test_a_group_is_a_file() -> None:
+    assert "tree" in runner.groups()
+    for path in Path(runner.__file__).parent.glob("*.py"):
+        assert path.stem in runner.groups() or path.name.startswith(("test_", "__")) or path.stem == "runner"
+
+
+def test_table_last_line_and_history(made_up: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "new/history.jsonl"
+    assert runner.main(["--json", str(file)]) == 1
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[1].split() == ["made_up", "fast", "1", "ms", "0.5", "ms", "2.00", "2", "ms", "held"]
+    assert lines[2].split()[-1] == "SHORT"
+    assert lines[3:] == ["1 held, 1 short"]
+    runner.main(["--json", str(file), "--only", "made_up"])
+    first, _ = map(json.loads, file.read_text().splitlines())
+    assert first["commit"]
+    assert first["figures"][1] == {
+        "group": "made_up", "name": "slow", "unit": "ms", "value": 1234.0, "floor": 0.5, "ratio": 2468.0, "limit": 2.0,
+        "allowed": 2.0, "held": False,
+    }  # fmt: skip
+
+
+def test_an_unknown_group_is_told_with_the_groups_there_are(capsys: pytest.CaptureFixture[str]) -> None:
+    assert runner.main(["--only", "tre"]) == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert said.err == f"bench: there is no group 'tre'; there is: {', '.join(runner.groups())}\n"

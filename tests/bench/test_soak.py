@@ -1,0 +1,27 @@
+"""What a long run calls growth."""
+
+from __future__ import annotations
+
+from soak import Sample, growth
+
+
+def rows(*memory: float, pid: int = 1) -> list[Sample]:
+    return [Sample(pid, each, 20, 14) for each in memory]
+
+
+def test_warming_up_and_noise_are_no_growth() -> None:
+    assert growth({"tms:ts": rows(20, 30, 31, 30, 31, 32, 31, 32, 31)}) == []
+
+
+def test_memory_that_grows_is_found() -> None:
+    found = growth({"tms:ts": rows(20, 30, 32, 34, 36, 38, 40, 42, 44)})
+    assert found == ["tms:ts: memory grew from 32.0 to 42.0, allowed are 36.0"]
+
+
+def test_a_leaked_handle_a_run_is_found() -> None:
+    leaking = [Sample(1, 30, 20 + number, 14) for number in range(9)]
+    assert growth({"tms:ts": leaking}) == ["tms:ts: handles grew from 22.0 to 27.0, allowed are 24.0"]
+
+
+def test_a_restart_is_found() -> None:
+    assert growth({"tms:ts": [*rows(30, 30), *rows(30, pid=2)]}) == ["tms:ts was restarted"]

@@ -1,0 +1,43 @@
+"""A scheduler and its subtasks in one process that can be killed: stands behind one goal of every machine."""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+
+TESTS = Path(__file__).resolve().parents[2]
+sys.path[0:1] = [str(TESTS), str(TESTS.parent / "services")]
+
+from control_msgs.action import FollowJointTrajectory  # noqa: E402
+
+from bench.yard.machines import LIMIT, MODEL, motion, names  # noqa: E402
+from tms_core.config import load_site  # noqa: E402
+from tms_core.fence import Owner  # noqa: E402
+from tms_core.permit import Permit  # noqa: E402
+from tms_core.ros import Call, Ros  # noqa: E402
+
+AGAIN = 0.5  # s between looks for refused goals: with busy cores not everybody has found everybody yet
+
+
+def main(run: int) -> None:
+    site, ros = load_site(), Ros("bench_holder")
+    peers = {name: ros.peer(FollowJointTrajectory, f"/{name}/rc/follow_joint_trajectory") for name in names()}
+    subtask = next(iter(site.models[MODEL].subtasks))
+    permits = {name: Permit(ros, name, subtask) for name in names()}
+    for name in names():
+        Permit(ros, name, "ts").hold(Owner(run).goal_id(), "bench")
+    calls: dict[str, Call] = {}
+    deadline = time.monotonic() + 10 * LIMIT
+    leaf = 0
+    while time.monotonic() < deadline:
+        for name, peer in peers.items():
+            if name not in calls or calls[name].outcome is not None:
+                leaf += 1
+                permits[name].hold(Owner(run, leaf).goal_id())
+                peer.wait_ready(LIMIT)
+                calls[name] = peer.send(motion(site.models[MODEL]), goal_id=Owner(run, leaf, 1).goal_id())
+        time.sleep(AGAIN)
+
+
+main(int(sys.argv[1]))

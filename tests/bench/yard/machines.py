@@ -1,0 +1,162 @@
+"""Twenty machines in one process: their action servers and news, and when each gateway sent its zero velocities."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from array import array
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import yaml
+from builtin_interfaces.msg import Duration
+from control_msgs.action import FollowJointTrajectory
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Bool
+from tms_msg_rc.srv import Rearm
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+from conftest import ports_of, site_data
+from tms_core import environment
+from tms_core.config import Site, load_site
+from tms_core.ros import Call, Ended, Goal, Outcome, Ros
+
+COUNT = 20
+MODEL = "zx200"
+NEWS = 0.2  # s between joint states
+LIMIT = 60.0  # s for anything to happen; only bounds a hang
+BURN = "while True: pass"
+
+
+def names() -> list[str]:
+    return [f"m{number}" for number in range(COUNT)]
+
+
+def make_site(folder: Path, domain: int) -> Site:
+    machines = {name: {"model": MODEL} for name in names()}
+    file = folder / "site.yaml"
+    file.write_text(yaml.safe_dump(site_data(domain, ports_of(domain), machines=machines, services={})))
+    os.environ.update({"TMS_SITE": str(file), "TMS_STATE": str(folder / "state")})
+    os.environ.pop("ROS_DOMAIN_ID", None)
+    site = load_site()
+    environment.enter(site)
+    return site
+
+
+@contextmanager
+def process(*words: str, **settings: Any) -> Iterator[subprocess.Popen[str]]:
+    """A Python process that is killed at the end."""
+    with subprocess.Popen([sys.executable, *words], text=True, **settings) as running:
+        try:
+            yield running
+        finally:
+            running.send_signal(signal.SIGKILL)
+
+
+def motion(model: Any) -> FollowJointTrajectory.Goal:
+    """A minute of standing: the stand-ins end it only when they are told to."""
+    joints = list(model.joints)
+    angles = [(joint.min + joint.max) / 2 if joint.min is not None else 0.0 for joint in model.joints.values()]
+    point = JointTrajectoryPoint(positions=array("d", angles), time_from_start=Duration(sec=60, nanosec=0))
+    return FollowJointTrajectory.Goal(trajectory=JointTrajectory(joint_names=joints, points=[point]))
+
+
+class Yard:
+    """The machines, and everything that a benchmark asks of their gateways."""
+
+    def __init__(self, site: Site) -> None:
+        self.ros = Ros("bench_yard")
+        self._site, self._model = site, site.models[MODEL]
+        self._changed = threading.Condition()
+        self.zeros: dict[str, int] = {}  # machine -> ns since 1970 at which its gateway sent the first zero velocities
+        self.running: set[str] = set()  # machines with an open goal
+        self._publishers = [self._machine(name, site.border(name)) for name in names()]
+        self._button = self.ros.publisher(Bool, "/emergency_signal")
+        self.ros.every(NEWS, self._news)
+
+    def _machine(self, name: str, border: Any) -> tuple[Any, Any]:
+        ros = self.ros
+        ros.serve(FollowJointTrajectory, f"/{name}/{border.trajectory}", lambda goal: self._run(name, goal))
+        ros.subscribe(Twist, f"/{name}/{border.cmd_vel}", lambda _zero, info: self._zero(name, info), depth=10)
+        joints = ros.publisher(JointState, f"/{name}/{border.joint_states}")
+        return joints, ros.publisher(Odometry, f"/{name}/{border.odom}")
+
+    def _news(self) -> None:
+        zeros = array("d", [0.0] * len(self._model.joints))
+        at = motion(self._model).trajectory.points[0].positions
+        for joints, odometry in self._publishers:
+            joints.publish(JointState(name=list(self._model.joints), position=at, velocity=zeros))
+            odometry.publish(Odometry())
+
+    def _run(self, name: str, goal: Goal) -> Ended:
+        self._note(lambda: self.running.add(name))
+        goal.cancelled.wait(LIMIT)
+        self._note(lambda: self.running.discard(name))
+        return Outcome.CANCELED, FollowJointTrajectory.Result()
+
+    def _zero(self, name: str, info: Any) -> None:
+        self._note(lambda: self.zeros.setdefault(name, int(info["source_timestamp"])))
+
+    def _note(self, step: Any) -> None:
+        with self._changed:
+            step()
+            self._changed.notify_all()
+
+    def wait(self, holds: Any, what: str) -> None:
+        with self._changed:
+            assert self._changed.wait_for(holds, LIMIT), f"not within {LIMIT:.0f} s: {what}"
+
+    def arm(self) -> None:
+        """Every machine armed, nothing moves."""
+        self._button.publish(Bool(data=False))
+        deadline = time.monotonic() + LIMIT
+        for name in names():
+            while (code := self._arm(name)) not in ("", "NOT_STOPPED"):
+                assert time.monotonic() < deadline, f"{name} cannot be armed: {code}"
+                time.sleep(0.05)
+
+    def _arm(self, name: str) -> str:
+        first = self.ros.call(Rearm, f"/{name}/rearm", Rearm.Request(), LIMIT)
+        if first.error_code:
+            return str(first.error_code)
+        return str(self.ros.call(Rearm, f"/{name}/rearm", Rearm.Request(token=first.token), LIMIT).error_code)
+
+    def move(self) -> None:
+        """One goal a machine, of a foreign client, and all of them run."""
+        deadline = time.monotonic() + LIMIT
+        calls = {name: self._goal(name) for name in names()}
+        while len(self.running) < COUNT and time.monotonic() < deadline:
+            for name, call in calls.items():
+                if call.outcome is not None:  # refused: not everybody has found everybody yet
+                    calls[name] = self._goal(name)
+            time.sleep(0.05)
+        self.wait_moving()
+
+    def _goal(self, name: str) -> Call:
+        peer = self.ros.peer(FollowJointTrajectory, f"/{name}/rc/follow_joint_trajectory")
+        peer.wait_ready(LIMIT)
+        return peer.send(motion(self._model))
+
+    def wait_moving(self) -> None:
+        self.wait(lambda: len(self.running) == COUNT, "all goals run")
+        with self._changed:
+            self.zeros.clear()
+
+    def press(self) -> list[float]:
+        """The software stop; ms from the press to each gateway's zero velocities."""
+        begun = time.time_ns()
+        self._button.publish(Bool(data=True))
+        return self.stopped_since(begun)
+
+    def stopped_since(self, begun: int) -> list[float]:
+        """ms from `begun` (ns since 1970) to each gateway's zero velocities."""
+        self.wait(lambda: len(self.zeros) == COUNT, "every gateway has sent zero velocities")
+        return [(at - begun) / 1e6 for at in self.zeros.values()]

@@ -1,0 +1,80 @@
+"""A real headless Chromium in front of the console of the session's mesh; screenshots are kept as artefacts."""
+
+import json
+import re
+import shutil
+import urllib.error
+import urllib.request
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser, Page, expect, sync_playwright
+
+from conftest import PROJECT, Mesh, wait_until
+
+LIMIT = 60.0  # s for whatever must happen at all
+SHOTS = PROJECT / ".state" / "screenshots"
+FLAGS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking"]
+
+
+@pytest.fixture(scope="module")
+def chromium() -> Iterator[Browser]:
+    program = shutil.which("chromium") or shutil.which("chromium-browser")
+    assert program, "chromium is not there: `sh deploy/system-packages.sh chromium` installs it"
+    expect.set_options(timeout=LIMIT * 1000)
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=program, args=FLAGS)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="module")
+def address(first_port: int) -> str:
+    return f"http://127.0.0.1:{first_port + 90}"
+
+
+@pytest.fixture
+def page(chromium: Browser, request: pytest.FixtureRequest) -> Iterator[Page]:
+    """An empty page of a tablet in English; what it looks like at the end is kept, and no script may have failed."""
+    context = chromium.new_context(viewport={"width": 1280, "height": 800}, locale="en-GB")
+    context.set_default_timeout(LIMIT * 1000)
+    page = context.new_page()
+    problems: list[str] = []
+    page.on("pageerror", lambda error: problems.append(str(error)))
+    yield page
+    SHOTS.mkdir(parents=True, exist_ok=True)
+    page.screenshot(path=str(SHOTS / f"{re.sub(r'[^0-9A-Za-z_]+', '_', request.node.name)}.png"))
+    context.close()
+    assert problems == []
+
+
+@pytest.fixture
+def idle(mesh: Mesh, address: str) -> Iterator[Mesh]:
+    """The mesh, in which nothing runs before and after the test, and whose machine is armed."""
+    _tidy(address)
+    yield mesh
+    _tidy(address)
+
+
+def _tidy(address: str) -> None:
+    for run in ask(address, "/api/state")["runs"]:
+        ask(address, f"/api/runs/{run['run_id']}/cancel", {})
+    wait_until(lambda: not ask(address, "/api/state")["runs"], LIMIT, "no run is active")
+    if ask(address, "/api/state")["machines"][0]["latch"]:
+        first = ask(address, "/api/machines/zx200/rearm", {})
+        ask(address, "/api/machines/zx200/rearm", {"token": first["token"]})
+
+
+def ask(address: str, path: str, body: Any = None) -> Any:
+    """An answer of the API; an error of a run that has just ended is none."""
+    data = None if body is None else json.dumps(body).encode()
+    request = urllib.request.Request(address + path, data, {"Content-Type": "application/json"})
+    try:
+        with urllib.request.urlopen(request, timeout=LIMIT) as answer:
+            return json.load(answer)
+    except urllib.error.HTTPError as error:
+        with error:
+            found = json.load(error)
+        assert found["code"] == "NO_RUN", found
+        return None

@@ -1,0 +1,298 @@
+"""What an operator does with the console, in a real browser against a running mesh."""
+
+import json
+import re
+import urllib.request
+from pathlib import Path
+
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from playwright.sync_api import Browser, Page, expect
+
+from conftest import Mesh
+
+pytestmark = [pytest.mark.system, pytest.mark.browser]
+PAGES = ("run", "tree", "site", "history", "data", "system", "tasks")
+SWINGS = 3  # number of the task of long swings to and fro
+FIRST_PAGE = 300_000  # bytes
+TARGET = 44  # px
+BROKEN = """<root main_tree_to_execute="MainTree">
+  <BehaviorTree ID="MainTree">
+    <Sequence>
+      <LeafNodeZx200 model_name="zx200" subtask_name="subtask_zx200_release_simple" record_name="release_angle"/>
+      <DigDeeper/>
+    </Sequence>
+  </BehaviorTree>
+</root>
+"""
+ASKING = """<root main_tree_to_execute="MainTree"><BehaviorTree ID="MainTree">
+  <Timeout msec="600000"><WaitForClick window_title="Safety" button_info="Is the yard clear?"/></Timeout>
+</BehaviorTree></root>
+"""
+
+
+def open_page(page: Page, address: str, name: str) -> None:
+    page.goto(f"{address}/#{name}")
+    expect(page.locator("#page")).to_have_attribute("data-page", name)
+    expect(page.locator("#connecting")).to_be_hidden()
+
+
+def start(page: Page, task: int) -> None:
+    page.get_by_role("button", name=f"Run task {task}", exact=True).click()
+
+
+def stop(page: Page) -> None:
+    page.get_by_role("button", name="Software stop", exact=True).click()
+    expect(page.locator("#stop_report")).to_contain_text("seen to stand after")
+
+
+def rearm(page: Page) -> None:
+    page.get_by_role("button", name="Re-arm zx200").click()
+    expect(page.locator("#dialog_text")).to_contain_text("zx200 was stopped: software stop by local")
+    page.locator("#dialog_yes").click()
+    expect(page.locator("#message")).to_have_text("zx200 is armed.")
+
+
+def upload(page: Page, text: str) -> None:
+    page.locator("#file").set_input_files({"name": "task.xml", "mimeType": "text/xml", "buffer": text.encode()})
+
+
+def store(page: Page) -> int:
+    page.locator("#store").click()
+    message = page.locator("#message")
+    expect(message).to_have_text(re.compile(r"task \d+"))
+    found = re.search(r"task (\d+)", message.inner_text())
+    assert found
+    return int(found[1])
+
+
+def test_upload_fix_run_watch_stop_rearm_and_run_again(page: Page, address: str, idle: Mesh) -> None:
+    """From the console alone, as somebody does who has never seen it."""
+    open_page(page, address, "tasks")
+    upload(page, BROKEN)
+    expect(page.locator("#findings li")).to_contain_text(["DigDeeper"])
+    expect(page.locator("#source li.errors")).to_contain_text("<DigDeeper/>")  # the line itself is marked
+    fixed = BROKEN.replace("<DigDeeper/>", "<AlwaysSuccess/>")
+    upload(page, fixed)
+    expect(page.locator("#findings")).to_contain_text("nothing to complain of")
+    page.locator("#compare").select_option("1")
+    expect(page.locator("#difference .added").nth(1)).to_be_visible()
+    task = store(page)
+
+    open_page(page, address, "run")
+    start(page, task)
+    expect(page.locator("#message")).to_contain_text("has begun")
+    expect(page.locator("#list_active li")).to_have_count(0)
+
+    start(page, SWINGS)
+    page.locator("#list_active a", has_text="Tree").click()
+    running = page.locator("#tree_box [data-state=running]")
+    expect(running.first).to_be_visible()
+    expect(page.locator("#tree_box .current")).to_have_count(1)
+    states = "() => [...document.querySelectorAll('#tree_box [data-path]')].map(n => n.dataset.state).join()"
+    before = page.evaluate(states)
+    page.wait_for_function(f"before => ({states})() !== before", arg=before)  # nodes change their colour
+    expect(page.locator("#tree_why")).to_contain_text("Why is it not moving?")
+    stop(page)
+    assert re.search(r"after \d+(\.\d+)? s", page.locator("#stop_report").inner_text())
+
+    open_page(page, address, "run")
+    expect(page.locator("[data-machine=zx200]")).to_contain_text("Stopped because: software stop by local")
+    expect(page.locator("#list_active li")).to_have_count(0)
+    start(page, 1)
+    expect(page.locator("#message")).to_contain_text("re-arm it")  # refused while it is stopped
+    rearm(page)
+    start(page, SWINGS)
+    expect(page.locator("#list_active li")).to_have_count(1)
+    page.get_by_role("button", name="Cancel run").click()
+    expect(page.locator("#list_active li")).to_have_count(0)
+
+
+def test_history_replays_a_stopped_run(page: Page, address: str, idle: Mesh) -> None:
+    idle.tms("run", str(SWINGS))
+    idle.tms("stop")
+    open_page(page, address, "history")
+    page.get_by_role("button", name="Show run").first.click()
+    expect(page.locator("#receipts li").first).to_contain_text("zx200")
+    nodes = page.locator("#past [data-path]")
+    expect(nodes.first).to_be_visible()
+    page.locator("#slider").fill("0")
+    assert {node.get_attribute("data-state") for node in nodes.all()} == {"idle"}
+    last = int(page.locator("#slider").get_attribute("max") or 0)
+    seen = set()
+    for moment in range(last + 1):
+        page.locator("#slider").fill(str(moment))
+        seen |= {node.get_attribute("data-state") for node in nodes.all()}
+        if "running" in seen:
+            break
+    assert "running" in seen
+    for form in ("json", "csv", "mcap"):
+        link = page.locator("#exports a", has_text=form.upper()).get_attribute("href")
+        with urllib.request.urlopen(address + str(link), timeout=30) as answer:
+            assert len(answer.read()) > 200, form
+
+
+def test_a_question_is_answered(page: Page, address: str, idle: Mesh, tmp_path: Path) -> None:
+    file = tmp_path / "asking.xml"
+    file.write_text(ASKING)
+    task = json.loads(idle.tms("task", "add", str(file), "--json").stdout)["task_id"]
+    open_page(page, address, "run")
+    start(page, task)
+    question = page.locator("#questions .question")
+    expect(question).to_contain_text("Is the yard clear?")
+    expect(question).to_contain_text("s left")
+    expect(page.locator("#list_active")).to_contain_text("waits for an operator")
+    assert json.loads(idle.tms("answer", "--json").stdout)[0]["text"] == "Is the yard clear?"
+    question.get_by_role("button", name="Yes").click()
+    expect(question).to_have_count(0)
+    events = json.loads(idle.tms("events", "last", "--json").stdout)
+    rows = events["events"] if isinstance(events, dict) else events
+    answers = [row["text"] for row in rows if row["kind"] == "answer"]
+    assert answers == ["yes, by local at 127.0.0.1"]
+
+    idle.tms("run", str(task))  # and now from the command line
+    expect(question).to_contain_text("Is the yard clear?")
+    assert "answered no" in idle.tms("answer", "no").stdout
+    expect(question).to_have_count(0)
+
+
+def test_two_consoles_agree_and_one_run_starts(page: Page, chromium: Browser, address: str, idle: Mesh) -> None:
+    other = chromium.new_page(locale="en-GB")
+    try:
+        open_page(page, address, "run")
+        open_page(other, address, "run")
+        page.get_by_role("button", name=f"Run task {SWINGS}", exact=True).dblclick()
+        expect(page.locator("#list_active li")).to_have_count(1)
+        expect(other.locator("#list_active li")).to_have_count(1)
+        expect(page.locator("#message")).to_contain_text("has begun")
+        start(other, 1)
+        expect(other.locator("#message")).to_contain_text("zx200 is in run")
+        for each in (page, other):  # the refused one is shown for a moment
+            expect(each.locator("#list_active li")).to_have_count(1)
+        assert page.locator("#list_active strong").inner_text() == other.locator("#list_active strong").inner_text()
+    finally:
+        other.close()
+
+
+def test_the_panel_starts_and_stops(page: Page, address: str, idle: Mesh) -> None:
+    page.goto(idle.tms("panel", "--task", str(SWINGS), "--url").stdout.strip())
+    expect(page.locator("#state")).to_have_text("Ready to start.")
+    page.locator("#start").click()
+    expect(page.locator("#state")).to_contain_text("Running")
+    expect(page.locator("#start")).to_be_disabled()
+    page.locator("#stop").click()
+    expect(page.locator("#stop_report")).to_contain_text("zx200: seen to stand")
+    expect(page.locator("#machines")).to_contain_text("Stopped because")
+    for name in ("start", "stop"):
+        box = page.locator(f"#{name}").bounding_box()
+        assert box is not None
+        assert box["height"] >= 150, f"{name} is small for a glove"
+
+
+def test_a_lost_server_is_shown_and_heals(page: Page, address: str, mesh: Mesh) -> None:
+    open_page(page, address, "run")
+    lost = page.locator("#lost")
+    expect(lost).to_be_hidden()
+    mesh.tms("stop-process", "tms:ur")
+    expect(lost).to_be_visible()
+    mesh.tms("start", "tms:ur")
+    expect(lost).to_be_hidden()
+    expect(page.locator("#list_tasks tr").first).to_be_visible()
+
+
+def test_both_languages_and_the_choice_is_remembered(page: Page, address: str, mesh: Mesh) -> None:
+    open_page(page, address, "run")
+    for name in PAGES:
+        open_page(page, address, name)
+        page.locator("#language").click()
+        assert page.evaluate("document.documentElement.lang") == "ja"
+        empty = "() => [...document.querySelectorAll('[data-t]')].filter(e => !e.textContent).map(e => e.dataset.t)"
+        assert page.evaluate(empty) == []
+        left = page.evaluate("() => [...document.querySelectorAll('button,h2,th')].map(e => e.textContent.trim())")
+        words = [text for text in left if re.fullmatch(r"[A-Za-z ]{4,}", text) and text not in ("English", "JSON")]
+        assert words == [], f"{name}: not translated"
+        page.locator("#language").click()
+    page.locator("#language").click()
+    page.reload()
+    expect(page.locator("#stop")).to_have_text("ソフト停止")
+
+
+@pytest.mark.parametrize("name", [*PAGES, "panel"])
+def test_accessible_and_large_enough_for_fingers(page: Page, address: str, mesh: Mesh, name: str) -> None:
+    if name == "panel":
+        page.goto(f"{address}/panel.html?task=1")
+        expect(page.locator("#state")).not_to_be_empty()
+    else:
+        open_page(page, address, name)
+        expect(page.locator("#page h2").first).to_be_visible()
+    found = Axe().run(page)
+    assert found.violations_count == 0, found.generate_report()
+    small = page.evaluate(
+        """least => [...document.querySelectorAll("button, a, input, select")].filter(e => e.checkVisibility()
+            && !e.classList.contains("skip")).filter(e => { const r = e.getBoundingClientRect();
+            return r.height < least || r.width < least; }).map(e => e.outerHTML.slice(0, 90))""",
+        TARGET,
+    )
+    assert small == []
+
+
+def test_keyboard_alone(page: Page, address: str, mesh: Mesh) -> None:
+    open_page(page, address, "run")
+    expect(page.locator("#list_tasks tr").first).to_be_visible()
+    reached = set()
+    for _ in range(40):
+        page.keyboard.press("Tab")
+        reached.add(page.evaluate("document.activeElement.id || document.activeElement.ariaLabel || ''"))
+    assert {"skip", "language", "stop", "Run task 1", "Software stop of zx200"} <= reached
+    page.locator("#pages a[href='#data']").focus()
+    page.keyboard.press("Enter")
+    expect(page.locator("#page")).to_have_attribute("data-page", "data")
+
+
+def test_a_record_is_edited_with_its_type(page: Page, address: str, mesh: Mesh) -> None:
+    open_page(page, address, "data")
+    before = json.loads(mesh.tms("param", "get", "zx200/release_angle", "--json").stdout)
+    page.get_by_role("button", name="Edit zx200/release_angle").click()
+    field = page.locator("#editor input").first
+    old = field.input_value()
+    field.fill("-1.0")
+    page.get_by_role("button", name="Save").click()
+    expect(page.locator("#message")).to_contain_text("was saved")
+    expect(page.locator("#list_changes")).to_contain_text("zx200/release_angle")
+    assert "-1.0" in mesh.tms("param", "get", "zx200/release_angle").stdout
+    page.get_by_role("button", name="Edit zx200/release_angle").click()
+    page.locator("#editor input").first.fill("far")
+    page.get_by_role("button", name="Save").click()
+    expect(page.locator("#message")).to_have_class("bad")
+    page.locator("#editor input").first.fill(old)
+    page.get_by_role("button", name="Save").click()
+    expect(page.locator("#editor")).to_be_hidden()
+    after = json.loads(mesh.tms("param", "get", "zx200/release_angle", "--json").stdout)
+    assert after["values"] == before["values"] if "values" in before else True
+
+
+def test_processes_logs_and_restart(page: Page, address: str, mesh: Mesh) -> None:
+    open_page(page, address, "system")
+    page.get_by_role("button", name="Log of tms:db", exact=True).click()
+    expect(page.locator("#log_text")).to_contain_text("process=tms:db")
+    page.get_by_role("button", name="Restart zx200:rp", exact=True).click()
+    page.locator("#dialog_yes").click()
+    expect(page.locator("#message")).to_have_text("zx200:rp was restarted.")
+    expect(page.locator("#list_processes tr", has_text="zx200:rp")).to_contain_text("Running")
+
+
+def test_the_site_shows_place_and_arm(page: Page, address: str, mesh: Mesh) -> None:
+    open_page(page, address, "site")
+    expect(page.locator("#map [data-machine=zx200]")).to_have_count(1)
+    expect(page.locator("#arms svg")).to_have_count(1)
+    points = page.locator("#arms .arm").get_attribute("points")
+    assert points
+    assert len(points.split()) == 4
+
+
+def test_the_first_page_is_small(page: Page, address: str, mesh: Mesh) -> None:
+    sizes: list[int] = []
+    page.on("response", lambda answer: sizes.append(int(answer.headers.get("content-length", 0))))
+    open_page(page, address, "run")
+    expect(page.locator("#list_tasks tr").first).to_be_visible()
+    assert 0 < sum(sizes) <= FIRST_PAGE

@@ -1,0 +1,106 @@
+"""A console with users, over TLS: login, roles, and the brake on guessing."""
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import yaml
+from playwright.sync_api import Browser, Page, expect
+
+from conftest import ports_of, site_data, wait_until
+from tms_core import environment
+from tms_core.config import load_site
+from tms_ur.access import hashed
+
+pytestmark = [pytest.mark.ros, pytest.mark.browser]
+LIMIT = 60.0  # s for whatever must happen at all
+PASSWORD = "open-sesame"
+
+
+@pytest.fixture
+def console(own_domain: int, tmp_path: Path) -> Iterator[str]:
+    """Address of a `tms:ur` of its own; nothing else of its site runs."""
+    port = ports_of(own_domain)
+    openssl = shutil.which("openssl")
+    assert openssl, "openssl makes the certificate of this test"
+    key, certificate = tmp_path / "key.pem", tmp_path / "certificate.pem"
+    subprocess.run(
+        [openssl, "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2", "-subj", "/CN=localhost",
+         "-keyout", str(key), "-out", str(certificate)], check=True, capture_output=True,
+    )  # fmt: skip
+    users = tmp_path / "users.yaml"
+    people = {name: {"role": name, "password": hashed(PASSWORD)} for name in ("viewer", "operator")}
+    users.write_text(yaml.safe_dump({"users": people}))
+    users.chmod(0o600)
+    file = tmp_path / "site.yaml"
+    tls = {"certificate": str(certificate), "key": str(key)}
+    file.write_text(yaml.safe_dump(site_data(own_domain, port, console={"users": "users.yaml", "tls": tls})))
+    log = tmp_path / "log.txt"
+    hidden = ("ROS_DOMAIN_ID", "TMS_SITE", "TMS_STATE", "TMS_MONGODB_URI")
+    clean = {name: value for name, value in os.environ.items() if name not in hidden}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("TMS_STATE", str(tmp_path / "state"))
+        patch.delenv("ROS_DOMAIN_ID", raising=False)
+        env = {**clean, **environment.environment(load_site(str(file)))}
+    (tmp_path / "state" / "ros").mkdir(parents=True)
+    with log.open("wb") as out:
+        process = subprocess.Popen([sys.executable, "-m", "tms_core.run", "tms:ur"], env=env, stdout=out, stderr=out)
+    try:
+        wait_until(lambda: process.poll() is not None or "event=started" in log.read_text(), LIMIT, "tms:ur is up")
+        assert process.poll() is None, log.read_text()
+        assert "users of console.users" in log.read_text()
+        yield f"https://localhost:{port + 90}"
+    finally:
+        process.kill()
+        process.wait(10)
+
+
+@pytest.fixture
+def secure_page(chromium: Browser) -> Iterator[Page]:
+    context = chromium.new_context(locale="en-GB", ignore_https_errors=True)
+    yield context.new_page()
+    context.close()
+
+
+def login(page: Page, name: str, password: str) -> None:
+    page.locator("#login_name").fill(name)
+    page.locator("#login_password").fill(password)
+    page.locator("#login button").click()
+
+
+def test_login_roles_and_throttling(secure_page: Page, console: str) -> None:
+    page = secure_page
+    page.goto(console)
+    expect(page.locator("#login")).to_be_visible()
+    expect(page.locator("#stop")).to_be_hidden()
+    login(page, "operator", PASSWORD)
+    expect(page.locator("#who")).to_have_text("operator (operator)")
+    expect(page.locator("#stop")).to_be_visible()
+    cookies = page.context.cookies()
+    assert [(one["httpOnly"], one["secure"], one["sameSite"]) for one in cookies] == [(True, True, "Strict")]
+
+    page.reload()  # the session goes on
+    expect(page.locator("#who")).to_have_text("operator (operator)")
+    page.locator("#logout").click()
+    expect(page.locator("#login")).to_be_visible()
+
+    login(page, "viewer", PASSWORD)
+    expect(page.locator("#who")).to_have_text("viewer (viewer)")
+    refused = page.evaluate(
+        "fetch('/api/runs', {method: 'POST', headers: {'Content-Type': 'application/json'}, "
+        "body: JSON.stringify({task_id: 1})}).then(answer => answer.json())"
+    )
+    assert refused["code"] == "ROLE"
+    page.locator("#logout").click()
+
+    expect(page.locator("#login")).to_be_visible()
+    for _ in range(4):
+        login(page, "operator", "guess")
+        expect(page.locator("#message")).to_have_text("the name or the password is wrong")
+        page.locator("#message").evaluate("element => element.textContent = ''")
+    login(page, "operator", "guess")
+    expect(page.locator("#message")).to_contain_text("too many wrong passwords: try again in")

@@ -1,0 +1,174 @@
+"""What tests that start processes share: a ROS domain and ports of their own, a site file, a mesh."""
+
+import fcntl
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Generator, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+import yaml
+
+if TYPE_CHECKING:
+    from tms_core.ros import Ros
+
+PROJECT = Path(__file__).resolve().parents[1]
+SPOILED = pytest.StashKey[bool]()
+DOMAINS = range(43, 101)  # 42 is the demo's
+
+
+@contextmanager
+def claimed_domain() -> Iterator[int]:
+    """A ROS_DOMAIN_ID that no other test on this PC uses meanwhile."""
+    for number in DOMAINS:
+        with (Path(tempfile.gettempdir()) / f"tms-test-domain-{number}.lock").open("w") as file:
+            try:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                continue
+            yield number
+            return
+    pytest.fail("no free ROS domain: other test runs hold all of them")
+
+
+@pytest.fixture(scope="session")
+def domain() -> Iterator[int]:
+    """The ROS domain of this test run."""
+    with claimed_domain() as number:
+        yield number
+
+
+@pytest.fixture
+def own_domain() -> Iterator[int]:
+    """A further ROS domain for one test, where nothing of this test run is up."""
+    with claimed_domain() as number:
+        yield number
+
+
+def ports_of(domain: int) -> int:
+    """First of 100 ports that belong to a domain: below those that the system gives to outgoing connections."""
+    return 20000 + domain * 100
+
+
+@pytest.fixture(scope="session")
+def first_port(domain: int) -> int:
+    """First of the ports of the test run's domain."""
+    return ports_of(domain)
+
+
+def site_data(domain: int, port: int, /, **changes: object) -> dict[str, object]:
+    """A site like the demo's on other ports, five times as fast."""
+    data: dict[str, object] = {
+        "name": "test",
+        "domain": domain,
+        "ports": {"metrics": port, "console": port + 90, "store": port + 91, "groot": port + 60},
+        "sim": {"speed": 5.0},
+        "services": {"db": {}, "ts": {}, "ur": {}, "sp": {}, "host": {}},
+        "machines": {"zx200": {"model": "zx200"}},
+    }
+    return {**data, **changes}
+
+
+@dataclass
+class Mesh:
+    """A mesh under supervisord and its command line."""
+
+    site: Path
+    state: Path
+
+    @property
+    def env(self) -> dict[str, str]:
+        """Environment of a user of this mesh."""
+        hidden = ("ROS_DOMAIN_ID", "TMS_MONGODB_URI", "PYTHONPATH")
+        clean = {key: value for key, value in os.environ.items() if key not in hidden}
+        return {**clean, "TMS_SITE": str(self.site), "TMS_STATE": str(self.state), "COLUMNS": "200"}
+
+    def tms(self, *words: str, expect: int | None = 0, limit: float = 90) -> subprocess.CompletedProcess[str]:
+        """Run the command line; the exit code must be `expect`."""
+        command = [sys.executable, "-m", "tms_cli.main", *words]
+        done = subprocess.run(
+            command, env=self.env, capture_output=True, text=True, timeout=limit, check=False, cwd=PROJECT
+        )
+        if expect is not None:
+            assert done.returncode == expect, f"tms {' '.join(words)}: {done.returncode}\n{done.stdout}\n{done.stderr}"
+        return done
+
+
+@contextmanager
+def running(mesh: Mesh) -> Iterator[Mesh]:
+    """The mesh, up; nothing of it is left afterwards, also when it did not get ready."""
+    try:
+        mesh.tms("up")
+        yield mesh
+    finally:
+        mesh.tms("down")
+
+
+@pytest.fixture(scope="session")
+def mesh(domain: int, first_port: int, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Mesh]:
+    """A running mesh with a simulated zx200, its records and three tasks; one for the whole test run.
+
+    Tasks: 1 one loading cycle, 2 four of them, 3 long swings to and fro.
+    """
+    folder = tmp_path_factory.mktemp("mesh")
+    site = folder / "site.yaml"
+    site.write_text(yaml.safe_dump(site_data(domain, first_port)))
+    with running(Mesh(site, folder / "state")) as made:
+        made.tms("param", "load", "configs/parameters/zx200.yaml")
+        made.tms("task", "add", "configs/tasks/one_loading_cycle.xml")
+        made.tms("task", "add", "configs/tasks/four_loading_cycles.xml")
+        made.tms("param", "load", str(PROJECT / "tests" / "data" / "swings.yaml"))
+        made.tms("task", "add", str(PROJECT / "tests" / "data" / "swings.xml"))
+        yield made
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """Remember that the mesh of the test run may be in disorder."""
+    report = yield
+    if report.failed and "mesh" in getattr(item, "fixturenames", ()):
+        item.session.stash[SPOILED] = True
+    return report
+
+
+@pytest.fixture(autouse=True)
+def order(request: pytest.FixtureRequest) -> None:
+    """After a failed test: a machine that it left latched, or a run, must not fail the others, too."""
+    if "mesh" in request.fixturenames and request.session.stash.get(SPOILED, False):
+        request.session.stash[SPOILED] = False
+        mesh: Mesh = request.getfixturevalue("mesh")
+        mesh.tms("cancel", "last", expect=None)
+        mesh.tms("rearm", "zx200", "--yes", expect=None)
+
+
+@pytest.fixture(scope="session")
+def node(mesh: Mesh) -> Iterator["Ros"]:
+    """A ROS node of the test run in the domain of the mesh."""
+    from tms_core import environment
+    from tms_core.config import load_site
+    from tms_core.ros import Ros
+
+    old = dict(os.environ)
+    os.environ.update(mesh.env)
+    try:
+        environment.enter(load_site())
+        inside = Ros("tms_tests")
+    finally:
+        os.environ.clear()
+        os.environ.update(old)
+    yield inside
+    inside.close()
+
+
+def wait_until(holds: Callable[[], bool], seconds: float, what: str) -> None:
+    """Poll until something holds; fails the test with `what` when it does not."""
+    deadline = time.monotonic() + seconds
+    while not holds():
+        assert time.monotonic() < deadline, f"not within {seconds} s: {what}"
+        time.sleep(0.02)

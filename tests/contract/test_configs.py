@@ -1,0 +1,93 @@
+"""Loops over everything that configs/ declares: models, subtasks, processes."""
+
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from conftest import PROJECT
+from tms_core.config import CONFIGS, MachineModel, load_site, parse, read_yaml
+from tms_core.models import TURNED
+from tms_core.processes import table
+from tms_core.subtask_server import load
+from tms_host.supervisor import render
+
+MODELS = sorted((CONFIGS / "machines").glob("*.yaml"))
+SITES = [CONFIGS / "site.yaml", *sorted((CONFIGS / "sites").glob("*.yaml"))]
+SUBTASKS = sorted(path.stem for path in (PROJECT / "services" / "tms_subtasks").glob("*.py") if path.stem != "__init__")
+
+
+@pytest.mark.parametrize("path", MODELS, ids=lambda path: path.stem)
+def test_model_is_consistent(path: Path) -> None:
+    model = parse(path, MachineModel)
+    assert set(model.initial) <= set(model.joints)
+    for name, angle in model.initial.items():
+        assert model.joints[name].violation(angle) is None, f"{name} starts outside its limits"
+    assert {model.subtask(action).run for action in model.subtasks} <= set(SUBTASKS)
+    for border in model.borders.values():
+        for action in TURNED:
+            assert not getattr(border, action) or model.turned(action), f"no joint for {action}"
+
+
+USES = [
+    pytest.param(path, action, id=action)
+    for path in MODELS
+    for action in parse(path, MachineModel).subtasks
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("path", "action"), USES)
+def test_every_subtask_has_a_record_that_fits(path: Path, action: str) -> None:
+    use = parse(path, MachineModel).subtask(action)
+    records = {record["record_name"]: record for record in read_yaml(CONFIGS / "parameters" / path.name)}
+    assert use.example in records, f"{path.name}: subtasks.{action}.example is no record of parameters/{path.name}"
+    params = load(use.run).params
+    if params is not None:
+        params.model_validate({**records[use.example], **use.inputs})
+        assert set(use.inputs) <= set(params.model_fields), "an input that the subtask does not know"
+
+
+@pytest.mark.parametrize("path", MODELS, ids=lambda path: path.stem)
+def test_a_model_can_do_the_same_behind_every_border(path: Path) -> None:
+    borders = parse(path, MachineModel).borders
+    actions = ("trajectory", "navigate_to_pose", "navigate_through_poses", "follow_waypoints", "set_dump_angle",
+               "set_swing_angle", "joint_states", "odom", "cmd_vel")  # fmt: skip
+    have = [{key for key in actions if getattr(border, key)} for border in borders.values()]
+    assert all(one == have[0] for one in have)
+
+
+@pytest.mark.parametrize("name", SUBTASKS)
+def test_subtask_file_holds_one_subtask(name: str) -> None:
+    subtask = load(name)
+    assert subtask.timeout > 0
+    text = (PROJECT / "services" / "tms_subtasks" / f"{name}.py").read_text()
+    assert all(word not in text for word in ("rclpy", "pymongo", "prometheus_client", "zx200"))
+
+
+@pytest.mark.parametrize("path", SITES, ids=lambda path: path.stem)
+def test_process_table(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TMS_STATE", str(tmp_path))
+    site = load_site(str(path))
+    site = replace(site, pc=next(iter(site.file.pcs), None))
+    rows = table(site)
+    assert len({row.full for row in rows}) == len({row.port for row in rows}) == len(rows)
+    text = render(site, rows)
+    assert all(f"-m tms_core.run {row.full}\n" in text for row in rows)
+    assert "chmod=0600" in text and "inet_http_server" not in text
+
+
+def test_imports_have_no_effects() -> None:
+    """Importing a service must not start threads, read configuration or open anything."""
+    code = (
+        "import threading, importlib, pkgutil, sys\n"
+        "for name in ('tms_core', 'tms_db', 'tms_ts', 'tms_rp', 'tms_rc', 'tms_sim', 'tms_host', 'tms_cli'):\n"
+        "    package = importlib.import_module(name)\n"
+        "    for found in pkgutil.walk_packages(package.__path__, name + '.'):\n"
+        "        importlib.import_module(found.name)\n"
+        "print([t.name for t in threading.enumerate()])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True,
+                          env={"HOME": "/nonexistent", "PATH": "", "TMS_SITE": "/nonexistent/site.yaml"})  # fmt: skip
+    assert done.stdout.strip() == "['MainThread']"

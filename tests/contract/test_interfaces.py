@@ -1,0 +1,57 @@
+"""The wire: type hashes of what other people's nodes exchange, and packages that hold all their files."""
+
+import importlib
+import json
+import re
+import sys
+from pathlib import Path
+
+import pytest
+
+from conftest import PROJECT
+
+INTERFACES = PROJECT / "services" / "interfaces"
+PACKAGES = sorted(path.parent for path in INTERFACES.glob("*/package.xml"))
+
+# Hashes of the definitions as published; a peer with other hashes would misread our data.
+KNOWN = {
+    "std_msgs/msg/String": "df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18",
+    "geometry_msgs/msg/Twist": "9c45bf16fe0983d80e3cfe750d6835843d265a9a6c46bd2e609fcddde6fb8d2a",
+    "sensor_msgs/msg/JointState": "a13ee3a330e346c9d87b5aa18d24e11690752bd33a0350f11c5882bc9179260e",
+    "trajectory_msgs/msg/JointTrajectory": "179b33eba59d676f6d967ac71fe35e7ca2f64b2f3928f4a018cec115e213796e",
+    "tms_msg_ts/action/LeafNodeBase": "18ac53b3e0981c3b5ef466999808635439680dfa9cbd70fa70e85f173bd51777",
+    "tms_msg_db/srv/TmsdbGetData": "a64685a4405bfdd123c5237a516189015bba728e29bdd1fc6b07f61f7a65163a",
+    "tms_msg_rp/action/TmsRpZx200ChangePose": "29ea3b501a7ddd971d6d3dd4344be4650d89bbab6c10222bf50a6b1618b59a5c",
+    "com3_msgs/action/SetSwingAngle": "cc23502c721683d4350dfd34bf3aba11df061711c0e568adf7e818788356d430",
+    "nav2_msgs/action/NavigateToPose": "a56dba8a3234a1215e610180dc703ae25bbf406dded8b54887891c9732857eab",
+    "nav2_msgs/action/NavigateThroughPoses": "4e680a34fd27772095da6ffdb32ae348adbc3d948248d38cf8d5ca3fc7a3a6c4",
+    "nav2_msgs/action/FollowWaypoints": "09e36a19e0374ab692e78b877e3345daa223ca4186b8af90f77939b78c6e6d7b",
+    "control_msgs/action/FollowJointTrajectory": "738ebcb7a2d7cfa42f9f1001cc99ce3a4383d1cfe508015d9be8485e4b1c66f6",
+}
+
+
+def built_hash(name: str) -> str:
+    package, kind, _ = name.split("/")
+    file = Path(sys.prefix) / "share" / package / kind / f"{name.split('/')[2]}.json"
+    hashes = {row["type_name"]: row["hash_string"] for row in json.loads(file.read_text())["type_hashes"]}
+    return hashes[name].removeprefix("RIHS01_")
+
+
+@pytest.mark.parametrize("name", sorted(KNOWN))
+def test_type_hash(name: str) -> None:
+    assert built_hash(name) == KNOWN[name]
+
+
+@pytest.mark.parametrize("package", PACKAGES, ids=lambda path: path.name)
+def test_every_definition_is_built(package: Path) -> None:
+    listed = set(re.findall(r'"(?:\$\{CMAKE_CURRENT_SOURCE_DIR\}/(\w+):)?(\w+/\w+\.\w+)"',
+                            (package / "CMakeLists.txt").read_text()))  # fmt: skip
+    there = {path.relative_to(package) for kind in ("msg", "srv", "action") for path in package.rglob(f"*.{kind}")}
+    assert {f"{base}/{file}" if base else file for base, file in listed} == {str(path) for path in there}
+
+
+@pytest.mark.parametrize("package", PACKAGES, ids=lambda path: path.name)
+def test_every_generated_class_imports(package: Path) -> None:
+    for kind in ("msg", "srv", "action"):
+        for file in sorted((package / kind).glob(f"*.{kind}")):
+            assert hasattr(importlib.import_module(f"{package.name}.{kind}"), file.stem)

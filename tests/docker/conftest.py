@@ -1,0 +1,5 @@
+"""The fixtures of the container harness."""
+
+from docker_site import image, yard
+
+__all__ = ["image", "yard"]

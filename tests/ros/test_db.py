@@ -1,0 +1,191 @@
+"""The database process with a real store: typed values through ROS, and a store that goes away and comes back."""
+
+import json
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from builtin_interfaces.msg import Time
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from tms_msg_db.msg import Event, Run
+from tms_msg_db.srv import (
+    AddTask,
+    GetParameter,
+    GetTask,
+    ListEvents,
+    ListParameters,
+    ListRuns,
+    ListTasks,
+    RemoveParameter,
+    RemoveTask,
+    SetParameter,
+    TmsdbGetData,
+    TmsdbGetTask,
+    WriteJournal,
+)
+
+from few_processes import LIMIT, Mesh, bare
+from tms_core.config import CONFIGS
+
+pytestmark = [
+    pytest.mark.ros,
+    pytest.mark.filterwarnings("ignore:module 'sre_:DeprecationWarning"),  # a parser that the ROS wheels bring
+]
+
+
+@pytest.fixture
+def mesh(tmp_path: Path, own_domain: int) -> Iterator[Mesh]:
+    """A mesh with the store and the database process up."""
+    for mesh in bare(tmp_path, own_domain, Mesh):
+        mesh.start("tms:store")
+        mesh.start("tms:db")
+        mesh.wait_ready()
+        yield mesh
+
+
+@pytest.fixture
+def bare_mesh(tmp_path: Path, own_domain: int) -> Iterator[Mesh]:
+    """A mesh where nothing runs yet."""
+    yield from bare(tmp_path, own_domain, Mesh)
+
+
+TREE = '<root>\n  <BehaviorTree ID="A"><Action ID="X" model_name="zx200" say="a&#10;b"/></BehaviorTree>\n</root>'
+STORED = TREE.replace("\n", "").replace("  ", "")
+KINDS = {
+    "i": ParameterValue(type=ParameterType.PARAMETER_INTEGER, integer_value=-3),
+    "d": ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=3.0),
+    "b": ParameterValue(type=ParameterType.PARAMETER_BOOL, bool_value=True),
+    "s": ParameterValue(type=ParameterType.PARAMETER_STRING, string_value="4"),
+    "ii": ParameterValue(type=ParameterType.PARAMETER_INTEGER_ARRAY, integer_array_value=[1, 2]),
+    "dd": ParameterValue(type=ParameterType.PARAMETER_DOUBLE_ARRAY, double_array_value=[1.0, 2.5]),
+    "bb": ParameterValue(type=ParameterType.PARAMETER_BOOL_ARRAY, bool_array_value=[True, False]),
+    "ss": ParameterValue(type=ParameterType.PARAMETER_STRING_ARRAY, string_array_value=["a", "待機"]),
+}
+VALUES = [Parameter(name=name, value=value) for name, value in KINDS.items()]
+
+
+def test_tasks_records_and_history_through_ros(mesh: Mesh) -> None:
+    tasks(mesh)
+    records(mesh)
+    history(mesh)
+    cpp_names(mesh)
+    registration_node(mesh)
+
+
+def tasks(mesh: Mesh) -> None:
+    added = mesh.db(AddTask, "add_task", task_sequence=TREE)
+    assert (added.error_code, added.task_id, added.model_name) == ("", 1, "zx200")
+    again = mesh.db(AddTask, "add_task", task_sequence=STORED)
+    assert (again.task_id, again.already_stored) == (1, True)
+    assert mesh.db(GetTask, "get_task", task_id=1).task.task_sequence == TREE
+    (listed,) = mesh.db(ListTasks, "list_tasks").tasks
+    assert (listed.description, listed.task_sequence) == ("No Commented.", "")
+    for call, code in (
+        (mesh.db(AddTask, "add_task", task_sequence="<root>\n<a></root>"), "BAD_TASK"),
+        (mesh.db(GetTask, "get_task", task_id=9), "TASK_MISSING"),
+        (mesh.db(RemoveTask, "remove_task", task_id=9), "TASK_MISSING"),
+    ):
+        assert call.error_code == code
+        assert call.error_msg
+        assert "\n" not in call.error_msg
+    assert mesh.db(RemoveTask, "remove_task", task_id=1).error_code == ""
+
+
+def records(mesh: Mesh) -> None:
+    key = {"model_name": "zx200", "record_name": "p"}
+    assert mesh.db(SetParameter, "set_parameter", **key, values=VALUES).error_code == "RECORD_MISSING"
+    made = mesh.db(SetParameter, "set_parameter", **key, values=VALUES, type="static", source="test", create=True)
+    assert (made.error_code, made.created) == ("", True)
+    record = mesh.db(GetParameter, "get_parameter", **key).record
+    assert {p.name: p.value for p in record.values} == KINDS
+    assert (record.type, record.source) == ("static", "test")
+    assert record.updated_at.sec > 0
+    nan = Parameter(name="d", value=ParameterValue(type=3, double_value=float("nan")))
+    refused = mesh.db(SetParameter, "set_parameter", **key, values=[nan])
+    assert refused.error_code == "BAD_RECORD"
+    assert refused.error_msg.startswith("record zx200/p, field d: nan")
+    assert mesh.db(SetParameter, "set_parameter", **key, remove=["i"]).error_code == ""
+    (record,) = mesh.db(ListParameters, "list_parameters", model_name="zx200").records
+    assert "i" not in {p.name for p in record.values}
+    assert mesh.db(RemoveParameter, "remove_parameter", **key).error_code == ""
+    assert mesh.db(GetParameter, "get_parameter", **key).error_code == "RECORD_MISSING"
+
+
+def history(mesh: Mesh) -> None:
+    run = Run(
+        run_id="r1",
+        task_id=4,
+        state="RUNNING",
+        machines=["zx200"],
+        records=["zx200/*"],
+        started_at=Time(sec=5, nanosec=7_000_000),
+    )
+    events = [Event(run_id="r1", number=n, stamp=Time(sec=5 + n), kind="node", values=VALUES) for n in (1, 2, 3)]
+    for _ in range(2):
+        assert mesh.db(WriteJournal, "write_journal", runs=[run], events=events).error_code == ""
+    assert mesh.db(ListRuns, "list_runs").runs == [run]
+    assert mesh.db(ListEvents, "list_events", run_id="r1").events == events
+    assert mesh.db(ListEvents, "list_events", run_id="r1", after=2).events == events[2:]
+    assert mesh.db(ListEvents, "list_events", run_id="none").error_code == "RUN_MISSING"
+    static = {"model_name": "zx200", "record_name": "q"}
+    mesh.db(SetParameter, "set_parameter", **static, values=VALUES, type="static", create=True)
+    assert mesh.db(SetParameter, "set_parameter", **static, values=VALUES).error_code == "STATIC_RECORD"
+
+
+def cpp_names(mesh: Mesh) -> None:
+    mesh.db(AddTask, "add_task", task_sequence=TREE)
+    assert mesh.call(TmsdbGetTask, "tms_db_reader_task", task_id=1).task == TREE
+    assert mesh.call(TmsdbGetTask, "tms_db_reader_task", task_id=9).task == ""
+    value = Parameter(name="x", value=ParameterValue(type=3, double_value=1.5))
+    mesh.db(SetParameter, "set_parameter", record_name="BOARD", values=[value], create=True)
+    (found,) = mesh.call(TmsdbGetData, "tms_db_param_reader", name="BOARD", flgorparam="flg").tmsdbs
+    assert json.loads(found.msg)["x"] == 1.5
+    (found,) = mesh.call(TmsdbGetData, "tms_db_param_reader", recordnames=["no", "BOARD"], flgorparam="param").tmsdbs
+    assert json.loads(found.msg) == {
+        "x": 1.5, "y": [], "z": [], "qx": [], "qy": [], "qz": [], "qw": [], "Release_Count": [],
+    }  # fmt: skip
+
+
+def registration_node(mesh: Mesh) -> None:
+    def register(*given: str) -> tuple[int, str, str]:
+        words = [sys.executable, "-m", "tms_db.task_generator", "--ros-args"]
+        words += [word for one in given for word in ("-p", one)]
+        done = subprocess.run(words, env=mesh.environment, capture_output=True, text=True, timeout=LIMIT, check=False)
+        return done.returncode, done.stdout, done.stderr
+
+    file = "bt_tree_xml_file_name:=one_loading_cycle"
+    assert register(file, "description:=digs once") == (0, "task 2\n", "")
+    assert register(f"bt_tree_xml_file_name:={CONFIGS}/tasks/one_loading_cycle.xml")[:2] == (
+        0, "task 2 (was stored before)\n",
+    )  # fmt: skip
+    assert mesh.db(GetTask, "get_task", task_id=2).task.description == "digs once"
+    code, out, said = register("bt_tree_xml_file_name:=none")
+    assert (code, out) == (1, "")
+    assert said.startswith("no file 'none' here")
+    assert said.count("\n") == 1
+
+
+def test_store_away_and_back(bare_mesh: Mesh) -> None:
+    mesh = bare_mesh
+    mesh.start("tms:db")
+    mesh.wait_away()
+    away = mesh.db(GetTask, "get_task", task_id=1)
+    assert away.error_code == "STORE_DOWN"
+    assert "tms start tms:store" in away.error_msg
+    mesh.start("tms:store")
+    mesh.wait_ready()
+    assert mesh.db(AddTask, "add_task", task_sequence=TREE).task_id == 1
+    mesh.kill("tms:store")
+    assert mesh.db(GetTask, "get_task", task_id=1).error_code == "STORE_DOWN"
+    begin = time.monotonic()
+    for _ in range(10):
+        assert mesh.db(ListTasks, "list_tasks").error_code == "STORE_DOWN"
+    assert time.monotonic() - begin < 12  # known to be away: ten time-outs would take 30 s
+    mesh.wait_away()
+    assert mesh.call(TmsdbGetTask, "tms_db_reader_task", task_id=1).task == ""
+    mesh.start("tms:store")
+    mesh.wait_ready()
+    assert mesh.db(GetTask, "get_task", task_id=1).task.task_sequence == TREE

@@ -1,0 +1,149 @@
+"""A software stop ends every kind of motion that a machine has; and a frozen process is restarted by the host agent."""
+
+import json
+import os
+import signal
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from geometry_msgs.msg import PoseStamped, Twist
+from std_msgs.msg import Bool
+from tms_msg_rc.msg import MachineState, StopReceipt
+from tms_msg_rc.srv import Rearm
+
+from conftest import Mesh, ports_of, site_data, wait_until
+from tms_core import environment
+from tms_core.border import MOTIONS, Motion
+from tms_core.config import load_site
+from tms_core.ros import Outcome, Ros
+
+pytestmark = [pytest.mark.ros, pytest.mark.timeout(300)]
+MACHINE = "mst110cr_2"  # has all kinds of motion but a trajectory, which tests of the whole mesh stop
+
+
+@pytest.fixture(scope="module")
+def small(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Mesh, Ros]]:
+    """One machine without scheduler, database and console."""
+    from conftest import claimed_domain
+
+    with claimed_domain() as domain, pytest.MonkeyPatch.context() as patch:
+        folder = tmp_path_factory.mktemp("small")
+        data = site_data(
+            domain, ports_of(domain), services={"host": {}}, machines={MACHINE: {"model": "mst110cr"}},
+            store={"kind": "mongodb", "uri": "mongodb://127.0.0.1:1"}, on_loss={"frozen": 6.0},
+        )  # fmt: skip
+        (folder / "site.yaml").write_text(yaml.safe_dump(data))
+        mesh = Mesh(folder / "site.yaml", folder / "state")
+        for key, value in mesh.env.items():
+            patch.setenv(key, value)
+        for key, value in environment.environment(load_site()).items():
+            patch.setenv(key, value)
+        mesh.tms("up")
+        try:
+            ros = Ros("tms_tests_stops")
+            yield mesh, ros
+            ros.close()
+        finally:
+            mesh.tms("down")
+
+
+class Watch:
+    """What is heard of the machine."""
+
+    def __init__(self, ros: Ros) -> None:
+        self.changed = threading.Condition()
+        self.state: Any = None
+        self.zeros, self.receipts = 0, []  # type: ignore[var-annotated]
+        ros.subscribe(MachineState, f"/{MACHINE}/rc/state", self._state, latched=True)
+        ros.subscribe(StopReceipt, f"/{MACHINE}/rc/receipts", self._receipt, depth=20, latched=True)
+        ros.subscribe(Twist, f"/{MACHINE}/cmd_vel", self._zero, depth=10)
+
+    def _state(self, state: Any) -> None:
+        with self.changed:
+            self.state = state
+            self.changed.notify_all()
+
+    def _receipt(self, receipt: Any) -> None:
+        with self.changed:
+            self.receipts.append(receipt)
+            self.changed.notify_all()
+
+    def _zero(self, twist: Twist) -> None:
+        with self.changed:
+            self.zeros += twist == Twist()
+            self.changed.notify_all()
+
+    def wait(self, holds: Any, what: str) -> None:
+        with self.changed:
+            assert self.changed.wait_for(holds, 60), f"not within 60 s: {what}"
+
+
+@pytest.fixture(scope="module")
+def watch(small: tuple[Mesh, Ros]) -> Watch:
+    return Watch(small[1])
+
+
+def far_away(motion: Motion, number: int) -> Any:
+    """A goal that lasts for some seconds."""
+    there = PoseStamped()
+    there.header.frame_id = "map"
+    there.pose.position.x, there.pose.position.y = 60.0 + 30.0 * (number % 2), 40.0 - 30.0 * (number % 2)
+    there.pose.orientation.w = 1.0
+    goal = motion.type.Goal()
+    if hasattr(goal, "pose"):
+        goal.pose = there
+    elif hasattr(goal, "poses"):
+        goal.poses = [there] if isinstance(goal.poses, list) else type(goal.poses)(header=there.header, goals=[there])
+    else:
+        goal.target_angle = 0.9 if motion.field == "set_dump_angle" else 1.5
+    return goal
+
+
+def arm(ros: Ros) -> None:
+    def ask(token: str = "") -> Any:
+        return ros.call(Rearm, f"/{MACHINE}/rearm", Rearm.Request(token=token), 30)
+
+    wait_until(lambda: bool(ask(ask().token).armed), 60, f"{MACHINE} is armed")
+
+
+@pytest.mark.parametrize("motion", [m for m in MOTIONS if m.field != "trajectory"], ids=lambda motion: motion.field)
+def test_a_software_stop_ends_every_kind_of_motion(small: tuple[Mesh, Ros], watch: Watch, motion: Motion) -> None:
+    ros = small[1]
+    watch.wait(lambda: watch.state is not None and watch.state.ready, "the machine is ready")
+    button = ros.publisher(Bool, "/emergency_signal")
+    peer = ros.peer(motion.type, f"/{MACHINE}/rc/{motion.served}")
+    peer.wait_ready(30)
+    call = peer.send(far_away(motion, MOTIONS.index(motion)))
+    watch.wait(lambda: (watch.state.moving and watch.state.goal) or call.outcome is not None, "it moves")
+    before, zeros = len(watch.receipts), watch.zeros
+    button.publish(Bool(data=True))
+    assert call.wait_for(lambda: call.outcome is not None, 30) and call.outcome is Outcome.ABORTED, call.result
+    watch.wait(lambda: len(watch.receipts) > before, "a receipt")
+    receipt = watch.receipts[-1]
+    assert (receipt.confirmed, receipt.latched, receipt.cause) == (True, True, "software stop")
+    watch.wait(lambda: watch.zeros > zeros, "zero velocities")
+    late = peer.send(far_away(motion, MOTIONS.index(motion)))  # whoever asks now
+    assert late.wait_for(lambda: late.outcome is not None, 30) and late.outcome is not Outcome.SUCCEEDED
+    assert not watch.state.moving
+    button.publish(Bool(data=False))
+    arm(ros)
+
+
+def test_a_frozen_process_is_restarted(small: tuple[Mesh, Ros], watch: Watch) -> None:
+    mesh = small[0]
+
+    def pid() -> int:
+        rows = json.loads(mesh.tms("ps", "--json").stdout)
+        return next(int(row["pid"]) for row in rows if row["name"] == f"{MACHINE}:rc")
+
+    watch.wait(lambda: watch.state is not None and watch.state.ready, "the machine is ready")
+    threading.Event().wait(2.5)  # until the host agent has asked it once
+    old = pid()
+    os.kill(old, signal.SIGSTOP)
+    wait_until(lambda: pid() not in (0, old), 60, "the frozen gateway is replaced")
+    log = next(Path(mesh.state, "log").glob("tms.host.log")).read_text()
+    assert f"event=frozen target={MACHINE}:rc" in log

@@ -1,0 +1,356 @@
+"""The bridge as a real process, between real ROS nodes and a client that behaves as Unity does, byte for byte."""
+
+import json
+import os
+import re
+import socket
+import struct
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from com3_msgs.msg import JointCmd
+from geometry_msgs.msg import Twist
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Bool, String, UInt8MultiArray
+from std_srvs.srv import SetBool, Trigger
+
+from conftest import wait_until
+from tms_core import environment
+from tms_core.config import load_site
+from tms_core.errors import RosError
+from tms_core.ros import Ros, pack, unpack
+from unity_client import Unity, frame, text
+
+pytestmark = [
+    pytest.mark.ros,
+    pytest.mark.filterwarnings("ignore:module 'sre_:DeprecationWarning"),  # a parser that the ROS wheels bring
+]
+LIMIT = 40.0  # s for whatever must happen at all
+MACHINE = "zx200_5"  # a name of its own: other tests may have machines in the same domain
+SITE = """
+name: iftest
+domain: {domain}
+backend: physx
+ports: {{metrics: {port}}}
+services: {{if: {{port: {tcp}, message_limit: 1000000}}}}
+machines: {{{machine}: {{model: zx200}}}}
+"""
+
+
+class Bridge:
+    """The process and a ROS node of somebody else."""
+
+    def __init__(self, file: Path, port: int) -> None:
+        self.port, self._log = port, file.with_suffix(".log")
+        with self._log.open("w") as log:
+            words = [sys.executable, "-m", "tms_core.run", "tms:if"]
+            env = {**os.environ, **environment.environment(load_site(str(file)))}
+            self.process = subprocess.Popen(words, env=env, stdout=log, stderr=log)
+        self.ros = Ros("if_test")
+        self.clients: list[Unity] = []
+        wait_until(lambda: "event=listening" in self.log, LIMIT, "the bridge listens")
+
+    @property
+    def log(self) -> str:
+        return self._log.read_text()
+
+    def unity(self, beats: bool = True) -> Unity:
+        client = Unity(self.port, beats)
+        self.clients.append(client)
+        client.until(lambda: client.frames, "handshake")
+        return client
+
+    def logged(self, words: str, count: int = 1) -> None:
+        wait_until(lambda: len(re.findall(words, self.log)) >= count, LIMIT, f"a log line {words}")
+
+    def until(self, there: Callable[[], Any], what: str) -> None:
+        wait_until(lambda: bool(there()), LIMIT, what)
+
+    def heard(self, kind: Any, topic: str) -> list[Any]:
+        found: list[Any] = []
+        self.ros.subscribe(kind, topic, found.append, depth=10)
+        return found
+
+    def speak(self, kind: Any, topic: str, **settings: Any) -> Any:
+        publisher = self.ros.publisher(kind, topic, **settings)
+        self.until(lambda: publisher.get_subscription_count() > 0, f"the bridge hears {topic}")
+        return publisher
+
+    def close(self) -> None:
+        for client in self.clients:
+            client.close()
+        self.process.terminate()
+        try:
+            assert self.process.wait(5) == 0, self.log
+        finally:
+            self.process.kill()
+            self.ros.close()
+
+
+@pytest.fixture(scope="module")
+def bridge(tmp_path_factory: pytest.TempPathFactory, domain: int, first_port: int) -> Iterator[Bridge]:
+    folder = tmp_path_factory.mktemp("bridge")
+    file = folder / "site.yaml"
+    file.write_text(SITE.format(domain=domain, port=first_port + 60, tcp=first_port + 62, machine=MACHINE))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ROS_DOMAIN_ID", str(domain))
+        patch.setenv("TMS_STATE", str(folder / "state"))
+        for key, value in environment.environment(load_site(str(file))).items():
+            patch.setenv(key, value)
+        made = Bridge(file, first_port + 62)
+        yield made
+        made.close()
+
+
+@pytest.fixture
+def unity(bridge: Bridge) -> Iterator[Unity]:
+    client = bridge.unity()
+    yield client
+    client.close()
+
+
+def test_the_handshake_comes_first(unity: Unity) -> None:
+    name, payload = unity.frames[0]
+    told = json.loads(payload)
+    assert name == "__handshake"
+    assert told["version"].startswith("v0.7")
+    assert json.loads(told["metadata"]) == {"protocol": "ROS2"}
+
+
+def test_what_unity_publishes_arrives(bridge: Bridge, unity: Unity) -> None:
+    heard = bridge.heard(JointState, f"/{MACHINE}/joint_state")
+    topic = f"{MACHINE}/joint_state"
+    unity.command("__publish", topic=topic, message_name="sensor_msgs/JointState", queue_size=10, latch=False)
+    state = JointState(name=["swing_joint", "boom_joint"], position=[0.5, -0.25], effort=[0.0, 0.0])
+    state.header.frame_id = "world"
+
+    def told() -> bool:
+        unity.message(topic, pack(state))
+        return bool(heard)
+
+    bridge.until(told, "a joint state")
+    assert heard[0] == state
+
+
+def test_the_clock_is_a_bare_time(bridge: Bridge, unity: Unity) -> None:
+    heard = bridge.heard(Clock, "/clock")
+    unity.command("__publish", topic="clock", message_name="rosgraph_msgs/Clock", queue_size=10, latch=False)
+
+    def told() -> bool:
+        unity.message("clock", b"\0\1\0\0" + struct.pack("<iI", 7, 500))
+        return bool(heard)
+
+    bridge.until(told, "a time")
+    assert (heard[0].clock.sec, heard[0].clock.nanosec) == (7, 500)
+
+
+def test_what_unity_hears_is_the_frame_of_the_protocol(bridge: Bridge, unity: Unity) -> None:
+    topic = f"{MACHINE}/tracks/cmd_vel"
+    unity.command("__subscribe", topic=topic, message_name="geometry_msgs/Twist")
+    publisher = bridge.speak(Twist, f"/{topic}")
+    twist = Twist()
+    twist.linear.x = 0.5
+    publisher.publish(twist)
+    unity.until(lambda: unity.got(topic), "a Twist")
+    assert unity.got(topic)[0] == b"\0\1\0\0" + struct.pack("<6d", 0.5, 0, 0, 0, 0, 0)
+
+
+def test_a_simulator_that_comes_late_is_told_that_it_is_stopped(bridge: Bridge) -> None:
+    bridge.ros.publisher(Bool, f"/{MACHINE}/emg_stop", latched=True).publish(Bool(data=True))
+    late = bridge.unity()
+    late.command("__subscribe", topic=f"{MACHINE}/emg_stop", message_name="std_msgs/Bool")
+    late.until(lambda: late.got(f"{MACHINE}/emg_stop"), "the latched stop")
+    assert late.got(f"{MACHINE}/emg_stop")[0] in (b"\0\1\0\0\1", b"\0\1\0\0\1\0\0\0")  # DDS pads to four bytes
+    late.close()
+
+
+def test_joint_commands_in_the_layout_of_the_simulator(bridge: Bridge, unity: Unity) -> None:
+    topic = f"{MACHINE}/front_cmd"
+    unity.command("__subscribe", topic=topic, message_name="com3_msgs/JointCmd")
+    publisher = bridge.speak(JointCmd, f"/{topic}")
+    publisher.publish(JointCmd(joint_name=["boom_joint", "swing_joint"], control_type=1, position=[-0.5, 1.0]))
+    unity.until(lambda: unity.got(topic), "a JointCmd")
+    names = struct.pack("<II", 2, 11) + b"boom_joint\0" + b"\0" + struct.pack("<I", 12) + b"swing_joint\0"
+    plain = b"\0\1\0\0" + names + struct.pack("<I2d", 2, -0.5, 1.0) + bytes(8)
+    assert unity.got(topic)[0] == plain  # without control_type
+
+    heard = bridge.heard(JointCmd, f"/{MACHINE}/echo_cmd")
+    unity.command("__publish", topic=f"{MACHINE}/echo_cmd", message_name="com3_msgs/JointCmd", queue_size=1)
+
+    def told() -> bool:
+        unity.message(f"{MACHINE}/echo_cmd", plain)
+        return bool(heard)
+
+    bridge.until(told, "a JointCmd from the simulator")
+    assert heard[0].joint_name == ["boom_joint", "swing_joint"] and list(heard[0].position) == [-0.5, 1.0]
+    unity.message(f"{MACHINE}/echo_cmd", pack(heard[0])[:-3])
+    unity.until(unity.errors, "an error for half a message")
+
+
+def test_unity_calls_a_service(bridge: Bridge, unity: Unity) -> None:
+    def switch(request: Any, response: Any) -> Any:
+        response.success, response.message = request.data, "switched"
+        return response
+
+    bridge.ros.offer(SetBool, f"/{MACHINE}/switch", switch)
+    unity.command("__ros_service", topic=f"{MACHINE}/switch", message_name="std_srvs/SetBool")
+    unity.command("__request", srv_id=101)
+    unity.message(f"{MACHINE}/switch", pack(SetBool.Request(data=True)))
+    unity.until(lambda: unity.got("__response"), "a response")
+    assert json.loads(unity.got("__response")[0]) == {"srv_id": 101}
+    names = [name for name, _ in unity.frames]
+    assert names[names.index("__response") + 1] == f"{MACHINE}/switch"
+    answer = unpack(unity.got(f"{MACHINE}/switch")[0], SetBool.Response)
+    assert answer.success and answer.message == "switched"
+
+
+def test_unity_offers_a_service_and_may_leave_without_an_answer(bridge: Bridge) -> None:
+    unity = bridge.unity()
+    service = f"{MACHINE}/spawn"
+    unity.command("__unity_service", topic=service, message_name="std_srvs/Trigger")
+    import threading
+
+    answers: list[Any] = []
+
+    def call() -> None:
+        try:
+            answers.append(bridge.ros.call(Trigger, f"/{service}", Trigger.Request(), 20.0))
+        except RosError as error:
+            answers.append(error)
+
+    threading.Thread(target=call).start()
+    unity.until(lambda: unity.got(service), "a request")
+    (number,) = [json.loads(payload)["srv_id"] for payload in unity.got("__request")]
+    assert number >= 1001
+    assert unity.got(service)[0][:4] == b"\0\1\0\0"
+    unity.command("__response", srv_id=number)
+    unity.message(service, pack(Trigger.Response(success=True, message="there")))
+    bridge.until(lambda: answers, "the answer")
+    assert answers[0].message == "there"
+
+    before = len(unity.got(service))
+    asked = threading.Thread(target=lambda: _expect_no_answer(bridge, service))
+    asked.start()
+    unity.until(lambda: len(unity.got(service)) > before, "a second request")
+    unity.close()
+    asked.join(LIMIT)
+    assert not asked.is_alive()
+    bridge.unity().close()  # it still serves
+
+
+def _expect_no_answer(bridge: Bridge, service: str) -> None:
+    with pytest.raises(RosError):
+        bridge.ros.call(Trigger, f"/{service}", Trigger.Request(), 3.0)
+
+
+def test_what_cannot_be_done_is_said_once_and_the_rest_goes_on(bridge: Bridge, unity: Unity) -> None:
+    unity.command("__publish", topic="a/b", message_name="gazebo_msgs/Nothing", queue_size=1)
+    unity.command("__subscribe", topic="a b", message_name="std_msgs/Bool")
+    unity.command("__publish", topic=f"{MACHINE}/tracks/cmd_vel", message_name="geometry_msgs/Twist", queue_size=1)
+    unity.command("__ros_service", topic=f"{MACHINE}/rearm", message_name="std_srvs/Trigger")
+    unity.command("__dance")
+    unity.raw(frame(text("__subscribe"), b"{broken\0"))
+    for _ in range(3):
+        unity.message("nobody/registered", b"\0\1\0\0\1")
+    unity.command("__publish", topic="ok", message_name="std_msgs/Bool", queue_size=1)
+    unity.message("ok", b"\0")
+    unity.command("__response", srv_id=5)
+    unity.message("ok", b"\0\1\0\0\1")
+    unity.until(lambda: len(unity.errors()) >= 9, "nine errors")
+    said = "\n".join(unity.errors())
+    for part in (
+        "no gazebo_msgs/Nothing here", "__subscribe: topic: ", "a simulator may only listen there",
+        "belongs to the task management", "there is no command __dance", "__subscribe: Invalid JSON",
+        "Not registered to publish topic 'nobody/registered'", "ok: what came is no Bool", "request 5, which nobody",
+    ):  # fmt: skip
+        assert said.count(part) == 1, f"{part} in\n{said}"
+    unity.command("__remove_publisher", topic="ok")
+    unity.command("__remove_subscriber", topic="never/there")
+    unity.command("__publish", topic=f"{MACHINE}/listed", message_name="std_msgs/Bool", queue_size=1)
+    unity.command("__topic_list")
+    unity.until(lambda: unity.got("__topic_list"), "the topics")
+    told = json.loads(unity.got("__topic_list")[0])
+    assert dict(zip(told["topics"], told["types"], strict=True))[f"/{MACHINE}/listed"] == "std_msgs/Bool"
+
+
+@pytest.mark.parametrize(
+    ("data", "line"),
+    [
+        (b"GET / HTTP/1.1\r\n\r\n", "is that a ROS-TCP client?"),
+        (struct.pack("<I", 5) + b"clock" + struct.pack("<I", 2**31), "a message of 2147483648 bytes"),
+        (frame(text("clock"), bytes(12))[:15], "it left in the middle of a message, after 15 bytes"),
+        (frame(b"\xff\xfe", b""), "a destination that is no text"),
+    ],
+)
+def test_a_broken_client_ends_alone(bridge: Bridge, data: bytes, line: str) -> None:
+    broken = bridge.unity(beats=False)
+    host, port = broken.socket.getsockname()
+    broken.raw(data)
+    if "left" in line:
+        broken.socket.shutdown(socket.SHUT_WR)
+    broken.until(broken.closed.is_set, "end of the connection")
+    bridge.logged(f"event=client_gone client={host}:{port} .*{re.escape(line)}")
+    assert bridge.process.poll() is None
+    assert "Traceback" not in bridge.log
+    bridge.unity().close()
+
+
+def test_a_client_that_does_not_read_loses_messages_and_nothing_else(bridge: Bridge) -> None:
+    lazy, good = Unity(bridge.port, reads=False), bridge.unity()
+    bridge.clients.append(lazy)
+    for client in (lazy, good):
+        client.command("__subscribe", topic="large", message_name="std_msgs/UInt8MultiArray")
+    publisher = bridge.ros.publisher(UInt8MultiArray, "/large")
+    bridge.until(lambda: publisher.get_subscription_count() == 2, "both hear")
+    host, port = lazy.socket.getsockname()
+    message = UInt8MultiArray(data=bytes(500_000))
+
+    def slow() -> bool:
+        publisher.publish(message)
+        return f"event=client_slow client={host}:{port}" in bridge.log
+
+    bridge.until(slow, "a line about the slow client")
+    good.until(lambda: good.got("large"), "messages at the other client")
+    bridge.logged(f"event=client_gone client={host}:{port} .*did not read for 10 s")
+    lazy.close()
+    good.close()
+    status = Path(f"/proc/{bridge.process.pid}/status").read_text()
+    (kilobytes,) = re.findall(r"VmHWM:\s+(\d+) kB", status)
+    assert int(kilobytes) < 400_000
+
+
+def test_it_listens_on_loopback_and_says_when_it_cannot(bridge: Bridge, tmp_path: Path, domain: int) -> None:
+    (tmp_path / "site.yaml").write_text(
+        SITE.format(domain=domain, port=bridge.port + 1, tcp=bridge.port, machine=MACHINE)
+    )
+    words = [sys.executable, "-m", "tms_core.run", "tms:if"]
+    env = {**os.environ, **environment.environment(load_site(str(tmp_path / "site.yaml")))}
+    done = subprocess.run(words, env=env, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 1
+    assert f"127.0.0.1:{bridge.port} cannot be listened on" in done.stderr
+    assert "services.if.port" in done.stderr
+    held = Path("/proc/net/tcp").read_text()
+    assert f"0100007F:{bridge.port:04X} 00000000:0000 0A" in held  # and on no other address
+    assert f"00000000:{bridge.port:04X}" not in held
+
+
+def test_a_best_effort_publisher_is_heard(bridge: Bridge, unity: Unity) -> None:
+    from rclpy.qos import QoSProfile, ReliabilityPolicy
+
+    qos = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
+    publisher = bridge.ros.node.create_publisher(String, "/sensor", qos)
+    wait_until(lambda: bool(publisher.topic_name), LIMIT, "publisher")
+    deadline = time.monotonic() + LIMIT
+    while not unity.got("sensor"):  # whether the bridge knows the publisher yet, only its messages tell
+        assert time.monotonic() < deadline
+        unity.command("__subscribe", topic="sensor", message_name="std_msgs/String")
+        for _ in range(5):
+            publisher.publish(String(data="heard"))
+            time.sleep(0.05)
+    assert unpack(unity.got("sensor")[0], String).data == "heard"

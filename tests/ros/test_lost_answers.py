@@ -1,0 +1,97 @@
+"""A goal whose answer gets lost: a server that has not yet discovered its client drops what it says to it."""
+
+import os
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from action_msgs.msg import GoalInfo, GoalStatus, GoalStatusArray
+from rclpy.task import Future
+from tms_msg_ts.action import LeafNodeBase
+
+from conftest import wait_until
+from tms_core.ros import Outcome, Peer, Ros
+
+pytestmark = pytest.mark.ros
+LIMIT = 20.0  # s for whatever must happen at all
+NAME = "/silent/change_pose"
+
+
+class Silent:
+    """An action server made of its parts, whose answer to a goal never arrives."""
+
+    def __init__(self, ros: Ros, *, takes_goals: bool) -> None:
+        self.asked: list[bytes] = []  # goal ids
+        self.cancelled: list[bytes] = []
+        self._takes_goals = takes_goals
+        self._result: Any = Future()
+        impl, prefix = LeafNodeBase.Impl, f"{NAME}/_action"
+        for kind, name, handler in (
+            (impl.SendGoalService, "send_goal", self._never_answers),
+            (impl.GetResultService, "get_result", self._results),
+            (impl.CancelGoalService, "cancel_goal", self._cancel),
+        ):
+            ros.node.create_service(kind, f"{prefix}/{name}", handler, callback_group=ros.group)
+        self._feedback = ros.publisher(impl.FeedbackMessage, f"{prefix}/feedback")
+        self._status = ros.publisher(GoalStatusArray, f"{prefix}/status", depth=1, latched=True)
+
+    async def _never_answers(self, request: Any, response: Any) -> Any:
+        self.asked.append(bytes(request.goal_id.uuid))
+        if self._takes_goals:
+            info = GoalInfo(goal_id=request.goal_id)
+            accepted = GoalStatus(goal_info=info, status=GoalStatus.STATUS_EXECUTING)
+            self._status.publish(GoalStatusArray(status_list=[accepted]))
+        await Future()
+        return response
+
+    async def _results(self, _request: Any, response: Any) -> Any:
+        if self._takes_goals:
+            await self._result
+            response.status = GoalStatus.STATUS_SUCCEEDED
+        return response  # without a status the goal is unknown
+
+    def _cancel(self, request: Any, response: Any) -> Any:
+        self.cancelled.append(bytes(request.goal_info.goal_id.uuid))
+        return response
+
+    def finish(self) -> None:
+        self._result.set_result(None)
+
+
+@pytest.fixture
+def ros(own_domain: int) -> Iterator[tuple[Ros, Ros]]:
+    """A server's node and a client's."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(os.environ, "ROS_DOMAIN_ID", str(own_domain))
+        server, client = Ros("server"), Ros("client")
+    yield server, client
+    client.close()
+    server.close()
+
+
+def peer_of(client: Ros) -> Peer:
+    peer = client.peer(LeafNodeBase, NAME)
+    wait_until(peer.ready, LIMIT, "server found")
+    return peer
+
+
+def test_the_status_tells_that_a_goal_was_accepted(ros: tuple[Ros, Ros]) -> None:
+    silent = Silent(ros[0], takes_goals=True)
+    call = peer_of(ros[1]).send(LeafNodeBase.Goal(model_name="zx200", record_name="A"))
+    wait_until(lambda: call.accepted, LIMIT, "goal known as accepted")
+    assert silent.asked == [call.id]
+    assert call.outcome is None
+    ros[0].on_executor(silent.finish)
+    wait_until(lambda: call.outcome is Outcome.SUCCEEDED, LIMIT, "result")
+
+
+def test_a_goal_that_the_server_does_not_know_is_lost(ros: tuple[Ros, Ros]) -> None:
+    silent = Silent(ros[0], takes_goals=False)
+    peer = peer_of(ros[1])
+    call = peer.send(LeafNodeBase.Goal(model_name="zx200", record_name="A"))
+    wait_until(lambda: silent.asked == [call.id], LIMIT, "goal at the server")
+    assert not call.accepted
+    assert call.outcome is None
+    peer.doubt(call)
+    wait_until(lambda: call.outcome is Outcome.LOST, LIMIT, "goal known as lost")
+    wait_until(lambda: silent.cancelled == [call.id], LIMIT, "cancel, should it come after all")

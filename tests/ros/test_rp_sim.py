@@ -1,0 +1,248 @@
+"""Planner, gateway and stand-in machine as real processes: motion, cancel, refusal, emergency stop."""
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from control_msgs.action import FollowJointTrajectory
+from geometry_msgs.msg import Point
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Bool
+from tf2_msgs.msg import TFMessage
+from tms_msg_rp.action import TmsRpZx200ChangePose, TmsRpZx200ExcavateSimple, TmsRpZx200ReleaseSimple
+from tms_msg_rp.msg import TmsRpErrorCodes, TmsRpZx200PositionWithAngle
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+from tms_core import environment
+from tms_core.config import load_site
+from tms_core.ros import Call, Outcome, Ros
+
+pytestmark = [
+    pytest.mark.ros,
+    pytest.mark.filterwarnings("ignore:module 'sre_:DeprecationWarning"),  # a parser that the ROS wheels bring
+]
+LIMIT = 25.0  # s for whatever must happen at all
+SPEED = 4.0  # times real time
+SITE = """
+name: rptest
+domain: {domain}
+ports: {{metrics: {port}}}
+sim: {{speed: {speed}, seed: 1}}
+services: {{}}
+machines: {{{machine}: {{model: zx200}}, {mute}: {{model: zx200}}}}
+"""
+MACHINE, MUTE = "zx200_7", "zx200_8"  # names of their own: other tests may have a zx200 in the same domain
+NAMES = ["swing_joint", "boom_joint", "arm_joint", "bucket_joint", "bucket_end_joint"]
+START = (0.0, -0.8029, 1.9897, 0.8029, 0.0)
+
+
+class Rig:
+    """Processes of our own, and a client that watches the machine."""
+
+    def __init__(self, folder: Path, file: Path) -> None:
+        self.environment = {**os.environ, **environment.environment(load_site(str(file)))}
+        self.running: dict[str, subprocess.Popen[bytes]] = {}
+        self.log = folder / "log.txt"
+        self.ros = Ros("client")
+        self.states: list[JointState] = []
+        self.frames: set[tuple[str, str]] = set()
+        self.said: list[str] = []
+        self.ros.subscribe(JointState, f"/{MACHINE}/joint_states", self.states.append, depth=10)
+        self.ros.subscribe(TFMessage, "/tf", self._framed, depth=10)
+        self.stop = self.ros.publisher(Bool, f"/{MACHINE}/emg_stop")
+
+    def _framed(self, message: TFMessage) -> None:
+        self.frames |= {(one.header.frame_id, one.child_frame_id) for one in message.transforms}
+
+    def start(self, *names: str) -> None:
+        with self.log.open("ab") as log:
+            for name in names:
+                words = [sys.executable, "-m", "tms_core.run", name]
+                self.running[name] = subprocess.Popen(words, env=self.environment, stdout=log, stderr=log)
+
+    def end_process(self, name: str) -> None:
+        process = self.running.pop(name)
+        process.terminate()
+        try:
+            assert process.wait(5) == 0, f"{name} did not end cleanly"
+        finally:
+            process.kill()
+
+    def close(self) -> None:
+        try:
+            for name in list(self.running):
+                self.end_process(name)
+        finally:
+            self.ros.close()
+
+    def until(self, there: Callable[[], bool], what: str) -> None:
+        deadline = time.monotonic() + LIMIT
+        while not there():
+            if time.monotonic() > deadline:
+                print(self.log.read_text())
+                pytest.fail(f"no {what} within {LIMIT} s; said {self.said[-3:]}")
+            time.sleep(0.02)
+
+    def send(self, action: Any, name: str, machine: str = MACHINE, **fields: Any) -> Call:
+        peer = self.ros.peer(action, f"/{machine}/{name}")
+        self.until(peer.ready, f"server {name}")
+        return peer.send(action.Goal(**fields), on_feedback=lambda f: self.said.append(getattr(f, "state", "")))
+
+    def change_pose(self, *angles: float, plan: bool = False, machine: str = MACHINE) -> Call:
+        trajectory = JointTrajectory(joint_names=NAMES, points=[JointTrajectoryPoint(positions=list(angles))])
+        name = "tms_rp_zx200_change_pose" + ("_plan" if plan else "")
+        return self.send(TmsRpZx200ChangePose, name, machine, trajectory=trajectory)
+
+    def cancel(self, call: Call) -> None:
+        self.ros.peer(TmsRpZx200ChangePose, f"/{MACHINE}/tms_rp_zx200_change_pose").cancel(call)
+
+    def end(self, call: Call) -> Outcome:
+        self.until(lambda: call.outcome is not None, "end of the goal")
+        assert call.outcome is not None
+        return call.outcome
+
+    def moving(self) -> bool:
+        return bool(self.states) and any(abs(v) > 0.05 for v in self.states[-1].velocity)
+
+    def reason(self) -> str:
+        return self.said[-1] if self.said else ""
+
+
+@pytest.fixture(scope="module")
+def rig(tmp_path_factory: pytest.TempPathFactory, domain: int, first_port: int) -> Iterator[Rig]:
+    """Planner, gateway and simulator of one machine, and the planner of another one that has neither."""
+    folder = tmp_path_factory.mktemp("rig")
+    file = folder / "site.yaml"
+    file.write_text(SITE.format(domain=domain, port=first_port + 40, speed=SPEED, machine=MACHINE, mute=MUTE))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ROS_DOMAIN_ID", str(domain))
+        patch.setenv("TMS_STATE", str(folder / "state"))
+        for key, value in environment.environment(load_site(str(file))).items():
+            patch.setenv(key, value)
+        made = Rig(folder, file)
+        made.start(f"sim:{MACHINE}", f"{MACHINE}:rc", f"{MACHINE}:rp", f"{MUTE}:rp")
+        try:
+            made.until(lambda: bool(made.states) and bool(made.frames), "joint states and frames")
+            assert made.states[0].position == pytest.approx(START)
+            made.until(made.ros.peer(FollowJointTrajectory, f"/{MACHINE}/rc/follow_joint_trajectory").ready, "gateway")
+            yield made
+        finally:
+            made.close()
+
+
+@pytest.fixture
+def machine(rig: Rig) -> Rig:
+    """The machine in its start pose."""
+    rig.until(lambda: rig.end(rig.change_pose(*START)) is Outcome.SUCCEEDED, "start pose")
+    rig.said.clear()
+    return rig
+
+
+def test_change_pose_arrives_and_says_how_far_it_is(machine: Rig) -> None:
+    assert machine.states[-1].name == NAMES
+    assert ("map", f"{MACHINE}/base_link") in machine.frames
+    assert (f"{MACHINE}/bucket_link", f"{MACHINE}/bucket_end_link") in machine.frames
+    call = machine.change_pose(0.6, -0.6, 1.7, 100.0, 0.0)  # the bucket stays
+    assert machine.end(call) is Outcome.SUCCEEDED
+    assert call.result.error_code.val == TmsRpErrorCodes.SUCCESS
+    assert machine.states[-1].position == pytest.approx((0.6, -0.6, 1.7, START[3], 0.0), abs=0.031)
+    assert machine.said[0] == "PLANNING"
+    assert machine.said[-1] == "SUCCEEDED"
+    assert any(text.startswith("MOVING 1/1 ") for text in machine.said)
+
+
+def test_a_machine_that_fell_silent_is_not_moved(machine: Rig) -> None:
+    machine.end_process(f"sim:{MACHINE}")
+    heard = len(machine.states)
+    old = f"ABORTED: NO_JOINT_STATE: last message on /{MACHINE}/joint_states is"
+    machine.until(
+        lambda: machine.end(machine.change_pose(*START)) is Outcome.ABORTED and machine.reason().startswith(old),
+        "refusal for old joint states",
+    )
+    machine.start(f"sim:{MACHINE}")
+    machine.until(lambda: len(machine.states) > heard, "joint states of the new simulator")
+    machine.until(lambda: machine.end(machine.change_pose(*START)) is Outcome.SUCCEEDED, "motion afterwards")
+
+
+def test_excavate_then_release(machine: Rig) -> None:
+    soil = TmsRpZx200PositionWithAngle(position=Point(x=4.7, y=-0.4, z=0.1), theta_w=0.0)
+    dig = machine.send(TmsRpZx200ExcavateSimple, "tms_rp_zx200_excavate_simple", position_with_angle=soil)
+    assert machine.end(dig) is Outcome.SUCCEEDED
+    assert machine.states[-1].position[3] == pytest.approx(1.7, abs=0.031)
+    assert any(text.startswith("MOVING 3/3") and "instead of 0.00 rad" in text for text in machine.said)
+    opened = machine.send(TmsRpZx200ReleaseSimple, "tms_rp_zx200_release_simple", target_angle=-0.2)
+    assert machine.end(opened) is Outcome.SUCCEEDED
+    assert machine.states[-1].position[3] == pytest.approx(-0.2, abs=0.031)
+
+
+def test_cancel_ends_with_the_machine_standing(machine: Rig) -> None:
+    call = machine.change_pose(2.5, *START[1:])
+    machine.until(machine.moving, "motion")
+    machine.cancel(call)
+    assert machine.end(call) is Outcome.CANCELED
+    assert all(velocity == 0 for velocity in machine.states[-1].velocity)
+    assert machine.states[-1].position[0] < 2.0
+    assert call.result.error_code.val == TmsRpErrorCodes.FAILURE
+    assert machine.end(machine.change_pose(*START)) is Outcome.SUCCEEDED
+
+
+def test_one_motion_at_a_time_but_plans_always(machine: Rig) -> None:
+    first = machine.change_pose(2.5, *START[1:])
+    machine.until(machine.moving, "motion")
+    assert machine.end(machine.change_pose(*START)) is Outcome.REJECTED
+    planned = machine.change_pose(0.3, *START[1:], plan=True)
+    assert machine.end(planned) is Outcome.SUCCEEDED
+    assert any(text.startswith("PLANNED ") for text in machine.said)
+    assert first.outcome is None
+    machine.cancel(first)
+    assert machine.end(first) is Outcome.CANCELED
+
+
+def test_a_plan_never_moves_and_bad_goals_are_refused(machine: Rig) -> None:
+    assert machine.end(machine.change_pose(1.0, *START[1:], plan=True)) is Outcome.SUCCEEDED
+    call = machine.change_pose(0.0, 0.5, *START[2:])
+    assert machine.end(call) is Outcome.ABORTED
+    assert call.result.error_code.val == TmsRpErrorCodes.FAILURE
+    wanted = "ABORTED: OUT_OF_RANGE: boom_joint 0.500 rad is above its limit -0.100 rad"
+    assert machine.reason().startswith(wanted)
+    heard = len(machine.states)
+    machine.until(lambda: len(machine.states) > heard + 10, "joint states")
+    assert machine.states[-1].position == pytest.approx(START, abs=0.031)
+    wrong = JointTrajectory(joint_names=["swing_joint"], points=[JointTrajectoryPoint(positions=[0.0])])
+    controller = "upper_arm_controller/follow_joint_trajectory"
+    assert machine.end(machine.send(FollowJointTrajectory, controller, trajectory=wrong)) is Outcome.REJECTED
+    assert "code=-2 reason='joints swing_joint given" in machine.log.read_text()
+
+
+def test_emergency_stop_ends_a_motion_until_it_is_released(machine: Rig) -> None:
+    call = machine.change_pose(2.5, *START[1:])
+    machine.until(machine.moving, "motion")
+    machine.stop.publish(Bool(data=True))
+    assert machine.end(call) is Outcome.ABORTED
+    assert "emergency stop" in machine.reason()
+    assert not machine.moving()
+    assert machine.end(machine.change_pose(*START)) is Outcome.ABORTED
+    machine.stop.publish(Bool(data=False))
+    machine.until(lambda: machine.end(machine.change_pose(*START)) is Outcome.SUCCEEDED, "motion after the release")
+
+
+def test_a_planner_that_ends_takes_its_motion_with_it(machine: Rig) -> None:
+    call = machine.change_pose(2.5, *START[1:])
+    machine.until(machine.moving, "motion")
+    machine.end_process(f"{MACHINE}:rp")
+    machine.until(lambda: not machine.moving(), "standing machine")
+    assert machine.states[-1].position[0] < 2.4
+    machine.until(lambda: call.outcome is Outcome.ABORTED, "end of the goal")
+    machine.start(f"{MACHINE}:rp")
+    machine.until(lambda: machine.end(machine.change_pose(*START)) is Outcome.SUCCEEDED, "motion afterwards")
+
+
+def test_without_a_machine_there_is_a_reason(rig: Rig) -> None:
+    rig.said.clear()
+    assert rig.end(rig.change_pose(*START, machine=MUTE)) is Outcome.ABORTED
+    assert rig.reason().startswith(f"ABORTED: NO_JOINT_STATE: nothing on /{MUTE}/joint_states")

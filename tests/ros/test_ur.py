@@ -1,0 +1,245 @@
+"""The console process with real ROS peers: what is published is shown, commands arrive, and it ends when told."""
+
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+import urllib.error
+import urllib.request
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+from builtin_interfaces.msg import Time
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from tms_msg_db.msg import Event, Record, Run, Task
+from tms_msg_db.srv import GetTask, ListEvents, ListParameters, ListRuns, ListTasks
+from tms_msg_host.msg import Process, Processes
+from tms_msg_rc.msg import MachineState
+from tms_msg_ts.action import ExecuteTask
+from tms_msg_ts.msg import RunState, RunStates
+from tms_msg_ts.srv import CancelRun
+
+from conftest import ports_of
+from tms_core import environment
+from tms_core.config import Site, load_site
+from tms_core.processes import find
+from tms_core.ros import Ended, Goal, Outcome, Ros
+
+pytestmark = pytest.mark.ros
+LIMIT = 20.0  # s for whatever must happen at all
+SITE = """
+name: urtest
+domain: {domain}
+ports: {{metrics: {metrics}, console: {console}}}
+services: {{ur: {{role: cps}}}}
+machines: {{zx200: {{model: zx200}}}}
+"""
+
+
+def until(holds: Callable[[], bool], what: str) -> None:
+    deadline = time.monotonic() + LIMIT
+    while not holds():
+        assert time.monotonic() < deadline, f"not within {LIMIT} s: {what}"
+        time.sleep(0.02)
+
+
+@dataclass
+class Console:
+    """The process and its address."""
+
+    site: Site
+    process: subprocess.Popen[bytes]
+    log: Path
+
+    def ask(self, path: str, body: Any = None, **headers: str) -> tuple[int, Any]:
+        data = None if body is None else json.dumps(body).encode()
+        url = f"http://127.0.0.1:{self.site.file.ports.console}{path}"
+        request = urllib.request.Request(url, data, {"Content-Type": "application/json", **headers})
+        try:
+            with urllib.request.urlopen(request, timeout=LIMIT) as answer:
+                return answer.status, json.loads(answer.read())
+        except urllib.error.HTTPError as error:
+            with error:
+                return error.code, json.loads(error.read())
+
+    def get(self, path: str) -> Any:
+        status, answer = self.ask(path)
+        assert status == 200, answer
+        return answer
+
+    def ready(self) -> bool:
+        assert self.process.poll() is None, self.log.read_text()
+        try:
+            with urllib.request.urlopen(f"http://127.0.0.1:{find(self.site, 'tms:ur').port}/readyz", timeout=5):
+                return True
+        except urllib.error.URLError:
+            return False
+
+
+def spawn(site: Site, log: Path) -> subprocess.Popen[bytes]:
+    words = [sys.executable, "-m", "tms_core.run", "tms:ur"]
+    with log.open("ab") as file:
+        return subprocess.Popen(words, env={**os.environ, **environment.environment(site)}, stdout=file, stderr=file)
+
+
+@pytest.fixture
+def site(tmp_path: Path, own_domain: int) -> Iterator[Site]:
+    """A site of our own, and its environment for the ROS node of the test."""
+    file = tmp_path / "site.yaml"
+    port = ports_of(own_domain)
+    file.write_text(SITE.format(domain=own_domain, metrics=port, console=port + 90))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ROS_DOMAIN_ID", str(own_domain))
+        patch.setenv("TMS_STATE", str(tmp_path / "state"))
+        site = load_site(str(file))
+        for key, value in environment.environment(site).items():
+            patch.setenv(key, value)
+        yield site
+
+
+@pytest.fixture
+def console(site: Site, tmp_path: Path) -> Iterator[Console]:
+    running = Console(site, spawn(site, tmp_path / "log.txt"), tmp_path / "log.txt")
+    try:
+        until(running.ready, "/readyz 200")
+        yield running
+    finally:
+        running.process.kill()
+        running.process.wait(10)
+
+
+@pytest.fixture
+def ros(site: Site) -> Iterator[Ros]:
+    node = Ros("peers_of_ur")
+    yield node
+    node.close()
+
+
+def test_state_shows_what_is_published(console: Console, ros: Ros) -> None:
+    state = console.get("/api/state")
+    assert state["machines"][0]["state"] == "silent"
+    machine = ros.publisher(MachineState, "/zx200/rc/state", depth=1, latched=True)
+    runs = ros.publisher(RunStates, "/tms/runs", depth=1, latched=True)
+    hosts = ros.publisher(Processes, "/tms/host/processes", depth=10, latched=True)
+    machine.publish(
+        MachineState(machine="zx200", ready=True, moving=True, goal="ab", joint_names=["swing_joint"],
+                     positions=[-1.5], velocities=[0.25], age=0.1)
+    )  # fmt: skip
+    run = RunState(
+        run_id="r-1", task_id=4, state="running", machines=["zx200"], reason="turning", started_at=Time(sec=9)
+    )
+    runs.publish(RunStates(runs=[run]))
+    for name in ("pc1", "pc2"):
+        hosts.publish(Processes(host=name, processes=[Process(name="tms:ts", state="RUNNING", pid=7, uptime=3.0)]))
+
+    def heard() -> bool:
+        state = console.get("/api/state")
+        return state["machines"][0]["state"] == "moving" and bool(state["runs"]) and len(state["hosts"]) == 2
+
+    until(heard, "everything published is in the state")
+    state = console.get("/api/state")
+    assert state["machines"][0]["joints"] == [{"name": "swing_joint", "position": -1.5, "velocity": 0.25}]
+    assert state["scheduler"]["alive"]
+    assert (state["runs"][0]["run_id"], state["runs"][0]["reason"]) == ("r-1", "turning")
+    assert state["runs"][0]["started_at"] == "1970-01-01T00:00:09Z"
+    assert [host["name"] for host in state["hosts"]] == ["pc1", "pc2"]
+    assert state["hosts"][0]["processes"][0]["uptime"] >= 3.0
+    until(lambda: console.get("/api/state")["machines"][0]["state"] == "silent", "silence is told")
+
+
+def test_stored_things(console: Console, ros: Ros) -> None:
+    task = Task(task_id=4, model_name="zx200", description="掘削", task_sequence="<root/>", added_at=Time(sec=1))
+    value = Parameter(
+        name="angle", value=ParameterValue(type=ParameterType.PARAMETER_DOUBLE_ARRAY, double_array_value=[1.0, 2.5])
+    )
+
+    def get_task(request: Any, response: Any) -> Any:
+        if request.task_id == 4:
+            response.task = task
+        else:
+            response.error_code, response.error_msg = "TASK_MISSING", "there is no such task"
+        return response
+
+    def events(request: Any, response: Any) -> Any:
+        response.events = [Event(run_id=request.run_id, number=request.after + 1, kind="goal", values=[value])]
+        return response
+
+    ros.offer(ListTasks, "/tms/db/list_tasks", lambda _, r: ListTasks.Response(tasks=[task]))
+    ros.offer(GetTask, "/tms/db/get_task", get_task)
+    ros.offer(ListRuns, "/tms/db/list_runs", lambda q, r: ListRuns.Response(runs=[Run(run_id="r")] * q.limit))
+    ros.offer(ListEvents, "/tms/db/list_events", events)
+    records = [Record(model_name="zx200", record_name="pose", type="static", values=[value])]
+    ros.offer(ListParameters, "/tms/db/list_parameters", lambda _, r: ListParameters.Response(records=records))
+    assert console.get("/api/tasks")[0]["description"] == "掘削"
+    assert console.get("/api/tasks/4")["xml"] == "<root/>"
+    assert console.ask("/api/tasks/5") == (404, {"code": "TASK_MISSING", "message": "there is no such task"})
+    assert [run["ended_at"] for run in console.get("/api/runs?limit=3")] == [None] * 3
+    event = console.get("/api/runs/r-1/events?after=6")[0]
+    assert (event["number"], event["values"]) == (7, {"angle": [1.0, 2.5]})
+    assert console.get("/api/parameters")[0]["values"] == {"angle": [1.0, 2.5]}
+
+
+def test_commands(console: Console, ros: Ros) -> None:
+    cancelled: list[str] = []
+
+    def execute(goal: Goal) -> Ended:
+        if goal.request.task_id == 9:
+            refused = ExecuteTask.Result(outcome="refused", error_code="MACHINE_BUSY", error_msg="zx200 is in run r-1")
+            return Outcome.ABORTED, refused
+        goal.publish(ExecuteTask.Feedback(run_id="r-1", state="running"))
+        goal.cancelled.wait(LIMIT)
+        return Outcome.CANCELED, ExecuteTask.Result(run_id="r-1", outcome="cancelled")
+
+    def cancel(request: Any, response: Any) -> Any:
+        cancelled.append(request.run_id)
+        return response
+
+    ros.serve(ExecuteTask, "/tms/execute_task", execute)
+    ros.offer(CancelRun, "/tms/cancel_run", cancel)
+    assert console.ask("/api/runs", {"task_id": 4}) == (202, {"run_id": "r-1"})
+    busy = (409, {"code": "MACHINE_BUSY", "message": "zx200 is in run r-1"})
+    assert console.ask("/api/runs", {"task_id": 9}) == busy
+    assert console.ask("/api/runs/r-1/cancel", {}) == (202, {"run_id": "r-1"})
+    assert cancelled == ["r-1"]
+    status, answer = console.ask("/api/runs", {"task_id": 4}, Origin="http://evil.example")
+    assert (status, answer["code"]) == (403, "FOREIGN_ORIGIN")
+
+
+def test_modules_away(console: Console) -> None:
+    status, answer = console.ask("/api/tasks")
+    assert (status, answer["code"]) == (503, "NO_SERVER")
+    assert "/tms/db/list_tasks" in answer["message"]
+
+
+def test_sigterm_ends_it_while_consoles_look(console: Console) -> None:
+    address = ("127.0.0.1", console.site.file.ports.console)
+    with socket.create_connection(address, LIMIT) as reader, socket.create_connection(address, LIMIT) as stuck:
+        for each in (reader, stuck):
+            each.sendall(f"GET /api/events HTTP/1.1\r\nHost: 127.0.0.1:{address[1]}\r\n\r\n".encode())
+        text = b""
+        while b"event: state" not in text:
+            text += reader.recv(65536)
+        console.process.send_signal(signal.SIGTERM)
+        assert console.process.wait(LIMIT) == 0, console.log.read_text()
+    assert "Traceback" not in console.log.read_text()
+
+
+def test_port_taken_is_one_line(site: Site, tmp_path: Path) -> None:
+    log = tmp_path / "log.txt"
+    with socket.create_server(("127.0.0.1", site.file.ports.console)):
+        process = spawn(site, log)
+        try:
+            assert process.wait(LIMIT) == 1
+        finally:
+            process.kill()
+            process.wait(10)
+    lines = [line for line in log.read_text().splitlines() if line]
+    assert len(lines) == 1, lines
+    assert f"port {site.file.ports.console}" in lines[0]
+    assert "ports.console" in lines[0]

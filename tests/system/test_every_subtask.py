@@ -1,0 +1,62 @@
+"""Every subtask of every model runs once on the stand-in, with its example record: loops over configs/."""
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import yaml
+
+from conftest import PROJECT, Mesh, ports_of, running, site_data
+from tms_core.config import CONFIGS, MachineModel, parse, read_yaml
+
+pytestmark = [pytest.mark.system, pytest.mark.timeout(300)]
+MODELS = sorted(path.stem for path in (CONFIGS / "machines").glob("*.yaml"))
+SPEED = 25.0  # times real time
+AT_ONCE = 5  # subtasks a tree: each is a process, and all of a tree are started at once
+
+
+def instance(model: str) -> str:
+    """The machine whose records configs/parameters/<model>.yaml holds."""
+    names = {record["model_name"] for record in read_yaml(CONFIGS / "parameters" / f"{model}.yaml")}
+    assert len(names) == 1, f"{model}.yaml holds records of {names}"
+    return str(names.pop())
+
+
+def trees(model: str, machine: str) -> list[str]:
+    """Trees that together hold one leaf for each subtask of the model."""
+    uses = parse(CONFIGS / "machines" / f"{model}.yaml", MachineModel)
+    leaves = [
+        f'<Action ID="LeafNode{model.capitalize()}" model_name="{machine}" subtask_name="{action}" '
+        f'record_name="{uses.subtask(action).example}"/>'
+        for action in uses.subtasks
+    ]
+    parts = ["".join(leaves[i : i + AT_ONCE]) for i in range(0, len(leaves), AT_ONCE)]
+    return [
+        f'<root main_tree_to_execute="T"><BehaviorTree ID="T"><Sequence>{part}</Sequence></BehaviorTree></root>'
+        for part in parts
+    ]
+
+
+@pytest.fixture(params=MODELS)
+def model(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
+
+
+@pytest.fixture
+def machine_mesh(model: str, own_domain: int, tmp_path: Path) -> Iterator[Mesh]:
+    """A mesh with one machine of the model."""
+    machines = {instance(model): {"model": model}}
+    data = site_data(own_domain, ports_of(own_domain), name="every", machines=machines, sim={"speed": SPEED})
+    (tmp_path / "site.yaml").write_text(yaml.safe_dump(data))
+    with running(Mesh(tmp_path / "site.yaml", tmp_path / "state")) as mesh:
+        yield mesh
+
+
+def test_every_subtask_runs_once(model: str, machine_mesh: Mesh, tmp_path: Path) -> None:
+    machine_mesh.tms("param", "load", str(PROJECT / "configs" / "parameters" / f"{model}.yaml"))
+    for number, tree in enumerate(trees(model, instance(model)), 1):
+        (tmp_path / "tree.xml").write_text(tree)
+        machine_mesh.tms("task", "add", str(tmp_path / "tree.xml"))
+        done = machine_mesh.tms("run", str(number), "--wait", "--json", expect=None, limit=240)
+        assert json.loads(done.stdout)["outcome"] == "success", done.stdout

@@ -1,0 +1,120 @@
+"""What deploy/FAILURES.md promises, on real processes; `make drill` tries it at every leaf and measures."""
+
+import json
+import os
+import signal
+from contextlib import closing, suppress
+from pathlib import Path
+
+import psutil
+import pytest
+from test_mesh import CHANGE_POSE, events, newest, processes, run, stops, swinging
+from test_stop import rearm, state_of
+
+from conftest import PROJECT, Mesh, wait_until
+from tms_core.config import Site, load_site
+from tms_core.ros import Ros
+from tms_host.supervisor import Supervisor
+
+pytestmark = [pytest.mark.system, pytest.mark.timeout(300)]
+
+
+def wait_ready(mesh: Mesh) -> None:
+    wait_until(lambda: mesh.tms("status", expect=None).returncode == 0, 60, "the mesh is ready again")
+
+
+@pytest.mark.parametrize("name", ["zx200:rp", "zx200:rc"])
+def test_a_run_goes_on_after_the_loss_of_planner_or_gateway(mesh: Mesh, node: Ros, name: str) -> None:
+    wait_ready(mesh)
+    old = processes(mesh)[name]["pid"]
+    with swinging(mesh, node) as client:
+        os.kill(old, signal.SIGKILL)
+        out, _ = client.communicate(timeout=150)
+    answer = json.loads(out)
+    assert answer["outcome"] == "success", answer
+    seen = stops(mesh, answer["run_id"])
+    assert seen and all(text.startswith("zx200 stood after") for text in seen)
+    assert processes(mesh)[name]["pid"] not in (0, old)
+
+
+def test_a_run_does_not_need_the_store_and_its_history_comes_later(mesh: Mesh, node: Ros) -> None:
+    run(mesh, "1")
+    with swinging(mesh, node) as client:
+        run_id = newest(mesh)
+        known = len(events(mesh, run_id))
+        mesh.tms("stop-process", "tms:store")
+        spool = mesh.state / "ts" / "journal"
+        wait_until(lambda: spool.stat().st_size > 0, 60, "events wait on disk")
+        mesh.tms("start", "tms:store")
+        out, _ = client.communicate(timeout=150)
+    assert json.loads(out)["outcome"] == "success"
+    wait_until(lambda: spool.stat().st_size == 0, 60, "the events are delivered")
+    rows = events(mesh, run_id)
+    assert [row["number"] for row in rows] == list(range(1, len(rows) + 1))
+    assert len(rows) > known and rows[-1]["text"] == "success"
+
+
+def test_a_process_that_ends_again_and_again_fails_its_leaf_and_nothing_else(mesh: Mesh, node: Ros) -> None:
+    run(mesh, "1")
+    others = {name: row["pid"] for name, row in processes(mesh).items() if name != CHANGE_POSE}
+    with swinging(mesh, node) as client:
+        crash_until_fatal(mesh, CHANGE_POSE)
+        out, _ = client.communicate(timeout=150)
+    answer = json.loads(out)
+    assert answer["outcome"] == "failure"
+    assert f"process {CHANGE_POSE} is FATAL, see `tms logs {CHANGE_POSE}`" in answer["error_msg"]
+    assert any(row["kind"] == "alarm" and "FATAL" in row["text"] for row in events(mesh, answer["run_id"]))
+    assert CHANGE_POSE in mesh.tms("status", expect=1).stdout
+    assert {name: row["pid"] for name, row in processes(mesh).items() if name != CHANGE_POSE} == others
+    mesh.tms("restart", CHANGE_POSE)
+    assert run(mesh, "1")["outcome"] == "success"
+
+
+def crash_until_fatal(mesh: Mesh, name: str) -> None:
+    """Kill a process as soon as it lives, as a bug at its start would."""
+    with closing(Supervisor(load_site_of(mesh))) as supervisor:
+
+        def fatal() -> bool:
+            row = next(row for row in supervisor.processes() if row.name == name)
+            if row.pid:
+                with suppress(ProcessLookupError):
+                    os.kill(row.pid, signal.SIGKILL)
+            return row.state == "FATAL"
+
+        wait_until(fatal, 90, f"{name} is given up")
+
+
+def load_site_of(mesh: Mesh) -> Site:
+    with pytest.MonkeyPatch.context() as patch:
+        for key, value in mesh.env.items():
+            patch.setenv(key, value)
+        return load_site()
+
+
+def test_a_stop_gets_through_to_a_tree_that_spins(mesh: Mesh, node: Ros) -> None:
+    file = PROJECT / "tests" / "data" / "spin.xml"
+    task = str(json.loads(mesh.tms("task", "add", str(file), "--json").stdout)["task_id"])
+    run(mesh, "1")
+    with swinging(mesh, node, task) as client:
+        mesh.tms("stop")
+        out, _ = client.communicate(timeout=60)
+    answer = json.loads(out)
+    assert answer["outcome"] == "cancelled" and "software stop" in answer["error_msg"]
+    rearm(mesh)
+    mesh.tms("task", "rm", task)
+
+
+def test_without_supervisord_everything_ends_and_the_run_can_be_given_up(mesh: Mesh, node: Ros) -> None:
+    pids = [row["pid"] for row in processes(mesh).values() if row["pid"]]
+    with swinging(mesh, node):
+        run_id = newest(mesh)
+        os.kill(int((mesh.state / "supervisord.pid").read_text()), signal.SIGKILL)
+        wait_until(lambda: not any(map(psutil.pid_exists, pids)), 30, "the processes have ended")
+    mesh.tms("up")
+    wait_ready(mesh)
+    wait_until(lambda: state_of(mesh, run_id) == "interrupted", 60, "the run is closed as interrupted")
+    mesh.tms("abandon", run_id)
+    latched = json.loads(Path(mesh.state, "rc", "zx200.json").read_text())["latched"]
+    if latched:
+        rearm(mesh)
+    assert run(mesh, "1")["outcome"] == "success"

@@ -1,0 +1,40 @@
+"""The README's `tms` commands work as they stand, one after the other."""
+
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from conftest import PROJECT, Mesh
+
+pytestmark = pytest.mark.system
+
+README = (PROJECT / "README.md").read_text()
+BLOCKS = re.findall(r"```sh\n(.*?)```", README, re.DOTALL)
+TMS = [line.split("#")[0].strip() for block in BLOCKS for line in block.splitlines() if line.startswith("tms ")]
+
+
+def test_the_tms_commands_in_their_order(mesh: Mesh, tmp_path: Path) -> None:
+    assert len(TMS) > 10
+    folder = Path(sys.executable).parent
+    env = {**mesh.env, "PATH": f"{folder}:{os.environ['PATH']}"}
+    shutil.copytree(PROJECT / "configs", tmp_path / "configs")  # some commands write there
+    for line in TMS:
+        cancels = line == "tms cancel last"  # the run before it may have ended by then
+        done = subprocess.run(
+            ["sh", "-c", line],
+            env=env,
+            cwd=tmp_path,
+            input="a long password\n" * 2 if line.startswith("tms user add") else "y\n",
+            capture_output=True,
+            text=True,
+            timeout=90,
+            check=False,
+        )
+        assert done.returncode == 0 or (cancels and "has ended" in done.stderr), f"{line}\n{done.stderr}"
+        assert shlex.split(line)[0] == "tms"

@@ -1,0 +1,105 @@
+"""Stop, latch, re-arm, fencing numbers, and a scheduler that is killed, on real processes."""
+
+import json
+import os
+import signal
+import threading
+from array import array
+from typing import Any
+
+import pytest
+from builtin_interfaces.msg import Duration
+from control_msgs.action import FollowJointTrajectory
+from std_msgs.msg import Bool
+from test_mesh import events, newest, processes, run, stops, swinging
+from tms_msg_rc.msg import MachineState
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+from conftest import Mesh, wait_until
+from tms_core.fence import Owner
+from tms_core.ros import Outcome, Ros
+
+pytestmark = pytest.mark.system
+JOINTS = ["swing_joint", "boom_joint", "arm_joint", "bucket_joint", "bucket_end_joint"]
+
+
+def ask_to_move(node: Ros, goal_id: bytes | None = None) -> Any:
+    """A foreign client's goal: a little swing. Returns the ended call."""
+    peer = node.peer(FollowJointTrajectory, "/zx200/rc/follow_joint_trajectory")
+    peer.wait_ready(10)
+    point = JointTrajectoryPoint(
+        positions=array("d", [0.2, -0.9, 2.0, 0.5, 0.0]), time_from_start=Duration(sec=8, nanosec=0)
+    )
+    goal = FollowJointTrajectory.Goal(trajectory=JointTrajectory(joint_names=JOINTS, points=[point]))
+    call = peer.send(goal, goal_id=goal_id)
+    assert call.wait_for(lambda: call.outcome is not None, 40)
+    return call
+
+
+def rearm(mesh: Mesh) -> None:
+    wait_until(lambda: mesh.tms("rearm", "zx200", "--yes", expect=None).returncode == 0, 30, "zx200 can be re-armed")
+
+
+def test_after_a_software_stop_nothing_moves_until_somebody_rearms(mesh: Mesh, node: Ros) -> None:
+    with swinging(mesh, node) as client:
+        receipts = json.loads(mesh.tms("stop", "--json").stdout)
+        out, _ = client.communicate(timeout=60)
+    assert [(row["machine"], row["confirmed"], row["latched"]) for row in receipts] == [("zx200", True, True)]
+    answer = json.loads(out)
+    assert answer["outcome"] == "cancelled"
+    assert any("software stop" in row["text"] for row in events(mesh, answer["run_id"]))
+    refused = ask_to_move(node)
+    assert refused.outcome is Outcome.ABORTED and "re-arm" in refused.result.error_string
+    assert "rearm" in mesh.tms("run", "1", "--wait", expect=1).stderr
+    rearm(mesh)
+    assert ask_to_move(node).outcome is Outcome.SUCCEEDED
+
+
+def test_rearming_takes_two_steps_and_is_refused_while_the_stop_is_pressed(mesh: Mesh, node: Ros) -> None:
+    latched = threading.Event()
+    heard = node.subscribe(MachineState, "/zx200/rc/state", lambda state: state.latch and latched.set(), latched=True)
+    button = node.publisher(Bool, "/emergency_signal")
+    timer = node.every(0.01, lambda: button.publish(Bool(data=True)))  # as the C++ button does
+    try:
+        assert latched.wait(20)
+        assert "still pressed" in mesh.tms("rearm", "zx200", "--yes", expect=1).stderr
+    finally:
+        node.node.destroy_timer(timer)
+        button.publish(Bool(data=False))
+        node.node.destroy_subscription(heard)
+    rearm(mesh)
+    assert "nothing to do" in mesh.tms("rearm", "zx200", "--yes", expect=1).stderr
+
+
+def test_goals_of_an_abandoned_run_are_refused(mesh: Mesh, node: Ros) -> None:
+    refused = ask_to_move(node, Owner(7, 1, 1).goal_id())
+    assert refused.outcome is Outcome.ABORTED and "no motion permit" in refused.result.error_string
+    with swinging(mesh, node):
+        stale = ask_to_move(node, Owner(7, 1, 1).goal_id())
+        foreign = ask_to_move(node)
+        mesh.tms("cancel", newest(mesh))
+    assert "abandoned run" in stale.result.error_string
+    assert "held by a run" in foreign.result.error_string
+
+
+def test_a_killed_scheduler_leaves_a_run_that_can_be_resumed(mesh: Mesh, node: Ros) -> None:
+    run(mesh, "1")
+    pid = processes(mesh)["tms:ts"]["pid"]
+    with swinging(mesh, node):
+        run_id = newest(mesh)
+        os.kill(pid, signal.SIGKILL)
+        wait_until(lambda: state_of(mesh, run_id) == "interrupted", 40, "the run is closed as interrupted")
+    seen = stops(mesh, run_id)
+    assert seen and all(text.startswith("zx200 stood after") for text in seen)
+    rearm(mesh)
+    wait_until(lambda: mesh.tms("status", expect=None).returncode == 0, 30, "the mesh is ready again")
+    done = mesh.tms("resume", run_id, "--yes", "--wait", "--json", limit=120)
+    assert json.loads(done.stdout)["outcome"] == "success"
+    numbers = [row["number"] for row in events(mesh, run_id)]
+    assert numbers == sorted(set(numbers))
+    assert "no run" in mesh.tms("abandon", run_id, expect=1).stderr
+
+
+def state_of(mesh: Mesh, run_id: str) -> str:
+    rows = json.loads(mesh.tms("runs", "--limit", "5", "--json").stdout)
+    return next((row["state"] for row in rows if row["run_id"] == run_id), "")

@@ -1,0 +1,93 @@
+"""Image, compose files, firewall and unit with the checkers of those who made them; none of them starts anything."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+
+from conftest import PROJECT
+from tms_core.config import load_site
+from tms_core.pcs import ROLES
+
+DEPLOY = PROJECT / "deploy"
+COMPOSE = sorted(path for path in (DEPLOY / "compose").glob("*.yml") if path.stem != "base")
+
+
+def run(*words: str, **variables: str) -> subprocess.CompletedProcess[str]:
+    environment = {**os.environ, **variables}
+    return subprocess.run(words, env=environment, capture_output=True, text=True, timeout=60, check=False)
+
+
+def compose() -> list[str]:
+    """The client of Compose that this PC has, new or old; none: the test is skipped."""
+    if shutil.which("docker") and run("docker", "compose", "version").returncode == 0:
+        return ["docker", "compose"]
+    if not shutil.which("docker-compose"):
+        pytest.skip("neither `docker compose` nor docker-compose is there")
+    return ["docker-compose"]
+
+
+def test_the_image_is_as_hadolint_wants_it() -> None:
+    done = run(str(Path(sys.executable).parent / "hadolint"), str(DEPLOY / "Dockerfile"))
+    assert done.returncode == 0, done.stdout
+
+
+def test_the_image_runs_as_nobody_special_and_without_the_gpl_store() -> None:
+    text = (DEPLOY / "Dockerfile").read_text()
+    last = text.rindex("\nFROM ")
+    assert text[last:].strip() == "FROM site", "what is built without a target is the site's image"
+    site = text[text.index("AS site") : text.index("AS demo")]
+    assert "USER 990" in site and "venv-store" not in site
+
+
+def test_every_role_has_a_compose_file() -> None:
+    assert {path.stem for path in COMPOSE} == set(ROLES)
+
+
+@pytest.mark.parametrize("path", COMPOSE, ids=lambda path: path.stem)
+def test_compose_reads_it(path: Path) -> None:
+    words = [*compose(), "-p", f"tms-{path.stem}", "-f", str(path), "config"]
+    done = run(*words, TMS_SITE_NAME="yard", TMS_PC=path.stem)
+    assert done.returncode == 0 and not done.stderr.strip(), done.stderr
+    services = yaml.safe_load(done.stdout)["services"]
+    for name, service in services.items():
+        assert service.get("restart") == "unless-stopped", f"{name}: restart"
+        assert "mem_limit" in service, f"{name}: mem_limit"
+        assert service.get("cap_drop") == ["ALL"], f"{name}: cap_drop"
+        for published in service.get("ports", []):
+            host = published.get("host_ip") if isinstance(published, dict) else str(published).split(":")[0]
+            assert host == "127.0.0.1", f"{name}: {published} listens beyond loopback"
+
+
+def test_a_role_without_a_site_is_refused() -> None:
+    words = [*compose(), "-f", str(DEPLOY / "compose" / "machine.yml"), "config"]
+    done = run(*words, TMS_SITE_NAME="", TMS_PC="")
+    assert done.returncode != 0 and "TMS_" in done.stderr
+
+
+def test_secrets_are_made_once_and_never_shown(tmp_path: Path) -> None:
+    folder = tmp_path / "compose"
+    folder.mkdir()
+    script = shutil.copy(DEPLOY / "compose" / "secrets.sh", folder)
+    first = run("sh", str(script))
+    made = {path.name: path.read_text() for path in (folder / "secrets").iterdir()}
+    assert set(made) == {"mongodb_password", "mongodb_key", "grafana_password", "mongodb_uri"}
+    run("sh", str(script))
+    assert {path.name: path.read_text() for path in (folder / "secrets").iterdir()} == made
+    assert made["mongodb_password"] in made["mongodb_uri"] and made["mongodb_password"] not in first.stdout
+    assert run("git", "-C", str(PROJECT), "check-ignore", "-q", "deploy/compose/secrets/x").returncode == 0
+
+
+@pytest.mark.skipif(not shutil.which("nft") or os.getuid() != 0, reason="nft checks only for root")
+def test_the_firewall_is_valid() -> None:
+    done = run("nft", "-c", "-f", str(DEPLOY / "network" / "nftables.conf"))
+    assert done.returncode == 0, done.stderr
+
+
+def test_the_example_site_is_right_and_listens_on_its_own_addresses_only() -> None:
+    site = load_site("yard")
+    assert set(site.file.pcs) == set(ROLES) and site.file.bind == "127.0.0.1"

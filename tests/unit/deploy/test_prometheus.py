@@ -1,0 +1,75 @@
+"""Rules and configuration with Prometheus' own checker, and that nothing asks for metrics that nobody has."""
+
+import json
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from conftest import PROJECT
+from tms_cli import monitoring
+from tms_core.config import load_site
+from tms_core.processes import table
+
+FOLDER = PROJECT / "deploy" / "prometheus"
+DASHBOARDS = sorted((PROJECT / "deploy" / "grafana" / "dashboards").glob("*.json"))
+
+needs_promtool = pytest.mark.skipif(not shutil.which("promtool"), reason="promtool is in Debian's package prometheus")
+
+
+def check(*words: str, cwd: Path = FOLDER) -> None:
+    done = subprocess.run(["promtool", *words], cwd=cwd, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+@needs_promtool
+def test_the_rules_fire_when_they_must_and_only_then() -> None:
+    check("test", "rules", "rules_test.yml")
+
+
+@needs_promtool
+def test_the_rendered_configuration_is_valid(tmp_path: Path) -> None:
+    monitoring.render(load_site(), tmp_path, alertmanager="127.0.0.1:9093")
+    check("check", "config", "prometheus.yml", cwd=tmp_path)
+
+
+@pytest.mark.skipif(not shutil.which("amtool"), reason="amtool is in Debian's package prometheus-alertmanager")
+def test_the_example_of_the_alertmanager_is_valid() -> None:
+    words = ["amtool", "check-config", str(FOLDER / "alertmanager.example.yml")]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 0, done.stderr
+
+
+def test_every_process_with_metrics_is_a_target_with_its_labels() -> None:
+    site = load_site()
+    found = {str(t["labels"]["process"]): t for t in monitoring.targets(site)}  # type: ignore[index]
+    assert set(found) == {row.full for row in table(site) if row.ours}
+    rc = found["zx200:rc"]
+    assert rc["labels"] == {
+        "site": "demo", "process": "zx200:rc", "role": "machine", "machine": "zx200", "pc": "", "on_demand": "no",
+    }  # fmt: skip
+
+
+def test_a_chosen_alertmanager_outlives_the_next_start(tmp_path: Path) -> None:
+    site = load_site()
+    monitoring.render(site, tmp_path, alertmanager="10.0.0.9:9093")
+    monitoring.render(site, tmp_path)
+    assert json.loads((tmp_path / "alertmanagers.json").read_text()) == [{"targets": ["10.0.0.9:9093"]}]
+
+
+def test_every_alert_is_tried_and_speaks_both_languages() -> None:
+    rules = (FOLDER / "rules.yml").read_text(encoding="utf-8")
+    tried = (FOLDER / "rules_test.yml").read_text(encoding="utf-8")
+    alerts = re.findall(r"- alert: (\w+)", rules)
+    assert alerts and [name for name in alerts if name not in tried] == []
+    for kind in ("summary:", "summary_ja:", "action:", "severity:"):
+        assert rules.count(kind) == len(alerts), kind
+
+
+def test_dashboards_have_their_own_names_and_the_provisioned_source() -> None:
+    boards = [json.loads(path.read_text(encoding="utf-8")) for path in DASHBOARDS]
+    assert [board["uid"] for board in boards] == [path.stem for path in DASHBOARDS]
+    assert {panel["datasource"]["uid"] for board in boards for panel in board["panels"]} == {"tms"}
+    assert len(boards) == 4 and all(board["panels"] for board in boards)

@@ -1,0 +1,67 @@
+"""`tms demo`: its steps in order, and exit code 0 only on success."""
+
+from typing import Any
+
+import pytest
+from tms_msg_db.srv import AddTask
+
+from tms_cli import stored_records
+from tms_cli.commands import demo, run
+from tms_core.errors import TmsError
+
+
+@pytest.fixture
+def steps(mesh, monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    done: list[str] = []
+
+    def step(name: str, answer: Any = None) -> Any:
+        def take(*_: Any, **__: Any) -> Any:
+            done.append(name)
+            return answer
+
+        return take
+
+    monkeypatch.setattr(demo.mesh, "up", step("up", True))
+    monkeypatch.setattr(demo.mesh, "wait_ready", step("ready"))
+    monkeypatch.setattr(
+        stored_records, "load_file", step("records", {"created": [], "changed": [], "unchanged": ["a"]})
+    )
+    mesh.answers["/tms/db/add_task"] = lambda **_: step("task")() or AddTask.Response(task_id=4, already_stored=True)
+    return done
+
+
+class Ran:
+    outcome = "success"
+
+    def __init__(self, node: Any, task_id: int, ignore_warnings: bool) -> None:
+        assert task_id == 4
+        assert not ignore_warnings
+
+    def finish(self, display: Any) -> run.End:
+        return run.End("r1", self.outcome, "", "", 20.0)
+
+
+@pytest.mark.parametrize(("outcome", "code"), [("success", 0), ("failure", 1), ("refused", 1)])
+def test_the_steps_and_the_exit_code(steps, tms, monkeypatch, outcome: str, code: int) -> None:
+    monkeypatch.setattr(Ran, "outcome", outcome)
+    monkeypatch.setattr(run, "Runner", Ran)
+    end = tms(demo.command)
+    assert steps == ["up", "ready", "records", "task"]
+    assert end.exit_code == code
+    assert "tms events r1" in end.stdout
+    assert "http://127.0.0.1:8080" in end.stderr
+    assert "make down" in end.stderr
+
+
+def test_a_mesh_that_does_not_come_up_ends_the_demo(steps, tms, monkeypatch) -> None:
+    def fails(*_: Any) -> None:
+        raise TmsError("tms:db is not ready after 60 s: no store; see `tms logs tms:db`")
+
+    monkeypatch.setattr(demo.mesh, "wait_ready", fails)
+    assert "tms logs tms:db" in str(tms(demo.command).exception)
+    assert "records" not in steps
+
+
+def test_the_files_of_the_demo_exist() -> None:
+    assert demo.PARAMETERS.is_file()
+    assert demo.TASK.is_file()

@@ -1,0 +1,122 @@
+"""`tms runs`, `tms events`, `tms cancel`: which run is meant, and how its history is shown."""
+
+import json
+from typing import Any
+
+import pytest
+from builtin_interfaces.msg import Time
+from tms_msg_db.msg import Event, Run
+from tms_msg_db.srv import ListEvents, ListRuns
+from tms_msg_ts.srv import CancelRun
+
+from tms_cli.commands import cancel, events, runs
+from tms_core.errors import RosError, TmsError
+from tms_core.values import to_parameters
+
+
+def made(run_id: str, state: str = "success", seconds: int | None = 4) -> Run:
+    ended = Time() if seconds is None else Time(sec=100 + seconds)
+    return Run(run_id=run_id, task_id=1, description="d", state=state, started_at=Time(sec=100), ended_at=ended)
+
+
+NEWEST, OLDER = made("20260102-b"), made("20260101-a", "failure")
+
+
+@pytest.mark.parametrize(
+    ("word", "found"), [("last", NEWEST), ("20260101", OLDER), ("20260102-b", NEWEST), ("20260101-a", OLDER)]
+)
+def test_a_run_may_be_shortened(word: str, found: Run) -> None:
+    assert runs.find_run([NEWEST, OLDER], word) is found
+
+
+def test_a_full_id_wins_over_longer_ones() -> None:
+    assert runs.find_run([made("ab"), made("a")], "a").run_id == "a"
+
+
+def test_an_unknown_or_unclear_run_is_an_error() -> None:
+    with pytest.raises(TmsError, match="there is no run 'x'"):
+        runs.find_run([NEWEST], "x")
+    with pytest.raises(TmsError, match="there is no run 'last'"):
+        runs.find_run([], "last")
+    with pytest.raises(TmsError, match="fits 2 runs"):
+        runs.find_run([NEWEST, OLDER], "2026")
+
+
+def test_runs_for_machines(mesh, tms) -> None:
+    mesh.answers["/tms/db/list_runs"] = ListRuns.Response(runs=[NEWEST])
+    (one,) = json.loads(tms(runs.command, "--limit", "1", "--json").stdout)
+    assert one["run_id"] == "20260102-b"
+    assert one["seconds"] == 4.0
+    assert one["machines"] == []
+    assert mesh.asked[0][1] == {"limit": 1}
+
+
+def test_runs_for_people(mesh, tms) -> None:
+    mesh.answers["/tms/db/list_runs"] = ListRuns.Response(runs=[NEWEST, OLDER])
+    lines = tms(runs.command).stdout.splitlines()
+    assert len(lines) == 3
+    assert "failure" in lines[2]
+
+
+def journal(count: int) -> Any:
+    entries = [
+        Event(run_id=NEWEST.run_id, number=n, kind="node", node="0.1", text="a -> b", values=to_parameters({"x": 1.5}))
+        for n in range(1, count + 1)
+    ]
+
+    def answer(run_id: str, after: int, limit: int) -> ListEvents.Response:
+        return ListEvents.Response(events=[entry for entry in entries if entry.number > after][:limit])
+
+    return answer
+
+
+def test_a_long_journal_is_read_page_by_page(mesh, tms) -> None:
+    mesh.answers["/tms/db/list_runs"] = ListRuns.Response(runs=[NEWEST])
+    mesh.answers["/tms/db/list_events"] = journal(2300)
+    document = json.loads(tms(events.command, "last", "--json").stdout)
+    assert [entry["number"] for entry in document] == list(range(1, 2301))
+    assert document[0]["values"] == {"x": 1.5}
+
+
+def test_follow_shows_all_and_returns_when_the_run_has_ended(mesh, tms) -> None:
+    mesh.answers["/tms/db/list_runs"] = ListRuns.Response(runs=[NEWEST])
+    mesh.answers["/tms/db/list_events"] = journal(3)
+    end = tms(events.command, "last", "--follow")
+    assert end.exit_code == 0
+    assert len(end.stdout.splitlines()) == 3
+    assert "0.1  a -> b  x=1.5" in end.stdout
+
+
+def test_follow_is_no_single_document(mesh, tms) -> None:
+    assert tms(events.command, "last", "--follow", "--json").exit_code == 2
+
+
+@pytest.mark.parametrize(("state", "code"), [("cancelled", 0), ("stop_unconfirmed", 1), ("success", 1)])
+def test_cancel_is_done_only_when_the_stop_was_seen(mesh, tms, state: str, code: int) -> None:
+    answers = iter([made("r1", "running", None), made("r1", "stopping", None), made("r1", state)])
+    mesh.answers["/tms/db/list_runs"] = lambda limit: ListRuns.Response(runs=[next(answers)])
+    mesh.answers["/tms/cancel_run"] = CancelRun.Response()
+    end = tms(cancel.command, "last", "--json")
+    assert end.exit_code == code
+    assert json.loads(end.stdout)["state"] == state
+
+
+def test_cancel_last_means_the_newest_active_run(mesh, tms) -> None:
+    answers = iter([[NEWEST, made("r1", "running", None)], [NEWEST, made("r1", "cancelled")]])
+    mesh.answers["/tms/db/list_runs"] = lambda limit: ListRuns.Response(runs=next(answers))
+    mesh.answers["/tms/cancel_run"] = CancelRun.Response()
+    assert tms(cancel.command, "last").exit_code == 0
+    assert ("/tms/cancel_run", {"run_id": "r1"}) in mesh.asked
+
+
+def test_cancel_says_when_nothing_is_to_be_cancelled(mesh, tms) -> None:
+    mesh.answers["/tms/db/list_runs"] = ListRuns.Response(runs=[NEWEST])
+    assert "no run is active" in str(tms(cancel.command, "last").exception)
+    assert "has ended already: success" in str(tms(cancel.command, "20260102").exception)
+
+
+def test_cancel_does_not_need_the_database(mesh, tms) -> None:
+    mesh.answers["/tms/cancel_run"] = CancelRun.Response()
+    end = tms(cancel.command, "r1")
+    assert ("/tms/cancel_run", {"run_id": "r1"}) in mesh.asked
+    assert isinstance(end.exception, RosError), "its end cannot be confirmed, and that is said"

@@ -1,0 +1,126 @@
+"""`tms` itself: help without ROS, exit codes, one line for an error."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+VERBS = (
+    "abandon", "answer", "cancel", "check", "completion", "demo", "drill", "events", "logs", "palette", "panel",
+    "param", "rearm", "resume", "run", "runs", "stop", "task", "user",
+)  # fmt: skip
+
+
+def tms(*words: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "tms_cli.main", *words], capture_output=True, text=True, timeout=30, check=False
+    )
+
+
+def test_help_lists_the_verbs_and_loads_no_ros() -> None:
+    code = (
+        "import sys; sys.argv = ['tms', '--help']\n"
+        "from tms_cli import main\n"
+        "try: main.main()\n"
+        "except SystemExit as end: assert not end.code\n"
+        "print([name for name in sys.modules if name.split('.')[0] in ('rclpy', 'rich', 'tms_msg_db')])\n"
+    )
+    end = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=30, check=True)
+    assert end.stdout.splitlines()[-1] == "[]"
+    for verb in VERBS:
+        assert f"\n  {verb} " in end.stdout
+
+
+def test_every_verb_has_help_with_an_example() -> None:
+    from click.testing import CliRunner
+
+    from tms_cli.main import tms as group
+
+    for verb in VERBS:
+        shown = CliRunner().invoke(group, [verb, "--help"]).output
+        assert "Example" in shown, verb
+
+
+def test_wrong_usage_is_exit_code_2() -> None:
+    end = tms("task", "nonsense")
+    assert end.returncode == 2
+    assert "Traceback" not in end.stderr
+
+
+def test_an_error_is_one_line_and_exit_code_1() -> None:
+    end = tms("task", "add", "/nowhere/task.xml")
+    assert (end.returncode, end.stdout) == (1, "")
+    (line,) = end.stderr.splitlines()
+    assert line.startswith("tms: /nowhere/task.xml: cannot be read")
+
+
+def test_the_list_of_verbs_speaks_the_language_of_the_locale(monkeypatch: pytest.MonkeyPatch) -> None:
+    from click.testing import CliRunner
+
+    from tms_cli.main import Verbs
+    from tms_cli.main import tms as group
+    from tms_cli.words import JAPANESE
+
+    assert isinstance(group, Verbs)
+    assert set(JAPANESE) == set(group.list_commands(None))  # type: ignore[arg-type]
+    monkeypatch.setenv("LC_ALL", "ja_JP.UTF-8")
+    assert JAPANESE["stop"] in CliRunner().invoke(group, ["--help"]).output
+    monkeypatch.setenv("LC_ALL", "C.UTF-8")
+    assert JAPANESE["stop"] not in CliRunner().invoke(group, ["--help"]).output
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_completion(shell: str) -> None:
+    done = tms("completion", shell)
+    assert done.returncode == 0
+    assert "_TMS_COMPLETE" in done.stdout
+    environment = {**os.environ, "_TMS_COMPLETE": "bash_complete", "COMP_WORDS": "tms rea", "COMP_CWORD": "1"}
+    found = subprocess.run(
+        [str(Path(sys.executable).parent / "tms")],
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=30,
+        check=False,
+    )
+    assert "plain,rearm" in found.stdout
+
+
+def test_no_colours_off_a_terminal() -> None:
+    done = tms("check")
+    assert "\x1b[" not in done.stdout + done.stderr
+
+
+def test_users_are_kept_as_hashes(tmp_path: Path) -> None:
+    from click.testing import CliRunner
+
+    from tms_cli.main import tms as group
+    from tms_ur.access import Access
+
+    file = str(tmp_path / "users.yaml")
+    run = CliRunner().invoke
+    words = ["user", "add", "mina", "--role", "operator", "--file", file]
+    assert run(group, words, input="long-enough\nlong-enough\n").exit_code == 0
+    made = run(group, ["user", "add", "logger", "--role", "viewer", "--token", "--file", file, "--json"])
+    token = json.loads(made.stdout)["token"]
+    text = Path(file).read_text()
+    assert "long-enough" not in text
+    assert token.partition(":")[2] not in text
+    assert Path(file).stat().st_mode & 0o777 == 0o600
+    access = Access(Path(file))
+    assert access.login("mina", "long-enough", "here")[1].role == "operator"
+    assert access.token(token, "here").name == "logger"
+    assert [row["name"] for row in json.loads(run(group, ["user", "list", "--file", file, "--json"]).stdout)] == [
+        "logger", "mina",
+    ]  # fmt: skip
+    assert run(group, ["user", "rm", "mina", "--file", file]).exit_code == 0
+    short = run(group, words, input="short\nshort\n")
+    assert "8 characters" in str(short.exception)
+
+
+def test_panel_tells_its_address() -> None:
+    done = tms("panel", "--task", "4", "--url")
+    assert done.stdout.endswith("/panel.html?task=4\n")

@@ -1,0 +1,65 @@
+"""What the README shows works: its subtask loads, its commands and make targets exist."""
+
+import importlib.util
+import re
+import shlex
+import sys
+from pathlib import Path
+
+import click
+import pytest
+
+from tms_cli.main import tms
+from tms_core.config import PROJECT
+from tms_core.subtask import Subtask
+
+README = (PROJECT / "README.md").read_text(encoding="utf-8")
+COMMANDS = sorted(
+    {line for block in re.findall(r"```sh\n(.*?)```", README, re.DOTALL) for line in block.splitlines()}
+    | set(re.findall(r"`(tms [a-z][^`]*)`", README))
+)
+
+
+def words(line: str) -> list[str]:
+    return shlex.split(line.split(" > ")[0].split(" and ")[0], comments=True)[1:]
+
+
+@pytest.mark.parametrize("line", [line for line in COMMANDS if line.startswith("tms ")])
+def test_commands_of_the_readme_parse(line: str) -> None:
+    command: click.Command = tms
+    given = words(line)
+    context = click.Context(tms)
+    while isinstance(command, click.Group):
+        name = given.pop(0)
+        found = command.get_command(context, name)
+        assert found is not None, f"there is no `{name}` in `{line}`"
+        command = found
+    command.make_context(command.name, given, parent=context)
+
+
+def test_make_targets_of_the_readme_exist() -> None:
+    makefile = (PROJECT / "Makefile").read_text(encoding="utf-8")
+    targets = set(re.findall(r"^\.PHONY: (.*)$", makefile, re.MULTILINE)[0].split())
+    assert set(re.findall(r"(?:`|^)make ([a-z][a-z-]*)", README, re.MULTILINE)) <= targets
+
+
+def test_the_subtask_of_the_readme_is_one(tmp_path: Path) -> None:
+    (code,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+    (tmp_path / "lift.py").write_text(code)
+    spec = importlib.util.spec_from_file_location("readme_lift", tmp_path / "lift.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules["readme_lift"] = module  # its type hints are looked up there
+    try:
+        spec.loader.exec_module(module)
+    finally:
+        del sys.modules["readme_lift"]
+    kind = module.lift.subtask
+    assert issubclass(kind, Subtask)
+    assert kind.params.model_validate({"boom": -1.0}).boom == -1.0
+
+
+def test_links_of_the_readme_lead_somewhere() -> None:
+    for target in re.findall(r"\]\(([^)#]+)\)", README):
+        assert (PROJECT / target).exists(), target

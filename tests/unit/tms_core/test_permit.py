@@ -1,0 +1,64 @@
+"""What a watcher makes of the news of a lease; DDS itself is replaced."""
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from tms_msg_rc.msg import Permit as Message
+
+from tms_core.permit import GRACE, Link
+
+GOAL = [7] * 16
+
+
+class Dds:
+    """What a Link needs of Ros: keeps the callbacks, and decides whether this process was late."""
+
+    def __init__(self) -> None:
+        self.pulse = self
+        self.was_late = False
+        self.later: list[tuple[float, Callable[[], None]]] = []
+
+    def late(self) -> bool:
+        return self.was_late
+
+    def after(self, seconds: float, step: Callable[[], None]) -> None:
+        self.later.append((seconds, step))
+
+    def lease_subscribe(self, _type: Any, _topic: str, _lease: float, heard: Any, alive: Any) -> None:
+        self.heard, self.alive = heard, alive
+
+
+@pytest.fixture
+def dds() -> Dds:
+    return Dds()
+
+
+@pytest.fixture
+def link(dds: Dds) -> tuple[Link, list[bool]]:
+    seen: list[bool] = []
+    made = Link(dds, "zx200", "rc", lambda link: seen.append(link.alive))  # type: ignore[arg-type]
+    dds.heard(Message(process="rc", goal=GOAL))
+    dds.alive(1)
+    return made, seen
+
+
+def test_a_lapsed_lease_is_a_loss_at_once(dds: Dds, link: tuple[Link, list[bool]]) -> None:
+    dds.alive(0)
+    assert link[1][-1] is False and not link[0].alive and not dds.later
+
+
+def test_a_watcher_that_was_late_itself_waits_for_a_sign_of_life(dds: Dds, link: tuple[Link, list[bool]]) -> None:
+    dds.was_late = True
+    dds.alive(0)
+    assert link[0].alive and dds.later[0][0] == GRACE
+    dds.alive(1)
+    dds.later[0][1]()
+    assert link[0].alive and all(link[1])
+
+
+def test_it_does_not_wait_for_ever(dds: Dds, link: tuple[Link, list[bool]]) -> None:
+    dds.was_late = True
+    dds.alive(0)
+    dds.later[0][1]()
+    assert not link[0].alive and link[1][-1] is False

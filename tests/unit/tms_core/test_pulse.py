@@ -1,0 +1,49 @@
+"""The thread that asserts leases: what counts as late, and what it does when the executor stands still."""
+
+import threading
+
+import pytest
+
+from conftest import wait_until
+from tms_core.pulse import BEAT, LATE, REMEMBERED, Lateness, Pulse, Step
+
+
+def test_a_late_beat_is_remembered_for_a_while() -> None:
+    one = Lateness()
+    one.beat(10.0)
+    one.beat(10.0 + BEAT)
+    assert not one.late(10.0 + BEAT)
+    one.beat(10.5)
+    assert one.late(10.5) and one.late(10.5 + REMEMBERED / 2)
+    for step in range(1, 40):
+        one.beat(10.5 + step * BEAT)
+    assert not one.late(10.5 + 39 * BEAT)
+
+
+def test_an_overdue_beat_is_late_and_a_pause_is_not() -> None:
+    one = Lateness()
+    one.beat(10.0)
+    assert one.late(10.0 + BEAT + LATE + 0.01)
+    one.pause()
+    one.beat(99.0)
+    assert not one.late(99.0)
+
+
+@pytest.fixture
+def executor() -> list[Step]:
+    return []
+
+
+def test_it_beats_while_there_are_steps_and_asks_the_executor_once_at_a_time(executor: list[Step]) -> None:
+    pulse, beaten = Pulse(executor.append), threading.Semaphore(0)
+    pulse.add(beaten.release)
+    try:
+        assert all(beaten.acquire(timeout=30) for _ in range(6))
+        wait_until(lambda: bool(executor), 30, "the executor is asked")
+        wait_until(lambda: not pulse.works(), 30, "an executor that does not answer does not work")
+        assert len(executor) == 1
+        executor.pop()()
+        wait_until(pulse.works, 30, "it has answered")
+        pulse.remove(beaten.release)
+    finally:
+        pulse.close()

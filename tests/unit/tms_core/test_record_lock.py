@@ -1,0 +1,17 @@
+"""LOCK_FLG as a lease: it holds, it ends by itself, and a bare flag of the C++ system holds until it is cleared."""
+
+from tms_core.record_lock import LEASE, holder, released, taken
+
+
+def test_a_lease_holds_and_ends() -> None:
+    fields = taken("zx200:subtask_zx200_excavate_simple_plan", 1000.0)
+    assert holder(fields, 1000.0) == "zx200:subtask_zx200_excavate_simple_plan"
+    assert holder(fields, 1000.0 + LEASE - 1) is not None
+    assert holder(fields, 1000.0 + LEASE) is None
+
+
+def test_a_bare_flag_and_no_flag() -> None:
+    assert holder({"LOCK_FLG": True}, 1e9) == "a system that gives no name"
+    assert holder({"LOCK_FLG": False, "LOCK_UNTIL": 2e9}, 1e9) is None
+    assert holder({"x": 1.0}, 1e9) is None
+    assert holder(released(), 1e9) is None

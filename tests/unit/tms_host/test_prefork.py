@@ -1,0 +1,67 @@
+"""A program that is forked sees what an executed one would see: arguments, environment, signals, exit code."""
+
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+
+import pytest
+
+PROGRAM = """
+import os, signal, sys
+
+def main(name):
+    if name == "broken":
+        raise RuntimeError("no such luck")
+    print(name, sys.argv, sorted(os.environ), signal.getsignal(signal.SIGTERM) is signal.SIG_DFL)
+    return 3
+"""
+FORK = """
+import signal
+from tms_host import prefork
+
+prefork.MODULE = "program"
+signal.signal(signal.SIGTERM, signal.SIG_IGN)
+prefork.Options().execve("/nonexistent/python", ["python", "-m", {module!r}, {name!r}], {{"ONLY": "this"}})
+"""
+
+
+@pytest.fixture
+def run(tmp_path: Path):  # type: ignore[no-untyped-def]
+    (tmp_path / "program.py").write_text(PROGRAM)
+
+    def become(name: str, module: str = "program") -> subprocess.CompletedProcess[str]:
+        code = f"import sys; sys.path.insert(0, {str(tmp_path)!r})" + textwrap.dedent(
+            FORK.format(module=module, name=name)
+        )
+        return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
+
+    return become
+
+
+def test_it_runs_as_if_it_had_been_executed(run) -> None:  # type: ignore[no-untyped-def]
+    done = run("zx200:rc")
+    assert done.returncode == 3
+    assert done.stdout == "zx200:rc ['program', 'zx200:rc'] ['ONLY'] True\n"
+
+
+def test_an_exception_leaves_its_traceback_and_exit_code_1(run) -> None:  # type: ignore[no-untyped-def]
+    done = run("broken")
+    assert done.returncode == 1
+    assert "RuntimeError: no such luck" in done.stderr
+    assert "Traceback" in done.stderr
+
+
+def test_other_programs_are_executed(run) -> None:  # type: ignore[no-untyped-def]
+    done = run("x", module="other")
+    assert "FileNotFoundError" in done.stderr  # no such file: an exec was tried
+
+
+def test_only_libraries_are_shared() -> None:
+    """What a restarted process runs must come from the disk, not from a supervisord that is weeks old."""
+    code = "import sys; from tms_host import prefork; prefork.load(); print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True)
+    loaded = set(done.stdout.split())
+    ours = {path.name for path in Path("services").glob("tms_*")}
+    assert "rclpy.action" in loaded
+    assert {name for name in loaded if name.partition(".")[0] in ours} == {"tms_host", "tms_host.prefork"}

@@ -1,0 +1,68 @@
+"""A trajectory that leaves the machine's limits is refused with the joint and the bound."""
+
+import pytest
+
+from tms_core.config import CONFIGS, MachineModel, parse
+from tms_rc.limits import angle_problem, escaped, pose_problem, problem
+
+MODEL = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel)
+JOINTS = ["swing_joint", "boom_joint"]
+
+
+@pytest.mark.parametrize(
+    ("joints", "points", "said"),
+    [
+        (JOINTS, [], "no points"),
+        (["tail_joint"], [[0.0]], "joint 'tail_joint' is not one of"),
+        (JOINTS, [[0.0, -0.5], [0.0]], "point 1 has 1 positions for 2 joints"),
+        (JOINTS, [[0.0, 0.5]], "boom_joint: 0.500 rad is above its limit -0.100 rad"),
+        (JOINTS, [[0.0, -2.0]], "boom_joint: -2.000 rad is below its limit -1.137 rad"),
+        (JOINTS, [[float("nan"), -0.5]], "swing_joint: is not a number"),
+        (JOINTS, [[0.0, float("inf")]], "boom_joint: is not a number"),
+    ],
+)
+def test_refused(joints: list[str], points: list[list[float]], said: str) -> None:
+    assert said in str(problem(MODEL, joints, points))
+
+
+def test_a_joint_that_turns_for_ever_has_no_bound() -> None:
+    assert problem(MODEL, JOINTS, [[100.0, -0.5]]) is None
+
+
+def test_a_joint_that_sags_may_come_back_but_go_no_further() -> None:
+    sagging = {"boom_joint": 0.05}  # its limit is -0.1
+    assert problem(MODEL, JOINTS, [[0.0, 0.05], [0.0, -0.5]], sagging) is None
+    assert "boom_joint" in str(problem(MODEL, JOINTS, [[0.0, 0.06]], sagging))
+    assert "boom_joint" in str(problem(MODEL, JOINTS, [[0.0, -2.0]], sagging))  # the other limit
+
+
+def test_a_moving_joint_far_beyond_its_limit_is_seen() -> None:
+    start = {"boom_joint": -0.5}
+    assert escaped(MODEL, {"boom_joint": -0.09}, start) is None
+    assert "above its limit" in str(escaped(MODEL, {"boom_joint": 0.0}, start))
+    assert escaped(MODEL, {"boom_joint": 0.0}, {"boom_joint": 0.05}) is None  # it began further out
+
+
+CARRIER = parse(CONFIGS / "machines" / "mst110cr.yaml", MachineModel)
+
+
+def test_angles_of_bed_and_body_are_checked_before_they_leave() -> None:
+    assert angle_problem(CARRIER, "set_dump_angle", -1.0, {}) is None
+    assert angle_problem(CARRIER, "set_swing_angle", 5.0, {}) is None  # turns for ever
+    said = angle_problem(CARRIER, "set_dump_angle", -1.2, {})
+    assert said == "dump_joint: -1.200 rad is below its limit -1.047 rad"
+    assert "is not a number" in (angle_problem(CARRIER, "set_swing_angle", float("nan"), {}) or "")
+    assert "no joint for set_dump_angle" in (angle_problem(MODEL, "set_dump_angle", 0.0, {}) or "")
+
+
+@pytest.mark.parametrize(
+    ("poses", "said"),
+    [
+        ([], "no pose"),
+        ([(0, 0, 0, 0, 0, 0, 1), (0, float("inf"), 0, 0, 0, 0, 1)], "pose 1 holds a value"),
+        ([(0, 0, 0, 0, 0, 0, 0)], "pose 0: its quaternion has the length 0.000"),
+    ],
+)
+def test_poses_that_lead_nowhere(poses: list[tuple[float, ...]], said: str) -> None:
+    assert said in (pose_problem(poses) or "")
+    assert pose_problem([(1.0, 2.0, 0.0, 0.0, 0.0, 0.6, 0.8)]) is None

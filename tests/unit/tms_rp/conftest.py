@@ -1,0 +1,16 @@
+"""The real machine file: planning is tested with the numbers that a site uses."""
+
+import pytest
+
+from tms_core.config import CONFIGS, MachineModel, parse
+from tms_rp.kinds.backhoe import Backhoe
+
+
+@pytest.fixture(scope="session")
+def model() -> MachineModel:
+    return parse(CONFIGS / "machines" / "zx200.yaml", MachineModel)
+
+
+@pytest.fixture(scope="session")
+def backhoe(model: MachineModel) -> Backhoe:
+    return Backhoe(model)

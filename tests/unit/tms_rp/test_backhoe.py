@@ -1,0 +1,200 @@
+"""Goals become joint targets; every refusal says why."""
+
+import math
+import re
+from collections.abc import Callable
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tms_core.config import CONFIGS, MachineModel, parse
+from tms_core.errors import ConfigError, SubtaskFailed
+from tms_rp.goals import ChangePose, LinkGoal, TipGoal, joint_goal
+from tms_rp.kinds.backhoe import Backhoe
+from tms_rp.linkage import Pose
+
+BACKHOE = Backhoe(parse(CONFIGS / "machines" / "zx200.yaml", MachineModel))
+NOW = Pose(0.0, -0.6, 1.9, 0.3)
+SOIL = TipGoal(0.0798115209, -4.7382431030, 0.1016051769, 0.0)
+
+
+def tips(*goals: TipGoal) -> ChangePose:
+    return ChangePose(tips=goals)
+
+
+def joints(**angles: float) -> ChangePose:
+    return ChangePose(joints=({f"{name}_joint": angle for name, angle in angles.items()},))
+
+
+# change_pose
+
+
+def test_joint_targets_keep_what_they_do_not_name() -> None:
+    moves = BACKHOE.change_pose(NOW, joints(swing=0.4, boom=7.0, arm=-7.0, bucket_end=0.5))
+    assert moves.targets == (NOW._replace(swing=0.4),)
+
+
+def test_kept_values_are_those_at_the_start() -> None:
+    goal = ChangePose(joints=({"boom_joint": -0.9}, {"boom_joint": 100.0, "arm_joint": 2.0}))
+    assert BACKHOE.change_pose(NOW, goal).targets[1].boom == NOW.boom
+
+
+def test_swing_goes_the_short_way() -> None:
+    now = NOW._replace(swing=3.0)
+    (target,) = BACKHOE.change_pose(now, joints(swing=-3.0)).targets
+    assert target.swing == pytest.approx(math.tau - 3.0)
+
+
+@given(st.floats(-20, 20), st.floats(-6, 6))
+def test_swing_never_turns_more_than_half(before: float, wanted: float) -> None:
+    (target,) = BACKHOE.change_pose(NOW._replace(swing=before), joints(swing=wanted)).targets
+    assert abs(target.swing - before) <= math.pi + 1e-9
+    assert math.cos(target.swing - wanted) == pytest.approx(1)
+
+
+def test_tip_goals_follow_each_other() -> None:
+    moves = BACKHOE.change_pose(NOW, tips(TipGoal(6.0, 0.0, 0.0, 1.2), TipGoal(7.0, -2.0, -0.5, 1.4)))
+    assert moves.targets[0] == pytest.approx((0.014778, -0.436543, 2.014228, -0.377684), abs=1.5e-6)
+    assert moves.targets[1] == pytest.approx((-0.270469, -0.300711, 1.412891, 0.287820), abs=1.5e-6)
+
+
+def test_a_full_turn_of_theta_w_is_the_same_bucket() -> None:
+    turned = BACKHOE.change_pose(NOW, tips(TipGoal(6.0, 0.0, 0.0, 1.2 - math.tau)))
+    assert turned.targets[0] == pytest.approx(BACKHOE.change_pose(NOW, tips(TipGoal(6, 0, 0, 1.2))).targets[0])
+
+
+def pose_of(joint_angles: Pose, roll: float = 0.0, yaw: float = 0.0) -> LinkGoal:
+    """Pose of bucket_end_link by the rotations of the URDF, independent of the planner's formulas."""
+    x, y, z, _ = BACKHOE.linkage.tip(joint_angles)
+    fixed = math.radians(32.0357 + 16.9707 - 9.20083)
+    half = [(joint_angles.swing + yaw) / 2, (joint_angles.boom + joint_angles.arm + joint_angles.bucket + fixed) / 2]
+    (cy, sy), (cp, sp), (cr, sr) = ((math.cos(a), math.sin(a)) for a in (*half, roll / 2))
+    return LinkGoal(
+        x, y, z, cy * cp * sr - sy * sp * cr, cy * sp * cr + sy * cp * sr, sy * cp * cr - cy * sp * sr,
+        cy * cp * cr + sy * sp * sr,
+    )  # fmt: skip
+
+
+@given(st.floats(-3, 3), st.floats(-1.13, -0.11), st.floats(0.6, 2.6), st.floats(-0.6, 2.3), st.floats(-1, 1))
+def test_a_link_pose_leads_back_to_its_joints(a: float, b: float, c: float, d: float, roll: float) -> None:
+    goal = ChangePose(links=(pose_of(Pose(a, b, c, d), roll),))
+    (target,) = BACKHOE.change_pose(NOW._replace(swing=a), goal).targets
+    assert target == pytest.approx((a, b, c, d), abs=1e-6)
+
+
+# excavate and release
+
+
+def test_excavate_finds_the_nearest_bucket_angle_and_says_so() -> None:
+    moves = BACKHOE.excavate(NOW, SOIL)
+    swing, reach, curl = moves.targets
+    assert swing == NOW._replace(swing=reach.swing)
+    assert reach == pytest.approx((-1.565542, -0.228449, 2.256313, -0.617864), abs=1.5e-6)
+    assert curl == reach._replace(arm=reach.arm + 0.1, bucket=1.7)
+    assert moves.note == "theta_w 1.41 instead of 0.00 rad"
+
+
+def test_excavate_keeps_a_possible_angle_silently() -> None:
+    moves = BACKHOE.excavate(NOW, TipGoal(6.0, 0.0, 1.0, 1.2))
+    assert moves.note == ""
+    assert moves.targets[1] == pytest.approx((0.014778, -0.436543, 2.014228, -0.377684), abs=1.5e-6)
+
+
+def test_excavate_takes_a_full_turn_of_theta_w_as_the_same_angle() -> None:
+    turned = BACKHOE.excavate(NOW, TipGoal(6.0, 0.0, 1.0, 1.2 + math.tau))
+    assert turned.targets[1] == pytest.approx(BACKHOE.excavate(NOW, TipGoal(6.0, 0.0, 1.0, 1.2)).targets[1])
+    assert turned.note == ""
+
+
+def test_offset_is_along_the_line_from_base_link() -> None:
+    near = BACKHOE.excavate(NOW, TipGoal(3.0, 4.0, 1.0, 1.2, offset=1.0)).targets[1]
+    x, y, z, _ = BACKHOE.linkage.tip(near)
+    assert (x, y, z) == pytest.approx((3.6, 4.8, 0.0))
+
+
+def test_excavate_cuts_the_clearance_at_the_limit() -> None:
+    pose = Pose(0.0, -0.2, 2.65, -0.3)
+    x, y, z, theta_w = BACKHOE.linkage.tip(pose)
+    moves = BACKHOE.excavate(NOW, TipGoal(x, y, z + 1.0, theta_w))
+    assert moves.targets[2].arm == 2.687
+    assert "arm_joint clearance cut at its limit 2.69 rad" in moves.note
+
+
+def test_release_ends_at_the_asked_angle() -> None:
+    now = Pose(-0.0028, -0.837315, 1.646905, 2.190410)
+    half, end = BACKHOE.release(now, -0.34).targets
+    assert BACKHOE.linkage.tip(half)[:3] == pytest.approx((5.854, -0.103, 2.520), abs=1e-3)
+    assert BACKHOE.linkage.tip(end)[:3] == pytest.approx((6.969, -0.106, 4.045), abs=1e-3)
+    assert BACKHOE.release(now, 0.5).targets[1].bucket == 0.5
+    assert half.swing == end.swing == now.swing
+
+
+def test_release_cuts_the_clearance_at_the_limits() -> None:
+    moves = BACKHOE.release(Pose(0.0, -1.1, 2.6, 1.7), -0.34)
+    assert moves.targets[1][1:3] == (-1.137, 2.687)
+    arm, boom = moves.note.split("; ")
+    assert arm == "arm_joint clearance cut at its limit 2.69 rad"
+    assert boom == "boom_joint clearance cut at its limit -1.14 rad"
+
+
+# refusals
+
+NAN = float("nan")
+Plan = Callable[[], object]
+
+
+@pytest.mark.parametrize(
+    ("plan", "text"),
+    [
+        (lambda: BACKHOE.change_pose(NOW, ChangePose()), "BAD_GOAL: give exactly one of .* not 0"),
+        (
+            lambda: BACKHOE.change_pose(NOW, ChangePose(joints=({},), tips=(SOIL,))),
+            "BAD_GOAL: give exactly one of .* not 2",
+        ),
+        (
+            lambda: BACKHOE.change_pose(NOW, joints(boom=0.0)),
+            "OUT_OF_RANGE: boom_joint 0.000 rad is above its limit -0.100 rad: choose",
+        ),
+        (lambda: BACKHOE.change_pose(NOW, joints(hook=0.0)), "BAD_GOAL: trajectory: no joint 'hook_joint': use swing"),
+        (lambda: BACKHOE.change_pose(NOW, joints(arm=NAN)), "BAD_GOAL: trajectory: a value is not a number"),
+        (lambda: joint_goal(["a"], [1.0, 2.0]), "BAD_GOAL: trajectory: 1 joint names but 2 positions"),
+        (lambda: joint_goal(["a", "a"], [1.0, 2.0]), "BAD_GOAL: trajectory: a joint is named twice"),
+        (
+            lambda: BACKHOE.change_pose(NOW, tips(SOIL)),
+            r"OUT_OF_RANGE: point \(0.080, -4.738, 0.102\) m with theta_w 0.00 rad needs "
+            "boom_joint 0.138 rad is above its limit -0.100 rad; bucket_joint -2.759 rad is below its limit -0.622 rad",
+        ),
+        (lambda: BACKHOE.change_pose(NOW, tips(TipGoal(20, 0, 0, 0))), "OUT_OF_REACH: .* 9.671 m too far"),
+        (lambda: BACKHOE.change_pose(NOW, tips(TipGoal(NAN, 0, 0, 0))), "BAD_GOAL: position_with_angle: a value is"),
+        (
+            lambda: BACKHOE.change_pose(NOW, ChangePose(links=(LinkGoal(6, 0, 1, 0, 0, 0, 0),))),
+            "BAD_GOAL: pose_sequence: the orientation is empty",
+        ),
+        (
+            lambda: BACKHOE.change_pose(NOW, ChangePose(links=(pose_of(NOW, yaw=0.4),))),
+            "BAD_GOAL: pose_sequence: the orientation points -?0...? rad out of the arm's plane: turn it to yaw",
+        ),
+        (lambda: BACKHOE.excavate(NOW, TipGoal(20, 0, 0, 1.0)), "OUT_OF_REACH: no bucket angle from 0 to pi digs"),
+        (lambda: BACKHOE.excavate(NOW, TipGoal(6, 0, 1, NAN)), "BAD_GOAL: position_with_angle"),
+        (lambda: BACKHOE.release(NOW, -1.0), "OUT_OF_RANGE: bucket_joint -1.000 rad is below its limit -0.622 rad"),
+        (lambda: BACKHOE.release(NOW, NAN), "BAD_GOAL: target_angle"),
+    ],
+)
+def test_refusals(plan: Plan, text: str) -> None:
+    with pytest.raises(SubtaskFailed) as caught:
+        plan()
+    message = str(caught.value)
+    assert re.match(text, message), message
+    assert "\n" not in message
+
+
+def test_a_machine_file_without_an_arm(model: MachineModel) -> None:
+    bare = model.model_copy(update={"joints": {}})
+    with pytest.raises(ConfigError, match="a backhoe needs swing_joint, boom_joint"):
+        Backhoe(bare)
+
+
+def test_a_joint_left_outside_its_limits_may_stay() -> None:
+    sagged = NOW._replace(boom=0.02)
+    assert BACKHOE.change_pose(sagged, joints(swing=1.0)).targets[0].boom == 0.02

@@ -1,0 +1,68 @@
+"""A motion through a truck or through the machine itself is refused with both names; others pass."""
+
+import math
+
+import pytest
+
+from tms_core.config import CONFIGS, MachineModel, parse
+from tms_core.errors import SubtaskFailed
+from tms_rp.clearance import Clearance, Obstacle, placed
+from tms_rp.trajectory import Trajectory, trajectory
+
+MODEL = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel)
+TRUCK = parse(CONFIGS / "machines" / "ic120.yaml", MachineModel)
+RIGHT = (-1.571, -0.9, 2.0, 1.7, 0.0)
+FRONT = (0.0, -0.9, 2.0, 1.7, 0.0)
+LOW_RIGHT = (-1.571, -0.3, 1.4, 0.5, 0.0)
+LOW_FRONT = (0.0, -0.3, 1.4, 0.5, 0.0)
+
+
+def truck(x: float, y: float) -> list[Obstacle]:
+    """An ic120 across the front, the middle of its vessel at (x, y)."""
+    place = placed(x, y + 1.44, math.pi / 2)
+    return [Obstacle(f"{part} of ic120", box, place) for part, box in TRUCK.footprint.items()]
+
+
+def move(*poses: tuple[float, ...]) -> Trajectory:
+    return trajectory(MODEL.joints, poses[0], poses[1:])
+
+
+def refusal(made: Trajectory, obstacles: list[Obstacle]) -> str:
+    with pytest.raises(SubtaskFailed) as caught:
+        Clearance(MODEL).check(made, obstacles)
+    assert caught.value.code == "COLLISION"
+    return str(caught.value)
+
+
+def test_without_anything_in_the_way_it_passes() -> None:
+    Clearance(MODEL).check(move(RIGHT, FRONT))
+    Clearance(MODEL).check(move(RIGHT, FRONT), truck(20.0, 0.0))
+
+
+def test_a_truck_in_the_way_is_named() -> None:
+    said = refusal(move(LOW_RIGHT, LOW_FRONT), truck(6.0, 0.0))
+    assert "_link would touch" in said and "of ic120 after" in said
+
+
+def test_a_truck_that_is_only_swept_is_found_too() -> None:
+    """The end is free; without looking on the way it would pass."""
+    beyond = (1.571, *LOW_FRONT[1:])
+    Clearance(MODEL).check(move(beyond, beyond), truck(6.0, 0.0))
+    assert "of ic120" in refusal(move(LOW_RIGHT, beyond), truck(6.0, 0.0))
+
+
+def test_over_the_vessel_it_passes() -> None:
+    high = (-1.571, -1.1, 1.9, 1.9, 0.0)
+    Clearance(MODEL).check(move(high, (0.0, *high[1:])), truck(4.55, -0.17))
+
+
+def test_the_bucket_against_the_own_tracks() -> None:
+    said = refusal(move((0.0, -0.3, 2.2, 0.5, 0.0), (0.0, -0.12, 2.687, 0.5, 0.0)), [])
+    assert "would touch" in said and "track_link" in said
+
+
+def test_what_touches_at_the_start_may_part_but_not_stay() -> None:
+    inside = LOW_FRONT
+    away = (-1.571, *LOW_FRONT[1:])
+    Clearance(MODEL).check(move(inside, away), truck(6.0, 0.0))
+    refusal(move(inside, (0.1, *LOW_FRONT[1:])), truck(6.0, 0.0))

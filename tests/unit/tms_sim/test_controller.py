@@ -1,0 +1,102 @@
+"""Goals of the stand-in controller: success, preemption, tolerance, cancel, emergency stop."""
+
+import pytest
+
+from tms_core.config import CONFIGS, MachineModel, parse
+from tms_sim.arm import Arm
+from tms_sim.controller import GOAL_VIOLATED, Controller, Motion
+from tms_sim.path import Point
+
+MODEL = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel)
+NAMES = tuple(MODEL.joints)
+HERE = tuple(MODEL.initial[name] for name in NAMES)
+
+
+def goal(swing: float, seconds: float = 4.0, boom: float = HERE[1]) -> list[Point]:
+    return [Point(seconds, (swing, boom, *HERE[2:]))]
+
+
+def run(controller: Controller, seconds: float) -> None:
+    for _ in range(round(seconds / 0.02)):
+        controller.step(0.02)
+
+
+def outcome(motion: Motion) -> str | None:
+    return motion.verdict.outcome if motion.verdict else None
+
+
+@pytest.fixture
+def controller() -> Controller:
+    return Controller(Arm(MODEL.joints, MODEL.initial))
+
+
+def test_success_after_the_last_point_only(controller: Controller) -> None:
+    motion = controller.begin(NAMES, goal(HERE[0]))  # it is there all the time
+    run(controller, 3.9)
+    assert outcome(motion) is None
+    run(controller, 0.2)
+    assert outcome(motion) == "SUCCEEDED"
+    assert motion.over.is_set()
+
+
+def test_cancel_ends_when_the_arm_stands(controller: Controller) -> None:
+    motion = controller.begin(NAMES, goal(2.0))
+    run(controller, 2.0)
+    controller.cancel(motion)
+    controller.step(0.02)
+    assert outcome(motion) is None
+    assert not controller.arm.still
+    run(controller, 3.0)
+    assert outcome(motion) == "CANCELED"
+    assert controller.arm.still
+
+
+def test_a_newer_goal_preempts(controller: Controller) -> None:
+    old = controller.begin(NAMES, goal(2.0))
+    run(controller, 1.0)
+    new = controller.begin(NAMES, goal(0.0, 6.0))
+    assert outcome(old) == "ABORTED"
+    assert "preempted" in (old.verdict.text if old.verdict else "")
+    controller.cancel(old)  # too late, and not its motion any more
+    run(controller, 10.0)
+    assert outcome(new) == "SUCCEEDED"
+
+
+def test_a_goal_beyond_a_limit_is_never_reached(controller: Controller) -> None:
+    motion = controller.begin(NAMES, goal(0.0, boom=0.5), goal_time=1.0)
+    run(controller, 8.0)
+    assert motion.verdict is not None
+    assert (motion.verdict.outcome, motion.verdict.code) == ("ABORTED", GOAL_VIOLATED)
+    assert motion.verdict.text == "boom_joint is 0.600 rad off its goal 1 s after its time"
+
+
+def test_emergency_stop_brakes_and_refuses_until_released(controller: Controller) -> None:
+    motion = controller.begin(NAMES, goal(2.0))
+    run(controller, 2.0)
+    controller.stop(True)
+    assert outcome(motion) is None
+    run(controller, 3.0)
+    assert outcome(motion) == "ABORTED"
+    assert controller.arm.still
+    refused = controller.refusal(NAMES, goal(0.5))
+    assert refused is not None
+    assert "emergency stop is on" in refused[1]
+    controller.stop(False)
+    assert controller.refusal(NAMES, goal(0.5)) is None
+
+
+def test_emergency_stop_pressed_while_a_goal_arrives(controller: Controller) -> None:
+    controller.stop(True)
+    motion = controller.begin(NAMES, goal(2.0))
+    run(controller, 0.1)
+    assert outcome(motion) == "ABORTED"
+    assert controller.arm.positions == list(HERE)
+
+
+def test_cancel_during_an_emergency_stop_still_counts_as_cancel(controller: Controller) -> None:
+    motion = controller.begin(NAMES, goal(2.0))
+    run(controller, 2.0)
+    controller.stop(True)
+    controller.cancel(motion)
+    run(controller, 3.0)
+    assert outcome(motion) == "CANCELED"

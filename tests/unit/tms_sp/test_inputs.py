@@ -1,0 +1,71 @@
+"""One input: stamps, the rate, and what is told of it. No node, messages are whatever has fields."""
+
+import time
+from types import SimpleNamespace as Message
+from typing import Any
+
+import pytest
+
+from tms_core.sensing import Input
+from tms_sp.inputs import SensingInput
+from tms_sp.mapping import Mapping
+from tms_sp.outbox import Post
+
+FIELDS = {"header": "std_msgs/Header", "x": "double"}
+
+
+class Heard:
+    def __init__(self, **given: Any) -> None:
+        wanted = {"topic": "/t", "type": "a/msg/B", "model": "m", "record": "r", "fields": {"x": "x"}, **given}
+        self.posts: list[Post] = []
+        self.full = False
+        parsed = Input.model_validate(wanted)
+        self.input = SensingInput("one", parsed, Mapping(parsed, FIELDS), 0.5, self.put)
+
+    def put(self, post: Post) -> bool:
+        self.posts.append(post)
+        return not self.full
+
+    def say(self, x: float, stamp: float) -> str:
+        """What became of a message."""
+        before = self.input.refused
+        self.input.hear(Message(header=Message(stamp=Message(sec=int(stamp), nanosec=int(stamp % 1 * 1e9))), x=x))
+        return self.input.last_refusal.split(":")[0] if self.input.refused > before else "accepted"
+
+
+def test_stamps_from_the_future_and_older_ones_are_refused() -> None:
+    heard, now = Heard(), time.time()
+    assert heard.say(1.0, now) == "accepted"
+    assert heard.say(2.0, now + 60) == "FUTURE"
+    assert heard.say(3.0, now - 1) == "OLD"
+    assert heard.say(4.0, now + 0.1) == "accepted"
+    assert [post.values["x"] for post in heard.posts] == [1.0, 4.0]
+    state = heard.input.state()
+    assert (state.accepted, state.refused, state.state, list(state.records)) == (2, 2, "alive", ["m/r"])
+    assert state.last_refusal.startswith("OLD: it was measured 1.0")
+
+
+def test_a_source_whose_clock_is_behind_is_told_and_its_delay_counts_as_age() -> None:
+    heard, now = Heard(), time.time()
+    heard.say(1.0, now - 5)
+    heard.say(2.0, now - 5 - 0.0)
+    assert heard.input.state().state == "clock"
+    assert heard.input.state().clock_offset == pytest.approx(5.0, abs=0.5)
+    assert time.monotonic() - heard.posts[0].measured < 2.0
+
+
+def test_what_comes_faster_than_wanted_is_left_out() -> None:
+    heard, now = Heard(max_hz=1.0), time.time()
+    for step in range(5):
+        heard.say(float(step), now + step * 0.01)
+    assert [post.values["x"] for post in heard.posts] == [0.0]
+    assert heard.input.refused == 0
+
+
+def test_waiting_and_too_much() -> None:
+    heard = Heard(hz=10.0)
+    assert heard.input.state().state == "waiting"
+    heard.full = True
+    assert heard.say(1.0, time.time()) == "TOO_MANY"
+    heard.input.counts.unwanted.append(("RECORD_MISSING", "there is no record m/r"))
+    assert heard.input.state().last_refusal == "RECORD_MISSING: there is no record m/r"

@@ -1,0 +1,101 @@
+"""From messages to values of a record, and every reason why not."""
+
+import math
+from array import array
+from types import SimpleNamespace as Message
+from typing import Any
+
+import pytest
+from pydantic import ValidationError
+
+from tms_core.sensing import Input
+from tms_sp.mapping import Mapping, Refused
+
+EXCAVATE = {"model_name": "string", "record_name": "string", "x": "double", "y": "double"}
+WAYPOINTS = {"model_name": "string", "record_name": "string", "x": "sequence<double>", "y": "sequence<double>"}
+JOINTS = {"header": "std_msgs/Header", "name": "sequence<string>", "position": "sequence<double>"}
+HEAD = {"model_name": "zx200", "record_name": "p"}
+
+
+def mapping(message: dict[str, str], /, **given: Any) -> Mapping:
+    return Mapping(Input.model_validate({"topic": "/t", "type": "a/msg/B", **given}), message)
+
+
+def joints(*positions: float) -> Message:
+    header = Message(stamp=Message(sec=10, nanosec=500_000_000))
+    return Message(header=header, name=["swing", "boom"], position=array("d", positions))
+
+
+def test_every_field_goes_into_the_field_of_its_name() -> None:
+    reading = mapping(EXCAVATE).read(Message(**HEAD, x=1.5, y=2.0))
+    assert (reading.key, reading.values, reading.stamp) == (("zx200", "p"), {"x": 1.5, "y": 2.0}, None)
+
+
+def test_arrays_become_lists_and_belong_together() -> None:
+    given = mapping(WAYPOINTS)
+    assert given.read(Message(**HEAD, x=array("d", [1, 2]), y=array("d", [3, 4]))).values == {"x": [1, 2], "y": [3, 4]}
+    for x, y in (([1.0], [1.0, 2.0]), ([], [])):
+        with pytest.raises(Refused) as refused:
+            given.read(Message(**HEAD, x=array("d", x), y=array("d", y)))
+        assert refused.value.code == "WRONG_SIZE"
+
+
+def test_fields_of_its_own_with_units_elements_and_names() -> None:
+    fields = {"angle": {"path": "position[swing]", "unit": "deg"}, "second": "position[1]"}
+    given = mapping(JOINTS, model="zx200", record="seen", fields=fields)
+    reading = given.read(joints(180.0, 0.25))
+    assert reading.key == ("zx200", "seen")
+    assert reading.values == {"angle": pytest.approx(math.pi), "second": 0.25}
+    assert reading.stamp == 10.5
+    with pytest.raises(Refused, match="no such element among 1"):
+        given.read(joints(1.0))
+
+
+@pytest.mark.parametrize(
+    ("message", "code", "said"),
+    [
+        ({"x": math.nan, "y": 0.0}, "NOT_FINITE", "x is nan"),
+        ({"x": math.inf, "y": 0.0}, "NOT_FINITE", "x is inf"),
+        ({"x": 9.0, "y": 0.0}, "OUT_OF_RANGE", "x is 9, not from -5 to 5"),
+        ({"x": 0.0, "y": 0.0, "record_name": " "}, "NO_RECORD", "names no record"),
+    ],
+)
+def test_what_is_refused(message: dict[str, Any], code: str, said: str) -> None:
+    with pytest.raises(Refused, match=said) as refused:
+        mapping(EXCAVATE, range={"x": [-5, 5]}).read(Message(**{**HEAD, **message}))
+    assert refused.value.code == code
+
+
+def test_a_size_that_is_declared() -> None:
+    given = mapping(JOINTS, model="m", record="r", fields={"all": {"path": "position", "size": 2}})
+    assert given.read(joints(1.0, 2.0)).values == {"all": [1.0, 2.0]}
+    with pytest.raises(Refused, match="all has 3 values, not 2"):
+        given.read(joints(1.0, 2.0, 3.0))
+
+
+def test_fields_that_stay() -> None:
+    fields = {"record_name": "string", "loaded_flg": "boolean", "keep_val_flgs": "sequence<string>"}
+    given = mapping(fields, model="", keep="keep_val_flgs")
+    reading = given.read(Message(record_name="F", loaded_flg=True, keep_val_flgs=["LOADED_FLG"]))
+    assert (reading.key, reading.values, reading.keep) == (("", "F"), {"loaded_flg": True}, ("LOADED_FLG",))
+
+
+def test_a_message_without_the_field_is_told_before_anything_starts() -> None:
+    with pytest.raises(ValueError, match="the message has no field 'z'"):
+        mapping(EXCAVATE, fields={"z": "z"})
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"range": {"x": [5, -5]}}, r"must be \[least, most\]"),
+        ({"fields": {"a": "x"}, "range": {"b": [0, 1]}}, "no such field under fields"),
+        ({"fields": {"a": {"path": "x", "unit": "mile"}}}, "no unit 'mile'"),
+        ({"fields": {"a": "x; y"}}, "pattern"),
+        ({"rate": 5}, "Extra inputs"),
+        ({"type": "std_msgs/Float64"}, "pattern"),
+    ],
+)
+def test_what_sensing_yaml_must_not_hold(given: dict[str, Any], said: str) -> None:
+    with pytest.raises(ValidationError, match=said):
+        mapping(EXCAVATE, **given)

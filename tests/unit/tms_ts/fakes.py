@@ -1,0 +1,127 @@
+"""Stand-ins in memory for everything a tree asks of the outside."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Generic, TypeVar
+
+from tms_ts.world import GoalState, Value, World
+
+T = TypeVar("T")
+
+
+@dataclass
+class Answer(Generic[T]):
+    """A question's answer; `done` may be set later."""
+
+    value: Any = None
+    done: bool = True
+    error: str | None = None
+
+
+@dataclass
+class FakeGoal:
+    """Succeeds at the `lasts`-th look at it (the first look is the one right after sending)."""
+
+    machine: str
+    subtask: str
+    record: str
+    node: str
+    lasts: int = 3
+    end: GoalState = GoalState.SUCCEEDED
+    reason: str = ""
+    feedback: str = "on the way"
+    cancels: int = 0
+    looks: int = 0
+
+    @property
+    def state(self) -> GoalState:
+        self.looks += 1
+        return GoalState.RUNNING if self.looks < self.lasts else self.end
+
+    def cancel(self) -> None:
+        self.cancels += 1
+
+
+@dataclass
+class FakeMachines:
+    sent: list[FakeGoal] = field(default_factory=list)
+    lasts: int = 3
+    end: GoalState = GoalState.SUCCEEDED
+
+    def send(self, machine: str, subtask: str, record: str, node: str) -> FakeGoal:
+        goal = FakeGoal(machine, subtask, record, node, self.lasts, self.end)
+        self.sent.append(goal)
+        return goal
+
+
+@dataclass
+class FakeFlags:
+    """Flags in memory, false if never written; answers come at once unless `slow`."""
+
+    values: dict[tuple[str, str], Any] = field(default_factory=dict)
+    writes: list[tuple[str, str, Value]] = field(default_factory=list)
+    slow: bool = False
+    missing: set[str] = field(default_factory=set)  # records that are not there
+    open: list[Answer[Any]] = field(default_factory=list)
+    reads: int = 0
+
+    def read(self, record: str, field: str) -> Answer[Any]:
+        self.reads += 1
+        return self._answer(record, self.values.get((record, field), False))
+
+    def write(self, record: str, field: str, value: Value, expected: Value | None = None) -> Answer[None]:
+        if expected is not None and self.values.get((record, field), False) != expected:
+            return Answer(error="the field holds another value")
+        if record not in self.missing:
+            self.values[record, field] = value
+            self.writes.append((record, field, value))
+        return self._answer(record, None)
+
+    def _answer(self, record: str, value: Any) -> Answer[Any]:
+        answer: Answer[Any] = Answer(value, done=not self.slow)
+        if record in self.missing:
+            answer.error = f"there is no record {record}"
+        if self.slow:
+            self.open.append(answer)
+        return answer
+
+    def answer_all(self) -> None:
+        for answer in self.open:
+            answer.done = True
+        self.open.clear()
+
+
+@dataclass
+class FakeClicks:
+    answer: bool | None = True  # None: nobody clicks
+    asked: list[tuple[str, str]] = field(default_factory=list)
+    times: list[float | None] = field(default_factory=list)
+    withdrawn: int = 0
+
+    def ask(self, title: str, text: str, node: str, seconds: float | None) -> Answer[bool]:
+        self.asked.append((title, text))
+        self.times.append(seconds)
+        return Answer(self.answer, done=self.answer is not None)
+
+    def withdraw(self, question: Any) -> None:
+        self.withdrawn += 1
+
+
+@dataclass
+class Clock:
+    now: float = 0.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+@dataclass
+class FakeWorld:
+    machines: FakeMachines = field(default_factory=FakeMachines)
+    flags: FakeFlags = field(default_factory=FakeFlags)
+    clicks: FakeClicks = field(default_factory=FakeClicks)
+    clock: Clock = field(default_factory=Clock)
+
+    def world(self) -> World:
+        return World(self.machines, self.flags, self.clicks, self.clock)

@@ -1,0 +1,65 @@
+"""Hostile and broken documents: one clear error, quickly."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import pytest
+
+from tms_ts.bt import TreeError, check, load
+from unit.tms_ts.trees import document
+
+LAUGHS = [f'<Sequence><SubTree ID="T{i + 1}"/><SubTree ID="T{i + 1}"/></Sequence>' for i in range(1, 31)]
+CHAIN = [f'<SubTree ID="T{i + 1}"/>' for i in range(1, 300)]
+HOSTILE: list[tuple[str, str | bytes, str]] = [
+    ("empty", "", "empty"),
+    ("blank", " \n\t", "empty"),
+    ("file name", "task.xml", "not XML"),
+    ("nul", "<root>\n\0</root>", "NUL"),
+    ("latin 1", b"<root>\n<a x='\xe9'/></root>", "not UTF-8"),
+    ("utf-16", "<root/>".encode("utf-16"), "not UTF-8"),
+    ("entity bomb", '<?xml version="1.0"?><!-- a --><!DOCTYPE l [<!ENTITY a "x">]><root>&a;</root>', "DTD"),
+    ("external entity", '<!DOCTYPE r [<!ENTITY x SYSTEM "file:///etc/passwd">]><root>&x;</root>', "DTD"),
+    ("external dtd", '<!DOCTYPE r SYSTEM "http://example.org/x.dtd"><root/>', "DTD"),
+    ("unknown entity", "<root>&foo;</root>", "not well-formed"),
+    ("deep", document("<Inverter>" * 10_000 + "</Inverter>" * 10_000), "nested deeper than 200"),
+    ("a little too deep", document("<Inverter>" * 205 + "<AlwaysSuccess/>" + "</Inverter>" * 205), "deeper than 200"),
+    ("many tags", document("<Sequence>" + "<AlwaysSuccess/>" * 250_000 + "</Sequence>"), "tags"),
+    ("many nodes", document("<Sequence>" + "<AlwaysSuccess/>" * 20_001 + "</Sequence>"), "more than 20000 nodes"),
+    ("many attributes", document("<A " + " ".join(f"a{i}=''" for i in range(100_000)) + "/>"), "too many attributes"),
+    ("long name", document(f"<{'a' * 60_000}/>"), ""),
+    ("large", "<root>" + " " * 5_000_000 + "</root>", "larger than 5000000 bytes"),
+    ("unclosed comments", "<root>" + "<!--" * 190_000, "not well-formed"),
+    ("tree in itself", document('<SubTree ID="T1"/>', '<SubTree ID="M"/>'), "contains itself"),
+    ("doubling trees", document('<SubTree ID="T1"/>', *LAUGHS, "<AlwaysSuccess/>"), "more than 20000 nodes"),
+    ("long chain of trees", document('<SubTree ID="T1"/>', *CHAIN, "<AlwaysSuccess/>"), "deeper than 200"),
+]
+
+
+@pytest.mark.parametrize(("text", "message"), [case[1:] for case in HOSTILE], ids=[case[0] for case in HOSTILE])
+def test_one_clear_error_quickly(text: str | bytes, message: str) -> None:
+    start = time.monotonic()
+    with pytest.raises(TreeError) as caught:
+        load(text)
+    assert time.monotonic() - start < 10  # s, on a busy machine; alone all take less than 1
+    assert message in caught.value.message
+    assert "\n" not in str(caught.value)
+    assert len(str(caught.value)) < 700
+    assert not check(text).ok
+
+
+def test_a_huge_file_is_not_read(tmp_path: Path) -> None:
+    huge = tmp_path / "huge.xml"
+    with huge.open("wb") as file:
+        file.truncate(100_000_000)
+    start = time.monotonic()
+    with pytest.raises(TreeError, match="larger than"):
+        load(huge)
+    assert time.monotonic() - start < 5
+
+
+def test_the_text_may_declare_any_encoding() -> None:
+    text = '<?xml version="1.0" encoding="Shift_JIS"?>\n' + document("<AlwaysSuccess name='待機'/>")
+    assert load(text.encode()).root.name == "待機"
+    assert load("\ufeff" + text).root.line == 4

@@ -1,0 +1,160 @@
+"""What preflight finds, with the line of the tree."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+import yaml
+
+from conftest import site_data
+from tms_core.config import Site, load_site
+from tms_ts import bt
+from tms_ts.preflight import Stored, Values, machines_of, preflight, processes_of, records_of
+
+LEAF = '<Action ID="LeafNodeZx200" model_name="{}" record_name="{}" subtask_name="{}"/>\n'
+
+
+@pytest.fixture
+def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Site:
+    monkeypatch.delenv("ROS_DOMAIN_ID", raising=False)
+    file = tmp_path / "site.yaml"
+    file.write_text(yaml.safe_dump(site_data(52, 22000)))
+    return load_site(str(file))
+
+
+def tree(*leaves: tuple[str, str, str]) -> bt.Tree:
+    inner = "".join(LEAF.format(*leaf) for leaf in leaves)
+    text = f'<root main_tree_to_execute="T"><BehaviorTree ID="T"><Sequence>\n{inner}</Sequence></BehaviorTree></root>'
+    return bt.load(text, world=None)
+
+
+POSE = {"swing_joint": 0.0, "boom_joint": 0.0, "arm_joint": 0.0, "bucket_joint": 0.0, "trajectory": 1}
+
+
+@dataclass
+class Around:
+    """The surroundings in memory."""
+
+    records: dict[tuple[str, str], Stored] = field(default_factory=lambda: {("zx200", "pose"): Stored(POSE)})
+    writers: set[tuple[str, str]] = field(default_factory=set)
+    problems: dict[str, str] = field(default_factory=dict)
+    silent_input: str = ""
+    misfit: str = ""
+
+    def record(self, machine: str, record: str) -> Stored | None:
+        return self.records.get((machine, record))
+
+    def served(self, machine: str, subtask: str) -> bool:
+        return False
+
+    def problem(self, machine: str) -> str:
+        return self.problems.get(machine, "")
+
+    def written(self, record: str, field: str) -> bool:
+        return (record, field) in self.writers
+
+    def silent(self, machine: str, record: str) -> str:
+        return self.silent_input
+
+    def unfit(self, machine: str, subtask: str, values: Values) -> str:
+        return self.misfit
+
+    def oldest(self, machine: str, subtask: str) -> float:
+        return 0.0
+
+
+GOOD = ("zx200", "pose", "subtask_zx200_change_pose")
+
+
+def test_a_good_tree(site: Site) -> None:
+    loaded = tree(GOOD, GOOD)
+    assert preflight(loaded, site, Around()).errors == []
+    assert machines_of(loaded) == ["zx200"]
+    assert processes_of(loaded, site) == ["zx200:subtask_zx200_change_pose"]
+
+
+@pytest.mark.parametrize(
+    ("leaf", "said"),
+    [
+        (("zx999", "pose", "subtask_zx200_change_pose"), "line 3: the site has no machine 'zx999' (there: zx200)"),
+        (("zx200", "pose", "st_fly"), "line 3: zx200 offers no 'st_fly' (there: subtask_zx200_change_pose"),
+        (("zx200", "none", "subtask_zx200_change_pose"), "line 3: no record zx200/none; add it with"),
+    ],
+)
+def test_errors_name_line_and_remedy(site: Site, leaf: tuple[str, str, str], said: str) -> None:
+    found = preflight(tree(GOOD, leaf), site, Around())
+    assert len(found.errors) == 1
+    assert said in found.errors[0]
+
+
+def test_what_only_the_run_decides_is_a_warning(site: Site) -> None:
+    loaded = tree(("{m}", "pose", "subtask_zx200_change_pose"), ("zx200", "{r}", "subtask_zx200_change_pose"))
+    found = preflight(loaded, site, Around())
+    assert found.errors == []
+    assert any("line 2" in text for text in found.warnings)
+
+
+@pytest.mark.parametrize(
+    ("around", "said"),
+    [
+        (Around({GOOD[:2]: Stored(POSE, "dynamic", 12.0, 5.0)}), "line 2: record zx200/pose is 12 s old, allowed"),
+        (Around({GOOD[:2]: Stored(POSE, "dynamic", None, 5.0)}), "line 2: record zx200/pose is of unknown age"),
+        (Around(silent_input="digger"), "line 2: sensing input digger should write record zx200/pose and is silent"),
+        (Around(problems={"zx200": "zx200 is stopped (software stop)"}), "zx200 is stopped (software stop)"),
+    ],
+)  # fmt: skip
+def test_what_may_be_right_when_the_leaf_starts_is_a_warning(site: Site, around: Around, said: str) -> None:
+    found = preflight(tree(GOOD), site, around)
+    assert found.errors == []
+    assert [text for text in found.warnings if said in text], found.warnings
+
+
+def test_a_record_that_does_not_fit_its_subtask_is_an_error(site: Site) -> None:
+    found = preflight(tree(GOOD), site, Around(misfit="boom_joint: Field required"))
+    assert found.errors == [
+        "line 2: record zx200/pose does not fit subtask_zx200_change_pose: boom_joint: Field required; correct it with "
+        "`tms param set`"
+    ]
+
+
+READ = '<Action ID="BlackboardValueReaderMongo" mongo_record_name="ROAD" mongo_param_name="{}" output_port="x"/>'
+WRITE = '<Action ID="MongoValueWriter" mongo_record_name="ROAD" mongo_param_name="{}" input_value="true"/>'
+
+
+def flags(inner: str, before: str = "<Repeat num_cycles='-1'>", after: str = "</Repeat>") -> bt.Tree:
+    text = f"<Sequence>{before}<Sequence>{inner}</Sequence>{after}</Sequence>"
+    return bt.load(f'<root main_tree_to_execute="T"><BehaviorTree ID="T">{text}</BehaviorTree></root>', world=None)
+
+
+WAITED = "no active task and no sensing input writes FREE of ROAD, which is waited for"
+ROAD = {("", "ROAD"): Stored({"FREE": False}, "dynamic")}
+
+
+def test_a_flag_that_is_waited_for_and_that_nobody_writes_is_a_warning(site: Site) -> None:
+    reader = flags(READ.format("FREE"))
+    assert f"line 1: {WAITED}" in preflight(reader, site, Around(ROAD)).warnings
+    others = [
+        preflight(reader, site, Around(ROAD, writers={("ROAD", "FREE")})),
+        preflight(flags(READ.format("FREE") + WRITE.format("FREE")), site, Around(ROAD)),
+        preflight(flags(READ.format("FREE"), "", ""), site, Around(ROAD)),
+    ]
+    assert not any(WAITED in text for found in others for text in found.warnings)
+
+
+def test_shared_records_and_fields_should_be_there_and_not_static(site: Site) -> None:
+    """Warnings, since trees of the field name records that a branch which is never taken would need."""
+    static = Around({("", "ROAD"): Stored({"FREE": False}, "static")})
+    for inner, around, said in (
+        (READ.format("FREE"), Around({}), "no shared record ROAD"),
+        (READ.format("TAKEN"), Around(ROAD), "has no field 'TAKEN'"),
+        (WRITE.format("FREE"), static, "is static"),
+    ):
+        found = preflight(flags(inner), site, around)
+        assert found.errors == []
+        assert [text for text in found.warnings if said in text], found.warnings
+
+
+def test_the_records_that_a_tree_names(site: Site) -> None:
+    loaded = tree(GOOD, ("zx200", "{r}", "subtask_zx200_change_pose"))
+    assert records_of(loaded) == ["zx200/pose", "zx200/*"]
+    assert records_of(flags(READ.format("FREE"))) == ["/ROAD"]

@@ -1,0 +1,58 @@
+"""What a crash leaves of a run is enough to close it and to go on with it."""
+
+from pathlib import Path
+
+from tms_ts.record import Header, Key, Records, Replay
+
+HEADER = Header("run-1", 7, 3, "dig", ["zx200"], "<root/>", (1, 2))
+FIRST: Key = ("0.0", "zx200", "dig", "here")
+SECOND: Key = ("0.1", "zx200", "dig", "there")
+
+
+def test_a_crash_leaves_ended_and_open_leaves(tmp_path: Path) -> None:
+    record = Records(tmp_path).open("run-1")
+    record.begin(HEADER)
+    record.event(1)
+    record.sent(FIRST)
+    record.done(FIRST, True)
+    record.sent(SECOND)
+    record.event(2)
+    with record.path.open("ab") as file:
+        file.write(b'{"done": ["0.1", "zx2')  # cut short
+    (past,) = Records(tmp_path).past()
+    assert past.header == HEADER and past.last_event == 2 and not past.closed
+    assert past.ended == [(FIRST, True)] and past.open == [SECOND]
+
+
+def test_a_run_that_ended_in_order_leaves_nothing(tmp_path: Path) -> None:
+    record = Records(tmp_path).open("run-1")
+    record.begin(HEADER)
+    record.remove()
+    record.event(9)  # late news
+    assert Records(tmp_path).past() == []
+
+
+def test_resumed_and_interrupted_again_it_keeps_what_had_ended(tmp_path: Path) -> None:
+    record = Records(tmp_path).open("run-1")
+    record.begin(HEADER)
+    record.sent(FIRST)
+    record.done(FIRST, True)
+    record.interrupted()
+    assert Records(tmp_path).past()[0].closed
+    record = Records(tmp_path).open("run-1")
+    record.begin(HEADER)
+    record.sent(SECOND)
+    (past,) = Records(tmp_path).past()
+    assert not past.closed and past.ended == [(FIRST, True)] and past.open == [SECOND]
+
+
+def test_a_run_is_found_by_the_beginning_of_its_id(tmp_path: Path) -> None:
+    Records(tmp_path).open("run-1").begin(HEADER)
+    assert Records(tmp_path).find("run") is not None
+    assert Records(tmp_path).find("") is None and Records(tmp_path).find("other") is None
+
+
+def test_ended_leaves_are_replayed_once_each_and_in_order() -> None:
+    replay = Replay([(FIRST, True), (SECOND, False), (FIRST, False)])
+    assert [replay.take(FIRST), replay.take(FIRST), replay.take(FIRST)] == [True, False, None]
+    assert [replay.take(SECOND), replay.take(SECOND)] == [False, None]

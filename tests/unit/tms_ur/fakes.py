@@ -1,0 +1,148 @@
+"""A site without ROS: the gateway that the API's tests talk to, and a client without a network."""
+
+import asyncio
+from datetime import datetime, timezone
+from pathlib import Path
+from typing import Any
+
+import httpx
+from fastapi import FastAPI
+
+from tms_core.config import Console, Site, SiteFile, load_site
+from tms_core.errors import TmsError
+from tms_ur.access import Access
+from tms_ur.api import create_app
+from tms_ur.board import Board
+from tms_ur.models import Event, Rearmed, Receipt, Record, Run, Task, TaskText
+
+NOON = datetime(2026, 1, 31, 12, tzinfo=timezone.utc)
+HERE = "http://127.0.0.1:8080"
+XML = "<root><BehaviorTree ID='A'/></root>"
+
+
+class FakeGateway:
+    """Same methods as the real one; `error` is what the next call raises, `calls` what was asked."""
+
+    def __init__(self) -> None:
+        self.board = Board(["zx200"])
+        self.error: TmsError | None = None
+        self.calls: list[tuple[object, ...]] = []
+
+    def tasks(self) -> list[Task]:
+        self._called("tasks")
+        return [Task(id=4, model_name="zx200", description="掘削", added_at=NOON)]
+
+    def task(self, task_id: int) -> TaskText:
+        self._called("task", task_id)
+        return TaskText(id=task_id, model_name="zx200", description="掘削", added_at=NOON, xml=XML)
+
+    def runs(self, limit: int) -> list[Run]:
+        self._called("runs", limit)
+        facts = {"run_id": "r-1", "task_id": 4, "description": "掘削", "machines": ["zx200"], "started_at": NOON}
+        return [Run(**facts, state="failure", reason="pose out of reach", ended_at=NOON)]
+
+    def events(self, run_id: str, after: int, limit: int) -> list[Event]:
+        self._called("events", run_id, after, limit)
+        shape = {"paths": ["0"], "names": ["all"], "types": ["Sequence"], "kinds": ["control"], "ports": [""]}
+        return [
+            Event(number=after + 1, stamp=NOON, kind="run", node="", text="running", values={"n": 1}),
+            Event(number=after + 2, stamp=NOON, kind="tree", node="", text="1 node", values=shape),
+        ]
+
+    def parameters(self, model_name: str) -> list[Record]:
+        self._called("parameters", model_name)
+        values = {"i": 3, "d": 3.0, "b": True, "s": "3", "dd": [1.0, 2.5], "nan": float("nan")}
+        return [
+            Record(model_name="zx200", record_name="pose", type="static", description="", source="cli", values=values)
+        ]
+
+    def add_task(self, xml: str, description: str) -> tuple[int, bool]:
+        self._called("add_task", xml, description)
+        return 5, False
+
+    def remove_task(self, task_id: int) -> None:
+        self._called("remove_task", task_id)
+
+    def check_task(self, xml: str) -> tuple[list[str], list[str]]:
+        self._called("check_task", xml)
+        return ["line 7, at 0.1: unknown node 'Dig'"], ["nobody writes flag F"]
+
+    def set_parameter(
+        self, model_name: str, record_name: str, values: dict[str, Any], source: str, create: bool, kind: str
+    ) -> None:
+        self._called("set_parameter", model_name, record_name, values, source, create, kind)
+
+    def answer(self, question: str, yes: bool, by: str) -> None:
+        self._called("answer", question, yes, by)
+
+    def stop(self, machine: str, cause: str) -> Receipt:
+        self._called("stop", machine, cause)
+        return Receipt(machine=machine, confirmed=True, seconds=0.4, travel=0.01, cause=cause, detail="", latched=True)
+
+    def rearm(self, machine: str, token: str) -> Rearmed:
+        self._called("rearm", machine, token)
+        return Rearmed(token="" if token else "t-1", cause="software stop", armed=bool(token))
+
+    def restart(self, process: str) -> None:
+        self._called("restart", process)
+
+    def log(self, process: str, size: int) -> str:
+        self._called("log", process, size)
+        return "event=started\n"
+
+    def start_run(self, task_id: int, ignore_warnings: bool) -> str:
+        self._called("start_run", task_id, ignore_warnings)
+        return "r-2"
+
+    def cancel_run(self, run_id: str) -> None:
+        self._called("cancel_run", run_id)
+
+    def _called(self, *what: object) -> None:
+        self.calls.append(what)
+        if self.error is not None:
+            raise self.error
+
+
+class FakeAudit:
+    """Keeps what was audited."""
+
+    def __init__(self) -> None:
+        self.notes: list[tuple[str, str, str, str]] = []
+
+    def put(self, who: str, source: str, what: str, target: str) -> None:
+        self.notes.append((who, source, what, target))
+
+
+def site(**changes: Any) -> Site:
+    """The demo's site, changed."""
+    demo = load_site()
+    file = SiteFile.model_validate({**demo.file.model_dump(exclude_unset=True), **changes})
+    return Site(demo.path, file, demo.models, demo.state)
+
+
+def app(gateway: FakeGateway, bind: str = "127.0.0.1", users: Path | None = None, **parts: Any) -> FastAPI:
+    """The application with fakes; `parts` may hold an audit, a clock and settings of the console."""
+    access = Access(users, parts["clock"]) if "clock" in parts else Access(users)
+    where = site(bind=bind, console=parts.get("console", Console()))
+    return create_app(gateway, parts.get("audit", FakeAudit()), where, access)  # type: ignore[arg-type]
+
+
+class Client:
+    """Sends requests straight into the application."""
+
+    def __init__(self, app: Any, base_url: str = HERE) -> None:
+        self._app, self._base_url = app, base_url
+
+    def request(self, method: str, path: str, **options: Any) -> httpx.Response:
+        async def ask() -> httpx.Response:
+            transport = httpx.ASGITransport(self._app, raise_app_exceptions=False)
+            async with httpx.AsyncClient(transport=transport, base_url=self._base_url) as client:
+                return await client.request(method, path, **options)
+
+        return asyncio.run(ask())
+
+    def get(self, path: str, **options: Any) -> httpx.Response:
+        return self.request("GET", path, **options)
+
+    def post(self, path: str, **options: Any) -> httpx.Response:
+        return self.request("POST", path, **options)

@@ -1,0 +1,357 @@
+"""Every endpoint, every error, and what stands before them, with a site that is a fake."""
+
+import inspect
+from collections.abc import AsyncIterator
+
+import pytest
+
+from tms_core.errors import TmsError
+from tms_ur.guard import SECURITY, is_loopback
+from tms_ur.models import ActiveRun, Host, Joint, Machine, Process
+from unit.tms_ur.fakes import HERE, XML, Client, FakeAudit, FakeGateway, app
+
+READS = [
+    "/api/tasks", "/api/tasks/4", "/api/runs", "/api/runs/r-1/events", "/api/runs/r-1/tree", "/api/runs/r-1/export",
+    "/api/parameters", "/api/audit", "/api/processes/zx200:rc/log",
+]  # fmt: skip
+RECORD = {"model_name": "zx200", "record_name": "pose", "fields": [{"name": "a", "type": "double", "value": 3}]}
+COMMANDS = [
+    ("/api/runs", {"task_id": 4}), ("/api/runs/r-1/cancel", {}), ("/api/questions/q-1", {"yes": True}),
+    ("/api/machines/zx200/rearm", {}), ("/api/tasks", {"xml": XML}), ("/api/tasks/4/remove", {}),
+    ("/api/tasks/check", {"xml": XML}), ("/api/tasks/4/diff", {"xml": XML}), ("/api/parameters", RECORD),
+    ("/api/processes/zx200:rc/restart", {}),
+]  # fmt: skip
+
+
+@pytest.fixture
+def gateway() -> FakeGateway:
+    return FakeGateway()
+
+
+@pytest.fixture
+def client(gateway: FakeGateway) -> Client:
+    return Client(app(gateway))
+
+
+def test_the_fake_has_the_methods_of_the_real_gateway() -> None:
+    from tms_ur.gateway import Gateway
+
+    def methods(of: type) -> dict[str, inspect.Signature]:
+        found = inspect.getmembers(of, inspect.isfunction)
+        return {name: inspect.signature(method) for name, method in found if not name.startswith("_")}
+
+    assert methods(FakeGateway) == methods(Gateway)
+
+
+# state
+
+
+def test_state_before_anything_was_heard(client: Client) -> None:
+    state = client.get("/api/state").json()
+    assert state["machines"][0]["state"] == "silent"
+    assert state["machines"][0]["age"] is None
+    assert "zx200:rc" in state["machines"][0]["reason"]
+    assert state["scheduler"] == {"alive": False, "age": None}
+    assert state["runs"] == state["hosts"] == state["questions"] == []
+
+
+def test_state_shows_what_was_heard(client: Client, gateway: FakeGateway) -> None:
+    joint = Joint(name="swing_joint", position=1.5, velocity=0.1)
+    gateway.board.put_machine(Machine(name="zx200", state="moving", joints=[joint], joint_age=0.0))
+    gateway.board.put_runs([ActiveRun(run_id="r-2", task_id=4, state="running", machines=["zx200"])])
+    gateway.board.put_host(Host(name="pc", processes=[Process(name="tms:ts", state="RUNNING", pid=7)]))
+    state = client.get("/api/state").json()
+    assert state["machines"][0]["state"] == "moving"
+    assert state["machines"][0]["joints"] == [{"name": "swing_joint", "position": 1.5, "velocity": 0.1}]
+    assert state["scheduler"]["alive"]
+    assert state["runs"][0]["run_id"] == "r-2"
+    assert state["hosts"][0]["processes"][0]["pid"] == 7
+
+
+# stored things
+
+
+def test_tasks(client: Client) -> None:
+    assert client.get("/api/tasks").json()[0] == {
+        "id": 4, "model_name": "zx200", "description": "掘削", "added_at": "2026-01-31T12:00:00Z",
+    }  # fmt: skip
+    assert client.get("/api/tasks/7").json()["xml"] == XML
+
+
+def test_runs_and_events(client: Client, gateway: FakeGateway) -> None:
+    assert client.get("/api/runs?limit=5").json()[0]["reason"] == "pose out of reach"
+    assert client.get("/api/runs/r-1/events?after=6&limit=2").json()[0]["number"] == 7
+    assert client.get("/api/runs/r-1/events").status_code == 200
+    assert gateway.calls == [("runs", 5), ("events", "r-1", 6, 2), ("events", "r-1", 0, 1000)]
+
+
+def test_parameters_keep_their_types(client: Client, gateway: FakeGateway) -> None:
+    values = client.get("/api/parameters?model_name=zx200").json()[0]["values"]
+    assert values == {"i": 3, "d": 3.0, "b": True, "s": "3", "dd": [1.0, 2.5], "nan": None}
+    assert [type(values[name]) for name in ("i", "d", "b")] == [int, float, bool]
+    assert gateway.calls == [("parameters", "zx200")]
+
+
+# commands
+
+
+def test_start_a_run(client: Client, gateway: FakeGateway) -> None:
+    answer = client.post("/api/runs", json={"task_id": 4, "ignore_warnings": True})
+    assert (answer.status_code, answer.json()) == (202, {"run_id": "r-2"})
+    assert gateway.calls == [("start_run", 4, True)]
+
+
+def test_stop_asks_every_machine_and_any_role_may(client: Client, gateway: FakeGateway) -> None:
+    receipts = client.post("/api/stop", json={}).json()
+    assert [(one["machine"], one["confirmed"], one["seconds"]) for one in receipts] == [("zx200", True, 0.4)]
+    assert gateway.calls == [("stop", "zx200", "software stop by local at 127.0.0.1")]
+    answer = client.post("/api/stop", json={"machine": "ic120"})
+    assert (answer.status_code, answer.json()["code"]) == (404, "NO_MACHINE")
+    assert "zx200" in answer.json()["message"]
+
+
+def test_rearm_has_two_steps(client: Client) -> None:
+    first = client.post("/api/machines/zx200/rearm", json={}).json()
+    assert (first["armed"], first["token"]) == (False, "t-1")
+    assert client.post("/api/machines/zx200/rearm", json={"token": "t-1"}).json()["armed"]
+    assert client.post("/api/machines/ic120/rearm", json={}).status_code == 404
+
+
+def test_answer_a_question(client: Client, gateway: FakeGateway) -> None:
+    assert client.post("/api/questions/r-1-1", json={"yes": False}).status_code == 200
+    assert gateway.calls == [("answer", "r-1-1", False, "local at 127.0.0.1")]
+    gateway.error = TmsError("answered meanwhile", "NO_QUESTION")
+    assert client.post("/api/questions/r-1-1", json={"yes": True}).status_code == 404
+
+
+def test_tasks_are_checked_compared_and_stored(client: Client, gateway: FakeGateway) -> None:
+    found = client.post("/api/tasks/check", json={"xml": XML}).json()
+    assert found["errors"] == [{"line": 7, "text": "line 7, at 0.1: unknown node 'Dig'"}]
+    assert found["warnings"] == [{"line": None, "text": "nobody writes flag F"}]
+    assert client.post("/api/tasks/4/diff", json={"xml": XML}).json() == {"text": ""}
+    assert "+<root/>" in client.post("/api/tasks/4/diff", json={"xml": "<root/>"}).json()["text"]
+    answer = client.post("/api/tasks", json={"xml": XML, "description": "掘削"})
+    assert (answer.status_code, answer.json()) == (201, {"id": 5, "already_stored": False})
+    large = client.post("/api/tasks", json={"xml": "x" * 100_000})
+    assert large.status_code == 201  # trees may be larger than other commands
+
+
+def test_values_of_records_have_types(client: Client, gateway: FakeGateway) -> None:
+    assert client.post("/api/parameters", json=RECORD).status_code == 200
+    (_, model, record, values, source, create, kind), *_ = gateway.calls
+    assert (model, record, values, source, create, kind) == (
+        "zx200", "pose", {"a": 3.0}, "local at 127.0.0.1", False, "",
+    )  # fmt: skip
+    assert isinstance(values["a"], float)
+
+
+@pytest.mark.parametrize(
+    ("kind", "value"), [("int", 3.5), ("bool", 1), ("int", True), ("double", "3"), ("int[]", 3), ("int", [3])]
+)
+def test_values_that_do_not_fit_their_type(client: Client, gateway: FakeGateway, kind: str, value: object) -> None:
+    body = {**RECORD, "fields": [{"name": "a", "type": kind, "value": value}]}
+    answer = client.post("/api/parameters", json=body)
+    assert (answer.status_code, answer.json()["code"]) == (409, "BAD_VALUE")
+    assert gateway.calls == []
+
+
+def test_processes(client: Client, gateway: FakeGateway) -> None:
+    assert client.get("/api/processes/zx200:rc/log?size=1000").json() == {"text": "event=started\n"}
+    assert client.post("/api/processes/zx200:rc/restart", json={}).status_code == 200
+    assert gateway.calls == [("log", "zx200:rc", 1000), ("restart", "zx200:rc")]
+    assert client.get("/api/processes/a%2Fb/log").status_code in (404, 422)
+
+
+def test_tree_of_a_run(client: Client, gateway: FakeGateway) -> None:
+    assert client.get("/api/runs/r-1/tree").json()["names"] == ["all"]
+
+
+@pytest.mark.parametrize(
+    ("form", "begins"), [("json", b"{"), ("csv", b"\xef\xbb\xbfrun_id"), ("mcap", b"\x89MCAP0\r\n")]
+)
+def test_exports(client: Client, form: str, begins: bytes) -> None:
+    answer = client.get(f"/api/runs/r-1/export?form={form}")
+    assert answer.content.startswith(begins)
+    assert answer.headers["content-disposition"] == f'attachment; filename="r-1.{form}"'
+
+
+def test_every_command_is_audited(gateway: FakeGateway) -> None:
+    audit = FakeAudit()
+    client = Client(app(gateway, audit=audit))
+    for path, body in [*COMMANDS, ("/api/stop", {})]:
+        assert client.post(path, json=body).is_success, path
+    assert {what for _, _, what, _ in audit.notes} == {
+        "start_run", "cancel_run", "answer", "rearm_asked", "add_task", "remove_task", "set_parameter", "restart",
+        "stop",
+    }  # fmt: skip
+    assert {(who, where) for who, where, _, _ in audit.notes} == {("local", "127.0.0.1")}
+
+
+def test_the_site_is_described(client: Client) -> None:
+    site = client.get("/api/site").json()
+    (machine,) = site["machines"]
+    assert (machine["name"], machine["kind"]) == ("zx200", "backhoe")
+    assert [link["joint"] for link in machine["arm"]] == ["boom_joint", "arm_joint", "bucket_joint", "bucket_end_joint"]
+    assert all(len(box["min"]) == len(box["max"]) == 3 for box in machine["footprint"])
+
+
+def test_cancel_a_run(client: Client, gateway: FakeGateway) -> None:
+    answer = client.post("/api/runs/r-1/cancel", json={})
+    assert (answer.status_code, answer.json()) == (202, {"run_id": "r-1"})
+    assert gateway.calls == [("cancel_run", "r-1")]
+
+
+@pytest.mark.parametrize(
+    ("code", "status"),
+    [
+        ("TASK_MISSING", 404), ("RUN_MISSING", 404), ("NO_RUN", 404), ("MACHINE_BUSY", 409), ("PREFLIGHT", 409),
+        ("REFUSED", 409), ("NO_SERVER", 503), ("NO_ANSWER", 503), ("STORE_DOWN", 503),
+    ],
+)  # fmt: skip
+def test_errors_of_modules(client: Client, gateway: FakeGateway, code: str, status: int) -> None:
+    gateway.error = TmsError("what is wrong and what to do", code)
+    reads = [path for path in READS if code != "RUN_MISSING" or path != "/api/audit"]  # nothing was audited then
+    answers = [client.get(path) for path in reads] + [client.post(path, json=body) for path, body in COMMANDS]
+    for answer in answers:
+        assert answer.status_code == status
+        assert answer.json() == {"code": code, "message": "what is wrong and what to do"}
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "/api/tasks/0", "/api/tasks/x", "/api/tasks/2147483648", "/api/runs?limit=0", "/api/runs?limit=1001",
+        "/api/runs/a%20b/events", "/api/runs/r/events?after=-1", "/api/runs/r/events?after=4294967296",
+        "/api/parameters?model_name=a/b",
+    ],
+)  # fmt: skip
+def test_bad_values(client: Client, gateway: FakeGateway, path: str) -> None:
+    answer = client.get(path)
+    assert answer.status_code == 422
+    assert answer.json()["code"] == "BAD_REQUEST"
+    assert gateway.calls == []
+
+
+@pytest.mark.parametrize(
+    "body", [b"{", b"[]", b"{}", b'{"task_id": "4"}', b'{"task_id": 0}', b'{"task_id": 4, "speed": 9}', b"\xff"]
+)
+def test_bad_commands(client: Client, gateway: FakeGateway, body: bytes) -> None:
+    answer = client.post("/api/runs", content=body, headers={"Content-Type": "application/json"})
+    assert answer.status_code in (400, 422)
+    assert answer.json()["code"] == "BAD_REQUEST"
+    assert gateway.calls == []
+
+
+def test_unknown_path_and_method(client: Client) -> None:
+    assert client.get("/api/nothing").json()["code"] == "NOT_FOUND"
+    answer = client.request("PUT", "/api/tasks", json={})
+    assert (answer.status_code, answer.json()["code"]) == (405, "METHOD_NOT_ALLOWED")
+
+
+def test_a_bug_is_told_without_its_insides(gateway: FakeGateway) -> None:
+    gateway.error = ZeroDivisionError("inside")  # type: ignore[assignment]
+    client = Client(app(gateway))
+    answer = client.get("/api/tasks")
+    assert (answer.status_code, answer.json()["code"]) == (500, "INTERNAL")
+    assert "inside" not in answer.text
+    assert answer.headers["X-Content-Type-Options"] == "nosniff"
+
+
+# what stands before
+
+
+@pytest.mark.parametrize("path", ["/", "/console.js", "/api/state", "/api/nothing", "/api/tasks/x", "/openapi.json"])
+def test_security_headers_are_everywhere(client: Client, path: str) -> None:
+    headers = client.get(path).headers
+    assert {name: headers[name] for name in SECURITY} == SECURITY
+    assert headers["Cache-Control"] == ("no-store" if path.startswith("/api/") else "no-cache")
+
+
+@pytest.mark.parametrize("host", ["evil.example", "evil.example:8080", "127.0.0.1.evil.example", "", "[", "192.0.2.1"])
+def test_foreign_names_are_not_answered(client: Client, gateway: FakeGateway, host: str) -> None:
+    for answer in (
+        client.get("/api/tasks", headers={"Host": host}),
+        client.post("/api/runs", json={"task_id": 4}, headers={"Host": host}),
+    ):
+        assert (answer.status_code, answer.json()["code"]) == (400, "FOREIGN_HOST")
+        assert answer.headers["X-Frame-Options"] == "DENY"
+    assert gateway.calls == []
+
+
+@pytest.mark.parametrize("host", ["localhost", "LOCALHOST:8080", "127.0.0.1:1", "[::1]:8080"])
+def test_own_names_are_answered(client: Client, host: str) -> None:
+    assert client.get("/api/state", headers={"Host": host}).status_code == 200
+
+
+def test_bound_to_all_addresses_numbers_are_answered(gateway: FakeGateway) -> None:
+    client = Client(app(gateway, "0.0.0.0"), base_url="http://192.0.2.1:8080")
+    assert client.get("/api/state").status_code == 200
+    assert client.get("/api/state", headers={"Host": "evil.example"}).status_code == 400
+
+
+@pytest.mark.parametrize(
+    "origin", ["http://evil.example", "null", "http://127.0.0.1:9999", "http://localhost:8080", "file://", ""]
+)
+def test_commands_from_foreign_pages_are_refused(client: Client, gateway: FakeGateway, origin: str) -> None:
+    for path, body in COMMANDS:
+        answer = client.post(path, json=body, headers={"Origin": origin})
+        assert (answer.status_code, answer.json()["code"]) == (403, "FOREIGN_ORIGIN")
+    assert gateway.calls == []
+
+
+def test_commands_from_our_own_page(client: Client) -> None:
+    assert client.post("/api/runs", json={"task_id": 4}, headers={"Origin": HERE}).status_code == 202
+
+
+@pytest.mark.parametrize("kind", ["text/plain", "application/x-www-form-urlencoded", "multipart/form-data", ""])
+def test_commands_are_json(client: Client, gateway: FakeGateway, kind: str) -> None:
+    answer = client.post("/api/runs", content=b'{"task_id": 4}', headers={"Content-Type": kind})
+    assert (answer.status_code, answer.json()["code"]) == (415, "NOT_JSON")
+    assert gateway.calls == []
+
+
+def test_commands_are_short(client: Client, gateway: FakeGateway) -> None:
+    async def chunks() -> AsyncIterator[bytes]:
+        yield b"{}"
+
+    kind = {"Content-Type": "application/json"}
+    long = client.post("/api/runs", content=b" " * 20_000, headers=kind)
+    unknown = client.post("/api/runs", content=chunks(), headers=kind)
+    assert (long.status_code, long.json()["code"]) == (413, "TOO_LARGE")
+    assert (unknown.status_code, unknown.json()["code"]) == (411, "NO_LENGTH")
+    assert gateway.calls == []
+
+
+@pytest.mark.parametrize("bind", ["0.0.0.0", "192.0.2.7", "::", "site-pc"])
+def test_commands_need_loopback(gateway: FakeGateway, bind: str) -> None:
+    client = Client(app(gateway, bind), base_url="http://localhost:8080")
+    assert client.get("/api/tasks").status_code == 200
+    gateway.calls.clear()
+    for path, body in COMMANDS:
+        answer = client.post(path, json=body)
+        assert (answer.status_code, answer.json()["code"]) == (403, "NO_ACCESS_CONTROL")
+        assert bind in answer.json()["message"]
+    assert gateway.calls == []
+
+
+def test_loopback() -> None:
+    assert all(map(is_loopback, ["127.0.0.1", "127.1.2.3", "::1", "localhost"]))
+    assert not any(map(is_loopback, ["0.0.0.0", "::", "192.0.2.7", "site-pc", ""]))
+
+
+# the document
+
+
+def test_every_endpoint_is_in_the_document(client: Client) -> None:
+    document = client.get("/openapi.json").json()
+    assert set(document["paths"]) == {
+        "/api/state", "/api/events", "/api/tasks", "/api/tasks/{task_id}", "/api/runs", "/api/runs/{run_id}/events",
+        "/api/runs/{run_id}/cancel", "/api/parameters", "/api/site", "/api/session", "/api/login", "/api/logout",
+        "/api/stop", "/api/machines/{name}/rearm", "/api/questions/{question_id}", "/api/tasks/check",
+        "/api/tasks/{task_id}/diff", "/api/tasks/{task_id}/remove", "/api/runs/{run_id}/tree",
+        "/api/runs/{run_id}/export", "/api/audit", "/api/processes/{name}/log", "/api/processes/{name}/restart",
+    }  # fmt: skip
+    assert {method for path in document["paths"].values() for method in path} == {"get", "post"}  # what the guard knows
+    problem = document["paths"]["/api/runs"]["post"]["responses"]["409"]["content"]["application/json"]["schema"]
+    assert problem == {"$ref": "#/components/schemas/Problem"}
+    assert document["components"]["schemas"]["Joint"]["properties"]["position"]["description"] == "rad"

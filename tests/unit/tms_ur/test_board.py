@@ -1,0 +1,77 @@
+"""Ages, silence, and what counts as a change."""
+
+from dataclasses import dataclass, field
+
+from tms_ur.board import Board
+from tms_ur.models import ActiveRun, Host, Joint, Machine, Process
+
+
+@dataclass
+class Watched:
+    """A board with a clock that the test turns."""
+
+    now: float = 100.0
+    changes: int = 0
+    board: Board = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.board = Board(["zx200", "ic120"], lambda: self.now)
+        self.board.on_change(self._changed)
+
+    def _changed(self) -> None:
+        self.changes += 1
+
+
+def machine(angle: float, age: float | None = 0.1) -> Machine:
+    joints = [Joint(name="swing_joint", position=angle, velocity=0.0)]
+    return Machine(name="zx200", state="standing", joints=joints, joint_age=age)
+
+
+def test_ages_grow() -> None:
+    watched = Watched()
+    watched.board.put_machine(machine(1.0))
+    watched.board.put_runs([])
+    watched.now += 1.5
+    state = watched.board.snapshot()
+    assert (state.machines[0].age, state.machines[0].joint_age, state.machines[0].state) == (1.5, 1.6, "standing")
+    assert (state.scheduler.alive, state.scheduler.age) == (True, 1.5)
+
+
+def test_silence_is_told_and_heals() -> None:
+    watched = Watched()
+    watched.board.put_machine(machine(1.0, None))
+    watched.board.put_runs([])
+    watched.now += 6
+    state = watched.board.snapshot()
+    assert (state.machines[0].state, state.machines[0].joint_age) == ("silent", None)
+    assert state.machines[0].reason == "zx200:rc has said nothing for 6 s"
+    assert state.machines[0].joints, "the last angles stay, as old ones"
+    assert not state.scheduler.alive
+    watched.board.put_machine(machine(1.0))
+    assert watched.board.snapshot().machines[0].state == "standing"
+
+
+def test_only_content_is_a_change() -> None:
+    watched = Watched()
+    for angle, age, changes in ((1.0, 0.1, 1), (1.0, 0.3, 1), (1.1, 0.1, 2)):
+        watched.board.put_machine(machine(angle, age))
+        assert watched.changes == changes
+
+
+def test_first_empty_list_of_runs_is_a_change() -> None:
+    watched = Watched()
+    run = ActiveRun(run_id="r", task_id=1, state="running")
+    for runs, changes in (([], 1), ([], 1), ([run], 2), ([run], 2), ([], 3)):
+        watched.board.put_runs(runs)
+        assert watched.changes == changes
+
+
+def test_hosts_stand_side_by_side_and_uptime_goes_on() -> None:
+    watched = Watched()
+    rows = [Process(name="tms:ts", state="RUNNING", uptime=5.0), Process(name="tms:db", state="STOPPED")]
+    watched.board.put_host(Host(name="pc2", processes=rows))
+    watched.board.put_host(Host(name="pc1"))
+    watched.now += 10
+    hosts = watched.board.snapshot().hosts
+    assert [host.name for host in hosts] == ["pc1", "pc2"]
+    assert [process.uptime for process in hosts[1].processes] == [15.0, 0.0]

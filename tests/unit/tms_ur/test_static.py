@@ -1,0 +1,81 @@
+"""The pages: both languages complete, every text used is there, nothing comes from elsewhere."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from tms_ur.api import STATIC
+from unit.tms_ur.fakes import Client, FakeGateway, app
+
+FILES = sorted(path for path in STATIC.rglob("*") if path.is_file())
+CODE = {path: path.read_text(encoding="utf-8") for path in FILES if path.suffix == ".js"}
+PAGES = {path: path.read_text(encoding="utf-8") for path in FILES if path.suffix == ".html"}
+FIRST_PAGE = 300_000  # bytes
+
+
+def table() -> dict[str, dict[str, str]]:
+    text = (STATIC / "words.js").read_text(encoding="utf-8")
+    found = re.search(r"export const WORDS = (\{.*?\n\});", text, re.DOTALL)
+    assert found, "words.js holds no table"
+    texts: dict[str, dict[str, str]] = json.loads(found[1])
+    return texts
+
+
+def test_both_languages_have_the_same_texts() -> None:
+    texts = table()
+    assert set(texts) == {"ja", "en"}
+    assert texts["ja"].keys() == texts["en"].keys()
+    for key, ja in texts["ja"].items():
+        en = texts["en"][key]
+        assert ja and en, f"{key} is empty"
+        assert sorted(re.findall(r"\{\w+\}", ja)) == sorted(re.findall(r"\{\w+\}", en)), key
+
+
+def used() -> set[str]:
+    found: set[str] = set()
+    for text in PAGES.values():
+        found |= set(re.findall(r'data-(?:t|label)="(\w+)"', text))
+    for text in CODE.values():
+        found |= set(re.findall(r'\bt\("(\w+)"', text)) | set(re.findall(r'\b(?:t|label): "(\w+)"', text))
+        found |= set(re.findall(r'\bheading\("(\w+)"', text)) | set(re.findall(r'\bbutton\("(\w+)"', text))
+        for heads in re.findall(r'\btable\("\w+", \[([^\]]*)\]', text):
+            found |= set(re.findall(r'"(\w+)"', heads))
+    return found
+
+
+def test_every_text_that_the_pages_ask_for_is_there() -> None:
+    assert len(used()) > 60
+    assert used() <= table()["en"].keys()
+
+
+def test_every_element_that_the_code_asks_for_is_made_somewhere() -> None:
+    everything = "".join([*PAGES.values(), *CODE.values()])
+    made = set(re.findall(r'\bid(?:="|: "| = ")(\w+)"', everything)) | set(re.findall(r'\btable\("(\w+)"', everything))
+    asked = set(re.findall(r'\bat\("(\w+)"\)', "".join(CODE.values())))
+    assert asked <= made
+
+
+@pytest.mark.parametrize("file", [*CODE], ids=lambda path: path.name)
+def test_modules_import_what_is_there(file: Path) -> None:
+    for names, source in re.findall(r"^import (?:\{([^}]*)\}|\* as \w+) from \"([^\"]+)\";", CODE[file], re.MULTILINE):
+        target = CODE[(file.parent / source).resolve()]
+        for name in filter(None, (one.strip() for one in names.split(","))):
+            assert re.search(rf"^export (?:async )?(?:const|function|class) {name}\b", target, re.MULTILINE), name
+            assert len(re.findall(rf"\b{name}\b", CODE[file])) > 1, f"{name} is imported and not used"
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda path: path.name)
+def test_nothing_comes_from_elsewhere(file: Path) -> None:
+    text = file.read_text(encoding="utf-8").replace("http://www.w3.org/2000/svg", "")
+    assert not re.search(r"https?://|innerHTML|\bstyle=|<script(?![^>]*src)|\son\w+=", text)
+
+
+def test_files_are_served_and_small() -> None:
+    client = Client(app(FakeGateway()))
+    assert client.get("/").text == (STATIC / "index.html").read_text(encoding="utf-8")
+    assert client.get("/console.js").headers["content-type"].startswith("text/javascript")
+    assert client.get("/pages/run.js").status_code == client.get("/panel.html").status_code == 200
+    assert client.get("/../api.py").status_code == client.get("/%2e%2e/api.py").status_code == 404
+    assert sum(path.stat().st_size for path in FILES) < FIRST_PAGE
