@@ -19,7 +19,7 @@ from tms_core.fence import Owner
 from tms_core.permit import NOBODY, Link
 from tms_core.ros import LOST_TEXT, Call, Goal, Peer
 from tms_rc.chain import SCHEDULER, gap, members
-from tms_rc.latch import Latch
+from tms_rc.latch import ANY_LEAF, UNKNOWN_RUN, Latch
 from tms_rc.memory import Memory
 from tms_rc.permits import Permits
 from tms_rc.standstill import StandStill
@@ -28,8 +28,9 @@ from tms_rc.stopper import STOP_LIMIT, Stop, Stopper
 PERMIT_LIMIT = 3.0  # s that a goal may come before the permits behind it: a new process is discovered late on a busy PC
 PRESSED = 1.0  # s that a software stop counts as pressed after its last message
 FRESH = 1.0  # s, older news of the machine make it not ready
-RUN_TOLD = 0.5  # s for a new gateway to hear of the run that holds the machine, before it latches what moves
-ANY_LEAF = -1  # no leaf has this number: any leaf of the run may leave the hold
+LEFT_MOVING = 2.0  # s that a new gateway looks for a motion that its predecessor left
+RUN_TOLD = 3.0  # s for a new gateway to hear of the run whose machine it has stopped, before it latches
+RESTARTED = LOST_TEXT + ": {}:rc was restarted"
 
 
 class Kind(Enum):
@@ -73,6 +74,7 @@ class Guard:
         self._news = threading.Condition()  # of permits
         self._taking = threading.Lock()
         self._run: int | None = None  # that holds the machine
+        self._unclaimed = True  # whether the last gateway may have left a motion of a run that is not known yet
         self._pressed = 0.0  # monotonic time of the last software stop message
         self.active: Active | None = None
         self.told: Callable[[], None] = lambda: None  # called when the latch has changed, to tell it at once
@@ -131,6 +133,8 @@ class Guard:
             return
         self._run = None if run is None else run.run
         self.latch.run_is(self._run)
+        if self._run is not None:
+            self._take_over(self._run)
 
     def check_chain(self) -> None:
         """Stop when a process behind the present goal is gone."""
@@ -258,21 +262,23 @@ class Guard:
         self._controls.cancel_everything()
         if self.latch.cause:
             self._controls.emergency(True)
-        deadline = time.monotonic() + 2.0
-        moved: float | None = None  # when it was first seen to move in spite of the commands above
-        while time.monotonic() < deadline and not self._app.stopping.wait(0.02):
-            if self.active is not None:
-                return
-            if moved is None and self.silent() is None and self._watch.moving():
-                moved = time.monotonic()
-            if self._run is not None or (moved is not None and time.monotonic() - moved > RUN_TOLD):
-                self._app.ros.on_executor(self._take_over)
-                return
+        deadline, stopped = time.monotonic() + LEFT_MOVING, False
+        while self._unclaimed and time.monotonic() < deadline and not self._app.stopping.wait(0.02):
+            if not stopped and self.silent() is None and self._watch.moving():
+                deadline, stopped = time.monotonic() + RUN_TOLD, True
+                self._app.ros.on_executor(lambda: self._take_over(UNKNOWN_RUN))
+        self._app.ros.on_executor(lambda: self._recovered(stopped))
 
-    def _take_over(self) -> None:
-        cause, run = f"{LOST_TEXT}: {self._app.machine}:rc was restarted", self._run
-        if run is not None:
-            self.latch.keep(cause, Owner(run, ANY_LEAF))
-            self.stop_now(cause, Kind.PLAIN, run=run)
-        else:
-            self.stop_now(f"{cause} while the machine moved", Kind.LATCH)
+    def _take_over(self, run: int) -> None:
+        """Stop what the last gateway left moving for this run."""
+        if not self._unclaimed or self.active is not None:
+            return
+        self._unclaimed = run == UNKNOWN_RUN
+        self.latch.keep(RESTARTED.format(self._app.machine), Owner(run, ANY_LEAF))
+        self.stop_now(RESTARTED.format(self._app.machine), Kind.PLAIN, run=0 if run == UNKNOWN_RUN else run)
+
+    def _recovered(self, stopped: bool) -> None:
+        """Whose motion was stopped is known by now, or it was nobody's."""
+        if self._unclaimed and stopped:
+            self.stop_now(f"{RESTARTED.format(self._app.machine)} while it moved, and no run told of it", Kind.LATCH)
+        self._unclaimed = False

@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from tms_core.fence import Owner
 
 TOKEN_SECONDS = 60.0  # s that a person has between the two steps
+ANY_LEAF = -1  # no leaf has this number: any leaf of the run may leave the hold
+UNKNOWN_RUN = -1  # no run has this number: nobody may leave the hold until it is known whose it is
 
 
 @dataclass(frozen=True)
@@ -71,7 +73,7 @@ class Latch:
     def run_is(self, run: int | None) -> None:
         """Tell which run holds the machine; its orderly change ends a hold for another one."""
         with self._lock:
-            if self._hold is not None and self._hold.run != run:
+            if self._hold is not None and self._hold.run not in (UNKNOWN_RUN, run):
                 self._hold = None
 
     def run_lost(self) -> None:

@@ -52,7 +52,7 @@ class Mover:
             if time.monotonic() > deadline:
                 return "TIMEOUT", f"{self._peer.name} was not done {OVERRUN:.0f} s after the end of the trajectory"
             if not self._peer.ready():
-                return "LOST", f"{self._peer.name} went away during the motion: see `tms ps`"
+                self._peer.lost()  # it left in order, but without a result
             call.wait_for(lambda: _over(goal, call), min(LOOK, deadline - time.monotonic()))
         return None
 

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from tms_msg_rc.msg import Permit as Message
 
-from tms_core.permit import GRACE, Link
+from tms_core.permit import GRACE, Link, Watched
 
 GOAL = [7] * 16
 
@@ -62,3 +62,56 @@ def test_it_does_not_wait_for_ever(dds: Dds, link: tuple[Link, list[bool]]) -> N
     dds.alive(0)
     dds.later[0][1]()
     assert not link[0].alive and link[1][-1] is False
+
+
+class Server:
+    """What Watched needs of a Peer: keeps what it was told."""
+
+    def __init__(self) -> None:
+        self.told: list[str] = []
+
+    def lost(self) -> None:
+        self.told.append("lost")
+
+    def found(self) -> None:
+        self.told.append("found")
+
+
+@pytest.fixture
+def server(dds: Dds) -> Server:
+    made, watched = Server(), Watched()
+    Link(dds, "zx200", "rc", watched.changed)  # type: ignore[arg-type]
+    watched.add(made)  # type: ignore[arg-type]
+    dds.heard(Message(process="rc", goal=GOAL, instance=1))
+    dds.alive(1)
+    assert not made.told
+    return made
+
+
+def test_a_process_started_anew_within_its_lease_was_lost(dds: Dds, server: Server) -> None:
+    dds.alive(2)
+    dds.heard(Message(process="rc", goal=GOAL, instance=2))
+    assert server.told == ["lost"]
+    dds.alive(1)  # the lease of the first one has run out
+    assert server.told == ["lost"]
+
+
+def test_a_process_started_anew_later_is_lost_once(dds: Dds, server: Server) -> None:
+    dds.alive(0)
+    dds.heard(Message(process="rc", goal=GOAL, instance=2))
+    dds.alive(1)
+    assert server.told == ["lost"]
+
+
+def test_a_frozen_process_that_runs_again_is_found(dds: Dds, server: Server) -> None:
+    dds.alive(0)
+    dds.alive(1)
+    assert server.told == ["lost", "found"]
+
+
+def test_a_process_started_anew_between_two_goals_loses_none(dds: Dds, server: Server) -> None:
+    dds.heard(Message(process="rc", instance=1))
+    dds.alive(0)
+    dds.heard(Message(process="rc", goal=GOAL, instance=2))
+    dds.alive(1)
+    assert not server.told

@@ -3,7 +3,7 @@
 import pytest
 
 from tms_core.fence import Owner
-from tms_rc.latch import TOKEN_SECONDS, Latch
+from tms_rc.latch import ANY_LEAF, TOKEN_SECONDS, UNKNOWN_RUN, Latch
 
 LOST = Owner(5, 1, 2)  # the goal during which a process was lost
 AGAIN = Owner(5, 2, 2)  # the next goal of the same run
@@ -48,6 +48,17 @@ def test_a_hold_ends_with_its_run_and_becomes_a_latch_with_its_scheduler() -> No
     latch.keep("rp was lost", LOST)
     latch.run_lost()
     assert "scheduler" in latch.cause
+
+
+def test_a_hold_of_an_unknown_run_lasts_until_it_is_known() -> None:
+    latch = Latch()
+    latch.keep("rc was restarted", Owner(UNKNOWN_RUN, ANY_LEAF))
+    latch.run_is(None)
+    assert latch.refusal(AGAIN) is not None
+    latch.run_is(AGAIN.run)
+    assert latch.refusal(AGAIN) is not None
+    latch.keep("rc was restarted", Owner(AGAIN.run, ANY_LEAF))
+    assert latch.refusal(AGAIN) is None
 
 
 def test_a_latch_is_not_weakened_by_a_later_loss() -> None:
