@@ -114,9 +114,9 @@ class Scheduler:
             runs = list(self._runs.values())
         for state in STATES:
             ACTIVE.labels(state).set(sum(run.facts.state == state for run in runs))
-        counted = Counter(status.name.lower() for run in runs for status in run.statuses())
-        for status in ("idle", "running", "success", "failure"):
-            NODES.labels(status).set(counted[status])
+        counted = Counter(state for run in runs for state in run.states)
+        for status in bt.Status:
+            NODES.labels(status.name.lower()).set(counted[status])
 
     def close(self) -> None:
         """The process ends: runs stop their machines; the runtime waits a moment for their threads."""

@@ -29,7 +29,6 @@ CHANGES_A_TICK = 200  # node changes recorded of one tick; an endless loop makes
 CHANGES_A_MESSAGE = 1000
 TICK_LIMIT = 0.4  # s without a tick after which the scheduler does not stand behind its motions any more
 SETTLE_LIMIT = 12.0  # s for goals to become terminal after a halt
-WIRE = {"IDLE": 0, "RUNNING": 1, "SUCCESS": 2, "FAILURE": 3}
 
 RUNS = Counter("tms_ts_runs_total", "Runs by outcome", ["outcome"])
 TICKS = Histogram("tms_ts_tick_seconds", "Duration of a tick", buckets=(0.001, 0.005, 0.01, 0.05, 0.1, 0.25, 0.5))
@@ -77,9 +76,8 @@ class Run:
         self._next_feedback = 0.0
         self._changes_of_tick = 0
         self._ending = ("cancelled", "")  # outcome and reason of a run that is ended from outside
-        self._states = b""  # of every node, for who looks
+        self.states = b""  # of every node, for who looks
         self._leaf = ""
-        self._tree: Tree | None = None  # once it is ticked
         self._ticked: float | None = None  # when the last tick ended; None while nothing ticks
 
     def cancel(self, outcome: str = "cancelled", reason: str = "") -> None:
@@ -97,11 +95,6 @@ class Run:
         """Whether the loop that decides about motions still runs."""
         ticked = self._ticked
         return ticked is None or time.monotonic() - ticked < TICK_LIMIT
-
-    def statuses(self) -> list[Status]:
-        """Of every node, as it is now."""
-        tree = self._tree
-        return [node.state for node in tree.nodes] if tree is not None else []
 
     # what is told
 
@@ -140,7 +133,7 @@ class Run:
         facts = self.facts
         return RunState(
             run_id=facts.run_id, task_id=facts.task_id, state=facts.state, machines=facts.machines,
-            reason=facts.reason, started_at=facts.started, leaf=self._leaf, nodes=self._states,
+            reason=facts.reason, started_at=facts.started, leaf=self._leaf, nodes=self.states,
         )  # fmt: skip
 
     def tell_tree(self, tree: Tree) -> None:
@@ -159,7 +152,6 @@ class Run:
 
     def execute(self, tree: Tree, machines: Machines) -> str:
         """Tick to the end and stop what still moves; returns the outcome."""
-        self._tree = tree
         tree.observers.append(self._node_changed)
         self.enter("running")
         outcome = "failure"
@@ -272,8 +264,8 @@ class Run:
         leaf, reason = (running.path, running.reason) if running is not None else ("", "")
         if self.facts.state != "running":
             reason = self.facts.reason
-        if (states, leaf, reason) != (self._states, self._leaf, self.facts.reason):
-            self._states, self._leaf, self.facts.reason = states, leaf, reason
+        if (states, leaf, reason) != (self.states, self._leaf, self.facts.reason):
+            self.states, self._leaf, self.facts.reason = states, leaf, reason
             self._changed()
 
     def _tell_client(self, tree: Tree, last: bool = False) -> None:
@@ -302,6 +294,6 @@ class Run:
 def _message(node: Node, status: Status) -> NodeStatus:
     return NodeStatus(
         uid=node.uid, parent=node.parent.uid if node.parent is not None else 0, name=node.name,
-        type=node.registration_name, status=WIRE[status.name],
+        type=node.registration_name, status=status,
         reason=node.reason if status in (Status.RUNNING, Status.FAILURE) else "",
     )  # fmt: skip
