@@ -35,7 +35,13 @@ SPIN = (
 
 
 def measure() -> Iterable[Figure]:
-    from bench.yard.machines import BURN, make_site, names, process  # rclpy reads the environment when it is imported
+    from bench.yard.machines import (
+        BURN,
+        hurry,
+        make_site,
+        names,
+        process,
+    )  # rclpy reads the environment when it is imported
 
     with ExitStack() as stack:
         domain, folder = stack.enter_context(claimed_domain()), Path(stack.enter_context(tempfile.TemporaryDirectory()))
@@ -43,20 +49,20 @@ def measure() -> Iterable[Figure]:
         for name in names():
             log = stack.enter_context((folder / f"{name}.log").open("w"))
             stack.enter_context(process("-m", "tms_core.run", f"{name}:rc", stdout=log, stderr=log))
-        yield from _stops(stack, site, process, BURN)
+        for command in (("-c", BURN), ("-c", BURN), (RELAY,)):
+            stack.enter_context(process(*command))
+        hurry()
+        yield from _stops(stack, site, process)
 
 
-def _stops(stack: ExitStack, site: object, process: Callable[..., object], burn: str) -> Iterator[Figure]:
+def _stops(stack: ExitStack, site: object, process: Callable[..., object]) -> Iterator[Figure]:
     from bench.yard.machines import Yard
 
     yard = Yard(site)
     stack.callback(yard.ros.close)
     yard.arm()
-    for _ in range(2):
-        stack.enter_context(process("-c", burn))
     presses = [late for _ in range(PRESSES) for late in _press(yard)]
-    with process(RELAY):
-        floor = _relayed(yard)
+    floor = _relayed(yard)
     yield Figure("press p99", "ms", _p99(presses), 50.0, _p99(floor), usual_floor=4.0)
     yield Figure("spin p99", "ms", _p99([_spin() for _ in range(SPINS)]), 100.0, _p99([_wake() for _ in range(SPINS)]))
     kills = [late for number in range(KILLS) for late in _kill(yard, number + 1, process)]
