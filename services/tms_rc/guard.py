@@ -263,7 +263,9 @@ class Guard:
         if self.latch.cause:
             self._controls.emergency(True)
         deadline, stopped = time.monotonic() + LEFT_MOVING, False
-        while self._unclaimed and time.monotonic() < deadline and not self._app.stopping.wait(0.02):
+        while self._unclaimed and self.active is None and time.monotonic() < deadline:
+            if self._app.stopping.wait(0.02):
+                return
             if not stopped and self.silent() is None and self._watch.moving():
                 deadline, stopped = time.monotonic() + RUN_TOLD, True
                 self._app.ros.on_executor(lambda: self._take_over(UNKNOWN_RUN))
@@ -279,6 +281,6 @@ class Guard:
 
     def _recovered(self, stopped: bool) -> None:
         """Whose motion was stopped is known by now, or it was nobody's."""
-        if self._unclaimed and stopped:
+        if self._unclaimed and stopped and self.active is None:
             self.stop_now(f"{RESTARTED.format(self._app.machine)} while it moved, and no run told of it", Kind.LATCH)
         self._unclaimed = False
