@@ -21,6 +21,7 @@ from tms_rc.guard import Guard
 from tms_rc.standstill import JOINTS, ODOM, StandStill
 
 STATE_PERIOD = 0.2  # s
+DEPTH = 10  # messages of the machine that may come between two looks
 PERMIT = Gauge("tms_rc_permit", "1 while a run stands behind the machine's motions")
 LATCHED = Gauge("tms_rc_latched", "1 while the machine is stopped until a person re-arms it")
 HELD = Gauge("tms_rc_held", "1 while only the run that lost a process may move the machine")
@@ -36,10 +37,6 @@ def start(app: App) -> None:
     sources = [name for name, topic in ((JOINTS, border.joint_states), (ODOM, border.odom)) if topic]
     watch = StandStill(app.site.model_of(machine).still, sources)
     view = View(app, watch)
-    if border.joint_states:
-        ros.subscribe(JointState, f"/{machine}/{border.joint_states}", view.joints_heard, depth=10)
-    if border.odom:
-        ros.subscribe(Odometry, f"/{machine}/{border.odom}", view.odometry_heard, depth=10)
     guard = Guard(app, watch, Controls(ros, machine, border))
     gateway = Gateway(app, guard, watch)
     for motion in motions(border):
@@ -53,6 +50,7 @@ def start(app: App) -> None:
     publisher = ros.publisher(MachineState, f"/{machine}/rc/state", depth=1, latched=True)
     guard.told = lambda: publisher.publish(view.state(guard))
     ros.every(STATE_PERIOD, guard.told)
+    ros.pulse.add(view.look)
     Permit(ros, machine, "rc").hold(GATEWAY)
     threading.Thread(target=guard.recover, name="recover", daemon=True).start()
     app.ready_when(view.unready)
@@ -67,17 +65,31 @@ class View:
         # name on the wire -> name in the model
         self._names = {renamed.get(name, name): name for name in app.site.model_of(app.machine).joints}
         self.peers: list[Peer] = []
+        border = app.site.border(app.machine)
+        topics = ((JointState, border.joint_states, self._joints_heard), (Odometry, border.odom, self._odometry_heard))
+        self._news = [
+            (app.ros.sample(kind, f"/{app.machine}/{topic}", DEPTH), heard) for kind, topic, heard in topics if topic
+        ]
 
-    def joints_heard(self, message: Any) -> None:
-        """Joint states are matched by name: backends order them differently."""
-        known = [(i, self._names[name]) for i, name in enumerate(message.name) if name in self._names]
-        positions = {name: message.position[i] for i, name in known if i < len(message.position)}
-        velocities = {name: message.velocity[i] for i, name in known if i < len(message.velocity)}
+    def look(self) -> None:
+        """Take what the machine has told since the last look: at every beat, so that no callback delays it."""
+        for news, heard in self._news:
+            if messages := news():
+                heard(messages)
+
+    def _joints_heard(self, messages: list[Any]) -> None:
+        """Joint states are matched by name: backends order them differently, and may send some joints at a time."""
+        positions: dict[str, float] = {}
+        velocities: dict[str, float] = {}
+        for message in messages:
+            known = [(i, self._names[name]) for i, name in enumerate(message.name) if name in self._names]
+            positions |= {name: message.position[i] for i, name in known if i < len(message.position)}
+            velocities |= {name: message.velocity[i] for i, name in known if i < len(message.velocity)}
         self._watch.update(time.monotonic(), positions, velocities)
 
-    def odometry_heard(self, message: Any) -> None:
+    def _odometry_heard(self, messages: list[Any]) -> None:
         """Place and speeds of the machine."""
-        at, speed = message.pose.pose.position, message.twist.twist
+        at, speed = messages[-1].pose.pose.position, messages[-1].twist.twist
         linear = math.hypot(speed.linear.x, speed.linear.y)
         self._watch.update_odometry(time.monotonic(), (at.x, at.y), linear, speed.angular.z)
 

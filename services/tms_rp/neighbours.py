@@ -1,7 +1,6 @@
 """Where the other machines of the site stand, as /tf tells; one that was never seen is no obstacle."""
 
 import math
-from typing import Any
 
 import numpy as np
 from tf2_msgs.msg import TFMessage
@@ -10,6 +9,8 @@ from tms_core.app import App
 from tms_rp.clearance import Matrix, Obstacle, placed
 
 MAP = "map"
+LOOK = 1.0  # s
+DEPTH = 20  # transforms a look: every machine sends many between two looks
 
 
 class Neighbours:
@@ -19,10 +20,11 @@ class Neighbours:
         self._site, self._own = app.site, app.machine
         self._frames = {app.site.border(name).base_frame: name for name in app.site.file.machines}
         self._places: dict[str, Matrix] = {}
-        app.ros.subscribe(TFMessage, "/tf", self._heard, depth=20)
+        self._news = app.ros.sample(TFMessage, "/tf", DEPTH)
+        app.ros.every(LOOK, self._look)
 
-    def _heard(self, message: Any) -> None:
-        for one in message.transforms:
+    def _look(self) -> None:
+        for one in (one for message in self._news() for one in message.transforms):
             name = self._frames.get(one.child_frame_id)
             if name is not None and one.header.frame_id == MAP:
                 at, q = one.transform.translation, one.transform.rotation
@@ -31,6 +33,7 @@ class Neighbours:
 
     def obstacles(self) -> list[Obstacle]:
         """Footprints of the others in our base_link, as far as both places are known."""
+        self._look()
         own = self._places.get(self._own)
         if own is None:
             return []

@@ -25,6 +25,7 @@ from tms_rp.neighbours import Neighbours
 from tms_rp.trajectory import Trajectory, trajectory
 
 FRESH = 1.0  # s, older joint states are no start for a motion
+LOOK = 0.25  # s between looks at joint states, to know their age
 
 PLANNING = Histogram("tms_rp_planning_seconds", "From goal to trajectory", buckets=(0.001, 0.005, 0.02, 0.05, 0.2, 1))
 
@@ -65,8 +66,7 @@ ACTIONS = (
 def start(app: App) -> None:
     """Serve `/<machine>/tms_rp_<model>_<action>`."""
     planner, model = Planner(app), app.site.file.machines[app.machine].model
-    border = app.site.border(app.machine)
-    app.ros.subscribe(JointState, f"/{app.machine}/{border.joint_states}", planner.heard)
+    app.ros.every(LOOK, planner.look)
     for action in ACTIONS:
         planner.serve(action, f"/{app.machine}/tms_rp_{model}_{action.name}")
     app.ready_when(planner.unready)
@@ -87,8 +87,14 @@ class Planner:
         self._renamed = app.site.border(app.machine).joints
         self._busy = False  # set on the executor thread, which accepts one goal after another
         self._now: tuple[float, Pose] | None = None  # monotonic time [s], joints
+        self._news = app.ros.sample(JointState, f"/{app.machine}/{app.site.border(app.machine).joint_states}")
 
-    def heard(self, message: JointState) -> None:
+    def look(self) -> None:
+        """Take the newest joint state."""
+        for message in self._news():
+            self._heard(message)
+
+    def _heard(self, message: JointState) -> None:
         """Joint states are matched by name: backends order them differently."""
         found = dict(zip(message.name, message.position, strict=False))
         found.update({name: found[own] for name, own in self._renamed.items() if own in found})
@@ -110,6 +116,7 @@ class Planner:
         Raises:
             SubtaskFailed: NO_JOINT_STATE, nothing heard, or too long ago.
         """
+        self.look()
         last = self._now
         topic = f"/{self._app.machine}/{self._app.site.border(self._app.machine).joint_states}"
         if last is None:

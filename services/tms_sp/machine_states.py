@@ -35,7 +35,7 @@ class MachineStates:
         states = [
             MachineState(collection=collection, machine=machine, stamp=self._ros.now(), msg=json.dumps(plain(message)))
             for collection, machine, newest in self._topics
-            if (message := newest()) is not None
+            for message in newest()
         ]
         if states:
             request = WriteMachineStates.Request(states=states)

@@ -174,18 +174,26 @@ class Ros:
             message_type, topic, heard, quality.topic(depth, latched, best_effort), callback_group=self.group
         )
 
-    def sample(self, message_type: InterfaceType, topic: str) -> Callable[[], Message | None]:
-        """What asks for the newest message that came since the last time; messages in between cost no callback."""
+    def sample(self, message_type: InterfaceType, topic: str, depth: int = 1) -> Callable[[], list[Message]]:
+        """What asks for the last `depth` messages that came since it was asked last, oldest first; from any thread.
+
+        Messages do not wake the executor, which costs more than to take them.
+        """
         subscription = self.node.create_subscription(
-            message_type, topic, _unheard, quality.topic(1, False, best_effort=True), callback_group=_Asleep()
+            message_type, topic, _unheard, quality.topic(depth, False, best_effort=True), callback_group=_Asleep()
         )
 
-        def newest() -> Message | None:
+        def news() -> list[Message]:
+            found: list[Message] = []
             with subscription.handle:
-                taken = subscription.handle.take_message(subscription.msg_type, False)
-            return None if taken is None else taken[0]
+                while len(found) < depth:
+                    taken = subscription.handle.take_message(subscription.msg_type, False)
+                    if taken is None:
+                        break
+                    found.append(taken[0])
+            return found
 
-        return newest
+        return news
 
     def subscribe_raw(self, message_type: InterfaceType, topic: str, heard: Callable[[bytes], None]) -> Any:
         """Call `heard` with each message as it is on the wire, with the QoS of those who publish now."""
