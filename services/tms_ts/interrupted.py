@@ -1,6 +1,7 @@
 """Runs that a lost scheduler left open: closed as `interrupted` by its successor, then resumed or abandoned."""
 
 import threading
+import time
 from typing import Any
 
 from builtin_interfaces.msg import Time
@@ -13,7 +14,8 @@ from tms_ts.journal import Journal
 from tms_ts.machines import receipt_text
 from tms_ts.record import Header, Key, Past, Records
 
-SETTLE = 1.5  # s after the start in which gateways tell how they stopped the machines
+STOP_LIMIT = 8.0  # s for the gateways to tell how they stopped the machines; they give themselves 5 s
+LOOK = 0.05  # s
 
 
 class Interrupted:
@@ -35,16 +37,26 @@ class Interrupted:
 
     def _close_all(self) -> None:
         left = [past for past in self._records.past() if not past.closed]
-        self._app.stopping.wait(SETTLE)
+        deadline = time.monotonic() + STOP_LIMIT
+        while not all(map(self._all_told, left)) and time.monotonic() < deadline:
+            if self._app.stopping.wait(LOOK):
+                return
         for past in left:
             if past.header is not None and past.header.run_id not in self._active:
                 self._close(past, past.header)
 
-    def _close(self, past: Past, header: Header) -> None:
-        record, number = self._records.open(header.run_id), past.last_event
+    def _all_told(self, past: Past) -> bool:
+        return past.header is None or set(past.header.machines) <= {r.machine for r in self._stops(past, past.header)}
+
+    def _stops(self, past: Past, header: Header) -> list[Any]:
+        """What the gateways have told of the end of this run; a latched receipt may come twice."""
         with self._lock:
             seen = {(r.machine, r.stamp.sec, r.stamp.nanosec): r for r in self._receipts if r.run == header.number}
-        texts = [("stop", receipt_text(r)) for r in seen.values() if _seconds(r.stamp) > past.last_time - 1.0]
+        return [receipt for receipt in seen.values() if _seconds(receipt.stamp) > past.last_time - 1.0]
+
+    def _close(self, past: Past, header: Header) -> None:
+        record, number = self._records.open(header.run_id), past.last_event
+        texts = [("stop", receipt_text(receipt)) for receipt in self._stops(past, header)]
         reason = "the scheduler was lost; the gateways stopped the machines: `tms resume` or `tms abandon` it"
         for kind, text in [*texts, ("run", f"interrupted: {reason}")]:
             number += 1
