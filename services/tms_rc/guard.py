@@ -156,11 +156,11 @@ class Guard:
             self.latch.close(cause)
         elif kind is Kind.HOLD and active is not None and active.owner is not None:
             self.latch.keep(cause, active.owner)
-        if active is not None and active.call is not None:
-            active.peer.cancel(active.call)  # also one that the machine has not answered yet
         ended = active.ended if active is not None else lambda: True
         run = run or (active.owner.run if active is not None and active.owner is not None else self._run or 0)
         stop = self.stopper.begin(cause, latched=kind is Kind.LATCH, run=run, ended=ended)
+        if active is not None and active.call is not None:
+            active.peer.cancel(active.call)  # also one that the machine has not answered yet
         if active is not None:
             active.stop = active.stop or stop
             active.wake()

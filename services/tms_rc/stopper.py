@@ -71,10 +71,10 @@ class Stopper:
         return stop
 
     def _command(self, latched: bool) -> None:
-        self._controls.zero()
-        self._controls.cancel_everything()
+        self._controls.zero()  # messages leave sooner than requests
         if latched:
             self._controls.emergency(True)
+        self._controls.cancel_everything()
 
     def _prove(self, stop: Stop) -> None:
         """Watch until the machine stands, repeating the commands; then tell."""
