@@ -49,18 +49,18 @@ def measure() -> Iterable[Figure]:
         for name in names():
             log = stack.enter_context((folder / f"{name}.log").open("w"))
             stack.enter_context(process("-m", "tms_core.run", f"{name}:rc", stdout=log, stderr=log))
-        for command in (("-c", BURN), ("-c", BURN), (RELAY,)):
-            stack.enter_context(process(*command))
         hurry()
-        yield from _stops(stack, site, process)
+        yield from _stops(stack, site, process, BURN)
 
 
-def _stops(stack: ExitStack, site: object, process: Callable[..., object]) -> Iterator[Figure]:
+def _stops(stack: ExitStack, site: object, process: Callable[..., object], burn: str) -> Iterator[Figure]:
     from bench.yard.machines import Yard
 
     yard = Yard(site)
     stack.callback(yard.ros.close)
     yard.arm()
+    for command in (("-c", burn), ("-c", burn), (RELAY,)):
+        stack.enter_context(process(*command))
     presses = [late for _ in range(PRESSES) for late in _press(yard)]
     floor = _relayed(yard)
     yield Figure("press p99", "ms", _p99(presses), 50.0, _p99(floor), usual_floor=20.0)
