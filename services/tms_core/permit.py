@@ -55,6 +55,7 @@ class Link:
     def __init__(self, ros: Ros, machine: str, process: str, changed: Callable[["Link"], None]) -> None:
         self.process, self.goal, self.holder, self.instance = process, NOBODY, "", NO_INSTANCE
         self._ros, self._changed = ros, changed
+        self.corpses = 0  # predecessors that discovery has not dropped yet, or the process itself while it is frozen
         self._heard, self._alive, self._asserted = 0.0, False, 0
         ros.lease_subscribe(Message, topic(machine, process), LEASE, self._on_message, self._on_liveliness)
 
@@ -69,8 +70,8 @@ class Link:
         self.goal, self.holder, self.instance = bytes(message.goal), message.holder, message.instance
         self._changed(self)
 
-    def _on_liveliness(self, alive_count: int) -> None:
-        self._asserted = alive_count
+    def _on_liveliness(self, alive_count: int, not_alive_count: int) -> None:
+        self._asserted, self.corpses = alive_count, not_alive_count
         if alive_count > 0:
             self._alive = True
         elif self._ros.pulse.late():  # its assertions may be there, but not handled yet
@@ -115,7 +116,7 @@ class Watched:
         if before not in (NO_INSTANCE, link.instance):  # started anew, maybe within the lease of its predecessor
             lost, self._missing = not self._missing, False
         else:
-            found = self._missing and link.alive
+            found = self._missing and link.alive and not link.corpses  # else it is the first sign of a successor
             lost = not link.alive and link.goal != NOBODY
             self._missing = lost or (self._missing and not found)
             for peer in self._peers if found else ():

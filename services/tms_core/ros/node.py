@@ -212,10 +212,13 @@ class Ros:
         topic: str,
         seconds: float,
         heard: Callable[[Message], None],
-        alive: Callable[[int], None],
+        alive: Callable[[int, int], None],
     ) -> Any:
-        """Call `heard` with messages and `alive` with the number of publishers that are asserted, when it changes."""
-        events = SubscriptionEventCallbacks(liveliness=lambda event: alive(event.alive_count))
+        """Call `heard` with messages and `alive` with the numbers of publishers that are, and are not, asserted.
+
+        A publisher that was killed counts as not asserted until discovery has dropped it.
+        """
+        events = SubscriptionEventCallbacks(liveliness=lambda event: alive(event.alive_count, event.not_alive_count))
         return self.node.create_subscription(
             message_type, topic, heard, quality.lease(seconds), callback_group=self.group, event_callbacks=events
         )

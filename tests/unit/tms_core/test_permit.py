@@ -39,27 +39,27 @@ def link(dds: Dds) -> tuple[Link, list[bool]]:
     seen: list[bool] = []
     made = Link(dds, "zx200", "rc", lambda link: seen.append(link.alive))  # type: ignore[arg-type]
     dds.heard(Message(process="rc", goal=GOAL))
-    dds.alive(1)
+    dds.alive(1, 0)
     return made, seen
 
 
 def test_a_lapsed_lease_is_a_loss_at_once(dds: Dds, link: tuple[Link, list[bool]]) -> None:
-    dds.alive(0)
+    dds.alive(0, 1)
     assert link[1][-1] is False and not link[0].alive and not dds.later
 
 
 def test_a_watcher_that_was_late_itself_waits_for_a_sign_of_life(dds: Dds, link: tuple[Link, list[bool]]) -> None:
     dds.was_late = True
-    dds.alive(0)
+    dds.alive(0, 1)
     assert link[0].alive and dds.later[0][0] == GRACE
-    dds.alive(1)
+    dds.alive(1, 0)
     dds.later[0][1]()
     assert link[0].alive and all(link[1])
 
 
 def test_it_does_not_wait_for_ever(dds: Dds, link: tuple[Link, list[bool]]) -> None:
     dds.was_late = True
-    dds.alive(0)
+    dds.alive(0, 1)
     dds.later[0][1]()
     assert not link[0].alive and link[1][-1] is False
 
@@ -83,35 +83,36 @@ def server(dds: Dds) -> Server:
     Link(dds, "zx200", "rc", watched.changed)  # type: ignore[arg-type]
     watched.add(made)  # type: ignore[arg-type]
     dds.heard(Message(process="rc", goal=GOAL, instance=1))
-    dds.alive(1)
+    dds.alive(1, 0)
     assert not made.told
     return made
 
 
 def test_a_process_started_anew_within_its_lease_was_lost(dds: Dds, server: Server) -> None:
-    dds.alive(2)
+    dds.alive(2, 0)
     dds.heard(Message(process="rc", goal=GOAL, instance=2))
     assert server.told == ["lost"]
-    dds.alive(1)  # the lease of the first one has run out
+    dds.alive(1, 1)  # the lease of the first one has run out
     assert server.told == ["lost"]
 
 
 def test_a_process_started_anew_later_is_lost_once(dds: Dds, server: Server) -> None:
-    dds.alive(0)
+    dds.alive(0, 1)
+    dds.alive(1, 1)
     dds.heard(Message(process="rc", goal=GOAL, instance=2))
-    dds.alive(1)
+    dds.alive(1, 0)  # discovery has dropped the first one
     assert server.told == ["lost"]
 
 
 def test_a_frozen_process_that_runs_again_is_found(dds: Dds, server: Server) -> None:
-    dds.alive(0)
-    dds.alive(1)
+    dds.alive(0, 1)
+    dds.alive(1, 0)
     assert server.told == ["lost", "found"]
 
 
 def test_a_process_started_anew_between_two_goals_loses_none(dds: Dds, server: Server) -> None:
     dds.heard(Message(process="rc", instance=1))
-    dds.alive(0)
+    dds.alive(0, 1)
     dds.heard(Message(process="rc", goal=GOAL, instance=2))
-    dds.alive(1)
+    dds.alive(1, 0)
     assert not server.told
