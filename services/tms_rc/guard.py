@@ -208,7 +208,7 @@ class Guard:
 
     def _remember(self) -> None:
         try:
-            self._memory.write(self.latch.cause)
+            self._memory.write(lambda: self.latch.cause)
         except OSError as error:  # the latch itself holds; it only would not outlive this process
             self._app.log.error("event=latch_not_kept reason=%r", str(error))
 
