@@ -14,6 +14,7 @@ from typing import Any, TypeVar
 import rclpy
 from rclpy.callback_groups import CallbackGroup, ReentrantCallbackGroup
 from rclpy.context import Context
+from rclpy.duration import Duration
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
@@ -156,6 +157,10 @@ class Ros:
     def publisher(self, message_type: InterfaceType, topic: str, depth: int = 10, latched: bool = False) -> Any:
         """A reliable publisher; `latched` gives the last message to whoever comes later."""
         return self.node.create_publisher(message_type, topic, quality.topic(depth, latched))
+
+    def delivered(self, publisher: Any, seconds: float) -> bool:
+        """Wait until all readers have what was published; False: not within `seconds`. From worker threads only."""
+        return bool(publisher.wait_for_all_acked(Duration(seconds=seconds)))
 
     def subscribe(
         self,
