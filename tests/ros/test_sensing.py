@@ -16,6 +16,7 @@ from nav_msgs.msg import Odometry
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 from sensing_msgs.msg import ExcavateSimple, Flgs, FollowWaypoints
+from std_msgs.msg import Float64
 from tms_msg_db.msg import RecordChanges
 from tms_msg_db.srv import GetParameter, ListParameterHistory, SetParameter
 from tms_msg_sp.msg import InputStates
@@ -113,6 +114,7 @@ def test_messages_change_records_and_bad_ones_do_not(sensing: Sensing, tmp_path:
     the_history_of_a_record(sensing)
     stale_records_are_refused(sensing)
     a_recording_is_played(sensing, tmp_path)
+    what_waits_is_heard_in_one_go(sensing)
 
 
 def fields_by_name_whatever_their_case(sensing: Sensing) -> None:
@@ -234,6 +236,32 @@ def a_recording_is_played(sensing: Sensing, folder: Path) -> None:
     sensing.until(lambda: sensing.inputs["track"].accepted == 500, "all positions")
     assert (sensing.inputs["track"].refused, sensing.inputs["track"].last_refusal) == (0, "")
     assert sensing.inputs["track"].clock_offset == pytest.approx(0.0, abs=0.5)
+
+
+def what_waits_is_heard_in_one_go(sensing: Sensing) -> None:
+    ros, heard = sensing.ros, list[float]()
+    subscription = ros.subscribe(Float64, "/waiting", lambda message: hear(message.data), depth=100)
+    publisher = ros.publisher(Float64, "/waiting", depth=100)
+    sensing.until(lambda: publisher.get_subscription_count() > 0, "a reader of /waiting")
+
+    def hear(value: float) -> None:
+        heard.append(value)
+        if value == 0.0:
+            ros.start(another_turn)
+        if value == 49.0:  # in the midst of what waits
+            ros.node.destroy_subscription(subscription)
+
+    async def another_turn() -> None:
+        heard.append(-1.0)
+
+    def send() -> None:  # the executor hears nothing meanwhile
+        for number in range(60):
+            publisher.publish(Float64(data=float(number)))
+        assert ros.delivered(publisher, 5.0)
+
+    ros.do(send, 10.0)
+    sensing.until(lambda: -1.0 in heard, "what waited")
+    assert heard == [*map(float, range(50)), -1.0]
 
 
 def test_the_newest_value_is_written_when_the_store_returns(sensing: Sensing) -> None:
