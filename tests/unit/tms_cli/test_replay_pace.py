@@ -42,4 +42,4 @@ def test_stamps_are_replaced_and_nothing_else(kind: Any, stamp: str | None) -> N
     data = stamps.replaced(pack(message), message, 1_700_000_000 * SECOND + 5)
     found = unpack(data, kind)
     assert stamps.read(found) == pytest.approx(1_700_000_000 * SECOND + 5, abs=300)
-    assert stamps.replaced(data, found, 0) == pack(kind())
+    assert unpack(stamps.replaced(data, found, 0), kind) == kind()  # bytes between fields are anything
