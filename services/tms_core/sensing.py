@@ -53,7 +53,7 @@ class Input(Settings):
     topic: str = Field(pattern=r"^/?[A-Za-z][A-Za-z0-9_/]*$")
     type: str = Field(pattern=r"^[a-z][a-z0-9_]*/msg/[A-Z][A-Za-z0-9]*$")
     reliability: Literal["reliable", "best_effort"] = "reliable"
-    depth: int = Field(ge=1, le=1000, default=50)
+    depth: int = Field(ge=1, le=1000, default=500)  # half a second at the highest rate: a busy PC loses nothing
     model: str = "$model_name"  # "" = a record that all machines share
     record: str = "$record_name"
     # Empty: every field of the message into the field of the record with that name, whatever its case, if there is one.

@@ -140,7 +140,7 @@ class ParameterServices:
             return
         if key in taken:
             fields = {**taken[key].fields, **fields}
-        taken[key] = Update(self._heads.get(key).id, fields, stamp, wanted.source)
+        taken[key] = Update(head.id, fields, stamp, wanted.source)
 
     def _may_batch(self, key: Key) -> bool:
         try:

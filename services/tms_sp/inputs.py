@@ -16,7 +16,9 @@ from tms_sp.outbox import Counts, Post
 
 MESSAGES = Counter("tms_sp_messages_total", "Messages by what became of them", ["input", "result"])
 OFFSET = Gauge("tms_sp_clock_offset_seconds", "How far our clock is ahead of the source's", ["input"])
-AGE = Gauge("tms_sp_input_age_seconds", "Time since the last accepted message", ["input"])
+OFFSET_LIMIT = Gauge("tms_sp_clock_limit_seconds", "How far it may be ahead or behind")
+AGE = Gauge("tms_sp_input_age_seconds", "Time since the last accepted message, or since the start", ["input"])
+AGE_LIMIT = Gauge("tms_sp_input_age_limit_seconds", "Age at which an input with a declared rate is silent", ["input"])
 SILENT_PERIODS = 10  # of the declared rate
 ARRIVALS = 50  # for the rate
 RECORDS_TOLD = 20
@@ -35,6 +37,10 @@ class SensingInput:
         self._taken: dict[Key, float] = {}
         self._arrivals: deque[float] = deque(maxlen=ARRIVALS)
         self._began = time.monotonic()
+        AGE.labels(name).set_function(self._age_now)  # told at the scrape, whatever the executor does
+        if given.hz:
+            AGE_LIMIT.labels(name).set(SILENT_PERIODS / given.hz)
+        OFFSET_LIMIT.set(clock_limit)
         self.accepted = self.refused = 0
         self.last_refusal = ""
         self.news = ""  # a refusal that the log has not told
@@ -101,7 +107,6 @@ class SensingInput:
         now = time.monotonic()
         age = now - self._arrivals[-1] if self._arrivals else -1.0
         offset = self._clock.offset
-        AGE.labels(self.name).set(age if age >= 0 else now - self._began)
         OFFSET.labels(self.name).set(math.nan if offset is None else offset)
         for code, text in self.counts.unwanted:
             self.refuse(code, text)
@@ -112,6 +117,9 @@ class SensingInput:
             written=self.counts.written, superseded=self.counts.superseded, refused=self.refused,
             last_refusal=self.last_refusal, records=[f"{model}/{record}" for model, record in self._told()],
         )  # fmt: skip
+
+    def _age_now(self) -> float:
+        return time.monotonic() - (self._arrivals[-1] if self._arrivals else self._began)
 
     def _told(self) -> list[Key]:
         return sorted(self._taken)[:RECORDS_TOLD]

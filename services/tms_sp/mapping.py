@@ -42,13 +42,13 @@ class Mapping:
         """
         self._input = given
         self._model, self._record = _name(given.model, fields), _name(given.record, fields)
-        self._keep = _getter(given.keep, fields) if given.keep else None
-        stamp = given.stamp or ("header.stamp" if fields.get("header") == "std_msgs/Header" else None)
-        self._stamp = _getter(stamp, fields) if stamp else None
+        self._keep = field_getter(given.keep, fields) if given.keep else None
+        stamp = stamp_path(given, fields)
+        self._stamp = field_getter(stamp, fields) if stamp else None
         self.loose = not given.fields
         taken = {text[1:] for text in (given.model, given.record) if text.startswith("$")} | {given.keep, "header"}
         rules = given.fields or {name: FieldRule(path=name) for name in fields if name not in taken}
-        self._rules = [(name, rule, _getter(rule.path, fields)) for name, rule in rules.items()]
+        self._rules = [(name, rule, field_getter(rule.path, fields)) for name, rule in rules.items()]
 
     def read(self, message: Any) -> Reading:
         """The values of a message.
@@ -94,14 +94,24 @@ class Mapping:
             raise Refused("WRONG_SIZE", f"{', '.join(sizes)}: no values")
 
 
+def stamp_path(given: Input, fields: dict[str, str]) -> str | None:
+    """Where the messages of an input say when they were measured."""
+    return given.stamp or ("header.stamp" if fields.get("header") == "std_msgs/Header" else None)
+
+
 def _name(text: str, fields: dict[str, str]) -> Callable[[Any], str]:
     if not text.startswith("$"):
         return lambda _: text
-    getter = _getter(text[1:], fields)
+    getter = field_getter(text[1:], fields)
     return lambda message: str(getter(message))
 
 
-def _getter(path: str, fields: dict[str, str]) -> Getter:
+def field_getter(path: str, fields: dict[str, str]) -> Getter:
+    """What reads a field by its path.
+
+    Raises:
+        ValueError: the message has no such field.
+    """
     steps = [found.groups() for found in PART.finditer(path)]
     if steps[0][0] not in fields:
         raise ValueError(f"the message has no field '{steps[0][0]}' (there: {', '.join(fields)})")

@@ -7,7 +7,7 @@ from typing import Any
 
 RECORDS = 5000  # that may wait at the same time
 BATCH = 200  # updates in one request
-FLIGHTS = 30  # requests without an answer
+FLIGHTS = 90  # requests without an answer, fewer than a service keeps: a slow store takes a second to acknowledge
 
 
 @dataclass(frozen=True)

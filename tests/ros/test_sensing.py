@@ -1,6 +1,8 @@
 """tms:sp and tms:db with a real store: what sensing PCs publish, what is refused, and a database that goes away."""
 
 import json
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -10,7 +12,11 @@ from typing import Any
 import pytest
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import PointStamped
+from nav_msgs.msg import Odometry
+from rosbags.rosbag2 import StoragePlugin, Writer
+from rosbags.typesys import Stores, get_typestore
 from sensing_msgs.msg import ExcavateSimple, Flgs, FollowWaypoints
+from std_msgs.msg import Float64
 from tms_msg_db.msg import RecordChanges
 from tms_msg_db.srv import GetParameter, ListParameterHistory, SetParameter
 from tms_msg_sp.msg import InputStates
@@ -18,6 +24,7 @@ from tms_msg_sp.msg import InputStates
 from conftest import PROJECT
 from few_processes import Mesh, bare
 from tms_core.errors import RosError
+from tms_core.ros.packing import pack
 from tms_core.values import from_parameters, to_parameters
 
 pytestmark = [
@@ -32,11 +39,19 @@ POINTS = """
     record: point
     fields: {x: point.x, y: point.y}
     range: {x: [-100, 100]}
+  track:
+    topic: /track
+    type: nav_msgs/msg/Odometry
+    depth: 1000
+    model: zx200
+    record: track
+    fields: {x: pose.pose.position.x}
 """
 START = {
     "zx200/target": {"x": 0.0, "Y": 0.0, "z": 7.0, "theta_w": 0.0, "other": 5},
     "zx200/path": {"x": [0.0], "y": [0.0], "z": [0.0]},
     "zx200/point": {"x": 0.0, "y": 0.0},
+    "zx200/track": {"x": -1.0},
     "/FLAGS": {"LOADED_FLG": False, "CONTINUE_FLG": False, "N": 1},
 }
 
@@ -90,7 +105,7 @@ def sensing(tmp_path: Path, own_domain: int) -> Iterator[Sensing]:
         yield mesh
 
 
-def test_messages_change_records_and_bad_ones_do_not(sensing: Sensing) -> None:
+def test_messages_change_records_and_bad_ones_do_not(sensing: Sensing, tmp_path: Path) -> None:
     fields_by_name_whatever_their_case(sensing)
     bad_messages_are_told_and_the_last_good_value_stays(sensing)
     a_record_that_is_locked_stays(sensing)
@@ -98,6 +113,8 @@ def test_messages_change_records_and_bad_ones_do_not(sensing: Sensing) -> None:
     flags_and_those_that_stay(sensing)
     the_history_of_a_record(sensing)
     stale_records_are_refused(sensing)
+    a_recording_is_played(sensing, tmp_path)
+    what_waits_is_heard_in_one_go(sensing)
 
 
 def fields_by_name_whatever_their_case(sensing: Sensing) -> None:
@@ -196,6 +213,55 @@ def stale_records_are_refused(sensing: Sensing) -> None:
     time.sleep(0.02)
     assert sensing.get("zx200/target", 0.0).error_code == "STALE_RECORD"
     assert sensing.get("zx200/target").error_code == ""
+
+
+def a_recording_is_played(sensing: Sensing, folder: Path) -> None:
+    """Ten seconds of odometry, two years old, at 20 times its speed."""
+    store = get_typestore(Stores.ROS2_JAZZY)
+    with Writer(folder / "bag", version=9, storage_plugin=StoragePlugin.MCAP) as bag:
+        track = bag.add_connection("/track", "nav_msgs/msg/Odometry", typestore=store)
+        for number in range(500):
+            message = Odometry()
+            message.header.stamp = Time(sec=1_700_000_000 + number // 50, nanosec=number % 50 * 20_000_000)
+            message.pose.pose.position.x = float(number)
+            bag.write(track, 1_700_000_000_000_000_000 + number * 20_000_000, pack(message))
+    words = ["--site", str(sensing.site.path), "sensing", "replay", str(folder / "bag"), "--speed", "20", "--json"]
+    done = subprocess.run(
+        [sys.executable, "-m", "tms_cli.main", *words],
+        env=sensing.environment, capture_output=True, text=True, timeout=60, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["sent"] == {"/track": 500}
+    sensing.until(lambda: sensing.values("zx200/track")["x"] == 499.0, "the last position")
+    sensing.until(lambda: sensing.inputs["track"].accepted == 500, "all positions")
+    assert (sensing.inputs["track"].refused, sensing.inputs["track"].last_refusal) == (0, "")
+    assert sensing.inputs["track"].clock_offset == pytest.approx(0.0, abs=0.5)
+
+
+def what_waits_is_heard_in_one_go(sensing: Sensing) -> None:
+    ros, heard = sensing.ros, list[float]()
+    subscription = ros.subscribe(Float64, "/waiting", lambda message: hear(message.data), depth=100)
+    publisher = ros.publisher(Float64, "/waiting", depth=100)
+    sensing.until(lambda: publisher.get_subscription_count() > 0, "a reader of /waiting")
+
+    def hear(value: float) -> None:
+        heard.append(value)
+        if value == 0.0:
+            ros.start(another_turn)
+        if value == 49.0:  # in the midst of what waits
+            ros.node.destroy_subscription(subscription)
+
+    async def another_turn() -> None:
+        heard.append(-1.0)
+
+    def send() -> None:  # the executor hears nothing meanwhile
+        for number in range(60):
+            publisher.publish(Float64(data=float(number)))
+        assert ros.delivered(publisher, 5.0)
+
+    ros.do(send, 10.0)
+    sensing.until(lambda: -1.0 in heard, "what waited")
+    assert heard == [*map(float, range(50)), -1.0]
 
 
 def test_the_newest_value_is_written_when_the_store_returns(sensing: Sensing) -> None:

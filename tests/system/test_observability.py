@@ -5,6 +5,7 @@ import re
 import shutil
 import threading
 import urllib.error
+from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,9 @@ from diagnostic_msgs.msg import DiagnosticArray
 
 from conftest import PROJECT, Mesh, ports_of, wait_until
 from prometheus_server import get, processes_up, prometheus, query
+from tms_core.config import load_site
 from tms_core.ros import Ros
+from tms_db import store
 
 pytestmark = pytest.mark.system
 NEEDS_A_RUN = ("tms_ts_runs", "tms_action_goals", "tms_ts_handover_seconds")
@@ -105,3 +108,29 @@ def test_diagnostics_tell_every_process(mesh: Mesh, node: Ros) -> None:
     node.subscribe(DiagnosticArray, "/diagnostics", hear, depth=10)
     assert heard.wait(15)
     assert {"tms: tms:ts", "tms: zx200:rc", "tms: zx200:rp"} <= names
+
+
+def test_where_machines_are_is_stored_once_a_second_with_its_age(mesh: Mesh) -> None:
+    """The simulated machine publishes pose and joints some 50 times as often."""
+    site = load_site(str(mesh.site))
+    db = store.connect(site.store_uri, site.file.store.database)
+
+    def newest(collection: str) -> list[Any]:
+        return list(db[collection].find({"name": "zx200"}).sort("time", -1).limit(4))
+
+    def age(row: Any) -> float:
+        return (datetime.now(timezone.utc) - datetime.fromisoformat(row["time"])).total_seconds()
+
+    try:
+        for collection in ("machine_pose", "machine_joints"):
+            wait_until(lambda name=collection: len(newest(name)) == 4, 30, f"four of {collection}")  # type: ignore[misc]
+            wait_until(lambda name=collection: age(newest(name)[0]) < 3.0, 30, f"a fresh {collection}")  # type: ignore[misc]
+            rows = newest(collection)
+            assert age(rows[-1]) - age(rows[0]) > 1.5, "four looks take three seconds, less what a busy PC is late"
+            assert {(row["type"], row["id"]) for row in rows} == {(collection, 3012)}
+        joints = newest("machine_joints")[0]["msg"]
+        assert len(joints["name"]) == len(joints["position"]) > 3
+        stamp = newest("machine_pose")[0]["msg"]["header"]["stamp"]
+        assert abs(datetime.now(timezone.utc).timestamp() - stamp["sec"]) < 10.0, "when it was measured is told, too"
+    finally:
+        db.client.close()

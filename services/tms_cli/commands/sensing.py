@@ -1,4 +1,4 @@
-"""`tms sensing`: how the sensing inputs are."""
+"""`tms sensing`: how the sensing inputs are; `tms sensing replay` plays a recording into them."""
 
 import math
 import threading
@@ -7,14 +7,16 @@ from typing import Any
 import click
 
 from tms_cli import session
+from tms_cli.replay.verb import replay
 from tms_core.errors import TmsError
 
 LIMIT = 5.0  # s for tms:sp to tell
 
 
-@click.command()
+@click.group(invoke_without_command=True)
 @session.json_option
-def command(as_json: bool) -> None:
+@click.pass_context
+def command(ctx: click.Context, as_json: bool) -> None:
     """Show the sensing inputs: what is heard, at which rate, and what was refused and why.
 
     An input is waiting (nothing came yet), alive, silent (10 periods of its declared rate without a message) or
@@ -24,7 +26,10 @@ def command(as_json: bool) -> None:
     Examples:
       tms sensing
       tms sensing --json
+      tms sensing replay rosbag2_2026_04_01 --speed 20
     """
+    if ctx.invoked_subcommand is not None:
+        return
     rows = [_row(one) for one in _inputs()]
     if as_json:
         session.show_json(rows)
@@ -39,6 +44,9 @@ def command(as_json: bool) -> None:
         )
         if row["last_refusal"]:
             click.echo(f"    last refused: {row['last_refusal']}")
+
+
+command.add_command(replay)
 
 
 def _inputs() -> list[Any]:

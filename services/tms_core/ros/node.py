@@ -14,7 +14,9 @@ from typing import Any, TypeVar
 import rclpy
 from rclpy.callback_groups import CallbackGroup, ReentrantCallbackGroup
 from rclpy.context import Context
+from rclpy.duration import Duration
 from rclpy.event_handler import SubscriptionEventCallbacks
+from rclpy.exceptions import InvalidHandle
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
@@ -157,6 +159,10 @@ class Ros:
         """A reliable publisher; `latched` gives the last message to whoever comes later."""
         return self.node.create_publisher(message_type, topic, quality.topic(depth, latched))
 
+    def delivered(self, publisher: Any, seconds: float) -> bool:
+        """Wait until all readers have what was published; False: not within `seconds`."""
+        return bool(publisher.wait_for_all_acked(Duration(seconds=seconds)))
+
     def subscribe(
         self,
         message_type: InterfaceType,
@@ -169,10 +175,25 @@ class Ros:
         """Call `heard` on the executor thread; depth 1 means that only the latest counts.
 
         A best-effort subscription also hears reliable publishers, a reliable one hears no best-effort publisher.
+        What waits is heard in one go: for each message of its own, the executor does four times the work of a callback.
         """
-        return self.node.create_subscription(
-            message_type, topic, heard, quality.topic(depth, latched, best_effort), callback_group=self.group
+
+        def all_that_wait(message: Message) -> None:
+            heard(message)
+            for _ in range(depth - 1):
+                try:
+                    with subscription.handle:
+                        taken = subscription.handle.take_message(message_type, False)
+                except InvalidHandle:  # `heard` has ended the subscription
+                    return
+                if taken is None:
+                    return
+                heard(taken[0])
+
+        subscription = self.node.create_subscription(
+            message_type, topic, all_that_wait, quality.topic(depth, latched, best_effort), callback_group=self.group
         )
+        return subscription
 
     def sample(self, message_type: InterfaceType, topic: str, depth: int = 1) -> Callable[[], list[Message]]:
         """What asks for the last `depth` messages that came since it was asked last, oldest first; from any thread.

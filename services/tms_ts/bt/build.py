@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from lxml import etree
 
+from tms_core.xml_text import MAX_DEPTH
 from tms_ts.bt.blackboard import Blackboard
 from tms_ts.bt.context import Context
 from tms_ts.bt.convert import Missing, text_to_bool
@@ -11,7 +12,7 @@ from tms_ts.bt.document import Document, TreeElement, children
 from tms_ts.bt.errors import TreeError
 from tms_ts.bt.node import Birth, Node
 from tms_ts.bt.ports import RESERVED, Pointer, bind
-from tms_ts.bt.source import MAX_DEPTH, line_of
+from tms_ts.bt.source import line_of
 from tms_ts.bt.verify import Rules, Use
 
 MAX_NODES = 20_000

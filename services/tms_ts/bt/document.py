@@ -8,8 +8,9 @@ from pathlib import Path
 
 from lxml import etree
 
+from tms_core.xml_text import MAX_BYTES, MAX_DEPTH
 from tms_ts.bt.errors import TreeError
-from tms_ts.bt.source import MAX_BYTES, MAX_DEPTH, Source, line_of, parse, read_file
+from tms_ts.bt.source import Source, line_of, parse, read_file
 
 MAX_FILES = 50
 

@@ -8,6 +8,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
+from tms_core.xml_text import MAX_BYTES
 from tms_ts.bt.advice import advise
 from tms_ts.bt.blackboard import Blackboard
 from tms_ts.bt.build import Builder
@@ -16,7 +17,7 @@ from tms_ts.bt.document import Document, read
 from tms_ts.bt.errors import TreeError
 from tms_ts.bt.registry import Registry
 from tms_ts.bt.registry import registry as all_nodes
-from tms_ts.bt.source import MAX_BYTES, read_file
+from tms_ts.bt.source import read_file
 from tms_ts.bt.tree import LeafGoal, Tree
 from tms_ts.bt.verify import Rules
 from tms_ts.world import World

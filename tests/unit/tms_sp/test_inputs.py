@@ -5,6 +5,7 @@ from types import SimpleNamespace as Message
 from typing import Any
 
 import pytest
+from prometheus_client import REGISTRY
 
 from tms_core.sensing import Input
 from tms_sp.inputs import SensingInput
@@ -69,3 +70,16 @@ def test_waiting_and_too_much() -> None:
     assert heard.say(1.0, time.time()) == "TOO_MANY"
     heard.input.counts.unwanted.append(("RECORD_MISSING", "there is no record m/r"))
     assert heard.input.state().last_refusal == "RECORD_MISSING: there is no record m/r"
+
+
+def test_the_metrics_tell_the_age_and_when_it_is_too_old() -> None:
+    def value(name: str) -> float | None:
+        return REGISTRY.get_sample_value(name, {"input": "one"})
+
+    heard, now = Heard(hz=5.0), time.time()
+    heard.input._began -= 100.0
+    assert value("tms_sp_input_age_seconds") == pytest.approx(100.0, abs=5.0)
+    assert value("tms_sp_input_age_limit_seconds") == 2.0
+    heard.say(1.0, now)
+    age = value("tms_sp_input_age_seconds")
+    assert age is not None and age < 5.0

@@ -1,0 +1,1 @@
+"""`tms sensing replay`: a recorded bag into the sensing inputs."""

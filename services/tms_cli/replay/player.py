@@ -1,0 +1,92 @@
+"""Publishes the messages of a recording at their moments."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from tms_cli.replay.matching import Matches
+from tms_cli.replay.pace import Pace
+from tms_cli.replay.recording import Recording, Track
+from tms_cli.replay.stamps import Stamps
+from tms_core.errors import TmsError
+from tms_sp.node import message_class
+
+if TYPE_CHECKING:
+    from tms_core.ros import Ros
+
+READER_LIMIT = 10.0  # s for tms:sp to hear the topics
+LAST_LIMIT = 5.0  # s for the last messages to arrive
+DEPTH = 1000  # messages that may wait for a reader
+SLICE = 0.2  # s between looks at the clock, so that the progress moves in a silence, too
+LOOP_GAP = 0.5  # s between the end and the next beginning, more than stamps differ from their moments
+
+
+@dataclass
+class Told:
+    """What has happened so far."""
+
+    sent: dict[str, int] = field(default_factory=dict)  # topic -> messages
+    damaged: dict[str, int] = field(default_factory=dict)
+
+    @property
+    def total(self) -> int:
+        return sum(self.sent.values())
+
+
+class Player:
+    def __init__(self, ros: "Ros", found: Matches, keep_stamps: bool) -> None:
+        """Announces the topics.
+
+        Raises:
+            TmsError: NO_READER, tms:sp does not hear one of them; TWO_SOURCES, somebody else speaks there.
+        """
+        self.told = Told(dict.fromkeys((track.topic for track in found.played), 0))
+        self._ros, self._keep = ros, keep_stamps
+        self._stamps = {t.topic: Stamps(given, message_class(given.type)) for t, given in found.played.items()}
+        self._publishers = {t.topic: ros.publisher(message_class(t.type), t.topic, DEPTH) for t in found.played}
+        deadline = time.monotonic() + READER_LIMIT
+        while deaf := [topic for topic, one in self._publishers.items() if not one.get_subscription_count()]:
+            if time.monotonic() > deadline:
+                text = f"tms:sp does not hear {', '.join(deaf)}: does it run (`tms ps`) with this sensing.yaml?"
+                raise TmsError(text, "NO_READER")
+            time.sleep(0.02)
+        others = [topic for topic in self._publishers if ros.node.count_publishers(topic) > 1]
+        if others:
+            text = f"somebody publishes {', '.join(others)} now: stop that, or choose others with --topics"
+            raise TmsError(text, "TWO_SOURCES")
+
+    def play(
+        self, recording: Recording, tracks: list[Track], span: tuple[int, int], pace: Pace, tick: Callable[[int], None]
+    ) -> None:
+        """Play it once; `tick` hears the moment (ns of the recording) that is reached.
+
+        Raises:
+            TmsError: BAD_BAG, BAD_STAMP.
+        """
+        for number, (track, moment, data) in enumerate(recording.messages(tracks, *span)):
+            if number % 100 == 0:
+                tick(moment)
+            while (seconds := pace.wait(moment)) > 0.0:
+                time.sleep(min(seconds, SLICE))
+                tick(pace.moment())
+            self._publish(track.topic, moment, data, pace)
+        tick(span[1])
+
+    def _publish(self, topic: str, moment: int, data: bytes, pace: Pace) -> None:
+        stamps = self._stamps[topic]
+        try:
+            message: Any = stamps.check(data)
+        except RuntimeError:
+            self.told.damaged[topic] = self.told.damaged.get(topic, 0) + 1
+            return
+        stamp = None if self._keep else stamps.read(message)
+        if stamp is not None:
+            data = stamps.replaced(data, message, pace.stamp(topic, stamp, moment))
+        self._publishers[topic].publish(data)
+        self.told.sent[topic] += 1
+
+    def finish(self) -> None:
+        """Wait until the readers have everything."""
+        for publisher in self._publishers.values():
+            self._ros.delivered(publisher, LAST_LIMIT)
