@@ -94,7 +94,9 @@ class Yard:
     def _machine(self, name: str, border: Any) -> tuple[Any, Any]:
         ros = self.ros
         ros.serve(FollowJointTrajectory, f"/{name}/{border.trajectory}", lambda goal: self._run(name, goal))
-        ros.subscribe(Twist, f"/{name}/{border.cmd_vel}", lambda _zero, info: self._zero(name, info), depth=10)
+        ros.node.create_subscription(
+            Twist, f"/{name}/{border.cmd_vel}", lambda _zero, info: self._zero(name, info), 10, callback_group=ros.group
+        )
         joints = ros.publisher(JointState, f"/{name}/{border.joint_states}")
         return joints, ros.publisher(Odometry, f"/{name}/{border.odom}")
 
