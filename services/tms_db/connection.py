@@ -9,7 +9,7 @@ from prometheus_client import Gauge
 from pymongo.errors import PyMongoError
 
 from tms_core.errors import DbError
-from tms_db import store
+from tms_db import schema, store
 
 FIRST_WAIT = 0.2  # s after a failed attempt; doubles up to LAST_WAIT
 LAST_WAIT = 2.0
@@ -85,7 +85,8 @@ class Connection:
                 with store.errors():
                     self._db.command("ping")
             else:
-                store.prepare(self._db)
+                for done in schema.bring_up(self._db):
+                    self._log.info("event=migrated database=%s %s", self._db.name, done)
         except DbError as error:
             return error
         except (PyMongoError, RuntimeError):  # the client was closed meanwhile

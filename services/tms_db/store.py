@@ -5,6 +5,7 @@ from contextlib import contextmanager
 from typing import Any
 from urllib.parse import urlsplit
 
+import pymongo
 from pymongo import ASCENDING, DESCENDING, MongoClient
 from pymongo.database import Database
 from pymongo.errors import (
@@ -25,6 +26,7 @@ Db = Database[dict[str, Any]]
 
 FIND_SERVER_MS = 2000
 ANSWER_MS = 3000
+LONG = 60.0  # s for work on a whole collection: indexes, migrations
 AUTH_CODES = {13, 18, 8000}  # Unauthorized, AuthenticationFailed, Atlas
 DISK_CODES = {14031, 28}  # OutOfDiskSpace, ENOSPC passed on by an engine
 
@@ -38,7 +40,11 @@ INDEXES: dict[str, list[tuple[list[tuple[str, int]], dict[str, Any]]]] = {
         ([("model_name", ASCENDING), ("record_name", ASCENDING)], {"unique": True}),
         ([("record_name", ASCENDING)], {}),  # the C++ system's reader knows no model
     ],
-    "run": [([("run_id", ASCENDING)], {"unique": True}), ([("started_at", DESCENDING)], {})],
+    "run": [
+        ([("run_id", ASCENDING)], {"unique": True}),
+        ([("started_at", DESCENDING)], {}),
+        ([("ended_at", ASCENDING)], {}),
+    ],
     "parameter_history": [([("model_name", ASCENDING), ("record_name", ASCENDING)], {"unique": True})],
     "machine_pose": [([("time", DESCENDING)], {})],
     "machine_joints": [([("time", DESCENDING)], {})],
@@ -52,8 +58,13 @@ def redact(uri: str) -> str:
     return f"{parts.scheme}://{parts.netloc.rpartition('@')[2]}" if parts.netloc else "(store address)"
 
 
-def connect(uri: str, database: str) -> Db:
+def connect(uri: str, database: str, answer_ms: int = ANSWER_MS) -> Db:
     """The database behind `uri`; opens no connection yet. Call once a process.
+
+    Args:
+        uri: of MongoDB, with user and password where the server wants them.
+        database: its name.
+        answer_ms: how long one answer may take; what is made by hand on a whole database takes longer than a service.
 
     Raises:
         ConfigError: the URI is wrong; the message holds no password.
@@ -64,8 +75,8 @@ def connect(uri: str, database: str) -> Db:
         # All our writes may be repeated by the caller; a site with a replica set can ask for them in the URI.
         retry: dict[str, Any] = {} if "retrywrites" in given else {"retryWrites": False}
         client: MongoClient[dict[str, Any]] = MongoClient(
-            uri, w="majority", journal=True, wTimeoutMS=ANSWER_MS, tz_aware=True,
-            serverSelectionTimeoutMS=FIND_SERVER_MS, connectTimeoutMS=FIND_SERVER_MS, socketTimeoutMS=ANSWER_MS,
+            uri, w="majority", journal=True, wTimeoutMS=answer_ms, tz_aware=True,
+            serverSelectionTimeoutMS=FIND_SERVER_MS, connectTimeoutMS=FIND_SERVER_MS, socketTimeoutMS=answer_ms,
             appname="tms_db", **retry,
         )  # fmt: skip
     except (InvalidURI, ConfigurationError, ValueError) as error:
@@ -84,18 +95,27 @@ def prepare(db: Db) -> None:
     Raises:
         DbError: STORE_DOWN, or STORE_CONFLICT when stored documents break a key.
     """
-    for collection, indexes in INDEXES.items():
-        for fields, options in indexes:
-            try:
-                with errors():
-                    db[collection].create_index(fields, **options)
-            except DuplicateKeyError as error:
-                key = (error.details or {}).get("keyValue") or " and ".join(name for name, _ in fields)
-                raise DbError(
-                    f"database {db.name}, collection {collection}: two documents with the same key {key}: "
-                    "remove one of them, then start again",
-                    "STORE_CONFLICT",
-                ) from error
+    for collection in INDEXES:
+        index(db, collection)
+
+
+def index(db: Db, collection: str, name: str = "") -> None:
+    """Create what is missing of a collection's indexes; `name` where it is being restored under another one.
+
+    Raises:
+        DbError: as `prepare`.
+    """
+    for fields, options in INDEXES.get(collection, ()):
+        try:
+            with errors(), pymongo.timeout(LONG):  # the first time, in a database of the C++ system
+                db[name or collection].create_index(fields, **options)
+        except DuplicateKeyError as error:
+            key = (error.details or {}).get("keyValue") or " and ".join(name for name, _ in fields)
+            raise DbError(
+                f"database {db.name}, collection {collection}: two documents with the same key {key}: "
+                "remove one of them, then start again",
+                "STORE_CONFLICT",
+            ) from error
 
 
 @contextmanager

@@ -1,11 +1,7 @@
 """What the repositories promise, on the in-memory store and on a real server of MongoDB's wire protocol."""
 
 import logging
-import os
 import queue
-import shutil
-import socket
-import subprocess
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -14,13 +10,11 @@ from dataclasses import replace
 from datetime import datetime, timedelta, timezone
 from functools import partial
 from itertools import count
-from pathlib import Path
 from typing import Any
 
-import mongomock
 import pytest
 
-from tms_core.config import PROJECT
+from stores import Server
 from tms_core.errors import DbError, TaskError
 from tms_db import freshness, store
 from tms_db.batches import Batches, Update
@@ -32,90 +26,7 @@ from tms_db.past import Past
 from tms_db.records import Record, Value
 from tms_db.tasks import Tasks
 
-PROGRAM = PROJECT / ".venv-store" / "bin" / "secantusd-py"
 BEGIN = datetime(2026, 1, 31, 6, 0, tzinfo=timezone.utc)
-names = count(1)
-
-
-class Server:
-    """A store server of our own, on a free port, that can die and come back."""
-
-    def __init__(self, folder: Path) -> None:
-        with socket.socket() as free:
-            free.bind(("127.0.0.1", 0))
-            self.port = free.getsockname()[1]
-        self.folder = folder
-        self.uri = f"mongodb://127.0.0.1:{self.port}/?directConnection=true"
-        self.start()
-
-    def start(self) -> None:
-        hidden = ("LD_LIBRARY_PATH", "_ROS_WHEELS_BOOTSTRAP_COMPLETE", "PYTHONPATH")
-        clean = {key: value for key, value in os.environ.items() if key not in hidden}
-        words = [str(PROGRAM), "--host", "127.0.0.1", "--port", str(self.port), "--storage-path", str(self.folder)]
-        self.process = subprocess.Popen(
-            [*words, "--cache-size", "64M"], env=clean, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-        )
-        deadline = time.monotonic() + 20
-        while time.monotonic() < deadline and self.process.poll() is None:
-            with socket.socket() as probe:
-                if probe.connect_ex(("127.0.0.1", self.port)) == 0:
-                    return
-            time.sleep(0.02)
-        self.end(kill=True)
-        pytest.fail(f"{PROGRAM} did not open port {self.port}")
-
-    def end(self, kill: bool = False) -> None:
-        if kill:
-            self.process.kill()
-        else:
-            self.process.terminate()
-        self.process.wait(10)
-
-    def open(self, database: str = "rostmsdb") -> store.Db:
-        db = store.connect(self.uri, database)
-        store.prepare(db)
-        return db
-
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
-    if not PROGRAM.exists():
-        pytest.skip(f"no real store here ({PROGRAM} is missing): `make setup` installs it")
-    server = Server(tmp_path_factory.mktemp("store"))
-    yield server
-    server.end(kill=True)
-
-
-@pytest.fixture
-def own_server(tmp_path: Path) -> Iterator[Server]:
-    if not PROGRAM.exists():
-        pytest.skip(f"no real store here ({PROGRAM} is missing): `make setup` installs it")
-    server = Server(tmp_path / "store")
-    yield server
-    server.end(kill=True)
-    shutil.rmtree(server.folder)
-
-
-@pytest.fixture(params=["memory", "server"])
-def db(request: pytest.FixtureRequest) -> Iterator[store.Db]:
-    if request.param == "memory":
-        db: store.Db = mongomock.MongoClient(tz_aware=True)["rostmsdb"]
-        store.prepare(db)
-        yield db
-        return
-    yield from _fresh(request.getfixturevalue("server"))
-
-
-@pytest.fixture
-def shared_db(server: Server) -> Iterator[store.Db]:
-    """For several threads at once: the in-memory store is made for one."""
-    yield from _fresh(server)
-
-
-def _fresh(server: Server) -> Iterator[store.Db]:
-    db = server.open(f"test{next(names)}")
-    yield db
-    db.client.close()
 
 
 def tree(name: str = "a", model: str = "zx200") -> str:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 VERBS = (
-    "abandon", "answer", "cancel", "check", "completion", "demo", "drill", "events", "logs", "palette", "panel",
+    "abandon", "answer", "cancel", "check", "completion", "db", "demo", "drill", "events", "logs", "palette", "panel",
     "param", "rearm", "resume", "run", "runs", "stop", "task", "user",
 )  # fmt: skip
 

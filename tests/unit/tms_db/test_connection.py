@@ -9,7 +9,7 @@ import pytest
 from pymongo.errors import AutoReconnect
 
 from tms_core.errors import DbError
-from tms_db import connection, store
+from tms_db import connection, schema, store
 from tms_db.connection import Connection
 
 
@@ -23,6 +23,10 @@ class Away:
 
     def __getitem__(self, _: str) -> "Away":
         return self
+
+    def find_one(self, _: Any) -> dict[str, Any]:
+        self.create_index()
+        return {"version": schema.NEWEST}
 
     def create_index(self, *_: Any, **__: Any) -> None:
         self.asked.release()

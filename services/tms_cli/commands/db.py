@@ -1,0 +1,139 @@
+"""`tms db`: backup and restore of the database, and what it holds."""
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from tms_cli import session
+
+if TYPE_CHECKING:
+    from tms_db.backup import Report
+    from tms_db.store import Db
+
+SPEAK = 1.0  # s between words about long work
+FILE = click.Path(path_type=Path)
+
+
+@click.group()
+def command() -> None:
+    """Back up the database, restore it, see what it holds.
+
+    These talk to the store itself: run them on the PC of tms:db, or wherever TMS_MONGODB_URI is known. The files are
+    archives of MongoDB's own tools (mongodump --archive, mongorestore --archive).
+
+    \b
+    Examples:
+      tms db info
+      tms db backup /backup/site-2026-01-31.archive
+      tms db restore /backup/site-2026-01-31.archive --drop --yes
+    """
+
+
+@command.command()
+@session.json_option
+def info(as_json: bool) -> None:
+    """Show the store's address (no password), the schema's version and the number of documents.
+
+    \b
+    Example:
+      tms db info --json
+    """
+    from tms_db import backup, schema, store
+
+    with _opened() as db:
+        report = backup.look(db)
+    address = store.redact(session.site().store_uri)
+    if as_json:
+        session.show_json({**_as_dict(report), "address": address, "newest_schema": schema.NEWEST})
+        return
+    click.echo(f"{report.database} on {address}, schema {report.schema} (this program knows {schema.NEWEST})")
+    for name, number in sorted(report.documents.items()):
+        click.echo(f"  {name:<22} {number:>9}")
+
+
+@command.command()
+@click.argument("file", type=FILE)
+@click.option("--overwrite", is_flag=True, help="Replace a file that is there.")
+@session.json_option
+def backup(file: Path, overwrite: bool, as_json: bool) -> None:
+    """Write everything in the database into FILE, for this user's eyes only; work may go on meanwhile.
+
+    \b
+    Examples:
+      tms db backup /backup/site-2026-01-31.archive
+      mongorestore --archive=/backup/site-2026-01-31.archive --drop    (what MongoDB's own tool does with it)
+    """
+    from tms_db import backup
+
+    with _opened() as db:
+        report = backup.backup(db, file, _progress(), overwrite=overwrite)
+    if as_json:
+        session.show_json({**_as_dict(report), "file": str(file), "bytes": file.stat().st_size})
+    else:
+        click.echo(f"{file}: {file.stat().st_size / 2**20:.1f} MB, {report.text}")
+
+
+@command.command()
+@click.argument("file", type=FILE)
+@click.option("--drop", is_flag=True, help="Replace everything that the database holds now.")
+@click.option("--yes", is_flag=True, help="With --drop: do not ask.")
+@session.json_option
+def restore(file: Path, drop: bool, yes: bool, as_json: bool) -> None:
+    """Put an archive into the database, its documents unchanged; also one of the C++ system's `rostmsdb`.
+
+    FILE comes from `tms db backup` or `mongodump --db rostmsdb --archive=FILE` (with or without --gzip). It is read
+    and checked before anything is written. A database that is not empty is refused without --drop, and so is one
+    where a run is active. A mesh may stay up; its processes see the restored data after some seconds.
+
+    \b
+    Examples:
+      tms db restore /backup/site-2026-01-31.archive
+      tms db restore rostmsdb.archive --drop --yes
+    """
+    from tms_db import backup
+
+    if yes and not drop:
+        raise click.UsageError("--yes goes with --drop")
+    with _opened() as db:
+        there = backup.look(db)
+        if drop and not yes and any(there.documents.values()):
+            click.confirm(f"Replace all of database {db.name} ({there.text})?", abort=True, err=True)
+        report = backup.restore(db, file, _progress(), drop=drop)
+        into = db.name
+    if as_json:
+        session.show_json({**_as_dict(report), "file": str(file), "into": into})
+    else:
+        click.echo(f"restored into {into}: {report.text}")
+
+
+@contextmanager
+def _opened() -> Iterator["Db"]:
+    from tms_db import backup, store
+
+    site = session.site()
+    db = store.connect(site.store_uri, site.file.store.database, backup.ANSWER_MS)
+    try:
+        yield db
+    finally:
+        db.client.close()
+
+
+def _as_dict(report: "Report") -> dict[str, Any]:
+    return {"database": report.database, "schema": report.schema, "documents": report.documents}
+
+
+def _progress() -> Callable[[str], None]:
+    """Says on stderr how far long work is; short work stays silent."""
+    last = time.monotonic()
+
+    def say(text: str) -> None:
+        nonlocal last
+        if time.monotonic() - last >= SPEAK:
+            last = time.monotonic()
+            click.echo(text, err=True)
+
+    return say

@@ -1,0 +1,177 @@
+"""Files in the archive format of mongodump and mongorestore (`--archive`), written and read piece by piece.
+
+After a magic number come a header, one description of each collection, and then the documents in segments: the
+collection's name, its documents, a terminator. The last segment of a collection is empty and holds a checksum.
+The specification is common/archive/spec.md of MongoDB's Database Tools.
+"""
+
+import gzip
+import struct
+import zlib
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, BinaryIO, cast
+
+import bson
+from bson import json_util
+from bson.errors import BSONError
+from bson.int64 import Int64
+
+from tms_core.errors import DbError
+from tms_db.crc64 import Crc64
+
+MAGIC = bytes.fromhex("6de29981")
+GZIP = b"\x1f\x8b"
+END = b"\xff\xff\xff\xff"  # of a segment
+FORMAT = "0.1"
+SMALLEST = 5  # bytes of a document
+LARGEST = 16 * 2**20 + 16 * 2**10  # what a MongoDB server takes at most, with its overhead
+
+Name = tuple[str, str]  # database and collection
+
+
+def bad(message: str) -> DbError:
+    return DbError(message, "BAD_ARCHIVE")
+
+
+class Writer:
+    """Writes one database."""
+
+    def __init__(self, file: BinaryIO, database: str, server: str, tool: str) -> None:
+        self._file, self._database = file, database
+        self._put(MAGIC)
+        self._document({"concurrent_collections": 1, "version": FORMAT, "server_version": server, "tool_version": tool})
+
+    def describe(self, collections: Mapping[str, Sequence[Mapping[str, Any]]]) -> None:
+        """The collections that follow, each with its indexes as the server lists them."""
+        for name, indexes in collections.items():
+            metadata = {"indexes": list(indexes), "collectionName": name, "type": "collection"}
+            text = json_util.dumps(metadata, json_options=json_util.CANONICAL_JSON_OPTIONS)
+            self._document(
+                {"db": self._database, "collection": name, "metadata": text, "size": 0, "type": "collection"}
+            )
+        self._put(END)
+
+    def collection(self, name: str, documents: Iterator[bytes]) -> None:
+        """All documents of a collection, as BSON."""
+        crc, begun = Crc64(), False
+        for document in documents:
+            if not begun:
+                self._segment(name, 0, last=False)
+                begun = True
+            crc.update(document)
+            self._put(document)
+        if begun:
+            self._put(END)
+        self._segment(name, crc.signed(), last=True)
+        self._put(END)
+
+    def _segment(self, name: str, crc: int, last: bool) -> None:
+        self._document({"db": self._database, "collection": name, "EOF": last, "CRC": Int64(crc)})
+
+    def _document(self, document: Mapping[str, Any]) -> None:
+        self._put(bson.encode(document))
+
+    def _put(self, data: bytes) -> None:
+        self._file.write(data)
+
+
+class Reader:
+    """Reads and checks an archive; everything that is wrong is a DbError BAD_ARCHIVE with file and place."""
+
+    def __init__(self, path: Path, file: BinaryIO, plain: BinaryIO) -> None:
+        """`plain` is the file itself, `file` what is read: the same, or its decompressed content."""
+        self._path, self._file, self._plain = path, file, plain
+        self._at = 0  # bytes read, after decompression
+        if self._bytes(len(MAGIC)) != MAGIC:
+            raise self._wrong("is no archive of mongodump (wrong first bytes): give a file that `tms db backup` "
+                              "or `mongodump --archive=FILE` wrote")  # fmt: skip
+        self.header = self._decoded(self._document())
+        if self.header.get("version") != FORMAT:
+            raise self._wrong(f"has archive format {self.header.get('version')!r}, this program reads {FORMAT}")
+        self.names: list[Name] = []
+        while (found := self._document()) is not None:
+            self.names.append(self._name(self._decoded(found)))
+
+    def documents(self) -> Iterator[tuple[Name, bytes]]:
+        """Every document with its collection, in the order of the file."""
+        sums: dict[Name, Crc64] = {}
+        ended: set[Name] = set()
+        while (found := self._document(may_end=True)) is not None:
+            head = self._decoded(found)
+            name = self._name(head)
+            if name in ended or name not in self.names:
+                raise self._wrong(f"has documents of {'.'.join(name)} where none may be")
+            crc = sums.setdefault(name, Crc64())
+            while (document := self._document()) is not None:
+                self._decoded(document)
+                crc.update(document)
+                yield name, document
+            if head.get("EOF"):
+                ended.add(name)
+                if crc.signed() != head.get("CRC"):
+                    raise self._wrong(f"is damaged: the checksum of {'.'.join(name)} is another one")
+        missing = [".".join(name) for name in self.names if name not in ended]
+        if missing:
+            raise self._wrong(f"ends before {missing[0]} is complete: the file was cut off")
+
+    def share(self) -> float:
+        """How much of the file has been read, 0 to 1."""
+        return self._plain.tell() / max(1, self._path.stat().st_size)
+
+    def _name(self, document: Mapping[str, Any]) -> Name:
+        name = document.get("db"), document.get("collection")
+        if not all(isinstance(part, str) and part for part in name):
+            raise self._wrong("names no collection where one must be named")
+        return cast(Name, name)
+
+    def _document(self, may_end: bool = False) -> bytes | None:
+        """The next document; None at the end of a segment, or of the file where that is allowed."""
+        first = self._bytes(4, may_end)
+        if not first or first == END:
+            return None
+        (size,) = struct.unpack("<i", first)
+        if not SMALLEST <= size <= LARGEST:
+            raise self._wrong(f"is damaged: a document of {size} bytes")
+        return first + self._bytes(size - 4)
+
+    def _decoded(self, document: bytes | None) -> dict[str, Any]:
+        if document is None:
+            raise self._wrong("is damaged: a document is missing")
+        try:
+            return bson.decode(document)
+        except BSONError as error:
+            raise self._wrong("is damaged: what should be a document is no BSON") from error
+
+    def _bytes(self, count: int, may_end: bool = False) -> bytes:
+        try:
+            data = self._file.read(count)
+        except (EOFError, gzip.BadGzipFile, zlib.error) as error:
+            raise self._wrong(f"cannot be decompressed ({error}): the file was cut off or damaged") from error
+        if len(data) < count and (data or not may_end):
+            raise self._wrong("ends in the middle: the file was cut off")
+        self._at += len(data)
+        return data
+
+    def _wrong(self, what: str) -> DbError:
+        return bad(f"{self._path}: {what} (byte {self._at})" if self._at > len(MAGIC) else f"{self._path}: {what}")
+
+
+@contextmanager
+def reading(path: Path) -> Iterator[Reader]:
+    """Open an archive, compressed with gzip or not.
+
+    Raises:
+        DbError: BAD_ARCHIVE.
+    """
+    try:
+        if not path.is_file():
+            raise bad(f"{path}: {'is no regular file' if path.exists() else 'there is no such file'}: give an archive")
+        with path.open("rb") as plain:
+            compressed = plain.read(2) == GZIP
+            plain.seek(0)
+            file = cast(BinaryIO, gzip.GzipFile(fileobj=plain)) if compressed else plain
+            yield Reader(path, file, plain)
+    except OSError as error:
+        raise bad(f"{path}: cannot be read ({error.strerror or error})") from error

@@ -1,0 +1,237 @@
+"""The whole database into an archive file and back; tools of MongoDB read and write the same files.
+
+These open the store themselves, as mongodump does: a backup must not need a running system.
+"""
+
+import os
+import tempfile
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, BinaryIO, cast
+
+import bson
+from bson.codec_options import CodecOptions
+from bson.raw_bson import RawBSONDocument
+from pymongo.collection import Collection
+
+from tms_core.config import version
+from tms_core.errors import DbError, TmsError
+from tms_db import archive, schema, store
+from tms_db.archive import Name
+from tms_db.store import Db, errors
+
+ANSWER_MS = 60_000  # one step may touch a whole collection
+STAGED = "restoring."  # before the names of collections that are not complete yet
+BATCH = 500  # documents
+BATCH_BYTES = 4 * 2**20
+RAW: CodecOptions[RawBSONDocument] = CodecOptions(document_class=RawBSONDocument)
+NEEDED = {"task": ("task_id", "task_sequence"), "parameter": ("record_name",)}  # what tells a TMS database
+
+Say = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Report:
+    """What an archive holds, or a database."""
+
+    database: str
+    documents: dict[str, int]  # by collection
+    schema: int
+
+    @property
+    def text(self) -> str:
+        filled = [f"{number} {name}" for name, number in sorted(self.documents.items()) if number]
+        return ", ".join(filled) or "nothing"
+
+
+def look(db: Db) -> Report:
+    """What the database holds.
+
+    Raises:
+        DbError: the store is away.
+    """
+    with errors():
+        counts = {name: db[name].count_documents({}) for name in _collections(db)}
+    counts.pop(schema.COLLECTION, None)
+    return Report(db.name, counts, schema.stored(db))
+
+
+def backup(db: Db, path: Path, say: Say, *, overwrite: bool = False) -> Report:
+    """Write everything into a file that appears only when it is complete.
+
+    Raises:
+        DbError: the store is away.
+        TmsError: the file is there already, or cannot be written.
+    """
+    if path.exists() and not (overwrite and path.is_file()):
+        raise TmsError(f"{path} is there already: choose another name, or --overwrite", "FILE_EXISTS")
+    before = look(db)
+    try:
+        with tempfile.NamedTemporaryFile(dir=path.parent, prefix=f".{path.name}.", delete=False) as file:  # mode 0600
+            new = Path(file.name)
+            try:
+                counts = _dump(db, cast(BinaryIO, file), say)
+                file.flush()
+                os.fsync(file.fileno())
+                new.replace(path)
+            finally:
+                new.unlink(missing_ok=True)
+    except OSError as error:
+        raise TmsError(f"{path}: cannot be written ({error.strerror}): choose another place", "NO_FILE") from error
+    return Report(db.name, counts, before.schema)
+
+
+def _dump(db: Db, file: BinaryIO, say: Say) -> dict[str, int]:
+    counts: Counter[str] = Counter()
+    with errors():
+        # A run is written as ended after its events; in this order a backup holds all events of such a run.
+        names = sorted(_collections(db), key=lambda name: (name != "run", name))
+        out = archive.Writer(file, db.name, str(db.client.server_info()["version"]), f"tms {version()}")
+        out.describe({name: list(db[name].list_indexes()) for name in names})
+        for name in names:
+            total = db[name].estimated_document_count()
+
+            def documents(name: str = name, total: int = total) -> Iterator[bytes]:
+                raw = cast("Collection[RawBSONDocument]", db.get_collection(name, codec_options=RAW))
+                for document in raw.find():
+                    counts[name] += 1
+                    say(f"{name}: {counts[name]} of {total}")
+                    yield bytes(document.raw)
+
+            out.collection(name, documents())
+    return {name: counts[name] for name in names if name != schema.COLLECTION}
+
+
+def check(path: Path, wanted: str, say: Say) -> Report:
+    """Read a whole archive without writing anything.
+
+    `wanted` is the name of our database; a single database of another name is taken, too.
+
+    Raises:
+        DbError: BAD_ARCHIVE, NOT_TMS or STORE_NEWER.
+    """
+    counts: Counter[str] = Counter()
+    number = 0
+    with archive.reading(path) as reader:
+        database = _choose(path, reader.names, wanted)
+        for (of, collection), document in reader.documents():
+            if of != database:
+                continue
+            counts[collection] += 1
+            say(f"checking {path.name}: {reader.share():.0%}")
+            if collection in NEEDED:
+                _check(path, collection, counts[collection], bson.decode(document))
+            elif collection == schema.COLLECTION:
+                number = schema.number_of(bson.decode(document))
+        schema.refuse_newer(str(path), number)
+        names = [name for of, name in reader.names if of == database and _ours(name)]
+        return Report(database, {name: counts[name] for name in names if name != schema.COLLECTION}, number)
+
+
+def restore(db: Db, path: Path, say: Say, *, drop: bool = False) -> Report:
+    """Put an archive's documents into the database, unchanged.
+
+    Everything is read and checked first, then written beside what is there; only then the collections change places.
+
+    Raises:
+        DbError: the archive is wrong, the database is not empty (and not to be dropped), a run is active, or the
+            store is away. The database is then as it was.
+    """
+    report = check(path, db.name, say)
+    there = look(db)
+    schema.refuse_newer(f"database {db.name}", there.schema)
+    if any(there.documents.values()) and not drop:
+        text = f"database {db.name} is not empty ({there.text}): --drop replaces all of it"
+        raise DbError(text, "NOT_EMPTY")
+    with errors():
+        active = db["run"].find_one({"ended_at": None}, {"run_id": 1}) if "run" in there.documents else None
+    if active is not None:
+        text = f"run {active['run_id']} is active in database {db.name}: end it first (`tms cancel`, `tms abandon`)"
+        raise DbError(text, "RUN_ACTIVE")
+    names = [*report.documents, *([schema.COLLECTION] if report.schema else [])]
+    try:
+        _clear(db)
+        _stage(db, path, report.database, names, say)
+    except DbError:
+        _clear(db)
+        raise
+    say("replacing")
+    _exchange(db, names)
+    schema.bring_up(db)
+    return report
+
+
+def _stage(db: Db, path: Path, database: str, names: list[str], say: Say) -> None:
+    for name in names:
+        with errors():
+            db.create_collection(STAGED + name)
+    with archive.reading(path) as reader:
+        for collection, batch in _batches(reader, database):
+            with errors():
+                db.get_collection(STAGED + collection, codec_options=RAW).insert_many(batch)
+            say(f"writing: {reader.share():.0%}")
+    for name in names:
+        store.index(db, name, STAGED + name)
+
+
+def _batches(reader: archive.Reader, database: str) -> Iterator[tuple[str, list[RawBSONDocument]]]:
+    batch: list[RawBSONDocument] = []
+    size, of = 0, ""
+    for (source, collection), document in reader.documents():
+        if source != database or not _ours(collection):
+            continue
+        if batch and (collection != of or len(batch) >= BATCH or size >= BATCH_BYTES):
+            yield of, batch
+            batch, size = [], 0
+        of = collection
+        size += len(document)
+        batch.append(RawBSONDocument(document))
+    if batch:
+        yield of, batch
+
+
+def _exchange(db: Db, names: list[str]) -> None:
+    with errors():
+        for name in names:
+            db[STAGED + name].rename(name, dropTarget=True)
+        for name in _collections(db):
+            if name not in names:
+                db.drop_collection(name)
+
+
+def _clear(db: Db) -> None:
+    """What a restore left that did not get done."""
+    with errors():
+        for name in db.list_collection_names():
+            if name.startswith(STAGED):
+                db.drop_collection(name)
+
+
+def _choose(path: Path, names: list[Name], wanted: str) -> str:
+    databases = sorted({database for database, _ in names} - {"admin", "config", "local"})
+    database = wanted if wanted in databases else databases[0] if len(databases) == 1 else ""
+    if not database:
+        held = ", ".join(databases) or "none"
+        raise DbError(f"{path}: holds no database {wanted} (there: {held}): dump that one alone", "NOT_TMS")
+    there = sorted(name for of, name in names if of == database)
+    if not set(NEEDED) & set(there):
+        text = f"{path}: database {database} is none of TMS, for it has neither task nor parameter"
+        raise DbError(f"{text} (there: {', '.join(there)}): give another archive", "NOT_TMS")
+    return database
+
+
+def _check(path: Path, collection: str, number: int, document: dict[str, Any]) -> None:
+    missing = [field for field in NEEDED[collection] if field not in document]
+    if missing:
+        text = f"{path}: document {number} of {collection} has no {missing[0]}, so this is no database of TMS"
+        raise DbError(f"{text}: give another archive", "NOT_TMS")
+
+
+def _collections(db: Db) -> list[str]:
+    return [name for name in db.list_collection_names(filter={"type": "collection"}) if _ours(name)]
+
+
+def _ours(name: str) -> bool:
+    return not name.startswith(("system.", STAGED))

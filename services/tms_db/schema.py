@@ -1,0 +1,85 @@
+"""The version of what the database holds, and the steps that bring an older one to it.
+
+A database without a version is one of the C++ system, or ours from before versions. The documents of the C++ system
+(`task`, `parameter`, `machine_pose`, ...) have no migration: they stay as they are, for its nodes may go on using them.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import datetime, timezone
+
+import pymongo
+
+from tms_core.config import version
+from tms_core.errors import DbError
+from tms_db import store
+from tms_db.store import Db, errors
+
+COLLECTION = "schema"
+KEY = {"_id": "tms"}  # its one document
+
+
+@dataclass(frozen=True)
+class Migration:
+    """One step; a crash may repeat it, so doing it twice must change nothing more."""
+
+    text: str
+    step: Callable[[Db], None]
+
+
+def _runs_name_their_records(db: Db) -> None:
+    db["run"].update_many({"records": {"$exists": False}}, {"$set": {"records": []}})
+
+
+# Step n brings a database from version n - 1 to n. Never change or remove one that was released: append.
+MIGRATIONS = (Migration("runs name the records that they use", _runs_name_their_records),)
+NEWEST = len(MIGRATIONS)
+
+
+def bring_up(db: Db) -> list[str]:
+    """Make the database what this program knows: migrations, then indexes. Returns what was done.
+
+    Raises:
+        DbError: STORE_NEWER when a newer program has changed it, STORE_CONFLICT, or the store is away.
+    """
+    found = stored(db)
+    refuse_newer(f"database {db.name}", found)
+    done = []
+    for number, migration in enumerate(MIGRATIONS[found:], found + 1):
+        with errors(), pymongo.timeout(store.LONG):
+            migration.step(db)
+            state = {"version": number, "changed_at": datetime.now(timezone.utc), "by": version()}
+            db[COLLECTION].update_one(KEY, {"$set": state}, upsert=True)
+        done.append(f"schema {number}: {migration.text}")
+    store.prepare(db)
+    return done
+
+
+def stored(db: Db) -> int:
+    """The version that the database says it has; 0 if it says none.
+
+    Raises:
+        DbError: the store is away.
+    """
+    with errors():
+        return number_of(db[COLLECTION].find_one(KEY))
+
+
+def number_of(document: object) -> int:
+    """The version in the schema's document."""
+    number = document.get("version") if isinstance(document, dict) else None
+    return int(number) if isinstance(number, (int, float)) else 0
+
+
+def refuse_newer(where: str, number: int) -> None:
+    """Refuse data that a newer program has changed.
+
+    Raises:
+        DbError: STORE_NEWER.
+    """
+    if number > NEWEST:
+        raise DbError(
+            f"{where} has schema {number}, this program ({version()}) knows {NEWEST}: "
+            "install the newer program, or restore a backup from before (`tms db restore`)",
+            "STORE_NEWER",
+        )

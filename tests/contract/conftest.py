@@ -1,0 +1,63 @@
+"""Databases for the contract tests: in memory, in a store server, or in the MongoDB of TMS_TEST_MONGODB_URI."""
+
+import os
+import shutil
+from collections.abc import Iterator
+from itertools import count
+from pathlib import Path
+
+import mongomock
+import pytest
+
+from stores import PROGRAM, MongoDb, Server
+from tms_db import store
+
+names = count(1)
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server | MongoDb]:
+    if uri := os.environ.get("TMS_TEST_MONGODB_URI"):
+        yield MongoDb(uri)
+        return
+    _need_program()
+    server = Server(tmp_path_factory.mktemp("store"))
+    yield server
+    server.end(kill=True)
+
+
+@pytest.fixture
+def own_server(tmp_path: Path) -> Iterator[Server]:
+    """One that a test may kill."""
+    _need_program()
+    server = Server(tmp_path / "store")
+    yield server
+    server.end(kill=True)
+    shutil.rmtree(server.folder)
+
+
+def _need_program() -> None:
+    if not PROGRAM.exists():
+        pytest.skip(f"no real store here ({PROGRAM} is missing): `make setup` installs it")
+
+
+@pytest.fixture(params=["memory", "server"])
+def db(request: pytest.FixtureRequest) -> Iterator[store.Db]:
+    if request.param == "memory":
+        db: store.Db = mongomock.MongoClient(tz_aware=True)["rostmsdb"]
+        store.prepare(db)
+        yield db
+        return
+    yield from _fresh(request.getfixturevalue("server"))
+
+
+@pytest.fixture
+def shared_db(server: Server | MongoDb) -> Iterator[store.Db]:
+    """For several threads at once: the in-memory store is made for one."""
+    yield from _fresh(server)
+
+
+def _fresh(server: Server | MongoDb) -> Iterator[store.Db]:
+    db = server.open(f"test{next(names)}")
+    yield db
+    server.forget(db)

@@ -1,0 +1,76 @@
+"""Store servers for the tests: a process of our own, or a MongoDB that somebody runs."""
+
+import os
+import socket
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+
+from tms_core.config import PROJECT
+from tms_db import store
+
+PROGRAM = PROJECT / ".venv-store" / "bin" / "secantusd-py"
+PREFIX = "tms_test_"  # of the databases that tests make in a MongoDB, and drop
+
+
+class Server:
+    """A store server of our own, on a free port, that can die and come back."""
+
+    def __init__(self, folder: Path) -> None:
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            self.port = free.getsockname()[1]
+        self.folder = folder
+        self.uri = f"mongodb://127.0.0.1:{self.port}/?directConnection=true"
+        self.start()
+
+    def start(self) -> None:
+        hidden = ("LD_LIBRARY_PATH", "_ROS_WHEELS_BOOTSTRAP_COMPLETE", "PYTHONPATH")
+        clean = {key: value for key, value in os.environ.items() if key not in hidden}
+        words = [str(PROGRAM), "--host", "127.0.0.1", "--port", str(self.port), "--storage-path", str(self.folder)]
+        self.process = subprocess.Popen(
+            [*words, "--cache-size", "64M"], env=clean, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        )
+        deadline = time.monotonic() + 20
+        while time.monotonic() < deadline and self.process.poll() is None:
+            with socket.socket() as probe:
+                if probe.connect_ex(("127.0.0.1", self.port)) == 0:
+                    return
+            time.sleep(0.02)
+        self.end(kill=True)
+        pytest.fail(f"{PROGRAM} did not open port {self.port}")
+
+    def end(self, kill: bool = False) -> None:
+        if kill:
+            self.process.kill()
+        else:
+            self.process.terminate()
+        self.process.wait(10)
+
+    def open(self, database: str = "rostmsdb") -> store.Db:
+        db = store.connect(self.uri, database)
+        store.prepare(db)
+        return db
+
+    def forget(self, db: store.Db) -> None:
+        """The whole server goes away with the tests."""
+        db.client.close()
+
+
+class MongoDb:
+    """A MongoDB that somebody runs for the tests; they use databases of their own and drop them."""
+
+    def __init__(self, uri: str) -> None:
+        self.uri = uri
+
+    def open(self, database: str) -> store.Db:
+        db = store.connect(self.uri, PREFIX + database)
+        db.client.drop_database(db)
+        store.prepare(db)
+        return db
+
+    def forget(self, db: store.Db) -> None:
+        db.client.drop_database(db)
+        db.client.close()
