@@ -78,6 +78,8 @@ class Store(Settings):
     kind: Literal["embedded", "mongodb"] = "embedded"
     uri: str | None = None
     database: str = Field(pattern=r"^[A-Za-z][A-Za-z0-9_-]*$", default="rostmsdb")
+    history_days: int | None = Field(ge=1, default=365)  # that an ended run and its events stay; null: for ever
+    machine_state_days: int | None = Field(ge=1, default=None)  # the same for machine_pose and machine_joints
 
 
 class Fault(Settings):

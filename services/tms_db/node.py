@@ -21,6 +21,7 @@ from tms_db.cpp_services import CppServices
 from tms_db.history import History
 from tms_db.machine_states import MachineStates
 from tms_db.parameter_services import ParameterServices
+from tms_db.retention import Retention
 from tms_db.task_text import MODELS
 from tms_db.tasks import Tasks
 
@@ -89,4 +90,7 @@ def start(app: App) -> None:
     Services(app, db).offer(answering)
     ParameterServices(app, db, connection).offer(answering)
     CppServices(app, db, connection).offer()
+    retention = Retention(db, connection, app.site.file.store, app.log)
+    app.on_stop(retention.stop)
+    retention.start()
     connection.start()

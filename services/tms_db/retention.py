@@ -1,0 +1,125 @@
+"""Deletes what is older than the site keeps: ended runs, each with all of its events, and states of machines.
+
+A run goes whole or stays whole. One that has not ended (active, or interrupted and still to be resumed) stays, and so
+do all tasks and records. Ages count back from the newest run as well as from the clock: a clock that is years ahead,
+or a site that slept for years, loses nothing.
+"""
+
+import logging
+import threading
+from datetime import datetime, timedelta, timezone
+
+import pymongo
+from prometheus_client import Counter
+
+from tms_core.config import Store
+from tms_core.errors import DbError
+from tms_db import store
+from tms_db.connection import Connection
+from tms_db.machine_states import COLLECTIONS
+from tms_db.store import Db, errors
+
+FIRST = 1.0  # s from the start to the first look: the store is there by then, as a rule
+PERIOD = 24 * 3600.0  # s between looks
+AGAIN = 60.0  # s after one that the store did not allow, or that comes before the store is there
+ROUND = 100  # runs at a time, so that the store answers others in between
+MANY = 1000  # states at a time
+
+DELETED = Counter("tms_db_deleted", "Documents deleted for their age", ["collection"])
+
+
+def delete_runs(db: Db, days: int, now: datetime) -> int:
+    """Delete runs that ended more than `days` ago, with their events. Returns how many runs.
+
+    Raises:
+        DbError: the store is away; a run whose events are partly gone is taken up again next time.
+    """
+    runs, events, deleted = db["run"], db["event"], 0
+    with errors():
+        newest = runs.find_one({"ended_at": {"$ne": None}}, {"ended_at": 1}, sort=[("ended_at", -1)])
+    if newest is None:
+        return 0
+    before = min(now, newest["ended_at"]) - timedelta(days=days)
+    while True:
+        with errors(), pymongo.timeout(store.LONG):
+            old = list(runs.find({"ended_at": {"$lt": before}}, {"run_id": 1}).limit(ROUND))
+            for run in old:  # its header last: a crash leaves nothing behind that nobody finds
+                DELETED.labels("event").inc(events.delete_many({"run_id": run["run_id"]}).deleted_count)
+                runs.delete_one({"_id": run["_id"]})
+        deleted += len(old)
+        DELETED.labels("run").inc(len(old))
+        if len(old) < ROUND:
+            return deleted
+
+
+def delete_states(db: Db, days: int, now: datetime) -> int:
+    """Delete states of machines that are older than `days`. Returns how many.
+
+    Raises:
+        DbError: the store is away.
+    """
+    deleted = 0
+    for name in COLLECTIONS:
+        with errors():
+            newest = db[name].find_one({}, {"time": 1}, sort=[("time", -1)])
+        if newest is None or not isinstance(newest.get("time"), str):
+            continue
+        # ISO texts sort as the times do. The C++ system writes local time, so a state may go some hours early.
+        before = _date(min(now.isoformat(), newest["time"])) - timedelta(days=days)
+        deleted += _delete_before(db, name, before.isoformat())
+    return deleted
+
+
+def _delete_before(db: Db, collection: str, time: str) -> int:
+    deleted, last = 0, MANY
+    while last == MANY:
+        with errors(), pymongo.timeout(store.LONG):
+            old = [state["_id"] for state in db[collection].find({"time": {"$lt": time}}, {"_id": 1}).limit(MANY)]
+            db[collection].delete_many({"_id": {"$in": old}})
+        last = len(old)
+        deleted += last
+        DELETED.labels(collection).inc(last)
+    return deleted
+
+
+def _date(text: str) -> datetime:
+    try:
+        return datetime.fromisoformat(text).replace(tzinfo=timezone.utc)
+    except ValueError:
+        raise DbError(f"the newest state of a machine has the time {text!r}, which is none", "BAD_RECORD") from None
+
+
+class Retention:
+    """Looks when the store is there first, and then once a day."""
+
+    def __init__(self, db: Db, connection: Connection, settings: Store, log: logging.Logger) -> None:
+        self._db, self._connection, self._settings, self._log = db, connection, settings, log
+        self._stopping = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="retention", daemon=True)
+
+    def start(self) -> None:
+        self._thread.start()
+
+    def stop(self) -> None:
+        self._stopping.set()
+
+    def _run(self) -> None:
+        wait = FIRST
+        while not self._stopping.wait(wait):
+            wait = PERIOD
+            try:
+                with self._connection.use():
+                    self._look(datetime.now(timezone.utc))
+            except DbError as error:
+                if error.code != "STORE_DOWN":  # which the connection tells
+                    self._log.warning("event=retention_waits code=%s %s", error.code, error)
+                wait = AGAIN
+
+    def _look(self, now: datetime) -> None:
+        gone: dict[str, int] = {}
+        if self._settings.history_days is not None:
+            gone["runs"] = delete_runs(self._db, self._settings.history_days, now)
+        if self._settings.machine_state_days is not None:
+            gone["machine_states"] = delete_states(self._db, self._settings.machine_state_days, now)
+        if any(gone.values()):
+            self._log.info("event=retention %s", " ".join(f"{what}={number}" for what, number in gone.items()))
