@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any, Literal, TypeVar
 
 import yaml
-from pydantic import Field, ValidationError, field_validator
+from pydantic import Field, ValidationError, field_validator, model_validator
 
-from tms_core import pcs
+from tms_core import pcs, store_address
 from tms_core.errors import ConfigError
 from tms_core.models import (
     NAME,
@@ -72,14 +72,31 @@ class Ports(Settings):
 class Store(Settings):
     """`embedded` is the demo's own store; `mongodb` is a server that the site runs.
 
-    A URI with a password comes from TMS_MONGODB_URI, or the file that TMS_MONGODB_URI_FILE names, never from here.
+    A password never stands here: it is in `password_file`, or in a whole URI that comes from TMS_MONGODB_URI or the
+    file that TMS_MONGODB_URI_FILE names; what is here about user and TLS then does not count.
     """
 
     kind: Literal["embedded", "mongodb"] = "embedded"
-    uri: str | None = None
+    uri: str | None = None  # mongodb://db1,db2,db3/?replicaSet=rs0
+    user: str | None = Field(min_length=1, default=None)
+    password_file: Path | None = None
+    tls_ca: Path | None = None  # PEM of the authority that signed the server's certificate; its use means TLS
+    tls_certificate: Path | None = None  # PEM of our own certificate and key, where the server asks for one
     database: str = Field(pattern=r"^[A-Za-z][A-Za-z0-9_-]*$", default="rostmsdb")
     history_days: int | None = Field(ge=1, default=365)  # that an ended run and its events stay; null: for ever
     machine_state_days: int | None = Field(ge=1, default=None)  # the same for machine_pose and machine_joints
+
+    @model_validator(mode="after")
+    def _whole(self) -> "Store":
+        if store_address.holds_password(self.uri or ""):
+            raise ValueError("uri holds a password: write user and password_file instead, or use TMS_MONGODB_URI_FILE")
+        if (self.user is None) != (self.password_file is None):
+            raise ValueError("user and password_file go together: give both or none")
+        if self.uri is None and (self.user or self.tls_ca or self.tls_certificate):
+            raise ValueError("user, password_file and TLS need the uri of a MongoDB: add it")
+        if self.user is not None and "@" in (self.uri or ""):
+            raise ValueError("the user stands in uri and in user: keep the latter")
+        return self
 
 
 class Fault(Settings):
@@ -193,9 +210,16 @@ class Site:
 
     @property
     def store_uri(self) -> str:
-        """URI of the store, with the password if TMS_MONGODB_URI has one: never log it."""
-        given = _secret("TMS_MONGODB_URI") or self.file.store.uri
-        return given or f"mongodb://127.0.0.1:{self.file.ports.store}/?directConnection=true"
+        """URI of the store, with its password: never log it.
+
+        Raises:
+            ConfigError: a file with a secret cannot be read.
+        """
+        if given := _secret("TMS_MONGODB_URI"):
+            return given
+        if given := self.file.store.uri:
+            return store_address.address(self.file.store, given, self.path)
+        return f"mongodb://127.0.0.1:{self.file.ports.store}/?directConnection=true"
 
     @property
     def embedded_store(self) -> bool:

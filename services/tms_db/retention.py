@@ -9,7 +9,6 @@ import logging
 import threading
 from datetime import datetime, timedelta, timezone
 
-import pymongo
 from prometheus_client import Counter
 
 from tms_core.config import Store
@@ -41,7 +40,7 @@ def delete_runs(db: Db, days: int, now: datetime) -> int:
         return 0
     before = min(now, newest["ended_at"]) - timedelta(days=days)
     while True:
-        with errors(), pymongo.timeout(store.LONG):
+        with store.long_work(db):
             old = list(runs.find({"ended_at": {"$lt": before}}, {"run_id": 1}).limit(ROUND))
             for run in old:  # its header last: a crash leaves nothing behind that nobody finds
                 DELETED.labels("event").inc(events.delete_many({"run_id": run["run_id"]}).deleted_count)
@@ -73,7 +72,7 @@ def delete_states(db: Db, days: int, now: datetime) -> int:
 def _delete_before(db: Db, collection: str, time: str) -> int:
     deleted, last = 0, MANY
     while last == MANY:
-        with errors(), pymongo.timeout(store.LONG):
+        with store.long_work(db):
             old = [state["_id"] for state in db[collection].find({"time": {"$lt": time}}, {"_id": 1}).limit(MANY)]
             db[collection].delete_many({"_id": {"$in": old}})
         last = len(old)

@@ -8,8 +8,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime, timezone
 
-import pymongo
-
 from tms_core.config import version
 from tms_core.errors import DbError
 from tms_db import store
@@ -46,7 +44,7 @@ def bring_up(db: Db) -> list[str]:
     refuse_newer(f"database {db.name}", found)
     done = []
     for number, migration in enumerate(MIGRATIONS[found:], found + 1):
-        with errors(), pymongo.timeout(store.LONG):
+        with store.long_work(db):
             migration.step(db)
             state = {"version": number, "changed_at": datetime.now(timezone.utc), "by": version()}
             db[COLLECTION].update_one(KEY, {"$set": state}, upsert=True)

@@ -28,6 +28,14 @@ FIND_SERVER_MS = 2000
 ANSWER_MS = 3000
 LONG = 60.0  # s for work on a whole collection: indexes, migrations
 AUTH_CODES = {13, 18, 8000}  # Unauthorized, AuthenticationFailed, Atlas
+HINTS = {  # part of the driver's text -> what is wrong and what to do
+    "certificate verify failed": "store.tls_ca does not vouch for its certificate, or that is for another host name",
+    "alert certificate required": "it wants a certificate of ours: give store.tls_certificate",
+    "SSL handshake failed": "TLS with it fails: see store.tls_ca, and whether it speaks TLS",
+    "No replica set members match": "no member of its replica set is the primary: start more of them",
+    "No primary available for writes": "no member of its replica set is the primary: start more of them",
+    "No replica set members available": "none of its hosts is a member of the replica set that the URI names",
+}
 DISK_CODES = {14031, 28}  # OutOfDiskSpace, ENOSPC passed on by an engine
 
 # Collection -> (fields, unique). `sparse` lets tasks of the C++ system, which have no text hash, stand.
@@ -72,8 +80,7 @@ def connect(uri: str, database: str, answer_ms: int = ANSWER_MS) -> Db:
     try:
         given = {key.lower() for key in parse_uri(uri)["options"]}
         # A single server has no second node to retry on, and a stand-alone mongod refuses retryable writes.
-        # All our writes may be repeated by the caller; a site with a replica set can ask for them in the URI.
-        retry: dict[str, Any] = {} if "retrywrites" in given else {"retryWrites": False}
+        retry: dict[str, Any] = {} if given & {"retrywrites", "replicaset"} else {"retryWrites": False}
         client: MongoClient[dict[str, Any]] = MongoClient(
             uri, w="majority", journal=True, wTimeoutMS=answer_ms, tz_aware=True,
             serverSelectionTimeoutMS=FIND_SERVER_MS, connectTimeoutMS=FIND_SERVER_MS, socketTimeoutMS=answer_ms,
@@ -86,6 +93,9 @@ def connect(uri: str, database: str, answer_ms: int = ANSWER_MS) -> Db:
             f"the store's address {redact(uri)} is wrong ({kind}): "
             "write mongodb://host:port in TMS_MONGODB_URI or store.uri, with % codes for special characters"
         ) from None
+    except OSError as error:  # a file of tlsCAFile or tlsCertificateKeyFile
+        file = error.filename or "a file of TLS"
+        raise ConfigError(f"store: {file} cannot be used ({error.strerror}): see store.tls_ca") from None
     return client[database]
 
 
@@ -107,7 +117,7 @@ def index(db: Db, collection: str, name: str = "") -> None:
     """
     for fields, options in INDEXES.get(collection, ()):
         try:
-            with errors(), pymongo.timeout(LONG):  # the first time, in a database of the C++ system
+            with long_work(db):  # the first time, in a database of the C++ system
                 db[name or collection].create_index(fields, **options)
         except DuplicateKeyError as error:
             key = (error.details or {}).get("keyValue") or " and ".join(name for name, _ in fields)
@@ -116,6 +126,15 @@ def index(db: Db, collection: str, name: str = "") -> None:
                 "remove one of them, then start again",
                 "STORE_CONFLICT",
             ) from error
+
+
+@contextmanager
+def long_work(db: Db) -> Iterator[None]:
+    """Around steps that may take longer than an answer to a service; a store that is away still fails soon."""
+    with errors():
+        db["schema"].find_one({}, {"_id": 1})  # inside the time-out the driver would look for a server that long
+        with pymongo.timeout(LONG):
+            yield
 
 
 @contextmanager
@@ -131,7 +150,7 @@ def errors() -> Iterator[None]:
             "STORE_DOWN",
         ) from error
     except ConnectionFailure as error:
-        raise down() from error
+        raise _unreachable(str(error)) from error
     except DocumentTooLarge as error:
         raise DbError("the document is larger than the store's 16 MB: make it smaller", "TOO_LARGE") from error
     except OperationFailure as error:
@@ -148,10 +167,17 @@ def down() -> DbError:
     )
 
 
+def _unreachable(text: str) -> DbError:
+    """Why there is no connection, as far as the driver knows; its text may be a page long."""
+    hint = next((hint for part, hint in HINTS.items() if part in text), None)
+    return DbError(f"the store cannot be used: {hint}", "STORE_DOWN") if hint else down()
+
+
 def _refused(error: OperationFailure) -> DbError:
     text = str((error.details or {}).get("errmsg", type(error).__name__)).splitlines()[0][:200]
     if error.code in AUTH_CODES:
-        return DbError("the store refuses our login: check user and password in TMS_MONGODB_URI", "STORE_DOWN")
+        text = "the store refuses our login: check user and password (store.password_file, or TMS_MONGODB_URI)"
+        return DbError(text, "STORE_DOWN")
     if error.code in DISK_CODES or "no space" in text.lower():
         return DbError("the store's disk is full: free some space, then try again", "STORE_FULL")
     return DbError(f"the store refused the request ({text}): see the log of tms:db", "STORE_REFUSED")

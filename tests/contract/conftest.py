@@ -36,6 +36,12 @@ def own_server(tmp_path: Path) -> Iterator[Server]:
     shutil.rmtree(server.folder)
 
 
+@pytest.fixture(scope="session")
+def program() -> None:
+    """The embedded store is installed."""
+    _need_program()
+
+
 def _need_program() -> None:
     if not PROGRAM.exists():
         pytest.skip(f"no real store here ({PROGRAM} is missing): `make setup` installs it")

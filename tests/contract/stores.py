@@ -19,6 +19,7 @@ class Server:
     """A store server of our own, on a free port, that can die and come back."""
 
     def __init__(self, folder: Path) -> None:
+        self.more: list[str] = []  # words on its command line
         with socket.socket() as free:
             free.bind(("127.0.0.1", 0))
             self.port = free.getsockname()[1]
@@ -31,7 +32,7 @@ class Server:
         clean = {key: value for key, value in os.environ.items() if key not in hidden}
         words = [str(PROGRAM), "--host", "127.0.0.1", "--port", str(self.port), "--storage-path", str(self.folder)]
         self.process = subprocess.Popen(
-            [*words, "--cache-size", "64M"], env=clean, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+            [*words, "--cache-size", "64M", *self.more], env=clean, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
         )
         deadline = time.monotonic() + 20
         while time.monotonic() < deadline and self.process.poll() is None:

@@ -87,6 +87,51 @@ def test_a_password_comes_only_from_the_environment(tmp_path: Path, monkeypatch:
     assert not any(row.name == "store" for row in table(loaded))
 
 
+URI = "mongodb://db1,db2:27018"
+
+
+def test_a_mongodb_with_user_password_and_tls(tmp_path: Path) -> None:
+    (tmp_path / "password").write_text("p@ss/w:rd%\n")
+    login = {"kind": "mongodb", "user": "t ms", "password_file": "password"}
+    for given, wanted in (
+        ({"uri": URI, **login}, "mongodb://t%20ms:p%40ss%2Fw%3Ard%25@db1,db2:27018"),
+        ({"uri": f"{URI}/?replicaSet=rs0", "tls_ca": "/etc/ca.pem"},
+         f"{URI}/?replicaSet=rs0&tls=true&tlsCAFile=%2Fetc%2Fca.pem"),
+        ({"uri": f"{URI}/", "tls_ca": "/a", "tls_certificate": "/b"},
+         f"{URI}/?tls=true&tlsCAFile=%2Fa&tlsCertificateKeyFile=%2Fb"),
+        ({"uri": URI, "tls_ca": "/a"}, f"{URI}/?tls=true&tlsCAFile=%2Fa"),
+    ):  # fmt: skip
+        assert load_site(site(tmp_path, store=given)).store_uri == wanted
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"uri": "mongodb://anna:s3cret@db1"}, "store: uri holds a password: write user and password_file"),
+        ({"uri": URI, "user": "anna"}, "store: user and password_file go together"),
+        ({"uri": URI, "password_file": "x"}, "store: user and password_file go together"),
+        ({"user": "anna", "password_file": "x"}, "store: user, password_file and TLS need the uri"),
+        ({"tls_ca": "x"}, "store: user, password_file and TLS need the uri"),
+        ({"uri": "mongodb://anna@db1", "user": "anna", "password_file": "x"}, "store: the user stands in uri and"),
+    ],
+)
+def test_what_a_site_may_not_say_about_its_store(tmp_path: Path, given: dict[str, object], said: str) -> None:
+    with pytest.raises(ConfigError, match=re.escape(said)) as caught:
+        load_site(site(tmp_path, store=given))
+    assert "s3cret" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("content", "said"), [(None, "cannot be read"), (b"\n", "is empty"), (b"\xff\xfe", "is no UTF-8 text")]
+)
+def test_a_password_file_that_is_of_no_use(tmp_path: Path, content: bytes | None, said: str) -> None:
+    if content is not None:
+        (tmp_path / "password").write_bytes(content)
+    loaded = load_site(site(tmp_path, store={"uri": URI, "user": "anna", "password_file": "password"}))
+    with pytest.raises(ConfigError, match=rf"store\.password_file: .*{said}"):
+        _ = loaded.store_uri
+
+
 def test_the_backend_chooses_the_names(tmp_path: Path) -> None:
     machines = {"zx200": {"model": "zx200"}, "ic120_1": {"model": "ic120"}, "ic120_2": {"model": "ic120"}}
     names = {

@@ -24,7 +24,7 @@ class Away:
     def __getitem__(self, _: str) -> "Away":
         return self
 
-    def find_one(self, _: Any) -> dict[str, Any]:
+    def find_one(self, *_: Any) -> dict[str, Any]:
         self.create_index()
         return {"version": schema.NEWEST}
 

@@ -50,7 +50,14 @@ def test_wrong_address_is_refused_without_its_password(uri: str) -> None:
         error = error.__cause__ or (None if error.__suppress_context__ else error.__context__)
 
 
-@pytest.mark.parametrize(("given", "retries"), [("", False), ("/?retryWrites=true", True)])
+@pytest.mark.parametrize("option", ["tlsCAFile", "tlsCertificateKeyFile"])
+def test_a_file_of_tls_that_is_missing_is_named(option: str) -> None:
+    with pytest.raises(ConfigError, match=r"/nowhere/x\.pem cannot be used \(No such file") as caught:
+        store.connect(f"mongodb://anna:s3cret@db1/?tls=true&{option}=/nowhere/x.pem", "rostmsdb")
+    assert "cret" not in str(caught.value)
+
+
+@pytest.mark.parametrize(("given", "retries"), [("", False), ("/?retryWrites=true", True), ("/?replicaSet=rs0", True)])
 def test_writes_wait_for_the_disk_and_retry_only_if_asked(given: str, retries: bool) -> None:
     db = store.connect(f"mongodb://127.0.0.1:1{given}", "rostmsdb")
     assert db.write_concern.document == {"w": "majority", "j": True, "wtimeout": 3000}
@@ -66,6 +73,8 @@ def test_writes_wait_for_the_disk_and_retry_only_if_asked(given: str, retries: b
         (NetworkTimeout("x"), "STORE_DOWN", "in 3 s: see whether its disk is full"),
         (ServerSelectionTimeoutError("x"), "STORE_DOWN", "does not answer"),
         (OperationFailure("x", 18), "STORE_DOWN", "TMS_MONGODB_URI"),
+        (AutoReconnect("db1: SSL handshake failed: db1:27017"), "STORE_DOWN", "TLS with it fails"),
+        (ServerSelectionTimeoutError("No replica set members match selector"), "STORE_DOWN", "start more of them"),
         (OperationFailure("x", 14031), "STORE_FULL", "disk is full"),
         (OperationFailure("x", 8, {"errmsg": "write: No space left on device"}), "STORE_FULL", "disk is full"),
         (OperationFailure("x", 9, {"errmsg": "odd\nthing"}), "STORE_REFUSED", r"\(odd\)"),
