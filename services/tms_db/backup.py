@@ -22,7 +22,6 @@ from tms_db import archive, schema, store
 from tms_db.archive import Name
 from tms_db.store import Db, errors
 
-ANSWER_MS = 60_000  # one step may touch a whole collection
 STAGED = "restoring."  # before the names of collections that are not complete yet
 BATCH = 500  # documents
 BATCH_BYTES = 4 * 2**20

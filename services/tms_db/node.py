@@ -24,6 +24,7 @@ from tms_db.parameter_services import ParameterServices
 from tms_db.retention import Retention
 from tms_db.task_text import MODELS
 from tms_db.tasks import Tasks
+from tms_db.terrain_services import TerrainServices
 
 
 class Services:
@@ -90,6 +91,7 @@ def start(app: App) -> None:
     Services(app, db).offer(answering)
     ParameterServices(app, db, connection).offer(answering)
     CppServices(app, db, connection).offer()
+    TerrainServices(app, db, connection).offer()
     retention = Retention(db, connection, app.site.file.store, app.log)
     app.on_stop(retention.stop)
     retention.start()

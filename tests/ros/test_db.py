@@ -7,10 +7,13 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 from builtin_interfaces.msg import Time
+from PIL import Image
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
-from tms_msg_db.msg import Event, Run
+from sensor_msgs.msg import PointCloud2
+from tms_msg_db.msg import Event, Run, TmsdbGridFS
 from tms_msg_db.srv import (
     AddTask,
     GetParameter,
@@ -22,13 +25,18 @@ from tms_msg_db.srv import (
     RemoveParameter,
     RemoveTask,
     SetParameter,
+    TerrainStaticSrv,
     TmsdbGetData,
     TmsdbGetTask,
+    TmsdbTerrainImageSrv,
     WriteJournal,
 )
 
 from few_processes import LIMIT, Mesh, bare
 from tms_core.config import CONFIGS
+from tms_db import store
+from tms_db.terrain import Terrain
+from tms_db.terrain_files import Size
 
 pytestmark = [
     pytest.mark.ros,
@@ -73,6 +81,31 @@ def test_tasks_records_and_history_through_ros(mesh: Mesh) -> None:
     history(mesh)
     cpp_names(mesh)
     registration_node(mesh)
+    terrain(mesh)
+
+
+def terrain(mesh: Mesh) -> None:
+    """A heightmap out of the store, and a cloud in and out; what is not there is an empty answer."""
+    heights = np.arange(500 * 400, dtype=np.uint32).astype(np.uint16).reshape(400, 500)
+    file = mesh.log.with_name("yard.png")
+    Image.fromarray(heights).save(file)
+    db = store.connect(mesh.site.store_uri, "rostmsdb")
+    Terrain(db).add(file, "heightmap", Size(120.0, 80.0, 14.0, -24.0))
+    db.client.close()
+    found = mesh.db(TmsdbTerrainImageSrv, "terrain_image", type="heightmap", id=4031)
+    assert (found.filename, found.id, found.terrainwidth, found.offset_x) == ("yard.png", 4031, 120.0, -24.0)
+    assert (found.image.encoding, bytes(found.image.data)) == ("mono16", heights.tobytes())
+    assert mesh.db(TmsdbTerrainImageSrv, "terrain_image", type="texture").filename == ""
+    assert mesh.db(TmsdbTerrainImageSrv, "terrain_image", type="fog").filename == ""
+    assert len(mesh.db(TerrainStaticSrv, "terrain_cloud", type="dynamic").pointcloud2.data) == 0
+    sent = PointCloud2(height=1, width=1000, point_step=12, row_step=12000, is_dense=True, data=bytes(range(240)) * 50)
+    sent.header.frame_id = "map"
+    publisher = mesh.ros.publisher(TmsdbGridFS, "/tms_db_gridfs_data")
+    mesh.until(lambda: publisher.get_subscription_count() == 1, "subscription")
+    publisher.publish(TmsdbGridFS(type="static", id=3030, filename="refused", pointcloud2=sent))
+    publisher.publish(TmsdbGridFS(type="dynamic", id=3031, filename="lidar", pointcloud2=sent))
+    cloud = lambda: mesh.db(TerrainStaticSrv, "terrain_cloud", type="dynamic").pointcloud2  # noqa: E731
+    mesh.until(lambda: cloud() == sent, "stored cloud")
 
 
 def tasks(mesh: Mesh) -> None:

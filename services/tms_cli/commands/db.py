@@ -1,18 +1,17 @@
 """`tms db`: backup and restore of the database, and what it holds."""
 
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from tms_cli import session
+from tms_cli.open_store import opened
 
 if TYPE_CHECKING:
     from tms_db.backup import Report
-    from tms_db.store import Db
 
 SPEAK = 1.0  # s between words about long work
 FILE = click.Path(path_type=Path)
@@ -44,7 +43,7 @@ def info(as_json: bool) -> None:
     """
     from tms_db import backup, schema, store
 
-    with _opened() as db:
+    with opened() as db:
         report = backup.look(db)
     address = store.redact(session.site().store_uri)
     if as_json:
@@ -69,7 +68,7 @@ def backup(file: Path, overwrite: bool, as_json: bool) -> None:
     """
     from tms_db import backup
 
-    with _opened() as db:
+    with opened() as db:
         report = backup.backup(db, file, _progress(), overwrite=overwrite)
     if as_json:
         session.show_json({**_as_dict(report), "file": str(file), "bytes": file.stat().st_size})
@@ -98,7 +97,7 @@ def restore(file: Path, drop: bool, yes: bool, as_json: bool) -> None:
 
     if yes and not drop:
         raise click.UsageError("--yes goes with --drop")
-    with _opened() as db:
+    with opened() as db:
         there = backup.look(db)
         if drop and not yes and any(there.documents.values()):
             click.confirm(f"Replace all of database {db.name} ({there.text})?", abort=True, err=True)
@@ -108,18 +107,6 @@ def restore(file: Path, drop: bool, yes: bool, as_json: bool) -> None:
         session.show_json({**_as_dict(report), "file": str(file), "into": into})
     else:
         click.echo(f"restored into {into}: {report.text}")
-
-
-@contextmanager
-def _opened() -> Iterator["Db"]:
-    from tms_db import backup, store
-
-    site = session.site()
-    db = store.connect(site.store_uri, site.file.store.database, backup.ANSWER_MS)
-    try:
-        yield db
-    finally:
-        db.client.close()
 
 
 def _as_dict(report: "Report") -> dict[str, Any]:

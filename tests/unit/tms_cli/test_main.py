@@ -10,7 +10,7 @@ import pytest
 
 VERBS = (
     "abandon", "answer", "cancel", "check", "completion", "db", "demo", "drill", "events", "logs", "palette", "panel",
-    "param", "rearm", "resume", "run", "runs", "stop", "task", "user",
+    "param", "rearm", "resume", "run", "runs", "stop", "task", "terrain", "user",
 )  # fmt: skip
 
 

@@ -1,0 +1,25 @@
+"""The site's database itself, for verbs that move more than a service should carry."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from tms_cli import session
+
+if TYPE_CHECKING:
+    from tms_db.store import Db
+
+ANSWER_MS = 60_000  # one step may touch a whole collection
+
+
+@contextmanager
+def opened() -> Iterator["Db"]:
+    """The database of the chosen site, for the length of one command."""
+    from tms_db import store
+
+    site = session.site()
+    db = store.connect(site.store_uri, site.file.store.database, ANSWER_MS)
+    try:
+        yield db
+    finally:
+        db.client.close()

@@ -1,0 +1,151 @@
+"""Terrain in the database: heightmaps, their colour images, point clouds and meshes as GridFS files, as the C++ system
+keeps them (`fs.files`, `fs.chunks`; type, id, time and sizes beside the file name).
+
+gridfs is imported when it is first used: most sites never store terrain.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime, timezone
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tms_core.errors import DbError
+from tms_db import terrain_files
+from tms_db.store import Db, errors
+from tms_db.terrain_files import IDS, IMAGES, MAX_NAME, Size, bad
+
+if TYPE_CHECKING:
+    import gridfs
+
+NEWEST_KEPT = 5  # versions of a dynamic cloud
+LISTED = 1000
+SIZES = ("width", "height", "elevation", "offset_x", "offset_y")
+
+
+@dataclass(frozen=True)
+class Stored:
+    """A terrain file in the database."""
+
+    key: Any  # of GridFS
+    filename: str
+    type: str
+    id: int
+    time: str
+    length: int  # bytes
+    more: Mapping[str, Any]
+
+    def size(self, name: str) -> float:
+        """One of SIZES; 0 where the file has none."""
+        value = self.more.get(name)
+        return float(value) if isinstance(value, (int, float)) else 0.0
+
+
+class Terrain:
+    """The files; the newest of a name counts."""
+
+    def __init__(self, db: Db) -> None:
+        self._db = db
+
+    def add(self, path: Path, type_: str, size: Size | None = None) -> Stored:
+        """Store a file under its own name.
+
+        Raises:
+            DbError: BAD_TERRAIN, TERRAIN_EXISTS, or the store is away.
+        """
+        if type_ in IMAGES and size is None:
+            raise bad(f"{path}: a {type_} needs its width, height and elevation in metres")
+        if size is not None and not (size.width > 0 and size.height > 0 and size.elevation >= 0):
+            raise bad(f"{path}: width and height must be above 0 m and elevation not below: correct them")
+        data = terrain_files.read(path, type_)
+        if self.find(type_, path.name) is not None:
+            raise DbError(f"terrain {type_} {path.name} is there already: remove it first (`tms terrain rm`)",
+                          "TERRAIN_EXISTS")  # fmt: skip
+        return self.put(path.name, type_, data, vars(size) if size is not None else {})
+
+    def put(self, filename: str, type_: str, data: bytes, more: Mapping[str, Any]) -> Stored:
+        """Store data that was checked.
+
+        Raises:
+            DbError: the store is away.
+        """
+        if not filename or len(filename) > MAX_NAME or not filename.isprintable():
+            raise bad(f"terrain name {filename[:40]!r}: write 1 to {MAX_NAME} printable characters")
+        id_, time = IDS[type_], datetime.now(timezone.utc).isoformat()
+        with errors():
+            key = self._grid().put(data, filename=filename, type=type_, id=id_, time=time, **more)
+        return Stored(key, filename, type_, id_, time, len(data), more)
+
+    def put_dynamic(self, filename: str, data: bytes, more: Mapping[str, Any]) -> Stored:
+        """Store a cloud and forget all but the newest few of its name.
+
+        Raises:
+            DbError: the store is away.
+        """
+        stored = self.put(filename, "dynamic", data, more)
+        for old in self.all("dynamic", filename)[NEWEST_KEPT:]:
+            self._delete(old)
+        return stored
+
+    def all(self, type_: str = "", filename: str = "") -> list[Stored]:
+        """Files of a type and a name (each "" = any), newest first."""
+        with errors():
+            found = self._db["fs.files"].find({"filename": filename} if filename else {}).sort("uploadDate", -1)
+            files = [_stored(document) for document in found.limit(LISTED)]
+        return [file for file in files if file.type in ((type_,) if type_ else IDS)]
+
+    def find(self, type_: str, filename: str = "") -> Stored | None:
+        """The newest file of a type and a name."""
+        return next(iter(self.all(type_, filename)), None)
+
+    def read(self, stored: Stored) -> bytes:
+        """The content of a file.
+
+        Raises:
+            DbError: TERRAIN_MISSING; it was removed meanwhile, or a part of it is not there.
+        """
+        from gridfs.errors import GridFSError
+
+        with errors():
+            try:
+                data: bytes = self._grid().get(stored.key).read()
+            except GridFSError as error:
+                text = f"terrain {stored.filename} is not there, or not whole: store it again"
+                raise DbError(text, "TERRAIN_MISSING") from error
+        return data
+
+    def remove(self, filename: str, type_: str = "") -> int:
+        """Take all files of a name away; returns how many.
+
+        Raises:
+            DbError: TERRAIN_MISSING.
+        """
+        found = self.all(type_, filename)
+        if not found or not filename:
+            raise missing(filename)
+        for file in found:
+            self._delete(file)
+        return len(found)
+
+    def _delete(self, file: Stored) -> None:
+        with errors():
+            self._grid().delete(file.key)
+
+    def _grid(self) -> "gridfs.GridFS":
+        import gridfs
+
+        return gridfs.GridFS(self._db)
+
+
+def missing(filename: str) -> DbError:
+    return DbError(f"there is no terrain {filename!r}: `tms terrain list` shows what is stored", "TERRAIN_MISSING")
+
+
+def _stored(document: Mapping[str, Any]) -> Stored:
+    # Drivers other than Python's put what belongs to a file below `metadata`.
+    more = {**(document.get("metadata") or {}), **document}
+    id_ = more.get("id")
+    return Stored(
+        document["_id"], str(document.get("filename") or ""), str(more.get("type") or ""),
+        int(id_) if isinstance(id_, (int, float)) else 0, str(more.get("time") or ""), int(document["length"]), more,
+    )  # fmt: skip

@@ -1,0 +1,116 @@
+"""Terrain over ROS with the C++ system's types: images and clouds for readers, dynamic clouds from sensing.
+
+These types have no error fields: who asks for what is not there gets an empty answer, and the log says why.
+"""
+
+import threading
+from typing import Any
+
+from prometheus_client import Counter
+from tms_msg_db.msg import TmsdbGridFS
+from tms_msg_db.srv import TerrainStaticSrv, TmsdbTerrainImageSrv
+
+from tms_core.app import App
+from tms_core.errors import TmsError
+from tms_db import store, terrain_messages
+from tms_db.connection import Connection
+from tms_db.terrain import Stored, Terrain, missing
+from tms_db.terrain_files import IMAGES, bad
+
+CLOUDS = Counter("tms_db_clouds", "Dynamic terrain that came over ROS", ["what"])
+TOPIC = "tms_db_gridfs_data"
+NAMES = 20  # clouds of different names that may wait for the store
+
+
+class TerrainServices:
+    """Reads in a thread a call; writes in one thread, the newest cloud of each name."""
+
+    def __init__(self, app: App, db: store.Db, connection: Connection) -> None:
+        self._app, self._connection = app, connection
+        self._terrain = Terrain(db)
+        self._waiting: dict[str, Any] = {}
+        self._changed = threading.Condition()
+        self._stopping = False
+        self._thread = threading.Thread(target=self._write, name="terrain", daemon=True)
+
+    def offer(self) -> None:
+        ros = self._app.ros
+        ros.offer_slow(TmsdbTerrainImageSrv, "/tms/db/terrain_image", self.image)
+        ros.offer_slow(TerrainStaticSrv, "/tms/db/terrain_cloud", self.cloud)
+        ros.subscribe(TmsdbGridFS, f"/{TOPIC}", self.heard)
+        self._app.on_stop(self.stop)
+        self._thread.start()
+
+    def stop(self) -> None:
+        with self._changed:
+            self._stopping = True
+            self._changed.notify_all()
+
+    def image(self, request: Any, response: Any) -> Any:
+        """The newest heightmap or colour image, of that name if one is given."""
+        try:
+            with self._connection.use():
+                if request.type not in IMAGES:
+                    raise bad(f"terrain type {request.type!r}: an image is one of {', '.join(IMAGES)}")
+                found = self._find(request.type, request.filename, request.id)
+                response.image = terrain_messages.image(found.filename, self._terrain.read(found))
+                response.image.header.stamp = self._app.ros.now()
+                response.time, response.type, response.id = found.time, found.type, found.id
+                response.filename = found.filename
+                response.terrainheight, response.terrainwidth = found.size("height"), found.size("width")
+                response.terrainelevation = found.size("elevation")
+                response.offset_x, response.offset_y = found.size("offset_x"), found.size("offset_y")
+        except TmsError as error:
+            self._refused("terrain_image", error)
+        return response
+
+    def cloud(self, request: Any, response: Any) -> Any:
+        """The newest cloud of a type."""
+        try:
+            with self._connection.use():
+                found = self._find(request.type, "", 0)
+                data = self._terrain.read(found)
+                response.pointcloud2 = terrain_messages.cloud(found.filename, found.more.get("cloud"), data)
+        except TmsError as error:
+            self._refused("terrain_cloud", error)
+        return response
+
+    def heard(self, message: Any) -> None:
+        """A cloud from sensing; on the executor thread."""
+        name = message.filename or message.type
+        with self._changed:
+            full = len(self._waiting) >= NAMES and name not in self._waiting
+            CLOUDS.labels("dropped" if full or name in self._waiting else "taken").inc()
+            if not full:
+                self._waiting[name] = message
+                self._changed.notify_all()
+
+    def _write(self) -> None:
+        while True:
+            with self._changed:
+                self._changed.wait_for(lambda: self._waiting or self._stopping)
+                if self._stopping:
+                    return
+                name, message = next(iter(self._waiting.items()))
+                del self._waiting[name]
+            try:
+                with self._connection.use():
+                    self._store(name, message)
+            except TmsError as error:
+                CLOUDS.labels("refused").inc()
+                self._refused(TOPIC, error)
+
+    def _store(self, name: str, message: Any) -> None:
+        if message.type != "dynamic":
+            raise bad(f"terrain {name} of type {message.type!r} came over ROS: store files with `tms terrain add`")
+        head = terrain_messages.cloud_head(message.pointcloud2)
+        self._terrain.put_dynamic(name, bytes(message.pointcloud2.data), head)
+
+    def _find(self, type_: str, filename: str, id_: int) -> Stored:
+        found = self._terrain.find(type_, filename)
+        if found is None or (id_ and id_ != found.id):
+            raise missing(f"{type_} {filename}".strip())
+        return found
+
+    def _refused(self, service: str, error: TmsError) -> None:
+        self._app.log.warning("event=refused service=%s code=%s %s", service, error.code, error)
