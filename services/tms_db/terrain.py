@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from tms_core.errors import DbError
 from tms_db import terrain_files
-from tms_db.store import Db, errors
+from tms_db.store import Db, errors, long_work
 from tms_db.terrain_files import IDS, IMAGES, MAX_NAME, Size, bad
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ class Terrain:
         if not filename or len(filename) > MAX_NAME or not filename.isprintable():
             raise bad(f"terrain name {filename[:40]!r}: write 1 to {MAX_NAME} printable characters")
         id_, time = IDS[type_], datetime.now(timezone.utc).isoformat()
-        with errors():
+        with long_work(self._db):
             key = self._grid().put(data, filename=filename, type=type_, id=id_, time=time, **more)
         return Stored(key, filename, type_, id_, time, len(data), more)
 
@@ -106,7 +106,7 @@ class Terrain:
         """
         from gridfs.errors import GridFSError
 
-        with errors():
+        with long_work(self._db):
             try:
                 data: bytes = self._grid().get(stored.key).read()
             except GridFSError as error:

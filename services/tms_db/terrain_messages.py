@@ -10,7 +10,7 @@ from tms_db.terrain_files import MAX_SIDE, bad
 
 ENCODINGS = {"L": "mono8", "I;16": "mono16", "RGB": "rgb8", "RGBA": "rgba8"}  # Pillow's modes
 CLOUD = ("height", "width", "is_bigendian", "point_step", "row_step", "is_dense")
-MAX_CLOUD = 64 * 2**20  # bytes
+MAX_CLOUD = 16 * 2**20  # bytes: some 500,000 points; more keeps the store from writing parameters for a second
 
 
 def image(where: str, data: bytes) -> Any:

@@ -147,7 +147,7 @@ FILES: dict[str, tuple[str, str, bytes, str]] = {
     "no end": ("a.png", "heightmap", GREY[:-12], "ends in the middle"),
     "damaged": ("a.png", "heightmap", GREY[:60] + b"\x00\x01" + GREY[62:], "is damaged (checksum at byte"),
     "no header": ("a.png", "heightmap", terrain_files.PNG + GREY[-12:], "has no header"),
-    "huge": ("a.png", "heightmap", header(8193, 10, 16, 0), "8193 x 10 pixels, at most 8192"),
+    "huge": ("a.png", "heightmap", header(4097, 10, 16, 0), "4097 x 10 pixels, at most 4096"),
     "no pixels": ("a.png", "heightmap", header(0, 10, 16, 0), "0 x 10 pixels"),
     "colour as heights": ("a.png", "heightmap", header(9, 9, 8, 2), "not 8-bit colour: convert it"),
     "palette": ("a.png", "texture", header(9, 9, 8, 3), "not 8-bit a palette: convert it"),

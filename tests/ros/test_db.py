@@ -82,6 +82,35 @@ def test_tasks_records_and_history_through_ros(mesh: Mesh) -> None:
     cpp_names(mesh)
     registration_node(mesh)
     terrain(mesh)
+    backup(mesh)
+
+
+def backup(mesh: Mesh) -> None:
+    """While tms:db runs: it goes on with the restored documents."""
+
+    def tms(*words: object) -> dict[str, object]:
+        command = [sys.executable, "-m", "tms_cli.main", "--site", mesh.site.path, "db", *words, "--json"]
+        done = subprocess.run(command, env=mesh.environment, capture_output=True, text=True, timeout=60, check=False)
+        assert done.returncode == 0, done.stderr
+        return json.loads(done.stdout)
+
+    def records() -> list[tuple[str, str]]:
+        return [(one.model_name, one.record_name) for one in mesh.db(ListParameters, "list_parameters").records]
+
+    file = mesh.log.with_name("site.archive")
+    before = records()
+    assert tms("backup", file)["bytes"] == file.stat().st_size
+    mesh.db(SetParameter, "set_parameter", model_name="zx200", record_name="late", values=VALUES, create=True)
+    assert len(records()) == len(before) + 1
+    ended = Time(sec=2)
+    for one in mesh.db(ListRuns, "list_runs", limit=100).runs:  # runs of this test that were left open
+        if not one.ended_at.sec:
+            one.ended_at = ended
+            mesh.db(WriteJournal, "write_journal", runs=[one])
+    tms("restore", file, "--drop", "--yes")
+    mesh.until(lambda: records() == before, "records as they were")
+    assert len(mesh.db(ListTasks, "list_tasks").tasks) == tms("info")["documents"]["task"]  # type: ignore[index]
+    assert mesh.ready()[0] == 200
 
 
 def terrain(mesh: Mesh) -> None:
