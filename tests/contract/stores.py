@@ -73,5 +73,7 @@ class MongoDb:
         return db
 
     def forget(self, db: store.Db) -> None:
-        db.client.drop_database(db)
-        db.client.close()
+        db.client.close()  # which the test may have done itself
+        again = store.connect(self.uri, db.name)
+        again.client.drop_database(db.name)
+        again.client.close()
