@@ -15,6 +15,7 @@ import bson
 from bson.codec_options import CodecOptions
 from bson.raw_bson import RawBSONDocument
 from pymongo.collection import Collection
+from pymongo.errors import BulkWriteError
 
 from tms_core.config import version
 from tms_core.errors import DbError, TmsError
@@ -25,6 +26,7 @@ from tms_db.store import Db, errors
 STAGED = "restoring."  # before the names of collections that are not complete yet
 BATCH = 500  # documents
 BATCH_BYTES = 4 * 2**20
+DUPLICATE = 11000  # MongoDB's code of a unique key that is there already
 RAW: CodecOptions[RawBSONDocument] = CodecOptions(document_class=RawBSONDocument)
 NEEDED = {"task": ("task_id", "task_sequence"), "parameter": ("record_name",)}  # what tells a TMS database
 
@@ -166,13 +168,18 @@ def _stage(db: Db, path: Path, database: str, names: list[str], say: Say) -> Non
     for name in names:
         with errors():
             db.create_collection(STAGED + name)
+        store.index(db, name, STAGED + name)  # while it is empty: later it could take minutes
     with archive.reading(path) as reader:
         for collection, batch in _batches(reader, database):
             with errors():
-                db.get_collection(STAGED + collection, codec_options=RAW).insert_many(batch)
+                try:
+                    db.get_collection(STAGED + collection, codec_options=RAW).insert_many(batch)
+                except BulkWriteError as error:
+                    first = error.details["writeErrors"][0]
+                    if first.get("code") != DUPLICATE:
+                        raise
+                    raise store.conflict(db, collection, first.get("keyValue")) from error
             say(f"writing: {reader.share():.0%}")
-    for name in names:
-        store.index(db, name, STAGED + name)
 
 
 def _batches(reader: archive.Reader, database: str) -> Iterator[tuple[str, list[RawBSONDocument]]]:

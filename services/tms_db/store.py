@@ -121,11 +121,15 @@ def index(db: Db, collection: str, name: str = "") -> None:
                 db[name or collection].create_index(fields, **options)
         except DuplicateKeyError as error:
             key = (error.details or {}).get("keyValue") or " and ".join(name for name, _ in fields)
-            raise DbError(
-                f"database {db.name}, collection {collection}: two documents with the same key {key}: "
-                "remove one of them, then start again",
-                "STORE_CONFLICT",
-            ) from error
+            raise conflict(db, collection, key) from error
+
+
+def conflict(db: Db, collection: str, key: object) -> DbError:
+    return DbError(
+        f"database {db.name}, collection {collection}: two documents with the same key {key}: "
+        "remove one of them, then start again",
+        "STORE_CONFLICT",
+    )
 
 
 @contextmanager
