@@ -14,7 +14,7 @@ from tms_msg_rc.srv import Rearm, StopMachine
 
 from tms_core.app import App
 from tms_core.border import Controls, motions
-from tms_core.permit import Permit
+from tms_core.permit import LEASE, Permit
 from tms_core.ros import Peer
 from tms_rc.gateway import Gateway
 from tms_rc.guard import Guard
@@ -51,7 +51,9 @@ def start(app: App) -> None:
     guard.told = lambda: publisher.publish(view.state(guard))
     ros.every(STATE_PERIOD, guard.told)
     ros.pulse.add(view.look)
-    Permit(ros, machine, "rc").hold(GATEWAY)
+    permit = Permit(ros, machine, "rc")
+    # Not before the lease of a predecessor that was killed has run out: nobody would notice its loss.
+    ros.after(LEASE, lambda: permit.hold(GATEWAY))
     threading.Thread(target=guard.recover, name="recover", daemon=True).start()
     app.ready_when(view.unready)
 

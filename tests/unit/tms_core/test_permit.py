@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from tms_msg_rc.msg import Permit as Message
 
-from tms_core.permit import GRACE, Link, Watched
+from tms_core.permit import GRACE, Link, watch_server
 
 GOAL = [7] * 16
 
@@ -65,7 +65,7 @@ def test_it_does_not_wait_for_ever(dds: Dds, link: tuple[Link, list[bool]]) -> N
 
 
 class Server:
-    """What Watched needs of a Peer: keeps what it was told."""
+    """What a watcher needs of a Peer: keeps what it was told."""
 
     def __init__(self) -> None:
         self.told: list[str] = []
@@ -79,29 +79,12 @@ class Server:
 
 @pytest.fixture
 def server(dds: Dds) -> Server:
-    made, watched = Server(), Watched()
-    Link(dds, "zx200", "rc", watched.changed)  # type: ignore[arg-type]
-    watched.add(made)  # type: ignore[arg-type]
-    dds.heard(Message(process="rc", goal=GOAL, instance=1))
+    made = Server()
+    watch_server(dds, "zx200", "rc")(made)  # type: ignore[arg-type]
+    dds.heard(Message(process="rc", goal=GOAL))
     dds.alive(1, 0)
-    assert not made.told
+    made.told.clear()
     return made
-
-
-def test_a_process_started_anew_within_its_lease_was_lost(dds: Dds, server: Server) -> None:
-    dds.alive(2, 0)
-    dds.heard(Message(process="rc", goal=GOAL, instance=2))
-    assert server.told == ["lost"]
-    dds.alive(1, 1)  # the lease of the first one has run out
-    assert server.told == ["lost"]
-
-
-def test_a_process_started_anew_later_is_lost_once(dds: Dds, server: Server) -> None:
-    dds.alive(0, 1)
-    dds.alive(1, 1)
-    dds.heard(Message(process="rc", goal=GOAL, instance=2))
-    dds.alive(1, 0)  # discovery has dropped the first one
-    assert server.told == ["lost"]
 
 
 def test_a_frozen_process_that_runs_again_is_found(dds: Dds, server: Server) -> None:
@@ -110,9 +93,15 @@ def test_a_frozen_process_that_runs_again_is_found(dds: Dds, server: Server) -> 
     assert server.told == ["lost", "found"]
 
 
-def test_a_process_started_anew_between_two_goals_loses_none(dds: Dds, server: Server) -> None:
-    dds.heard(Message(process="rc", instance=1))
+def test_a_successor_is_not_taken_for_the_process_that_was_lost(dds: Dds, server: Server) -> None:
     dds.alive(0, 1)
-    dds.heard(Message(process="rc", goal=GOAL, instance=2))
-    dds.alive(1, 0)
+    dds.alive(1, 1)
+    dds.heard(Message(process="rc", goal=GOAL))
+    assert server.told == ["lost"]
+
+
+def test_a_process_that_ends_between_two_goals_loses_none(dds: Dds, server: Server) -> None:
+    dds.heard(Message(process="rc"))
+    server.told.clear()
+    dds.alive(0, 1)
     assert not server.told
