@@ -7,11 +7,11 @@ import click
 
 from tms_cli import session
 from tms_cli.replay.verb import replay
-from tms_cli.words import say
+from tms_cli.words import Group, say
 from tms_core.errors import TmsError
 
 
-@click.group(invoke_without_command=True)
+@click.group(cls=Group, invoke_without_command=True)
 @session.json_option
 @click.pass_context
 def command(ctx: click.Context, as_json: bool) -> None:
