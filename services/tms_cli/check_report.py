@@ -6,6 +6,7 @@ import click
 
 from tms_cli import session
 from tms_cli.check_task import Checked
+from tms_cli.words import say
 
 
 def show_one(found: Checked, *, as_json: bool) -> bool:
@@ -15,11 +16,12 @@ def show_one(found: Checked, *, as_json: bool) -> bool:
     else:
         for line in goal_table(found):
             click.echo(line)
-        for word, lines in (("error", found.errors), ("warning", found.warnings)):
+        for word, lines in ((say("error"), found.errors), (say("warning"), found.warnings)):
             for line in lines:
                 click.echo(f"{found.what}: {word}: {line}")
         if not found.errors:
-            click.echo(f"{found.what}: {'can run' if found.by == 'scheduler' else 'its structure is right'}")
+            right = say("can run") if found.by == "scheduler" else say("its structure is right")
+            click.echo(f"{found.what}: {right}")
     tell_unchecked([found])
     return not found.errors
 
@@ -47,12 +49,13 @@ def show_folder(files: Iterable[Checked], *, as_json: bool) -> bool:
         session.show_json({"ok": not wrong, "files": files_, "summary": {**counts, "no_task": none}})
     tell_unchecked(done)
     if not as_json:
-        click.echo(f"{len(done)} files: {counts['ok']} ok, {warned} with warnings, {wrong} with errors, {none} no task")
+        line = "{files} files: {ok} ok, {warnings} with warnings, {errors} with errors, {none} no task"
+        click.echo(say(line, **counts, none=none))
     return not wrong
 
 
 def tell_unchecked(done: list[Checked]) -> None:
     if any(found.by != "scheduler" and not found.errors and not found.no_task for found in done):
-        click.echo("no scheduler answers: records and subtasks are unchecked", err=True)
+        click.echo(say("no scheduler answers: records and subtasks are unchecked"), err=True)
     elif any(found.by != "scheduler" and found.errors and not found.no_task for found in done):
-        click.echo("records and subtasks are unchecked where the structure is wrong", err=True)
+        click.echo(say("records and subtasks are unchecked where the structure is wrong"), err=True)

@@ -13,6 +13,7 @@ from tms_msg_ts.srv import CheckTask
 
 from tms_cli import session
 from tms_cli.commands.task import read
+from tms_cli.words import say
 from tms_core.errors import RosError, TaskError, TmsError
 from tms_ts import bt
 from tms_ts.bt.source import parse
@@ -45,14 +46,16 @@ class Checked:
     def verdict(self) -> str:
         """One line: what a folder's list shows."""
         if self.no_task:
-            return f"no task: {self.no_task}"
-        counts = [
-            f"{len(lines)} {word}{'s' if len(lines) > 1 else ''}"
-            for word, lines in (("error", self.errors), ("warning", self.warnings))
-            if lines
-        ]
+            return say("no task: {why}", why=self.no_task)
+        counts = []
+        if self.errors:
+            counts.append(say("1 error") if len(self.errors) == 1 else say("{count} errors", count=len(self.errors)))
+        if self.warnings:
+            counts.append(
+                say("1 warning") if len(self.warnings) == 1 else say("{count} warnings", count=len(self.warnings))
+            )
         first = f": {' '.join(self.errors[0].split())}" if self.errors else ""
-        return (", ".join(counts) or "ok") + first
+        return (", ".join(counts) or say("ok")) + first
 
 
 class Scheduler(AbstractContextManager["Scheduler"]):
@@ -149,7 +152,7 @@ def folder(scheduler: Scheduler, path: Path, *, recursive: bool) -> Iterator[Che
     for count, name in enumerate(files):
         if time.monotonic() - told >= PROGRESS:
             told = time.monotonic()
-            click.echo(f"{count} of {len(files)} files checked", err=True)
+            click.echo(say("{count} of {files} files checked", count=count, files=len(files)), err=True)
         try:
             found = file(scheduler, name)
         except TaskError as error:

@@ -3,6 +3,7 @@
 import click
 
 from tms_cli import mesh, session
+from tms_cli.words import say
 from tms_core.processes import find
 from tms_host.supervisor import Supervisor
 
@@ -18,6 +19,6 @@ def control_command(what: str, text: str) -> click.Command:
         Supervisor(site).control(what, name)
         if what != "stop":
             mesh.wait_running(site, name)
-        click.echo(f"{name}: {'stopped' if what == 'stop' else 'running'}", err=True)
+        click.echo(say("{name}: stopped", name=name) if what == "stop" else say("{name}: running", name=name), err=True)
 
     return command

@@ -12,6 +12,8 @@ from typing import Any, Protocol
 
 import click
 
+from tms_cli.words import padded, say, state
+
 IDLE, RUNNING, SUCCESS, FAILURE = 0, 1, 2, 3  # tms_msg_ts/NodeStatus
 WORDS = {IDLE: "idle", RUNNING: "running", SUCCESS: "success", FAILURE: "failure"}
 MARKS = {IDLE: "·", RUNNING: "▶", SUCCESS: "✔", FAILURE: "✘"}
@@ -151,16 +153,21 @@ def joint_lines(machines: Mapping[str, Any]) -> list[str]:
     """Joint angles of machines, in rad and degrees."""
     lines = []
     for name, machine in sorted(dict(machines).items()):
-        state = "moving" if machine.moving else ("standing" if machine.ready else f"not ready: {machine.reason}")
-        lines.append(f"{name}: {state}")
+        lines.append(f"{name}: {_posture(machine)}")
         for joint, angle in zip(machine.joint_names, machine.positions, strict=False):
             lines.append(f"  {joint:<18} {angle:8.3f} rad {math.degrees(angle):8.1f}°")
     return lines
 
 
+def _posture(machine: Any) -> str:
+    if machine.moving:
+        return say("moving")
+    return say("standing") if machine.ready else say("not ready: {reason}", reason=machine.reason)
+
+
 def change_line(view: View, node: Node) -> str:
     """One line for a pipe or a log."""
-    return f"{view.elapsed:7.1f} s  {WORDS[node.status]:<8} {node.title}{_why(node)}"
+    return f"{view.elapsed:7.1f} s  {padded(state(WORDS[node.status]), 8)} {node.title}{_why(node)}"
 
 
 class Display(Protocol):
@@ -194,7 +201,8 @@ class Lines:
     def show(self, view: View, changed: Sequence[Node]) -> None:
         if view.run_id and view.state != self._state and not view.over:
             self._state = view.state
-            click.echo(f"{view.elapsed:7.1f} s  run {view.run_id}: {view.state}", err=self._err)
+            line = say("run {run}: {state}{reason}", run=view.run_id, state=state(view.state), reason="")
+            click.echo(f"{view.elapsed:7.1f} s  {line}", err=self._err)
         for node in changed:
             if node.status != IDLE:  # going back to idle is no news
                 click.echo(change_line(view, node), err=self._err)
@@ -228,8 +236,8 @@ class Screen:
 
         joints = joint_lines(view.machines)
         text = Text(no_wrap=True, overflow="ellipsis")
-        text.append(f"task {view.task_id} {view.description}\n", style="bold")
-        text.append(f"run {view.run_id or '-'}  {view.state}  {view.elapsed:.1f} s\n")
+        text.append(say("task {task}", task=view.task_id) + f" {view.description}\n", style="bold")
+        text.append(say("run {run}", run=view.run_id or "-") + f"  {state(view.state)}  {view.elapsed:.1f} s\n")
         for status, line in tree_rows(view, max(5, self._console.height - len(joints) - 5)):
             text.append(line + "\n", style=COLOURS[status])
         text.append((view.reason or "") + "\n", style="yellow")

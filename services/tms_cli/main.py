@@ -10,9 +10,10 @@ from tms_cli import commands, words
 from tms_core.errors import TmsError
 
 INTERRUPTED = 130
+click.Context.formatter_class = words.Formatter  # of every verb's help page
 
 
-class Verbs(click.Group):
+class Verbs(words.Group):
     """Verbs are the modules of tms_cli.commands; each has a click command called `command`."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
@@ -24,13 +25,6 @@ class Verbs(click.Group):
         module = importlib.import_module(f"tms_cli.commands.{name.replace('-', '_')}")
         verb: click.Command = module.command
         return verb
-
-    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """The list of verbs, in the language of the locale."""
-        found = [(name, self.get_command(ctx, name)) for name in self.list_commands(ctx)]
-        rows = [(name, words.summary(name, verb.get_short_help_str(70))) for name, verb in found if verb is not None]
-        with formatter.section("コマンド" if words.japanese() else "Commands"):
-            formatter.write_dl(rows)
 
 
 @click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -49,12 +43,19 @@ def tms(ctx: click.Context, site: str | None) -> None:
     ctx.obj = site
 
 
+def _hint(code: str) -> None:
+    text = words.what_next(code)
+    if text is not None:
+        print(f"  {text}", file=sys.stderr)
+
+
 def main() -> None:
     """0 done, 1 refused or failed, 2 usage, 130 interrupted."""
     try:
         sys.exit(tms(standalone_mode=False, prog_name="tms") or 0)
     except click.UsageError as error:
         error.show()
+        _hint("USAGE")
         sys.exit(2)
     except click.exceptions.Abort:
         sys.exit(INTERRUPTED)
@@ -65,6 +66,7 @@ def main() -> None:
         sys.exit(1)
     except TmsError as error:
         print(f"tms: {error}", file=sys.stderr)
+        _hint(error.code)
         sys.exit(1)
 
 

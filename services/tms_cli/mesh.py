@@ -17,6 +17,7 @@ from pathlib import Path
 import psutil
 
 from tms_cli import monitoring
+from tms_cli.words import say
 from tms_core import metrics, pcs, store
 from tms_core.config import Site
 from tms_core.environment import environment
@@ -201,8 +202,8 @@ def _wait(holds: Callable[[], bool], seconds: float, otherwise: str) -> None:
         time.sleep(0.05)
 
 
-def wait_ready(site: Site, say: Callable[[str], None]) -> None:
-    """Wait until every process that starts by itself can do its job; `say` gets one line per process.
+def wait_ready(site: Site, report: Callable[[str], None]) -> None:
+    """Wait until every process that starts by itself can do its job; `report` gets one line per process.
 
     Raises:
         TmsError: names the first process that did not get ready, why, and where its log is.
@@ -215,7 +216,7 @@ def wait_ready(site: Site, say: Callable[[str], None]) -> None:
             reason = unready(row)
             if reason is None:
                 del waiting[name]
-                say(f"{name} ready")
+                report(say("{name} ready", name=name))
             else:
                 reasons[name] = reason
         if waiting and time.monotonic() > deadline:

@@ -2,6 +2,7 @@
 
 import json
 import os
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from tms_core.ros import Ros
 
 CALL_LIMIT = 5.0  # s
+LATCHED_LIMIT = 5.0  # s for a module to tell its state
 
 
 def site() -> Site:
@@ -46,6 +48,19 @@ def call(node: "Ros", service_type: Any, name: str, **fields: Any) -> Any:
     if answer.error_code:
         raise TmsError(answer.error_msg, answer.error_code)
     return answer
+
+
+def latched(node: "Ros", message_type: Any, topic: str) -> Any:
+    """The state that a module keeps on a latched topic; None if it says nothing."""
+    heard: list[Any] = []
+    there = threading.Event()
+
+    def hear(message: Any) -> None:
+        heard.append(message)
+        there.set()
+
+    node.subscribe(message_type, topic, hear, latched=True)
+    return heard[-1] if there.wait(LATCHED_LIMIT) else None
 
 
 def show_json(data: Any) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tms_cli import live, session
+from tms_cli.words import say
 from tms_core.errors import TmsError
 
 if TYPE_CHECKING:
@@ -82,7 +83,7 @@ def _says(stored: Any, wanted: "Record") -> bool:
 
 def summary(done: Mapping[str, list[str]]) -> str:
     """What a load did, in one line."""
-    return ", ".join(f"{len(names)} {what}" for what, names in done.items())
+    return say("{created} created, {changed} changed, {unchanged} unchanged", **{k: len(v) for k, v in done.items()})
 
 
 def title(record: Any) -> str:
@@ -111,7 +112,9 @@ def as_dict(record: Any) -> dict[str, Any]:
 def age(record: Any) -> str:
     """How old a record's values are, in words."""
     updated = live.moment(record.updated_at)
-    return f"{live.duration(max(0.0, time.time() - updated.timestamp()))} old" if updated else "age unknown"
+    if updated is None:
+        return say("age unknown")
+    return say("{age} old", age=live.duration(max(0.0, time.time() - updated.timestamp())))
 
 
 def text(value: Any) -> str:
@@ -122,5 +125,9 @@ def text(value: Any) -> str:
 def kind(value: Any) -> str:
     """The type of a value in words."""
     if isinstance(value, list):
-        return f"{kind(value[0])} array" if value else "empty array"
-    return {bool: "true/false", int: "integer", float: "decimal"}.get(type(value), "text")
+        return say("{kind} array", kind=kind(value[0])) if value else say("empty array")
+    if isinstance(value, bool):
+        return say("true/false")
+    if isinstance(value, int):
+        return say("integer")
+    return say("decimal") if isinstance(value, float) else say("text")

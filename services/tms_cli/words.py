@@ -1,39 +1,17 @@
-"""The list of verbs in the language of the user's locale."""
+"""What `tms` says to people, in the language of the user's locale (LC_ALL, LC_MESSAGES, LANG: ja*).
+
+The English text in the code is the key, and japanese*.py are the only places for its Japanese. Dropped: gettext, which
+needs compiled catalogues in every installation. JSON output and what services report are never translated.
+"""
 
 import os
+import unicodedata
+from typing import Any
 
-JAPANESE = {
-    "abandon": "中断した実行を終わりにする",
-    "answer": "実行からの確認(WaitForClick)を表示し、回答する",
-    "cancel": "実行を中止し、機械の停止を確かめる",
-    "check": "設定ファイルを点検する",
-    "completion": "シェルの補完スクリプトを出力する",
-    "db": "データベースをバックアップ・復元する",
-    "demo": "シミュレーションの油圧ショベルで掘削を実演する",
-    "down": "この PC のプロセスをすべて終える",
-    "drill": "動作中に各プロセスを落として停止を試す",
-    "events": "実行の記録を表示する",
-    "logs": "プロセスのログを表示する",
-    "palette": "Groot 用のノード一覧を出力する",
-    "panel": "1 つのタスクの開始・停止ボタンを全画面で表示する",
-    "param": "パラメータを表示・変更する",
-    "prometheus": "Prometheus が監視する対象の一覧を書き出す",
-    "sensing": "センシング入力の状態を表示する、記録(rosbag2)を再生する",
-    "ps": "プロセスを一覧する",
-    "rearm": "停止した機械を再び動ける状態にする",
-    "restart": "プロセスを再起動する",
-    "resume": "中断した実行を続ける",
-    "run": "保存したタスクを実行する",
-    "runs": "実行の履歴を一覧する",
-    "start": "プロセスを起動する",
-    "status": "すべて動いているかを表示する",
-    "stop": "ソフト停止:すべて、または 1 台の機械を止める",
-    "stop-process": "プロセスを止める",
-    "task": "タスク(行動ツリー)を登録・点検する",
-    "terrain": "地形(ハイトマップ・画像)を登録・取得する",
-    "up": "この PC のプロセスを起動する",
-    "user": "コンソールの利用者を登録する",
-}
+import click
+
+from tms_cli.japanese import HEADINGS, NEXT, SAID, STATES
+from tms_cli.japanese_help import HELP
 
 
 def japanese() -> bool:
@@ -42,5 +20,92 @@ def japanese() -> bool:
     return next((name.startswith("ja") for name in names if name), False)
 
 
-def summary(verb: str, english: str) -> str:
-    return JAPANESE.get(verb, english) if japanese() else english
+def say(english: str, **values: Any) -> str:
+    """A line for people; `english` is a format string with the values' names."""
+    return (SAID[english] if japanese() else english).format(**values)
+
+
+def state(word: str) -> str:
+    """The state of a run or a node."""
+    return STATES.get(word, word) if japanese() else word
+
+
+def padded(text: str, width: int) -> str:
+    """Filled with spaces to so many columns of a table."""
+    return text + " " * (width - columns(text))
+
+
+def what_next(code: str) -> str | None:
+    """In Japanese: what to do about an error. The English messages end with it themselves."""
+    return NEXT.get(code) if japanese() else None
+
+
+def help_text(english: str) -> str:
+    """A paragraph or an option's help."""
+    return HELP.get(" ".join(english.split()), english) if japanese() else english
+
+
+def columns(text: str) -> int:
+    """The width of a text on a terminal: Japanese characters take two columns."""
+    return sum(2 if unicodedata.east_asian_width(letter) in "WF" else 1 for letter in text)
+
+
+class Formatter(click.HelpFormatter):
+    """click's help pages with their words looked up."""
+
+    def write_usage(self, prog: str, args: str = "", prefix: str | None = None) -> None:
+        super().write_usage(prog, args, prefix or f"{_heading('Usage')}: ")
+
+    def write_heading(self, heading: str) -> None:
+        super().write_heading(_heading(heading))
+
+    def write_text(self, text: str) -> None:
+        super().write_text("\n\n".join(self._paragraph(part) for part in text.split("\n\n")))
+
+    def write_dl(self, rows: Any, col_max: int = 30, col_spacing: int = 2) -> None:
+        super().write_dl([(name, _option(text)) for name, text in rows], col_max, col_spacing)
+
+    def _paragraph(self, text: str) -> str:
+        if text.startswith("\b"):
+            for heading in ("Examples:", "Example:"):
+                text = text.replace(f"\b\n{heading}", f"\b\n{_heading(heading)}", 1)
+            return text
+        shown = help_text(text)
+        return text if shown == text else "\b\n" + _folded(shown, self.width - self.current_indent - 2)
+
+
+class Group(click.Group):
+    """A group whose list of verbs is in the language of the locale, too."""
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        verbs = [(name, self.get_command(ctx, name)) for name in self.list_commands(ctx)]
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, _summary(verb)) for name, verb in verbs if verb is not None])
+
+
+def _summary(verb: click.Command) -> str:
+    """Its first sentence."""
+    if not japanese():
+        return verb.get_short_help_str(70)
+    return help_text((verb.help or "").split("\n\n")[0]).split("。")[0]
+
+
+def _heading(english: str) -> str:
+    return HEADINGS.get(english, english) if japanese() else english
+
+
+def _option(english: str) -> str:
+    """An option's help; click puts `[required]` or `[default: 20]` behind it."""
+    text, extra, more = english.partition("  [")
+    whole = help_text(english)
+    return whole if whole != english else help_text(text) + extra + more
+
+
+def _folded(text: str, width: int) -> str:
+    """Japanese has no spaces to break lines at."""
+    lines = [""]
+    for letter in text:
+        if columns(lines[-1] + letter) > width and letter not in "。、)」":
+            lines.append("")
+        lines[-1] += letter
+    return "\n".join(lines)

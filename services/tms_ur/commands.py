@@ -13,16 +13,15 @@ from fastapi import FastAPI, Path, Request
 from tms_core.config import Site
 from tms_core.errors import TmsError
 from tms_ur.access import Person
+from tms_ur.data_models import FieldGiven, RecordGiven
 from tms_ur.guard import source
 from tms_ur.models import (
     Added,
     AnswerGiven,
-    FieldGiven,
     Nothing,
     RearmAsked,
     Rearmed,
     Receipt,
-    RecordGiven,
     RunAsked,
     StartRun,
     StopAsked,

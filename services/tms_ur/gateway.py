@@ -1,14 +1,26 @@
 """What the API asks of ROS: blocking calls for worker threads, and topics that feed the board."""
 
 import math
+import time
 from typing import Any
 
 from tf2_msgs.msg import TFMessage
-from tms_msg_db.srv import AddTask, GetTask, ListEvents, ListParameters, ListRuns, ListTasks, RemoveTask, SetParameter
+from tms_msg_db.srv import (
+    AddTask,
+    GetTask,
+    ListEvents,
+    ListParameterHistory,
+    ListParameters,
+    ListRuns,
+    ListTasks,
+    RemoveTask,
+    SetParameter,
+)
 from tms_msg_host.msg import Processes
 from tms_msg_host.srv import ControlProcess, ReadLog
 from tms_msg_rc.msg import MachineState
 from tms_msg_rc.srv import Rearm, StopMachine
+from tms_msg_sp.msg import InputStates
 from tms_msg_ts.action import ExecuteTask
 from tms_msg_ts.msg import RunStates
 from tms_msg_ts.srv import AnswerQuestion, CancelRun, CheckTask
@@ -19,7 +31,8 @@ from tms_core.ros import Ros
 from tms_core.values import to_parameters
 from tms_ur import messages
 from tms_ur.board import Board
-from tms_ur.models import Event, Host, Place, Rearmed, Receipt, Record, Run, Task, TaskText
+from tms_ur.data_models import Change, Record, Sensing
+from tms_ur.models import Event, Host, Place, Rearmed, Receipt, Run, Task, TaskText
 
 CALL_LIMIT = 4.0  # s for an answer of a module
 STOP_LIMIT = 8.0  # s; a machine's gateway gives itself 5 s to see it stand
@@ -35,12 +48,14 @@ class Gateway:
         names = list(site.file.machines)
         self._ros = ros
         self.board = Board(names)
+        self._inputs: tuple[list[Any], float] | None = None  # read and replaced as one
         self._scheduler = ros.peer(ExecuteTask, "/tms/execute_task")
         self._frames = {site.border(name).base_frame: name for name in names}
         for name in names:
             ros.subscribe(MachineState, f"/{name}/rc/state", self._machine_heard, latched=True)
         ros.subscribe(RunStates, "/tms/runs", self._runs_heard, latched=True)
         ros.subscribe(Processes, "/tms/host/processes", self._host_heard, depth=10, latched=True)
+        ros.subscribe(InputStates, "/tms/sp/inputs", self._inputs_heard, latched=True)
         ros.subscribe(TFMessage, "/tf", self._frames_heard, depth=20)
 
     # topics
@@ -55,6 +70,9 @@ class Gateway:
     def _host_heard(self, message: Any) -> None:
         self.board.put_host(Host(name=message.host, processes=[messages.process(row) for row in message.processes]))
 
+    def _inputs_heard(self, message: Any) -> None:
+        self._inputs = (list(message.inputs), time.monotonic())
+
     def _frames_heard(self, message: Any) -> None:
         for one in message.transforms:
             name = self._frames.get(one.child_frame_id)
@@ -62,6 +80,14 @@ class Gateway:
                 at, q = one.transform.translation, one.transform.rotation
                 yaw = math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
                 self.board.put_place(name, Place(x=round(at.x, 2), y=round(at.y, 2), yaw=round(yaw, 3)))
+
+    def sensing(self) -> Sensing:
+        """The sensing inputs as `tms:sp` told of them last."""
+        told = self._inputs
+        if told is None:
+            return Sensing(age=None, inputs=[])
+        since = time.monotonic() - told[1]
+        return Sensing(age=round(since, 1), inputs=[messages.sensing_input(one, since) for one in told[0]])
 
     # the database
 
@@ -96,6 +122,14 @@ class Gateway:
         """Records of one machine, of all with an empty name."""
         answer = self._ask(ListParameters, "/tms/db/list_parameters", model_name=model_name)
         return [messages.record(record) for record in answer.records]
+
+    def parameter_history(self, model_name: str, record_name: str, limit: int) -> list[Change]:
+        """The last changes of a record, newest first."""
+        answer = self._ask(
+            ListParameterHistory, "/tms/db/list_parameter_history", model_name=model_name, record_name=record_name,
+            limit=limit,
+        )  # fmt: skip
+        return [messages.change(change) for change in answer.changes]
 
     def set_parameter(
         self, model_name: str, record_name: str, values: dict[str, Any], source: str, create: bool, kind: str

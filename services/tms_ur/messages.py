@@ -6,7 +6,8 @@ from typing import Any
 from rcl_interfaces.msg import ParameterType
 
 from tms_core.values import from_parameters
-from tms_ur.models import ActiveRun, Event, Joint, Machine, Process, Question, Receipt, Record, Run
+from tms_ur.data_models import Change, Record, SensingInput
+from tms_ur.models import ActiveRun, Event, Joint, Machine, Process, Question, Receipt, Run
 from tms_ur.models import MachineState as Shown
 
 NEVER = 1e8  # s, a larger age means that there was nothing yet
@@ -95,4 +96,17 @@ def record(record: Any) -> Record:
         description=record.description, source=record.source, updated_at=when(record.updated_at),
         values={**from_parameters(record.values)},
         types={one.name: TYPES[one.value.type] for one in record.values if one.value.type in TYPES},
+    )  # fmt: skip
+
+
+def change(made: Any) -> Change:
+    return Change(stamp=when(made.stamp), source=made.source, values={**from_parameters(made.values)})
+
+
+def sensing_input(told: Any, since: float) -> SensingInput:
+    """An input as `tms:sp` told of it `since` seconds ago."""
+    return SensingInput(
+        name=told.name, topic=told.topic, state=told.state, hz=round(told.hz, 2), hz_expected=told.hz_expected or None,
+        age=round(told.age + since, 1) if told.age >= 0 else None, accepted=told.accepted, refused=told.refused,
+        last_refusal=told.last_refusal, records=list(told.records),
     )  # fmt: skip

@@ -156,19 +156,6 @@ class Event(Model):
     values: dict[str, Value | None] = Field(default={}, description="null: not a number, or infinite")
 
 
-class Record(Model):
-    """A parameter record; values keep their types."""
-
-    model_name: str = Field(description="empty for records that all machines share")
-    record_name: str
-    type: str = Field(description="static or dynamic")
-    description: str
-    source: str = Field(description="who wrote it last")
-    updated_at: datetime | None = None
-    values: dict[str, Value | None] = Field(default={}, description="null: not a number, or infinite")
-    types: dict[str, str] = Field(default={}, description="of each value: JSON does not tell 3 from 3.0")
-
-
 class Tree(Model):
     """The shape of a run's tree: one entry a node in each list, in the order of `nodes` of a state."""
 
@@ -296,24 +283,6 @@ class RearmAsked(Command):
 
 class AnswerGiven(Command):
     yes: bool
-
-
-class FieldGiven(Command):
-    """A value with its type."""
-
-    name: str = Field(min_length=1, max_length=100)
-    type: Literal["bool", "int", "double", "string", "bool[]", "int[]", "double[]", "string[]"]
-    value: Value
-
-
-class RecordGiven(Command):
-    """Fields to set, in one atomic step; the others stay."""
-
-    model_name: str = Field(pattern=r"^[0-9A-Za-z_]{0,64}$")
-    record_name: str = Field(min_length=1, max_length=200)
-    fields: list[FieldGiven] = Field(max_length=200)
-    create: bool = False
-    type: Literal["", "static", "dynamic"] = Field(default="", description="of a new record; empty keeps it")
 
 
 class Nothing(Command):

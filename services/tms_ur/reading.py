@@ -10,6 +10,7 @@ from fastapi import FastAPI, Path, Query, Request, Response
 from tms_core.config import Site
 from tms_core.errors import TmsError
 from tms_ur import export
+from tms_ur.data_models import Change, Record, Sensing
 from tms_ur.models import (
     INT32,
     Box,
@@ -19,7 +20,6 @@ from tms_ur.models import (
     Finding,
     Link,
     Log,
-    Record,
     Run,
     SiteInfo,
     SiteMachine,
@@ -50,6 +50,7 @@ def add(app: FastAPI, gateway: "Gateway", site: Site) -> None:
     """Put them into the application."""
     _live(app, gateway, site)
     _stored(app, gateway)
+    _data(app, gateway)
     _tasks(app, gateway)
 
 
@@ -130,6 +131,21 @@ def _stored(app: FastAPI, gateway: "Gateway") -> None:
         model_name: Annotated[str, Query(pattern=r"^[0-9A-Za-z_]{0,64}$", description="empty: of all machines")] = "",
     ) -> list[Record]:
         return gateway.parameters(model_name)
+
+
+def _data(app: FastAPI, gateway: "Gateway") -> None:
+    @app.get("/api/parameters/history", summary="The last changes of a record, newest first",
+             responses=problems(404, 503))  # fmt: skip
+    def parameter_history(
+        record_name: Annotated[str, Query(min_length=1, max_length=200)],
+        model_name: Annotated[str, Query(pattern=r"^[0-9A-Za-z_]{0,64}$", description="empty: shared by all")] = "",
+        limit: Annotated[int, Query(ge=1, le=200)] = 20,
+    ) -> list[Change]:
+        return gateway.parameter_history(model_name, record_name, limit)
+
+    @app.get("/api/sensing", summary="The sensing inputs: rate, age, refusals")
+    async def sensing() -> Sensing:
+        return gateway.sensing()
 
 
 def _tasks(app: FastAPI, gateway: "Gateway") -> None:

@@ -17,10 +17,11 @@ from typing import Any
 import pytest
 from builtin_interfaces.msg import Time
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
-from tms_msg_db.msg import Event, Record, Run, Task
-from tms_msg_db.srv import GetTask, ListEvents, ListParameters, ListRuns, ListTasks
+from tms_msg_db.msg import Event, PastValues, Record, Run, Task
+from tms_msg_db.srv import GetTask, ListEvents, ListParameterHistory, ListParameters, ListRuns, ListTasks
 from tms_msg_host.msg import Process, Processes
 from tms_msg_rc.msg import MachineState
+from tms_msg_sp.msg import InputState, InputStates
 from tms_msg_ts.action import ExecuteTask
 from tms_msg_ts.msg import RunState, RunStates
 from tms_msg_ts.srv import CancelRun
@@ -148,6 +149,12 @@ def test_state_shows_what_is_published(console: Console, ros: Ros) -> None:
     assert state["scheduler"]["alive"]
     assert (state["runs"][0]["run_id"], state["runs"][0]["reason"]) == ("r-1", "turning")
     assert state["runs"][0]["started_at"] == "1970-01-01T00:00:09Z"
+    assert console.get("/api/sensing") == {"age": None, "inputs": []}
+    inputs = ros.publisher(InputStates, "/tms/sp/inputs", depth=1, latched=True)
+    inputs.publish(InputStates(inputs=[InputState(name="pile", age=3.0, refused=2, last_refusal="z: too high")]))
+    until(lambda: console.get("/api/sensing")["inputs"], "inputs are heard")
+    pile = console.get("/api/sensing")["inputs"][0]
+    assert (pile["refused"], pile["last_refusal"], pile["age"] >= 3.0) == (2, "z: too high", True)
     assert [host["name"] for host in state["hosts"]] == ["pc1", "pc2"]
     assert state["hosts"][0]["processes"][0]["uptime"] >= 3.0
     until(lambda: console.get("/api/state")["machines"][0]["state"] == "silent", "silence is told")
@@ -176,6 +183,9 @@ def test_stored_things(console: Console, ros: Ros) -> None:
     ros.offer(ListEvents, "/tms/db/list_events", events)
     records = [Record(model_name="zx200", record_name="pose", type="static", values=[value])]
     ros.offer(ListParameters, "/tms/db/list_parameters", lambda _, r: ListParameters.Response(records=records))
+    past = [PastValues(stamp=Time(sec=5), source="sensing", values=[value])]
+    ros.offer(ListParameterHistory, "/tms/db/list_parameter_history",
+              lambda q, r: ListParameterHistory.Response(changes=past * q.limit))  # fmt: skip
     assert console.get("/api/tasks")[0]["description"] == "掘削"
     assert console.get("/api/tasks/4")["xml"] == "<root/>"
     assert console.ask("/api/tasks/5") == (404, {"code": "TASK_MISSING", "message": "there is no such task"})
@@ -183,6 +193,8 @@ def test_stored_things(console: Console, ros: Ros) -> None:
     event = console.get("/api/runs/r-1/events?after=6")[0]
     assert (event["number"], event["values"]) == (7, {"angle": [1.0, 2.5]})
     assert console.get("/api/parameters")[0]["values"] == {"angle": [1.0, 2.5]}
+    change = {"stamp": "1970-01-01T00:00:05Z", "source": "sensing", "values": {"angle": [1.0, 2.5]}}
+    assert console.get("/api/parameters/history?model_name=zx200&record_name=pose&limit=2") == [change] * 2
 
 
 def test_commands(console: Console, ros: Ros) -> None:

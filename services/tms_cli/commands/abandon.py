@@ -3,6 +3,7 @@
 import click
 
 from tms_cli import session
+from tms_cli.words import say
 
 
 @click.command()
@@ -24,4 +25,4 @@ def command(run: str, as_json: bool) -> None:
     if as_json:
         session.show_json({"run_id": run, "state": "abandoned"})
     else:
-        click.echo(f"run {run} is abandoned")
+        click.echo(say("run {run} is abandoned", run=run))

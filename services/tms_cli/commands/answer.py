@@ -2,18 +2,16 @@
 
 import getpass
 import socket
-import threading
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from tms_cli import live, session
+from tms_cli.words import say
 from tms_core.errors import RosError, TmsError
 
 if TYPE_CHECKING:
     from tms_core.ros import Ros
-
-LIMIT = 5.0  # s for the scheduler to say what is asked
 
 
 @click.command()
@@ -40,13 +38,13 @@ def command(reply: str | None, question: str | None, as_json: bool) -> None:
     if as_json:
         session.show_json([_as_dict(one) for one in asked])
     elif reply is not None:
-        click.echo(f"answered {reply}: {asked[0].text or asked[0].title}")
+        click.echo(say("answered {reply}: {text}", reply=reply, text=asked[0].text or asked[0].title))
     else:
         for one in asked:
-            until = f", until {live.clock_time(one.until)}" if one.until.sec else ""
+            until = say(", until {time}", time=live.clock_time(one.until)) if one.until.sec else ""
             click.echo(f"{one.id}  {one.title}: {one.text}{until}")
         if not asked:
-            click.echo("nobody asks anything", err=True)
+            click.echo(say("nobody asks anything"), err=True)
 
 
 def open_questions(node: "Ros") -> list[Any]:
@@ -57,17 +55,10 @@ def open_questions(node: "Ros") -> list[Any]:
     """
     from tms_msg_ts.msg import RunStates
 
-    heard: list[Any] = []
-    there = threading.Event()
-
-    def take(message: Any) -> None:
-        heard.append(message)
-        there.set()
-
-    node.subscribe(RunStates, "/tms/runs", take, latched=True)
-    if not there.wait(LIMIT):
+    heard = session.latched(node, RunStates, "/tms/runs")
+    if heard is None:
         raise RosError("the scheduler (tms:ts) says nothing: see `tms status`", "NO_ANSWER")
-    return list(heard[-1].questions)
+    return list(heard.questions)
 
 
 def _only(asked: list[Any], question: str | None) -> Any:

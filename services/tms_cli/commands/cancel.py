@@ -7,6 +7,7 @@ import click
 
 from tms_cli import session
 from tms_cli.commands.runs import MOST, as_dict, find_run, has_ended, history, recent
+from tms_cli.words import say, state
 from tms_core.errors import TmsError
 
 if TYPE_CHECKING:
@@ -66,10 +67,17 @@ def command(ctx: click.Context, run: str, as_json: bool) -> None:
     with session.ros() as node:
         run_id = _which(node, run)
         session.call(node, CancelRun, "/tms/cancel_run", run_id=run_id)
-        click.echo(f"run {run_id} is being cancelled", err=True)
+        click.echo(say("run {run} is being cancelled", run=run_id), err=True)
         ended = _wait(node, run_id)
     if as_json:
         session.show_json(as_dict(ended))
     else:
-        click.echo(f"run {run_id}: {ended.state}{f' ({ended.reason})' if ended.reason else ''}")
+        click.echo(
+            say(
+                "run {run}: {state}{reason}",
+                run=run_id,
+                state=state(ended.state),
+                reason=f" ({ended.reason})" if ended.reason else "",
+            )
+        )
     ctx.exit(0 if ended.state == "cancelled" else 1)

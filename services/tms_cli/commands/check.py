@@ -3,6 +3,7 @@
 import click
 
 from tms_cli import session
+from tms_cli.words import say
 from tms_core.config import load_site
 from tms_core.processes import table
 from tms_core.sensing import load_sensing
@@ -28,5 +29,11 @@ def command(chosen: str | None, as_json: bool) -> None:
         )
         return
     click.echo(
-        f"{site.path}: right ({len(site.file.machines)} machines, {len(rows)} processes, {len(inputs)} sensing inputs)"
+        say(
+            "{file}: right ({machines} machines, {processes} processes, {inputs} sensing inputs)",
+            file=site.path,
+            machines=len(site.file.machines),
+            processes=len(rows),
+            inputs=len(inputs),
+        )
     )

@@ -9,6 +9,7 @@ import click
 
 from tms_cli import session
 from tms_cli.open_store import opened
+from tms_cli.words import Group
 
 if TYPE_CHECKING:
     from tms_db.backup import Report
@@ -17,7 +18,7 @@ SPEAK = 1.0  # s between words about long work
 FILE = click.Path(path_type=Path)
 
 
-@click.group()
+@click.group(cls=Group)
 def command() -> None:
     """Back up the database, restore it, see what it holds.
 

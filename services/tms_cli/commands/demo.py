@@ -5,7 +5,8 @@ import shutil
 import click
 
 from tms_cli import live, mesh, session, stored_records
-from tms_cli.commands import run, task
+from tms_cli.commands import run, task, up
+from tms_cli.words import say
 from tms_core.config import CONFIGS
 
 PARAMETERS = CONFIGS / "parameters" / "zx200.yaml"
@@ -26,18 +27,18 @@ def command(ctx: click.Context, as_json: bool) -> None:
     """
     site = session.site()
     started = mesh.up(site)
-    _say(f"mesh '{site.name}' {'started' if started else 'already runs'}, state in {site.state}")
+    _say(up.mesh_line(site, started))
     mesh.wait_ready(site, lambda line: _say(f"  {line}"))
     with session.ros() as node:
-        _say(f"records: {stored_records.summary(stored_records.load_file(node, PARAMETERS))}")
+        _say(say("records: {done}", done=stored_records.summary(stored_records.load_file(node, PARAMETERS))))
         stored = task.store(node, str(TASK), "One loading cycle of the zx200")
-        _say(f"task {stored.task_id}: {'already stored' if stored.already_stored else 'stored'}")
+        _say(task.stored_line(stored))
         end = run.Runner(node, stored.task_id, ignore_warnings=False).finish(live.display(as_json))
     run.report(end, as_json)
-    _say(f"console and API: http://{site.file.bind}:{site.file.ports.console}")
+    _say(say("console and API: {url}", url=f"http://{site.file.bind}:{site.file.ports.console}"))
     if shutil.which("tms") is None:
-        _say("`. .venv/bin/activate` puts the command tms on the path")
-    _say("the mesh goes on running: `make status` looks at it, `make down` ends it")
+        _say(say("`. .venv/bin/activate` puts the command tms on the path"))
+    _say(say("the mesh goes on running: `make status` looks at it, `make down` ends it"))
     ctx.exit(end.exit_code)
 
 

@@ -3,6 +3,7 @@
 import click
 
 from tms_cli import mesh, session
+from tms_cli.words import say
 
 
 @click.command()
@@ -15,4 +16,5 @@ def command() -> None:
     """
     site = session.site()
     ended = mesh.down(site)
-    click.echo(f"mesh '{site.name}' {'ended' if ended else 'does not run'}", err=True)
+    line = say("mesh '{site}' ended", site=site.name) if ended else say("mesh '{site}' does not run", site=site.name)
+    click.echo(line, err=True)

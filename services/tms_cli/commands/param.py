@@ -9,12 +9,13 @@ import yaml
 from tms_cli import live, session
 from tms_cli.record_words import key_argument, parse_fields
 from tms_cli.stored_records import age, as_dict, kind, load_file, records, summary, text, title, write
+from tms_cli.words import Group, say
 
 TYPES = click.Choice(["static", "dynamic"])
 WHATEVER_AGE = -1.0
 
 
-@click.group()
+@click.group(cls=Group)
 def command() -> None:
     """Show and change parameter records.
 
@@ -47,9 +48,12 @@ def get(key: tuple[str, str], as_json: bool) -> None:
         session.show_json(as_dict(call.record))
         return
     record = as_dict(call.record)
-    limit = f" (at most {record['max_age']:g} s)" if record["max_age"] else ""
-    from_ = record["source"] or "unknown"
-    click.echo(f"{title(call.record)}: {record['type']}, {age(call.record)}{limit}, from {from_}")
+    limit = say(" (at most {seconds:g} s)", seconds=record["max_age"]) if record["max_age"] else ""
+    from_ = record["source"] or say("unknown")
+    click.echo(
+        say("{record}: {type}, {age}, from {source}", record=title(call.record), type=record["type"],
+            age=age(call.record) + limit, source=from_)
+    )  # fmt: skip
     if record["description"]:
         click.echo(record["description"])
     for name, value in record["values"].items():
@@ -103,7 +107,8 @@ def set_(
     if as_json:
         session.show_json({"model_name": key[0], "record_name": key[1], "created": created, "values": values})
     else:
-        click.echo(f"{'/'.join(key)} {'created' if created else 'changed'}")
+        name = "/".join(key)
+        click.echo(say("{record} created", record=name) if created else say("{record} changed", record=name))
 
 
 @command.command()
@@ -147,7 +152,7 @@ def list_(model: str, as_json: bool) -> None:
         names = ", ".join(value.name for value in record.values)
         click.echo(f"{title(record):<40} {record.type:<8} {age(record):>10}  {record.source:<14} {names}")
     if not found:
-        click.echo("none: `tms param load FILE` or `tms param set MODEL/RECORD --create` makes records", err=True)
+        click.echo(say("none: `tms param load FILE` or `tms param set MODEL/RECORD --create` makes records"), err=True)
 
 
 @command.command()
@@ -162,7 +167,7 @@ def rm(key: tuple[str, str], as_json: bool) -> None:
     if as_json:
         session.show_json({"removed": "/".join(key)})
     else:
-        click.echo(f"{'/'.join(key)} removed")
+        click.echo(say("{record} removed", record="/".join(key)))
 
 
 @command.command()
@@ -216,6 +221,6 @@ def history(key: tuple[str, str], limit: int, as_json: bool) -> None:
         return
     for one, row in zip(found, rows, strict=True):
         fields = ", ".join(f"{name}={text(value)}" for name, value in row["values"].items())
-        click.echo(f"{live.clock_time(one.stamp)}  {row['source'] or 'unknown':<20} {fields}")
+        click.echo(f"{live.clock_time(one.stamp)}  {row['source'] or say('unknown'):<20} {fields}")
     if not rows:
-        click.echo("no changes since the database module keeps them", err=True)
+        click.echo(say("no changes since the database module keeps them"), err=True)

@@ -5,6 +5,7 @@ from dataclasses import asdict
 import click
 
 from tms_cli import session
+from tms_cli.words import say
 from tms_core.processes import table
 from tms_host.supervisor import Running, Supervisor
 
@@ -34,7 +35,7 @@ def command(as_json: bool) -> None:
     for process in found:
         row = rows.get(process.name)
         state = click.style(f"{process.state:9}", fg=COLOURS.get(process.state))
-        port, purpose = (str(row.port), row.purpose) if row else ("", "not in the site file any more")
+        port, purpose = (str(row.port), row.purpose) if row else ("", say("not in the site file any more"))
         click.echo(f"{process.name:42} {state} {process.pid or '':>7} {_up(process):>8} {port:>6}  {purpose}")
 
 

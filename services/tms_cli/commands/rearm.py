@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tms_cli import session
+from tms_cli.words import say
 from tms_core.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -41,11 +42,11 @@ def command(machine: str, yes: bool, as_json: bool) -> None:
         raise ConfigError(f"the site has no machine '{machine}' (there: {', '.join(machines) or 'none'})")
     with session.ros() as node:
         first = ask(node, machine)
-        click.echo(f"{machine} was stopped: {first.cause}", err=True)
+        click.echo(say("{machine} was stopped: {cause}", machine=machine, cause=first.cause), err=True)
         if not yes:
-            click.confirm(f"Is it safe that {machine} moves again?", abort=True, err=True)
+            click.confirm(say("Is it safe that {machine} moves again?", machine=machine), abort=True, err=True)
         ask(node, machine, first.token)
     if as_json:
         session.show_json({"machine": machine, "armed": True, "cause": first.cause})
     else:
-        click.echo(f"{machine} is armed")
+        click.echo(say("{machine} is armed", machine=machine))

@@ -6,6 +6,7 @@ import click
 
 from tms_cli import live, session
 from tms_cli.commands.run import Runner, report
+from tms_cli.words import say
 
 if TYPE_CHECKING:
     from tms_core.ros import Ros
@@ -29,18 +30,18 @@ def _say(text: str) -> None:
 
 
 def _explain(found: Any) -> None:
-    _say(f"{len(found.done)} leaves have ended and are not repeated" + (":" if found.done else ""))
+    _say(say("{count} leaves have ended and are not repeated", count=len(found.done)) + (":" if found.done else ""))
     if len(found.done) > SHOWN:
         _say("  ...")
     for text in found.done[-SHOWN:]:
         _say(f"  {text}")
     if found.next:
-        _say("these were at work when the scheduler was lost, and begin again first:")
+        _say(say("these were at work when the scheduler was lost, and begin again first:"))
         for text in found.next:
             _say(f"  {text}")
     else:
-        _say("no leaf was at work: it goes on with the next one")
-    _say("flags and blackboard values are worked out anew from the tree's first node")
+        _say(say("no leaf was at work: it goes on with the next one"))
+    _say(say("flags and blackboard values are worked out anew from the tree's first node"))
 
 
 @click.command()
@@ -62,7 +63,7 @@ def command(ctx: click.Context, run: str, yes: bool, wait: bool, as_json: bool) 
         found = plan(node, run)
         _explain(found)
         if not yes:
-            click.confirm("Resume it now?", abort=True, err=True)
+            click.confirm(say("Resume it now?"), abort=True, err=True)
         runner = Runner(node, found.task_id, ignore_warnings=True, resume=run)
         end = runner.finish(live.display(as_json)) if wait else runner.begin()
     report(end, as_json)

@@ -10,6 +10,7 @@ import click
 
 from tms_cli import live, session
 from tms_cli.commands.runs import has_ended, recent
+from tms_cli.words import say, state, what_next
 from tms_core.errors import TmsError
 
 if TYPE_CHECKING:
@@ -98,14 +99,16 @@ class Runner:
     def _cancel(self) -> None:
         from tms_msg_ts.srv import CancelRun
 
-        click.echo("\ncancelling; waiting until the machines stand still (Ctrl-C again leaves)", err=True)
+        click.echo("\n" + say("cancelling; waiting until the machines stand still (Ctrl-C again leaves)"), err=True)
         if not self.view.run_id:
             self._peer.cancel(self._call)
             return
         try:
             session.call(self._node, CancelRun, "/tms/cancel_run", run_id=self.view.run_id)
         except TmsError as error:
-            click.echo(f"tms: the cancel did not get through: {error}; trying the action itself", err=True)
+            click.echo(
+                say("tms: the cancel did not get through: {error}; trying the action itself", error=error), err=True
+            )
             self._peer.cancel(self._call)
 
     def _list_heard(self, message: Any) -> None:
@@ -158,7 +161,7 @@ class Runner:
         if self._call.outcome is None:
             return End(view.run_id, view.state, "", "", view.elapsed, interrupted)
         if self._call.outcome in (Outcome.REJECTED, Outcome.LOST) or result is None:
-            why = "the scheduler did not take the task: see `tms logs tms:ts`"
+            why = say("the scheduler did not take the task: see `tms logs tms:ts`")
             return End(view.run_id, "refused", self._call.outcome.name, why, view.elapsed, interrupted)
         run_id = result.run_id or view.run_id
         return End(run_id, result.outcome, result.error_code, result.error_msg, view.elapsed, interrupted)
@@ -194,13 +197,15 @@ def report(end: End, as_json: bool) -> None:
     if as_json:
         session.show_json({key: value for key, value in asdict(end).items() if key != "interrupted"})
     elif end.outcome == "running":
-        click.echo(f"run {end.run_id} has begun: `tms events {end.run_id} --follow` shows it")
+        click.echo(say("run {run} has begun: `tms events {run} --follow` shows it", run=end.run_id))
         return
     else:
-        word = click.style(end.outcome.upper(), fg=live.OUTCOME_COLOURS.get(end.outcome, "red"), bold=True)
-        click.echo(f"{word} after {end.seconds:.1f} s, run {end.run_id or '-'}")
+        word = click.style(state(end.outcome).upper(), fg=live.OUTCOME_COLOURS.get(end.outcome, "red"), bold=True)
+        click.echo(
+            say("{outcome} after {seconds:.1f} s, run {run}", outcome=word, seconds=end.seconds, run=end.run_id or "-")
+        )
         if end.run_id:
-            click.echo(f"history: tms events {end.run_id}")
+            click.echo(say("history: tms events {run}", run=end.run_id))
     if end.exit_code:
         click.echo(f"tms: {_why(end)}", err=True)
 
@@ -208,9 +213,11 @@ def report(end: End, as_json: bool) -> None:
 def _why(end: End) -> str:
     """One line for a run that did not succeed."""
     if end.outcome == "cancelled":
-        return f"run {end.run_id} was cancelled and its machines were seen to stand still"
+        return say("run {run} was cancelled and its machines were seen to stand still", run=end.run_id)
     code = f" ({end.error_code})" if end.error_code else ""
-    return f"{end.outcome}{code}: {end.error_msg or 'no reason given: see `tms logs tms:ts`'}"
+    reason = end.error_msg or say("no reason given: see `tms logs tms:ts`")
+    hint = what_next(end.error_code)
+    return f"{state(end.outcome)}{code}: {reason}" + (f"\n  {hint}" if hint else "")
 
 
 @click.command()

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tms_cli import live, session
+from tms_cli.words import padded, say, state
 from tms_core.errors import TmsError
 
 if TYPE_CHECKING:
@@ -75,10 +76,10 @@ def _seconds(run: Any) -> float:
 def line(run: Any) -> str:
     """A run as one line of the table."""
     colour = live.OUTCOME_COLOURS.get(run.state, "red")
-    state = click.style(f"{run.state:<16}", fg=colour)
+    word = click.style(padded(state(run.state), 16), fg=colour)
     note = f"  ({run.reason})" if run.reason else ""
     return (
-        f"{run.run_id:<28} {run.task_id:>5}  {state} {live.clock_time(run.started_at)} "
+        f"{run.run_id:<28} {run.task_id:>5}  {word} {live.clock_time(run.started_at)} "
         f"{live.duration(_seconds(run)):>9}  {run.description}{note}"
     )
 
@@ -103,4 +104,4 @@ def command(limit: int, as_json: bool) -> None:
     for run in found:
         click.echo(line(run))
     if not found:
-        click.echo("nothing has run yet: `tms run ID --wait` runs a task of `tms task list`", err=True)
+        click.echo(say("nothing has run yet: `tms run ID --wait` runs a task of `tms task list`"), err=True)

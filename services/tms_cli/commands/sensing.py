@@ -1,19 +1,17 @@
 """`tms sensing`: how the sensing inputs are; `tms sensing replay` plays a recording into them."""
 
 import math
-import threading
 from typing import Any
 
 import click
 
 from tms_cli import session
 from tms_cli.replay.verb import replay
+from tms_cli.words import Group, say
 from tms_core.errors import TmsError
 
-LIMIT = 5.0  # s for tms:sp to tell
 
-
-@click.group(invoke_without_command=True)
+@click.group(cls=Group, invoke_without_command=True)
 @session.json_option
 @click.pass_context
 def command(ctx: click.Context, as_json: bool) -> None:
@@ -43,7 +41,7 @@ def command(ctx: click.Context, as_json: bool) -> None:
             f"{clock:>8}  {row['topic']}"
         )
         if row["last_refusal"]:
-            click.echo(f"    last refused: {row['last_refusal']}")
+            click.echo("    " + say("last refused: {reason}", reason=row["last_refusal"]))
 
 
 command.add_command(replay)
@@ -57,19 +55,12 @@ def _inputs() -> list[Any]:
     """
     from tms_msg_sp.msg import InputStates
 
-    heard: list[Any] = []
-    there = threading.Event()
-
-    def hear(message: Any) -> None:
-        heard.append(message)
-        there.set()
-
     with session.ros() as node:
-        node.subscribe(InputStates, "/tms/sp/inputs", hear, latched=True)
-        if not there.wait(LIMIT):
-            text = "tms:sp says nothing: is `sp` under services: of the site file, and does `tms ps` show it running?"
-            raise TmsError(text, "NO_ANSWER")
-    return list(heard[-1].inputs)
+        heard = session.latched(node, InputStates, "/tms/sp/inputs")
+    if heard is None:
+        text = "tms:sp says nothing: is `sp` under services: of the site file, and does `tms ps` show it running?"
+        raise TmsError(text, "NO_ANSWER")
+    return list(heard.inputs)
 
 
 def _row(one: Any) -> dict[str, Any]:

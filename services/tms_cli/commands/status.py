@@ -3,6 +3,7 @@
 import click
 
 from tms_cli import mesh, session
+from tms_cli.words import say
 from tms_core.processes import table
 from tms_host.supervisor import Supervisor
 
@@ -31,5 +32,5 @@ def command(ctx: click.Context, as_json: bool) -> None:
         session.show_json({"site": site.name, "ready": not bad, "processes": reasons})
     else:
         for name, reason in reasons.items():
-            click.echo(f"{name:42} {reason or 'ready'}")
+            click.echo(f"{name:42} {reason or say('ready')}")
     ctx.exit(1 if bad else 0)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tms_cli import live, session
+from tms_cli.words import say
 from tms_core.errors import ConfigError, RosError
 
 if TYPE_CHECKING:
@@ -49,8 +50,14 @@ def as_dict(receipt: Any) -> dict[str, Any]:
 
 def _line(receipt: Any) -> str:
     if receipt.confirmed:
-        return f"{receipt.machine}: stands, after {receipt.seconds:.2f} s and {receipt.travel:.3f} rad or m; latched"
-    return click.style(f"{receipt.machine}: STOP UNCONFIRMED: {receipt.detail}", fg="red", bold=True)
+        return say(
+            "{machine}: stands, after {seconds:.2f} s and {travel:.3f} rad or m; latched",
+            machine=receipt.machine,
+            seconds=receipt.seconds,
+            travel=receipt.travel,
+        )
+    line = say("{machine}: STOP UNCONFIRMED: {detail}", machine=receipt.machine, detail=receipt.detail)
+    return click.style(line, fg="red", bold=True)
 
 
 @click.command()
@@ -78,5 +85,5 @@ def command(ctx: click.Context, machine: str | None, as_json: bool) -> None:
     else:
         for receipt in receipts:
             click.echo(_line(receipt))
-        click.echo("`tms rearm MACHINE` lets a machine move again", err=True)
+        click.echo(say("`tms rearm MACHINE` lets a machine move again"), err=True)
     ctx.exit(0 if all(receipt.confirmed for receipt in receipts) else 1)

@@ -6,12 +6,13 @@ from typing import Any
 import click
 
 from tms_cli import live, session
+from tms_cli.words import Group, say
 from tms_core.errors import TaskError, TmsError
 
 task_id_argument = click.argument("task_id", type=click.IntRange(1), metavar="ID")
 
 
-@click.group()
+@click.group(cls=Group)
 def command() -> None:
     """Store, list, show, check and remove tasks.
 
@@ -56,10 +57,15 @@ def add(file: str, description: str, as_json: bool) -> None:
         session.show_json(
             {"task_id": answer.task_id, "already_stored": answer.already_stored, "model_name": answer.model_name}
         )
-    elif answer.already_stored:
-        click.echo(f"already stored as task {answer.task_id}")
     else:
-        click.echo(f"stored as task {answer.task_id}: run it with `tms run {answer.task_id} --wait`")
+        click.echo(stored_line(answer))
+
+
+def stored_line(answer: Any) -> str:
+    """What storing a task did."""
+    if answer.already_stored:
+        return say("already stored as task {task}", task=answer.task_id)
+    return say("stored as task {task}: run it with `tms run {task} --wait`", task=answer.task_id)
 
 
 def store(node: Any, file: str, description: str) -> Any:
@@ -94,7 +100,7 @@ def list_(as_json: bool) -> None:
     for task in tasks:
         click.echo(f"{task.task_id:>5}  {task.model_name:<10} {live.clock_time(task.added_at):<19}  {task.description}")
     if not tasks:
-        click.echo("none yet: `tms task add FILE` stores one", err=True)
+        click.echo(say("none yet: `tms task add FILE` stores one"), err=True)
 
 
 @command.command()
@@ -114,7 +120,15 @@ def show(task_id: int, as_json: bool) -> None:
     if as_json:
         session.show_json({**_as_dict(task), "task_sequence": task.task_sequence})
         return
-    click.echo(f"task {task.task_id}, {task.model_name or 'no model'}: {task.description}", err=True)
+    click.echo(
+        say(
+            "task {task}, {model}: {text}",
+            task=task.task_id,
+            model=task.model_name or say("no model"),
+            text=task.description,
+        ),
+        err=True,
+    )
     click.echo(task.task_sequence.rstrip())
 
 
@@ -130,7 +144,7 @@ def rm(task_id: int, as_json: bool) -> None:
     if as_json:
         session.show_json({"removed": task_id})
     else:
-        click.echo(f"task {task_id} removed")
+        click.echo(say("task {task} removed", task=task_id))
 
 
 @command.command()

@@ -7,6 +7,7 @@ import click
 
 from tms_cli import session
 from tms_cli.open_store import opened
+from tms_cli.words import Group
 from tms_core.errors import TmsError
 
 if TYPE_CHECKING:
@@ -17,7 +18,7 @@ TYPES = click.Choice(["heightmap", "texture", "static", "mesh", "dem"])
 METRES = click.FloatRange(min=0)
 
 
-@click.group()
+@click.group(cls=Group)
 def command() -> None:
     """Store, list, fetch and remove terrain files; readers get them from tms:db over ROS.
 

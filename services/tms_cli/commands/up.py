@@ -5,6 +5,8 @@ import os
 import click
 
 from tms_cli import mesh, session
+from tms_cli.words import say
+from tms_core.config import Site
 from tms_core.errors import ConfigError
 from tms_core.processes import here
 
@@ -28,9 +30,17 @@ def command(role: str | None, foreground: bool, no_wait: bool) -> None:
     if role is not None and not site.file.pcs:
         raise ConfigError(f"{site.path}: has no pcs:, so this PC runs all of it: leave ROLE away")
     started = mesh.up(site, foreground)
-    where = f" on PC '{site.pc}'" if site.pc else ""
-    click.echo(f"mesh '{site.name}'{where} {'started' if started else 'already runs'}, state in {site.state}", err=True)
+    click.echo(mesh_line(site, started), err=True)
     if not no_wait:
         mesh.wait_ready(site, lambda text: click.echo(text, err=True))
         console = any(row.name == "ur" for row in here(site))
-        click.echo(f"ready: http://{site.file.bind}:{site.file.ports.console}" if console else "ready", err=True)
+        url = f"http://{site.file.bind}:{site.file.ports.console}"
+        click.echo(say("ready: {url}", url=url) if console else say("ready"), err=True)
+
+
+def mesh_line(site: Site, started: bool) -> str:
+    """Which mesh there is now."""
+    name = f"'{site.name}'" + (say(" on PC '{pc}'", pc=site.pc) if site.pc else "")
+    if started:
+        return say("mesh {name} started, state in {folder}", name=name, folder=site.state)
+    return say("mesh {name} already runs, state in {folder}", name=name, folder=site.state)

@@ -8,6 +8,7 @@ import click
 import yaml
 
 from tms_cli import session
+from tms_cli.words import Group
 from tms_core.config import parse
 from tms_core.errors import TmsError
 
@@ -16,7 +17,7 @@ NAME = click.Path(path_type=Path, dir_okay=False)
 file_option = click.option("--file", type=NAME, metavar="FILE", help="Users file (default: console.users of the site).")
 
 
-@click.group()
+@click.group(cls=Group)
 def command() -> None:
     """Users of the console and its API: viewer (look, stop), operator (and run, re-arm), admin (and change data).
 

@@ -2,9 +2,10 @@
 import { t } from "./strings.js";
 
 const MARKS = { moving: "▶", running: "▶", RUNNING: "▶", standing: "■", success: "✔", STOPPED: "■", stopping: "…",
-  preparing: "…", STARTING: "…", STOPPING: "…", armed: "✔", held: "…" };
-const GOOD = new Set(["moving", "standing", "running", "success", "RUNNING", "armed"]);
-const CALM = new Set(["STOPPED", "EXITED", "cancelled", "preparing", "stopping", "STARTING", "STOPPING", "held"]);
+  preparing: "…", STARTING: "…", STOPPING: "…", armed: "✔", held: "…",
+  alive: "✔", waiting: "…" };
+const GOOD = new Set(["moving", "standing", "running", "success", "RUNNING", "armed", "alive"]);
+const CALM = new Set(["STOPPED", "EXITED", "cancelled", "preparing", "stopping", "STARTING", "STOPPING", "held", "waiting"]);
 const SVG = "http://www.w3.org/2000/svg";
 
 export const at = (id) => document.getElementById(id);

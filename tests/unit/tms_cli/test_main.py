@@ -57,21 +57,6 @@ def test_an_error_is_one_line_and_exit_code_1() -> None:
     assert line.startswith("tms: /nowhere/task.xml: cannot be read")
 
 
-def test_the_list_of_verbs_speaks_the_language_of_the_locale(monkeypatch: pytest.MonkeyPatch) -> None:
-    from click.testing import CliRunner
-
-    from tms_cli.main import Verbs
-    from tms_cli.main import tms as group
-    from tms_cli.words import JAPANESE
-
-    assert isinstance(group, Verbs)
-    assert set(JAPANESE) == set(group.list_commands(None))  # type: ignore[arg-type]
-    monkeypatch.setenv("LC_ALL", "ja_JP.UTF-8")
-    assert JAPANESE["stop"] in CliRunner().invoke(group, ["--help"]).output
-    monkeypatch.setenv("LC_ALL", "C.UTF-8")
-    assert JAPANESE["stop"] not in CliRunner().invoke(group, ["--help"]).output
-
-
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 def test_completion(shell: str) -> None:
     done = tms("completion", shell)

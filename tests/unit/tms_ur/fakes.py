@@ -13,7 +13,8 @@ from tms_core.errors import TmsError
 from tms_ur.access import Access
 from tms_ur.api import create_app
 from tms_ur.board import Board
-from tms_ur.models import Event, Rearmed, Receipt, Record, Run, Task, TaskText
+from tms_ur.data_models import Change, Record, Sensing, SensingInput
+from tms_ur.models import Event, Rearmed, Receipt, Run, Task, TaskText
 
 NOON = datetime(2026, 1, 31, 12, tzinfo=timezone.utc)
 HERE = "http://127.0.0.1:8080"
@@ -55,6 +56,15 @@ class FakeGateway:
         return [
             Record(model_name="zx200", record_name="pose", type="static", description="", source="cli", values=values)
         ]
+
+    def parameter_history(self, model_name: str, record_name: str, limit: int) -> list[Change]:
+        self._called("parameter_history", model_name, record_name, limit)
+        return [Change(stamp=NOON, source="sensing", values={"d": float("nan"), "s": "3"})]
+
+    def sensing(self) -> Sensing:
+        facts = {"name": "pile", "topic": "/pile", "state": "alive", "hz": 1.0, "hz_expected": None, "age": 0.5}
+        counts = {"accepted": 3, "refused": 1, "last_refusal": "z: 99.0 is above 5.0", "records": ["zx200/PILE"]}
+        return Sensing(age=0.2, inputs=[SensingInput(**facts, **counts)])
 
     def add_task(self, xml: str, description: str) -> tuple[int, bool]:
         self._called("add_task", xml, description)

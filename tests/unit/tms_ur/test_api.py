@@ -346,7 +346,8 @@ def test_every_endpoint_is_in_the_document(client: Client) -> None:
     document = client.get("/openapi.json").json()
     assert set(document["paths"]) == {
         "/api/state", "/api/events", "/api/tasks", "/api/tasks/{task_id}", "/api/runs", "/api/runs/{run_id}/events",
-        "/api/runs/{run_id}/cancel", "/api/parameters", "/api/site", "/api/session", "/api/login", "/api/logout",
+        "/api/runs/{run_id}/cancel", "/api/parameters",
+        "/api/parameters/history", "/api/sensing", "/api/site", "/api/session", "/api/login", "/api/logout",
         "/api/stop", "/api/machines/{name}/rearm", "/api/questions/{question_id}", "/api/tasks/check",
         "/api/tasks/{task_id}/diff", "/api/tasks/{task_id}/remove", "/api/runs/{run_id}/tree",
         "/api/runs/{run_id}/export", "/api/audit", "/api/processes/{name}/log", "/api/processes/{name}/restart",

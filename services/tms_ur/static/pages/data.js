@@ -1,9 +1,12 @@
-// Data: records with type, age and source; static ones can be edited, every edit is audited.
-import { at, button, duration, heading, keep, make, once, part, parts, setText, table } from "../dom.js";
+// Data: records with type, age, source and history; static ones can be edited; and the sensing inputs.
+import { at, button, duration, heading, keep, make, once, part, parts, setBadge, setText, table } from "../dom.js";
 import { ask } from "../server.js";
 import { t, when } from "../strings.js";
 
+const SENSING_EVERY = 2000; // ms
+
 let records = null;
+let sensingAsked = 0;
 
 export function build(root) {
   const filter = make("input", { id: "record_filter", type: "search", oninput: show });
@@ -12,9 +15,15 @@ export function build(root) {
     make("label", {}, make("span", { data: { t: "filter" } }), filter),
     make("p", { id: "none_records", hidden: true, data: { t: "none_records" } }),
     table("list_records", ["record", "type", "age", "source", "values", "edit"]),
-    make("section", { id: "editor", hidden: true }), heading("changes"), table("list_changes", ["at_time", "who", "target"]),
+    make("section", { id: "editor", hidden: true }),
+    make("section", { id: "values", hidden: true }, make("h2", { id: "values_title" }), button("close", "", () => { at("values").hidden = true; }),
+      make("p", { id: "none_values", data: { t: "none_values" } }), table("list_values", ["at_time", "source", "values"])),
+    heading("sensing"), make("p", { id: "none_sensing", hidden: true, data: { t: "none_sensing" } }),
+    table("list_sensing", ["input", "state", "topic", "hz", "age", "accepted", "refusals", "last_refusal", "record"]),
+    heading("edits"), table("list_changes", ["at_time", "who", "target"]),
   );
   records = null;
+  sensingAsked = 0;
 }
 
 export async function load() {
@@ -37,6 +46,10 @@ export async function load() {
 
 export function update() {
   at("list_records")?.querySelectorAll("[data-stamp]").forEach((cell) => setText(cell, age(cell.dataset.stamp)));
+  if (Date.now() - sensingAsked > SENSING_EVERY) {
+    sensingAsked = Date.now();
+    showSensing();
+  }
 }
 
 function show() {
@@ -55,7 +68,8 @@ const age = (stamp) => (stamp ? duration(Math.max(0, (Date.now() - new Date(stam
 function build_row(record) {
   const edit = button("edit", "", () => openEditor(nameOf(record)), ["edit_record", { name: nameOf(record) }]);
   edit.hidden = record.type !== "static";
-  return make("tr", {}, ...parts("td", ["name", "type", "age", "source"]), make("td", { data: { part: "values" }, className: "values" }), make("td", {}, edit));
+  return make("tr", {}, ...parts("td", ["name", "type", "age", "source"]), make("td", { data: { part: "values" }, className: "values" }),
+    make("td", { className: "bar" }, edit, button("record_history", "", (event) => once(event.currentTarget, () => showValues(record)), ["history_of", { name: nameOf(record) }])));
 }
 
 function fillRow(row, record) {
@@ -70,6 +84,52 @@ function fillRow(row, record) {
 function written(value, type) {
   const one = (number) => (type?.startsWith("double") && Number.isInteger(number) ? number.toFixed(1) : String(number));
   return Array.isArray(value) ? `[${value.map(one).join(", ")}]` : one(value);
+}
+
+// history and sensing
+
+async function showValues(record) {
+  const query = new URLSearchParams({ model_name: record.model_name, record_name: record.record_name });
+  const changes = await ask(`/api/parameters/history?${query}`);
+  if (at("values") === null) {
+    return;
+  }
+  const types = records.find((one) => nameOf(one) === nameOf(record))?.types ?? {};
+  setText(at("values_title"), t("values_of", { name: nameOf(record) }));
+  at("none_values").hidden = changes.length > 0;
+  at("list_values").replaceChildren(...changes.map((change) => make("tr", {}, make("td", {}, when(change.stamp)), make("td", {}, change.source),
+    make("td", { className: "values" }, Object.entries(change.values).map(([name, value]) => `${name}: ${written(value, types[name])}`).join(", ")))));
+  at("values").hidden = false;
+  at("values").scrollIntoView();
+}
+
+const SENSING_STATES = { silent: "no_messages" }; // of machines, `silent` means something else
+
+async function showSensing() {
+  let inputs = [];
+  try {
+    ({ inputs } = await ask("/api/sensing"));
+  } catch {
+    return; // a lost server is told at the top of the page
+  }
+  if (at("list_sensing") === null) {
+    return;
+  }
+  at("none_sensing").hidden = inputs.length > 0;
+  keep(at("list_sensing"), inputs, (one) => one.name,
+    () => make("tr", {}, ...parts("td", ["name"]), make("td", {}, ...parts("span", ["state"])), ...parts("td", ["topic", "hz", "age", "accepted", "refused", "why", "records"])), fillInput);
+}
+
+function fillInput(row, one) {
+  setText(part(row, "name"), one.name);
+  setBadge(part(row, "state"), SENSING_STATES[one.state] ?? one.state);
+  setText(part(row, "topic"), one.topic);
+  setText(part(row, "hz"), one.hz_expected === null ? `${one.hz.toFixed(1)} Hz` : `${one.hz.toFixed(1)} / ${one.hz_expected} Hz`);
+  setText(part(row, "age"), one.age === null ? "-" : duration(one.age));
+  setText(part(row, "accepted"), String(one.accepted));
+  setText(part(row, "refused"), String(one.refused));
+  setText(part(row, "why"), one.last_refusal);
+  setText(part(row, "records"), one.records.join(", "));
 }
 
 // editing
