@@ -33,7 +33,7 @@ class Permit:
 
     def hold(self, goal: bytes, holder: str = "") -> None:
         """Stand behind a goal from now on."""
-        self._publisher.publish(Message(process=self._process, goal=list(goal), holder=holder, instance=self._instance))
+        self._publisher.publish(Message(process=self._process, goal=list(goal), holder=holder))
         self._ros.pulse.add(self._beat)
 
     def drop(self) -> None:
