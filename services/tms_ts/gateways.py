@@ -29,14 +29,14 @@ class Holder:
 class Gateways:
     """All machines of the site."""
 
-    def __init__(self, app: App) -> None:
-        self._app = app
+    def __init__(self, app: App, late_receipt: Callable[[Any], None]) -> None:
+        """`late_receipt` is called with stops of machines that no run holds; kept ones come at once."""
+        self._app, self._late_receipt = app, late_receipt
         self._states: dict[str, Any] = {}
         self._links: dict[str, Link] = {}
         self._controls: dict[str, Controls] = {}
         self._permits: dict[str, Permit] = {}
         self._holders: dict[str, Holder] = {}
-        self.late_receipt: Callable[[Any], None] = lambda receipt: None  # of a machine that no run holds
         for machine in app.site.file.machines:
             self._attend(machine)
         app.ros.subscribe(Bool, "/emergency_signal", self._signal)
@@ -108,7 +108,7 @@ class Gateways:
         if holder is not None:
             holder.receipt(receipt)
         else:
-            self.late_receipt(receipt)
+            self._late_receipt(receipt)
 
     def _signal(self, message: Any) -> None:
         if message.data:

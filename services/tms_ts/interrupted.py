@@ -2,6 +2,7 @@
 
 import threading
 import time
+from collections import deque
 from typing import Any
 
 from builtin_interfaces.msg import Time
@@ -16,6 +17,7 @@ from tms_ts.record import Header, Key, Past, Records
 
 STOP_LIMIT = 8.0  # s for the gateways to tell how they stopped the machines; they give themselves 5 s
 LOOK = 0.05  # s
+RECEIPTS = 1000  # every gateway keeps its last 20 for late comers
 
 
 class Interrupted:
@@ -24,7 +26,7 @@ class Interrupted:
     def __init__(self, app: App, journal: Journal, records: Records) -> None:
         self._app, self._journal, self._records = app, journal, records
         self._active: set[str] = set()
-        self._receipts: list[Any] = []
+        self._receipts: deque[Any] = deque(maxlen=RECEIPTS)
         self._lock = threading.Lock()
         threading.Thread(target=self._close_all, name="interrupted", daemon=True).start()
 

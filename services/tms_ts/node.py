@@ -66,15 +66,14 @@ class Scheduler:
     def __init__(self, app: App) -> None:
         self._app, self._ros = app, app.ros
         self._hosts = Hosts(app.ros)
-        self._gateways = Gateways(app)
-        self._monitors = Monitors(app.log, app.site.file.groot.bind, app.site.file.ports.groot)
-        self._numbers = Numbers(app.site.state)
         self._journal = Journal(app.ros, app.log, app.site.state)
         self._records = Records(app.site.state)
+        self.interrupted = Interrupted(app, self._journal, self._records)
+        self._gateways = Gateways(app, self.interrupted.receipt)
+        self._monitors = Monitors(app.log, app.site.file.groot.bind, app.site.file.ports.groot)
+        self._numbers = Numbers(app.site.state)
         self._shared = SharedRecords(app.ros)
         self._sensing = Sensing(app)
-        self.interrupted = Interrupted(app, self._journal, self._records)
-        self._gateways.late_receipt = self.interrupted.receipt
         self._runs: dict[str, Run] = {}
         self._holders: dict[str, str] = {}  # machine -> run that moves it
         self._lock = threading.Lock()  # over the two above; held for moments only

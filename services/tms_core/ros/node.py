@@ -178,8 +178,12 @@ class Ros:
         What waits is heard in one go: for each message of its own, the executor does four times the work of a callback.
         """
 
+        subscription: Any = None
+
         def all_that_wait(message: Message) -> None:
             heard(message)
+            if subscription is None:  # this one came before the assignment below
+                return
             for _ in range(depth - 1):
                 try:
                     with subscription.handle:
