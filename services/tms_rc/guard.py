@@ -30,7 +30,6 @@ PRESSED = 1.0  # s that a software stop counts as pressed after its last message
 FRESH = 1.0  # s, older news of the machine make it not ready
 LEFT_MOVING = 2.0  # s that a new gateway looks for a motion that its predecessor left
 RUN_TOLD = 3.0  # s for a new gateway to hear of the run whose machine it has stopped, before it latches
-RESTARTED = LOST_TEXT + ": {}:rc was restarted"
 
 
 class Kind(Enum):
@@ -74,6 +73,7 @@ class Guard:
         self._news = threading.Condition()  # of permits
         self._taking = threading.Lock()
         self._run: int | None = None  # that holds the machine
+        self._restarted = f"{LOST_TEXT}: {app.machine}:rc was restarted"
         self._unclaimed = True  # whether the last gateway may have left a motion of a run that is not known yet
         self._pressed = 0.0  # monotonic time of the last software stop message
         self.active: Active | None = None
@@ -276,11 +276,11 @@ class Guard:
         if not self._unclaimed or self.active is not None:
             return
         self._unclaimed = run == UNKNOWN_RUN
-        self.latch.keep(RESTARTED.format(self._app.machine), Owner(run, ANY_LEAF))
-        self.stop_now(RESTARTED.format(self._app.machine), Kind.PLAIN, run=0 if run == UNKNOWN_RUN else run)
+        self.latch.keep(self._restarted, Owner(run, ANY_LEAF))
+        self.stop_now(self._restarted, Kind.PLAIN, run=0 if run == UNKNOWN_RUN else run)
 
     def _recovered(self, stopped: bool) -> None:
         """Whose motion was stopped is known by now, or it was nobody's."""
         if self._unclaimed and stopped and self.active is None:
-            self.stop_now(f"{RESTARTED.format(self._app.machine)} while it moved, and no run told of it", Kind.LATCH)
+            self.stop_now(f"{self._restarted} while it moved, and no run told of it", Kind.LATCH)
         self._unclaimed = False

@@ -34,8 +34,8 @@ class MachineStates:
             return
         states = [
             MachineState(collection=collection, machine=machine, stamp=self._ros.now(), msg=json.dumps(plain(message)))
-            for collection, machine, newest in self._topics
-            for message in newest()
+            for collection, machine, news in self._topics
+            for message in news()
         ]
         if states:
             request = WriteMachineStates.Request(states=states)

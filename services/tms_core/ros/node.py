@@ -177,7 +177,6 @@ class Ros:
         A best-effort subscription also hears reliable publishers, a reliable one hears no best-effort publisher.
         What waits is heard in one go: for each message of its own, the executor does four times the work of a callback.
         """
-
         subscription: Any = None
 
         def all_that_wait(message: Message) -> None:
@@ -186,13 +185,12 @@ class Ros:
                 return
             for _ in range(depth - 1):
                 try:
-                    with subscription.handle:
-                        taken = subscription.handle.take_message(message_type, False)
+                    waiting = _take(subscription)
                 except InvalidHandle:  # `heard` has ended the subscription
                     return
-                if taken is None:
+                if waiting is None:
                     return
-                heard(taken[0])
+                heard(waiting)
 
         subscription = self.node.create_subscription(
             message_type, topic, all_that_wait, quality.topic(depth, latched, best_effort), callback_group=self.group
@@ -210,12 +208,8 @@ class Ros:
 
         def news() -> list[Message]:
             found: list[Message] = []
-            with subscription.handle:
-                while len(found) < depth:
-                    taken = subscription.handle.take_message(subscription.msg_type, False)
-                    if taken is None:
-                        break
-                    found.append(taken[0])
+            while len(found) < depth and (message := _take(subscription)) is not None:
+                found.append(message)
             return found
 
         return news
@@ -409,6 +403,13 @@ class _Asleep(CallbackGroup):  # type: ignore[misc]
 
     def ending_execution(self, entity: Any) -> None:
         raise AssertionError("nothing of this group is executed")
+
+
+def _take(subscription: Any) -> Message | None:
+    """The oldest message that waits."""
+    with subscription.handle:
+        taken = subscription.handle.take_message(subscription.msg_type, False)
+    return None if taken is None else taken[0]
 
 
 def _unheard(message: Message) -> None:
