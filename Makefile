@@ -97,6 +97,7 @@ drill: setup ## kill every process of a simulated site while it moves (QUICK=1, 
 	@$(TMS) drill $(if $(QUICK),--quick) $(if $(ROUNDS),--rounds $(ROUNDS)) $(if $(REPORT),--report $(REPORT))
 
 bench: setup ## benchmarks with ratios to a floor of the same run (ONLY=group)
+	@sh deploy/system-packages.sh chromium
 	@$(PY) tests/bench $(if $(ONLY),--only "$(ONLY)")
 
 soak: setup ## the two-machine demo over and over; nothing may grow (MINUTES=120)

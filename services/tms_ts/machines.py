@@ -246,8 +246,7 @@ class Machines:
 
     def _may_ask_again(self, goal: SentGoal) -> bool:
         """Soon after a loss the processes below may not have found each other yet; that is no further loss."""
-        soon = goal.losses > 0 and time.monotonic() - goal.lost_at < RECOVERY
-        return soon and not goal.cancelled and any(word in goal.feedback for word in UNREACHED)
+        return _recovers(goal) and not goal.cancelled and any(word in goal.feedback for word in UNREACHED)
 
     def _may_wait(self, goal: SentGoal) -> bool:
         """Whether a subtask that cannot read its record is asked again: the database may be coming back."""
@@ -266,15 +265,20 @@ class Machines:
         if not why:
             return
         final = goal.state.final
+        unheard = _unheard(goal, call)
         goal.call = None if not final else call
         call.end(Outcome.LOST)
         if not final:
-            self._lost(goal, why)
+            self._lost(goal, why, counts=not (unheard and _recovers(goal)))
 
-    def _lost(self, goal: SentGoal, why: str) -> None:
-        """A process ended during a goal: have the machine seen to stand, then send the goal again, a few times."""
-        goal.losses += 1
-        goal.lost_at = time.monotonic()
+    def _lost(self, goal: SentGoal, why: str, *, counts: bool = True) -> None:
+        """A process ended during a goal: have the machine seen to stand, then send the goal again, a few times.
+
+        A server that does not answer soon after a loss had not found us yet: that is no further loss.
+        """
+        if counts:
+            goal.losses += 1
+            goal.lost_at = time.monotonic()
         self._stopping.add(goal.machine)
         if goal.cancelled:
             self._end(goal, GoalState.CANCELLED, why)
@@ -288,7 +292,7 @@ class Machines:
         threading.Thread(target=self._stop_after_loss, args=(goal.machine, why), daemon=True).start()
 
     def _loss(self, goal: SentGoal, call: Call) -> str:
-        if not call.accepted and time.monotonic() - goal.begun > ACCEPT_LIMIT:
+        if _unheard(goal, call):
             return f"{goal.name} did not answer the goal within {ACCEPT_LIMIT:.0f} s"
         now = self._hosts.pid(goal.machine, goal.subtask)
         if goal.pid is not None and now is not None and now != goal.pid:
@@ -303,6 +307,15 @@ class Machines:
         self.receipt(receipt)
         self._stopping.discard(machine)
         self._wake()
+
+
+def _unheard(goal: SentGoal, call: Call) -> bool:
+    return not call.accepted and time.monotonic() - goal.begun > ACCEPT_LIMIT
+
+
+def _recovers(goal: SentGoal) -> bool:
+    """Whether the processes below may not have found each other yet."""
+    return goal.losses > 0 and time.monotonic() - goal.lost_at < RECOVERY
 
 
 def receipt_text(receipt: StopReceipt) -> str:

@@ -1,0 +1,104 @@
+"""What counts as a loss of a process, and what is only a server that has not found us yet."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from tms_msg_rc.msg import StopReceipt
+
+from tms_core.ros import Call
+from tms_ts import machines
+from tms_ts.machines import ACCEPT_LIMIT, RECOVERY, Identity, Machines, SentGoal
+from tms_ts.record import Replay
+
+RETRIES = 2
+
+
+class Peer:
+    """A server that is there and takes its time."""
+
+    def __init__(self) -> None:
+        self.calls: list[Call] = []
+
+    def ready(self) -> bool:
+        return True
+
+    def send(self, request: Any, *, goal_id: bytes, on_change: Any) -> Call:
+        self.calls.append(Call(goal_id, on_change, None))
+        return self.calls[-1]
+
+
+class Site:
+    """One machine whose subtask has process 1, a clock that is set by hand, and stops that are told at once."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.now, self.pid, self.peer = 0.0, 1, Peer()
+        self.told: list[str] = []
+        monkeypatch.setattr(machines.time, "monotonic", lambda: self.now)
+        monkeypatch.setattr(Machines, "_stop_after_loss", lambda one, machine, cause: one._stopping.discard(machine))
+        self.peer.lost = lambda: None  # type: ignore[attr-defined]
+        ros = SimpleNamespace(peer=lambda *_: self.peer)
+        hosts = SimpleNamespace(pid=lambda *_: self.pid, trouble=lambda *_: "", fatal=lambda *_: "")
+        gateways = SimpleNamespace(obstacle=lambda _: "", latch=lambda _: "")
+        record = SimpleNamespace(sent=lambda _: None, done=lambda *_: None)
+        self.machines = Machines(
+            ros,  # type: ignore[arg-type]
+            hosts,  # type: ignore[arg-type]
+            gateways,  # type: ignore[arg-type]
+            lambda: None,
+            lambda kind, _, text: self.told.append(f"{kind}: {text}"),
+            Identity(1, RETRIES, record, Replay([])),  # type: ignore[arg-type]
+        )
+        self.goal: SentGoal = self.machines.send("zx200", "subtask_zx200_change_pose", "pose", "0")
+
+    def pass_time(self, seconds: float) -> None:
+        self.now += seconds
+        self.machines.advance()
+
+    def lose(self) -> None:
+        """The subtask's process ends and is back under another number."""
+        self.pid += 1
+        self.pass_time(0.1)
+        self.pass_time(RETRIES)  # the goal is sent again
+
+
+@pytest.fixture
+def site(monkeypatch: pytest.MonkeyPatch) -> Site:
+    return Site(monkeypatch)
+
+
+def test_a_server_that_never_answers_is_a_loss(site: Site) -> None:
+    for losses in range(1, RETRIES + 1):
+        site.pass_time(RECOVERY + ACCEPT_LIMIT)
+        assert site.goal.losses == losses
+        site.pass_time(RETRIES)
+    site.pass_time(RECOVERY + ACCEPT_LIMIT)
+    assert "did not answer the goal within 5 s (for the 3. time)" in site.goal.reason
+    assert site.goal.state.final
+
+
+def test_a_server_that_does_not_hear_us_soon_after_a_loss_is_asked_again_without_a_further_loss(site: Site) -> None:
+    site.lose()
+    assert (site.goal.losses, len(site.peer.calls)) == (1, 2)
+    site.pass_time(ACCEPT_LIMIT + 0.1)
+    site.pass_time(RETRIES)
+    assert (site.goal.losses, len(site.peer.calls)) == (1, 3)
+    assert not site.goal.state.final
+
+
+def test_a_process_that_ends_again_is_a_further_loss_however_soon(site: Site) -> None:
+    site.lose()
+    site.lose()
+    assert site.goal.losses == RETRIES
+    site.lose()
+    assert site.goal.state.final
+    assert "ended during its goal" in site.goal.reason
+
+
+def test_a_receipt_is_told_once(site: Site) -> None:
+    receipt = StopReceipt(machine="zx200", confirmed=True, seconds=0.5, cause="x")
+    site.machines.receipt(receipt)
+    site.machines.receipt(receipt)
+    assert [text for text in site.told if text.startswith("stop")] == [
+        "stop: zx200 stood after 0.50 s and 0.000 rad (x)"
+    ]
