@@ -16,17 +16,16 @@ from tms_core.fence import LEAVES, Owner
 from tms_core.ros import LOST_TEXT, Call, Outcome, Peer, Ros
 from tms_ts.gateways import Gateways
 from tms_ts.hosts import Hosts
-from tms_ts.record import Key, Record, Replay
+from tms_ts.record import Record, Replay
+from tms_ts.sent_goal import ACCEPT_LIMIT, SentGoal
 from tms_ts.world import GoalState
 
-ACCEPT_LIMIT = 5.0  # s for a subtask to take or refuse a goal
 SERVER_LIMIT = 10.0  # s for a subtask's server to be there
 STOP_LIMIT = 8.0  # s for a gateway to answer a stop
 GATEWAY_LIMIT = 3.0  # s for a gateway that was lost to be back
 DATABASE_LIMIT = 15.0  # s that a leaf waits for a database that is away
 ASK_AGAIN = 0.5  # s
 AWAY = ("NO_DATABASE", "STORE_DOWN")  # how a subtask begins its refusal when its record cannot be read now
-RECOVERY = 15.0  # s after a loss
 UNREACHED = (
     "NO_ANSWER",
     "NO_SERVER",
@@ -41,42 +40,6 @@ HANDOVER = Histogram(
 )  # fmt: skip
 
 Tell = Callable[[str, str, str], None]  # kind, node path, text: for the journal
-
-
-class SentGoal:
-    """One goal of one leaf; fields change on the executor thread and in `Machines.advance`."""
-
-    def __init__(self, machine: str, subtask: str, record: str, node: str) -> None:
-        self.machine, self.subtask, self.record, self.node = machine, subtask, record, node
-        self.name = f"/{machine}/{subtask}"
-        self.state = GoalState.SENDING
-        self.reason = ""
-        self.cancelled = False
-        self.begun = time.monotonic()
-        self.call: Call | None = None
-        self.peer: Peer | None = None
-        self.pid: int | None = None  # of the subtask's process when the goal was sent
-        self.not_before = 0.0  # monotonic time of the next attempt
-        self.waits_since: float | None = None  # for the database
-        self.lost_at = 0.0
-        self.losses = 0  # times that a process was lost during this goal
-
-    @property
-    def key(self) -> Key:
-        """What tells this goal from others of the same run."""
-        return self.node, self.machine, self.subtask, self.record
-
-    @property
-    def feedback(self) -> str:
-        return getattr(self.call.feedback, "status", "") if self.call is not None else ""
-
-    def cancel(self) -> None:
-        """Ask for the end; `Machines` keeps watching until the goal is terminal."""
-        self.cancelled = True
-        if self.call is None:
-            self.state = GoalState.CANCELLED  # never sent, so nothing moves
-        elif self.peer is not None:
-            self.peer.cancel(self.call)
 
 
 @dataclass(frozen=True)
@@ -246,7 +209,7 @@ class Machines:
 
     def _may_ask_again(self, goal: SentGoal) -> bool:
         """Soon after a loss the processes below may not have found each other yet; that is no further loss."""
-        return _recovers(goal) and not goal.cancelled and any(word in goal.feedback for word in UNREACHED)
+        return goal.recovers() and not goal.cancelled and any(word in goal.feedback for word in UNREACHED)
 
     def _may_wait(self, goal: SentGoal) -> bool:
         """Whether a subtask that cannot read its record is asked again: the database may be coming back."""
@@ -265,11 +228,11 @@ class Machines:
         if not why:
             return
         final = goal.state.final
-        unheard = _unheard(goal, call)
+        unheard = goal.unheard()
         goal.call = None if not final else call
         call.end(Outcome.LOST)
         if not final:
-            self._lost(goal, why, counts=not (unheard and _recovers(goal)))
+            self._lost(goal, why, counts=not (unheard and goal.recovers()))
 
     def _lost(self, goal: SentGoal, why: str, *, counts: bool = True) -> None:
         """A process ended during a goal: have the machine seen to stand, then send the goal again, a few times.
@@ -292,7 +255,7 @@ class Machines:
         threading.Thread(target=self._stop_after_loss, args=(goal.machine, why), daemon=True).start()
 
     def _loss(self, goal: SentGoal, call: Call) -> str:
-        if _unheard(goal, call):
+        if goal.unheard():
             return f"{goal.name} did not answer the goal within {ACCEPT_LIMIT:.0f} s"
         now = self._hosts.pid(goal.machine, goal.subtask)
         if goal.pid is not None and now is not None and now != goal.pid:
@@ -307,15 +270,6 @@ class Machines:
         self.receipt(receipt)
         self._stopping.discard(machine)
         self._wake()
-
-
-def _unheard(goal: SentGoal, call: Call) -> bool:
-    return not call.accepted and time.monotonic() - goal.begun > ACCEPT_LIMIT
-
-
-def _recovers(goal: SentGoal) -> bool:
-    """Whether the processes below may not have found each other yet."""
-    return goal.losses > 0 and time.monotonic() - goal.lost_at < RECOVERY
 
 
 def receipt_text(receipt: StopReceipt) -> str:

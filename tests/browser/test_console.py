@@ -277,6 +277,9 @@ def test_a_record_is_edited_with_its_type(page: Page, address: str, mesh: Mesh) 
     expect(inputs).to_contain_text("受信待ち")
     page.get_by_role("button", name="zx200/release_angle の履歴").click()
     expect(page.locator("#values_title")).to_have_text("zx200/release_angle の値の履歴")
+    page.get_by_role("button", name="zx200/release_angle を編集").click()
+    found = Axe().run(page)  # with everything open that the page has
+    assert found.violations_count == 0, found.generate_report()
     after = json.loads(mesh.tms("param", "get", "zx200/release_angle", "--json").stdout)
     assert after["values"] == before["values"] if "values" in before else True
 

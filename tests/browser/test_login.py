@@ -104,3 +104,23 @@ def test_login_roles_and_throttling(secure_page: Page, console: str) -> None:
         page.locator("#message").evaluate("element => element.textContent = ''")
     login(page, "operator", "guess")
     expect(page.locator("#message")).to_contain_text("too many wrong passwords: try again in")
+
+
+def test_a_session_that_ends_shows_the_login_and_a_panel_comes_back(secure_page: Page, console: str) -> None:
+    page = secure_page
+    page.clock.install()
+    page.goto(f"{console}/panel.html?task=1")
+    expect(page.locator("#login")).to_be_visible()
+    login(page, "operator", PASSWORD)
+    expect(page).to_have_url(f"{console}/panel.html?task=1")
+    expect(page.locator("#stop")).to_be_visible()
+
+    other = (
+        page.context.new_page()
+    )  # the same session: as a restart of the server would, it ends it unseen by the panel
+    other.goto(console)
+    other.locator("#logout").click()
+    expect(other.locator("#login")).to_be_visible()
+    expect(page).to_have_url(f"{console}/panel.html?task=1")
+    page.clock.fast_forward(61_000)
+    expect(page.locator("#login")).to_be_visible()

@@ -88,7 +88,12 @@ at("login").addEventListener("submit", async (event) => {
   event.preventDefault();
   try {
     await ask("/api/login", { name: at("login_name").value, password: at("login_password").value });
-    location.reload();
+    const panel = Number(new URLSearchParams(location.search).get("panel")); // who was sent here by one goes back
+    if (panel) {
+      location.href = `/panel.html?task=${panel}`;
+    } else {
+      location.reload();
+    }
   } catch (error) {
     at("login_password").value = "";
     say(error.message, true);

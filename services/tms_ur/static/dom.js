@@ -90,11 +90,11 @@ export function relabelAll() {
   document.querySelectorAll("[data-relabel]").forEach((element) => element.relabel());
 }
 
-/** A table in a box that scrolls: keys of the heads, and the body's id. */
-export function table(id, heads) {
+/** A table that scrolls in a region of its own; `label` tells it from the other tables of the page. */
+export function table(id, label, heads) {
   const cells = heads.map((head) => make("th", { scope: "col", data: { t: head } }));
   const body = make("tbody", { id });
-  return make("div", { className: "scroll", tabIndex: 0, role: "region", data: { label: heads[0] } },
+  return make("div", { className: "scroll", tabIndex: 0, role: "region", data: { label } },
     make("table", {}, make("thead", {}, make("tr", {}, ...cells)), body));
 }
 

@@ -46,7 +46,7 @@ translatePage();
 
 ask("/api/session").then((session) => {
   if (session.name === null) {
-    location.href = "/"; // log in there first
+    location.href = `/?panel=${id}`; // log in there first
     return;
   }
   name();

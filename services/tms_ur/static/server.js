@@ -3,6 +3,8 @@ import { t } from "./strings.js";
 
 const SILENCE = 1700; // ms without a state: the server sends one every 0.7 s at least
 const RETRY = 1000; // ms between attempts to connect
+const PROLONG = 60_000; // ms; an open console is in use, so its session must not end
+const MOST_TREES = 100;
 
 /** An answer of the API; throws an Error whose message people can read. */
 export async function ask(path, body) {
@@ -30,6 +32,7 @@ export function watch(onState, onLink) {
   let connected = null;
   let heard = performance.now();
   let tried = -RETRY;
+  let prolonged = performance.now();
 
   function link(now) {
     if (connected !== now) {
@@ -50,6 +53,15 @@ export function watch(onState, onLink) {
     source.addEventListener("error", () => link(false));
   }
 
+  // A session that is over shows the login now, and not when somebody presses the stop.
+  function prolong() {
+    prolonged = performance.now();
+    ask("/api/session").then(
+      (session) => session.name === null && location.reload(),
+      () => {}, // a lost server is told at the top of the page
+    );
+  }
+
   // EventSource retries by itself only after some kinds of loss, and never notices silence.
   function check() {
     const now = performance.now();
@@ -58,6 +70,9 @@ export function watch(onState, onLink) {
     }
     if (connected === false && now - tried > RETRY) {
       connect();
+      prolong();
+    } else if (now - prolonged > PROLONG) {
+      prolong();
     }
   }
 
@@ -74,6 +89,9 @@ export function treeOf(runId) {
     return known.tree;
   }
   trees.set(runId, { tree: null, asked: performance.now() });
+  if (trees.size > MOST_TREES) {
+    trees.delete(trees.keys().next().value); // the oldest
+  }
   ask(`/api/runs/${encodeURIComponent(runId)}/tree`).then(
     (tree) => trees.set(runId, { tree }),
     () => {}, // not written yet, or the database is away: the next state asks again

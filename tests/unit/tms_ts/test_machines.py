@@ -8,8 +8,9 @@ from tms_msg_rc.msg import StopReceipt
 
 from tms_core.ros import Call
 from tms_ts import machines
-from tms_ts.machines import ACCEPT_LIMIT, RECOVERY, Identity, Machines, SentGoal
+from tms_ts.machines import Identity, Machines
 from tms_ts.record import Replay
+from tms_ts.sent_goal import ACCEPT_LIMIT, RECOVERY, SentGoal
 
 RETRIES = 2
 

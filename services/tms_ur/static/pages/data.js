@@ -14,13 +14,13 @@ export function build(root) {
     heading("p_data"), make("p", { id: "lists_problem", className: "bad", role: "status" }),
     make("label", {}, make("span", { data: { t: "filter" } }), filter),
     make("p", { id: "none_records", hidden: true, data: { t: "none_records" } }),
-    table("list_records", ["record", "type", "age", "source", "values", "edit"]),
+    table("list_records", "p_data", ["record", "type", "age", "source", "values", "edit"]),
     make("section", { id: "editor", hidden: true }),
     make("section", { id: "values", hidden: true }, make("h2", { id: "values_title" }), button("close", "", () => { at("values").hidden = true; }),
-      make("p", { id: "none_values", data: { t: "none_values" } }), table("list_values", ["at_time", "source", "values"])),
+      make("p", { id: "none_values", data: { t: "none_values" } }), table("list_values", "record_history", ["at_time", "source", "values"])),
     heading("sensing"), make("p", { id: "none_sensing", hidden: true, data: { t: "none_sensing" } }),
-    table("list_sensing", ["input", "state", "topic", "hz", "age", "accepted", "refusals", "last_refusal", "record"]),
-    heading("edits"), table("list_changes", ["at_time", "who", "target"]),
+    table("list_sensing", "sensing", ["input", "state", "topic", "hz", "age", "accepted", "refusals", "last_refusal", "record"]),
+    heading("edits"), table("list_changes", "edits", ["at_time", "who", "target"]),
   );
   records = null;
   sensingAsked = 0;

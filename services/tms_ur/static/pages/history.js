@@ -18,12 +18,12 @@ export function build(root) {
   root.append(
     heading("history"), make("p", { id: "lists_problem", className: "bad", role: "status" }),
     make("p", { id: "none_history", hidden: true, data: { t: "none_history" } }),
-    table("list_history", ["task", "started_at", "state", "duration", "reason", "show"]),
+    table("list_history", "history", ["task", "started_at", "state", "duration", "reason", "show"]),
     make("section", { id: "past", hidden: true },
       make("h2", { id: "past_title" }), make("div", { id: "exports", className: "bar" }),
       make("h3", { data: { t: "receipts" } }), make("ul", { id: "receipts", className: "plain" }),
       make("p", {}, make("label", { className: "wide" }, make("span", { data: { t: "timeline" } }), slider), make("output", { id: "moment" })),
-      zoomBar(() => view), box, make("h3", { data: { t: "journal" } }), table("list_events", ["at_time", "event", "node", "text"])),
+      zoomBar(() => view), box, make("h3", { data: { t: "journal" } }), table("list_events", "journal", ["at_time", "event", "node", "text"])),
   );
   view = new TreeView(box);
   if (chosen !== null) {

@@ -12,7 +12,7 @@ export function build(root) {
     make("p", { id: "none_active", data: { t: "none_active" } }), make("ul", { id: "list_active", className: "rows" }),
     heading("tasks"), make("p", { id: "lists_problem", className: "bad", role: "status" }),
     make("p", { id: "none_tasks", hidden: true, data: { t: "none_tasks" } }),
-    table("list_tasks", ["task", "model", "description", "run"]), make("div", { id: "checked", role: "status" }),
+    table("list_tasks", "tasks", ["task", "model", "description", "run"]), make("div", { id: "checked", role: "status" }),
     heading("machines"), make("p", { id: "none_machines", hidden: true, data: { t: "none_machines" } }),
     make("div", { id: "list_machines", className: "cards" }),
   );

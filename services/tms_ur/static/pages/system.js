@@ -6,11 +6,11 @@ import { t, when } from "../strings.js";
 export function build(root) {
   root.append(
     heading("processes"), make("p", { id: "none_processes", hidden: true, data: { t: "none_processes" } }),
-    table("list_processes", ["process", "host", "state", "uptime", "cpu", "memory", "restarts", "log"]),
+    table("list_processes", "processes", ["process", "host", "state", "uptime", "cpu", "memory", "restarts", "log"]),
     make("section", { id: "log", hidden: true }, make("h2", { id: "log_title" }), button("close", "", () => { at("log").hidden = true; }),
       make("pre", { id: "log_text", tabIndex: 0 })),
     heading("audit"), make("p", { id: "none_audit", hidden: true, data: { t: "none_audit" } }),
-    table("list_audit", ["at_time", "who", "what", "target"]),
+    table("list_audit", "audit", ["at_time", "who", "what", "target"]),
   );
 }
 

@@ -21,7 +21,7 @@ export function build(root) {
       heading("file_text", "h3"), make("ol", { id: "source", className: "source", tabIndex: 0 })),
     heading("tasks"), make("p", { id: "lists_problem", className: "bad", role: "status" }),
     make("p", { id: "none_tasks", hidden: true, data: { t: "none_tasks" } }),
-    table("list_tasks", ["task", "model", "description", "started_at", "download"]),
+    table("list_tasks", "tasks", ["task", "model", "description", "started_at", "download"]),
   );
   given = found = null;
 }

@@ -1,0 +1,54 @@
+"""One goal of one leaf node, from its sending to its end."""
+
+import time
+
+from tms_core.ros import Call, Peer
+from tms_ts.record import Key
+from tms_ts.world import GoalState
+
+ACCEPT_LIMIT = 5.0  # s for a subtask to take or refuse a goal
+RECOVERY = 15.0  # s after a loss
+
+
+class SentGoal:
+    """One goal of one leaf; fields change on the executor thread and in `Machines.advance`."""
+
+    def __init__(self, machine: str, subtask: str, record: str, node: str) -> None:
+        self.machine, self.subtask, self.record, self.node = machine, subtask, record, node
+        self.name = f"/{machine}/{subtask}"
+        self.state = GoalState.SENDING
+        self.reason = ""
+        self.cancelled = False
+        self.begun = time.monotonic()
+        self.call: Call | None = None
+        self.peer: Peer | None = None
+        self.pid: int | None = None  # of the subtask's process when the goal was sent
+        self.not_before = 0.0  # monotonic time of the next attempt
+        self.waits_since: float | None = None  # for the database
+        self.lost_at = 0.0
+        self.losses = 0  # times that a process was lost during this goal
+
+    @property
+    def key(self) -> Key:
+        """What tells this goal from others of the same run."""
+        return self.node, self.machine, self.subtask, self.record
+
+    @property
+    def feedback(self) -> str:
+        return getattr(self.call.feedback, "status", "") if self.call is not None else ""
+
+    def unheard(self) -> bool:
+        """Whether the server has had its time to answer and has not."""
+        return self.call is not None and not self.call.accepted and time.monotonic() - self.begun > ACCEPT_LIMIT
+
+    def recovers(self) -> bool:
+        """Whether, after a loss, the processes below may not have found each other yet."""
+        return self.losses > 0 and time.monotonic() - self.lost_at < RECOVERY
+
+    def cancel(self) -> None:
+        """Ask for the end; `Machines` keeps watching until the goal is terminal."""
+        self.cancelled = True
+        if self.call is None:
+            self.state = GoalState.CANCELLED  # never sent, so nothing moves
+        elif self.peer is not None:
+            self.peer.cancel(self.call)
