@@ -6,6 +6,7 @@ from typing import Any, Protocol
 
 from tms_core.config import Site
 from tms_ts.bt import Tree
+from tms_ts.bt.errors import did_you_mean
 from tms_ts.bt.tree import LeafGoal, SharedValue
 
 
@@ -53,6 +54,8 @@ class Surroundings(Protocol):
     """What a tree meets outside."""
 
     def record(self, machine: str, record: str) -> Stored | None: ...
+
+    def names(self, machine: str) -> list[str]: ...  # of its records
 
     def served(self, machine: str, subtask: str) -> bool: ...  # whether another system has an action server for it
 
@@ -103,7 +106,10 @@ def _check_record(found: Findings, goal: LeafGoal, around: Surroundings) -> None
     where, name = f"line {goal.line}", f"{goal.machine}/{goal.record}"
     stored = around.record(goal.machine, goal.record)
     if stored is None:
-        found.errors.append(f"{where}: no record {name}; add it with `tms param set {name} --create ...`")
+        near = did_you_mean(goal.record, around.names(goal.machine))
+        hint = f"{near}; or add it" if near else "add it"
+        command = f"`tms param set {name} --create FIELD=VALUE`"
+        found.errors.append(f"{where}: no record {name}; {hint} with {command} or on the console's page Data")
         return
     unfit = around.unfit(goal.machine, goal.subtask, stored.values)
     if unfit:
@@ -127,7 +133,7 @@ def _check_shared(found: Findings, values: list[SharedValue], around: Surroundin
         where = f"line {value.line}"
         stored = around.record("", value.record)
         if stored is None:
-            text = f"no shared record {value.record}; add it with `tms param set /{value.record} --create ...`"
+            text = f"no shared record {value.record}; add it with `tms param set /{value.record} --create FIELD=VALUE`"
             found.warnings.append(f"{where}: {text}")
         elif not value.writes and value.field not in stored.values:
             found.warnings.append(f"{where}: shared record {value.record} has no field '{value.field}'")

@@ -61,6 +61,9 @@ class Around:
     def record(self, machine: str, record: str) -> Stored | None:
         return self._records.get((machine, record))
 
+    def names(self, machine: str) -> list[str]:
+        return [record for of, record in self._records if of == machine]
+
     def served(self, machine: str, subtask: str) -> bool:
         """Whether an action server of that name is in the ROS graph, whoever runs it; one may have begun just now."""
         status, count = f"/{machine}/{subtask}/_action/status", self._app.ros.node.count_publishers

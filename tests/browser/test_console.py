@@ -66,14 +66,21 @@ def store(page: Page) -> int:
     return int(found[1])
 
 
-def test_upload_fix_run_watch_stop_rearm_and_run_again(page: Page, address: str, idle: Mesh) -> None:
+def test_upload_fix_run_watch_stop_rearm_and_run_again(page: Page, address: str, idle: Mesh, tmp_path: Path) -> None:
     """From the console alone, as somebody does who has never seen it."""
     open_page(page, address, "tasks")
+    fixed = BROKEN.replace("<DigDeeper/>", "<AlwaysSuccess/>")
     upload(page, BROKEN)
     expect(page.locator("#findings li")).to_contain_text(["DigDeeper"])
     expect(page.locator("#source li.errors")).to_contain_text("<DigDeeper/>")  # the line itself is marked
-    fixed = BROKEN.replace("<DigDeeper/>", "<AlwaysSuccess/>")
-    upload(page, fixed)
+    wrong_record = BROKEN.replace("<DigDeeper/>", "<AlwaysSuccess/>").replace("release_angle", "release_angel")
+    file = tmp_path / "mine.xml"
+    for text, said in ((wrong_record, "did you mean 'release_angle'"), (fixed, "nothing to complain of")):
+        file.write_text(text)  # corrected where it is, and chosen again
+        with page.expect_file_chooser() as chooser:
+            page.locator("#file").click()
+        chooser.value.set_files(file)
+        expect(page.locator("#findings")).to_contain_text(said)
     expect(page.locator("#findings")).to_contain_text("nothing to complain of")
     page.locator("#compare").select_option("1")
     expect(page.locator("#difference .added").nth(1)).to_be_visible()
@@ -106,6 +113,36 @@ def test_upload_fix_run_watch_stop_rearm_and_run_again(page: Page, address: str,
     expect(page.locator("#list_active li")).to_have_count(1)
     page.get_by_role("button", name="Cancel run").click()
     expect(page.locator("#list_active li")).to_have_count(0)
+
+
+def test_the_stop_is_in_reach_everywhere(page: Page, address: str, idle: Mesh) -> None:
+    """On a small screen, wherever one has scrolled to, and above a question that waits for an answer."""
+    page.set_viewport_size({"width": 640, "height": 400})
+    for name in PAGES:
+        open_page(page, address, name)
+        page.mouse.wheel(0, 20_000)
+        expect(page.locator("#stop")).to_be_in_viewport(ratio=1)
+    page.set_viewport_size({"width": 390, "height": 844})
+    open_page(page, address, "tasks")
+    expect(page.locator("#pages a[href='#tasks']")).to_be_in_viewport(ratio=1)
+
+    idle.tms("run", str(SWINGS))
+    page.get_by_role("button", name="Remove task 1", exact=True).click()
+    page.locator("#dialog_stop").click()
+    expect(page.locator("#stop_report")).to_contain_text("zx200: seen to stand after")
+    expect(page.locator("#list_tasks")).to_contain_text("1")  # and nothing was removed
+
+
+def test_one_machine_is_stopped(page: Page, address: str, idle: Mesh) -> None:
+    idle.tms("run", str(SWINGS))
+    open_page(page, address, "run")
+    page.get_by_role("button", name="Software stop of zx200", exact=True).click()
+    expect(page.locator("#stop_report")).to_contain_text("zx200: seen to stand after")
+    expect(page.locator("#message")).to_contain_text("Cancelled after")  # how the run has ended
+    page.locator("#message a").click()
+    expect(page.locator("#receipts li").first).to_contain_text(re.compile(r"^\d\d:\d\d:\d\d\.\d zx200 stood"))
+    page.reload()  # the run has an address of its own
+    expect(page.locator("#receipts li").first).to_contain_text("zx200 stood")
 
 
 def test_history_replays_a_stopped_run(page: Page, address: str, idle: Mesh) -> None:
@@ -189,14 +226,24 @@ def test_the_panel_starts_and_stops(page: Page, address: str, idle: Mesh) -> Non
         assert box["height"] >= 150, f"{name} is small for a glove"
 
 
-def test_a_lost_server_is_shown_and_heals(page: Page, address: str, mesh: Mesh) -> None:
+def test_a_lost_server_is_shown_and_heals(page: Page, address: str, idle: Mesh) -> None:
     open_page(page, address, "run")
     lost = page.locator("#lost")
     expect(lost).to_be_hidden()
-    mesh.tms("stop-process", "tms:ur")
+    idle.tms("stop-process", "tms:ur")
     expect(lost).to_be_visible()
-    mesh.tms("start", "tms:ur")
+    machine = page.locator("[data-machine=zx200]")
+    expect(machine).to_contain_text("No word")
+    age = machine.locator("[data-part=age]")
+    before = age.inner_text()
+    expect(age).not_to_have_text(before)  # it grows
+    page.locator("#stop").click()
+    expect(page.locator("#stop_report")).to_contain_text("NOT STOPPED")
+    expect(page.locator("#stop_report")).to_contain_text("emergency stop")
+    idle.tms("start", "tms:ur")
     expect(lost).to_be_hidden()
+    expect(page.locator("#stop_report")).to_contain_text("zx200: seen to stand")  # it was asked for again
+    rearm(page)
     expect(page.locator("#list_tasks tr").first).to_be_visible()
 
 
@@ -263,7 +310,9 @@ def test_a_record_is_edited_with_its_type(page: Page, address: str, mesh: Mesh) 
     page.get_by_role("button", name="Edit zx200/release_angle").click()
     page.locator("#editor input").first.fill("far")
     page.get_by_role("button", name="Save").click()
-    expect(page.locator("#message")).to_have_class("bad")
+    problem = page.locator("#editor_problem")
+    expect(problem).to_have_text("target_angle: 'far' is no decimal number; write it like -1.05")
+    expect(problem).to_be_in_viewport()
     page.locator("#editor input").first.fill(old)
     page.get_by_role("button", name="Save").click()
     expect(page.locator("#editor")).to_be_hidden()
@@ -282,6 +331,24 @@ def test_a_record_is_edited_with_its_type(page: Page, address: str, mesh: Mesh) 
     assert found.violations_count == 0, found.generate_report()
     after = json.loads(mesh.tms("param", "get", "zx200/release_angle", "--json").stdout)
     assert after["values"] == before["values"] if "values" in before else True
+
+
+def test_a_record_is_made(page: Page, address: str, mesh: Mesh) -> None:
+    open_page(page, address, "data")
+    page.get_by_role("button", name="New record").click()
+    page.locator("#new_model").fill("zx200")
+    page.locator("#new_name").fill("initial_pose")
+    field = page.locator("#new_fields .new_field").first
+    field.locator("input").first.fill("height")
+    field.locator("input").last.fill("1.5")
+    page.get_by_role("button", name="Save").click()
+    expect(page.locator("#editor_problem")).to_contain_text("zx200/initial_pose exists already")
+    page.locator("#new_name").fill("made_here")
+    page.get_by_role("button", name="Save").click()
+    expect(page.locator("#message")).to_have_text("zx200/made_here was saved.")
+    stored = json.loads(mesh.tms("param", "get", "zx200/made_here", "--json").stdout)
+    assert (stored["type"], stored["values"]) == ("static", {"height": 1.5})
+    mesh.tms("param", "rm", "zx200/made_here", "--yes")
 
 
 def test_processes_logs_and_restart(page: Page, address: str, mesh: Mesh) -> None:

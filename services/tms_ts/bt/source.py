@@ -91,7 +91,7 @@ def parse(data: bytes | str, *, file: str = "", limit: int = MAX_BYTES) -> Sourc
     try:
         text = xml_text.decode(data, limit)
         if "<" not in text:
-            raise TreeError("this is not XML", hint="a tree begins with <root ...>; give a Path to load a file")
+            raise TreeError("this is not XML", hint="a tree begins with <root ...>: choose a file that Groot saved")
         root = xml_text.elements(text, comments=False)  # well-formed from here on, so the patterns take linear time
         marked, marks = _keep_breaks(text)
         if marked is not text:

@@ -1,5 +1,5 @@
 // The console's frame: login, pages, connection, questions, and the software stop that is always in reach.
-import { at, keep, make, relabelAll, say, setText } from "./dom.js";
+import { at, duration, keep, make, relabelAll, say, setText } from "./dom.js";
 import * as data from "./pages/data.js";
 import * as history from "./pages/history.js";
 import * as run from "./pages/run.js";
@@ -26,6 +26,7 @@ function open() {
     at("page").replaceChildren();
     at("page").dataset.page = next;
     PAGES[next].build(at("page"));
+    say(""); // it was of another page
     translatePage();
   }
   for (const link of at("pages").children) {
@@ -41,11 +42,23 @@ function open() {
 function heard(now) {
   const ids = (one) => one?.runs.map((each) => `${each.run_id} ${each.state}`).join();
   const changed = state !== null && ids(state) !== ids(now);
+  const ended = state === null ? [] : state.runs.filter((one) => !now.runs.some((other) => other.run_id === one.run_id));
   state = now;
+  ended.forEach((run) => tellEnd(run.run_id));
   keep(at("questions"), now.questions, (one) => one.id, buildQuestion, fillQuestion);
   PAGES[shown].update(now);
   if (changed) {
     PAGES[shown].load?.();
+  }
+}
+
+/** How a run has ended, on whichever page one is. */
+async function tellEnd(id) {
+  const run = (await ask("/api/runs?limit=50").catch(() => [])).find((one) => one.run_id === id);
+  if (run?.ended_at) {
+    const seconds = (new Date(run.ended_at) - new Date(run.started_at)) / 1000;
+    say(t("run_ended", { task: run.task_id, state: t(run.state), duration: duration(seconds), reason: run.reason }), run.state !== "success");
+    at("message").append(" ", make("a", { className: "button", href: `#history/${encodeURIComponent(id)}` }, t("p_history")));
   }
 }
 
@@ -102,6 +115,7 @@ at("login").addEventListener("submit", async (event) => {
 at("logout").addEventListener("click", () => ask("/api/logout", {}).then(() => location.reload()));
 at("language").addEventListener("click", switchLanguage);
 at("stop").addEventListener("click", () => stop());
+at("dialog").addEventListener("close", () => at("dialog").returnValue === "stop" && stop()); // it covers the other one
 at("skip").addEventListener("click", (event) => {
   event.preventDefault(); // the hash is the page's name
   at("main").focus();

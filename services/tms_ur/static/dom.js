@@ -61,8 +61,10 @@ export function setText(element, text) {
   }
 }
 
+export const mark = (state) => MARKS[state] ?? "!";
+
 export function setBadge(element, state) {
-  setText(element, `${MARKS[state] ?? "!"} ${t(state)}`);
+  setText(element, `${mark(state)} ${t(state)}`);
   element.className = `badge ${GOOD.has(state) ? "good" : CALM.has(state) ? "calm" : "bad"}`;
 }
 
@@ -138,6 +140,7 @@ export async function once(element, work) {
     return;
   }
   element.disabled = true;
+  say("");
   try {
     const text = await work();
     if (text) {
@@ -147,5 +150,8 @@ export async function once(element, work) {
     say(error.message, true);
   } finally {
     element.disabled = false;
+    if (document.activeElement === document.body) {
+      element.focus(); // a disabled button has lost it
+    }
   }
 }

@@ -2,26 +2,28 @@
 import { t } from "./strings.js";
 
 const SILENCE = 1700; // ms without a state: the server sends one every 0.7 s at least
+const LIMIT = 60_000; // ms for an answer
 const RETRY = 1000; // ms between attempts to connect
 const PROLONG = 60_000; // ms; an open console is in use, so its session must not end
 const MOST_TREES = 100;
 
-/** An answer of the API; throws an Error whose message people can read. */
-export async function ask(path, body) {
-  const post = { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) };
+/** An answer of the API within `limit` ms; throws an Error whose message people can read. */
+export async function ask(path, body, limit = LIMIT) {
+  const signal = AbortSignal.timeout(limit);
+  const post = { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body), signal };
   let response;
   let answer;
   try {
-    response = await fetch(path, body === undefined ? {} : post);
+    response = await fetch(path, body === undefined ? { signal } : post);
     answer = await response.json();
   } catch {
-    throw new Error(t("unreachable"));
+    throw Object.assign(new Error(t("unreachable")), { unreachable: true });
   }
   if (response.status === 401 && path !== "/api/login") {
     location.reload(); // the session is over: the page begins with the login
   }
   if (!response.ok) {
-    throw new Error(answer.message);
+    throw Object.assign(new Error(answer.message), { code: answer.code });
   }
   return answer;
 }
@@ -33,6 +35,7 @@ export function watch(onState, onLink) {
   let heard = performance.now();
   let tried = -RETRY;
   let prolonged = performance.now();
+  let last = null;
 
   function link(now) {
     if (connected !== now) {
@@ -48,7 +51,8 @@ export function watch(onState, onLink) {
     source.addEventListener("state", (event) => {
       heard = performance.now();
       link(true);
-      onState(JSON.parse(event.data));
+      last = JSON.parse(event.data);
+      onState(last);
     });
     source.addEventListener("error", () => link(false));
   }
@@ -62,11 +66,20 @@ export function watch(onState, onLink) {
     );
   }
 
+  // Without the server nobody here knows what a machine does, and the age of its data grows.
+  function grow() {
+    const age = (machine) => (machine.joint_age === null ? null : machine.joint_age + (performance.now() - heard) / 1000);
+    onState({ ...last, machines: last.machines.map((machine) => ({ ...machine, state: "silent", joint_age: age(machine) })) });
+  }
+
   // EventSource retries by itself only after some kinds of loss, and never notices silence.
   function check() {
     const now = performance.now();
     if (now - heard > SILENCE) {
       link(false);
+    }
+    if (connected === false && last !== null) {
+      grow();
     }
     if (connected === false && now - tried > RETRY) {
       connect();

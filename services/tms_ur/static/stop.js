@@ -3,14 +3,36 @@ import { at, setText } from "./dom.js";
 import { ask } from "./server.js";
 import { t } from "./strings.js";
 
+const AGAIN = 1000; // ms between attempts while the server cannot be reached
+const LONGEST = 60_000; // ms of attempts: nobody expects a stop later than that
+const ANSWER = 12_000; // ms; a gateway says after 8 s at the latest what it saw
+const SLOW = 3000; // ms; most machines stand by then
+
 export async function stop(machine = "") {
+  const begun = performance.now();
   report(t("stopping_now"), true);
+  const slow = setTimeout(() => report(t("stop_slow"), true), SLOW);
+  let error = await attempt(machine);
+  clearTimeout(slow);
+  while (error?.unreachable && performance.now() - begun < LONGEST) {
+    report(`${t("not_stopped", { reason: error.message })} ${t("stop_again")}`, true);
+    await new Promise((resolve) => { setTimeout(resolve, AGAIN); });
+    error = await attempt(machine);
+  }
+  if (error) {
+    report(`${t("not_stopped", { reason: error.message })}`, true);
+  }
+}
+
+/** One request; tells what was seen, or returns why nothing was. */
+async function attempt(machine) {
   try {
-    const receipts = await ask("/api/stop", { machine });
+    const receipts = await ask("/api/stop", { machine }, ANSWER);
     const told = receipts.map((one) => t(one.confirmed ? "stood" : "not_stood", one));
     report(`${told.join(" ")} ${t("stop_note")}`, receipts.some((one) => !one.confirmed));
+    return null;
   } catch (error) {
-    report(error.message, true);
+    return error;
   }
 }
 

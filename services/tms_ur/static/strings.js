@@ -25,9 +25,11 @@ export function when(iso) {
   return iso ? new Date(iso).toLocaleString(language === "ja" ? "ja-JP" : "en-GB") : "-";
 }
 
+const PARTS = { hour: "2-digit", minute: "2-digit", second: "2-digit", fractionalSecondDigits: 1 };
+
 /** Time of day with tenths, for events. */
 export function clock(iso) {
-  return iso ? new Date(iso).toLocaleTimeString(language === "ja" ? "ja-JP" : "en-GB", { fractionalSecondDigits: 1 }) : "-";
+  return iso ? new Date(iso).toLocaleTimeString(language === "ja" ? "ja-JP" : "en-GB", PARTS) : "-";
 }
 
 /** Texts that stand in the page itself: elements with data-t. */

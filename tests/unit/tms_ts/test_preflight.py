@@ -44,6 +44,9 @@ class Around:
     def record(self, machine: str, record: str) -> Stored | None:
         return self.records.get((machine, record))
 
+    def names(self, machine: str) -> list[str]:
+        return [record for of, record in self.records if of == machine]
+
     def served(self, machine: str, subtask: str) -> bool:
         return False
 
@@ -64,6 +67,11 @@ class Around:
 
 
 GOOD = ("zx200", "pose", "subtask_zx200_change_pose")
+
+
+def test_a_record_that_is_nearly_there_is_named(site: Site) -> None:
+    found = preflight(tree(("zx200", "poze", "subtask_zx200_change_pose")), site, Around())
+    assert found.errors[0].startswith("line 2: no record zx200/poze; did you mean 'pose'?; or add it with")
 
 
 def test_a_good_tree(site: Site) -> None:

@@ -40,8 +40,8 @@ def used() -> set[str]:
     for text in CODE.values():
         found |= set(re.findall(r'\bt\("(\w+)"', text)) | set(re.findall(r'\b(?:t|label): "(\w+)"', text))
         found |= set(re.findall(r'\bheading\("(\w+)"', text)) | set(re.findall(r'\bbutton\("(\w+)"', text))
-        for heads in re.findall(r'\btable\("\w+", \[([^\]]*)\]', text):
-            found |= set(re.findall(r'"(\w+)"', heads))
+        for label, heads in re.findall(r'\btable\("\w+", ("\w+"), \[([^\]]*)\]', text):
+            found |= set(re.findall(r'"(\w+)"', label + heads))
     return found
 
 

@@ -13,9 +13,10 @@ export function build(root) {
   root.append(
     heading("p_data"), make("p", { id: "lists_problem", className: "bad", role: "status" }),
     make("label", {}, make("span", { data: { t: "filter" } }), filter),
+    button("new_record", "", () => openNew()),
     make("p", { id: "none_records", hidden: true, data: { t: "none_records" } }),
-    table("list_records", "p_data", ["record", "type", "age", "source", "values", "edit"]),
     make("section", { id: "editor", hidden: true }),
+    table("list_records", "p_data", ["record", "type", "age", "source", "values", "commands"]),
     make("section", { id: "values", hidden: true }, make("h2", { id: "values_title" }), button("close", "", () => { at("values").hidden = true; }),
       make("p", { id: "none_values", data: { t: "none_values" } }), table("list_values", "record_history", ["at_time", "source", "values"])),
     heading("sensing"), make("p", { id: "none_sensing", hidden: true, data: { t: "none_sensing" } }),
@@ -81,9 +82,16 @@ function fillRow(row, record) {
   setText(part(row, "values"), Object.entries(record.values).map(([name, value]) => `${name}: ${written(value, record.types[name])}`).join(", "));
 }
 
-function written(value, type) {
+/** A value as it is stored. */
+function exact(value, type) {
   const one = (number) => (type?.startsWith("double") && Number.isInteger(number) ? number.toFixed(1) : String(number));
   return Array.isArray(value) ? `[${value.map(one).join(", ")}]` : one(value);
+}
+
+/** A value to look at: six digits tell everything that a machine can do. */
+function written(value, type) {
+  const one = (number) => (type?.startsWith("double") && typeof number === "number" ? Number(number.toPrecision(6)) : number);
+  return exact(Array.isArray(value) ? value.map(one) : one(value), type);
 }
 
 // history and sensing
@@ -134,38 +142,80 @@ function fillInput(row, one) {
 
 // editing
 
+const TYPES = ["double", "int", "bool", "string", "double[]", "int[]", "bool[]", "string[]"];
+const EXAMPLES = { double: "-1.05", int: "3", bool: "true", string: "", "double[]": "[1.0, -2.5]", "int[]": "[1, 2]", "bool[]": "[true]", "string[]": "[\"a\"]" };
+
 function openEditor(name) {
   const record = records.find((one) => nameOf(one) === name);
   const fields = Object.keys(record.values).map((field) => {
-    const input = make("input", { id: `field_${field}`, value: written(record.values[field], record.types[field]), data: { field } });
-    return make("label", {}, make("span", {}, `${field} (${record.types[field]})`), input);
+    const input = make("input", { id: `field_${field}`, value: exact(record.values[field], record.types[field]), data: { field, type: record.types[field] } });
+    input.dataset.before = input.value;
+    return make("label", {}, make("span", {}, `${field} (${t(`type_${record.types[field]}`)})`), input);
   });
-  const save = (event) => once(event.currentTarget, () => saveRecord(record));
-  at("editor").replaceChildren(make("h2", {}, t("edit_record", { name })), ...fields,
-    make("div", { className: "bar" }, button("save", "go", save), button("close", "", () => { at("editor").hidden = true; })));
+  showEditor(t("edit_record", { name }), fields, () => saveFields(record));
+}
+
+function openNew() {
+  const model = make("input", { id: "new_model", maxLength: 64 });
+  const record = make("input", { id: "new_name", maxLength: 100 });
+  const fields = make("div", { id: "new_fields" });
+  const add = () => fields.append(make("div", { className: "bar new_field" }, make("input", { ariaLabel: t("field_name"), placeholder: t("field_name"), maxLength: 100 }),
+    make("select", { ariaLabel: t("type") }, ...TYPES.map((type) => make("option", { value: type }, t(`type_${type}`)))), make("input", { ariaLabel: t("values"), placeholder: "-1.05" })));
+  add();
+  showEditor(t("new_record"), [make("label", {}, make("span", {}, t("model")), model), make("label", {}, make("span", {}, t("record")), record), fields, button("add_field", "", add)], saveNew);
+}
+
+function showEditor(title, inner, save) {
+  at("editor").replaceChildren(make("h2", {}, title), ...inner, make("p", { id: "editor_problem", className: "bad", role: "alert" }),
+    make("div", { className: "bar" }, button("save", "go", (event) => once(event.currentTarget, () => saved(save))), button("close", "", () => { at("editor").hidden = true; })));
   at("editor").hidden = false;
+  at("editor").scrollIntoView();
   at("editor").querySelector("input")?.focus();
 }
 
-async function saveRecord(record) {
-  const inputs = [...at("editor").querySelectorAll("[data-field]")];
-  const changed = inputs.filter((input) => input.value !== written(record.values[input.dataset.field], record.types[input.dataset.field]));
-  const fields = changed.map((input) => ({ name: input.dataset.field, type: record.types[input.dataset.field],
-    value: parsed(input.value, record.types[input.dataset.field], input.dataset.field) }));
-  await ask("/api/parameters", { model_name: record.model_name, record_name: record.record_name, fields });
+/** What is wrong is said where the person looks. */
+async function saved(save) {
+  setText(at("editor_problem"), "");
+  let name;
+  try {
+    name = await save();
+  } catch (error) {
+    setText(at("editor_problem"), error.message);
+    return "";
+  }
   at("editor").hidden = true;
   await load();
-  return t("saved", { name: nameOf(record) });
+  return t("saved", { name });
+}
+
+async function saveFields(record) {
+  const changed = [...at("editor").querySelectorAll("[data-field]")].filter((input) => input.value !== input.dataset.before);
+  const fields = changed.map((input) => typed(input.dataset.field, input.dataset.type, input.value));
+  await ask("/api/parameters", { model_name: record.model_name, record_name: record.record_name, fields });
+  return nameOf(record);
+}
+
+async function saveNew() {
+  const fields = [...at("new_fields").children].map((row) => typed(...[...row.children].map((one) => one.value.trim())));
+  const record = { model_name: at("new_model").value.trim(), record_name: at("new_name").value.trim() };
+  if (records?.some((one) => nameOf(one) === nameOf(record))) {
+    throw new Error(t("record_there", { name: nameOf(record) }));
+  }
+  await ask("/api/parameters", { ...record, fields, create: true, type: "static" });
+  return nameOf(record);
 }
 
 /** What a person typed, as the field's type wants it; the server looks at it again. */
-function parsed(text, type, field) {
+function typed(name, type, text) {
+  if (name === "") {
+    throw new Error(t("field_nameless"));
+  }
   if (type === "string") {
-    return text;
+    return { name, type, value: text };
   }
   try {
-    return JSON.parse(text);
+    return { name, type, value: JSON.parse(text) };
   } catch {
-    throw new Error(`${field}: '${text}' (${type})`);
+    throw new Error(t("bad_value", { field: name, text, type: t(`type_${type}`), example: EXAMPLES[type] }));
   }
 }

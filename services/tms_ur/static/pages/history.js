@@ -46,9 +46,16 @@ export async function load() {
 
 export function update() {}
 
+/** A run by its own address, so that a link or a reload finds it again. */
+export function open([run]) {
+  if (run !== undefined && (run !== chosen || at("past").hidden)) {
+    showRun(run);
+  }
+}
+
 function buildRun(run) {
   return make("tr", {}, ...parts("td", ["task", "started"]), make("td", {}, ...parts("span", ["state"])), ...parts("td", ["duration", "reason"]),
-    make("td", {}, button("show", "", () => showRun(run.run_id), ["show_run", { id: run.run_id }])));
+    make("td", {}, button("show", "", () => show(run.run_id), ["show_run", { id: run.run_id }])));
 }
 
 function fillRun(row, run) {
@@ -58,10 +65,25 @@ function fillRun(row, run) {
   const seconds = run.ended_at && (new Date(run.ended_at) - new Date(run.started_at)) / 1000;
   setText(part(row, "duration"), seconds === null ? "-" : duration(seconds));
   setText(part(row, "reason"), run.reason);
+  markChosen(row);
+}
+
+function show(id) {
+  const hash = `#history/${encodeURIComponent(id)}`;
+  if (location.hash === hash) {
+    showRun(id);
+  } else {
+    location.hash = hash;
+  }
+}
+
+function markChosen(row) {
+  row.ariaCurrent = String(row.dataset.key === chosen);
 }
 
 async function showRun(id) {
   chosen = id;
+  [...at("list_history").children].forEach(markChosen);
   try {
     journal = await allEvents(id);
   } catch (error) {

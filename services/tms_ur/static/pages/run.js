@@ -5,13 +5,14 @@ import { stop } from "../stop.js";
 import { t } from "../strings.js";
 
 let tasks = null;
+let latched = []; // names of machines that somebody must re-arm
 
 export function build(root) {
   root.append(
     heading("active"), make("p", { id: "scheduler", className: "bad", hidden: true, data: { t: "scheduler_silent" } }),
     make("p", { id: "none_active", data: { t: "none_active" } }), make("ul", { id: "list_active", className: "rows" }),
     heading("tasks"), make("p", { id: "lists_problem", className: "bad", role: "status" }),
-    make("p", { id: "none_tasks", hidden: true, data: { t: "none_tasks" } }),
+    make("p", { id: "none_tasks", hidden: true }, make("a", { className: "button", href: "#tasks", data: { t: "none_tasks" } })),
     table("list_tasks", "tasks", ["task", "model", "description", "run"]), make("div", { id: "checked", role: "status" }),
     heading("machines"), make("p", { id: "none_machines", hidden: true, data: { t: "none_machines" } }),
     make("div", { id: "list_machines", className: "cards" }),
@@ -36,6 +37,7 @@ export function update(state) {
   at("scheduler").hidden = state.scheduler.alive;
   at("none_active").hidden = state.runs.length > 0;
   keep(at("list_active"), state.runs, (run) => run.run_id, buildActive, fillActive);
+  latched = state.machines.filter((machine) => machine.latch).map((machine) => machine.name);
   at("none_machines").hidden = state.machines.length > 0;
   keep(at("list_machines"), state.machines, (machine) => machine.name, buildMachine, fillMachine);
 }
@@ -65,8 +67,12 @@ function fillActive(row, run) {
 function buildTask(task) {
   const start = (event) => once(event.currentTarget, async () => {
     say(t("starting", { id: task.id }));
-    const answer = await ask("/api/runs", { task_id: task.id });
-    return t("started", { id: answer.run_id });
+    try {
+      const answer = await ask("/api/runs", { task_id: task.id });
+      return t("started", { id: answer.run_id });
+    } catch (error) {
+      throw latched.length > 0 ? new Error(`${error.message} ${t("press_rearm", { names: latched.join(", ") })}`) : error;
+    }
   });
   const check = (event) => once(event.currentTarget, () => checkTask(task.id));
   return make("tr", {}, ...parts("td", ["id", "model", "description"]), make("td", { className: "bar" },
@@ -102,14 +108,13 @@ export function showFindings(box, found) {
 
 function buildMachine(machine) {
   const name = machine.name;
-  const stop = (event) => once(event.currentTarget, () => stop(name));
   const rearm = (event) => once(event.currentTarget, () => rearmMachine(name));
   const head = make("tr", {}, ...["joint", "angle_rad", "angle_deg"].map((key) => make("th", { scope: "col", data: { t: key } }, t(key))));
   const again = button("rearm", "go", rearm, ["rearm_machine", { name }]);
   again.dataset.part = "rearm";
   return make("article", { className: "card", data: { machine: name } }, ...parts("h3", ["name"]), ...parts("span", ["state", "armed"]),
     ...parts("p", ["latch", "reason", "hold", "goal", "age"]),
-    make("div", { className: "bar" }, again, button("stop_one", "stop", stop, ["stop_machine", { name }])),
+    make("div", { className: "bar" }, again, button("stop_one", "stop", () => stop(name), ["stop_machine", { name }])),
     make("table", {}, make("thead", {}, head), make("tbody", { data: { part: "joints" } })));
 }
 
@@ -121,7 +126,7 @@ function fillMachine(card, machine) {
   setText(part(card, "latch"), machine.latch ? t("why_latched", { cause: machine.latch }) : "");
   setText(part(card, "hold"), machine.hold);
   setText(part(card, "reason"), machine.reason);
-  setText(part(card, "goal"), machine.goal ? `${t("goal")}: ${machine.goal} (${machine.owner})` : "");
+  setText(part(card, "goal"), machine.goal ? `${t("goal")}: ${machine.owner}` : "");
   setText(part(card, "age"), `${t("data_age")}: ${duration(machine.joint_age)}`);
   part(card, "rearm").hidden = !machine.latch;
   keep(part(card, "joints"), machine.joints, (joint) => joint.name,

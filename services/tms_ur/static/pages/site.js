@@ -1,6 +1,6 @@
 // Site: a map with machines and goal poses, and the arms from the side.
 import { buildArm, fillArm } from "../arm.js";
-import { at, change, draw, heading, keep, make, setText } from "../dom.js";
+import { at, change, draw, heading, keep, make, mark, number, part, parts, setBadge, setText } from "../dom.js";
 import { ask, treeOf } from "../server.js";
 import { t } from "../strings.js";
 
@@ -45,8 +45,14 @@ export function update(state) {
   const points = goals.filter((goal) => wanted.has(goal.record) && state.machines.some((machine) => machine.name === goal.model));
   drawMap(placed, points);
   const armed = state.machines.filter((machine) => shapes[machine.name]?.arm.length > 1 && machine.joints.length > 0);
-  keep(at("arms"), armed, (machine) => machine.name, (machine) => make("figure", { className: "card" }, buildArm(machine), make("figcaption", {}, machine.name)),
-    (figure, machine) => fillArm(figure.firstChild, machine, shapes[machine.name]));
+  keep(at("arms"), armed, (machine) => machine.name, (machine) => make("figure", { className: "card" }, buildArm(machine), make("figcaption", {}, ...parts("strong", ["name"]), ...parts("span", ["state", "joints"]))), fillFigure);
+}
+
+function fillFigure(figure, machine) {
+  fillArm(figure.firstChild, machine, shapes[machine.name]);
+  setText(part(figure, "name"), machine.name);
+  setBadge(part(figure, "state"), machine.state);
+  setText(part(figure, "joints"), machine.joints.map((joint) => `${joint.name} ${number((joint.position * 180) / Math.PI, 1)}°`).join(", "));
 }
 
 /** Record of the leaf that works now, as its port says. */
@@ -95,6 +101,6 @@ function machineMark(machine) {
     draw("g", { class: `machine ${machine.state}`, "data-machine": machine.name,
       transform: `translate(${x} ${-y}) rotate(${(-yaw * 180) / Math.PI})` }, ...boxes,
     draw("path", { class: "heading", d: "M0 0 H4 M3 -0.7 L4 0 L3 0.7", transform: `rotate(${(-swing * 180) / Math.PI})` })),
-    draw("text", { class: "name", x: x + 1, y: -y - 3.4 }, machine.name),
+    draw("text", { class: "name", x: x + 1, y: -y - 3.4 }, `${machine.name} ${mark(machine.state)}`),
   ];
 }

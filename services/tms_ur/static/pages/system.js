@@ -3,6 +3,8 @@ import { at, button, confirmed, duration, heading, keep, make, once, part, parts
 import { ask } from "../server.js";
 import { t, when } from "../strings.js";
 
+let running = 0; // runs
+
 export function build(root) {
   root.append(
     heading("processes"), make("p", { id: "none_processes", hidden: true, data: { t: "none_processes" } }),
@@ -28,12 +30,13 @@ export async function load() {
   keep(at("list_audit"), audit, (event) => event.number, () => make("tr", {}, ...parts("td", ["time", "who", "what", "target"])), (row, event) => {
     setText(part(row, "time"), when(event.stamp));
     setText(part(row, "who"), event.text);
-    setText(part(row, "what"), event.kind);
+    setText(part(row, "what"), t(`did_${event.kind}`));
     setText(part(row, "target"), event.node);
   });
 }
 
 export function update(state) {
+  running = state.runs.length;
   const rows = state.hosts.flatMap((host) => host.processes.map((process) => ({ host: host.name, process })));
   at("none_processes").hidden = rows.length > 0;
   keep(at("list_processes"), rows, ({ host, process }) => `${host}/${process.name}`, buildProcess, fillProcess);
@@ -42,7 +45,8 @@ export function update(state) {
 function buildProcess({ process }) {
   const name = process.name;
   const restart = (event) => once(event.currentTarget, async () => {
-    if (!(await confirmed(t("restart_ask", { name })))) {
+    const question = t("restart_ask", { name }) + (running > 0 ? ` ${t("restart_running", { running })}` : "");
+    if (!(await confirmed(question))) {
       return "";
     }
     await ask(`/api/processes/${encodeURIComponent(name)}/restart`, {});

@@ -4,24 +4,28 @@ import { ask } from "../server.js";
 import { t, when } from "../strings.js";
 import { showFindings } from "./run.js";
 
+const MOST_BYTES = 5_000_000; // as the server has it
+const MOST_LINES = 2000; // that are shown
+const MOST_WIDE = 500; // characters of a line
 let given = null; // { name, xml } of the chosen file
 let found = null; // its check
 let stored = [];
 
 export function build(root) {
-  const file = make("input", { type: "file", id: "file", accept: ".xml,text/xml", onchange: read });
+  const file = make("input", { type: "file", id: "file", accept: ".xml,text/xml", onchange: () => read(), onclick: () => { at("file").value = ""; } });
   const compare = make("select", { id: "compare", onchange: (event) => once(event.currentTarget, showDifference) });
   const store = button("store", "go", (event) => once(event.currentTarget, storeTask));
   store.id = "store";
   root.append(
     heading("upload"), make("label", {}, make("span", { data: { t: "upload" } }), file), make("div", { id: "findings", role: "status" }),
     make("section", { id: "chosen", hidden: true },
+      button("check_again", "", (event) => once(event.currentTarget, checkAgain)),
       make("label", {}, make("span", { data: { t: "description" } }), make("input", { id: "description", maxLength: 1000 })), store,
       make("label", {}, make("span", { data: { t: "compare" } }), compare), make("pre", { id: "difference", tabIndex: 0, hidden: true }),
       heading("file_text", "h3"), make("ol", { id: "source", className: "source", tabIndex: 0 })),
     heading("tasks"), make("p", { id: "lists_problem", className: "bad", role: "status" }),
-    make("p", { id: "none_tasks", hidden: true, data: { t: "none_tasks" } }),
-    table("list_tasks", "tasks", ["task", "model", "description", "started_at", "download"]),
+    make("p", { id: "none_tasks", hidden: true, data: { t: "none_tasks_here" } }),
+    table("list_tasks", "tasks", ["task", "model", "description", "added_at", "commands"]),
   );
   given = found = null;
 }
@@ -54,8 +58,19 @@ async function read() {
   if (file === undefined) {
     return;
   }
+  say("");
+  given = found = null;
+  at("chosen").hidden = true;
+  if (file.size > MOST_BYTES) {
+    at("findings").replaceChildren(make("p", { className: "bad" }, t("too_large", { name: file.name })));
+    return;
+  }
   given = { name: file.name, xml: await file.text() };
   at("chosen").hidden = false;
+  await checkAgain();
+}
+
+async function checkAgain() {
   try {
     found = await ask("/api/tasks/check", { xml: given.xml });
     showFindings(at("findings"), found);
@@ -65,9 +80,10 @@ async function read() {
   }
   const bad = new Set(found?.errors.map((one) => one.line) ?? []);
   const warned = new Set(found?.warnings.map((one) => one.line) ?? []);
-  at("source").replaceChildren(...given.xml.split("\n").map((line, index) => (
-    make("li", { className: bad.has(index + 1) ? "errors" : warned.has(index + 1) ? "warnings" : "" }, line || " "))));
-  await showDifference();
+  at("store").disabled = found === null; // it cannot be read at all
+  at("source").replaceChildren(...given.xml.split("\n", MOST_LINES).map((line, index) => (
+    make("li", { className: bad.has(index + 1) ? "errors" : warned.has(index + 1) ? "warnings" : "" }, line.slice(0, MOST_WIDE) || " "))));
+  return showDifference();
 }
 
 async function storeTask() {

@@ -14,7 +14,7 @@ export function build(root) {
     heading("p_tree"), make("div", { id: "tree_runs", className: "bar", role: "group", data: { label: "choose_run" } }),
     make("p", { id: "no_tree", data: { t: "no_tree" } }),
     make("div", { id: "tree_why", className: "why", role: "status", hidden: true }, make("span", { id: "tree_state" }), " ",
-      make("strong", { data: { t: "why" } }), ": ", make("span", { id: "tree_reason" })),
+      make("strong", { id: "tree_why_head" }), ": ", make("span", { id: "tree_reason" })),
     zoomBar(() => view), box,
   );
   view = new TreeView(box);
@@ -41,6 +41,10 @@ export function update(state) {
   const tree = run === undefined ? null : treeOf(run.run_id);
   at("no_tree").hidden = run !== undefined || view.tree !== null;
   at("tree_why").hidden = run === undefined;
+  if (run !== undefined) {
+    const moving = state.machines.some((machine) => run.machines.includes(machine.name) && machine.state === "moving");
+    setText(at("tree_why_head"), t(moving ? "doing" : "why"));
+  }
   if (tree === null) {
     return; // the last one stays on the screen
   }
