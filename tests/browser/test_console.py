@@ -348,7 +348,7 @@ def test_a_record_is_made(page: Page, address: str, mesh: Mesh) -> None:
     expect(page.locator("#message")).to_have_text("zx200/made_here was saved.")
     stored = json.loads(mesh.tms("param", "get", "zx200/made_here", "--json").stdout)
     assert (stored["type"], stored["values"]) == ("static", {"height": 1.5})
-    mesh.tms("param", "rm", "zx200/made_here", "--yes")
+    mesh.tms("param", "rm", "zx200/made_here")
 
 
 def test_processes_logs_and_restart(page: Page, address: str, mesh: Mesh) -> None:

@@ -55,7 +55,7 @@ function heard(now) {
 /** How a run has ended, on whichever page one is. */
 async function tellEnd(id) {
   const run = (await ask("/api/runs?limit=50").catch(() => [])).find((one) => one.run_id === id);
-  if (run?.ended_at) {
+  if (run?.ended_at && run.state !== "refused") { // whoever asked for that one was told why
     const seconds = (new Date(run.ended_at) - new Date(run.started_at)) / 1000;
     say(t("run_ended", { task: run.task_id, state: t(run.state), duration: duration(seconds), reason: run.reason }), run.state !== "success");
     at("message").append(" ", make("a", { className: "button", href: `#history/${encodeURIComponent(id)}` }, t("p_history")));
