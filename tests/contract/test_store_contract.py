@@ -130,12 +130,12 @@ def test_concurrent_registration_gives_each_text_one_number(server: Server, shar
 def test_a_text_that_another_process_stores_meanwhile_is_found(db: store.Db, monkeypatch: pytest.MonkeyPatch) -> None:
     tasks, other = Tasks(db), Tasks(db)
 
-    def late() -> int:  # the other one is done between our look at the texts and our choice of a number
+    def late(_: int) -> list[int]:  # the other one is done between our look at the texts and our choice of a number
         monkeypatch.undo()
         assert other.add(tree()).task_id == 1
-        return 2
+        return [2]
 
-    monkeypatch.setattr(tasks, "_lowest_free", late)
+    monkeypatch.setattr(tasks._numbers, "lowest_free", late)
     added = tasks.add(tree())
     assert (added.task_id, added.already_stored) == (1, True)
     assert len(tasks.all()) == 1
