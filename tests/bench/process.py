@@ -22,22 +22,25 @@ from tms_host.supervisor import Supervisor
 
 MACHINES = {"zx200": {"model": "zx200"}, "ic120_1": {"model": "ic120"}, "ic120_2": {"model": "ic120"}}
 SETTLE, WATCH = 8.0, 15.0  # s; the second is also the time between Prometheus' scrapes
+USUAL = 0.3  # s that a bare node needs to start on a usual PC
 SINGLE = 5  # subtasks that are started, and restarted, one at a time
 
 
 def measure() -> Iterable[Figure]:
     with rig(machines=MACHINES, sim={"speed": 1.0}) as own:
         rows = [row for row in table(own.site) if row.name != "store"]
+        with own.beside("node") as (_, bare_start):  # before anything else runs
+            pass
         begun = time.perf_counter()
         own.mesh.tms("up")
         first = time.perf_counter() - begun
-        with own.beside("node") as (bare, bare_start):
+        with own.beside("node") as (bare, _):
             subtasks = [row for row in rows if row.action]
             with own.node() as ros:
                 yield from _starts(own, ros, subtasks[:SINGLE], bare_start)
             rest = _start_all(own, subtasks[SINGLE:])
-            yield Figure("`make up` until ready", "s", first, 15.0, bare_start)
-            yield Figure(f"all {len(rows)} processes ready", "s", first + rest, 15.0, bare_start)
+            yield Figure("`make up` until ready", "s", first, 15.0, bare_start, usual_floor=USUAL)
+            yield Figure(f"all {len(rows)} processes ready", "s", first + rest, 15.0, bare_start, usual_floor=USUAL)
             yield from _costs(own, rows, bare)
 
 
@@ -46,8 +49,8 @@ def _starts(own: Rig, ros: Ros, subtasks: list[Process], bare: float) -> Iterabl
     supervisor = Supervisor(own.site)
     started = sorted(_until_seen(own, ros, supervisor, "start", row) for row in subtasks)
     again = sorted(_until_seen(own, ros, supervisor, "restart", row) for row in subtasks)
-    yield Figure("a subtask started, slowest of 5", "s", started[-1], 1.5, bare)
-    yield Figure("a subtask restarted, slowest of 5", "s", again[-1], 1.0, bare)
+    yield Figure("a subtask started, slowest of 5", "s", started[-1], 1.5, bare, usual_floor=USUAL)
+    yield Figure("a subtask restarted, slowest of 5", "s", again[-1], 1.0, bare, usual_floor=USUAL)
 
 
 def _until_seen(own: Rig, ros: Ros, supervisor: Supervisor, order: str, row: Process) -> float:
