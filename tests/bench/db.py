@@ -19,7 +19,7 @@ from bench.runner import Figure
 from tms_core.ros import Ros
 
 READS, TASKS = 500, 1000
-AT_ONCE = 20  # requests under way
+AT_ONCE = 50  # requests under way
 TASK = '<root main_tree_to_execute="M"><BehaviorTree ID="M"><WaitForClick n="{}"/></BehaviorTree></root>'
 USUAL_TASKS = 1.1  # s that a usual PC needs for the floor of TASKS
 LIMIT = 120.0

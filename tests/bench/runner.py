@@ -10,6 +10,7 @@ import argparse
 import importlib
 import json
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -105,6 +106,7 @@ def main(words: list[str] | None = None) -> int:
     parser.add_argument("--only", metavar="GROUP", help=f"one of: {', '.join(groups())}")
     parser.add_argument("--json", type=Path, metavar="FILE", default=HISTORY, help="the history to append a line to")
     given = parser.parse_args(words)
+    signal.signal(signal.SIGTERM, lambda _number, _frame: sys.exit(1))  # so that no mesh is left behind
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # with it, every process that starts compiles its modules anew
     if given.only is not None and given.only not in groups():
         print(f"bench: there is no group {given.only!r}; there is: {', '.join(groups())}", file=sys.stderr)
