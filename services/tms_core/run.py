@@ -23,8 +23,6 @@ EXIT_LIMIT = 2.0  # s from SIGTERM to the end, whatever hangs
 PR_SET_PDEATHSIG = 1
 GRAPH_PERIOD = 5.0  # s between looks at the ROS graph for the metrics
 SWITCH = 0.0005  # s that a thread may keep others waiting, a hand-over several times; the default is 5 ms
-    0.0005  # s that a thread may keep the others from running; 5 ms by default, and a hand-over waits several times
-)
 FIRST = ("rc", "ts")  # on a busy PC these must not miss a beat of their permits
 NICE = -10
 

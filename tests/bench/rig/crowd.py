@@ -1,7 +1,7 @@
 """Machines at the level of messages: what a scheduler sees of gateways and subtasks, many of them in one process.
 
-python crowd.py NAME SUBTASK,... MACHINE...    prints `ready`; later, for each stop, one line: the time stamps [ns] at
-which each machine heard it and at which the last of its open goals was asked to end, as JSON
+python crowd.py NAME SUBTASK,... MACHINE...    prints `ready`; after a stop, when no goal is open any more, one line: the
+time stamps [ns] at which each machine heard it and at which its goal was asked to end (0: it had none), as JSON
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from tms_core.ros import Ended, Goal, Outcome, Ros
 NEWS = 0.2  # s, as gateways tell their states
 WORK = 2.0  # s that a goal takes
 GATEWAY = bytes([255]) * 16
-SETTLED = 3.0  # s after a stop until it is told
+LOOK = 0.1  # s
 
 
 class Machine:
@@ -33,6 +33,7 @@ class Machine:
         self.name, self._ros = name, ros
         self.heard = self.ended = 0  # ns since 1970, of the last stop
         self._latch = ""
+        self.open = 0  # goals
         self._states = ros.publisher(MachineState, f"/{name}/rc/state", depth=1, latched=True)
         self._permit = Permit(ros, name, "rc")
         self._permit.hold(GATEWAY)
@@ -55,8 +56,11 @@ class Machine:
         return response
 
     def _work(self, goal: Goal) -> Ended:
-        if goal.cancelled.wait(WORK):
-            self.ended = time.time_ns()
+        self.open += 1
+        cancelled = goal.cancelled.wait(WORK)
+        self.open -= 1
+        if cancelled:
+            self.ended = time.time_ns() if self.heard else 0
             return Outcome.CANCELED, LeafNodeBase.Result()
         return Outcome.SUCCEEDED, LeafNodeBase.Result(result=True)
 
@@ -69,9 +73,11 @@ def main(name: str, subtasks: str, *names: str) -> None:
         for machine in machines:
             machine.press(message)
         if message.data:
-            threading.Timer(SETTLED, tell).start()
+            threading.Thread(target=tell, daemon=True).start()
 
     def tell() -> None:
+        while any(machine.open for machine in machines):
+            time.sleep(LOOK)
         print(json.dumps([[machine.heard, machine.ended] for machine in machines]), flush=True)
 
     def news() -> None:
