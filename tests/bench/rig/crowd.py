@@ -1,7 +1,9 @@
 """Machines at the level of messages: what a scheduler sees of gateways and subtasks, many of them in one process.
 
-python crowd.py NAME SUBTASK,... MACHINE...    prints `ready`; after a stop, when no goal is open any more, one line: the
-time stamps [ns] at which each machine heard it and at which its goal was asked to end (0: it had none), as JSON
+python crowd.py NAME SUBTASK,... MACHINE...
+
+Prints `ready`; after a stop, when no goal is open any more, one line: the time stamps [ns] at which each machine heard
+it and at which its goal was asked to end (0: it had none), as JSON.
 """
 
 from __future__ import annotations
