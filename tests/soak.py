@@ -7,6 +7,7 @@ of a process grew from the first third of the time to the last.
 from __future__ import annotations
 
 import argparse
+import signal
 import statistics
 import sys
 import time
@@ -48,6 +49,7 @@ class Sample:
 def main() -> int:
     parser = argparse.ArgumentParser(prog="soak", description=__doc__)
     parser.add_argument("--minutes", type=float, default=120.0)
+    signal.signal(signal.SIGTERM, lambda _number, _frame: sys.exit(1))  # so that no mesh is left behind
     minutes = parser.parse_args().minutes
     with rig(machines=MACHINES, sim={"speed": SPEED}) as own:
         own.mesh.tms("up")

@@ -13,6 +13,7 @@ from tms_msg_rc.msg import Permit as Message
 
 from tms_core.ros import Peer, Ros
 
+BEATS = 2  # of the pulse from one assertion to the next: each wakes every process of the machine
 LEASE = 0.5  # s without an assertion until a process counts as lost
 GRACE = 0.1  # s more when the PC of the watcher itself did not run for a moment
 NOBODY = bytes(16)
@@ -29,6 +30,7 @@ class Permit:
     def __init__(self, ros: Ros, machine: str, process: str, alive: Callable[[], bool] = lambda: True) -> None:
         """`alive` tells at every beat whether the process still does its work."""
         self._ros, self._process, self._alive = ros, process, alive
+        self._beats = 0
         self._publisher = ros.lease_publisher(Message, topic(machine, process), LEASE)
 
     def hold(self, goal: bytes, holder: str = "") -> None:
@@ -42,7 +44,8 @@ class Permit:
         self._publisher.publish(Message(process=self._process))
 
     def _beat(self) -> None:
-        if self._ros.pulse.works() and self._alive():
+        self._beats += 1
+        if self._beats % BEATS == 0 and self._ros.pulse.works() and self._alive():
             self._publisher.assert_liveliness()
 
 

@@ -1,9 +1,9 @@
 """A thread of its own that beats at a fixed rate, and knows how late it was.
 
 Leases are asserted here and not on the executor thread: its timers come late when callbacks are long, and each of
-their wake-ups costs ten times as much. What the executor does is still what counts: a process whose executor has
-stood still for long asserts nothing. Whoever judges others by their silence asks first whether this process itself,
-or the whole PC, did not run meanwhile.
+their wake-ups costs ten times as much. What the executor does is still what counts: a process whose executor has been
+in one callback for long, or does not come out of its waiting when it is asked, asserts nothing. Whoever judges others
+by their silence asks first whether this process itself, or the whole PC, did not run meanwhile.
 """
 
 import threading
@@ -13,8 +13,8 @@ from collections.abc import Callable
 BEAT = 0.05  # s
 LATE = 0.1  # s that a beat may come late before it tells of a PC that is too busy
 REMEMBERED = 1.0  # s for which a late beat is remembered
-ASK = 0.1  # s between questions to the executor whether it runs
-STUCK = 0.18  # s without its answer after which nothing is asserted; with the lease that stays below 0.7 s
+ASK = 1.0  # s between questions to the executor whether it runs: each wakes it
+STUCK = 0.18  # s in one callback, or without an answer, after which nothing is asserted; with the lease below 0.7 s
 
 Step = Callable[[], None]
 
@@ -48,9 +48,9 @@ class Lateness:
 class Pulse:
     """One a process. Without steps its thread sleeps, so an idle process costs nothing."""
 
-    def __init__(self, on_executor: Callable[[Step], None]) -> None:
-        """`on_executor` has a step run on the executor thread, soon."""
-        self._on_executor = on_executor
+    def __init__(self, on_executor: Callable[[Step], None], busy_since: Callable[[], float | None]) -> None:
+        """`on_executor` has a step run on the executor thread, soon; `busy_since`: when its present callback began."""
+        self._on_executor, self._busy_since = on_executor, busy_since
         self._steps: tuple[Step, ...] = ()
         self._changing = threading.Lock()
         self._wanted, self._closed = threading.Event(), threading.Event()
@@ -79,8 +79,10 @@ class Pulse:
         return self._lateness.late(time.monotonic())
 
     def works(self) -> bool:
-        """Whether the executor has run a moment ago."""
-        return time.monotonic() - self._answered < STUCK
+        """Whether the executor is in no long callback, and has answered when it was asked."""
+        now, since, asked = time.monotonic(), self._busy_since(), self._asked
+        answered = self._answered >= asked or now - asked < STUCK
+        return answered and (since is None or now - since < STUCK)
 
     def close(self) -> None:
         """End the thread, after a beat that is under way."""

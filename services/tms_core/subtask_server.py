@@ -2,6 +2,7 @@
 
 import threading
 import time
+from collections.abc import Callable
 from typing import Any
 
 from pydantic import ValidationError
@@ -14,7 +15,7 @@ from tms_core.errors import RosError, SubtaskFailed
 from tms_core.machine import Cancelled, Machine
 from tms_core.permit import Permit, watch_server
 from tms_core.record_lock import FLAG, RecordLock
-from tms_core.ros import Ended, Goal, Outcome, Rejection
+from tms_core.ros import Ended, Goal, Outcome, Peer, Rejection
 from tms_core.subtask import Params, Subtask, load
 from tms_core.values import Value, from_parameters
 
@@ -38,7 +39,7 @@ class _Server:
     def __init__(self, app: App, kind: type[Subtask], inputs: dict[str, Any], max_age: float) -> None:
         self._app, self._kind, self._inputs, self._max_age = app, kind, inputs, max_age
         self._permit = Permit(app.ros, app.machine, str(app.process.action))
-        self._watches = {name: watch_server(app.ros, app.machine, name) for name in ("rc", "rp")}
+        self._watches: dict[str, Callable[[Peer], None]] = {}
         self._reserved = False
         self._want: Params | None = None
         self._lock: RecordLock | None = None
@@ -102,7 +103,7 @@ class _Server:
         app, request = self._app, goal.request
         use = app.site.file.machines[app.machine]
         model, limit = app.site.model_of(app.machine), self._kind.timeout
-        machine = Machine(app.ros, app.machine, use.model, model, limit, goal.uuid, self._watches)
+        machine = Machine(app.ros, app.machine, use.model, model, limit, goal.uuid, self._watched())
         subtask = self._kind(machine, self._want, self._read)
         say = _Feedback(goal)
         lock, plans = self._lock, bool(self._inputs.get("plan_only"))
@@ -134,6 +135,12 @@ class _Server:
             if not (finished or failure or goal.cancelled.is_set()):
                 say.last(f"INTERNAL: the subtask has a bug, see `tms logs {app.process.full}`")
         return self._outcome(goal, say, failure, stopped)
+
+    def _watched(self) -> dict[str, Callable[[Peer], None]]:
+        """Begins with the first goal: the gateway's lease, ten times a second, must not wake what nobody uses."""
+        if not self._watches:
+            self._watches = {name: watch_server(self._app.ros, self._app.machine, name) for name in ("rc", "rp")}
+        return self._watches
 
     def _outcome(self, goal: Goal, say: "_Feedback", failure: SubtaskFailed | None, stopped: bool) -> Outcome:
         if not stopped:

@@ -1,6 +1,7 @@
-"""What tms:db remembers for a moment of records that change: they are checked and read without asking the store.
+"""What tms:db remembers of records: they are checked and read without asking the store.
 
-The store does one thing at a time, so a read behind a write of fifty records would wait for all of them.
+The store does one thing at a time, so a read behind a write of fifty records would wait for all of them. Records that
+are written here are remembered for a moment; those that are only read until the store tells of a change.
 """
 
 import threading
@@ -15,6 +16,7 @@ from tms_db.parameters import Parameters
 from tms_db.records import RESERVED, Document, Value, bad, title
 
 KEPT = 2.0  # s: others may write to the same database
+FOR_EVER = float("inf")
 Key = tuple[str, str]
 
 
@@ -25,9 +27,17 @@ class Head:
     document: Document
     until: float  # monotonic; after that it is read again, while this one is still used
     since: Document | None = None  # what was changed since that reading began
+    written: float = float("-inf")  # monotonic; here
+
+    @property
+    def quiet(self) -> bool:
+        """Whether it was only read, and the store tells of changes."""
+        return self.until == FOR_EVER
 
     def change(self, fields: Document) -> None:
         """New values that are on their way into the store."""
+        self.written = time.monotonic()
+        self.until = min(self.until, self.written + KEPT)
         self.document.update(fields)
         if self.since is not None:
             self.since.update(fields)
@@ -62,16 +72,54 @@ class Head:
 class Heads:
     """Heads by key; used on the executor thread, but for the reading again."""
 
-    def __init__(self, parameters: Parameters, newest: Callable[[Key], Document], ros: Ros) -> None:
-        """`newest`: fields of a record that are not stored yet."""
-        self._parameters, self._newest, self._ros = parameters, newest, ros
+    def __init__(
+        self, parameters: Parameters, newest: Callable[[Key], Document], ros: Ros, watched: Callable[[], bool]
+    ) -> None:
+        """`newest`: fields of a record that are not stored yet; `watched`: whether the store tells of changes."""
+        self._parameters, self._newest, self._ros, self._watched = parameters, newest, ros, watched
         self._heads: dict[Key, Head] = {}
+        self._keys: dict[Any, Key] = {}  # by _id, of heads that are or were there
         self._reading = False
 
     def known(self, key: Key) -> Head | None:
-        """The head of a record that was changed lately."""
+        """The head of a record that is remembered."""
         head = self._heads.get(key)
-        return head if head is not None and time.monotonic() < head.until + KEPT else None
+        if head is None or (head.quiet and not self._watched()) or time.monotonic() > head.until + KEPT:
+            return None
+        return head
+
+    def document(self, key: Key) -> Document:
+        """The record, to be read only.
+
+        Raises:
+            DbError: as `get`.
+        """
+        head = self.known(key)
+        if head is None:
+            self._heads.pop(key, None)
+            watched = self._watched()  # before it is read: a change after that is told of
+            head = Head(self.read(key), FOR_EVER)
+            if watched:
+                self._keep(key, head)
+        return head.document
+
+    def changed(self, identity: Any) -> None:
+        """The store tells of a change of the record with this _id, of any with None; from any thread."""
+        key = self._keys.get(identity)
+        head = self._heads.get(key) if key is not None else None
+        if head is not None and time.monotonic() - head.written < KEPT:  # our own, most likely; read again soon anyway
+            return
+        # On the executor thread, behind a reading that is under way there.
+        self._ros.on_executor(lambda: self.forget() if identity is None else self._drop(identity))
+
+    def _keep(self, key: Key, head: Head) -> None:
+        self._heads[key] = head
+        self._keys[head.id] = key
+
+    def _drop(self, identity: Any) -> None:
+        key = self._keys.pop(identity, None)
+        if key is not None:
+            self._heads.pop(key, None)
 
     def get(self, key: Key) -> Head:
         """The head of a stored record, to change it.
@@ -83,7 +131,7 @@ class Heads:
         if head is None:
             self._heads.pop(key, None)
             head = Head(self.read(key), time.monotonic() + KEPT)
-            self._heads[key] = head
+            self._keep(key, head)
         elif time.monotonic() > head.until and not self._reading:
             self._read_again()
         return head
@@ -140,6 +188,7 @@ class Heads:
     def forget(self) -> None:
         """Look again next time: records were made, changed by hand or removed, or updates could not be stored."""
         self._heads.clear()
+        self._keys.clear()
 
 
 def _fitting(where: str, stored: Any, value: Value) -> Value:

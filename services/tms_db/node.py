@@ -39,7 +39,8 @@ class Services:
     def offer(self, answering: Answering) -> None:
         answering.quick(GetTask, "get_task", self.get_task)
         answering.quick(RemoveTask, "remove_task", self.remove_task)
-        answering.quick(WriteJournal, "write_journal", self.write_journal)
+        # Beside the executor: a leaf that reads its record must not wait for the events of the one before.
+        answering.slow(WriteJournal, "write_journal", self.write_journal)
         answering.slow(WriteMachineStates, "write_machine_states", self.write_machine_states)
         answering.slow(AddTask, "add_task", self.add_task)
         answering.slow(ListTasks, "list_tasks", self.list_tasks)

@@ -32,6 +32,7 @@ from tms_db.past import Past
 from tms_db.records import Document, check_values, title
 from tms_db.store import Db
 from tms_db.values import from_parameters
+from tms_db.watching import Watching
 
 CHANGES_KEPT = 100  # messages for a reader that is slow
 
@@ -43,7 +44,8 @@ class ParameterServices:
         self._app, self._ros = app, app.ros
         self._parameters = Parameters(db)
         self._batches = Batches(db, connection, app.log)
-        self._heads = Heads(self._parameters, self._batches.newest, app.ros)
+        self._watching = Watching(db, connection, app.log, lambda identity: self._heads.changed(identity))
+        self._heads = Heads(self._parameters, self._batches.newest, app.ros, self._watching.sure)
         self._past = Past(db, connection, app.log)
         self._changes = app.ros.publisher(RecordChanges, "/tms/db/changes", depth=CHANGES_KEPT)
 
@@ -56,13 +58,14 @@ class ParameterServices:
         answering.slow(ListParameterHistory, "list_parameter_history", self.history)
         self._batches.start()
         self._past.start()
+        self._watching.start()
+        self._app.on_stop(self._watching.stop)
         self._app.on_stop(self._past.stop)
         self._app.on_stop(self._batches.stop)
 
     def get(self, request: Any, response: Any) -> None:
         key = (request.model_name, request.record_name)
-        head = self._heads.known(key)
-        document = head.document if head is not None else self._heads.read(key)
+        document = self._heads.document(key)
         freshness.check(document, request.max_age)
         response.record = self._record(document)
 
@@ -135,6 +138,7 @@ class ParameterServices:
             self._batches.settle(key)
             change = Change(fields, source=wanted.source, expected=from_parameters(where, wanted.expected))
             self._parameters.set(*key, change)
+            self._heads.forget()
             self._past.note(key, stamp, wanted.source, fields, often=True)
             self._tell([key])
             return

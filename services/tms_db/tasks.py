@@ -1,18 +1,21 @@
 """Tasks in the database: behaviour trees under the lowest free number, each text once."""
 
 import hashlib
+import threading
 from collections.abc import Collection
 from dataclasses import dataclass
 from datetime import datetime, timezone
 from typing import Any
 
-from pymongo.errors import DuplicateKeyError
+from pymongo.errors import BulkWriteError
 
 from tms_core.errors import DbError
 from tms_db import task_text
 from tms_db.store import Db, errors
+from tms_db.task_numbers import TaskNumbers
 
 ATTEMPTS = 1000  # each lost race means that somebody else has registered a task
+DUPLICATE = 11000  # MongoDB's code for a key that is there already
 EPOCH = datetime.fromtimestamp(0, timezone.utc)
 MOST = 2**31 - 1  # task_id is int32
 LISTED = {"_id": 0, "task_sequence": 0}
@@ -36,43 +39,98 @@ class Added:
     already_stored: bool
 
 
+@dataclass
+class _Wish:
+    """A text that somebody wants to have stored."""
+
+    essence: str
+    document: dict[str, Any]
+    added: Added | None = None
+    failure: DbError | None = None
+
+    @property
+    def digest(self) -> str:
+        return str(self.document["text_sha256"])
+
+    @property
+    def open(self) -> bool:
+        return self.added is None and self.failure is None
+
+
 class Tasks:
     """The `task` collection."""
 
     def __init__(self, db: Db) -> None:
         self._tasks = db["task"]
+        self._numbers = TaskNumbers(self._tasks)
+        self._wishes: list[_Wish] = []
+        self._wishing, self._storing = threading.Lock(), threading.Lock()
 
     def add(self, text: str, description: str = "", models: Collection[str] = task_text.MODELS) -> Added:
         """Store a task's XML text, or find the number under which it is stored.
 
-        The unique indexes decide races between processes: who loses one looks again.
+        What threads want stored at the same time goes into the store together; each of them waits for it.
 
         Raises:
             TaskError: the text is no task.
             DbError: the store is away.
         """
-        essence = task_text.essence(text)
-        digest = hashlib.sha256(essence.encode()).hexdigest()
-        document = {
-            "type": "task",
-            "model_name": task_text.main_model(essence, models),
-            "description": description.strip() or task_text.NO_DESCRIPTION,
-            "task_sequence": text.removeprefix("\ufeff"),  # as it was drawn: line numbers stay those of the file
-            "text_sha256": digest,
-        }
-        for _ in range(ATTEMPTS):
+        wish = _wish(text, description, models)
+        with self._wishing:
+            self._wishes.append(wish)
+        with self._storing:
+            if wish.open:
+                with self._wishing:
+                    wishes, self._wishes = self._wishes, []
+                self._store(wishes)
+        if wish.added is None:
+            raise wish.failure or DbError(f"no free task number after {ATTEMPTS} attempts: try again", "BUSY")
+        return wish.added
+
+    def _store(self, wishes: list[_Wish]) -> None:
+        """The unique indexes decide races between processes: who loses one looks again."""
+        try:
             with errors():
-                same = self._stored(digest, essence)
-                if same is not None:
-                    return Added(int(same["task_id"]), str(same.get("model_name") or ""), True)
-                number = self._lowest_free()
-                try:
-                    added_at = datetime.now(timezone.utc)
-                    self._tasks.insert_one({"task_id": number, **document, "added_at": added_at})
-                except DuplicateKeyError:
-                    continue
-                return Added(number, str(document["model_name"]), False)
-        raise DbError(f"no free task number after {ATTEMPTS} attempts: try again", "BUSY")
+                for _ in range(ATTEMPTS):
+                    self._find(wishes)
+                    missing = list({wish.digest: wish for wish in reversed(wishes) if wish.open}.values())
+                    if not missing:
+                        return
+                    self._insert(missing[::-1])
+        except DbError as error:
+            for wish in wishes:
+                wish.failure = error if wish.open else None
+
+    def _find(self, wishes: list[_Wish]) -> None:
+        """Which of them are stored."""
+        what = {"task_id": 1, "model_name": 1, "text_sha256": 1}
+        digests = list({wish.digest for wish in wishes if wish.open})
+        stored = {same["text_sha256"]: same for same in self._tasks.find({"text_sha256": {"$in": digests}}, what)}
+        foreign = self._numbers.foreign()
+        for wish in [wish for wish in wishes if wish.open]:
+            same = stored.get(wish.digest)
+            if same is None and foreign:
+                same = self._tasks.find_one({"text_sha256": {"$exists": False}, "task_sequence": wish.essence}, what)
+            if same is not None:
+                wish.added = Added(int(same["task_id"]), str(same.get("model_name") or ""), True)
+
+    def _insert(self, wishes: list[_Wish]) -> None:
+        """Store them under the lowest free numbers, but for those where somebody else was quicker."""
+        now = datetime.now(timezone.utc)
+        numbers = self._numbers.lowest_free(len(wishes))
+        documents = [{"task_id": n, **w.document, "added_at": now} for n, w in zip(numbers, wishes, strict=True)]
+        lost: set[int] = set()
+        try:
+            self._tasks.insert_many(documents, ordered=False)
+        except BulkWriteError as error:
+            lost = {row["index"] for row in error.details["writeErrors"] if row["code"] == DUPLICATE}
+            if len(lost) < len(error.details["writeErrors"]):
+                raise
+            self._numbers.forget()
+        for index, (number, wish) in enumerate(zip(numbers, wishes, strict=True)):
+            if index not in lost:
+                self._numbers.took(number)
+                wish.added = Added(number, str(wish.document["model_name"]), False)
 
     def get(self, task_id: int) -> Task:
         """The task with this number.
@@ -100,19 +158,21 @@ class Tasks:
         """
         with errors():
             gone = self._tasks.delete_one({"task_id": task_id}).deleted_count
+        self._numbers.forget()
         if not gone:
             raise _missing(task_id)
 
-    def _stored(self, digest: str, essence: str) -> dict[str, Any] | None:
-        what = {"task_id": 1, "model_name": 1}
-        # The second look finds a task that the C++ system stored, without a hash.
-        return self._tasks.find_one({"text_sha256": digest}, what) or self._tasks.find_one(
-            {"text_sha256": {"$exists": False}, "task_sequence": essence}, what
-        )
 
-    def _lowest_free(self) -> int:
-        taken = {document.get("task_id") for document in self._tasks.find({}, {"_id": 0, "task_id": 1})}
-        return next(number for number in range(1, len(taken) + 2) if number not in taken)
+def _wish(text: str, description: str, models: Collection[str]) -> _Wish:
+    essence = task_text.essence(text)
+    document = {
+        "type": "task",
+        "model_name": task_text.main_model(essence, models),
+        "description": description.strip() or task_text.NO_DESCRIPTION,
+        "task_sequence": text.removeprefix("\ufeff"),  # as it was drawn: line numbers stay those of the file
+        "text_sha256": hashlib.sha256(essence.encode()).hexdigest(),
+    }
+    return _Wish(essence, document)
 
 
 def _missing(task_id: int) -> DbError:

@@ -35,6 +35,9 @@ class Diagnostics:
     def _tell(self) -> None:
         looks = 0
         while not self._app.stopping.wait(PERIOD):
+            if not self._publisher.get_subscription_count():
+                looks = 0  # whoever comes next is told what is so then
+                continue
             rows = self._rows
             if looks % round(LOOK / PERIOD) == 0:
                 self._reasons = {row.name: self._ask(row) for row in rows if row.state == "RUNNING"}

@@ -3,6 +3,7 @@
 import math
 import threading
 import time
+from collections.abc import Callable
 from typing import Any
 
 from nav_msgs.msg import Odometry
@@ -20,7 +21,7 @@ from tms_rc.gateway import Gateway
 from tms_rc.guard import Guard
 from tms_rc.standstill import JOINTS, ODOM, StandStill
 
-STATE_PERIOD = 0.2  # s
+TOLD_MOVING, TOLD_STILL = 0.2, 0.5  # s between messages about the machine; a change is told at once
 DEPTH = 10  # messages of the machine that may come between two looks
 PERMIT = Gauge("tms_rc_permit", "1 while a run stands behind the machine's motions")
 LATCHED = Gauge("tms_rc_latched", "1 while the machine is stopped until a person re-arms it")
@@ -48,14 +49,39 @@ def start(app: App) -> None:
     ros.offer_slow(StopMachine, "/tms/stop", guard.stop_service)  # every gateway hears it; the first one answers
     ros.offer(Rearm, f"/{machine}/rearm", guard.rearm)
     publisher = ros.publisher(MachineState, f"/{machine}/rc/state", depth=1, latched=True)
-    guard.told = lambda: publisher.publish(view.state(guard))
-    ros.every(STATE_PERIOD, guard.told)
+    teller = Teller(guard, watch, lambda: publisher.publish(view.state(guard)))
+    guard.told = teller.tell
     ros.pulse.add(view.look)
+    ros.pulse.add(teller.look)
     permit = Permit(ros, machine, "rc")
     # Not before the lease of a predecessor that was killed has run out: nobody would notice its loss.
     ros.after(LEASE, lambda: permit.hold(GATEWAY))
     threading.Thread(target=guard.recover, name="recover", daemon=True).start()
     app.ready_when(view.unready)
+
+
+class Teller:
+    """When the state is published: by the pulse, since a timer and every reader's callback cost more than the news."""
+
+    def __init__(self, guard: Guard, watch: StandStill, publish: Callable[[], None]) -> None:
+        self._guard, self._watch, self._publish = guard, watch, publish
+        self._last: tuple[object, ...] = ()
+        self._at = 0.0  # monotonic
+
+    def look(self) -> None:
+        """At every beat."""
+        guard, moving = self._guard, self._watch.moving()
+        active, latch = guard.active, guard.latch
+        now = (moving, active and active.goal.id, latch.cause, latch.hold, guard.permits.holder())
+        period = TOLD_MOVING if moving or active is not None else TOLD_STILL
+        if now != self._last or time.monotonic() - self._at >= period:
+            self._last = now
+            self.tell()
+
+    def tell(self) -> None:
+        """From any thread."""
+        self._at = time.monotonic()
+        self._publish()
 
 
 class View:

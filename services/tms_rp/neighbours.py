@@ -21,7 +21,7 @@ class Neighbours:
         self._frames = {app.site.border(name).base_frame: name for name in app.site.file.machines}
         self._places: dict[str, Matrix] = {}
         self._news = app.ros.sample(TFMessage, "/tf", DEPTH)
-        app.ros.every(LOOK, self._look)
+        app.ros.beside(LOOK, self._look, "neighbours")
 
     def _look(self) -> None:
         for one in (one for message in self._news() for one in message.transforms):

@@ -66,7 +66,7 @@ ACTIONS = (
 def start(app: App) -> None:
     """Serve `/<machine>/tms_rp_<model>_<action>`."""
     planner, model = Planner(app), app.site.file.machines[app.machine].model
-    app.ros.every(LOOK, planner.look)
+    app.ros.beside(LOOK, planner.look, "joints")
     for action in ACTIONS:
         planner.serve(action, f"/{app.machine}/tms_rp_{model}_{action.name}")
     app.ready_when(planner.unready)

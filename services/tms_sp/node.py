@@ -116,7 +116,7 @@ class Sender:
         self._trouble = ""
         self._clock = app.ros.every(GAP, self._send)  # stands while nothing waits
         self._clock.cancel()
-        app.ros.every(RETRY, self._look)
+        self._retry = app.ros.every(RETRY, self._look)  # so does this one while nothing waits or is on its way
 
     def unready(self) -> str | None:
         """Why values do not reach the database."""
@@ -130,6 +130,8 @@ class Sender:
         taken = self._outbox.put(post)
         if self._clock.is_canceled() and time.monotonic() >= self._not_before:
             self._clock.reset()
+        if self._retry.is_canceled():
+            self._retry.reset()
         return taken
 
     def _send(self) -> None:
@@ -187,3 +189,5 @@ class Sender:
                 self._fail(number, "tms:db does not answer")
         if self._outbox.ready and now >= self._not_before:
             self._clock.reset()
+        if not self._outbox.ready and not self._flights:
+            self._retry.cancel()

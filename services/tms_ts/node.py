@@ -41,7 +41,7 @@ SERVER_START = 3.0  # s, ... and this for each of them: many starting at once sh
 STATES = ("preparing", "running", "stopping")
 ACTIVE = Gauge("tms_ts_active_runs", "Active runs by state", ["state"])
 NODES = Gauge("tms_ts_tree_nodes", "Nodes of the active runs' trees by status", ["status"])
-RUNS_LONGEST = 0.5  # s between messages on the topic of active runs ...
+RUNS_LONGEST = 1.0  # s between messages on the topic of active runs ...
 RUNS_SHORTEST = 0.05  # s ... and when something changes all the time
 MEASURE = 1.0  # s between looks at the runs for metrics
 

@@ -7,8 +7,8 @@ from datetime import datetime, timezone
 
 from tms_ur.models import ActiveRun, Host, Machine, Place, Process, Question, Scheduler, State
 
-MACHINE_SILENT = 2.0  # s, ten periods of a machine's gateway
-SCHEDULER_SILENT = 5.0  # s, ten periods of the scheduler's list of runs
+MACHINE_SILENT = 2.0  # s, four periods of a machine's gateway
+SCHEDULER_SILENT = 5.0  # s, five periods of the scheduler's list of runs
 
 
 class Board:

@@ -38,6 +38,8 @@ CALL_LIMIT = 4.0  # s for an answer of a module
 STOP_LIMIT = 8.0  # s; a machine's gateway gives itself 5 s to see it stand
 START_LIMIT = 30.0  # s for a run to begin: the scheduler may start its subtasks first
 PROCESS_LIMIT = 15.0  # s for a process to end and to be started
+FRAMES_PERIOD = 0.2  # s between looks at /tf: to be woken by each of its messages costs most of an idle console
+FRAMES_DEPTH = 200  # messages of all machines in that time
 MAP = "map"
 
 
@@ -56,7 +58,8 @@ class Gateway:
         ros.subscribe(RunStates, "/tms/runs", self._runs_heard, latched=True)
         ros.subscribe(Processes, "/tms/host/processes", self._host_heard, depth=10, latched=True)
         ros.subscribe(InputStates, "/tms/sp/inputs", self._inputs_heard, latched=True)
-        ros.subscribe(TFMessage, "/tf", self._frames_heard, depth=20)
+        self._frame_news = ros.sample(TFMessage, "/tf", FRAMES_DEPTH)
+        ros.beside(FRAMES_PERIOD, self._look_at_frames, "frames")
 
     # topics
 
@@ -72,6 +75,10 @@ class Gateway:
 
     def _inputs_heard(self, message: Any) -> None:
         self._inputs = (list(message.inputs), time.monotonic())
+
+    def _look_at_frames(self) -> None:
+        for message in self._frame_news():
+            self._frames_heard(message)
 
     def _frames_heard(self, message: Any) -> None:
         for one in message.transforms:

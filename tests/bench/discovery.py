@@ -12,6 +12,7 @@ import sys
 import time
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
 import psutil
@@ -24,23 +25,31 @@ COUNT = 50
 SETTLE, WATCH = 5.0, 10.0  # s
 
 
+@dataclass(frozen=True)
+class Cost:
+    """Of a number of participants."""
+
+    late: float  # ms until one that comes later knows them all
+    idle: float  # % of a core, all of them
+    memory: float  # MB (PSS) of one
+
+
 def measure() -> Iterable[Figure]:
     with rig() as own:
-        alone, _, light = _cost(own, 1)
-        found, idle, weight = _cost(own, COUNT)
-        yield Figure("late, simple", "ms", found, 1000.0, alone)
-        yield Figure("idle, simple", "%", idle, 10.0, 10.0)
-        yield Figure("a node, simple", "MB", weight / COUNT, 60.0, light)
-        with _server(own):
-            alone, _, light = _cost(own, 1)
-            found, idle, weight = _cost(own, COUNT)
-        yield Figure("late, server", "ms", found, 3000.0, alone)
-        yield Figure("idle, server", "%", idle, 10.0, 10.0)
-        yield Figure("a node, server", "MB", weight / COUNT, 60.0, light)
+        yield from _figures("simple", _cost(own, 1), _cost(own, COUNT), late_limit=1000.0)
+        with _server(own) as pid:
+            alone, many = _cost(own, 1), _cost(own, COUNT)
+            memory = psutil.Process(pid).memory_full_info().pss / 1e6
+        yield from _figures("server", alone, many, late_limit=3000.0, note=f"the server itself has {memory:.0f} MB")
 
 
-def _cost(own: Rig, count: int) -> tuple[float, float, float]:
-    """Milliseconds of a late participant, percent of a core of all idle ones, and their MB."""
+def _figures(way: str, alone: Cost, many: Cost, late_limit: float, note: str = "") -> Iterable[Figure]:
+    yield Figure(f"{way}: a late one knows {COUNT}", "ms", many.late, late_limit, alone.late)
+    yield Figure(f"{way}: idle, {COUNT} together", "% core", many.idle, 10.0, max(COUNT * alone.idle, 0.01))
+    yield Figure(f"{way}: memory (PSS) of one", "MB", many.memory, 60.0, alone.memory, note=note)
+
+
+def _cost(own: Rig, count: int) -> Cost:
     with own.beside("fleet", str(count)) as (parent, _):
         time.sleep(SETTLE)
         found = own.bare("find", str(count))[0]
@@ -49,7 +58,7 @@ def _cost(own: Rig, count: int) -> tuple[float, float, float]:
         before, begun = _used(nodes), time.perf_counter()
         time.sleep(WATCH)
         idle = 100 * (_used(nodes) - before) / (time.perf_counter() - begun)
-        return found, idle, sum(node.memory_full_info().pss for node in nodes) / 1e6
+        return Cost(found, idle, sum(node.memory_full_info().pss for node in nodes) / 1e6 / count)
 
 
 def _used(nodes: list[psutil.Process]) -> float:
@@ -57,16 +66,16 @@ def _used(nodes: list[psutil.Process]) -> float:
 
 
 @contextmanager
-def _server(own: Rig) -> Iterator[None]:
-    """A discovery server that everything started meanwhile uses."""
+def _server(own: Rig) -> Iterator[int]:
+    """A discovery server that everything started meanwhile uses, as processes of such a site do; its pid."""
     port = ports_of(own.site.domain) + 80
     program = Path(sys.prefix) / "bin/fast-discovery-server"
     with subprocess.Popen(
         [program, "-i", "0", "-l", "127.0.0.1", "-p", str(port)], stdout=subprocess.DEVNULL
     ) as server:
-        os.environ["ROS_DISCOVERY_SERVER"] = f"127.0.0.1:{port}"
+        os.environ.update({"ROS_DISCOVERY_SERVER": f"127.0.0.1:{port}", "ROS_SUPER_CLIENT": "TRUE"})
         try:
-            yield
+            yield server.pid
         finally:
-            del os.environ["ROS_DISCOVERY_SERVER"]
+            del os.environ["ROS_DISCOVERY_SERVER"], os.environ["ROS_SUPER_CLIENT"]
             server.kill()

@@ -9,6 +9,8 @@ from __future__ import annotations
 import argparse
 import importlib
 import json
+import os
+import signal
 import subprocess
 import sys
 import time
@@ -34,6 +36,7 @@ class Figure:
     limit: float
     floor: float  # the same work without what is measured
     usual_floor: float | None = None  # on a usual PC; None: the floor says nothing about the speed of this PC
+    note: str = ""  # which one, where the figure is the largest of many
 
     @property
     def ratio(self) -> float:
@@ -48,7 +51,7 @@ class Figure:
         return self.value <= self.allowed
 
     def as_dict(self) -> dict[str, Any]:
-        names = ("name", "unit", "value", "floor", "ratio", "limit", "allowed", "held")
+        names = ("name", "unit", "value", "floor", "ratio", "limit", "allowed", "held", "note")
         found = {name: getattr(self, name) for name in names}
         return {key: float(f"{value:.4g}") if isinstance(value, float) else value for key, value in found.items()}
 
@@ -72,11 +75,12 @@ def groups() -> list[str]:
 def row(group: str, figure: Figure) -> tuple[str, ...]:
     value, floor, allowed = (f"{number:.3g} {figure.unit}" if number < 1000 else f"{number:.0f} {figure.unit}"
                              for number in (figure.value, figure.floor, figure.allowed))  # fmt: skip
-    return group, figure.name, value, floor, f"{figure.ratio:.2f}", allowed, "held" if figure.held else "SHORT"
+    verdict = "held" if figure.held else "SHORT"
+    return group, figure.name, value, floor, f"{figure.ratio:.2f}", allowed, f"{verdict}  {figure.note}"
 
 
 def show(cells: Iterable[str]) -> None:
-    widths = (8, 16, 10, 10, 7, 10, 0)
+    widths = (10, 34, 10, 10, 7, 10, 0)
     print("".join(cell.ljust(width) for cell, width in zip(cells, widths, strict=True)).rstrip(), flush=True)
 
 
@@ -102,6 +106,8 @@ def main(words: list[str] | None = None) -> int:
     parser.add_argument("--only", metavar="GROUP", help=f"one of: {', '.join(groups())}")
     parser.add_argument("--json", type=Path, metavar="FILE", default=HISTORY, help="the history to append a line to")
     given = parser.parse_args(words)
+    signal.signal(signal.SIGTERM, lambda _number, _frame: sys.exit(1))  # so that no mesh is left behind
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # with it, every process that starts compiles its modules anew
     if given.only is not None and given.only not in groups():
         print(f"bench: there is no group {given.only!r}; there is: {', '.join(groups())}", file=sys.stderr)
         return 2

@@ -1,59 +1,183 @@
-"""How the scheduler's side of ROS grows with the site, at the level of messages: 10, 50 and 200 subtasks.
+"""How large a site one scheduler carries: 1, 5, 20 and 50 machines with four subtasks each, up to 20 runs at once.
 
-The subtasks are bare action servers, a few processes in all; one node of ours, as in tms:ts, has a goal at each,
-then cancels them all. The floor of the round trip is the same with 10 subtasks, that of the stop too.
+The scheduler, the database and the store are the real ones; machines, gateways and subtasks are at the level of
+messages (rig/crowd.py), since 50 times their processes would not fit on a PC. The group `stop` has 20 real gateways.
+A goal takes 2 s, so that 50 machines ask for 25 hand-overs a second. The floor is the same site with one machine.
 """
 
 from __future__ import annotations
 
+import json
+import subprocess
+import sys
 import time
-from collections.abc import Iterable
-from contextlib import ExitStack
+import urllib.request
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
 
-from tms_msg_ts.action import LeafNodeBase
+import psutil
+from prometheus_client.parser import text_string_to_metric_families
+from std_msgs.msg import Bool
+from tms_msg_db.srv import AddTask, SetParameter
+from tms_msg_ts.action import ExecuteTask
 
-from bench.rig.mesh import Rig, at, rig, until
+from bench.rig.mesh import Rig, rig, until
 from bench.runner import Figure
-from tms_core.ros import Outcome, Peer, Ros
+from tms_core.processes import find
+from tms_core.ros import Call, Ros
+from tms_core.values import to_parameters
 
-SIZES = (10, 50, 200)
-A_PROCESS = 50  # action servers in one process
-LIMIT = 30.0  # s
+SIZES = (1, 5, 20, 50)
+RUNS = 20  # at most; a run moves a machine at least
+JOINTS = ("boom", "swing", "arm", "bucket")
+SUBTASKS = [f"st_zx200_sample_{joint}" for joint in JOINTS]
+A_PROCESS = 10  # machines in one process of the crowd
+SETTLE, WATCH = 4.0, 10.0  # s
+LIMIT = 60.0  # s
+CROWD = Path(__file__).parent / "rig/crowd.py"
+LEAF = '<Action ID="LeafNodeZx200" model_name="{}" record_name="BENCH" subtask_name="{}"/>'
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Of one size."""
+
+    late: float  # % of the ticks
+    handed_over: float  # ms, mean
+    heard: float  # ms from the press to the last machine
+    cancelled: float  # ms from the press to the last goal that was asked to end
+    cpu: float  # % of a core, the scheduler's
+    memory: float  # MB, the scheduler's
 
 
 def measure() -> Iterable[Figure]:
-    with rig() as own:
-        cost = {size: _cost(own, size) for size in SIZES}
-    small = cost[SIZES[0]]
+    least: Cost | None = None
     for size in SIZES:
-        accepted, stopped = cost[size]
-        yield Figure(f"accepted, {size}", "ms", accepted, 25.0, small[0], usual_floor=10.0)
-        yield Figure(f"a stop, {size}", "ms", stopped / size, 5.0, small[1] / SIZES[0], usual_floor=5.0)
+        cost = _cost(size)
+        least = least or cost
+        name = f"{size} machines, {min(size, RUNS)} runs"
+        note = f"hand-over {cost.handed_over:.1f} ms, tms:ts {cost.cpu:.0f} % of a core"
+        yield Figure(f"late ticks, {name}", "%", cost.late, 1.0, max(least.late, 0.01), note=note)
+        yield Figure("  stop heard by the last machine", "ms", cost.heard, 50.0, least.heard, usual_floor=10.0)
+        yield Figure("  stop until the last goal ends", "ms", cost.cancelled, 700.0, least.cancelled)
+        yield Figure("  memory (PSS) of tms:ts", "MB", cost.memory, 120.0, least.memory)
 
 
-def _cost(own: Rig, size: int) -> tuple[float, float]:
-    """Milliseconds until one goal is accepted (median, the others running), and until all of them are cancelled."""
-    with ExitStack() as stack:
-        for first in range(0, size, A_PROCESS):
-            stack.enter_context(own.beside("crowd", str(first), str(min(A_PROCESS, size - first))))
+def _cost(size: int) -> Cost:
+    names = [f"m{number}" for number in range(size)]
+    machines = {name: {"model": "zx200"} for name in names}
+    with rig(machines=machines, services={"db": {}, "ts": {}}) as own, ExitStack() as stack:
+        for process in ("tms:store", "tms:db", "tms:ts"):
+            pid = stack.enter_context(_process(own, "-m", "tms_core.run", process)).pid
+        crowds = [
+            stack.enter_context(_process(own, str(CROWD), names[i], ",".join(SUBTASKS), *names[i : i + A_PROCESS]))
+            for i in range(0, size, A_PROCESS)
+        ]
+        for crowd in crowds:
+            assert crowd.stdout is not None
+            assert crowd.stdout.readline() == "ready\n"
         ros = stack.enter_context(own.node())
-        peers = [ros.peer(LeafNodeBase, f"/crowd_{number}/act") for number in range(size)]
-        until(lambda: all(peer.ready() for peer in peers), f"{size} action servers found", LIMIT)
-        return _measure(ros, peers)
+        _store_records(ros, names)
+        calls = _start(ros, names)
+        time.sleep(SETTLE)
+        late, handed_over, cpu = _watched(own, pid)
+        memory = psutil.Process(pid).memory_full_info().pss / 1e6
+        heard, cancelled = _press(ros, crowds)
+        until(lambda: all(call.outcome is not None for call in calls), "every run has ended", LIMIT)
+        return Cost(late, handed_over, heard, cancelled, cpu, memory)
 
 
-def _measure(ros: Ros, peers: list[Peer]) -> tuple[float, float]:
-    calls, times = [], []
-    for peer in peers:
-        begun = time.perf_counter()
-        call = peer.send(LeafNodeBase.Goal())
-        assert call.wait_for(lambda call=call: call.accepted, LIMIT), "a goal was not accepted"  # type: ignore[misc]
-        times.append((time.perf_counter() - begun) * 1000)
-        calls.append((peer, call))
-    begun = time.perf_counter()
-    for peer, call in calls:
-        peer.cancel(call)
-    for _, call in calls:
-        assert call.wait_for(lambda call=call: call.outcome is not None, LIMIT), "a cancel got lost"  # type: ignore[misc]
-        assert call.outcome is Outcome.CANCELED
-    return at(0.5, sorted(times)), (time.perf_counter() - begun) * 1000
+@contextmanager
+def _process(own: Rig, *words: str) -> Iterator[subprocess.Popen[str]]:
+    log = Path(own.mesh.state) / "bench.log"
+    log.parent.mkdir(parents=True, exist_ok=True)
+    with (
+        log.open("a") as errors,
+        subprocess.Popen([sys.executable, *words], text=True, stdout=subprocess.PIPE, stderr=errors) as running,
+    ):
+        try:
+            yield running
+        finally:
+            running.kill()
+
+
+def _store_records(ros: Ros, names: list[str]) -> None:
+    values = to_parameters({f"zx200_{joint}_goal_pos": 0.1 for joint in JOINTS})
+
+    def stored(name: str) -> bool:
+        request = SetParameter.Request(
+            model_name=name, record_name="BENCH", type="static", source="bench", create=True, values=values
+        )
+        return not ros.call(SetParameter, "/tms/db/set_parameter", request, LIMIT).error_code
+
+    until(lambda: stored(names[0]), "the database", LIMIT)
+    assert all(stored(name) for name in names[1:])
+
+
+def _start(ros: Ros, names: list[str]) -> list[Call]:
+    """The machines dealt out to the runs; all runs are there, and go on for ever."""
+    hands = [names[number::RUNS] for number in range(min(RUNS, len(names)))]
+    scheduler = ros.peer(ExecuteTask, "/tms/execute_task")
+    scheduler.wait_ready(LIMIT)
+    calls = []
+    for hand in hands:
+        added = ros.call(AddTask, "/tms/db/add_task", AddTask.Request(task_sequence=_tree(hand)), LIMIT)
+        assert not added.error_code, added.error_msg
+        calls.append(scheduler.send(ExecuteTask.Goal(task_id=added.task_id, ignore_warnings=True)))
+    until(lambda: all(_runs(call) for call in calls), "every run goes", LIMIT)
+    return calls
+
+
+def _runs(call: Call) -> bool:
+    assert call.outcome is None, call.result
+    return call.feedback is not None and call.feedback.state == "running"
+
+
+def _tree(machines: list[str]) -> str:
+    """Each machine from subtask to subtask, all of them at once."""
+    rows = [
+        f"<KeepRunningUntilFailure><Sequence>{''.join(LEAF.format(name, subtask) for subtask in SUBTASKS)}</Sequence>"
+        "</KeepRunningUntilFailure>"
+        for name in machines
+    ]
+    inside = rows[0] if len(rows) == 1 else f'<Parallel failure_threshold="1">{"".join(rows)}</Parallel>'
+    return f'<root main_tree_to_execute="M"><BehaviorTree ID="M">{inside}</BehaviorTree></root>'
+
+
+def _watched(own: Rig, pid: int) -> tuple[float, float, float]:
+    """Late ticks [%], mean hand-over [ms] and processor time [% of a core] of the scheduler while all runs go on."""
+
+    def used() -> float:
+        return sum(psutil.Process(pid).cpu_times()[:2])
+
+    before, cpu, begun = _counted(own), used(), time.perf_counter()
+    time.sleep(WATCH)
+    after, cpu, passed = _counted(own), used() - cpu, time.perf_counter() - begun
+    grown: Callable[[str], float] = lambda name: after[f"tms_ts_{name}"] - before[f"tms_ts_{name}"]  # noqa: E731
+    late = 100 * grown("tick_overruns_total") / grown("tick_seconds_count")
+    handed_over = 1000 * grown("handover_seconds_sum") / grown("handover_seconds_count")
+    return late, handed_over, 100 * cpu / passed
+
+
+def _counted(own: Rig) -> dict[str, float]:
+    row = find(own.site, "tms:ts")
+    with urllib.request.urlopen(f"http://{row.address}:{row.port}/metrics", timeout=5) as answer:
+        families = text_string_to_metric_families(answer.read().decode())
+        return {sample.name: sample.value for family in families for sample in family.samples}
+
+
+def _press(ros: Ros, crowds: list[subprocess.Popen[str]]) -> tuple[float, float]:
+    """The software stop: ms until the last machine has heard it, and until the last goal was asked to end."""
+    button = ros.publisher(Bool, "/emergency_signal")
+    until(lambda: button.get_subscription_count() > len(crowds), "every machine hears the button", LIMIT)
+    begun = time.time_ns()
+    button.publish(Bool(data=True))
+    stamps = []
+    for crowd in crowds:
+        assert crowd.stdout is not None
+        stamps += json.loads(crowd.stdout.readline())
+    heard, ended = ([(stamp - begun) / 1e6 for stamp in column if stamp] for column in zip(*stamps, strict=True))
+    assert len(heard) == len(stamps), "a machine has not heard the stop"
+    return max(heard), max(ended, default=0.0)

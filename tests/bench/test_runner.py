@@ -16,7 +16,10 @@ from bench.runner import Figure
 @pytest.fixture
 def made_up(monkeypatch: pytest.MonkeyPatch) -> None:
     module = ModuleType("bench.made_up")
-    module.measure = lambda: [Figure("fast", "ms", 1.0, 2.0, 0.5), Figure("slow", "ms", 1234.0, 2.0, 0.5)]
+    module.measure = lambda: [
+        Figure("fast", "ms", 1.0, 2.0, 0.5),
+        Figure("slow", "ms", 1234.0, 2.0, 0.5, note="the third"),
+    ]
     monkeypatch.setitem(sys.modules, "bench.made_up", module)
     monkeypatch.setattr(runner, "groups", lambda: ["made_up"])
 
@@ -40,14 +43,14 @@ def test_table_last_line_and_history(made_up: None, tmp_path: Path, capsys: pyte
     assert runner.main(["--json", str(file)]) == 1
     lines = capsys.readouterr().out.splitlines()
     assert lines[1].split() == ["made_up", "fast", "1", "ms", "0.5", "ms", "2.00", "2", "ms", "held"]
-    assert lines[2].split()[-1] == "SHORT"
+    assert lines[2].split()[-3:] == ["SHORT", "the", "third"]
     assert lines[3:] == ["1 held, 1 short"]
     runner.main(["--json", str(file), "--only", "made_up"])
     first, _ = map(json.loads, file.read_text().splitlines())
     assert first["commit"]
     assert first["figures"][1] == {
         "group": "made_up", "name": "slow", "unit": "ms", "value": 1234.0, "floor": 0.5, "ratio": 2468.0, "limit": 2.0,
-        "allowed": 2.0, "held": False,
+        "allowed": 2.0, "held": False, "note": "the third",
     }  # fmt: skip
 
 

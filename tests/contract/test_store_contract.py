@@ -127,15 +127,38 @@ def test_concurrent_registration_gives_each_text_one_number(server: Server, shar
     assert [task.task_id for task in Tasks(shared_db).all()] == list(range(1, 42))
 
 
+def test_texts_that_come_at_the_same_time_are_stored_together(shared_db: store.Db) -> None:
+    tasks, gate = Tasks(shared_db), threading.Barrier(16)
+
+    def register(worker: int) -> tuple[int, int]:
+        gate.wait(10)
+        return tasks.add(tree(f"own{worker}")).task_id, tasks.add(tree("shared")).task_id
+
+    with ThreadPoolExecutor(16) as pool:
+        numbers = list(pool.map(register, range(16)))
+    assert len({shared for _, shared in numbers}) == 1
+    assert sorted({number for pair in numbers for number in pair}) == list(range(1, 18))
+
+
+def test_a_store_that_is_away_is_told_to_everyone_who_waits(own_server: Server) -> None:
+    db = own_server.open()
+    tasks = Tasks(db)
+    own_server.end(kill=True)
+    with ThreadPoolExecutor(4) as pool:
+        codes = list(pool.map(lambda number: code_of(lambda: tasks.add(tree(f"t{number}"))), range(4)))
+    assert codes == ["STORE_DOWN"] * 4
+    db.client.close()
+
+
 def test_a_text_that_another_process_stores_meanwhile_is_found(db: store.Db, monkeypatch: pytest.MonkeyPatch) -> None:
     tasks, other = Tasks(db), Tasks(db)
 
-    def late() -> int:  # the other one is done between our look at the texts and our choice of a number
+    def late(_: int) -> list[int]:  # the other one is done between our look at the texts and our choice of a number
         monkeypatch.undo()
         assert other.add(tree()).task_id == 1
-        return 2
+        return [2]
 
-    monkeypatch.setattr(tasks, "_lowest_free", late)
+    monkeypatch.setattr(tasks._numbers, "lowest_free", late)
     added = tasks.add(tree())
     assert (added.task_id, added.already_stored) == (1, True)
     assert len(tasks.all()) == 1

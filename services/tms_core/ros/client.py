@@ -199,11 +199,11 @@ class Peer:
         call = Call(goal_id or uuid4().bytes, on_change, on_feedback)
 
         def send() -> None:
-            self._taken_by = self._servers()
             self._open = [other for other in self._open if other.outcome is None] + [call]
             goal_id = UUID(uuid=list(call.id))
             future = self._client.send_goal_async(goal, feedback_callback=call.heard, goal_uuid=goal_id)
             future.add_done_callback(lambda done: call.answered(done.result()))
+            self._taken_by = self._servers()  # takes a while: the goal is on its way meanwhile
 
         self._ros.on_executor(send)
         return call

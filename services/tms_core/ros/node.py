@@ -46,7 +46,7 @@ class Ros:
             name, namespace=namespace, context=self._context, start_parameter_services=False, enable_rosout=False
         )
         self.group = ReentrantCallbackGroup()
-        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor = _Executor(context=self._context)
         self._executor.add_node(self.node)
         self._clients: dict[tuple[str, str], Any] = {}  # by type and name
         self._peers: dict[str, Peer] = {}
@@ -57,7 +57,7 @@ class Ros:
         self.closing = False  # nothing can be sent any more
         self._thread = threading.Thread(target=self._spin, name="ros", daemon=True)
         self._thread.start()
-        self.pulse = Pulse(self.on_executor)
+        self.pulse = Pulse(self.on_executor, lambda: self._executor.busy_since)
 
     def _spin(self) -> None:
         try:
@@ -246,6 +246,19 @@ class Ros:
         """Call `step` on the executor thread at a fixed rate."""
         return self.node.create_timer(seconds, step, callback_group=self.group)
 
+    def beside(self, seconds: float, step: Callable[[], None], name: str) -> None:
+        """Call `step` at a fixed rate in a thread of its own, for what only samples: it costs a tenth of a timer."""
+
+        def run() -> None:
+            while not self.closing:
+                try:
+                    step()
+                except InvalidHandle:  # the node is gone
+                    return
+                time.sleep(seconds)
+
+        threading.Thread(target=run, name=name, daemon=True).start()
+
     def after(self, seconds: float, step: Callable[[], None]) -> None:
         """Call `step` on the executor thread once, in a while. On the executor thread only."""
 
@@ -352,7 +365,7 @@ class Ros:
             if not sent and client.service_is_ready():
                 sent.append(client.call_async(request))
                 sent[0].add_done_callback(lambda future: settle(future.result()))
-            elif time.monotonic() > deadline:
+            elif time.monotonic() >= deadline:
                 settle(None)
 
         def settle(value: Response | None) -> None:
@@ -360,7 +373,7 @@ class Ros:
                 answer.set_result(value)
 
         look()
-        timer = self.every(POLL, look)
+        timer = self.every(seconds if sent else POLL, look)
         try:
             return await answer
         finally:
@@ -390,6 +403,18 @@ class Ros:
         traceback logged.
         """
         self._served.serve(action_type, name, run, accept)
+
+
+class _Executor(SingleThreadedExecutor):  # type: ignore[misc]
+    """Knows since when it has been in its present callback."""
+
+    busy_since: float | None = None  # monotonic; None while it waits
+
+    def wait_for_ready_callbacks(self, *args: Any, **settings: Any) -> Any:
+        self.busy_since = None
+        found = super().wait_for_ready_callbacks(*args, **settings)
+        self.busy_since = time.monotonic()
+        return found
 
 
 class _Asleep(CallbackGroup):  # type: ignore[misc]

@@ -17,7 +17,7 @@ import time
 from typing import Any
 
 import rclpy
-from rclpy.action import ActionClient, ActionServer, CancelResponse
+from rclpy.action import ActionClient, ActionServer
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from tms_msg_db.msg import Record
@@ -43,25 +43,6 @@ def serve(node: Node) -> None:
         ActionServer(node, LeafNodeBase, "/bare/act", act, result_timeout=5),
     ]
     node.create_service(GetParameter, "/bare/get", get, qos_profile=DEPTH)
-    rclpy.spin(node)
-
-
-def crowd(node: Node, first: str, count: str) -> None:
-    """The documented pattern: an accepted goal waits for its cancel, which ends it."""
-
-    def cancel(handle: Any) -> CancelResponse:
-        node.executor.create_task(handle.execute, lambda goal: (goal.canceled(), LeafNodeBase.Result())[1])
-        return CancelResponse.ACCEPT
-
-    node.kept = [
-        ActionServer(
-            node, LeafNodeBase, f"/crowd_{number}/act", lambda _: None, result_timeout=5, cancel_callback=cancel,
-            handle_accepted_callback=lambda _: None, goal_service_qos_profile=DEPTH, result_service_qos_profile=DEPTH,
-            cancel_service_qos_profile=DEPTH,
-        )
-        for number in range(int(first), int(first) + int(count))
-    ]  # fmt: skip
-    print("ready", flush=True)
     rclpy.spin(node)
 
 
@@ -154,8 +135,6 @@ def main(what: str, *words: str) -> None:
         return fleet(*words)
     rclpy.init()
     node = _node(f"bare_{what}")
-    if what == "crowd":
-        return crowd(node, *words)
     if what in ("node", "serve"):
         print("ready", flush=True)
         serve(node) if what == "serve" else rclpy.spin(node)

@@ -1,11 +1,12 @@
 """The thread that asserts leases: what counts as late, and what it does when the executor stands still."""
 
 import threading
+import time
 
 import pytest
 
 from conftest import wait_until
-from tms_core.pulse import BEAT, LATE, REMEMBERED, Lateness, Pulse, Step
+from tms_core.pulse import BEAT, LATE, REMEMBERED, STUCK, Lateness, Pulse, Step
 
 
 def test_a_late_beat_is_remembered_for_a_while() -> None:
@@ -35,7 +36,7 @@ def executor() -> list[Step]:
 
 
 def test_it_beats_while_there_are_steps_and_asks_the_executor_once_at_a_time(executor: list[Step]) -> None:
-    pulse, beaten = Pulse(executor.append), threading.Semaphore(0)
+    pulse, beaten = Pulse(executor.append, lambda: None), threading.Semaphore(0)
     pulse.add(beaten.release)
     try:
         assert all(beaten.acquire(timeout=30) for _ in range(6))
@@ -45,5 +46,18 @@ def test_it_beats_while_there_are_steps_and_asks_the_executor_once_at_a_time(exe
         executor.pop()()
         wait_until(pulse.works, 30, "it has answered")
         pulse.remove(beaten.release)
+    finally:
+        pulse.close()
+
+
+def test_an_executor_in_a_long_callback_does_not_work() -> None:
+    since: list[float | None] = [None]
+    pulse = Pulse(lambda step: step(), lambda: since[0])
+    try:
+        assert pulse.works()
+        since[0] = time.monotonic() - 2 * STUCK
+        assert not pulse.works()
+        since[0] = time.monotonic() + 60.0  # in a short one, however slow this PC is
+        assert pulse.works()
     finally:
         pulse.close()

@@ -1,0 +1,50 @@
+"""Which task numbers are taken, remembered for a moment: to look at every task for each new one takes too long."""
+
+import time
+from collections.abc import Callable, Iterator
+from itertools import count, islice
+from typing import Any
+
+from pymongo.collection import Collection
+
+KEPT = 2.0  # s: others may store and remove tasks in the same database
+
+
+class TaskNumbers:
+    """For one caller at a time. The unique index of the store has the last word."""
+
+    def __init__(self, tasks: Collection[dict[str, Any]], clock: Callable[[], float] = time.monotonic) -> None:
+        self._tasks, self._clock = tasks, clock
+        self._taken: set[Any] = set()
+        self._foreign = False
+        self._until = float("-inf")
+
+    def lowest_free(self, how_many: int) -> list[int]:
+        """Numbers from 1 that no task has."""
+        self._look()
+        return list(islice(self._free(), how_many))
+
+    def foreign(self) -> bool:
+        """Whether there are tasks without a hash of their text, of the C++ system."""
+        self._look()
+        return self._foreign
+
+    def took(self, number: int) -> None:
+        """A task has it now."""
+        self._taken.add(number)
+
+    def forget(self) -> None:
+        """Look again: somebody else has stored or removed a task."""
+        self._until = float("-inf")
+
+    def _free(self) -> Iterator[int]:
+        return (number for number in count(1) if number not in self._taken)
+
+    def _look(self) -> None:
+        if self._clock() < self._until:
+            return
+        until = self._clock() + KEPT
+        found = list(self._tasks.find({}, {"_id": 0, "task_id": 1, "text_sha256": 1}))
+        self._taken = {document.get("task_id") for document in found}
+        self._foreign = any("text_sha256" not in document for document in found)
+        self._until = until

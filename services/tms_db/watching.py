@@ -1,0 +1,68 @@
+"""Hears from the store itself which records change, so that a record that was read once need not be read again.
+
+A change stream tells of everybody's writes, also of another system's in the same database. It needs a replica set (the
+embedded store does without); where there is none, records are read from the store each time.
+"""
+
+import logging
+import threading
+import time
+from collections.abc import Callable
+from typing import Any
+
+from pymongo.errors import OperationFailure, PyMongoError
+
+from tms_db.connection import Connection
+from tms_db.store import Db
+
+AWAIT_MS = 500  # that the store waits for a change before it says that there is none
+SURE = 2.0  # s since its last word for which the stream counts as there
+RETRY = 2.0  # s after the stream broke ...
+RETRY_REFUSED = 60.0  # s ... and after a store that has none
+WANTED = [{"$project": {"documentKey": 1, "operationType": 1}}]
+
+
+class Watching:
+    """A thread with the change stream of the records."""
+
+    def __init__(self, db: Db, connection: Connection, log: logging.Logger, changed: Callable[[Any], None]) -> None:
+        """`changed` is called in that thread with the _id of a record, or with None: any of them."""
+        self._records, self._connection, self._log, self._changed = db["parameter"], connection, log, changed
+        self._heard = float("-inf")  # monotonic; read in other threads
+        self._stopping = threading.Event()
+        self._thread = threading.Thread(target=self._keep, name="watching", daemon=True)
+
+    def start(self) -> None:
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Ends with the client at the latest."""
+        self._stopping.set()
+
+    def sure(self) -> bool:
+        """Whether every change is told of, but for those of the last moments."""
+        return time.monotonic() - self._heard < SURE
+
+    def _keep(self) -> None:
+        wait = 0.0
+        while not self._stopping.wait(wait):
+            wait = RETRY
+            if self._connection.unready() is not None:
+                continue
+            try:
+                self._listen()
+            except OperationFailure as error:
+                self._log.info("event=no_change_stream reason=%r", str(error).splitlines()[0])
+                wait = RETRY_REFUSED
+            except (PyMongoError, RuntimeError) as error:  # RuntimeError: the client was closed meanwhile
+                if not self._stopping.is_set():
+                    self._log.warning("event=change_stream_broken reason=%r", str(error).splitlines()[0])
+
+    def _listen(self) -> None:
+        with self._records.watch(WANTED, max_await_time_ms=AWAIT_MS) as stream:
+            self._changed(None)  # whatever happened before
+            while stream.alive and not self._stopping.is_set():
+                change = stream.try_next()
+                self._heard = time.monotonic()
+                if change is not None:
+                    self._changed(change.get("documentKey", {}).get("_id"))

@@ -1,0 +1,96 @@
+"""Machines at the level of messages: what a scheduler sees of gateways and subtasks, many of them in one process.
+
+python crowd.py NAME SUBTASK,... MACHINE...
+
+Prints `ready`; after a stop, when no goal is open any more, one line: the time stamps [ns] at which each machine heard
+it and at which its goal was asked to end (0: it had none), as JSON.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import threading
+import time
+from typing import Any
+
+from std_msgs.msg import Bool
+from tms_msg_rc.msg import MachineState, StopReceipt
+from tms_msg_rc.srv import StopMachine
+from tms_msg_ts.action import LeafNodeBase
+
+from tms_core.permit import Permit
+from tms_core.ros import Ended, Goal, Outcome, Ros
+
+NEWS = 0.2  # s, as gateways tell their states
+WORK = 2.0  # s that a goal takes
+GATEWAY = bytes([255]) * 16
+LOOK = 0.1  # s
+
+
+class Machine:
+    """One of them."""
+
+    def __init__(self, ros: Ros, name: str, subtasks: list[str]) -> None:
+        self.name, self._ros = name, ros
+        self.heard = self.ended = 0  # ns since 1970, of the last stop
+        self._latch = ""
+        self.open = 0  # goals
+        self._states = ros.publisher(MachineState, f"/{name}/rc/state", depth=1, latched=True)
+        self._permit = Permit(ros, name, "rc")
+        self._permit.hold(GATEWAY)
+        ros.offer(StopMachine, f"/{name}/rc/stop", self._stop)
+        for subtask in subtasks:
+            ros.serve(LeafNodeBase, f"/{name}/{subtask}", self._work)
+
+    def tell(self) -> None:
+        self._states.publish(MachineState(machine=self.name, ready=True, armed=not self._latch, latch=self._latch))
+
+    def press(self, message: Any) -> None:
+        if message.data and not self._latch:
+            self.heard, self._latch = time.time_ns(), "software stop"
+        elif not message.data:
+            self._latch = ""
+        self.tell()
+
+    def _stop(self, request: Any, response: Any) -> Any:
+        response.receipt = StopReceipt(machine=self.name, confirmed=True, cause=request.cause, stamp=self._ros.now())
+        return response
+
+    def _work(self, goal: Goal) -> Ended:
+        self.open += 1
+        cancelled = goal.cancelled.wait(WORK)
+        self.open -= 1
+        if cancelled:
+            self.ended = time.time_ns() if self.heard else 0
+            return Outcome.CANCELED, LeafNodeBase.Result()
+        return Outcome.SUCCEEDED, LeafNodeBase.Result(result=True)
+
+
+def main(name: str, subtasks: str, *names: str) -> None:
+    ros = Ros(f"crowd_{name}")
+    machines = [Machine(ros, machine, subtasks.split(",")) for machine in names]
+
+    def heard(message: Any) -> None:
+        for machine in machines:
+            machine.press(message)
+        if message.data:
+            threading.Thread(target=tell, daemon=True).start()
+
+    def tell() -> None:
+        while any(machine.open for machine in machines):
+            time.sleep(LOOK)
+        print(json.dumps([[machine.heard, machine.ended] for machine in machines]), flush=True)
+
+    def news() -> None:
+        for machine in machines:
+            machine.tell()
+
+    ros.subscribe(Bool, "/emergency_signal", heard)
+    ros.every(NEWS, news)
+    print("ready", flush=True)
+    threading.Event().wait()
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,58 @@
+"""When a gateway tells the state of its machine."""
+
+from types import SimpleNamespace
+from typing import Any, cast
+
+import pytest
+
+from tms_rc import node
+from tms_rc.guard import Guard
+from tms_rc.node import TOLD_MOVING, TOLD_STILL, Teller
+from tms_rc.standstill import StandStill
+
+
+class Rig:
+    """A gateway without a machine, and a clock that is moved by hand."""
+
+    def __init__(self) -> None:
+        self.now, self.told, self.moving = 100.0, 0, False
+        self.guard: Any = SimpleNamespace(
+            active=None, latch=SimpleNamespace(cause="", hold=""), permits=SimpleNamespace(holder=lambda: "")
+        )
+        watch = SimpleNamespace(moving=lambda: self.moving)
+        self.teller = Teller(cast(Guard, self.guard), cast(StandStill, watch), self._publish)
+
+    def _publish(self) -> None:
+        self.told += 1
+
+    def after(self, seconds: float) -> int:
+        """How often it is told at the next look."""
+        self.now += seconds
+        before = self.told
+        self.teller.look()
+        return self.told - before
+
+
+@pytest.fixture
+def rig(monkeypatch: pytest.MonkeyPatch) -> Rig:
+    made = Rig()
+    monkeypatch.setattr(node.time, "monotonic", lambda: made.now)
+    made.teller.look()
+    return made
+
+
+def test_a_machine_that_stands_is_told_of_now_and_then(rig: Rig) -> None:
+    assert [rig.after(0.6 * TOLD_STILL) for _ in range(4)] == [0, 1, 0, 1]
+
+
+def test_a_machine_that_moves_is_told_of_often(rig: Rig) -> None:
+    rig.moving = True
+    assert rig.after(0.01) == 1
+    assert [rig.after(0.6 * TOLD_MOVING) for _ in range(4)] == [0, 1, 0, 1]
+
+
+def test_a_change_is_told_at_once(rig: Rig) -> None:
+    rig.guard.latch.cause = "software stop"
+    assert [rig.after(0.01) for _ in range(2)] == [1, 0]
+    rig.guard.active = SimpleNamespace(goal=SimpleNamespace(id="17"))
+    assert [rig.after(0.01) for _ in range(2)] == [1, 0]
