@@ -41,7 +41,7 @@ def yard_apart(image: None) -> Iterator[Yard]:
 
 @contextmanager
 def running(**changes: Any) -> Iterator[Yard]:
-    """A site, which is gone afterwards."""
+    """A site, which is gone afterwards; its logs stay in the folder that TMS_LOGS names."""
     folder = Path(tempfile.mkdtemp(prefix="tms-yard-"))
     folder.chmod(0o755)
     site = Yard(uuid.uuid4().hex[:6], folder, **changes)
@@ -49,6 +49,7 @@ def running(**changes: Any) -> Iterator[Yard]:
         site.create()
         yield site
     finally:
-        if os.environ.get("TMS_KEEP") != "1":
-            site.remove()
-            shutil.rmtree(folder)
+        if logs := os.environ.get("TMS_LOGS"):
+            site.keep_logs(Path(logs))
+        site.remove()
+        shutil.rmtree(folder)

@@ -104,6 +104,12 @@ class Yard:
         if self.apart:
             host("iptables", "-D", "DOCKER-USER", "-s", RANGE, "-d", RANGE, "-j", "ACCEPT")
 
+    def keep_logs(self, folder: Path) -> None:
+        """Copy what all processes wrote."""
+        for pc in self.address:
+            (folder / self.name(pc)).mkdir(parents=True, exist_ok=True)
+            docker("cp", f"{self.name(pc)}:/var/lib/tms/state/log/.", str(folder / self.name(pc)), expect=None)
+
     def wait_ready(self, pc: str) -> None:
         """Until every process of a PC that starts by itself can work."""
         waiting = {row: "not asked" for row in self.rows if row.pc == pc and row.autostart and row.ours}

@@ -39,7 +39,7 @@ def trial(image: None) -> Iterator[None]:
 
 def test_the_trial_of_the_guide_runs_a_task(trial: None) -> None:
     for pc in PCS:
-        wait_until(lambda pc=pc: tms(pc, "status").returncode == 0, 120, f"{pc} is ready")  # type: ignore[misc]
+        wait_until(lambda pc=pc: tms(pc, "status").returncode == 0, 120, f"{pc} is ready", 2.0)  # type: ignore[misc]
     for words in (
         ("param", "load", "configs/parameters/zx200.yaml"),
         ("task", "add", "configs/tasks/one_loading_cycle.xml"),
