@@ -16,6 +16,10 @@ from prometheus_server import processes_up, prometheus, query
 pytestmark = [pytest.mark.docker, pytest.mark.timeout(400)]
 LOSS = 0.7  # s from the loss of a process, a PC or a cable to the command that stops the machine (design, section 9)
 PRESS = 0.05  # s from the press of the software stop to that command
+LOSSY = """table inet bad {
+  chain input { type filter hook input priority 0; iifname "eth0" numgen random mod 100 < 5 drop; }
+  chain output { type filter hook output priority 0; oifname "eth0" numgen random mod 100 < 5 drop; }
+}"""
 CHANGE_POSE = "zx200:subtask_zx200_change_pose"
 
 
@@ -124,10 +128,7 @@ def spoilt(yard: Yard, pc: str) -> tuple[Callable[[], object], str]:
     words = "tc qdisc add dev eth0 root netem delay 40ms 10ms loss 5%".split()
     if (tried := yard.in_network_of(pc, *words)).returncode == 0:
         return lambda: yard.in_network_of(pc, "tc", "qdisc", "del", "dev", "eth0", "root"), " ".join(words[-5:])
-    drop = 'iifname "eth0" numgen random mod 100 < 5 drop'
-    chains = "".join(f"chain {hook} {{ type filter hook {hook} priority 0; {drop.replace('iif', side)}; }} "
-                     for hook, side in (("input", "iif"), ("output", "oif")))  # fmt: skip
-    made = yard.in_network_of(pc, "nft", f"table inet bad {{ {chains} }}")
+    made = yard.in_network_of(pc, "nft", LOSSY)
     if made.returncode:
         pytest.skip(f"the kernel has neither netem ({tried.stderr.strip()}) nor numgen ({made.stderr.strip()})")
     return lambda: yard.in_network_of(pc, "nft", "delete table inet bad"), (
