@@ -23,6 +23,12 @@ LOSSY = """table inet bad {
 CHANGE_POSE = "zx200:subtask_zx200_change_pose"
 
 
+@pytest.fixture(autouse=True)
+def armed(yard: Yard) -> None:
+    """A test that failed must not fail the others, too."""
+    yard.rearm()
+
+
 def recovered(yard: Yard) -> None:
     """The site is whole and works again."""
     for pc in ("cps", "machine", "sim"):
@@ -74,7 +80,7 @@ def test_a_frozen_process_is_restarted_inside_its_container(yard: Yard) -> None:
 def test_the_software_stop_reaches_the_machine_pc_in_time(yard: Yard) -> None:
     with Lateness().watched() as late:
         told = docker("exec", yard.name("cps"), "python3", "/tools/press.py", "zx200", "20").stdout
-    waits = [1e-3 * wait for wait in json.loads(told)]
+    waits = json.loads(told)
     print(f"press -> stop commanded: median {statistics.median(waits):.4f} s, most {max(waits):.4f} s")
     assert max(waits) < PRESS + late.most
     recovered(yard)
