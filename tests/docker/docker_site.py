@@ -136,7 +136,8 @@ class Yard:
         return subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
     def run(self, task: str) -> dict[str, Any]:
-        answer: dict[str, Any] = json.loads(self.tms("cps", "run", task, "--wait", "--json", expect=None).stdout)
+        done = self.tms("cps", "run", task, "--wait", "--json", expect=None)
+        answer: dict[str, Any] = json.loads(done.stdout) if done.stdout else {"outcome": done.stderr}
         return answer
 
     def rearm(self) -> None:
@@ -150,15 +151,9 @@ class Yard:
         """What the gateway's log tells of its stops."""
         return [line for line in self.log("machine", "zx200:rc") if "event=stop " in line]
 
-    def in_network_of(self, pc: str, *words: str) -> subprocess.CompletedProcess[str]:
-        """A command of this PC in the network namespace of a container: what somebody does to its cable."""
-        pid = docker("inspect", "--format", "{{.State.Pid}}", self.name(pc)).stdout.strip()
-        words = ("nsenter", "--target", pid, "--net", *words)
-        return subprocess.run(words, capture_output=True, text=True, timeout=20, check=False)
-
-    def cable(self, pc: str, *, out: bool) -> None:
-        done = self.in_network_of(pc, "ip", "link", "set", "eth0", "down" if out else "up")
-        assert done.returncode == 0, done.stderr
+    def pid(self, pc: str) -> int:
+        """First process of a container; without it the container is dead, as a PC without power."""
+        return int(docker("inspect", "--format", "{{.State.Pid}}", self.name(pc)).stdout)
 
     def wait_moving(self) -> None:
         """Until the gateway sees the machine move."""
@@ -173,6 +168,17 @@ class Yard:
             return None
         found = [line for line in page.splitlines() if line.startswith((name + " ", name + "{"))]
         return float(found[0].rsplit(" ", 1)[1]) if found else None
+
+
+def in_network_of(pid: int, *words: str) -> subprocess.CompletedProcess[str]:
+    """A command of this PC in the network namespace of a container: what somebody does to its cable."""
+    words = ("nsenter", "--target", str(pid), "--net", *words)
+    return subprocess.run(words, capture_output=True, text=True, timeout=20, check=False)
+
+
+def cable(pid: int, *, out: bool) -> None:
+    done = in_network_of(pid, "ip", "link", "set", "eth0", "down" if out else "up")
+    assert done.returncode == 0, done.stderr
 
 
 class Lateness:

@@ -1,14 +1,16 @@
 """A site of four PCs: work across them, and what the loss of a PC, a cable, a process or the store does."""
 
 import json
+import os
 import shutil
+import signal
 import statistics
 import time
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from docker_site import LOOK, Lateness, Yard, commanded, docker, seconds
+from docker_site import LOOK, Lateness, Yard, cable, commanded, docker, in_network_of, seconds
 
 from conftest import wait_until
 from prometheus_server import processes_up, prometheus, query
@@ -87,19 +89,20 @@ def test_the_software_stop_reaches_the_machine_pc_in_time(yard: Yard) -> None:
 
 
 def test_a_machine_whose_scheduler_is_cut_off_is_seen_to_stop(yard: Yard) -> None:
-    run = yard.begin("2")
+    run, pid = yard.begin("2"), yard.pid("cps")
     try:
-        stopped_by(yard, lambda: yard.cable("cps", out=True), "cable of the cps PC")
+        stopped_by(yard, lambda: cable(pid, out=True), "cable of the cps PC")
     finally:
-        yard.cable("cps", out=False)
+        cable(pid, out=False)
     run.communicate(timeout=90)
     recovered(yard)
 
 
 def test_a_machine_whose_cps_pc_dies_is_seen_to_stop_and_the_run_is_interrupted(yard: Yard) -> None:
-    run = yard.begin("2")
-    stopped_by(yard, lambda: docker("kill", yard.name("cps")), "cps PC")
+    run, pid = yard.begin("2"), yard.pid("cps")
+    stopped_by(yard, lambda: os.kill(pid, signal.SIGKILL), "power of the cps PC")
     run.communicate(timeout=90)
+    docker("wait", yard.name("cps"))
     docker("start", yard.name("cps"))
     yard.wait_ready("cps")
     newest = json.loads(yard.tms("cps", "runs", "--limit", "1", "--json").stdout)[0]
@@ -121,7 +124,7 @@ def test_the_run_ends_when_the_machine_pc_is_gone_and_works_when_it_is_back(yard
 
 def test_a_bad_cable_stops_no_work(yard: Yard) -> None:
     """5 % of the messages to and from the cps PC are lost, and late where the kernel can do that."""
-    undo, how = spoilt(yard, "cps")
+    undo, how = spoilt(yard.pid("cps"))
     print(f"a bad cable: {how}")
     try:
         assert yard.run("1")["outcome"] == "success"
@@ -129,15 +132,15 @@ def test_a_bad_cable_stops_no_work(yard: Yard) -> None:
         undo()
 
 
-def spoilt(yard: Yard, pc: str) -> tuple[Callable[[], object], str]:
+def spoilt(pid: int) -> tuple[Callable[[], object], str]:
     """Spoil the cable of a PC: how to mend it, and what was done."""
     words = "tc qdisc add dev eth0 root netem delay 40ms 10ms loss 5%".split()
-    if (tried := yard.in_network_of(pc, *words)).returncode == 0:
-        return lambda: yard.in_network_of(pc, "tc", "qdisc", "del", "dev", "eth0", "root"), " ".join(words[-5:])
-    made = yard.in_network_of(pc, "nft", LOSSY)
+    if (tried := in_network_of(pid, *words)).returncode == 0:
+        return lambda: in_network_of(pid, "tc", "qdisc", "del", "dev", "eth0", "root"), " ".join(words[-5:])
+    made = in_network_of(pid, "nft", LOSSY)
     if made.returncode:
         pytest.skip(f"the kernel has neither netem ({tried.stderr.strip()}) nor numgen ({made.stderr.strip()})")
-    return lambda: yard.in_network_of(pc, "nft", "delete table inet bad"), (
+    return lambda: in_network_of(pid, "nft", "delete table inet bad"), (
         f"loss 5% each way by nft, no delay, for the kernel has no netem ({tried.stderr.strip()})"
     )
 
