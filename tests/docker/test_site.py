@@ -26,8 +26,11 @@ CHANGE_POSE = "zx200:subtask_zx200_change_pose"
 
 
 @pytest.fixture(autouse=True)
-def armed(yard: Yard) -> None:
+def whole(yard: Yard) -> None:
     """A test that failed must not fail the others, too."""
+    for pc in yard.address:
+        docker("start", yard.name(pc))
+        yard.wait_ready(pc)
     yard.rearm()
 
 
