@@ -7,7 +7,8 @@ ROLE ?=
 RUNTIME ?= native
 # Debian's client first: it needs no plugin to build.
 DOCKER ?= $(firstword $(wildcard /usr/bin/docker) docker)
-COMPOSE ?= $(DOCKER) compose
+# Debian's Compose is a program of its own, others' are a plugin of the client.
+COMPOSE ?= $(if $(shell $(DOCKER) compose version 2>/dev/null),$(DOCKER) compose,docker-compose)
 NAV2_DISTRO ?= jazzy
 LOCK ?= requirements-dev.lock
 export NAV2_DISTRO
@@ -59,7 +60,8 @@ ifeq ($(RUNTIME),docker)
 COMPOSE_UP = TMS_SITE_NAME=$(SITE) TMS_PC=$(ROLE) $(COMPOSE) -p tms-$(ROLE) -f deploy/compose/$(ROLE).yml
 up: ## start the mesh of this PC (SITE=name, ROLE=PC of a site with several, RUNTIME=docker)
 	@test -n "$(SITE)" -a -f "deploy/compose/$(ROLE).yml" || { echo "usage: make up SITE=yard ROLE=cps RUNTIME=docker (roles: $(patsubst deploy/compose/%.yml,%,$(wildcard deploy/compose/*.yml)))" >&2; exit 2; }
-	@$(COMPOSE_UP) up --detach --build
+	@test -n "$(TMS_IMAGE)" || DOCKER=$(DOCKER) sh deploy/image.sh $(if $(filter trial,$(ROLE)),ros2-tms-trial demo,ros2-tms)
+	@$(COMPOSE_UP) up --detach
 down: ## end the mesh of this PC; no process stays
 	@$(COMPOSE_UP) down
 else
@@ -105,7 +107,7 @@ soak: setup ## the two-machine demo over and over; nothing may grow (MINUTES=120
 
 test-docker: setup ## a site of four PCs as containers; starts a Docker engine where none runs
 	@started=$$(DOCKER=$(DOCKER) sh deploy/engine.sh); trap '[ -z "$$started" ] || kill $$started' EXIT; \
-	  DOCKER=$(DOCKER) $(PY) -m pytest -p no:randomly -m docker tests/docker
+	  DOCKER=$(DOCKER) $(PY) -m pytest -p no:randomly -m docker -s --durations=0 tests/docker
 
 clean: down ## remove the environments and all state of the demo
 	rm -rf $(VENV) $(VENV)-store .state

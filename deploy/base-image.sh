@@ -15,5 +15,7 @@ command -v debootstrap >/dev/null || {
 root=$(mktemp -d)
 trap 'rm -rf "$root"' EXIT
 debootstrap --variant=minbase --include=ca-certificates,python3 bookworm "$root" >&2
+rm -rf "$root"/var/lib/apt/lists/* "$root"/var/cache/apt/* "$root"/usr/share/locale/* "$root"/usr/share/man/* "$root"/usr/share/info/*
+find "$root"/usr/share/doc -type f ! -name copyright -delete # licences stay
 tar -C "$root" -c . | "$docker" import - "$made" >/dev/null
 echo "$made"

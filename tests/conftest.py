@@ -166,9 +166,9 @@ def node(mesh: Mesh) -> Iterator["Ros"]:
     inside.close()
 
 
-def wait_until(holds: Callable[[], bool], seconds: float, what: str) -> None:
+def wait_until(holds: Callable[[], bool], seconds: float, what: str, every: float = 0.02) -> None:
     """Poll until something holds; fails the test with `what` when it does not."""
     deadline = time.monotonic() + seconds
     while not holds():
         assert time.monotonic() < deadline, f"not within {seconds} s: {what}"
-        time.sleep(0.02)
+        time.sleep(every)

@@ -8,6 +8,7 @@ import http.client
 import threading
 from collections.abc import Callable
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from socketserver import TCPServer
 
 from prometheus_client import CONTENT_TYPE_LATEST, REGISTRY, CollectorRegistry, Gauge, Info, generate_latest
 
@@ -31,6 +32,15 @@ def unready(address: str, port: int, seconds: float = 2.0) -> str | None:
     finally:
         asked.close()
     return None if answer.status == http.HTTPStatus.OK else text
+
+
+class _Server(ThreadingHTTPServer):
+    daemon_threads = True
+
+    def server_bind(self) -> None:
+        """Without HTTPServer's question for this PC's name: 6 s a start where no name server answers."""
+        TCPServer.server_bind(self)
+        self.server_name, self.server_port = str(self.server_address[0]), int(self.server_address[1])
 
 
 class Health:
@@ -59,13 +69,12 @@ class Health:
                 """Scrapes are no news."""
 
         try:
-            self._server = ThreadingHTTPServer((bind, port), Handler)
+            self._server = _Server((bind, port), Handler)
         except OSError as error:
             raise ConfigError(
                 f"port {port} on {bind} is taken ({error.strerror}): "
                 "stop the other program or change ports.metrics in the site file"
             ) from error
-        self._server.daemon_threads = True
         threading.Thread(target=self._server.serve_forever, name="metrics", daemon=True).start()
 
     def close(self) -> None:

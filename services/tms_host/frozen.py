@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 
 from tms_core.app import App
 from tms_core.errors import TmsError
-from tms_core.processes import table
+from tms_core.processes import here
 from tms_host.supervisor import Running, Supervisor
 
 PERIOD = 2.0  # s between rounds; a question costs about a millisecond of both processes
@@ -40,8 +40,8 @@ class Watchdog:
     def __init__(self, app: App, running: Callable[[], Sequence[Running]]) -> None:
         """`running` gives the processes as supervisord saw them last."""
         self._app, self._running = app, running
-        self._ports = {row.full: row.port for row in table(app.site) if row.full != app.process.full}
-        self._answers = Answers(app.site.file.on_loss.frozen)
+        self._asked = {row.full: row for row in here(app.site) if row.ours and row.full != app.process.full}
+        self._times = Answers(app.site.file.on_loss.frozen)
         if app.site.file.on_loss.frozen:
             threading.Thread(target=self._watch, name="watchdog", daemon=True).start()
 
@@ -49,13 +49,15 @@ class Watchdog:
         supervisor = Supervisor(self._app.site)
         while not self._app.stopping.wait(PERIOD):
             for row in self._running():
-                if row.state != "RUNNING" or row.name not in self._ports or row.name == "tms:store":
+                if row.state != "RUNNING" or row.name not in self._asked:
                     continue
-                if self._answers.frozen(row.name, row.pid, self._answer(row.name), time.monotonic()):
+                if self._times.frozen(row.name, row.pid, self.answers(row.name), time.monotonic()):
                     self._restart(supervisor, row)
 
-    def _answer(self, name: str) -> bool:
-        asked = http.client.HTTPConnection(self._app.site.file.bind, self._ports[name], timeout=ANSWER_LIMIT)
+    def answers(self, name: str) -> bool:
+        """Whether a process of this PC says that it runs."""
+        row = self._asked[name]
+        asked = http.client.HTTPConnection(row.address, row.port, timeout=ANSWER_LIMIT)
         try:
             asked.request("GET", "/healthz")
             return asked.getresponse().status == http.HTTPStatus.OK

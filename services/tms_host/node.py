@@ -1,6 +1,7 @@
 """Process `tms:host`: tells the site which processes run on this PC, and starts and stops them on request."""
 
 import os
+import re
 import socket
 import threading
 import time
@@ -34,6 +35,12 @@ def start(app: App) -> None:
     app.ready_when(lambda: None if host.seen else "supervisord does not answer")
 
 
+def ros_name(host: str) -> str:
+    """A host as a part of ROS names: these hold no dash and do not start with a digit, as the id of a container may."""
+    plain = re.sub(r"[^a-z0-9]", "_", host.lower())
+    return plain if plain[:1].isalpha() else f"pc_{plain}"
+
+
 class Children:
     """Whether a process has other children than at the last look: asking supervisord costs fifty times as much."""
 
@@ -55,7 +62,7 @@ class Host:
     """Looks at supervisord in a thread of its own and publishes what changed."""
 
     def __init__(self, app: App) -> None:
-        self.name = "".join(c if c.isalnum() else "_" for c in socket.gethostname().lower()) or "pc"
+        self.name = ros_name(socket.gethostname())
         self.seen = False
         self.rows: list[Running] = []  # as supervisord told last
         self._app = app

@@ -1,27 +1,31 @@
-"""A site of four PCs as containers on a network of their own, and what can happen to PCs."""
+"""A site of several PCs as containers, and what can happen to PCs, cables and networks."""
 
+import calendar
 import json
 import os
-import shutil
 import subprocess
-import tempfile
+import threading
 import time
-import uuid
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import pytest
 import yaml
 
 from conftest import PROJECT, wait_until
+from prometheus_server import get
+from tms_core import metrics
+from tms_core.config import load_site
+from tms_core.processes import table
 
 DOCKER = os.environ.get("DOCKER") or "docker"
 IMAGE = "tms:harness"
-DOMAIN = 42  # the containers' network is their own
+DOMAIN = 42  # the containers' networks are their own
 READY = 120.0  # s for a container's processes, four containers starting at once on two cores
-ADDRESS = "{net}.{host}"
-HOSTS = {"cps": 10, "machine": 20, "sensing": 30, "sim": 40}
+FOUR_PCS: dict[str, dict[str, Any]] = {"cps": {}, "machine": {}, "sensing": {}, "sim": {}}
+LOOK = 0.2  # s between looks that cost the processes something
+RANGE = "172.31.0.0/16"  # where the networks of the tests are
 
 
 def docker(*words: str, limit: float = 60, expect: int | None = 0) -> subprocess.CompletedProcess[str]:
@@ -31,52 +35,97 @@ def docker(*words: str, limit: float = 60, expect: int | None = 0) -> subprocess
     return done
 
 
+def host(*words: str) -> None:
+    """A command on the PC that the containers run on."""
+    done = subprocess.run(words, capture_output=True, text=True, timeout=20, check=False)
+    assert done.returncode == 0, f"{words}: {done.stderr}"
+
+
 class Yard:
-    """The running site."""
+    """A running site. `apart`: every PC in a segment of its own, with a router between them."""
 
-    def __init__(self, run: str, net: str, folder: Path) -> None:
-        self.run, self.net, self.folder = run, net, folder
-        self.network = f"tms-{run}"
-
-    def name(self, pc: str) -> str:
-        return f"tms-{self.run}-{pc}"
-
-    def address(self, pc: str) -> str:
-        return ADDRESS.format(net=self.net, host=HOSTS[pc])
-
-    def create(self) -> None:
-        """The network, the site file and a container for each PC."""
-        docker("network", "create", "--subnet", f"{self.net}.0/24", self.network)
+    def __init__(
+        self, run: str, folder: Path, pcs: dict[str, dict[str, Any]] = FOUR_PCS, *, apart: bool = False, **changes: Any
+    ) -> None:
+        self._run, self._folder, self.apart = run, folder, apart
+        first = int(run[:2], 16) & 0xF0
+        self.address = {
+            pc: f"172.31.{first + i}.10" if apart else f"172.31.{first}.{10 * i + 10}" for i, pc in enumerate(pcs)
+        }
         site = {
             "name": "yard",
             "domain": DOMAIN,
             "sim": {"speed": 3.0},
-            "pcs": {pc: {"address": self.address(pc)} for pc in HOSTS},
-            "services": {"db": {}, "ts": {}, "ur": {}, "host": {}},
+            "pcs": {pc: {"address": self.address[pc], **facts} for pc, facts in pcs.items()},
+            "services": {"db": {}, "ts": {}, "ur": {}, "sp": {"role": "sensing"}, "host": {}},
             "machines": {"zx200": {"model": "zx200"}},
+            **changes,
         }
-        (self.folder / "yard.yaml").write_text(yaml.safe_dump(site, sort_keys=False))
-        for pc in HOSTS:
-            docker(
-                "run", "--detach", "--name", self.name(pc), "--hostname", pc, "--network", self.network,
-                "--ip", self.address(pc), "--env", "TMS_SITE=/etc/tms/yard.yaml", "--env", f"TMS_PC={pc}",
-                "--volume", f"{self.folder}/yard.yaml:/etc/tms/yard.yaml:ro",
-                "--volume", f"{PROJECT}/tests/data:/data:ro", IMAGE,
-            )  # fmt: skip
-        for pc in HOSTS:
+        file = folder / "yard.yaml"
+        file.write_text(yaml.safe_dump(site, sort_keys=False))
+        self.rows = table(load_site(str(file)))
+
+    def name(self, pc: str) -> str:
+        return f"tms-{self._run}-{pc}"
+
+    def network(self, pc: str) -> str:
+        return f"tms-{self._run}-{self.address[pc].split('.')[2]}"
+
+    def create(self) -> None:
+        """The networks and a container for each PC; the tasks are 1 (a loading cycle) and 2 (swings)."""
+        for pc in {self.network(pc): pc for pc in self.address}.values():
+            subnet = self.address[pc].rpartition(".")[0] + ".0/24"
+            plain = ["--opt", "com.docker.network.bridge.enable_ip_masquerade=false"]  # a router, no translation
+            docker("network", "create", "--subnet", subnet, *plain, self.network(pc))
+        if self.apart:
+            host("iptables", "-I", "DOCKER-USER", "-s", RANGE, "-d", RANGE, "-j", "ACCEPT")
+        for pc in self.address:
+            self._start(pc)
+        for pc in self.address:
             self.wait_ready(pc)
+        self.tms("cps", "param", "load", "configs/parameters/zx200.yaml")
+        self.tms("cps", "param", "load", "/data/swings.yaml")
+        self.tms("cps", "task", "add", "configs/tasks/one_loading_cycle.xml")
+        self.tms("cps", "task", "add", "/data/swings.xml")
+
+    def _start(self, pc: str) -> None:
+        docker(
+            "run", "--detach", "--name", self.name(pc), "--hostname", pc, "--network", self.network(pc),
+            "--ip", self.address[pc], "--env", "TMS_SITE=/etc/tms/yard.yaml", "--env", f"TMS_PC={pc}",
+            "--volume", f"{self._folder}/yard.yaml:/etc/tms/yard.yaml:ro",
+            "--volume", f"{PROJECT}/tests/data:/data:ro", "--volume", f"{PROJECT}/tests/docker:/tools:ro",
+            IMAGE,
+        )  # fmt: skip
 
     def remove(self) -> None:
         """Everything, whatever state it is in."""
-        docker("rm", "--force", "--volumes", *(self.name(pc) for pc in HOSTS), expect=None)
-        docker("network", "rm", self.network, expect=None)
+        docker("rm", "--force", "--volumes", *(self.name(pc) for pc in self.address), expect=None)
+        docker("network", "rm", *{self.network(pc) for pc in self.address}, expect=None)
+        if self.apart:
+            host("iptables", "-D", "DOCKER-USER", "-s", RANGE, "-d", RANGE, "-j", "ACCEPT")
+
+    def keep_logs(self, folder: Path) -> None:
+        """Copy what all processes wrote."""
+        for pc in self.address:
+            (folder / self.name(pc)).mkdir(parents=True, exist_ok=True)
+            docker("cp", f"{self.name(pc)}:/var/lib/tms/state/log/.", str(folder / self.name(pc)), expect=None)
 
     def wait_ready(self, pc: str) -> None:
-        wait_until(lambda: self.tms(pc, "status", expect=None).returncode == 0, READY, f"{pc}: {self.status(pc)}")
+        """Until every process of a PC that starts by itself can work."""
+        waiting = {row: "not asked" for row in self.rows if row.pc == pc and row.autostart and row.ours}
 
-    def status(self, pc: str) -> str:
-        done = self.tms(pc, "status", expect=None)
-        return done.stdout + done.stderr
+        def ready() -> bool:
+            for row in list(waiting):
+                waiting[row] = metrics.unready(row.address, row.port) or ""
+                if not waiting[row]:
+                    del waiting[row]
+            return not waiting
+
+        try:
+            wait_until(ready, READY, f"{pc} is ready", LOOK)
+        except AssertionError:
+            print(docker("logs", "--tail", "30", self.name(pc)).stdout, waiting)
+            raise
 
     def tms(self, pc: str, *words: str, limit: float = 120, expect: int | None = 0) -> subprocess.CompletedProcess[str]:
         return docker("exec", self.name(pc), "tms", *words, limit=limit, expect=expect)
@@ -87,7 +136,8 @@ class Yard:
         return subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
     def run(self, task: str) -> dict[str, Any]:
-        answer: dict[str, Any] = json.loads(self.tms("cps", "run", task, "--wait", "--json", expect=None).stdout)
+        done = self.tms("cps", "run", task, "--wait", "--json", expect=None)
+        answer: dict[str, Any] = json.loads(done.stdout) if done.stdout else {"outcome": done.stderr}
         return answer
 
     def rearm(self) -> None:
@@ -97,76 +147,76 @@ class Yard:
         file = f"/var/lib/tms/state/log/{process.replace(':', '.')}.log"
         return docker("exec", self.name(pc), "cat", file).stdout.splitlines()
 
-    def in_network_of(self, pc: str, *words: str) -> subprocess.CompletedProcess[str]:
-        """A command of this PC in the network namespace of a container: what somebody does to its cable."""
-        pid = docker("inspect", "--format", "{{.State.Pid}}", self.name(pc)).stdout.strip()
-        done = subprocess.run(
-            ["nsenter", "--target", pid, "--net", *words], capture_output=True, text=True, timeout=20, check=False
-        )
-        return done
+    def stops(self) -> list[str]:
+        """What the gateway's log tells of its stops."""
+        return [line for line in self.log("machine", "zx200:rc") if "event=stop " in line]
 
-    def cable(self, pc: str, *, out: bool) -> None:
-        done = self.in_network_of(pc, "ip", "link", "set", "eth0", "down" if out else "up")
-        assert done.returncode == 0, done.stderr
+    def pid(self, pc: str) -> int:
+        """First process of a container; without it the container is dead, as a PC without power."""
+        return int(docker("inspect", "--format", "{{.State.Pid}}", self.name(pc)).stdout)
 
     def wait_moving(self) -> None:
         """Until the gateway sees the machine move."""
+        wait_until(lambda: self.metric("zx200:rc", "tms_rc_moving") == 1.0, 60, "the machine moves", LOOK)
 
-        wait_until(lambda: self.metric("machine", "zx200:rc", "tms_rc_moving") == 1.0, 60, "the machine moves")
-
-    def metric(self, pc: str, process: str, name: str) -> float | None:
-        """A figure of a process, read inside its container; None when it is not there."""
-        script = (
-            "import sys,urllib.request as u;print(u.urlopen(f'http://{sys.argv[1]}/metrics',timeout=3).read().decode())"
-        )
-        target = self.targets()[process]
-        done = docker("exec", self.name(pc), "python3", "-c", script, target, expect=None)
-        found = [line for line in done.stdout.splitlines() if line.startswith((name + " ", name + "{"))]
+    def metric(self, process: str, name: str) -> float | None:
+        """A figure of a process; None when it does not answer."""
+        row = next(row for row in self.rows if row.full == process)
+        try:
+            page = get(f"http://{row.address}:{row.port}/metrics")
+        except OSError:
+            return None
+        found = [line for line in page.splitlines() if line.startswith((name + " ", name + "{"))]
         return float(found[0].rsplit(" ", 1)[1]) if found else None
 
-    def targets(self) -> dict[str, str]:
-        if not hasattr(self, "_targets"):
-            rows = json.loads(self.tms("cps", "prometheus", "--json").stdout)["targets"]
-            self._targets = {row["labels"]["process"]: row["targets"][0] for row in rows}
-        return self._targets
+
+def in_network_of(pid: int, *words: str) -> subprocess.CompletedProcess[str]:
+    """A command of this PC in the network namespace of a container: what somebody does to its cable."""
+    words = ("nsenter", "--target", str(pid), "--net", *words)
+    return subprocess.run(words, capture_output=True, text=True, timeout=20, check=False)
 
 
-@pytest.fixture(scope="session")
-def image() -> None:
-    """The image with the embedded store, of this checkout."""
-    environment = {**os.environ, "DOCKER": DOCKER, "DOCKER_BUILDKIT": "1"}
-    base = subprocess.run(
-        ["sh", str(PROJECT / "deploy/base-image.sh")], env=environment, capture_output=True, text=True, check=True
-    )
-    certificates = Path("/etc/ssl/certs/ca-certificates.crt")
-    words = ["build", "--quiet", "--network", "host", "--file", "deploy/Dockerfile", "--target", "demo", "--tag", IMAGE,
-             "--build-arg", f"BASE_IMAGE={base.stdout.strip()}",
-             *(["--secret", f"id=ca,src={certificates}"] if certificates.exists() else []), "."]  # fmt: skip
-    done = subprocess.run([DOCKER, *words], cwd=PROJECT, env=environment, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr[-2000:]
+def cable(pid: int, *, out: bool) -> None:
+    done = in_network_of(pid, "ip", "link", "set", "eth0", "down" if out else "up")
+    assert done.returncode == 0, done.stderr
 
 
-@pytest.fixture(scope="session")
-def yard(image: None) -> Iterator[Yard]:
-    """The site, with task 1 (a loading cycle) and task 2 (long swings) stored."""
-    run = uuid.uuid4().hex[:6]
-    folder = Path(tempfile.mkdtemp(prefix="tms-yard-"))
-    folder.chmod(0o755)
-    site = Yard(run, f"172.31.{int(run[:2], 16)}", folder)
-    try:
-        site.create()
-        site.tms("cps", "param", "load", "configs/parameters/zx200.yaml")
-        site.tms("cps", "param", "load", "/data/swings.yaml")
-        site.tms("cps", "task", "add", "configs/tasks/one_loading_cycle.xml")
-        site.tms("cps", "task", "add", "/data/swings.xml")
-        yield site
-    finally:
-        if os.environ.get("TMS_KEEP") != "1":
-            site.remove()
-            shutil.rmtree(folder)
+class Lateness:
+    """How late a thread of this PC was woken at most [s]: what no process on it could do better."""
+
+    def __init__(self) -> None:
+        self.most = 0.0
+        self._over = threading.Event()
+        self._thread = threading.Thread(target=self._look, daemon=True)
+
+    def _look(self) -> None:
+        while True:
+            before = time.monotonic()
+            if self._over.wait(0.01):
+                return
+            self.most = max(self.most, time.monotonic() - before - 0.01)
+
+    @contextmanager
+    def watched(self) -> Iterator["Lateness"]:
+        self._thread.start()
+        try:
+            yield self
+        finally:
+            self._over.set()
+            self._thread.join()
 
 
 def stamp(line: str) -> float:
-    """Wall time of a log line, s."""
+    """Wall time of a container's log line, s; its clock is the host's, its zone UTC."""
     text, _, fraction = line.split(" ", 1)[0].partition(".")
-    return time.mktime(time.strptime(text, "%Y-%m-%dT%H:%M:%S")) + float(f"0.{fraction}")
+    return calendar.timegm(time.strptime(text, "%Y-%m-%dT%H:%M:%S")) + float(f"0.{fraction}")
+
+
+def commanded(line: str) -> float:
+    """When the stop of a receipt was commanded, s of wall time."""
+    return stamp(line) - seconds(line)
+
+
+def seconds(line: str) -> float:
+    """How long it took from the command until the machine was seen to stand."""
+    return float(line.split(" seconds=")[1].split()[0])

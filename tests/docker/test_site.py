@@ -1,23 +1,37 @@
 """A site of four PCs: work across them, and what the loss of a PC, a cable, a process or the store does."""
 
 import json
+import os
 import shutil
+import signal
+import statistics
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from docker_site import Yard, docker, stamp
+from docker_site import LOOK, Lateness, Yard, cable, commanded, docker, in_network_of, seconds
 
 from conftest import wait_until
 from prometheus_server import processes_up, prometheus, query
 
 pytestmark = [pytest.mark.docker, pytest.mark.timeout(400)]
-LEASE_AND_WORK = 3.0  # s; the promise is 0.7, measured by `make drill`; here four containers share two cores
+LOSS = 0.7  # s from the loss of a process, a PC or a cable to the command that stops the machine (design, section 9)
+PRESS = 0.05  # s from the press of the software stop to that command
+LOSSY = """table inet bad {
+  chain input { type filter hook input priority 0; iifname "eth0" numgen random mod 100 < 5 drop; }
+  chain output { type filter hook output priority 0; oifname "eth0" numgen random mod 100 < 5 drop; }
+}"""
 CHANGE_POSE = "zx200:subtask_zx200_change_pose"
 
 
-def stops(yard: Yard) -> list[str]:
-    return [line for line in yard.log("machine", "zx200:rc") if "event=stop " in line]
+@pytest.fixture(autouse=True)
+def whole(yard: Yard) -> None:
+    """A test that failed must not fail the others, too."""
+    for pc in yard.address:
+        docker("start", yard.name(pc))
+        yard.wait_ready(pc)
+    yard.rearm()
 
 
 def recovered(yard: Yard) -> None:
@@ -27,6 +41,23 @@ def recovered(yard: Yard) -> None:
     yard.rearm()
     answers = []
     wait_until(lambda: answers.append(yard.run("1")) or answers[-1]["outcome"] == "success", 90, f"works: {answers}")
+
+
+def stopped_by(yard: Yard, loss: Callable[[], object], what: str) -> None:
+    """The machine is commanded to stop in time after a loss, and seen to stand; both figures are printed."""
+    before = len(yard.stops())
+    yard.wait_moving()
+    with Lateness().watched() as late:
+        hit = time.time()
+        loss()
+        wait_until(lambda: len(yard.stops()) > before, 30, "a receipt of the gateway", LOOK)
+    line = yard.stops()[before]
+    took = commanded(line) - hit
+    print(f"{what}: stop commanded after {took:.3f} s, stands after {took + seconds(line):.3f} s, "
+          f"this PC was {late.most:.3f} s late")  # fmt: skip
+    assert "confirmed=True latched=True" in line, line
+    assert took < LOSS + late.most
+    assert yard.metric("zx200:rc", "tms_rc_latched") == 1.0
 
 
 def test_a_task_runs_across_the_containers(yard: Yard) -> None:
@@ -41,28 +72,50 @@ def test_a_subtask_is_restarted_inside_its_container_during_a_run(yard: Yard) ->
     assert json.loads(out)["outcome"] == "success", err
 
 
+def test_a_frozen_process_is_restarted_inside_its_container(yard: Yard) -> None:
+    """Its host agent asks it at the address of its PC."""
+    rows = json.loads(yard.tms("machine", "ps", "--json").stdout)
+    pid = next(row["pid"] for row in rows if row["name"] == "zx200:rp")
+    docker("exec", yard.name("machine"), "sh", "-c", f"kill -STOP {pid}")
+    wait_until(lambda: any("event=frozen target=zx200:rp" in line for line in yard.log("machine", "tms:host_machine")),
+               60, "the host agent restarts it", LOOK)  # fmt: skip
+    recovered(yard)
+
+
+def test_the_software_stop_reaches_the_machine_pc_in_time(yard: Yard) -> None:
+    with Lateness().watched() as late:
+        told = docker("exec", yard.name("cps"), "python3", "/tools/press.py", "zx200", "20").stdout
+    waits = json.loads(told)
+    print(f"press -> stop commanded: median {statistics.median(waits):.4f} s, most {max(waits):.4f} s")
+    assert max(waits) < PRESS + late.most
+    recovered(yard)
+
+
 def test_a_machine_whose_scheduler_is_cut_off_is_seen_to_stop(yard: Yard) -> None:
-    before = len(stops(yard))
-    run = yard.begin("2")
-    yard.wait_moving()
-    cut = time.time()
-    yard.cable("cps", out=True)
+    run, pid = yard.begin("2"), yard.pid("cps")
     try:
-        wait_until(lambda: len(stops(yard)) > before, 30, "a receipt of the gateway")
-        line = stops(yard)[before]
-        assert "confirmed=True latched=True" in line, line
-        took = float(line.split(" seconds=")[1].split()[0])
-        commanded = stamp(line) - took - cut
-        print(f"cut off -> stop commanded {commanded:.2f} s, seen to stand {commanded + took:.2f} s")
-        assert commanded < LEASE_AND_WORK
-        assert yard.metric("machine", "zx200:rc", "tms_rc_latched") == 1.0
+        stopped_by(yard, lambda: cable(pid, out=True), "cable of the cps PC")
     finally:
-        yard.cable("cps", out=False)
+        cable(pid, out=False)
     run.communicate(timeout=90)
     recovered(yard)
 
 
-def test_the_machine_stops_when_its_pc_is_gone_and_works_when_it_is_back(yard: Yard) -> None:
+def test_a_machine_whose_cps_pc_dies_is_seen_to_stop_and_the_run_is_interrupted(yard: Yard) -> None:
+    run, pid = yard.begin("2"), yard.pid("cps")
+    stopped_by(yard, lambda: os.kill(pid, signal.SIGKILL), "power of the cps PC")
+    run.communicate(timeout=90)
+    docker("wait", yard.name("cps"))
+    docker("start", yard.name("cps"))
+    yard.wait_ready("cps")
+    newest = json.loads(yard.tms("cps", "runs", "--limit", "1", "--json").stdout)[0]
+    assert newest["state"] == "interrupted", newest
+    yard.rearm()
+    yard.tms("cps", "abandon", newest["run_id"])
+    recovered(yard)
+
+
+def test_the_run_ends_when_the_machine_pc_is_gone_and_works_when_it_is_back(yard: Yard) -> None:
     run = yard.begin("2")
     yard.wait_moving()
     docker("kill", yard.name("machine"))
@@ -72,12 +125,34 @@ def test_the_machine_stops_when_its_pc_is_gone_and_works_when_it_is_back(yard: Y
     recovered(yard)
 
 
+def test_a_bad_cable_stops_no_work(yard: Yard) -> None:
+    """5 % of the messages to and from the cps PC are lost, and late where the kernel can do that."""
+    undo, how = spoilt(yard.pid("cps"))
+    print(f"a bad cable: {how}")
+    try:
+        assert yard.run("1")["outcome"] == "success"
+    finally:
+        undo()
+
+
+def spoilt(pid: int) -> tuple[Callable[[], object], str]:
+    """Spoil the cable of a PC: how to mend it, and what was done."""
+    words = "tc qdisc add dev eth0 root netem delay 40ms 10ms loss 5%".split()
+    if (tried := in_network_of(pid, *words)).returncode == 0:
+        return lambda: in_network_of(pid, "tc", "qdisc", "del", "dev", "eth0", "root"), " ".join(words[-5:])
+    made = in_network_of(pid, "nft", LOSSY)
+    if made.returncode:
+        pytest.skip(f"the kernel has neither netem ({tried.stderr.strip()}) nor numgen ({made.stderr.strip()})")
+    return lambda: in_network_of(pid, "nft", "delete table inet bad"), (
+        f"loss 5% each way by nft, no delay, for the kernel has no netem ({tried.stderr.strip()})"
+    )
+
+
 def test_a_lost_store_stops_no_work(yard: Yard) -> None:
     run = yard.begin("1")
     yard.wait_moving()
     yard.tms("cps", "stop-process", "tms:store")
-    time_gone = yard.metric("cps", "tms:db", "tms_db_store_up")
-    wait_until(lambda: yard.metric("cps", "tms:db", "tms_db_store_up") == 0.0, 30, f"seen by db ({time_gone})")
+    wait_until(lambda: yard.metric("tms:db", "tms_db_store_up") == 0.0, 30, "seen by db", LOOK)
     yard.tms("cps", "start", "tms:store")
     out, err = run.communicate(timeout=120)
     assert json.loads(out)["outcome"] == "success", err
@@ -93,10 +168,10 @@ def test_the_cps_pc_is_restarted_while_nothing_runs(yard: Yard) -> None:
 @pytest.mark.skipif(not shutil.which("prometheus"), reason="prometheus is Debian's package of that name")
 def test_prometheus_sees_every_pc_and_tells_which_one_is_gone(yard: Yard, tmp_path: Path) -> None:
     docker("cp", f"{yard.name('cps')}:/var/lib/tms/state/prometheus/.", str(tmp_path))
-    rows = json.loads((tmp_path / "targets.json").read_text())
-    wanted = {row["labels"]["process"] for row in rows if row["labels"]["on_demand"] == "no"}
+    wanted = {row.full for row in yard.rows if row.ours and row.autostart}
     with prometheus(tmp_path, 9199) as address:
         wait_until(lambda: processes_up(address) >= wanted, 60, f"scraped: all of {sorted(wanted)}")
+        assert query(address, 'min_over_time(up{on_demand="no"}[5s]) == 0') == []
         docker("kill", yard.name("sensing"))
         firing = 'ALERTS{alertname="TmsProcessDown", alertstate="firing"}'
         try:

@@ -45,7 +45,13 @@ def test_the_image_runs_as_nobody_special_and_without_the_gpl_store() -> None:
 
 
 def test_every_role_has_a_compose_file() -> None:
-    assert {path.stem for path in COMPOSE} == set(ROLES)
+    assert {path.stem for path in COMPOSE} == {*ROLES, "trial"}
+
+
+def test_the_trial_has_a_container_at_the_address_of_each_pc() -> None:
+    trial = yaml.safe_load((DEPLOY / "compose" / "trial.yml").read_text())
+    here = {name: service["networks"]["site"]["ipv4_address"] for name, service in trial["services"].items()}
+    assert here == {name: pc.address for name, pc in load_site("trial").file.pcs.items()}
 
 
 @pytest.mark.parametrize("path", COMPOSE, ids=lambda path: path.stem)

@@ -1,6 +1,17 @@
 """When a process that does not answer counts as frozen."""
 
-from tms_host.frozen import Answers
+import threading
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+import yaml
+
+from tms_core.config import load_site
+from tms_core.metrics import Health
+from tms_core.processes import find
+from tms_host.frozen import Answers, Watchdog
 
 
 def test_only_a_process_that_has_answered_can_be_frozen() -> None:
@@ -15,3 +26,21 @@ def test_a_new_process_starts_anew() -> None:
     answers = Answers(10.0)
     answers.frozen("zx200:rc", 7, True, 100.0)
     assert not answers.frozen("zx200:rc", 8, False, 200.0)
+
+
+def test_a_process_is_asked_at_the_address_of_its_pc(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TMS_PC", "cps")
+    file = tmp_path / "yard.yaml"
+    file.write_text(yaml.safe_dump({
+        "name": "yard", "domain": 80, "ports": {"metrics": 29410}, "on_loss": {"frozen": 0},
+        "pcs": {"cps": {"address": "127.0.0.9"}}, "services": {"db": {}, "host": {}},
+    }))  # fmt: skip
+    site = load_site(str(file))
+    app: Any = SimpleNamespace(site=site, process=find(site, "tms:host_cps"), stopping=threading.Event())
+    watchdog = Watchdog(app, list)
+    assert not watchdog.answers("tms:db")
+    health = Health("127.0.0.9", find(site, "tms:db").port, unready=lambda: None)
+    try:
+        assert watchdog.answers("tms:db")
+    finally:
+        health.close()

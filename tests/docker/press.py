@@ -1,0 +1,37 @@
+"""Runs inside the container of the cps PC: presses the software stop as the console does, again and again.
+
+Prints the seconds from each press to the gateway's command: the stamp of the receipt, by the clock of all containers.
+"""
+
+import json
+import sys
+import time
+
+from tms_msg_rc.srv import StopMachine
+
+from tms_core import environment
+from tms_core.config import load_site
+from tms_core.ros import Ros
+
+LIMIT = 10.0  # s for a receipt
+
+
+def main(machine: str, presses: int) -> list[float]:
+    environment.enter(load_site())
+    ros = Ros("press")
+    try:
+        ros.call(StopMachine, f"/{machine}/rc/stop", StopMachine.Request(cause="test"), LIMIT)  # found each other
+        return [press(ros, machine) for _ in range(presses)]
+    finally:
+        ros.close()
+
+
+def press(ros: Ros, machine: str) -> float:
+    pressed = time.time()
+    answer = ros.call(StopMachine, f"/{machine}/rc/stop", StopMachine.Request(cause="test"), LIMIT)
+    stamp = answer.receipt.stamp
+    return round(stamp.sec + stamp.nanosec * 1e-9 - pressed, 4)
+
+
+if __name__ == "__main__":
+    print(json.dumps(main(sys.argv[1], int(sys.argv[2]))))
