@@ -213,5 +213,5 @@ def stamp(line: str) -> float:
 
 
 def commanded(line: str) -> float:
-    """When the stop of a receipt was commanded, s of wall time: it took `seconds` from there until the machine stood."""
+    """When the stop of a receipt was commanded, s of wall time; `seconds` of it is how long the machine took."""
     return stamp(line) - float(line.split(" seconds=")[1].split()[0])

@@ -45,12 +45,11 @@ def recovered(yard: Yard) -> None:
 
 def stopped_by(yard: Yard, loss: Callable[[], object], what: str) -> None:
     """The machine is commanded to stop in time after a loss, and seen to stand; both figures are printed."""
-    before = len(yard.stops())
     yard.wait_moving()
     new: list[str] = []  # receipts; that of the goal, which its subtask cancels, may be the first
 
     def latched() -> bool:
-        new[:] = yard.stops()[before:]
+        new[:] = [line for line in yard.stops() if stamp(line) > hit]
         return any("latched=True" in line for line in new)
 
     with Lateness().watched() as late:
