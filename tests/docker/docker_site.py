@@ -213,10 +213,5 @@ def stamp(line: str) -> float:
 
 
 def commanded(line: str) -> float:
-    """When the stop of a receipt was commanded, s of wall time."""
-    return stamp(line) - seconds(line)
-
-
-def seconds(line: str) -> float:
-    """How long it took from the command until the machine was seen to stand."""
-    return float(line.split(" seconds=")[1].split()[0])
+    """When the stop of a receipt was commanded, s of wall time; `seconds` of it is how long the machine took."""
+    return stamp(line) - float(line.split(" seconds=")[1].split()[0])
