@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 EXIT_LIMIT = 2.0  # s from SIGTERM to the end, whatever hangs
 PR_SET_PDEATHSIG = 1
 GRAPH_PERIOD = 5.0  # s between looks at the ROS graph for the metrics
-SWITCH = 0.0005  # s that a thread may keep others waiting, a hand-over several times; the default is 5 ms
 FIRST = ("rc", "ts")  # on a busy PC these must not miss a beat of their permits
 NICE = -10
 
@@ -60,7 +59,6 @@ def _serve(site: Site, row: Process) -> int:
     stop = threading.Event()
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda _number, _frame: stop.set())
-    sys.setswitchinterval(SWITCH)
     if row.name in FIRST:
         _come_first()
     ros = Ros(row.full.replace(":", "_"))

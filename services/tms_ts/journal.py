@@ -21,7 +21,6 @@ from tms_ts.spool import Spool
 
 BATCH = 200
 RETRY = 0.5  # s
-LINGER = 0.05  # s for more to come: what happens at a hand-over goes together, and after it
 KINDS = {b"R": Run, b"E": Event}
 
 WAITING = Gauge("tms_ts_journal_waiting_bytes", "Journal entries not yet written to the database")
@@ -64,7 +63,6 @@ class Journal:
             if not lines:
                 self._news.wait(0.2)
                 self._news.clear()
-                self._closing.wait(LINGER)
                 continue
             problem = self._deliver(lines)
             if problem is None:
