@@ -46,19 +46,19 @@ def recovered(yard: Yard) -> None:
 def stopped_by(yard: Yard, loss: Callable[[], object], what: str) -> None:
     """The machine is commanded to stop in time after a loss, and seen to stand; both figures are printed."""
     yard.wait_moving()
-    new: list[str] = []  # receipts; that of the goal, which its subtask cancels, may be the first
+    new: list[str] = []  # the gateway's own stops; one that a dying scheduler still asks for does not count
 
     def latched() -> bool:
-        new[:] = [line for line in yard.stops() if stamp(line) > hit]
-        return any("latched=True" in line for line in new)
+        new[:] = [line for line in yard.stops() if stamp(line) > hit and "latched=True" in line]
+        return bool(new)
 
     with Lateness().watched() as late:
         hit = time.time()
         loss()
         wait_until(latched, 30, "a receipt of the gateway", LOOK)
-    took, stood = min(map(commanded, new)) - hit, max(map(stamp, new)) - hit
+    took, stood = commanded(new[0]) - hit, stamp(new[0]) - hit
     print(f"{what}: stop commanded after {took:.3f} s, stands after {stood:.3f} s, this PC was {late.most:.3f} s late")
-    assert all("confirmed=True" in line for line in new), new
+    assert "confirmed=True" in new[0], new
     assert took < LOSS + late.most
     assert yard.metric("zx200:rc", "tms_rc_latched") == 1.0
 
