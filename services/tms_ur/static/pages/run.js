@@ -10,7 +10,7 @@ let latched = []; // names of machines that somebody must re-arm
 export function build(root) {
   root.append(
     heading("active"), make("p", { id: "scheduler", className: "bad", hidden: true, data: { t: "scheduler_silent" } }),
-    make("p", { id: "none_active", data: { t: "none_active" } }), make("ul", { id: "list_active", className: "rows" }),
+    make("div", { className: "one_run" }, make("p", { id: "none_active", data: { t: "none_active" } }), make("ul", { id: "list_active", className: "rows" })),
     heading("tasks"), make("p", { id: "lists_problem", className: "bad", role: "status" }),
     make("p", { id: "none_tasks", hidden: true }, make("a", { className: "button", href: "#tasks", data: { t: "none_tasks" } })),
     table("list_tasks", "tasks", ["task", "model", "description", "run"]), make("div", { id: "checked", role: "status" }),
