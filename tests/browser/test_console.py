@@ -107,7 +107,7 @@ def test_upload_fix_run_watch_stop_rearm_and_run_again(page: Page, address: str,
     expect(page.locator("[data-machine=zx200]")).to_contain_text("Stopped because: software stop by local")
     expect(page.locator("#list_active li")).to_have_count(0)
     start(page, 1)
-    expect(page.locator("#message")).to_contain_text("re-arm it")  # refused while it is stopped
+    expect(page.locator("#message")).to_contain_text("Press Re-arm of zx200.")  # refused while it is stopped
     rearm(page)
     start(page, SWINGS)
     expect(page.locator("#list_active li")).to_have_count(1)
@@ -141,6 +141,10 @@ def test_one_machine_is_stopped(page: Page, address: str, idle: Mesh) -> None:
     expect(page.locator("#message")).to_contain_text("Cancelled after")  # how the run has ended
     page.locator("#message a").click()
     expect(page.locator("#receipts li").first).to_contain_text(re.compile(r"^\d\d:\d\d:\d\d\.\d zx200 stood"))
+    page.locator("#language").click()
+    open_page(page, address, "run")
+    expect(page.locator("[data-machine=zx200]")).to_contain_text("停止の理由: local(127.0.0.1)によるソフト停止")
+    page.go_back()
     page.reload()  # the run has an address of its own
     expect(page.locator("#receipts li").first).to_contain_text("zx200 stood")
 

@@ -11,6 +11,7 @@ import { buildQuestion, fillQuestion } from "./questions.js";
 import { ask, watch } from "./server.js";
 import { stop } from "./stop.js";
 import { onLanguage, switchLanguage, t, translatePage } from "./strings.js";
+import { told } from "./told.js";
 
 const PAGES = { run, tree, site, history, data, system, tasks };
 let shown = null; // name of the page on the screen
@@ -57,7 +58,7 @@ async function tellEnd(id) {
   const run = (await ask("/api/runs?limit=50").catch(() => [])).find((one) => one.run_id === id);
   if (run?.ended_at && run.state !== "refused") { // whoever asked for that one was told why
     const seconds = (new Date(run.ended_at) - new Date(run.started_at)) / 1000;
-    say(t("run_ended", { task: run.task_id, state: t(run.state), duration: duration(seconds), reason: run.reason }), run.state !== "success");
+    say(t("run_ended", { task: run.task_id, state: t(run.state), duration: duration(seconds), reason: told(run.reason) }), run.state !== "success");
     at("message").append(" ", make("a", { className: "button", href: `#history/${encodeURIComponent(id)}` }, t("p_history")));
   }
 }

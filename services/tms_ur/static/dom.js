@@ -1,5 +1,6 @@
 // Building blocks of all pages.
 import { t } from "./strings.js";
+import { told } from "./told.js";
 
 const MARKS = { moving: "▶", running: "▶", RUNNING: "▶", standing: "■", success: "✔", STOPPED: "■", stopping: "…",
   preparing: "…", STARTING: "…", STOPPING: "…", armed: "✔", held: "…",
@@ -147,7 +148,7 @@ export async function once(element, work) {
       say(text);
     }
   } catch (error) {
-    say(error.message, true);
+    say(told(error.message), true);
   } finally {
     element.disabled = false;
     if (document.activeElement === document.body) {

@@ -4,6 +4,7 @@ import { buildQuestion, fillQuestion } from "./questions.js";
 import { ask, watch } from "./server.js";
 import { stop } from "./stop.js";
 import { onLanguage, switchLanguage, t, translatePage } from "./strings.js";
+import { told } from "./told.js";
 
 const id = Number(new URLSearchParams(location.search).get("task"));
 let task = null;
@@ -14,10 +15,10 @@ function heard(now) {
   const run = now.runs.find((one) => one.task_id === id);
   keep(at("questions"), now.questions.filter((one) => one.run_id === run?.run_id), (one) => one.id, buildQuestion, fillQuestion);
   const latched = now.machines.filter((machine) => machine.latch);
-  const stopped = latched.map((machine) => `${machine.name}: ${t("why_latched", { cause: machine.latch })}`).join(" ");
+  const stopped = latched.map((machine) => `${machine.name}: ${t("why_latched", { cause: told(machine.latch) })}`).join(" ");
   setText(at("machines"), stopped);
   at("machines").className = stopped ? "bad" : "";
-  setText(at("state"), run ? `${t(run.state)}: ${run.reason || t(run.state === "running" ? "moving_on" : run.state)}` : t("panel_ready"));
+  setText(at("state"), run ? `${t(run.state)}: ${told(run.reason) || t(run.state === "running" ? "moving_on" : run.state)}` : t("panel_ready"));
   at("start").disabled = run !== undefined;
 }
 

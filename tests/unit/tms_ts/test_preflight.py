@@ -10,6 +10,7 @@ from conftest import site_data
 from tms_core.config import Site, load_site
 from tms_ts import bt
 from tms_ts.preflight import Stored, Values, machines_of, preflight, processes_of, records_of
+from unit.tms_ur.phrases import known
 
 LEAF = '<Action ID="LeafNodeZx200" model_name="{}" record_name="{}" subtask_name="{}"/>\n'
 
@@ -93,6 +94,7 @@ def test_errors_name_line_and_remedy(site: Site, leaf: tuple[str, str, str], sai
     found = preflight(tree(GOOD, leaf), site, Around())
     assert len(found.errors) == 1
     assert said in found.errors[0]
+    assert known(found.errors[0]) in ("told_machine", "told_subtask", "told_record")
 
 
 def test_what_only_the_run_decides_is_a_warning(site: Site) -> None:

@@ -6,13 +6,17 @@ from pathlib import Path
 
 import pytest
 
+from tms_ts import bt
 from tms_ur.api import STATIC
+from tms_ur.guard import LOCAL
 from unit.tms_ur.fakes import Client, FakeGateway, app
+from unit.tms_ur.phrases import known
 
 FILES = sorted(path for path in STATIC.rglob("*") if path.is_file())
 CODE = {path: path.read_text(encoding="utf-8") for path in FILES if path.suffix == ".js"}
 PAGES = {path: path.read_text(encoding="utf-8") for path in FILES if path.suffix == ".html"}
 FIRST_PAGE = 300_000  # bytes
+TREE = '<root main_tree_to_execute="T"><BehaviorTree ID="T"><AlwaysSuccess/></BehaviorTree></root>'
 
 
 def table() -> dict[str, dict[str, str]]:
@@ -40,6 +44,7 @@ def used() -> set[str]:
     for text in CODE.values():
         found |= set(re.findall(r'\bt\("(\w+)"', text)) | set(re.findall(r'\b(?:t|label): "(\w+)"', text))
         found |= set(re.findall(r'\bheading\("(\w+)"', text)) | set(re.findall(r'\bbutton\("(\w+)"', text))
+        found |= set(re.findall(r'"(told_\w+)"', text))
         for label, heads in re.findall(r'\btable\("\w+", ("\w+"), \[([^\]]*)\]', text):
             found |= set(re.findall(r'"(\w+)"', label + heads))
     return found
@@ -48,6 +53,16 @@ def used() -> set[str]:
 def test_every_text_that_the_pages_ask_for_is_there() -> None:
     assert len(used()) > 60
     assert used() <= table()["en"].keys()
+
+
+def test_what_other_processes_tell_is_told_in_both_languages() -> None:
+    with pytest.raises(bt.TreeError) as unknown:
+        bt.load(TREE.replace("AlwaysSuccess", "AlwaysSucces"), world=None)
+    assert known(str(unknown.value)) == "told_node_near"
+    assert known(f"software stop by {LOCAL.name} at 127.0.0.1") == "told_stop_by"
+    assert known("waits 2.5 s") == "told_waits"
+    assert known("MOVING 2/3 68 % (theta_w 1.41 instead of 0.00 rad)") == "told_moving"
+    assert known("the shovel is away") == ""
 
 
 def test_every_element_that_the_code_asks_for_is_made_somewhere() -> None:

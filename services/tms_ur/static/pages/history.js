@@ -2,6 +2,7 @@
 import { at, button, duration, heading, keep, make, part, parts, setBadge, setText, table } from "../dom.js";
 import { ask } from "../server.js";
 import { clock, t, when } from "../strings.js";
+import { told } from "../told.js";
 import { TreeView } from "../treeview.js";
 import { zoomBar } from "./tree.js";
 
@@ -64,7 +65,7 @@ function fillRun(row, run) {
   setBadge(part(row, "state"), run.state);
   const seconds = run.ended_at && (new Date(run.ended_at) - new Date(run.started_at)) / 1000;
   setText(part(row, "duration"), seconds === null ? "-" : duration(seconds));
-  setText(part(row, "reason"), run.reason);
+  setText(part(row, "reason"), told(run.reason));
   markChosen(row);
 }
 

@@ -3,6 +3,7 @@ import { at, button, confirmed, duration, heading, keep, make, number, once, par
 import { ask } from "../server.js";
 import { stop } from "../stop.js";
 import { t } from "../strings.js";
+import { told } from "../told.js";
 
 let tasks = null;
 let latched = []; // names of machines that somebody must re-arm
@@ -59,7 +60,7 @@ function fillActive(row, run) {
   setText(part(row, "task"), `${t("task")} ${run.task_id}`);
   setBadge(part(row, "state"), run.state);
   setText(part(row, "machines"), run.machines.join(", "));
-  setText(part(row, "reason"), run.reason);
+  setText(part(row, "reason"), told(run.reason));
 }
 
 // tasks
@@ -71,7 +72,7 @@ function buildTask(task) {
       const answer = await ask("/api/runs", { task_id: task.id });
       return t("started", { id: answer.run_id });
     } catch (error) {
-      throw latched.length > 0 ? new Error(`${error.message} ${t("press_rearm", { names: latched.join(", ") })}`) : error;
+      throw latched.length > 0 ? new Error(`${told(error.message)} ${t("press_rearm", { names: latched.join(", ") })}`) : error;
     }
   });
   const check = (event) => once(event.currentTarget, () => checkTask(task.id));
@@ -99,7 +100,7 @@ export function showFindings(box, found) {
   for (const kind of ["errors", "warnings"]) {
     if (found[kind].length > 0) {
       box.append(make("h3", {}, `${t(kind)} (${found[kind].length})`), make("ul", { className: kind },
-        ...found[kind].map((one) => make("li", { data: { line: one.line ?? "" } }, one.text))));
+        ...found[kind].map((one) => make("li", { data: { line: one.line ?? "" } }, told(one.text)))));
     }
   }
 }
@@ -123,9 +124,9 @@ function fillMachine(card, machine) {
   setBadge(part(card, "state"), machine.state);
   setBadge(part(card, "armed"), machine.latch ? "latched" : machine.hold ? "held" : "armed");
   part(card, "armed").hidden = machine.state === "silent";
-  setText(part(card, "latch"), machine.latch ? t("why_latched", { cause: machine.latch }) : "");
-  setText(part(card, "hold"), machine.hold);
-  setText(part(card, "reason"), machine.reason);
+  setText(part(card, "latch"), machine.latch ? t("why_latched", { cause: told(machine.latch) }) : "");
+  setText(part(card, "hold"), told(machine.hold));
+  setText(part(card, "reason"), told(machine.reason));
   setText(part(card, "goal"), machine.goal ? `${t("goal")}: ${machine.owner}` : "");
   setText(part(card, "age"), `${t("data_age")}: ${duration(machine.joint_age)}`);
   part(card, "rearm").hidden = !machine.latch;
@@ -140,7 +141,7 @@ function fillMachine(card, machine) {
 async function rearmMachine(name) {
   const path = `/api/machines/${encodeURIComponent(name)}/rearm`;
   const first = await ask(path, {});
-  if (!(await confirmed(t("rearm_ask", { name, cause: first.cause })))) {
+  if (!(await confirmed(t("rearm_ask", { name, cause: told(first.cause) })))) {
     return "";
   }
   await ask(path, { token: first.token });

@@ -2,6 +2,7 @@
 import { at, button, heading, keep, make, setBadge, setText } from "../dom.js";
 import { treeOf } from "../server.js";
 import { t } from "../strings.js";
+import { told } from "../told.js";
 import { TreeView } from "../treeview.js";
 
 let view = null;
@@ -54,7 +55,7 @@ export function update(state) {
     view.paint(run.nodes, run.leaf);
   }
   setBadge(at("tree_state"), run.state);
-  setText(at("tree_reason"), run.reason || t(run.state === "running" ? "moving_on" : run.state));
+  setText(at("tree_reason"), told(run.reason) || t(run.state === "running" ? "moving_on" : run.state));
 }
 
 export function redraw() {
