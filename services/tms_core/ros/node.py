@@ -25,6 +25,7 @@ from rclpy.task import Future
 from tms_core.errors import RosError
 from tms_core.pulse import Pulse
 from tms_core.ros import quality
+from tms_core.ros.answers import send_surely
 from tms_core.ros.client import Peer
 from tms_core.ros.goals import Accept, Ended, InterfaceType, Message, Request, Response
 from tms_core.ros.server import Goal, Served
@@ -277,7 +278,14 @@ class Ros:
         handler: Callable[[Request, Response], Response | Awaitable[Response]],
     ) -> None:
         """Offer a service; the handler runs on the executor thread and must be quick, or be a coroutine function."""
-        self.node.create_service(service_type, name, handler, qos_profile=quality.SERVICE, callback_group=self.group)
+        self._offered(service_type, name, handler)
+
+    def _offered(self, service_type: InterfaceType, name: str, handler: Callable[..., Any]) -> Any:
+        service = self.node.create_service(
+            service_type, name, handler, qos_profile=quality.SERVICE, callback_group=self.group
+        )
+        send_surely(service, self.after)
+        return service
 
     def offer_slow(
         self, service_type: InterfaceType, name: str, handler: Callable[[Request, Response], Response | None]
@@ -297,12 +305,7 @@ class Ros:
             threading.Thread(target=work, name=name, daemon=True).start()
             return await done
 
-        service = self.node.create_service(
-            service_type, name, answer, qos_profile=quality.SERVICE, callback_group=self.group
-        )
-        send = service.send_response
-        service.send_response = lambda response, header: None if response is None else send(response, header)
-        return service
+        return self._offered(service_type, name, answer)
 
     def _service(self, service_type: InterfaceType, name: str) -> Any:
         key = (service_type.__name__, name)
