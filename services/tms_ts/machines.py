@@ -224,7 +224,7 @@ class Machines:
 
     def _look_for_loss(self, goal: SentGoal, call: Call) -> None:
         """A server that is gone never answers: end the goal, and stop what it may have left moving."""
-        why = self._loss(goal, call)
+        why = self._loss(goal)
         if not why:
             return
         final = goal.state.final
@@ -254,7 +254,7 @@ class Machines:
             self._tell("loss", goal.node, f"{why}; sent again when the process is back ({goal.losses}/{self._retries})")
         threading.Thread(target=self._stop_after_loss, args=(goal.machine, why), daemon=True).start()
 
-    def _loss(self, goal: SentGoal, call: Call) -> str:
+    def _loss(self, goal: SentGoal) -> str:
         if goal.unheard():
             return f"{goal.name} did not answer the goal within {ACCEPT_LIMIT:.0f} s"
         now = self._hosts.pid(goal.machine, goal.subtask)

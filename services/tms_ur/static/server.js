@@ -23,7 +23,7 @@ export async function ask(path, body, limit = LIMIT) {
     location.reload(); // the session is over: the page begins with the login
   }
   if (!response.ok) {
-    throw Object.assign(new Error(answer.message), { code: answer.code });
+    throw new Error(answer.message);
   }
   return answer;
 }

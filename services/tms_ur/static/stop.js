@@ -20,7 +20,7 @@ export async function stop(machine = "") {
     error = await attempt(machine);
   }
   if (error) {
-    report(`${t("not_stopped", { reason: error.message })}`, true);
+    report(t("not_stopped", { reason: error.message }), true);
   }
 }
 

@@ -12,7 +12,7 @@ let found = null; // its check
 let stored = [];
 
 export function build(root) {
-  const file = make("input", { type: "file", id: "file", accept: ".xml,text/xml", onchange: () => read(), onclick: () => { at("file").value = ""; } });
+  const file = make("input", { type: "file", id: "file", accept: ".xml,text/xml", onchange: read, onclick: () => { at("file").value = ""; } });
   const compare = make("select", { id: "compare", onchange: (event) => once(event.currentTarget, showDifference) });
   const store = button("store", "go", (event) => once(event.currentTarget, storeTask));
   store.id = "store";
