@@ -92,6 +92,13 @@ class Gateways:
                 time.sleep(SETTLE)
                 return
 
+    def loss(self, machine: str) -> Callable[[], bool]:
+        """What tells whether the gateway that is there now has been lost since."""
+        link = self._links.get(machine)
+        if link is None or not link.alive:
+            return lambda: False
+        return lambda: not link.alive
+
     def latch(self, machine: str) -> str:
         """Why the machine is stopped until it is re-armed; empty if it is not."""
         state = self._states.get(machine)

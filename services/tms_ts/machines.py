@@ -105,15 +105,23 @@ class Machines:
         return [goal.name for goal in self._open]
 
     def stop(self, machine: str, cause: str) -> StopReceipt:
-        """Have the gateway stop the machine and watch it stand. Blocks; never raises."""
-        request = StopMachine.Request(cause=cause, orderly=True)
-        self._gateways.wait_alive(machine, GATEWAY_LIMIT)
-        try:
-            answer = self._ros.call(StopMachine, f"/{machine}/rc/stop", request, STOP_LIMIT)
-        except RosError as error:
-            return StopReceipt(machine=machine, confirmed=False, cause=cause, detail=str(error), stamp=self._ros.now())
-        receipt: StopReceipt = answer.receipt
-        return receipt
+        """Have the gateway stop the machine and watch it stand. Blocks; never raises.
+
+        A gateway that is lost meanwhile has a successor, which is asked again.
+        """
+        request, deadline = StopMachine.Request(cause=cause, orderly=True), time.monotonic() + STOP_LIMIT
+        while True:
+            self._gateways.wait_alive(machine, GATEWAY_LIMIT)
+            lost = self._gateways.loss(machine)
+            try:
+                answer = self._ros.call(StopMachine, f"/{machine}/rc/stop", request, STOP_LIMIT, lost)
+            except RosError as error:
+                if error.code == "LOST" and time.monotonic() < deadline:
+                    continue
+                stamp, why = self._ros.now(), str(error)
+                return StopReceipt(machine=machine, confirmed=False, cause=cause, detail=why, stamp=stamp)
+            receipt: StopReceipt = answer.receipt
+            return receipt
 
     def stop_all(self, machines: Sequence[str], cause: str) -> list[StopReceipt]:
         """`stop` for several machines at the same time."""

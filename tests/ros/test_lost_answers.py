@@ -1,16 +1,21 @@
 """A goal whose answer gets lost: a server that has not yet discovered its client drops what it says to it."""
 
 import os
+import threading
 from collections.abc import Iterator
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from action_msgs.msg import GoalInfo, GoalStatus, GoalStatusArray
 from rclpy.task import Future
+from tms_msg_rc.srv import StopMachine
 from tms_msg_ts.action import LeafNodeBase
 
 from conftest import wait_until
 from tms_core.ros import Outcome, Peer, Ros
+from tms_ts.machines import Identity, Machines
+from tms_ts.record import Replay
 
 pytestmark = pytest.mark.ros
 LIMIT = 20.0  # s for whatever must happen at all
@@ -83,6 +88,29 @@ def test_the_status_tells_that_a_goal_was_accepted(ros: tuple[Ros, Ros]) -> None
     assert call.outcome is None
     ros[0].on_executor(silent.finish)
     wait_until(lambda: call.outcome is Outcome.SUCCEEDED, LIMIT, "result")
+
+
+def test_a_stop_asked_of_a_gateway_that_is_being_lost_is_asked_of_its_successor(ros: tuple[Ros, Ros]) -> None:
+    asked = []
+    alive = threading.Event()
+    alive.set()
+
+    def gateway(_: Any, answer: Any) -> Any:
+        """Killed after the first request has reached it; its successor answers."""
+        asked.append(alive.is_set())
+        if len(asked) == 1:
+            alive.clear()
+            return None
+        answer.receipt.confirmed = True
+        return answer
+
+    ros[0].offer_slow(StopMachine, "/zx200/rc/stop", gateway)
+    back = lambda machine, seconds: alive.set()  # noqa: E731
+    gateways = SimpleNamespace(wait_alive=back, loss=lambda machine: lambda: not alive.is_set())
+    identity = Identity(1, 3, SimpleNamespace(), Replay([]))  # type: ignore[arg-type]
+    machines = Machines(ros[1], None, gateways, lambda: None, lambda *_: None, identity)  # type: ignore[arg-type]
+    assert machines.stop("zx200", "test").confirmed
+    assert asked == [True, True]
 
 
 def test_a_goal_that_the_server_does_not_know_is_lost(ros: tuple[Ros, Ros]) -> None:

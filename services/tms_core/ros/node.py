@@ -34,6 +34,7 @@ T = TypeVar("T")
 
 LAST_WORDS = 0.1  # s for results and reasons to leave before this process does
 HANGS = 5.0  # s after which an executor that does not run counts as hanging
+LOOK = 0.1  # s between looks whether a server that owes an answer is still there
 POLL = 0.02  # s between looks at the ROS graph, which has no cheap event in rclpy
 
 
@@ -316,11 +317,20 @@ class Ros:
                 )
             return self._clients[key]
 
-    def call(self, service_type: InterfaceType, name: str, request: Request, seconds: float = 5.0) -> Response:
+    def call(
+        self,
+        service_type: InterfaceType,
+        name: str,
+        request: Request,
+        seconds: float = 5.0,
+        lost: Callable[[], bool] = lambda: False,
+    ) -> Response:
         """Call a service and wait for its answer; from worker threads only.
 
+        `lost` tells of a server that is known to be gone, so that nobody waits for what it will not say any more.
+
         Raises:
-            RosError: NO_SERVER or NO_ANSWER within `seconds`.
+            RosError: NO_SERVER or NO_ANSWER within `seconds`, or LOST.
         """
         assert threading.current_thread() is not self._thread, "blocking call on the executor thread"
         client = self._service(service_type, name)
@@ -329,9 +339,12 @@ class Ros:
         done = threading.Event()
         future = client.call_async(request)
         future.add_done_callback(lambda _: done.set())
-        if not done.wait(max(0.0, deadline - time.monotonic())):
-            client.remove_pending_request(future)
-            raise RosError(f"service {name} did not answer within {seconds:.1f} s", "NO_ANSWER")
+        while not done.wait(min(LOOK, max(0.0, deadline - time.monotonic()))):
+            if lost() or time.monotonic() >= deadline:
+                client.remove_pending_request(future)
+                if lost():
+                    raise RosError(f"the process behind service {name} was lost before it answered", "LOST")
+                raise RosError(f"service {name} did not answer within {seconds:.1f} s", "NO_ANSWER")
         return future.result()
 
     def has_service(self, service_type: InterfaceType, name: str) -> bool:

@@ -22,13 +22,17 @@ function heard(now) {
   at("start").disabled = run !== undefined;
 }
 
-async function name() {
+function name() {
+  setText(at("task"), id ? `${t("task")} ${id} ${task?.description ?? ""}` : t("panel_none"));
+}
+
+async function load() {
   try {
     task = await ask(`/api/tasks/${id}`);
   } catch (error) {
     say(error.message, true);
   }
-  setText(at("task"), id ? `${t("task")} ${id} ${task?.description ?? ""}` : t("panel_none"));
+  name();
 }
 
 at("start").addEventListener("click", (event) => once(event.currentTarget, async () => {
@@ -44,13 +48,14 @@ onLanguage(() => {
   }
 });
 translatePage();
+name();
 
 ask("/api/session").then((session) => {
   if (session.name === null) {
     location.href = `/?panel=${id}`; // log in there first
     return;
   }
-  name();
+  load();
   watch(heard, (there) => {
     at("lost").hidden = there;
     document.body.classList.toggle("old", !there);
