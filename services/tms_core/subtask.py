@@ -2,7 +2,7 @@
 
 import importlib
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, TypeVar, get_type_hints
 
 from pydantic import BaseModel, ConfigDict
@@ -18,6 +18,10 @@ class Params(BaseModel):
     """A record as the subtask needs it. Further fields of the record are ignored, missing ones refuse the goal."""
 
     model_config = ConfigDict(frozen=True, strict=True, allow_inf_nan=False, extra="ignore")
+
+    def joint_angles(self) -> Mapping[str, float]:
+        """Joint angles [rad] that the record asks for; the check before a run compares them with the limits."""
+        return {}
 
 
 class Subtask:

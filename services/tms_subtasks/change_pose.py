@@ -1,5 +1,7 @@
 """Move the arm to the joint angles, the pose or the bucket position of a record."""
 
+from collections.abc import Mapping
+
 from geometry_msgs.msg import Point, Pose, Quaternion
 
 from tms_core.subtask import Machine, Params, Progress, SubtaskFailed, subtask
@@ -34,6 +36,11 @@ class Target(Params):
         if missing:
             raise SubtaskFailed("BAD_RECORD", f"field '{missing[0]}' is missing; set it with `tms param set`")
         return [getattr(self, name) for name in names]
+
+    def joint_angles(self) -> Mapping[str, float]:
+        if self.trajectory <= 0.5:
+            return {}
+        return {name: angle for name in ARM if (angle := getattr(self, name)) is not None}
 
 
 @subtask(timeout=120)

@@ -1,10 +1,15 @@
 """Open the bucket over the dumping place."""
 
+from collections.abc import Mapping
+
 from tms_core.subtask import Machine, Params, Progress, subtask
 
 
 class Opening(Params):
     target_angle: float  # rad, bucket joint when open
+
+    def joint_angles(self) -> Mapping[str, float]:
+        return {"bucket_joint": self.target_angle}
 
 
 @subtask(timeout=120)

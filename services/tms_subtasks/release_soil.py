@@ -1,10 +1,16 @@
 """Tip the vessel to the angle of a record."""
 
+from collections.abc import Mapping
+
+from tms_core.models import TURNED
 from tms_core.subtask import Machine, Params, Progress, subtask
 
 
 class Vessel(Params):
     target_angle: float  # rad, 0 lowered, negative raises
+
+    def joint_angles(self) -> Mapping[str, float]:
+        return dict.fromkeys(TURNED["set_dump_angle"], self.target_angle)
 
 
 @subtask(timeout=300)

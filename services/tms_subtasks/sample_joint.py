@@ -1,6 +1,7 @@
 """Move one joint of the arm to the angle of a record; the others stay."""
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 from pydantic import model_validator
@@ -19,6 +20,9 @@ class Angle(Params):
         if fields.get("field") not in fields:
             raise ValueError(f"field '{fields.get('field')}' is missing")
         return {**fields, "angle": fields[fields["field"]]}
+
+    def joint_angles(self) -> Mapping[str, float]:
+        return {self.joint: math.radians(self.angle)}
 
 
 @subtask(timeout=120)

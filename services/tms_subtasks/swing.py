@@ -1,10 +1,16 @@
 """Turn the upper body to the angle of a record."""
 
+from collections.abc import Mapping
+
+from tms_core.models import TURNED
 from tms_core.subtask import Machine, Params, Progress, subtask
 
 
 class Heading(Params):
     target_angle: float  # rad, upper body against the tracks
+
+    def joint_angles(self) -> Mapping[str, float]:
+        return dict.fromkeys(TURNED["set_swing_angle"], self.target_angle)
 
 
 @subtask(timeout=300)

@@ -6,6 +6,7 @@ or has ended. A run that ended in order leaves no file.
 
 import json
 import os
+import threading
 import time
 from collections import defaultdict, deque
 from collections.abc import Iterator
@@ -36,11 +37,12 @@ class Record:
         self.path = path
         path.parent.mkdir(parents=True, exist_ok=True)
         self._file = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
+        self._using = threading.Lock()  # over the file: its number may be another file's once it is closed
 
     def _line(self, data: dict[str, Any]) -> None:
-        if self._file < 0:
-            return  # news of a run that is over
-        os.write(self._file, json.dumps({**data, "t": time.time()}).encode() + b"\n")
+        with self._using:
+            if self._file >= 0:  # otherwise it is news of a run that is over
+                os.write(self._file, json.dumps({**data, "t": time.time()}).encode() + b"\n")
 
     def begin(self, header: Header) -> None:
         self._line({"run": asdict(header)})
@@ -60,8 +62,9 @@ class Record:
 
     def remove(self) -> None:
         """The run has ended in order."""
-        file, self._file = self._file, -1
-        os.close(file)
+        with self._using:
+            os.close(self._file)
+            self._file = -1
         self.path.unlink(missing_ok=True)
 
 

@@ -11,6 +11,7 @@ from tms_msg_sp.msg import InputStates
 from tms_core.app import App
 from tms_core.config import explain
 from tms_core.errors import RosError
+from tms_core.models import MachineModel
 from tms_core.subtask import load
 from tms_core.values import from_parameters
 from tms_ts.preflight import Stored
@@ -78,17 +79,24 @@ class Around:
         return self._sensing.silent(f"{machine}/{record}")
 
     def unfit(self, machine: str, subtask: str, values: Mapping[str, Any]) -> str:
-        use = self._app.site.model_of(machine).subtask(subtask)
-        params = load(use.run).params
-        try:
-            if params is not None:
-                params.model_validate({**values, **use.inputs})
-        except ValidationError as error:
-            return explain(error)
-        return ""
+        return unfit(self._app.site.model_of(machine), subtask, values)
 
     def oldest(self, machine: str, subtask: str) -> float:
         return self._app.site.model_of(machine).subtask(subtask).max_age
+
+
+def unfit(model: MachineModel, subtask: str, values: Mapping[str, Any]) -> str:
+    """Why a subtask of a machine cannot use a record: a field, or an angle beyond the limit of its joint."""
+    use = model.subtask(subtask)
+    params = load(use.run).params
+    if params is None:
+        return ""
+    try:
+        angles = params.model_validate({**values, **use.inputs}).joint_angles()
+    except ValidationError as error:
+        return explain(error)
+    broken = ((name, model.joints[name].violation(angle)) for name, angle in angles.items() if name in model.joints)
+    return next((f"{name}: {text}" for name, text in broken if text), "")
 
 
 def _stored(record: Any, now: float) -> Stored:

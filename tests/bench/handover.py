@@ -1,13 +1,16 @@
 """From the result of one leaf to the accepted goal of the next, and on to the machine's controller.
 
 An observer in this process listens to the status topics of the subtask and of the controller, so nothing in the chain
-knows that it is measured. The floor is a goal and its result between two bare rclpy processes.
+knows that it is measured. The floor is a goal and its result between two bare rclpy processes. The note of the chain is
+what bare processes need for as many hops, the first of which reads a record, as a subtask does.
 """
 
 from __future__ import annotations
 
 import time
 from collections.abc import Iterable
+from contextlib import ExitStack
+from itertools import pairwise
 from pathlib import Path
 
 import yaml
@@ -18,6 +21,7 @@ from bench.runner import Figure
 from tms_core.ros import Ros
 
 LEAVES = 60
+HOPS = [f"/bare/link_{number}" for number in range(4)]  # subtask, planner, gateway, controller
 SUBTASK = "/zx200/subtask_zx200_change_pose"
 CONTROLLER = "/zx200/upper_arm_controller/follow_joint_trajectory"
 POSE = {"boom_joint": -0.9, "arm_joint": 2.0, "bucket_joint": 0.5, "bucket_end_joint": 0.0}
@@ -53,6 +57,10 @@ def measure() -> Iterable[Figure]:
         _prepare(own)
         with own.beside("serve"):
             floor = own.bare("act", "300")
+            with ExitStack() as stack:
+                for name, following in pairwise([*HOPS, ""]):
+                    stack.enter_context(own.beside("link", name, following))
+                hops = at(0.5, own.bare("chain", "100", HOPS[0], HOPS[-1]))
         with own.node() as ros:
             leaves, controller = Watch(ros, SUBTASK), Watch(ros, CONTROLLER)
             own.mesh.tms("run", "1", "--wait", limit=180)
@@ -62,7 +70,7 @@ def measure() -> Iterable[Figure]:
     raw = at(0.5, floor)
     yield Figure("hand-over p50", "ms", at(0.5, over), 3 * raw, raw)
     yield Figure("hand-over p99", "ms", at(0.99, over), 25.0, at(0.99, floor), usual_floor=4.0)
-    yield Figure("chain p50", "ms", at(0.5, chain), 6 * raw, raw)
+    yield Figure("chain p50", "ms", at(0.5, chain), 6 * raw, raw, note=f"bare hops alone {hops:.1f} ms")
 
 
 def _prepare(own: Rig) -> None:

@@ -92,11 +92,12 @@ def commit() -> str:
     return found.stdout.strip() or "unknown"
 
 
-def remember(file: Path, figures: list[tuple[str, Figure]]) -> None:
+def remember(file: Path, figures: list[tuple[str, Figure]], seconds: dict[str, float]) -> None:
     """Append one line, so that commits can be compared."""
     file.parent.mkdir(parents=True, exist_ok=True)
     now = datetime.now(timezone.utc).isoformat(timespec="seconds")
-    line = {"commit": commit(), "at": now, "figures": [{"group": group, **f.as_dict()} for group, f in figures]}
+    rows = [{"group": group, **figure.as_dict()} for group, figure in figures]
+    line = {"commit": commit(), "at": now, "seconds": seconds, "figures": rows}
     with file.open("a", encoding="utf-8") as history:
         history.write(json.dumps(line) + "\n")
 
@@ -112,12 +113,16 @@ def main(words: list[str] | None = None) -> int:
         print(f"bench: there is no group {given.only!r}; there is: {', '.join(groups())}", file=sys.stderr)
         return 2
     show(COLUMNS)
-    figures = []
+    figures, seconds = [], {}
     for group in [given.only] if given.only else groups():
+        begun = time.perf_counter()
         for figure in importlib.import_module(f"bench.{group}").measure():
             figures.append((group, figure))
             show(row(group, figure))
-    remember(given.json, figures)
+        seconds[group] = round(time.perf_counter() - begun, 1)
+    remember(given.json, figures, seconds)
+    spent = ", ".join(f"{group} {passed:.0f} s" for group, passed in seconds.items())
+    print(f"{sum(seconds.values()):.0f} s: {spent}")
     held = sum(figure.held for _, figure in figures)
     print(f"{held} held, {len(figures) - held} short")
     return 0 if held == len(figures) else 1

@@ -44,10 +44,11 @@ def test_table_last_line_and_history(made_up: None, tmp_path: Path, capsys: pyte
     lines = capsys.readouterr().out.splitlines()
     assert lines[1].split() == ["made_up", "fast", "1", "ms", "0.5", "ms", "2.00", "2", "ms", "held"]
     assert lines[2].split()[-3:] == ["SHORT", "the", "third"]
-    assert lines[3:] == ["1 held, 1 short"]
+    assert lines[3:] == ["0 s: made_up 0 s", "1 held, 1 short"]
     runner.main(["--json", str(file), "--only", "made_up"])
     first, _ = map(json.loads, file.read_text().splitlines())
     assert first["commit"]
+    assert first["seconds"] == {"made_up": 0.0}
     assert first["figures"][1] == {
         "group": "made_up", "name": "slow", "unit": "ms", "value": 1234.0, "floor": 0.5, "ratio": 2468.0, "limit": 2.0,
         "allowed": 2.0, "held": False, "note": "the third",

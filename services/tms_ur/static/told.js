@@ -23,6 +23,7 @@ const KNOWN = [
   [/^line (\d+)(?:, at [^:]+)?: there is no node '(.+?)'(.*)$/, "told_node"],
   [/^line (\d+)(?:, at [^:]+)?: (\w+) offers no '(.+?)'(.*)$/, "told_subtask"],
   [/^line (\d+)(?:, at [^:]+)?: the site has no machine '(.+?)'(.*)$/, "told_machine"],
+  [/^line (\d+): record (\S+) does not fit \w+: (\w+): \S+ rad is (?:above|below) its limit (\S+) rad;.*$/, "told_limit"],
   [/^line (\d+)(?:, at [^:]+)?: (.+)$/, "told_line"],
 ];
 

@@ -3,6 +3,9 @@
 python bare.py node                      a node that does nothing
 python bare.py serve                     an action /bare/act that succeeds at once and a service /bare/get
 python bare.py act COUNT                 one goal after another; prints their milliseconds as JSON
+python bare.py link NAME [NEXT]          an action server that reads /bare/get if it is the first, accepts, and passes
+                                         each goal on to NEXT; without NEXT the goal succeeds at once
+python bare.py chain COUNT FIRST LAST    one goal after another to FIRST, until LAST is seen to have accepted it
 python bare.py get SERVICE MODEL RECORD COUNT   one GetParameter after another; the same
 """
 
@@ -17,9 +20,11 @@ import time
 from typing import Any
 
 import rclpy
-from rclpy.action import ActionClient, ActionServer
+from action_msgs.msg import GoalStatusArray
+from rclpy.action import ActionClient, ActionServer, GoalResponse
+from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
-from rclpy.qos import QoSProfile
+from rclpy.qos import QoSProfile, qos_profile_action_status_default
 from tms_msg_db.msg import Record
 from tms_msg_db.srv import GetParameter
 from tms_msg_ts.action import LeafNodeBase
@@ -44,6 +49,60 @@ def serve(node: Node) -> None:
     ]
     node.create_service(GetParameter, "/bare/get", get, qos_profile=DEPTH)
     rclpy.spin(node)
+
+
+def link(node: Node, name: str, following: str = "") -> None:
+    group = ReentrantCallbackGroup()
+    first = name.endswith("0")
+    records = node.create_client(GetParameter, "/bare/get", qos_profile=DEPTH, callback_group=group)
+    after = ActionClient(node, LeafNodeBase, following, callback_group=group) if following else None
+
+    async def decide(_: Any) -> GoalResponse:
+        if first:
+            await records.call_async(GetParameter.Request())
+        return GoalResponse.ACCEPT
+
+    def accepted(handle: Any) -> None:
+        if after is None:
+            handle.execute(succeed)
+            return
+        after.send_goal_async(LeafNodeBase.Goal()).add_done_callback(
+            lambda sent: sent.result().get_result_async().add_done_callback(lambda _: handle.execute(succeed))
+        )
+
+    def succeed(handle: Any) -> LeafNodeBase.Result:
+        handle.succeed()
+        return LeafNodeBase.Result(result=True)
+
+    node.kept = ActionServer(
+        node, LeafNodeBase, name, succeed, goal_callback=decide, handle_accepted_callback=accepted, result_timeout=5,
+        callback_group=group,
+    )  # fmt: skip
+    rclpy.spin(node)
+
+
+def chain(node: Node, count: str, first: str, last: str) -> list[float]:
+    """The next goal leaves when the last one has come back."""
+    client, rounds, waiting = ActionClient(node, LeafNodeBase, first), Rounds(int(count)), [False]
+
+    def send() -> None:
+        waiting[0] = True
+        rounds.begin()
+        client.send_goal_async(LeafNodeBase.Goal()).add_done_callback(
+            lambda sent: sent.result().get_result_async().add_done_callback(lambda _: again())
+        )
+
+    def again() -> None:
+        if rounds.left:
+            send()
+
+    def seen(_: GoalStatusArray) -> None:
+        if waiting[0]:
+            waiting[0] = False
+            rounds.end()
+
+    node.create_subscription(GoalStatusArray, f"{last}/_action/status", seen, qos_profile_action_status_default)
+    return _run(node, client.server_is_ready, send, rounds)
 
 
 class Rounds:
@@ -138,8 +197,11 @@ def main(what: str, *words: str) -> None:
     if what in ("node", "serve"):
         print("ready", flush=True)
         serve(node) if what == "serve" else rclpy.spin(node)
+    elif what == "link":
+        print("ready", flush=True)
+        link(node, *words)
     else:
-        print(json.dumps({"act": act, "get": get, "find": find}[what](node, *words)), flush=True)
+        print(json.dumps({"act": act, "chain": chain, "get": get, "find": find}[what](node, *words)), flush=True)
 
 
 if __name__ == "__main__":

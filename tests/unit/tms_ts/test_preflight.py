@@ -7,9 +7,10 @@ import pytest
 import yaml
 
 from conftest import site_data
-from tms_core.config import Site, load_site
+from tms_core.config import CONFIGS, MachineModel, Site, load_site, parse
 from tms_ts import bt
 from tms_ts.preflight import Stored, Values, machines_of, preflight, processes_of, records_of
+from tms_ts.surroundings import unfit
 from unit.tms_ur.phrases import known
 
 LEAF = '<Action ID="LeafNodeZx200" model_name="{}" record_name="{}" subtask_name="{}"/>\n'
@@ -138,6 +139,31 @@ def flags(inner: str, before: str = "<Repeat num_cycles='-1'>", after: str = "</
 
 WAITED = "no active task and no sensing input writes FREE of ROAD, which is waited for"
 ROAD = {("", "ROAD"): Stored({"FREE": False}, "dynamic")}
+
+
+@pytest.mark.parametrize(
+    ("machine", "subtask", "values", "said"),
+    [
+        ("zx200", "subtask_zx200_change_pose", POSE | {"boom_joint": 0.5},
+         "boom_joint: 0.500 rad is above its limit -0.100 rad"),
+        ("zx200", "subtask_zx200_change_pose", {"pose": 1, "boom_joint": 0.5}, ""),  # this joint does not count
+        ("zx200", "subtask_zx200_release_simple", {"target_angle": -1.0},
+         "bucket_joint: -1.000 rad is below its limit -0.622 rad"),
+        ("zx200", "st_zx200_sample_boom", {"zx200_boom_goal_pos": -5.0}, "above"),
+        ("zx200", "st_zx200_sample_boom", {"zx200_boom_goal_pos": -30.0}, ""),
+        ("ic120", "st_ic120_release_soil", {"target_angle": 1.0}, "above"),
+        ("ic120", "st_ic120_release_soil", {"target_angle": 0.0}, ""),
+        ("mst110cr", "st_mst110cr_swing", {"target_angle": 100.0}, ""),  # turns for ever
+    ],
+)  # fmt: skip
+def test_an_angle_beyond_the_limit_of_its_joint_does_not_fit(
+    site: Site, machine: str, subtask: str, values: dict[str, float], said: str
+) -> None:
+    found = unfit(parse(CONFIGS / "machines" / f"{machine}.yaml", MachineModel), subtask, values)
+    assert said in found
+    assert bool(said) == bool(found)
+    errors = preflight(tree(GOOD), site, Around(misfit=found)).errors
+    assert [known(text) for text in errors] == (["told_limit"] if said else [])
 
 
 def test_a_flag_that_is_waited_for_and_that_nobody_writes_is_a_warning(site: Site) -> None:
