@@ -19,6 +19,7 @@ class Record(Model):
     updated_at: datetime | None = None
     values: dict[str, Value | None] = Field(default={}, description="null: not a number, or infinite")
     types: dict[str, str] = Field(default={}, description="of each value: JSON does not tell 3 from 3.0")
+    units: dict[str, str] = Field(default={}, description="of the fields that have one: m, rad, deg")
 
 
 class Change(Model):

@@ -5,6 +5,7 @@ from typing import Any
 
 from rcl_interfaces.msg import ParameterType
 
+from tms_core.units import unit
 from tms_core.values import from_parameters
 from tms_ur.data_models import Change, Record, SensingInput
 from tms_ur.models import ActiveRun, Event, Joint, Machine, Process, Question, Receipt, Run
@@ -96,6 +97,7 @@ def record(record: Any) -> Record:
         description=record.description, source=record.source, updated_at=when(record.updated_at),
         values={**from_parameters(record.values)},
         types={one.name: TYPES[one.value.type] for one in record.values if one.value.type in TYPES},
+        units={one.name: unit(one.name) for one in record.values if unit(one.name)},
     )  # fmt: skip
 
 

@@ -10,6 +10,7 @@ from tms_cli import live, session
 from tms_cli.record_words import key_argument, parse_fields
 from tms_cli.stored_records import age, as_dict, kind, load_file, records, summary, text, title, write
 from tms_cli.words import Group, say
+from tms_core.units import unit
 
 TYPES = click.Choice(["static", "dynamic"])
 WHATEVER_AGE = -1.0
@@ -57,7 +58,7 @@ def get(key: tuple[str, str], as_json: bool) -> None:
     if record["description"]:
         click.echo(record["description"])
     for name, value in record["values"].items():
-        click.echo(f"  {name:<22} {text(value):<24} {kind(value)}")
+        click.echo(f"  {name:<22} {f'{text(value)} {unit(name)}':<24} {kind(value)}")
 
 
 @command.command("set")

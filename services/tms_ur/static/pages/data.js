@@ -79,7 +79,13 @@ function fillRow(row, record) {
   part(row, "age").dataset.stamp = record.updated_at ?? "";
   setText(part(row, "age"), age(record.updated_at));
   setText(part(row, "source"), record.source);
-  setText(part(row, "values"), Object.entries(record.values).map(([name, value]) => `${name}: ${written(value, record.types[name])}`).join(", "));
+  setText(part(row, "values"), listed(record.values, record));
+}
+
+/** Fields with values and units; `record` knows types and units. */
+function listed(values, record) {
+  const one = ([name, value]) => [`${name}: ${written(value, record?.types[name])}`, record?.units[name]].filter(Boolean).join(" ");
+  return Object.entries(values).map(one).join(", ");
 }
 
 /** A value as it is stored. */
@@ -102,11 +108,11 @@ async function showValues(record) {
   if (at("values") === null) {
     return;
   }
-  const types = records.find((one) => nameOf(one) === nameOf(record))?.types ?? {};
+  const present = records.find((one) => nameOf(one) === nameOf(record));
   setText(at("values_title"), t("values_of", { name: nameOf(record) }));
   at("none_values").hidden = changes.length > 0;
   at("list_values").replaceChildren(...changes.map((change) => make("tr", {}, make("td", {}, when(change.stamp)), make("td", {}, change.source),
-    make("td", { className: "values" }, Object.entries(change.values).map(([name, value]) => `${name}: ${written(value, types[name])}`).join(", ")))));
+    make("td", { className: "values" }, listed(change.values, present)))));
   at("values").hidden = false;
   at("values").scrollIntoView();
 }
@@ -150,7 +156,7 @@ function openEditor(name) {
   const fields = Object.keys(record.values).map((field) => {
     const input = make("input", { id: `field_${field}`, value: exact(record.values[field], record.types[field]), data: { field, type: record.types[field] } });
     input.dataset.before = input.value;
-    return make("label", {}, make("span", {}, `${field} (${t(`type_${record.types[field]}`)})`), input);
+    return make("label", {}, make("span", {}, [field, record.units[field] && `[${record.units[field]}]`, `(${t(`type_${record.types[field]}`)})`].filter(Boolean).join(" ")), input);
   });
   showEditor(t("edit_record", { name }), fields, () => saveFields(record));
 }

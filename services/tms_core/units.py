@@ -1,0 +1,9 @@
+"""Units of the fields of records. They are known by the fields' names, which mean the same in every record."""
+
+NAMES = {"x": "m", "y": "m", "z": "m", "offset": "m", "theta_w": "rad", "target_angle": "rad", "yaw": "deg"}
+ENDINGS = {"_joint": "rad", "_goal_pos": "deg"}  # angles of joints; the joint samples of the C++ system use degrees
+
+
+def unit(field: str) -> str:
+    """The unit of a field; empty for flags, quaternions, and fields that this system does not use itself."""
+    return NAMES.get(field) or next((unit for ending, unit in ENDINGS.items() if field.endswith(ending)), "")
