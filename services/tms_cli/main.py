@@ -1,8 +1,11 @@
 """Entry of `tms`: finds the verbs by listing commands/, loads one only when it is used, maps errors to exit codes."""
 
+import contextlib
 import importlib
+import os
 import pkgutil
 import sys
+from typing import NoReturn
 
 import click
 
@@ -70,5 +73,17 @@ def main() -> None:
         sys.exit(1)
 
 
+def entry() -> NoReturn:
+    """`main`, but without the interpreter's clean-up, in which DDS was seen to hang once in thousands of times."""
+    try:
+        main()
+        code = 0
+    except SystemExit as end:
+        code = int(end.code or 0)
+    with contextlib.suppress(BrokenPipeError):  # whoever read us has heard enough
+        sys.stdout.flush()
+    os._exit(code)
+
+
 if __name__ == "__main__":
-    main()
+    entry()

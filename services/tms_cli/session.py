@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from tms_core.ros import Ros
 
 CALL_LIMIT = 5.0  # s
+LEAVE_LIMIT = 3.0  # s to leave the graph; what a command has found out does not wait longer for DDS
 LATCHED_LIMIT = 5.0  # s for a module to tell its state
 
 
@@ -35,7 +36,9 @@ def ros() -> Iterator["Ros"]:
     try:
         yield node
     finally:
-        node.close()
+        leaving = threading.Thread(target=node.close, name="leave", daemon=True)
+        leaving.start()
+        leaving.join(LEAVE_LIMIT)
 
 
 def call(node: "Ros", service_type: Any, name: str, **fields: Any) -> Any:

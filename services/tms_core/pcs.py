@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 Role = Literal["cps", "machine", "sensing", "sim"]
 ROLES: tuple[Role, ...] = ("cps", "machine", "sensing", "sim")
+LOOPBACK = "127.0.0.1"
 CHOICE = "pc"  # file in the state folder: which PC this is, as chosen by `tms up --role`
 
 
@@ -36,7 +37,8 @@ class Pc(Settings):
 class Network(Settings):
     """How processes of different PCs find each other."""
 
-    discovery: Literal["multicast", "server"] = "multicast"  # server: across segments that pass no multicast
+    # server: across segments that pass no multicast, and for more than 30 processes on a PC
+    discovery: Literal["multicast", "server"] = "multicast"
     port: int = Field(ge=1024, le=65535, default=11811)  # of the discovery server, on the PC with the role cps
 
 
@@ -106,9 +108,15 @@ def required(site: "Site") -> None:
 
 
 def discovery_server(site: "Site") -> str | None:
-    """host:port of the discovery server, where the site uses one."""
-    if not site.file.pcs or site.file.network.discovery != "server":
+    """host:port of the discovery server, where the site uses one; on loopback where the site is one PC.
+
+    Raises:
+        ConfigError: no PC would run it, or its address is not known.
+    """
+    if site.file.network.discovery != "server":
         return None
+    if not site.file.pcs:
+        return f"{LOOPBACK}:{site.file.network.port}"
     cps = next((pc.address for name, pc in site.file.pcs.items() if "cps" in roles(name, pc)), None)
     if cps is None:
         raise ConfigError(f"{site.path}: network.discovery: server needs a PC with the role cps, where it runs")

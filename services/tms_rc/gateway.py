@@ -14,7 +14,7 @@ from tms_rc.guard import Active, Guard, Kind
 from tms_rc.standstill import StandStill
 from tms_rc.stopper import STOP_LIMIT
 
-SERVER_LIMIT = 3.0  # s for the machine's server to be there
+SERVER_LIMIT = 3.0  # s for the machine's server to be there, and for news of the machine to be heard
 ACCEPT_LIMIT = 3.0  # s for it to answer a goal
 OVERRUN = 10.0  # s that a trajectory may last beyond its own duration
 FROZEN = 0.8  # s that a look may take
@@ -59,6 +59,9 @@ class Gateway:
 
     def _pass_on(self, motion: Motion, active: Active) -> Ended:
         active.peer.wait_ready(SERVER_LIMIT)
+        unseen = self._unseen(active.goal)
+        if unseen is not None:
+            return aborted(motion, f"not ready: {unseen}")
         active.goal.on_cancel = lambda: self._app.ros.on_executor(lambda: self._cancel(active))
         self._app.ros.on_executor(lambda: self._send(active))
         self._wait(active, lambda call: call.accepted, ACCEPT_LIMIT)
@@ -78,6 +81,17 @@ class Gateway:
             reason_of(call.result) or f"the machine's controller ended it: {call.outcome.name if call.outcome else ''}"
         )
         return Outcome.ABORTED, call.result if reason_of(call.result) else aborted(motion, text)[1]
+
+    def _unseen(self, goal: Goal) -> str | None:
+        """What is not heard of the machine: it would be stopped and latched as soon as it moves.
+
+        A machine that was switched on just now may be heard here a moment later than where the goal comes from.
+        """
+        deadline = time.monotonic() + SERVER_LIMIT
+        while (silent := self._guard.silent()) is not None and time.monotonic() < deadline:
+            if goal.cancelled.wait(LOOK):
+                return None  # the goal ends as cancelled
+        return silent
 
     def _send(self, active: Active) -> None:
         """On the executor thread, like stops: after a stop no goal leaves."""

@@ -187,3 +187,16 @@ def test_a_dead_machine_is_not_seen_to_stand(machine: Guarded) -> None:
     machine.order()
     x, y = machine.place()
     assert machine.end(machine.go(pose=pose(x, y + 2, 1.5708))) is Outcome.SUCCEEDED
+
+
+def test_a_machine_that_nobody_sees_is_not_moved_and_not_latched(machine: Guarded) -> None:
+    machine.process.kill()
+    machine.process.wait()
+    machine.until(lambda: not machine.told[-1].ready, "a gateway that is not ready")
+    call = machine.go()
+    assert machine.end(call) is Outcome.ABORTED
+    machine.start(f"sim:{NAME}")
+    machine.until(lambda: machine.told[-1].ready, "a gateway that is ready")
+    assert not machine.latched()
+    x, y = machine.place()
+    assert machine.end(machine.go(pose=pose(x, y + 2, 1.5708))) is Outcome.SUCCEEDED

@@ -145,8 +145,8 @@ def machine(rig: Rig) -> Rig:
 
 def test_change_pose_arrives_and_says_how_far_it_is(machine: Rig) -> None:
     assert machine.states[-1].name == NAMES
-    assert ("map", f"{MACHINE}/base_link") in machine.frames
-    assert (f"{MACHINE}/bucket_link", f"{MACHINE}/bucket_end_link") in machine.frames
+    frames = {("map", f"{MACHINE}/base_link"), (f"{MACHINE}/bucket_link", f"{MACHINE}/bucket_end_link")}
+    machine.until(lambda: frames <= machine.frames, "frames of the machine")
     call = machine.change_pose(0.6, -0.6, 1.7, 100.0, 0.0)  # the bucket stays
     assert machine.end(call) is Outcome.SUCCEEDED
     assert call.result.error_code.val == TmsRpErrorCodes.SUCCESS

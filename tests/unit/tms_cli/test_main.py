@@ -4,7 +4,9 @@ import json
 import os
 import subprocess
 import sys
+import threading
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -109,3 +111,22 @@ def test_users_are_kept_as_hashes(tmp_path: Path) -> None:
 def test_panel_tells_its_address() -> None:
     done = tms("panel", "--task", "4", "--url")
     assert done.stdout.endswith("/panel.html?task=4\n")
+
+
+def test_a_node_that_does_not_come_back_from_closing_keeps_nobody_waiting(monkeypatch: pytest.MonkeyPatch) -> None:
+    import click
+
+    from tms_cli import session
+    from tms_core import ros
+
+    forever = threading.Event()
+    monkeypatch.setattr(ros, "Ros", lambda name: SimpleNamespace(close=forever.wait))
+    monkeypatch.setattr(session, "LEAVE_LIMIT", 0.01)
+    monkeypatch.setattr(session.environment, "enter", lambda site: None)
+    with click.Context(click.Command("tms")), session.ros() as node:
+        assert node.close == forever.wait
+    forever.set()
+
+
+def test_what_was_said_is_not_lost_in_a_pipe() -> None:
+    assert "Usage: tms" in tms("--help").stdout

@@ -84,6 +84,12 @@ def test_a_discovery_server_runs_on_the_cps_pc(tmp_path: Path, monkeypatch: pyte
     assert {row.full: row.pc for row in table(found)}["tms:discovery"] == "cps"
 
 
+def test_a_site_of_one_pc_may_have_one_too(tmp_path: Path) -> None:
+    found = site(tmp_path, pcs={}, network={"discovery": "server", "port": 11900})
+    assert environment(found)["ROS_DISCOVERY_SERVER"] == "127.0.0.1:11900"
+    assert "tms:discovery" in {row.full for row in table(found)}
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
