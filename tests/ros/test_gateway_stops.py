@@ -117,6 +117,7 @@ def test_a_software_stop_ends_every_kind_of_motion(small: tuple[Mesh, Ros], watc
     button = ros.publisher(Bool, "/emergency_signal")
     peer = ros.peer(motion.type, f"/{MACHINE}/rc/{motion.served}")
     peer.wait_ready(30)
+    wait_until(lambda: button.get_subscription_count() > 0, 30, "the gateway hears the button")
     call = peer.send(far_away(motion, MOTIONS.index(motion)))
     watch.wait(lambda: (watch.state.moving and watch.state.goal) or call.outcome is not None, "it moves")
     before, zeros = len(watch.receipts), watch.zeros

@@ -39,7 +39,8 @@ def test_planning_locks_and_moving_frees(mesh: Mesh, tmp_path: Path) -> None:
     assert run(mesh, tmp_path, "change_pose") == "success"
     wait_until(lambda: record(mesh)["LOCK_FLG"] is False, 30, "the lock is free")
 
-    mesh.tms("param", "set", "zx200/lock_test", "boom_joint=0.5")  # out of range: the plan fails and frees it, too
+    far = ["trajectory=0", "position_with_angle=1", "x=100.0", "y=0.0", "z=0.0", "theta_w=0.0"]
+    mesh.tms("param", "set", "zx200/lock_test", *far)  # out of reach: the plan fails and frees it, too
     assert run(mesh, tmp_path, "change_pose_plan") == "failure"
     wait_until(lambda: record(mesh)["LOCK_FLG"] is False, 30, "the lock is free")
     mesh.tms("param", "rm", "zx200/lock_test")
