@@ -44,8 +44,8 @@ class Controls:
     def __init__(self, ros: Ros, machine: str, border: Border) -> None:
         self._ros = ros
         self._cancels = [f"/{machine}/{getattr(border, m.field)}/_action/cancel_goal" for m in motions(border)]
-        for service in self._cancels:  # a client that exists already needs no discovery when it counts
-            ros.has_service(CancelGoal, service)
+        for service in self._cancels:
+            ros.prepare(CancelGoal, service)
         self._cmd_vel = ros.publisher(Twist, f"/{machine}/{border.cmd_vel}", 1) if border.cmd_vel else None
         emg_stop = f"/{machine}/{border.emg_stop}"
         self._emg_stop = ros.publisher(Bool, emg_stop, 1, latched=True) if border.emg_stop else None

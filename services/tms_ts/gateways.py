@@ -7,6 +7,7 @@ from typing import Any
 
 from std_msgs.msg import Bool
 from tms_msg_rc.msg import MachineState, StopReceipt
+from tms_msg_rc.srv import StopMachine
 
 from tms_core.app import App
 from tms_core.border import Controls
@@ -43,6 +44,7 @@ class Gateways:
 
     def _attend(self, machine: str) -> None:
         ros = self._app.ros
+        ros.prepare(StopMachine, f"/{machine}/rc/stop")
         self._controls[machine] = Controls(ros, machine, self._app.site.border(machine))
         self._permits[machine] = Permit(ros, machine, "ts", lambda: self._alive(machine))
         self._links[machine] = Link(ros, machine, "rc", lambda link: self._gateway_changed(machine, link))

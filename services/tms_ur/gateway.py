@@ -55,6 +55,7 @@ class Gateway:
         self._frames = {site.border(name).base_frame: name for name in names}
         for name in names:
             ros.subscribe(MachineState, f"/{name}/rc/state", self._machine_heard, latched=True)
+            ros.prepare(StopMachine, f"/{name}/rc/stop")
         ros.subscribe(RunStates, "/tms/runs", self._runs_heard, latched=True)
         ros.subscribe(Processes, "/tms/host/processes", self._host_heard, depth=10, latched=True)
         ros.subscribe(InputStates, "/tms/sp/inputs", self._inputs_heard, latched=True)

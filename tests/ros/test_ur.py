@@ -122,6 +122,10 @@ def ros(site: Site) -> Iterator[Ros]:
     node.close()
 
 
+def test_the_way_of_a_stop_is_there_before_it_is_needed(console: Console, ros: Ros) -> None:
+    until(lambda: ros.node.count_clients("/zx200/rc/stop") == 1, "the console's way to the gateway")
+
+
 def test_state_shows_what_is_published(console: Console, ros: Ros) -> None:
     state = console.get("/api/state")
     assert state["machines"][0]["state"] == "silent"

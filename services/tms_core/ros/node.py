@@ -317,6 +317,10 @@ class Ros:
                 )
             return self._clients[key]
 
+    def prepare(self, service_type: InterfaceType, name: str) -> None:
+        """Make the client of a service now, for requests that must not wait for discovery when they count."""
+        self._service(service_type, name)
+
     def call(
         self,
         service_type: InterfaceType,
