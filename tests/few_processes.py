@@ -21,7 +21,7 @@ from tms_core.processes import find
 from tms_core.ros import Ros
 
 M = TypeVar("M", bound="Mesh")
-LIMIT = 20.0  # s for whatever must happen at all
+LIMIT = 60.0  # s for whatever must happen at all
 SITE = """
 name: dbtest
 domain: {domain}
@@ -61,9 +61,10 @@ class Mesh:
             process.terminate()
         for process in self._running.values():
             try:
-                process.wait(5)
-            finally:
+                process.wait(10)
+            except subprocess.TimeoutExpired:
                 process.kill()
+                process.wait(10)
 
     def call(self, service: Any, name: str, /, **fields: Any) -> Any:
         return self.ros.call(service, name, service.Request(**fields), LIMIT)

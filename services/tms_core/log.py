@@ -6,13 +6,21 @@ A goal's worker thread calls `bind`, so everything that it logs carries the ids;
 import contextvars
 import json
 import logging
+import queue
 import re
 import sys
+from logging.handlers import QueueHandler, QueueListener
 from typing import Any
+
+from prometheus_client import Counter
 
 FIELD = re.compile(r"(?<!\S)([a-z_]+)=('(?:[^'\\]|\\.)*'|\"(?:[^\"\\]|\\.)*\"|\S+)")
 BREAKS = str.maketrans({"\n": "\\n", "\r": "\\r"})  # an event is one line, whatever its text holds
 
+WAITING = 10_000  # lines at most that wait for a reader of stdout
+LOST = Counter("tms_log_lines_lost_total", "Log lines that nobody read in time")
+
+_listeners: list[QueueListener] = []
 _bound: contextvars.ContextVar[dict[str, str]] = contextvars.ContextVar("bound")
 
 
@@ -61,14 +69,35 @@ class Json(Line):
         return json.dumps(row, ensure_ascii=False)
 
 
+class Queue(QueueHandler):
+    """Nobody who logs waits for whoever reads: a full pipe would stand still with everything that stops machines."""
+
+    def enqueue(self, record: logging.LogRecord) -> None:
+        """Take a finished line, or count that it was lost."""
+        try:
+            self.queue.put_nowait(record)
+        except queue.Full:
+            LOST.inc()
+
+
 def setup(process: str, machine: str | None = None, *, level: str = "INFO", as_json: bool = False) -> logging.Logger:
     """Send everything to stdout, which supervisord keeps and rotates; returns the process's logger."""
     fields = {"process": process, **({"machine": machine} if machine else {})}
-    handler = logging.StreamHandler(sys.stdout)
+    lines: queue.Queue[logging.LogRecord] = queue.Queue(WAITING)
+    handler = Queue(lines)
     handler.setFormatter(Json(fields) if as_json else Line(fields))
     logging.basicConfig(level=level, handlers=[handler], force=True)
     logging.captureWarnings(True)
+    listener = QueueListener(lines, logging.StreamHandler(sys.stdout))
+    listener.start()
+    _listeners.append(listener)
     return logging.getLogger(process)
+
+
+def close() -> None:
+    """Write what waits; a reader that does not read is waited for."""
+    while _listeners:
+        _listeners.pop().stop()
 
 
 def _plain(value: str) -> str:

@@ -41,6 +41,8 @@ def main(name: str) -> int:
     except ConfigError as error:
         print(f"{name}: {error}", file=sys.stderr)
         return 1
+    finally:
+        log.close()
 
 
 def _serve(site: Site, row: Process) -> int:
@@ -76,6 +78,7 @@ def _serve(site: Site, row: Process) -> int:
     ros.close()
     health.close()
     logger.info("event=stopped")
+    log.close()
     killer.cancel()
     return 1 if ros.failed.is_set() else 0
 

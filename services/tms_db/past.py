@@ -29,6 +29,7 @@ class Past:
     def __init__(self, db: Db, connection: Connection, log: logging.Logger) -> None:
         self._stored, self._connection, self._log = db["parameter_history"], connection, log
         self._lock = threading.Lock()
+        self._storing = threading.Lock()  # while changes are on their way from memory to the store
         self._new: dict[Key, list[Change]] = {}
         self._stopping = threading.Event()
         self._thread = threading.Thread(target=self._run, name="past", daemon=True)
@@ -56,9 +57,11 @@ class Past:
         Raises:
             DbError: the store is away.
         """
-        with self._lock:
-            new = list(self._new.get(key, ()))
-        return [*self._load(key), *new][-KEPT:][::-1][: limit or KEPT]
+        with self._storing:
+            with self._lock:
+                new = list(self._new.get(key, ()))
+            stored = self._load(key)
+        return [*stored, *new][-KEPT:][::-1][: limit or KEPT]
 
     def _load(self, key: Key) -> list[Change]:
         with errors():
@@ -70,18 +73,22 @@ class Past:
         ending = False
         while not ending:
             ending = self._stopping.wait(PERIOD)
+            with self._storing:
+                self._store_new()
+
+    def _store_new(self) -> None:
+        with self._lock:
+            new, self._new = self._new, {}
+        try:
+            if new:
+                with self._connection.use():
+                    self._save(new)
+        except DbError as error:  # kept in memory until the store is back
+            self._log.info("event=history_waits %s", error)
             with self._lock:
-                new, self._new = self._new, {}
-            try:
-                if new:
-                    with self._connection.use():
-                        self._save(new)
-            except DbError as error:  # kept in memory until the store is back
-                self._log.info("event=history_waits %s", error)
-                with self._lock:
-                    for key, later in self._new.items():
-                        new[key] = [*new.get(key, []), *later][-KEPT:]
-                    self._new = new
+                for key, later in self._new.items():
+                    new[key] = [*new.get(key, []), *later][-KEPT:]
+                self._new = new
 
     def _save(self, new: Mapping[Key, list[Change]]) -> None:
         steps = [

@@ -95,7 +95,7 @@ class Gateway:
 
     def _send(self, active: Active) -> None:
         """On the executor thread, like stops: after a stop no goal leaves."""
-        self._guard.check_chain()
+        self._guard.last_look(active)
         if active.goal.cancelled.is_set():
             self._cancel(active)
         if active.stop is None:

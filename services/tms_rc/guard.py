@@ -100,6 +100,17 @@ class Guard:
                 self.active = active
         return wrong
 
+    def last_look(self, active: Active) -> None:
+        """Stop a goal that is about to leave if a stop or a loss came since it was let in. On the executor thread."""
+        if active.stop is not None:
+            return
+        refusal, missing = self.latch.refusal(active.owner), gap(active.owner, self.permits.held())
+        if refusal is not None:
+            self.stop_now(refusal, Kind.PLAIN)
+        elif missing is not None:
+            lost = active.owner is not None and not missing.late
+            self.stop_now(f"{LOST_TEXT}: {missing.text}" if lost else missing.text, Kind.HOLD if lost else Kind.PLAIN)
+
     def release(self) -> None:
         """The goal is over."""
         self.active = None

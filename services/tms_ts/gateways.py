@@ -95,11 +95,15 @@ class Gateways:
                 return
 
     def loss(self, machine: str) -> Callable[[], bool]:
-        """What tells whether the gateway that is there now has been lost since."""
+        """What tells whether a request to the gateway has to be made again.
+
+        It was lost since; or it is lost now and a successor has come, which never saw a request to the dead one.
+        """
         link = self._links.get(machine)
-        if link is None or not link.alive:
+        if link is None:
             return lambda: False
-        return lambda: not link.alive
+        alive = link.alive
+        return lambda: link.alive != alive
 
     def latch(self, machine: str) -> str:
         """Why the machine is stopped until it is re-armed; empty if it is not."""

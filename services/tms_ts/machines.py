@@ -139,6 +139,9 @@ class Machines:
 
     def _try_send(self, goal: SentGoal) -> None:
         assert goal.peer is not None
+        if goal.cancelled:  # while it waited to be sent again
+            self._end(goal, GoalState.CANCELLED, f"{goal.name} was cancelled")
+            return
         if time.monotonic() < goal.not_before:
             return
         goal.reason = self._obstacle(goal)
@@ -238,7 +241,11 @@ class Machines:
         final = goal.state.final
         unheard = goal.unheard()
         goal.call = None if not final else call
+        if unheard and goal.peer is not None:
+            goal.peer.cancel(call)  # should it be accepted after all
         call.end(Outcome.LOST)
+        if goal.peer is not None and self._replaced(goal):
+            goal.peer.lost()
         if not final:
             self._lost(goal, why, counts=not (unheard and goal.recovers()))
 
@@ -265,13 +272,15 @@ class Machines:
     def _loss(self, goal: SentGoal) -> str:
         if goal.unheard():
             return f"{goal.name} did not answer the goal within {ACCEPT_LIMIT:.0f} s"
-        now = self._hosts.pid(goal.machine, goal.subtask)
-        if goal.pid is not None and now is not None and now != goal.pid:
-            if goal.peer is not None:
-                goal.peer.lost()
+        if self._replaced(goal):
             return f"process {goal.machine}:{goal.subtask} ended during its goal, see `tms logs {goal.subtask}`"
         gone = goal.peer is not None and not goal.peer.ready()
         return f"{goal.name} went away during its goal" if gone else ""
+
+    def _replaced(self, goal: SentGoal) -> bool:
+        """Whether the subtask is another process now than when the goal was sent."""
+        now = self._hosts.pid(goal.machine, goal.subtask)
+        return goal.pid is not None and now is not None and now != goal.pid
 
     def _stop_after_loss(self, machine: str, cause: str) -> None:
         receipt = self.stop(machine, cause)

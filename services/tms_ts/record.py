@@ -5,6 +5,7 @@ or has ended. A run that ended in order leaves no file.
 """
 
 import json
+import logging
 import os
 import threading
 import time
@@ -13,6 +14,11 @@ from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
+
+from prometheus_client import Counter
+
+log = logging.getLogger(__name__)
+LOST = Counter("tms_ts_record_lost_total", "Lines of a run's record that could not be written; it cannot be resumed")
 
 Key = tuple[str, str, str, str]  # node path, machine, subtask, record
 
@@ -41,8 +47,13 @@ class Record:
 
     def _line(self, data: dict[str, Any]) -> None:
         with self._using:
-            if self._file >= 0:  # otherwise it is news of a run that is over
+            if self._file < 0:
+                return  # news of a run that is over
+            try:
                 os.write(self._file, json.dumps({**data, "t": time.time()}).encode() + b"\n")
+            except OSError as error:  # a full disk must not keep a run from stopping its machines
+                LOST.inc()
+                log.error("event=record_lost file=%s reason=%r", self.path.name, str(error))
 
     def begin(self, header: Header) -> None:
         self._line({"run": asdict(header)})
@@ -120,7 +131,11 @@ def _key(words: list[str]) -> Key:
 
 
 def _lines(path: Path) -> Iterator[dict[str, Any]]:
-    for text in path.read_bytes().split(b"\n"):
+    try:
+        data = path.read_bytes()
+    except FileNotFoundError:
+        return  # its run has ended in order just now
+    for text in data.split(b"\n"):
         try:
             line = json.loads(text)
         except ValueError:

@@ -190,16 +190,21 @@ class Run:
     def _settle(self, tree: Tree, machines: Machines, outcome: str) -> str:
         """After a success nothing moves; after anything else the machines are stopped and watched."""
         self._ticked = None
-        if outcome != "success":
-            self.enter("stopping", self._failure or outcome)
-        tree.halt()
-        self._look(tree)
-        self._tell_client(tree, last=True)
+        halted, receipts = False, []
+        try:
+            if outcome != "success":
+                self.enter("stopping", self._failure or outcome)
+            tree.halt()
+            self._look(tree)
+            self._tell_client(tree, last=True)
+            halted = True
+        finally:  # also when the lines above have a bug
+            if outcome != "success" or not halted:
+                # Straight to the gateways, beside the cancels on their way through subtask and planner: a stop takes
+                # the shortest way, and its receipt measures from here.
+                receipts = machines.stop_all(self.facts.machines, outcome)
         if outcome == "success":
             return self._end(outcome, "")
-        # Straight to the gateways, beside the cancels on their way through subtask and planner: a stop takes
-        # the shortest way, and its receipt measures from here.
-        receipts = machines.stop_all(self.facts.machines, outcome)
         for receipt in receipts:
             machines.receipt(receipt)
         deadline = time.monotonic() + SETTLE_LIMIT

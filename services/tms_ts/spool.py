@@ -1,5 +1,6 @@
 """A queue of lines in a file: what was put survives the process, and is taken in order. Pure logic."""
 
+import errno
 import os
 import threading
 from pathlib import Path
@@ -36,8 +37,10 @@ class Spool:
             self._append(line + b"\n")
 
     def _append(self, data: bytes) -> None:
-        os.write(self._file, data)
-        self._size += len(data)
+        written = os.write(self._file, data)
+        self._size += written
+        if written < len(data):
+            raise OSError(errno.ENOSPC, f"only {written} of {len(data)} bytes could be written")
 
     def waiting(self) -> int:
         """Bytes that were not taken yet."""

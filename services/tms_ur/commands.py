@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from tms_ur.gateway import Gateway
 
 ANSWERS = problems(403, 404, 409, 411, 413, 415, 503)
-STOPS = 4  # stops at the same time, each with a thread a machine: no worker that waits is in their way
+STOPS = 40  # stops at the same time, each with a thread a machine: no worker that waits is in their way
 MachineName = Annotated[str, Path(pattern=r"^[a-z][a-z0-9_]{0,63}$")]
 QuestionId = Annotated[str, Path(pattern=r"^[0-9A-Za-z_-]{1,100}$")]
 

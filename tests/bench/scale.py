@@ -96,9 +96,12 @@ def _cost(size: int) -> Cost:
 def _process(own: Rig, *words: str) -> Iterator[subprocess.Popen[str]]:
     log = Path(own.mesh.state) / "bench.log"
     log.parent.mkdir(parents=True, exist_ok=True)
+    told = words[0] == str(CROWD)  # what nobody reads must not go into a pipe: a full one blocks whoever logs
     with (
         log.open("a") as errors,
-        subprocess.Popen([sys.executable, *words], text=True, stdout=subprocess.PIPE, stderr=errors) as running,
+        subprocess.Popen(
+            [sys.executable, *words], text=True, stdout=subprocess.PIPE if told else errors, stderr=errors
+        ) as running,
     ):
         try:
             yield running

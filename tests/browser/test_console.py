@@ -9,7 +9,7 @@ import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Browser, Page, expect
 
-from conftest import Mesh
+from conftest import Mesh, wait_until
 
 pytestmark = [pytest.mark.system, pytest.mark.browser]
 PAGES = ("run", "tree", "site", "history", "data", "system", "tasks")
@@ -88,7 +88,9 @@ def test_upload_fix_run_watch_stop_rearm_and_run_again(page: Page, address: str,
 
     open_page(page, address, "run")
     start(page, task)
-    expect(page.locator("#message")).to_contain_text("has begun")
+    expect(page.locator("#message")).to_contain_text(re.compile("has begun|Success"))
+    newest = lambda: json.loads(idle.tms("runs", "--limit", "1", "--json").stdout)[0]  # noqa: E731
+    wait_until(lambda: newest()["task_id"] == task and newest()["ended_at"], 60, "its end")
     expect(page.locator("#list_active li")).to_have_count(0)
 
     start(page, SWINGS)
@@ -314,6 +316,9 @@ def test_a_record_is_edited_with_its_type(page: Page, address: str, mesh: Mesh) 
     field.fill("-1.0")
     page.get_by_role("button", name="Save").click()
     expect(page.locator("#message")).to_contain_text("was saved")
+    audit = lambda: json.load(urllib.request.urlopen(f"{address}/api/audit", timeout=10))  # noqa: E731
+    wait_until(lambda: any(row["node"] == "zx200/release_angle" for row in audit()), 60, "audited")
+    page.reload()
     expect(page.locator("#list_changes")).to_contain_text("zx200/release_angle")
     assert "-1.0 rad" in mesh.tms("param", "get", "zx200/release_angle").stdout
     page.get_by_role("button", name="Edit zx200/release_angle").click()
@@ -344,6 +349,7 @@ def test_a_record_is_edited_with_its_type(page: Page, address: str, mesh: Mesh) 
 
 def test_a_record_is_made(page: Page, address: str, mesh: Mesh) -> None:
     open_page(page, address, "data")
+    expect(page.get_by_role("button", name="Edit zx200/initial_pose", exact=True)).to_be_visible()
     page.get_by_role("button", name="New record").click()
     page.locator("#new_model").fill("zx200")
     page.locator("#new_name").fill("initial_pose")
@@ -368,6 +374,7 @@ def test_processes_logs_and_restart(page: Page, address: str, mesh: Mesh) -> Non
     page.locator("#dialog_yes").click()
     expect(page.locator("#message")).to_have_text("zx200:rp was restarted.")
     expect(page.locator("#list_processes tr", has_text="zx200:rp")).to_contain_text("Running")
+    wait_until(lambda: mesh.tms("status", expect=None).returncode == 0, 60, "the mesh is ready again")
 
 
 def test_the_site_shows_place_and_arm(page: Page, address: str, mesh: Mesh) -> None:

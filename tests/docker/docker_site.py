@@ -4,10 +4,7 @@ import calendar
 import json
 import os
 import subprocess
-import threading
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -179,31 +176,6 @@ def in_network_of(pid: int, *words: str) -> subprocess.CompletedProcess[str]:
 def cable(pid: int, *, out: bool) -> None:
     done = in_network_of(pid, "ip", "link", "set", "eth0", "down" if out else "up")
     assert done.returncode == 0, done.stderr
-
-
-class Lateness:
-    """How late a thread of this PC was woken at most [s]: what no process on it could do better."""
-
-    def __init__(self) -> None:
-        self.most = 0.0
-        self._over = threading.Event()
-        self._thread = threading.Thread(target=self._look, daemon=True)
-
-    def _look(self) -> None:
-        while True:
-            before = time.monotonic()
-            if self._over.wait(0.01):
-                return
-            self.most = max(self.most, time.monotonic() - before - 0.01)
-
-    @contextmanager
-    def watched(self) -> Iterator["Lateness"]:
-        self._thread.start()
-        try:
-            yield self
-        finally:
-            self._over.set()
-            self._thread.join()
 
 
 def stamp(line: str) -> float:

@@ -10,9 +10,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from docker_site import LOOK, Lateness, Yard, cable, commanded, docker, in_network_of, stamp
+from docker_site import LOOK, Yard, cable, commanded, docker, in_network_of, stamp
 
 from conftest import wait_until
+from lateness import Lateness
 from prometheus_server import processes_up, prometheus, query
 
 pytestmark = [pytest.mark.docker, pytest.mark.timeout(400)]
@@ -174,7 +175,7 @@ def test_prometheus_sees_every_pc_and_tells_which_one_is_gone(yard: Yard, tmp_pa
     wanted = {row.full for row in yard.rows if row.ours and row.autostart}
     with prometheus(tmp_path, 9199) as address:
         wait_until(lambda: processes_up(address) >= wanted, 60, f"scraped: all of {sorted(wanted)}")
-        assert query(address, 'min_over_time(up{on_demand="no"}[5s]) == 0') == []
+        wait_until(lambda: query(address, 'min_over_time(up{on_demand="no"}[5s]) == 0') == [], 60, "no gap for 5 s")
         docker("kill", yard.name("sensing"))
         firing = 'ALERTS{alertname="TmsProcessDown", alertstate="firing"}'
         try:

@@ -11,6 +11,7 @@ from action_msgs.msg import GoalInfo, GoalStatus, GoalStatusArray
 from rclpy.task import Future
 from tms_msg_rc.srv import StopMachine
 from tms_msg_ts.action import LeafNodeBase
+from tms_msg_ts.srv import ResumePlan
 
 from conftest import wait_until
 from tms_core.ros import Outcome, Peer, Ros
@@ -123,3 +124,14 @@ def test_a_goal_that_the_server_does_not_know_is_lost(ros: tuple[Ros, Ros]) -> N
     peer.doubt(call)
     wait_until(lambda: call.outcome is Outcome.LOST, LIMIT, "goal known as lost")
     wait_until(lambda: silent.cancelled == [call.id], LIMIT, "cancel, should it come after all")
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+def test_a_bug_in_a_slow_service_is_no_success(ros: tuple[Ros, Ros]) -> None:
+    def broken(_: Any, answer: Any) -> Any:
+        answer.task_id = 7
+        raise RuntimeError("a bug")
+
+    ros[0].offer_slow(ResumePlan, "/broken", broken)
+    answer = ros[1].call(ResumePlan, "/broken", ResumePlan.Request(), LIMIT)
+    assert (answer.error_code, answer.task_id) == ("INTERNAL", 0)

@@ -105,8 +105,8 @@ def test_a_stop_gets_through_to_a_tree_that_spins(mesh: Mesh, node: Ros) -> None
 
 
 def test_without_supervisord_everything_ends_and_the_run_can_be_given_up(mesh: Mesh, node: Ros) -> None:
-    pids = [row["pid"] for row in processes(mesh).values() if row["pid"]]
     with swinging(mesh, node):
+        pids = [row["pid"] for row in processes(mesh).values() if row["pid"]]
         run_id = newest(mesh)
         os.kill(int((mesh.state / "supervisord.pid").read_text()), signal.SIGKILL)
         wait_until(lambda: not any(map(psutil.pid_exists, pids)), 30, "the processes have ended")

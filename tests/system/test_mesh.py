@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -15,6 +16,7 @@ import pytest
 from tms_msg_rc.msg import MachineState
 
 from conftest import PROJECT, Mesh, wait_until
+from lateness import Lateness
 from tms_core.ros import Ros
 
 pytestmark = pytest.mark.system
@@ -66,7 +68,7 @@ def test_a_killed_subtask_comes_back_and_the_next_run_works(mesh: Mesh) -> None:
     run(mesh, "1")
     old = processes(mesh)[CHANGE_POSE]["pid"]
     os.kill(old, signal.SIGKILL)
-    wait_until(lambda: processes(mesh)[CHANGE_POSE]["pid"] not in (0, old), 20, "change_pose is back")
+    wait_until(lambda: processes(mesh)[CHANGE_POSE]["pid"] not in (0, old), 60, "change_pose is back")
     assert run(mesh, "1")["outcome"] == "success"
 
 
@@ -82,7 +84,7 @@ def swinging(mesh: Mesh, node: Ros, task: str = "3") -> Iterator["subprocess.Pop
         command, env=mesh.env, cwd=PROJECT, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
     ) as client:
         try:
-            assert moving.wait(30), "the machine does not move"
+            assert moving.wait(60), "the machine does not move"
             yield client
         finally:
             client.kill()
@@ -115,7 +117,7 @@ def test_a_subtask_killed_during_its_goal_comes_back_and_the_run_goes_on(mesh: M
     pid = processes(mesh)[CHANGE_POSE]["pid"]
     with swinging(mesh, node) as client:
         os.kill(pid, signal.SIGKILL)
-        out, _ = client.communicate(timeout=60)
+        out, _ = client.communicate(timeout=150)
     answer = json.loads(out)
     assert answer["outcome"] == "success"
     seen = stops(mesh, answer["run_id"])
@@ -134,7 +136,7 @@ def test_a_killed_scheduler_comes_back_and_closes_its_run(mesh: Mesh, node: Ros)
         rows = json.loads(mesh.tms("runs", "--json").stdout)
         return str(next(row["state"] for row in rows if row["run_id"] == run_id))
 
-    wait_until(lambda: state() == "interrupted", 20, "the run is closed")
+    wait_until(lambda: state() == "interrupted", 60, "the run is closed")
     mesh.tms("rearm", "zx200", "--yes")  # the loss of the scheduler latches until a person has looked
     mesh.tms("param", "set", "zx200/swing_left", "swing_joint=1.5")  # static records are free again
     assert run(mesh, "1")["outcome"] == "success"
@@ -151,14 +153,18 @@ def test_restart_gives_a_new_process_of_the_same_name(mesh: Mesh) -> None:
     mesh.tms("restart", "zx200:rp")
     new = processes(mesh)["zx200:rp"]
     assert new["pid"] != old and new["state"] == "RUNNING"
-    wait_until(lambda: mesh.tms("status", expect=None).returncode == 0, 20, "the mesh is ready again")
+    wait_until(lambda: mesh.tms("status", expect=None).returncode == 0, 60, "the mesh is ready again")
 
 
 def test_every_process_ends_within_two_seconds_of_sigterm(mesh: Mesh) -> None:
     process = psutil.Process(processes(mesh)["zx200:rc"]["pid"])
-    process.terminate()
-    process.wait(2.5)
-    wait_until(lambda: mesh.tms("status", expect=None).returncode == 0, 20, "the mesh is ready again")
+    with Lateness().watched() as late:
+        begun = time.monotonic()
+        process.terminate()
+        process.wait(20)
+        passed = time.monotonic() - begun
+    assert passed < 2.5 + late.most
+    wait_until(lambda: mesh.tms("status", expect=None).returncode == 0, 60, "the mesh is ready again")
 
 
 def test_processes_are_forks_of_supervisord_that_show_their_names(mesh: Mesh) -> None:

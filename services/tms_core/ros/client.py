@@ -144,6 +144,10 @@ class _Client(ActionClient):  # type: ignore[misc]
                 answer = self._action_type.Impl.SendGoalService.Response(accepted=True, stamp=status.goal_info.stamp)
                 await super().execute({"goal": (number, answer)})
 
+    def forget(self, goal_id: bytes) -> None:
+        """Of a goal that has ended; rclpy itself forgets only those that had a result."""
+        self._feedback_callbacks.pop(goal_id, None)
+
     def handle_of(self, goal_id: bytes) -> ClientGoalHandle:
         """A handle for a goal that the server has not answered, to ask whether it has it after all."""
         answer = self._action_type.Impl.SendGoalService.Response(accepted=True)
@@ -199,6 +203,9 @@ class Peer:
         call = Call(goal_id or uuid4().bytes, on_change, on_feedback)
 
         def send() -> None:
+            for other in self._open:
+                if other.outcome is not None:
+                    self._client.forget(other.id)
             self._open = [other for other in self._open if other.outcome is None] + [call]
             goal_id = UUID(uuid=list(call.id))
             future = self._client.send_goal_async(goal, feedback_callback=call.heard, goal_uuid=goal_id)

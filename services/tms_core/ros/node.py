@@ -297,9 +297,9 @@ class Ros:
             done = self.promise()
 
             def work() -> None:
-                filled = response
+                filled = _failed(response)
                 try:
-                    filled = handler(request, response)
+                    filled = handler(request, service_type.Response())
                 finally:  # a bug is logged by the thread; the caller still gets an answer
                     self.on_executor(lambda: done.set_result(filled))
 
@@ -448,6 +448,13 @@ class _Asleep(CallbackGroup):  # type: ignore[misc]
 
     def ending_execution(self, entity: Any) -> None:
         raise AssertionError("nothing of this group is executed")
+
+
+def _failed(response: Response) -> Response:
+    """What a caller hears when a handler has a bug."""
+    if hasattr(response, "error_code") and isinstance(response.error_code, str):
+        response.error_code, response.error_msg = "INTERNAL", "this is a bug: see the log of the process"
+    return response
 
 
 def _take(subscription: Any) -> Message | None:

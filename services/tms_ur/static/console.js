@@ -53,9 +53,18 @@ function heard(now) {
   }
 }
 
+const LOOKS = 20; // for the end of a run: the history is written beside the news that it is over
+const LOOK = 250; // ms
+
 /** How a run has ended, on whichever page one is. */
 async function tellEnd(id) {
-  const run = (await ask("/api/runs?limit=50").catch(() => [])).find((one) => one.run_id === id);
+  let run;
+  for (let i = 0; i < LOOKS && !run?.ended_at; i += 1) {
+    if (i > 0) {
+      await new Promise((done) => { setTimeout(done, LOOK); });
+    }
+    run = (await ask("/api/runs?limit=50").catch(() => [])).find((one) => one.run_id === id);
+  }
   if (run?.ended_at && run.state !== "refused") { // whoever asked for that one was told why
     const seconds = (new Date(run.ended_at) - new Date(run.started_at)) / 1000;
     say(t("run_ended", { task: run.task_id, state: t(run.state), duration: duration(seconds), reason: told(run.reason) }), run.state !== "success");

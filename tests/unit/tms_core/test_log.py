@@ -2,11 +2,14 @@
 
 import json
 import logging
+import os
+import subprocess
 import sys
 import threading
 from typing import Any
 
 from tms_core import log
+from tms_core.config import PROJECT
 
 
 def record(message: str, *words: object, error: BaseException | None = None) -> logging.LogRecord:
@@ -73,3 +76,28 @@ def test_json_has_the_words_of_the_message_as_keys() -> None:
 def test_a_message_cannot_fake_level_or_time() -> None:
     row = json.loads(JSON.format(record("level=CRITICAL time=never")))
     assert row["level"] == "INFO" and row["time"] != "never"
+
+
+def test_nobody_who_logs_waits_for_a_reader_that_does_not_read() -> None:
+    code = (
+        "import sys\n"
+        "from tms_core import log\n"
+        "told = log.setup('zx200:rc')\n"
+        "for number in range(20_000): told.info('event=spin number=%d', number)\n"
+        "print('done', int(log.LOST._value.get()) > 0, file=sys.stderr, flush=True)\n"
+        "sys.stdin.read()\n"
+        "log.close()\n"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        env={**os.environ, "PYTHONPATH": str(PROJECT / "services")},
+    ) as process:  # fmt: skip
+        assert process.stderr is not None and process.stdin is not None and process.stdout is not None
+        try:
+            assert process.stderr.readline() == "done True\n"  # though nobody has read a line
+            process.stdin.close()
+            lines = process.stdout.read().splitlines()
+        finally:
+            process.kill()
+    assert "event=spin number=0" in lines[0]
+    assert 1000 < len(lines) < 20_000

@@ -8,9 +8,11 @@ from tms_msg_rc.msg import StopReceipt
 
 from tms_core.ros import Call
 from tms_ts import machines
+from tms_ts.gateways import Gateways
 from tms_ts.machines import Identity, Machines
 from tms_ts.record import Replay
 from tms_ts.sent_goal import ACCEPT_LIMIT, RECOVERY, SentGoal
+from tms_ts.world import GoalState
 
 RETRIES = 2
 
@@ -20,6 +22,10 @@ class Peer:
 
     def __init__(self) -> None:
         self.calls: list[Call] = []
+        self.cancelled: list[Call] = []
+
+    def cancel(self, call: Call) -> None:
+        self.cancelled.append(call)
 
     def ready(self) -> bool:
         return True
@@ -73,6 +79,7 @@ def test_a_server_that_never_answers_is_a_loss(site: Site) -> None:
         site.pass_time(RECOVERY + ACCEPT_LIMIT)
         assert site.goal.losses == losses
         site.pass_time(RETRIES)
+    assert site.peer.cancelled == site.peer.calls[:RETRIES]  # should they be accepted after all
     site.pass_time(RECOVERY + ACCEPT_LIMIT)
     assert "did not answer the goal within 5 s (for the 3. time)" in site.goal.reason
     assert site.goal.state.final
@@ -103,3 +110,23 @@ def test_a_receipt_is_told_once(site: Site) -> None:
     assert [text for text in site.told if text.startswith("stop")] == [
         "stop: zx200 stood after 0.50 s and 0.000 rad (x)"
     ]
+
+
+def test_a_goal_that_is_cancelled_while_it_waits_to_be_sent_again_is_never_sent(site: Site) -> None:
+    site.goal.call, site.goal.state, site.goal.cancelled = None, GoalState.SENDING, True  # between two threads
+    site.pass_time(1.0)
+    assert site.goal.state is GoalState.CANCELLED
+    assert len(site.peer.calls) == 1
+    assert site.machines.settled()
+
+
+def test_a_request_is_made_again_when_the_gateway_is_lost_or_comes_back() -> None:
+    gateways, link = Gateways.__new__(Gateways), SimpleNamespace(alive=True)
+    gateways._links = {"zx200": link}  # type: ignore[dict-item]
+    for before in (True, False):  # lost meanwhile; asked of a dead one, whose successor never saw it
+        link.alive = before
+        lost = gateways.loss("zx200")
+        assert not lost()
+        link.alive = not before
+        assert lost()
+    assert not gateways.loss("zx9")()

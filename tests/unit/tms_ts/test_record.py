@@ -2,7 +2,9 @@
 
 from pathlib import Path
 
-from tms_ts.record import Header, Key, Records, Replay
+import pytest
+
+from tms_ts.record import Header, Key, Past, Records, Replay
 
 HEADER = Header("run-1", 7, 3, "dig", ["zx200"], "<root/>", (1, 2))
 FIRST: Key = ("0.0", "zx200", "dig", "here")
@@ -56,3 +58,16 @@ def test_ended_leaves_are_replayed_once_each_and_in_order() -> None:
     replay = Replay([(FIRST, True), (SECOND, False), (FIRST, False)])
     assert [replay.take(FIRST), replay.take(FIRST), replay.take(FIRST)] == [True, False, None]
     assert [replay.take(SECOND), replay.take(SECOND)] == [False, None]
+
+
+def test_a_full_disk_keeps_nobody_from_going_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made = Records(tmp_path).open("r")
+
+    def full(*_: object) -> int:
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patch:
+        patch.setattr("tms_ts.record.os.write", full)
+        made.event(1)
+    made.event(2)
+    assert Past(made.path).last_event == 2
