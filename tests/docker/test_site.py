@@ -112,10 +112,10 @@ def test_a_machine_whose_cps_pc_dies_is_seen_to_stop_and_the_run_is_interrupted(
     docker("wait", yard.name("cps"))
     docker("start", yard.name("cps"))
     yard.wait_ready("cps")
-    newest = json.loads(yard.tms("cps", "runs", "--limit", "1", "--json").stdout)[0]
-    assert newest["state"] == "interrupted", newest
+    newest = lambda: json.loads(yard.tms("cps", "runs", "--limit", "1", "--json").stdout)[0]  # noqa: E731
+    wait_until(lambda: newest()["state"] == "interrupted", 60, "the run is closed when its gateways have told")
     yard.rearm()
-    yard.tms("cps", "abandon", newest["run_id"])
+    yard.tms("cps", "abandon", newest()["run_id"])
     recovered(yard)
 
 
