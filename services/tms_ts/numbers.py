@@ -1,5 +1,6 @@
 """Fencing numbers of runs: always growing, also over restarts and when the clock goes back."""
 
+import threading
 import time
 from pathlib import Path
 
@@ -9,9 +10,14 @@ class Numbers:
 
     def __init__(self, folder: Path) -> None:
         self._path = folder / "ts" / "number"
+        self._giving = threading.Lock()  # two runs that start at once must not get one number
 
     def next(self) -> int:
-        """A number for a new run; fits into 48 bits until the year 10889."""
+        """A number for a new run; fits into 48 bits until the year 10889. From any thread."""
+        with self._giving:
+            return self._next()
+
+    def _next(self) -> int:
         try:
             last = int(self._path.read_text(encoding="ascii"))
         except (FileNotFoundError, ValueError):

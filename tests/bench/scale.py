@@ -32,7 +32,7 @@ from tms_core.values import to_parameters
 
 SIZES = (1, 5, 20, 50)
 RUNS = 20  # at most; a run moves a machine at least
-JOINTS = ("boom", "swing", "arm", "bucket")
+JOINTS = {"boom": -46.0, "swing": 0.0, "arm": 114.0, "bucket": 46.0}  # deg
 SUBTASKS = [f"st_zx200_sample_{joint}" for joint in JOINTS]
 A_PROCESS = 10  # machines in one process of the crowd
 SETTLE, WATCH = 2.0, 12.0  # s
@@ -110,7 +110,7 @@ def _process(own: Rig, *words: str) -> Iterator[subprocess.Popen[str]]:
 
 
 def _store_records(ros: Ros, names: list[str]) -> None:
-    values = to_parameters({f"zx200_{joint}_goal_pos": 0.1 for joint in JOINTS})
+    values = to_parameters({f"zx200_{joint}_goal_pos": angle for joint, angle in JOINTS.items()})
 
     def stored(name: str) -> bool:
         request = SetParameter.Request(
