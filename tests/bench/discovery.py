@@ -22,7 +22,7 @@ from bench.runner import Figure
 from conftest import ports_of
 
 COUNT = 50
-SETTLE, WATCH = 5.0, 10.0  # s
+SETTLE, WATCH = 3.0, 6.0  # s
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from tms_core.ros import Ros
 from tms_host.supervisor import Supervisor
 
 MACHINES = {"zx200": {"model": "zx200"}, "ic120_1": {"model": "ic120"}, "ic120_2": {"model": "ic120"}}
-SETTLE, WATCH = 8.0, 15.0  # s; the second is also the time between Prometheus' scrapes
+SETTLE, WATCH = 5.0, 15.0  # s; the second is also the time between Prometheus' scrapes
 USUAL = 0.3  # s that a bare node needs to start on a usual PC
 SINGLE = 5  # subtasks that are started, and restarted, one at a time
 
