@@ -155,7 +155,11 @@ def _tree(machines: list[str]) -> str:
         "</KeepRunningUntilFailure>"
         for name in machines
     ]
-    inside = rows[0] if len(rows) == 1 else f'<Parallel failure_threshold="1">{"".join(rows)}</Parallel>'
+    inside = (
+        rows[0]
+        if len(rows) == 1
+        else f'<Parallel success_threshold="{len(rows)}" failure_threshold="1">{"".join(rows)}</Parallel>'
+    )
     return f'<root main_tree_to_execute="M"><BehaviorTree ID="M">{inside}</BehaviorTree></root>'
 
 

@@ -78,15 +78,16 @@ def link(node: Node, name: str, following: str = "") -> None:
         node, LeafNodeBase, name, succeed, goal_callback=decide, handle_accepted_callback=accepted, result_timeout=5,
         callback_group=group,
     )  # fmt: skip
+    assert records.wait_for_service(LIMIT)
+    assert after is None or after.wait_for_server(LIMIT)
     rclpy.spin(node)
 
 
 def chain(node: Node, count: str, first: str, last: str) -> list[float]:
     """The next goal leaves when the last one has come back."""
-    client, rounds, waiting = ActionClient(node, LeafNodeBase, first), Rounds(int(count)), [False]
+    client, rounds, known = ActionClient(node, LeafNodeBase, first), Rounds(int(count)), set[bytes]()
 
     def send() -> None:
-        waiting[0] = True
         rounds.begin()
         client.send_goal_async(LeafNodeBase.Goal()).add_done_callback(
             lambda sent: sent.result().get_result_async().add_done_callback(lambda _: again())
@@ -96,10 +97,11 @@ def chain(node: Node, count: str, first: str, last: str) -> list[float]:
         if rounds.left:
             send()
 
-    def seen(_: GoalStatusArray) -> None:
-        if waiting[0]:
-            waiting[0] = False
+    def seen(message: GoalStatusArray) -> None:
+        goals = {bytes(one.goal_info.goal_id.uuid) for one in message.status_list}
+        if goals - known:
             rounds.end()
+        known.update(goals)
 
     node.create_subscription(GoalStatusArray, f"{last}/_action/status", seen, qos_profile_action_status_default)
     return _run(node, client.server_is_ready, send, rounds)
