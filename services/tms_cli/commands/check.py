@@ -51,7 +51,7 @@ def command(chosen: str | None, as_json: bool) -> None:
 
 def _hints(site: Site, rows: Sequence[Process]) -> list[str]:
     """What is right, but would be better otherwise."""
-    most = max(Counter(row.pc for row in rows).values())
+    most = max(Counter(row.pc for row in rows).values(), default=0)
     if site.file.network.discovery == "server" or most <= MANY:
         return []
     return [

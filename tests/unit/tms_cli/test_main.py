@@ -143,3 +143,9 @@ def test_a_crowded_pc_is_told_of_the_discovery_server(tmp_path: Path, discovery:
     hints = json.loads(done.stdout)["hints"]
     assert [("processes on one PC" in text) for text in hints] == ([True] if hinted else [])
     assert ("hint: with" in tms("check", "--site", str(site)).stdout) == hinted
+
+
+def test_a_site_without_processes_is_right_too(tmp_path: Path) -> None:
+    site = tmp_path / "site.yaml"
+    site.write_text("name: empty\ndomain: 1\nservices: {}\nmachines: {}\nstore: {kind: mongodb, uri: 'mongodb://x/'}\n")
+    assert json.loads(tms("check", "--site", str(site), "--json").stdout)["processes"] == []
