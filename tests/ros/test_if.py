@@ -87,7 +87,7 @@ class Bridge:
             client.close()
         self.process.terminate()
         try:
-            assert self.process.wait(10) == 0 or "clean-up took too long" in self.log, self.log
+            assert self.process.wait(10) == 0, self.log
         finally:
             self.process.kill()
             self.ros.close()

@@ -36,12 +36,12 @@ def test_prometheus_sees_every_process_and_a_lost_one_fires(mesh: Mesh, domain: 
     with prometheus(tmp_path, ports_of(domain) + 95) as address:
         wait_until(lambda: processes_up(address) >= wanted, 30, f"scraped: all of {sorted(wanted)}")
         assert {row["metric"]["machine"] for row in query(address, "tms_rc_permit")} == {"zx200"}
-        wait_until(lambda: query(address, 'min_over_time(up{on_demand="no"}[5s]) == 0') == [], 60, "no gap for 5 s")
+        assert query(address, 'min_over_time(up{on_demand="no"}[5s]) == 0') == []
         mesh.tms("stop-process", "tms:ur")
         try:
             alert = 'ALERTS{alertname="TmsProcessDown", process="tms:ur"}'
             wait_until(lambda: bool(query(address, alert)), 30, "an alert for the process that was stopped")
-            assert not query(address, 'ALERTS{alertname="TmsProcessDown", process!="tms:ur", alertstate="firing"}')
+            assert not query(address, 'ALERTS{alertname="TmsProcessDown", process!="tms:ur"}')
         finally:
             mesh.tms("start", "tms:ur")
             wait_until(lambda: mesh.tms("status", expect=None).returncode == 0, 60, "the mesh is ready again")
