@@ -1,0 +1,176 @@
+"""A node and its executor thread.
+
+Why it is built this way (all measured with the rclpy in use):
+- One SingleThreadedExecutor in a thread of its own.
+- All callbacks share a reentrant group: with rclpy's default group, a callback that awaits an answer
+  keeps the answer from being delivered. One thread runs them all, so nothing runs at the same time.
+"""
+
+import threading
+import time
+from collections.abc import Awaitable, Callable
+from typing import Any, TypeVar
+
+import rclpy
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.context import Context
+from rclpy.exceptions import InvalidHandle
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+from rclpy.task import Future
+
+from tms_core.errors import RosError
+from tms_core.pulse import Pulse
+from tms_core.ros.goals import Message
+
+T = TypeVar("T")
+
+HANGS = 5.0  # s after which an executor that does not run counts as hanging
+POLL = 0.02  # s between looks at the ROS graph, which has no cheap event in rclpy
+
+
+class Loop:
+    """A node, the thread that runs its callbacks, and what else runs there."""
+
+    def __init__(self, name: str, namespace: str = "/") -> None:
+        self._context = Context()
+        rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
+        self.node: Node = rclpy.create_node(
+            name, namespace=namespace, context=self._context, start_parameter_services=False, enable_rosout=False
+        )
+        self.group = ReentrantCallbackGroup()
+        self._executor = _Executor(context=self._context)
+        self._executor.add_node(self.node)
+        self._asked: float | None = None  # monotonic time since which the executor has not shown itself
+        self.failed = threading.Event()  # the executor thread died of an exception
+        self.closing = False  # nothing can be sent any more
+        self._thread = threading.Thread(target=self._spin, name="ros", daemon=True)
+        self._thread.start()
+        self.pulse = Pulse(self.on_executor, lambda: self._executor.busy_since)
+
+    def _spin(self) -> None:
+        try:
+            self._executor.spin()
+        except ExternalShutdownException:
+            pass
+        finally:
+            if not self.closing:
+                self.failed.set()
+
+    def close(self) -> None:
+        """End the thread and leave the graph."""
+        self.closing = True
+        self.pulse.close()
+        self._executor.shutdown(timeout_sec=0.5)
+        self._thread.join(0.5)
+        self.node.destroy_node()
+        rclpy.shutdown(context=self._context)
+
+    def on_executor(self, step: Callable[[], None]) -> None:
+        """Run `step` on the executor thread, soon."""
+        if threading.current_thread() is self._thread:
+            step()
+        else:
+            self._executor.create_task(step)
+
+    def do(self, step: Callable[[], T], seconds: float) -> T:
+        """Run `step` on the executor thread and wait for what it returns or raises; from worker threads only.
+
+        Raises:
+            RosError: the executor did not come to it within `seconds`.
+        """
+        there = threading.Event()
+        results: list[T] = []
+        errors: list[Exception] = []
+
+        def run() -> None:
+            try:
+                results.append(step())
+            except Exception as error:  # raised again in the caller's thread; here it would end the executor
+                errors.append(error)
+            there.set()
+
+        self.on_executor(run)
+        if not there.wait(seconds):
+            raise RosError(f"the ROS thread did not answer within {seconds:.0f} s", "BUSY")
+        if errors:
+            raise errors[0]
+        return results[0]
+
+    def hangs(self) -> str | None:
+        """Asks the executor to show itself; why it should be restarted when it has not done so since it was asked."""
+        asked = self._asked
+        if asked is not None:
+            seconds = time.monotonic() - asked
+            return f"the ROS thread has not run for {seconds:.0f} s" if seconds > HANGS else None
+        self._asked = time.monotonic()
+        self.on_executor(self._shown)
+        return None
+
+    def _shown(self) -> None:
+        self._asked = None
+
+    def start(self, step: Callable[[], Awaitable[None]]) -> None:
+        """Run a coroutine function on the executor thread."""
+        self._executor.create_task(step)
+
+    def promise(self) -> Future:
+        """A result that coroutines on the executor thread await; set it there, see `on_executor`."""
+        return Future(executor=self._executor)
+
+    def now(self) -> Message:
+        """Present time as builtin_interfaces/Time."""
+        return self.node.get_clock().now().to_msg()
+
+    def wait_for(self, there: Callable[[], bool], seconds: float, otherwise: str) -> None:
+        """Poll `there` until it holds.
+
+        Raises:
+            RosError: it did not hold within `seconds`; the message starts with `otherwise`.
+        """
+        deadline = time.monotonic() + seconds
+        while not there():
+            if time.monotonic() > deadline:
+                raise RosError(f"{otherwise} after {seconds:.1f} s: is its process running? See `tms ps`", "NO_SERVER")
+            time.sleep(POLL)
+
+    # times
+
+    def every(self, seconds: float, step: Callable[[], None]) -> Any:
+        """Call `step` on the executor thread at a fixed rate."""
+        return self.node.create_timer(seconds, step, callback_group=self.group)
+
+    def beside(self, seconds: float, step: Callable[[], None], name: str) -> None:
+        """Call `step` at a fixed rate in a thread of its own, for what only samples: it costs a tenth of a timer."""
+
+        def run() -> None:
+            while not self.closing:
+                try:
+                    step()
+                except InvalidHandle:  # the node is gone
+                    return
+                time.sleep(seconds)
+
+        threading.Thread(target=run, name=name, daemon=True).start()
+
+    def after(self, seconds: float, step: Callable[[], None]) -> None:
+        """Call `step` on the executor thread once, in a while. On the executor thread only."""
+
+        def once() -> None:
+            self.node.destroy_timer(timer)
+            step()
+
+        timer = self.every(seconds, once)
+
+
+class _Executor(SingleThreadedExecutor):  # type: ignore[misc]
+    """Knows since when it has been in its present callback."""
+
+    busy_since: float | None = None  # monotonic; None while it waits
+
+    def wait_for_ready_callbacks(self, *args: Any, **settings: Any) -> Any:
+        self.busy_since = None
+        found = super().wait_for_ready_callbacks(*args, **settings)
+        self.busy_since = time.monotonic()
+        return found
