@@ -99,6 +99,10 @@ class Mesh:
             assert done.returncode == expect, f"tms {' '.join(words)}: {done.returncode}\n{done.stdout}\n{done.stderr}"
         return done
 
+    def wait_ready(self) -> None:
+        """Until `tms status` says that everything works."""
+        wait_until(lambda: self.tms("status", expect=None).returncode == 0, 60, "the mesh is ready again")
+
 
 @contextmanager
 def running(mesh: Mesh) -> Iterator[Mesh]:

@@ -374,7 +374,7 @@ def test_processes_logs_and_restart(page: Page, address: str, mesh: Mesh) -> Non
     page.locator("#dialog_yes").click()
     expect(page.locator("#message")).to_have_text("zx200:rp was restarted.")
     expect(page.locator("#list_processes tr", has_text="zx200:rp")).to_contain_text("Running")
-    wait_until(lambda: mesh.tms("status", expect=None).returncode == 0, 60, "the mesh is ready again")
+    mesh.wait_ready()
 
 
 def test_the_site_shows_place_and_arm(page: Page, address: str, mesh: Mesh) -> None:

@@ -19,13 +19,9 @@ from tms_host.supervisor import Supervisor
 pytestmark = [pytest.mark.system, pytest.mark.timeout(300)]
 
 
-def wait_ready(mesh: Mesh) -> None:
-    wait_until(lambda: mesh.tms("status", expect=None).returncode == 0, 60, "the mesh is ready again")
-
-
 @pytest.mark.parametrize("name", ["zx200:rp", "zx200:rc"])
 def test_a_run_goes_on_after_the_loss_of_planner_or_gateway(mesh: Mesh, node: Ros, name: str) -> None:
-    wait_ready(mesh)
+    mesh.wait_ready()
     old = processes(mesh)[name]["pid"]
     with swinging(mesh, node) as client:
         os.kill(old, signal.SIGKILL)
@@ -111,7 +107,7 @@ def test_without_supervisord_everything_ends_and_the_run_can_be_given_up(mesh: M
         os.kill(int((mesh.state / "supervisord.pid").read_text()), signal.SIGKILL)
         wait_until(lambda: not any(map(psutil.pid_exists, pids)), 30, "the processes have ended")
     mesh.tms("up")
-    wait_ready(mesh)
+    mesh.wait_ready()
     wait_until(lambda: state_of(mesh, run_id) == "interrupted", 60, "the run is closed as interrupted")
     mesh.tms("abandon", run_id)
     latched = json.loads(Path(mesh.state, "rc", "zx200.json").read_text())["latched"]

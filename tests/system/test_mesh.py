@@ -153,7 +153,7 @@ def test_restart_gives_a_new_process_of_the_same_name(mesh: Mesh) -> None:
     mesh.tms("restart", "zx200:rp")
     new = processes(mesh)["zx200:rp"]
     assert new["pid"] != old and new["state"] == "RUNNING"
-    wait_until(lambda: mesh.tms("status", expect=None).returncode == 0, 60, "the mesh is ready again")
+    mesh.wait_ready()
 
 
 def test_every_process_ends_within_two_seconds_of_sigterm(mesh: Mesh) -> None:
@@ -164,7 +164,7 @@ def test_every_process_ends_within_two_seconds_of_sigterm(mesh: Mesh) -> None:
         process.wait(20)
         passed = time.monotonic() - begun
     assert passed < 2.5 + late.most
-    wait_until(lambda: mesh.tms("status", expect=None).returncode == 0, 60, "the mesh is ready again")
+    mesh.wait_ready()
 
 
 def test_processes_are_forks_of_supervisord_that_show_their_names(mesh: Mesh) -> None:

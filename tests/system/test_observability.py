@@ -44,7 +44,7 @@ def test_prometheus_sees_every_process_and_a_lost_one_fires(mesh: Mesh, domain: 
             assert not query(address, 'ALERTS{alertname="TmsProcessDown", process!="tms:ur"}')
         finally:
             mesh.tms("start", "tms:ur")
-            wait_until(lambda: mesh.tms("status", expect=None).returncode == 0, 60, "the mesh is ready again")
+            mesh.wait_ready()
 
 
 def test_every_metric_that_rules_and_dashboards_ask_for_is_there(mesh: Mesh) -> None:

@@ -92,7 +92,7 @@ def test_a_killed_scheduler_leaves_a_run_that_can_be_resumed(mesh: Mesh, node: R
     seen = stops(mesh, run_id)
     assert seen and all(text.startswith("zx200 stood after") for text in seen)
     rearm(mesh)
-    wait_until(lambda: mesh.tms("status", expect=None).returncode == 0, 60, "the mesh is ready again")
+    mesh.wait_ready()
     done = mesh.tms("resume", run_id, "--yes", "--wait", "--json", limit=120)
     assert json.loads(done.stdout)["outcome"] == "success"
     numbers = [row["number"] for row in events(mesh, run_id)]
