@@ -51,6 +51,19 @@ def own_domain() -> Iterator[int]:
         yield number
 
 
+@pytest.fixture
+def two_nodes(own_domain: int) -> Iterator["tuple[Ros, Ros]"]:
+    """Two nodes of this process, each with a context of its own, so that they meet by discovery."""
+    from tms_core.ros import Ros
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(os.environ, "ROS_DOMAIN_ID", str(own_domain))
+        server, client = Ros("server"), Ros("client")
+    yield server, client
+    client.close()
+    server.close()
+
+
 def ports_of(domain: int) -> int:
     """First of 100 ports that belong to a domain: below those that the system gives to outgoing connections."""
     return 20000 + domain * 100

@@ -8,7 +8,6 @@ import platform
 import signal
 import sys
 import threading
-from typing import TYPE_CHECKING
 
 from tms_core import discovery, environment, log, metrics, store
 from tms_core.config import Site, load_site, version
@@ -16,12 +15,8 @@ from tms_core.errors import ConfigError
 from tms_core.metrics import Health
 from tms_core.processes import Process, find
 
-if TYPE_CHECKING:
-    from tms_core.ros import Ros
-
 EXIT_LIMIT = 2.0  # s from SIGTERM to the end, whatever hangs
 PR_SET_PDEATHSIG = 1
-GRAPH_PERIOD = 5.0  # s between looks at the ROS graph for the metrics
 FIRST = ("rc", "ts")  # on a busy PC these must not miss a beat of their permits
 NICE = -10
 
@@ -48,6 +43,7 @@ def main(name: str) -> int:
 def _serve(site: Site, row: Process) -> int:
     metrics.BUILD.info({"version": version(), "python": platform.python_version()})
     from tms_core.app import App  # rclpy reads the environment when it is imported first
+    from tms_core.graph import Graph
     from tms_core.ros import Ros
 
     logger = log.setup(row.full, row.machine, level=site.file.log.level, as_json=site.file.log.json_lines)
@@ -67,7 +63,7 @@ def _serve(site: Site, row: Process) -> int:
     app = App(site, row, ros, logger)
     importlib.import_module(row.module).start(app)
     app_box.append(app)
-    ros.every(GRAPH_PERIOD, lambda: _measure_graph(ros))
+    Graph(ros, logger)
     logger.info("event=started pid=%d", os.getpid())
     while not stop.wait(0.5) and not ros.failed.is_set():
         pass
@@ -81,13 +77,6 @@ def _serve(site: Site, row: Process) -> int:
     log.close()
     killer.cancel()
     return 1 if ros.failed.is_set() else 0
-
-
-def _measure_graph(ros: "Ros") -> None:
-    readers, writers, nodes = ros.ends()
-    metrics.ENDPOINTS.labels("readers").set(readers)
-    metrics.ENDPOINTS.labels("writers").set(writers)
-    metrics.NODES.set(nodes)
 
 
 def _come_first() -> None:

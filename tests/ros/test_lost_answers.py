@@ -1,8 +1,6 @@
 """A goal whose answer gets lost: a server that has not yet discovered its client drops what it says to it."""
 
-import os
 import threading
-from collections.abc import Iterator
 from types import SimpleNamespace
 from typing import Any
 
@@ -64,34 +62,23 @@ class Silent:
         self._result.set_result(None)
 
 
-@pytest.fixture
-def ros(own_domain: int) -> Iterator[tuple[Ros, Ros]]:
-    """A server's node and a client's."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setitem(os.environ, "ROS_DOMAIN_ID", str(own_domain))
-        server, client = Ros("server"), Ros("client")
-    yield server, client
-    client.close()
-    server.close()
-
-
 def peer_of(client: Ros) -> Peer:
     peer = client.peer(LeafNodeBase, NAME)
     wait_until(peer.ready, LIMIT, "server found")
     return peer
 
 
-def test_the_status_tells_that_a_goal_was_accepted(ros: tuple[Ros, Ros]) -> None:
-    silent = Silent(ros[0], takes_goals=True)
-    call = peer_of(ros[1]).send(LeafNodeBase.Goal(model_name="zx200", record_name="A"))
+def test_the_status_tells_that_a_goal_was_accepted(two_nodes: tuple[Ros, Ros]) -> None:
+    silent = Silent(two_nodes[0], takes_goals=True)
+    call = peer_of(two_nodes[1]).send(LeafNodeBase.Goal(model_name="zx200", record_name="A"))
     wait_until(lambda: call.accepted, LIMIT, "goal known as accepted")
     assert silent.asked == [call.id]
     assert call.outcome is None
-    ros[0].on_executor(silent.finish)
+    two_nodes[0].on_executor(silent.finish)
     wait_until(lambda: call.outcome is Outcome.SUCCEEDED, LIMIT, "result")
 
 
-def test_a_stop_asked_of_a_gateway_that_is_being_lost_is_asked_of_its_successor(ros: tuple[Ros, Ros]) -> None:
+def test_a_stop_asked_of_a_gateway_that_is_being_lost_is_asked_of_its_successor(two_nodes: tuple[Ros, Ros]) -> None:
     asked = []
     alive = threading.Event()
     alive.set()
@@ -105,18 +92,18 @@ def test_a_stop_asked_of_a_gateway_that_is_being_lost_is_asked_of_its_successor(
         answer.receipt.confirmed = True
         return answer
 
-    ros[0].offer_slow(StopMachine, "/zx200/rc/stop", gateway)
+    two_nodes[0].offer_slow(StopMachine, "/zx200/rc/stop", gateway)
     back = lambda machine, seconds: alive.set()  # noqa: E731
     gateways = SimpleNamespace(wait_alive=back, loss=lambda machine: lambda: not alive.is_set())
     identity = Identity(1, 3, SimpleNamespace(), Replay([]))  # type: ignore[arg-type]
-    machines = Machines(ros[1], None, gateways, lambda: None, lambda *_: None, identity)  # type: ignore[arg-type]
+    machines = Machines(two_nodes[1], None, gateways, lambda: None, lambda *_: None, identity)  # type: ignore[arg-type]
     assert machines.stop("zx200", "test").confirmed
     assert asked == [True, True]
 
 
-def test_a_goal_that_the_server_does_not_know_is_lost(ros: tuple[Ros, Ros]) -> None:
-    silent = Silent(ros[0], takes_goals=False)
-    peer = peer_of(ros[1])
+def test_a_goal_that_the_server_does_not_know_is_lost(two_nodes: tuple[Ros, Ros]) -> None:
+    silent = Silent(two_nodes[0], takes_goals=False)
+    peer = peer_of(two_nodes[1])
     call = peer.send(LeafNodeBase.Goal(model_name="zx200", record_name="A"))
     wait_until(lambda: silent.asked == [call.id], LIMIT, "goal at the server")
     assert not call.accepted
@@ -127,11 +114,11 @@ def test_a_goal_that_the_server_does_not_know_is_lost(ros: tuple[Ros, Ros]) -> N
 
 
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
-def test_a_bug_in_a_slow_service_is_no_success(ros: tuple[Ros, Ros]) -> None:
+def test_a_bug_in_a_slow_service_is_no_success(two_nodes: tuple[Ros, Ros]) -> None:
     def broken(_: Any, answer: Any) -> Any:
         answer.task_id = 7
         raise RuntimeError("a bug")
 
-    ros[0].offer_slow(ResumePlan, "/broken", broken)
-    answer = ros[1].call(ResumePlan, "/broken", ResumePlan.Request(), LIMIT)
+    two_nodes[0].offer_slow(ResumePlan, "/broken", broken)
+    answer = two_nodes[1].call(ResumePlan, "/broken", ResumePlan.Request(), LIMIT)
     assert (answer.error_code, answer.task_id) == ("INTERNAL", 0)

@@ -25,12 +25,6 @@ class Ros(Services):
         time.sleep(LAST_WORDS)
         super().close()
 
-    def ends(self) -> tuple[int, int, int]:
-        """Remote readers of our publishers, remote writers of our subscriptions, nodes; on the executor thread."""
-        readers = sum(end.get_subscription_count() for end in list(self.node.publishers))
-        writers = sum(self.node.count_publishers(end.topic_name) for end in list(self.node.subscriptions))
-        return readers, writers, len(self.node.get_node_names())
-
     def peer(self, action_type: InterfaceType, name: str) -> Peer:
         """The action server called `name`; one client is kept for all goals."""
         with self._making:

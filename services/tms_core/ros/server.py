@@ -97,7 +97,7 @@ class Served:
         accept: Accept | None = None,
     ) -> None:
         """See `Ros.serve`."""
-        reasons = self._ros.node.create_publisher(action_type.Impl.FeedbackMessage, f"{name}/_action/feedback", 10)
+        reasons = self._ros.publisher(action_type.Impl.FeedbackMessage, f"{name}/_action/feedback")
 
         async def decide(request: Request) -> GoalResponse:
             goal_id = server.arriving  # valid until the first await
