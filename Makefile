@@ -106,7 +106,8 @@ soak: setup ## the two-machine demo over and over; nothing may grow (MINUTES=120
 	@$(PY) tests/soak.py $(if $(MINUTES),--minutes "$(MINUTES)")
 
 test-docker: setup ## a site of four PCs as containers; starts a Docker engine where none runs
-	@started=$$(DOCKER=$(DOCKER) sh deploy/engine.sh); trap '[ -z "$$started" ] || kill $$started' EXIT; \
+	@started=$$(DOCKER=$(DOCKER) sh deploy/engine.sh) || exit 1; \
+	  trap '[ -z "$$started" ] || sh deploy/engine.sh stop $$started' EXIT; \
 	  DOCKER=$(DOCKER) $(PY) -m pytest -p no:randomly -m docker -s --durations=0 tests/docker
 
 clean: down ## remove the environments and all state of the demo

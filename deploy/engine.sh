@@ -1,7 +1,17 @@
 #!/bin/sh
 # Makes sure that a Docker engine answers: installs Debian's and starts it, as root and where there is none.
-# Prints the pid of an engine that it started, so that whoever called can stop just that one.
+# Prints the pid of an engine that it started, so that whoever called can stop just that one: `engine.sh stop PID`,
+# which returns when it is gone (one that is still leaving keeps the next from starting).
 set -eu
+if [ "${1:-start}" = stop ]; then
+  kill "$2"
+  for _ in $(seq 100); do
+    kill -0 "$2" 2>/dev/null || exit 0
+    sleep 0.3
+  done
+  echo "dockerd (process $2) does not end" >&2
+  exit 1
+fi
 docker=${DOCKER:-docker}
 "$docker" info >/dev/null 2>&1 && exit 0
 [ "$(id -u)" = 0 ] || { echo "no Docker engine answers: start it, or add yourself to the group docker" >&2; exit 1; }
@@ -14,6 +24,7 @@ setsid dockerd >"$log" 2>&1 &
 pid=$!
 for _ in $(seq 100); do
   "$docker" info >/dev/null 2>&1 && { echo "$pid"; exit 0; }
+  kill -0 "$pid" 2>/dev/null || { echo "dockerd ended, see $log" >&2; exit 1; }
   sleep 0.3
 done
 echo "dockerd does not start, see $log" >&2
