@@ -21,7 +21,7 @@ from tms_ts.spool import Spool
 
 BATCH = 200
 RETRY = 0.5  # s
-GATHER = 0.1  # s from the first entry to its writing: ten calls a hand-over, beside it, would make it half as long again
+GATHER = 0.1  # s from the first entry to its writing: ten calls beside a hand-over make it half as long again
 KINDS = {b"R": Run, b"E": Event}
 
 WAITING = Gauge("tms_ts_journal_waiting_bytes", "Journal entries not yet written to the database")
