@@ -6,9 +6,11 @@ Why it is built this way (all measured with the rclpy in use):
   keeps the answer from being delivered. One thread runs them all, so nothing runs at the same time.
 """
 
+import os
 import threading
 import time
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Iterator
+from contextlib import contextmanager
 from typing import Any, TypeVar
 
 import rclpy
@@ -35,10 +37,11 @@ class Loop:
 
     def __init__(self, name: str, namespace: str = "/") -> None:
         self._context = Context()
-        rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
-        self.node: Node = rclpy.create_node(
-            name, namespace=namespace, context=self._context, start_parameter_services=False, enable_rosout=False
-        )
+        with _undisturbed():
+            rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
+            self.node: Node = rclpy.create_node(
+                name, namespace=namespace, context=self._context, start_parameter_services=False, enable_rosout=False
+            )
         self.group = ReentrantCallbackGroup()
         self._executor = _Executor(context=self._context)
         self._executor.add_node(self.node)
@@ -162,6 +165,26 @@ class Loop:
             step()
 
         timer = self.every(seconds, once)
+
+
+@contextmanager
+def _undisturbed() -> Iterator[None]:
+    """No other process takes this thread's processor, where the system allows it (CAP_SYS_NICE or LimitRTPRIO).
+
+    Fast DDS announces a participant a moment before it listens. On a PC with forty processes, all of them wake up to
+    answer; if they run before the participant listens, it hears of them only with their next announcement: measured
+    2.1 s instead of 0.25 s.
+    """
+    try:
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))
+    except PermissionError:
+        yield
+        return
+    try:
+        yield
+    finally:
+        for thread in os.listdir("/proc/self/task"):  # those that were started meanwhile have inherited it
+            os.sched_setscheduler(int(thread), os.SCHED_OTHER, os.sched_param(0))
 
 
 class _Executor(SingleThreadedExecutor):  # type: ignore[misc]
