@@ -11,6 +11,7 @@ import threading
 import time
 from collections.abc import Awaitable, Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any, TypeVar
 
 import rclpy
@@ -183,8 +184,8 @@ def _undisturbed() -> Iterator[None]:
     try:
         yield
     finally:
-        for thread in os.listdir("/proc/self/task"):  # those that were started meanwhile have inherited it
-            os.sched_setscheduler(int(thread), os.SCHED_OTHER, os.sched_param(0))
+        for thread in Path("/proc/self/task").iterdir():  # those that were started meanwhile have inherited it
+            os.sched_setscheduler(int(thread.name), os.SCHED_OTHER, os.sched_param(0))
 
 
 class _Executor(SingleThreadedExecutor):  # type: ignore[misc]
