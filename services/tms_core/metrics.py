@@ -5,6 +5,7 @@ Labels in a metric take their values from the code or from the process table, ne
 """
 
 import http.client
+import socket
 import threading
 from collections.abc import Callable
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -75,11 +76,20 @@ class Health:
                 f"port {port} on {bind} is taken ({error.strerror}): "
                 "stop the other program or change ports.metrics in the site file"
             ) from error
-        threading.Thread(target=self._server.serve_forever, name="metrics", daemon=True).start()
+        self._closing = False
+        self._thread = threading.Thread(target=self._serve, name="metrics", daemon=True)
+        self._thread.start()
+
+    def _serve(self) -> None:
+        """Without `serve_forever`, which looks every 0.5 s whether it should end, and takes as long to do so."""
+        while not self._closing:
+            self._server.handle_request()
 
     def close(self) -> None:
         """Free the port."""
-        self._server.shutdown()
+        self._closing = True
+        self._server.socket.shutdown(socket.SHUT_RDWR)  # wakes the thread
+        self._thread.join()
         self._server.server_close()
 
 
