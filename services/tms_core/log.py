@@ -20,7 +20,7 @@ BREAKS = str.maketrans({"\n": "\\n", "\r": "\\r"})  # an event is one line, what
 WAITING = 10_000  # lines at most that wait for a reader of stdout
 LOST = Counter("tms_log_lines_lost_total", "Log lines that nobody read in time")
 
-_listeners: list[QueueListener] = []
+_listeners: list["Listener"] = []
 _bound: contextvars.ContextVar[dict[str, str]] = contextvars.ContextVar("bound")
 
 
@@ -80,6 +80,14 @@ class Queue(QueueHandler):
             LOST.inc()
 
 
+class Listener(QueueListener):
+    """Writes what waits to stdout."""
+
+    def enqueue_sentinel(self) -> None:
+        """Wait for room where the standard library would fail: what waits is still to be written."""
+        self.queue.put(None)
+
+
 def setup(process: str, machine: str | None = None, *, level: str = "INFO", as_json: bool = False) -> logging.Logger:
     """Send everything to stdout, which supervisord keeps and rotates; returns the process's logger."""
     fields = {"process": process, **({"machine": machine} if machine else {})}
@@ -88,7 +96,7 @@ def setup(process: str, machine: str | None = None, *, level: str = "INFO", as_j
     handler.setFormatter(Json(fields) if as_json else Line(fields))
     logging.basicConfig(level=level, handlers=[handler], force=True)
     logging.captureWarnings(True)
-    listener = QueueListener(lines, logging.StreamHandler(sys.stdout))
+    listener = Listener(lines, logging.StreamHandler(sys.stdout))
     listener.start()
     _listeners.append(listener)
     return logging.getLogger(process)

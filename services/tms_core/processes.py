@@ -7,6 +7,8 @@ from tms_core import pcs
 from tms_core.config import CONFIGS, MachineModel, Role, Site
 from tms_core.errors import ConfigError
 
+CROWD = 40  # processes of a site on one PC, above which a discovery server is the better way (make bench ONLY=process)
+
 # package of a service -> what it is for, shown by `tms ps`
 SERVICES = {
     "db": "tasks, parameters and history in MongoDB",
@@ -47,7 +49,10 @@ def table(site: Site) -> tuple[Process, ...]:
     Raises:
         ConfigError: a service or subtask that does not exist, or two rows with one name.
     """
-    rows = [*_services(site), *(row for machine in site.file.machines for row in _machine(site, machine))]
+    rows = _rows(site)
+    if discovery_server(site) is not None:
+        purpose = "lets processes find each other"
+        rows.append(Process("tms", "discovery", "cps", "tms_core.discovery", 0, purpose, ours=False))
     base = site.file.ports.metrics
     numbered = tuple(_placed(site, replace(row, port=base + i)) for i, row in enumerate(rows))
     for row in numbered:
@@ -89,6 +94,28 @@ def find(site: Site, name: str) -> Process:
     raise ConfigError(f"no process '{name}': {hint}")
 
 
+def discovery_server(site: Site) -> str | None:
+    """host:port of the discovery server, where the site uses one; on loopback where the site is one PC.
+
+    Raises:
+        ConfigError: no PC would run it, or its address is not known.
+    """
+    network = site.file.network
+    crowded = network.discovery == "auto" and not site.file.pcs and len(_rows(site)) > CROWD
+    if network.discovery != "server" and not crowded:
+        return None
+    if not site.file.pcs:
+        return f"{pcs.LOOPBACK}:{network.port}"
+    cps = next((pc.address for name, pc in site.file.pcs.items() if "cps" in pcs.roles(name, pc)), None)
+    if cps is None:
+        raise ConfigError(f"{site.path}: network.discovery: server needs a PC with the role cps, where it runs")
+    return f"{pcs.resolve(site, cps)}:{network.port}"
+
+
+def _rows(site: Site) -> list[Process]:
+    return [*_services(site), *(row for machine in site.file.machines for row in _machine(site, machine))]
+
+
 def _placed(site: Site, row: Process) -> Process:
     pc = row.pc or pcs.place(site, row)
     return replace(row, pc=pc, address=site.file.pcs[pc].address if pc else site.file.bind)
@@ -98,9 +125,6 @@ def _services(site: Site) -> list[Process]:
     rows = []
     if site.embedded_store:
         rows.append(Process("tms", "store", "cps", "tms_core.store", 0, "embedded store of the demo", ours=False))
-    if pcs.discovery_server(site) is not None:
-        purpose = "lets the PCs' processes find each other"
-        rows.append(Process("tms", "discovery", "cps", "tms_core.discovery", 0, purpose, ours=False))
     for name, service in site.file.services.items():
         if name not in SERVICES:
             raise ConfigError(f"{site.path}: services.{name}: unknown (there: {', '.join(SERVICES)})")

@@ -28,7 +28,7 @@ SINGLE = 5  # subtasks that are started, and restarted, one at a time
 
 def measure() -> Iterable[Figure]:
     with rig(machines=MACHINES, sim={"speed": 1.0}) as own:
-        rows = [row for row in table(own.site) if row.name != "store"]
+        rows = [row for row in table(own.site) if row.ours]
         with own.beside("node") as (_, bare_start):  # before anything else runs
             pass
         begun = time.perf_counter()

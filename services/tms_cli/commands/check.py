@@ -8,10 +8,8 @@ import click
 from tms_cli import session
 from tms_cli.words import say
 from tms_core.config import Site, load_site
-from tms_core.processes import Process, table
+from tms_core.processes import CROWD, Process, discovery_server, table
 from tms_core.sensing import load_sensing
-
-MANY = 30  # processes on a PC: with more, simple discovery costs more than the processes themselves
 
 
 @click.command()
@@ -52,7 +50,7 @@ def command(chosen: str | None, as_json: bool) -> None:
 def _hints(site: Site, rows: Sequence[Process]) -> list[str]:
     """What is right, but would be better otherwise."""
     most = max(Counter(row.pc for row in rows).values(), default=0)
-    if site.file.network.discovery == "server" or most <= MANY:
+    if discovery_server(site) is not None or most <= CROWD:
         return []
     return [
         say(

@@ -100,4 +100,4 @@ def test_nobody_who_logs_waits_for_a_reader_that_does_not_read() -> None:
         finally:
             process.kill()
     assert "event=spin number=0" in lines[0]
-    assert 1000 < len(lines) < 20_000
+    assert log.WAITING < len(lines) < 20_000  # what waited is not lost with the process
