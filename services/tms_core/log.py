@@ -85,6 +85,7 @@ class Listener(QueueListener):
 
     def enqueue_sentinel(self) -> None:
         """Wait for room where the standard library would fail: what waits is still to be written."""
+        assert isinstance(self.queue, queue.Queue)
         self.queue.put(None)
 
 
