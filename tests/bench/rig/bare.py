@@ -1,6 +1,7 @@
 """Plain rclpy processes, the floor of the figures: nothing of ours but the interface types.
 
 python bare.py node                      a node that does nothing
+python bare.py hear JOINTS ODOM          a node that hears the joint states and the odometry of one machine
 python bare.py serve                     an action /bare/act that succeeds at once and a service /bare/get
 python bare.py act COUNT                 one goal after another; prints their milliseconds as JSON
 python bare.py link NAME [NEXT]          an action server that reads /bare/get if it is the first, accepts, and passes
@@ -21,10 +22,12 @@ from typing import Any
 
 import rclpy
 from action_msgs.msg import GoalStatusArray
+from nav_msgs.msg import Odometry
 from rclpy.action import ActionClient, ActionServer, GoalResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
-from rclpy.qos import QoSProfile, qos_profile_action_status_default
+from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_sensor_data
+from sensor_msgs.msg import JointState
 from tms_msg_db.msg import Record
 from tms_msg_db.srv import GetParameter
 from tms_msg_ts.action import LeafNodeBase
@@ -33,6 +36,12 @@ DEPTH = QoSProfile(depth=100)
 LIMIT = 60.0  # s for a floor to be measured
 BEGUN = time.perf_counter()  # everything is imported; the node is made now
 WARM = 10  # rounds that do not count
+
+
+def hear(node: Node, joints: str, odom: str) -> None:
+    node.create_subscription(JointState, joints, lambda _: None, qos_profile_sensor_data)
+    node.create_subscription(Odometry, odom, lambda _: None, qos_profile_sensor_data)
+    rclpy.spin(node)
 
 
 def serve(node: Node) -> None:
@@ -191,17 +200,17 @@ def _run(node: Node, ready: Any, first: Any, rounds: Rounds) -> list[float]:
     return rounds.times[WARM:]
 
 
+STAY = {"node": rclpy.spin, "hear": hear, "serve": serve, "link": link}
+
+
 def main(what: str, *words: str) -> None:
     if what == "fleet":
         return fleet(*words)
     rclpy.init()
     node = _node(f"bare_{what}")
-    if what in ("node", "serve"):
+    if what in STAY:
         print("ready", flush=True)
-        serve(node) if what == "serve" else rclpy.spin(node)
-    elif what == "link":
-        print("ready", flush=True)
-        link(node, *words)
+        STAY[what](node, *words)
     else:
         print(json.dumps({"act": act, "chain": chain, "get": get, "find": find}[what](node, *words)), flush=True)
 
