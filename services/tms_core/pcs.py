@@ -37,8 +37,9 @@ class Pc(Settings):
 class Network(Settings):
     """How processes find each other."""
 
-    # server: across segments that pass no multicast; auto: server for many processes on a site's one PC
-    discovery: Literal["auto", "multicast", "server"] = "auto"
+    # server: across segments that pass no multicast. A server that is killed may leave new processes unfound for half a
+    # minute, so it is no default, not even for the many processes that it makes cheaper.
+    discovery: Literal["multicast", "server"] = "multicast"
     port: int = Field(ge=1024, le=65535, default=11811)  # of the discovery server, on the PC with the role cps
 
 

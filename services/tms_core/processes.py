@@ -7,8 +7,6 @@ from tms_core import pcs
 from tms_core.config import CONFIGS, MachineModel, Role, Site
 from tms_core.errors import ConfigError
 
-CROWD = 40  # processes of a site on one PC, above which a discovery server is the better way (make bench ONLY=process)
-
 # package of a service -> what it is for, shown by `tms ps`
 SERVICES = {
     "db": "tasks, parameters and history in MongoDB",
@@ -49,7 +47,7 @@ def table(site: Site) -> tuple[Process, ...]:
     Raises:
         ConfigError: a service or subtask that does not exist, or two rows with one name.
     """
-    rows = _rows(site)
+    rows = [*_services(site), *(row for machine in site.file.machines for row in _machine(site, machine))]
     if discovery_server(site) is not None:
         purpose = "lets processes find each other"
         rows.append(Process("tms", "discovery", "cps", "tms_core.discovery", 0, purpose, ours=False))
@@ -101,8 +99,7 @@ def discovery_server(site: Site) -> str | None:
         ConfigError: no PC would run it, or its address is not known.
     """
     network = site.file.network
-    crowded = network.discovery == "auto" and not site.file.pcs and len(_rows(site)) > CROWD
-    if network.discovery != "server" and not crowded:
+    if network.discovery != "server":
         return None
     if not site.file.pcs:
         return f"{pcs.LOOPBACK}:{network.port}"
@@ -110,10 +107,6 @@ def discovery_server(site: Site) -> str | None:
     if cps is None:
         raise ConfigError(f"{site.path}: network.discovery: server needs a PC with the role cps, where it runs")
     return f"{pcs.resolve(site, cps)}:{network.port}"
-
-
-def _rows(site: Site) -> list[Process]:
-    return [*_services(site), *(row for machine in site.file.machines for row in _machine(site, machine))]
 
 
 def _placed(site: Site, row: Process) -> Process:

@@ -72,8 +72,7 @@ def measure() -> Iterable[Figure]:
 def _cost(size: int) -> Cost:
     names = [f"m{number}" for number in range(size)]
     machines = {name: {"model": "zx200"} for name in names}
-    plain = {"discovery": "multicast"}  # only these processes are started
-    with rig(machines=machines, services={"db": {}, "ts": {}}, network=plain) as own, ExitStack() as stack:
+    with rig(machines=machines, services={"db": {}, "ts": {}}) as own, ExitStack() as stack:
         for process in ("tms:store", "tms:db", "tms:ts"):
             pid = stack.enter_context(_process(own, "-m", "tms_core.run", process)).pid
         crowds = [

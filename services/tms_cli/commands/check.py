@@ -8,8 +8,10 @@ import click
 from tms_cli import session
 from tms_cli.words import say
 from tms_core.config import Site, load_site
-from tms_core.processes import CROWD, Process, discovery_server, table
+from tms_core.processes import Process, discovery_server, table
 from tms_core.sensing import load_sensing
+
+MANY = 40  # processes on a PC that run at once: with more, a discovery server takes a third off their cost
 
 
 @click.command()
@@ -50,7 +52,7 @@ def command(chosen: str | None, as_json: bool) -> None:
 def _hints(site: Site, rows: Sequence[Process]) -> list[str]:
     """What is right, but would be better otherwise."""
     most = max(Counter(row.pc for row in rows).values(), default=0)
-    if discovery_server(site) is not None or most <= CROWD:
+    if discovery_server(site) is not None or most <= MANY:
         return []
     return [
         say(

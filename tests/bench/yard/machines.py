@@ -46,8 +46,7 @@ def names() -> list[str]:
 def make_site(folder: Path, domain: int) -> Site:
     machines = {name: {"model": MODEL} for name in names()}
     file = folder / "site.yaml"
-    plain = {"discovery": "multicast"}  # nothing but the gateways is started
-    file.write_text(yaml.safe_dump(site_data(domain, ports_of(domain), machines=machines, services={}, network=plain)))
+    file.write_text(yaml.safe_dump(site_data(domain, ports_of(domain), machines=machines, services={})))
     os.environ.update({"TMS_SITE": str(file), "TMS_STATE": str(folder / "state")})
     os.environ.pop("ROS_DOMAIN_ID", None)
     site = load_site()

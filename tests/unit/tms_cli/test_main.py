@@ -132,7 +132,7 @@ def test_what_was_said_is_not_lost_in_a_pipe() -> None:
     assert "Usage: tms" in tms("--help").stdout
 
 
-@pytest.mark.parametrize(("discovery", "hinted"), [("multicast", True), ("server", False), ("auto", False)])
+@pytest.mark.parametrize(("discovery", "hinted"), [("multicast", True), ("server", False)])
 def test_a_crowded_pc_is_told_of_the_discovery_server(tmp_path: Path, discovery: str, hinted: bool) -> None:
     site = tmp_path / "site.yaml"
     machines = ", ".join(f"m{number}: {{model: zx200}}" for number in range(6))

@@ -90,18 +90,6 @@ def test_a_site_of_one_pc_may_have_one_too(tmp_path: Path) -> None:
     assert "tms:discovery" in {row.full for row in table(found)}
 
 
-def test_many_processes_on_one_pc_have_one_by_themselves(tmp_path: Path) -> None:
-    many = {f"m{number}": {"model": "zx200"} for number in range(6)}
-    crowd = site(tmp_path, pcs={}, machines=many)
-    assert environment(crowd)["ROS_DISCOVERY_SERVER"] == "127.0.0.1:11811"
-    rows = [row.full for row in table(crowd)]
-    assert rows[-1] == "tms:discovery"  # the ports of the others are the same with and without it
-    assert "ROS_DISCOVERY_SERVER" not in environment(site(tmp_path, pcs={}))
-    chosen = site(tmp_path, pcs={}, machines=many, network={"discovery": "multicast"})
-    assert "ROS_DISCOVERY_SERVER" not in environment(chosen)
-    assert [row.full for row in table(chosen)] == rows[:-1]
-
-
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
