@@ -25,7 +25,7 @@ from tms_host.supervisor import Supervisor
 MACHINES = {"zx200": {"model": "zx200"}, "ic120_1": {"model": "ic120"}, "ic120_2": {"model": "ic120"}}
 SETTLE, WATCH = 5.0, 15.0  # s; the second is also the time between Prometheus' scrapes
 USUAL = 0.3  # s that a bare node needs to start on a usual PC
-FLEET = "floor: as many bare nodes, forked at once, until one that comes later knows them"
+FLEET = "floor: as many bare action servers, forked at once, until a node that comes later knows them"
 SINGLE = 5  # subtasks that are started, and restarted, one at a time
 
 
@@ -34,7 +34,7 @@ def measure() -> Iterable[Figure]:
         rows = [row for row in table(own.site) if row.ours]
         with own.beside("node") as (_, bare_start):  # before anything else runs
             pass
-        with own.beside("fleet", str(len(rows))) as (_, fleet_start):
+        with own.beside("fleet", str(len(rows)), "acting") as (_, fleet_start):
             fleet_start += own.bare("find", str(len(rows)))[0] / 1000
         begun = time.perf_counter()
         own.mesh.tms("up")

@@ -188,7 +188,9 @@ def _counted(own: Rig) -> dict[str, float]:
 def _press(ros: Ros, crowds: list[subprocess.Popen[str]]) -> tuple[float, float]:
     """The software stop: ms until the last machine has heard it, and until the last goal was asked to end."""
     button = ros.publisher(Bool, "/emergency_signal")
-    until(lambda: button.get_subscription_count() > len(crowds), "every machine hears the button", LIMIT)
+    until(lambda: button.get_subscription_count() > len(crowds), "every machine is known to the button", LIMIT)
+    button.publish(Bool())
+    assert ros.delivered(button, LIMIT), "not every machine knows the button"
     begun = time.time_ns()
     button.publish(Bool(data=True))
     stamps = []

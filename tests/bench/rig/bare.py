@@ -167,14 +167,16 @@ def find(node: Node, count: str) -> list[float]:
     return [(time.perf_counter() - BEGUN) * 1000]
 
 
-def fleet(count: str) -> None:
-    """Forks, so that the imports are paid once; each child leaves when its parent does."""
+def fleet(count: str, kind: str = "") -> None:
+    """Forks, so that the imports are paid once; each child leaves when its parent does. `acting` ones serve an action."""
     left, right = os.pipe()
     for number in range(int(count)):
         if os.fork() == 0:
             ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
             rclpy.init()
             node = _node(f"fleet_{number}")
+            if kind == "acting":
+                node.kept = ActionServer(node, LeafNodeBase, f"/fleet_{number}/act", lambda _: None)
             os.write(right, b".")
             rclpy.spin(node)
             return
