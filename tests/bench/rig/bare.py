@@ -168,7 +168,7 @@ def find(node: Node, count: str) -> list[float]:
 
 
 def fleet(count: str, kind: str = "") -> None:
-    """Forks, so that the imports are paid once; each child leaves when its parent does. `acting` ones serve an action."""
+    """Forks, so that imports are paid once; each child leaves when its parent does. `acting` ones serve an action."""
     left, right = os.pipe()
     for number in range(int(count)):
         if os.fork() == 0:
