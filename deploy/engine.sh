@@ -4,9 +4,10 @@
 # which returns when it is gone (one that is still leaving keeps the next from starting).
 set -eu
 if [ "${1:-start}" = stop ]; then
-  kill "$2"
+  kill "$2" 2>/dev/null || exit 0
   for _ in $(seq 100); do
-    kill -0 "$2" 2>/dev/null || exit 0
+    # Gone, or a zombie that nobody has collected yet.
+    case $(cut -d" " -f3 "/proc/$2/stat" 2>/dev/null) in "" | Z) exit 0 ;; esac
     sleep 0.3
   done
   echo "dockerd (process $2) does not end" >&2

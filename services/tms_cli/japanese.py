@@ -39,11 +39,6 @@ SAID = {
     "{file}: right ({machines} machines, {processes} processes, {inputs} sensing inputs)": (
         "{file}: 正常(機械 {machines}、プロセス {processes}、センシング入力 {inputs})"
     ),
-    "hint: with {count} processes on one PC, `network: {{discovery: server}}` saves processor time "
-    "(deploy/README.md, section 8)": (
-        "助言: 1 台の PC に {count} プロセスある場合、`network: {{discovery: server}}` で CPU 時間を節約できます"
-        "(deploy/README.md の 8 節)"
-    ),
     # runs
     "run {run}": "実行 {run}",
     "run {run}: {state}{reason}": "実行 {run}: {state}{reason}",

@@ -1,4 +1,4 @@
-"""`tms:discovery`: becomes Fast DDS's discovery server, where multicast does not pass or processes are many."""
+"""`tms:discovery`: becomes Fast DDS's discovery server, for networks that pass no multicast."""
 
 import os
 import sys

@@ -42,7 +42,7 @@ class Process:
 
 
 def table(site: Site) -> tuple[Process, ...]:
-    """All processes of a site, in start order, each with its own metrics port.
+    """All processes of a site, each with its own metrics port.
 
     Raises:
         ConfigError: a service or subtask that does not exist, or two rows with one name.

@@ -88,7 +88,9 @@ def _come_first() -> None:
 
 def _give_up() -> None:
     """Something hangs in the clean-up: end all the same; supervisord would kill us anyway."""
-    os.write(2, b"clean-up took too long, leaving\n")
+    os.set_blocking(2, False)  # what hangs may be the reader of this very pipe
+    with contextlib.suppress(OSError):
+        os.write(2, b"clean-up took too long, leaving\n")
     os._exit(1)
 
 

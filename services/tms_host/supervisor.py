@@ -13,7 +13,7 @@ from supervisor.xmlrpc import SupervisorTransport
 from tms_core.config import PROJECT, Site
 from tms_core.environment import environment
 from tms_core.errors import ConfigError, TmsError
-from tms_core.processes import Process, discovery_server, here
+from tms_core.processes import Process, here
 
 START_SECONDS = 1  # a process that ends sooner counts as failed to start
 STOP_SECONDS = 3  # the runtime ends within 2
@@ -107,14 +107,7 @@ stdout_logfile={log}
 stdout_logfile_maxbytes={LOG_SIZE}
 stdout_logfile_backups={LOG_FILES}
 redirect_stderr=true
-{_hears_less(site, row)}"""
-
-
-def _hears_less(site: Site, row: Process) -> str:
-    """Subtasks need to know of nobody but those that they talk to: half of the traffic when many of them start."""
-    if not row.action or discovery_server(site) is None:
-        return ""
-    return 'environment=ROS_SUPER_CLIENT="FALSE"\n'
+"""
 
 
 def _section(row: Process) -> str:

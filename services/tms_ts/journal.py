@@ -34,7 +34,7 @@ class Journal:
     def __init__(self, ros: Ros, log: logging.Logger, state: Path) -> None:
         self._ros, self._log = ros, log
         self._spool = Spool(state / "ts" / "journal")
-        self._news = threading.Event()
+        self._news, self._urgent = threading.Event(), threading.Event()
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._write, name="journal", daemon=True)
         self._thread.start()
@@ -47,6 +47,8 @@ class Journal:
         except OSError as error:
             LOST.inc()
             self._log.error("event=journal_lost run=%s reason=%r", entry.run_id, str(error))
+        if isinstance(entry, Run) or entry.kind == "tree":  # somebody looks at a run that begins or ends
+            self._urgent.set()
         self._news.set()
 
     def close(self) -> None:
@@ -64,7 +66,8 @@ class Journal:
             if not lines:
                 self._news.wait(0.2)
                 self._news.clear()
-                self._closing.wait(GATHER)
+                self._urgent.wait(GATHER)
+                self._urgent.clear()
                 continue
             problem = self._deliver(lines)
             if problem is None:

@@ -1,17 +1,12 @@
 """`tms check`: is the site's configuration right?"""
 
-from collections import Counter
-from collections.abc import Sequence
-
 import click
 
 from tms_cli import session
 from tms_cli.words import say
-from tms_core.config import Site, load_site
-from tms_core.processes import Process, discovery_server, table
+from tms_core.config import load_site
+from tms_core.processes import table
 from tms_core.sensing import load_sensing
-
-MANY = 40  # processes on a PC that run at once: with more, a discovery server takes a third off their cost
 
 
 @click.command()
@@ -32,7 +27,7 @@ def command(chosen: str | None, as_json: bool) -> None:
         session.show_json(
             {
                 "site": site.name, "file": str(site.path), "processes": [row.full for row in rows],
-                "inputs": list(inputs), "hints": _hints(site, rows),
+                "inputs": list(inputs),
             }
         )  # fmt: skip
         return
@@ -45,19 +40,3 @@ def command(chosen: str | None, as_json: bool) -> None:
             inputs=len(inputs),
         )
     )
-    for text in _hints(site, rows):
-        click.echo(text)
-
-
-def _hints(site: Site, rows: Sequence[Process]) -> list[str]:
-    """What is right, but would be better otherwise."""
-    most = max(Counter(row.pc for row in rows).values(), default=0)
-    if discovery_server(site) is not None or most <= MANY:
-        return []
-    return [
-        say(
-            "hint: with {count} processes on one PC, `network: {{discovery: server}}` saves processor time "
-            "(deploy/README.md, section 8)",
-            count=most,
-        )
-    ]

@@ -1,10 +1,11 @@
 """Topics: what is published, heard, sampled, and leased.
 
-rclpy's own warnings of ends that do not fit are switched off everywhere: they are events that the executor waits for,
-and each topic's cost every wake-up 10 us, three quarters of it all. `mismatches` tells the same when it is asked.
+rclpy's own warnings of ends that do not fit are switched off: they are events that the executor waits for, and each
+topic's cost every wake-up 10 us, three quarters of it all. `mismatches` tells the same when it is asked.
 """
 
 from collections.abc import Callable
+from itertools import product
 from typing import Any
 
 from rclpy.callback_groups import CallbackGroup
@@ -16,6 +17,9 @@ from rclpy.qos import QoSCompatibility, QoSProfile, qos_check_compatible
 from tms_core.ros import quality
 from tms_core.ros.goals import InterfaceType, Message
 from tms_core.ros.loop import Loop
+
+RCLPYS_OWN = "/parameter_events"
+UNKNOWN = "_NODE_NAME_UNKNOWN_"  # of an end that discovery has found a moment before its node
 
 
 class Topics(Loop):
@@ -131,19 +135,22 @@ class Topics(Loop):
         writers = sum(self.node.count_publishers(end.topic_name) for end in list(self.node.subscriptions))
         return readers, writers, len(self.node.get_node_names())
 
-    def topics(self) -> set[str]:
-        """Names of what we publish and hear."""
-        return {end.topic_name for end in [*self.node.publishers, *self.node.subscriptions]}
+    def crowds(self) -> dict[str, tuple[int, int]]:
+        """How many publishers and subscriptions each topic of ours has in the whole graph."""
+        topics = {end.topic_name for end in [*self.node.publishers, *self.node.subscriptions]} - {RCLPYS_OWN}
+        return {topic: (self.node.count_publishers(topic), self.node.count_subscribers(topic)) for topic in topics}
 
-    def mismatches(self, topic: str) -> set[str]:
-        """What of others is on a topic of ours but not connected to us, and why."""
-        own = self.node.get_fully_qualified_name()
-        found = set()
-        for writer in self.node.get_publishers_info_by_topic(topic):
-            for reader in self.node.get_subscriptions_info_by_topic(topic):
-                names = [f"{end.node_namespace.rstrip('/')}/{end.node_name}" for end in (writer, reader)]
-                if own in names and names[0] != names[1] and (reason := _mismatch(writer, reader)):
-                    found.add(f"{topic}: {names[1]} does not hear {names[0]}: {reason}")
+    def mismatches(self, topic: str) -> set[str] | None:
+        """What of others is on a topic of ours but not connected to us, and why; None while one's name is not known."""
+        writers = self.node.get_publishers_info_by_topic(topic)
+        readers = self.node.get_subscriptions_info_by_topic(topic)
+        if any(end.node_name == UNKNOWN for end in [*writers, *readers]):
+            return None
+        own, found = self.node.get_fully_qualified_name(), set()
+        for writer, reader in product(writers, readers):
+            names = [f"{end.node_namespace.rstrip('/')}/{end.node_name}" for end in (writer, reader)]
+            if own in names and names[0] != names[1] and (reason := _mismatch(writer, reader)):
+                found.add(f"{topic}: {names[1]} does not hear {names[0]}: {reason}")
         return found
 
 

@@ -132,19 +132,6 @@ def test_what_was_said_is_not_lost_in_a_pipe() -> None:
     assert "Usage: tms" in tms("--help").stdout
 
 
-@pytest.mark.parametrize(("discovery", "hinted"), [("multicast", True), ("server", False)])
-def test_a_crowded_pc_is_told_of_the_discovery_server(tmp_path: Path, discovery: str, hinted: bool) -> None:
-    site = tmp_path / "site.yaml"
-    machines = ", ".join(f"m{number}: {{model: zx200}}" for number in range(6))
-    site.write_text(
-        f"name: crowd\ndomain: 1\nservices: {{}}\nmachines: {{{machines}}}\nnetwork: {{discovery: {discovery}}}\n"
-    )
-    done = tms("check", "--site", str(site), "--json")
-    hints = json.loads(done.stdout)["hints"]
-    assert [("processes on one PC" in text) for text in hints] == ([True] if hinted else [])
-    assert ("hint: with" in tms("check", "--site", str(site)).stdout) == hinted
-
-
 def test_a_site_without_processes_is_right_too(tmp_path: Path) -> None:
     site = tmp_path / "site.yaml"
     site.write_text("name: empty\ndomain: 1\nservices: {}\nmachines: {}\nstore: {kind: mongodb, uri: 'mongodb://x/'}\n")

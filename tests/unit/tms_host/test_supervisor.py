@@ -38,17 +38,6 @@ def test_subtasks_wait_until_a_task_names_them(site: Site) -> None:
     assert parser["program:zx200.rc"]["autostart"] == "true"
 
 
-def test_subtasks_hear_only_of_whom_they_use_from_a_discovery_server(tmp_path: Path, site: Site) -> None:
-    file = tmp_path / "server.yaml"
-    file.write_text(yaml.safe_dump(site_data(51, 21000, network={"discovery": "server"})))
-    parser = configparser.RawConfigParser()
-    parser.read_string(render(load_site(str(file))))
-    assert parser["program:zx200.subtask_zx200_change_pose"]["environment"] == 'ROS_SUPER_CLIENT="FALSE"'
-    assert "environment" not in parser["program:zx200.rc"]
-    assert 'ROS_SUPER_CLIENT="TRUE"' in parser["supervisord"]["environment"]
-    assert "ROS_SUPER_CLIENT" not in render(site)
-
-
 def test_percent_signs_in_paths_are_escaped(site: Site) -> None:
     assert "state %%d/log/tms.ts.log" in render(site)
 
