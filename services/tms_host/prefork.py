@@ -15,6 +15,7 @@ import signal
 import sys
 from typing import NoReturn
 
+import pydantic
 import setproctitle
 from supervisor.options import ServerOptions
 from supervisor.supervisord import go
@@ -22,10 +23,12 @@ from supervisor.supervisord import go
 MODULE = "tms_core.run"  # programs that are forked; others (none today) are executed as usual
 LIBRARIES = (
     "rclpy", "rclpy.action", "rclpy.executors", "rclpy.event_handler", "rclpy.serialization",
-    "prometheus_client", "pydantic", "yaml", "http.server", "concurrent.futures",
+    "prometheus_client", "yaml", "http.server", "concurrent.futures", "logging.handlers", "difflib",
 )  # fmt: skip
-INTERFACES = ("tms_msg_ts", "tms_msg_db", "tms_msg_rc", "tms_msg_host", "control_msgs", "nav2_msgs", "com3_msgs",
-              "geometry_msgs", "nav_msgs", "sensor_msgs", "std_msgs", "std_srvs", "trajectory_msgs")  # fmt: skip
+INTERFACES = (
+    "tms_msg_ts", "tms_msg_db", "tms_msg_rc", "tms_msg_rp", "tms_msg_host", "control_msgs", "nav2_msgs", "com3_msgs",
+    "geometry_msgs", "nav_msgs", "sensor_msgs", "std_msgs", "std_srvs", "trajectory_msgs",
+)  # fmt: skip
 MIDDLEWARE = "librmw_fastrtps_cpp.so"
 HANDLED = (signal.SIGTERM, signal.SIGINT, signal.SIGQUIT, signal.SIGHUP, signal.SIGCHLD, signal.SIGUSR2)
 
@@ -63,6 +66,7 @@ def load() -> None:
     """Import what most processes use."""
     for name in LIBRARIES:
         importlib.import_module(name)
+    pydantic.create_model("Loaded", name=(str, ...))  # it imports most of itself with the first model
     for package in INTERFACES:
         for kind in ("msg", "srv", "action"):
             _load_types(f"{package}.{kind}")
