@@ -312,7 +312,7 @@ def read_yaml(path: Path) -> Any:
         line = error.problem_mark.line + 1 if error.problem_mark else 0
         raise ConfigError(f"{path}:{line}: {error.problem}") from error
     except yaml.YAMLError as error:  # a character that no YAML may hold
-        raise ConfigError(f"{path}: {error}") from error
+        raise ConfigError(f"{path}: {str(error).splitlines()[0]}") from error
 
 
 def parse(path: Path, model: type[T]) -> T:

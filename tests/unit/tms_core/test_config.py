@@ -49,7 +49,7 @@ def test_wrong_site(tmp_path: Path, changes: dict[str, object], said: str) -> No
     [
         ("a: 1\na: 2\n", ":2: key 'a' is there twice"),
         ("a: [1\n", ":2: "),
-        ("a: \x07\n", "control characters are not allowed"),
+        ("a: \x07\n", ": unacceptable character #x0007: control characters are not allowed"),
         ("a: !!python/object:os.system {}\n", ":1: "),
     ],
 )
