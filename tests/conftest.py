@@ -84,7 +84,6 @@ def site_data(domain: int, port: int, /, **changes: object) -> dict[str, object]
         "sim": {"speed": 5.0},
         "services": {"db": {}, "ts": {}, "ur": {}, "sp": {}, "host": {}},
         "machines": {"zx200": {"model": "zx200"}},
-        "network": {"port": port + 96},
     }
     return {**data, **changes}
 

@@ -1,10 +1,10 @@
-"""`tms:discovery`: becomes Fast DDS's discovery server, for networks that pass no multicast."""
+"""`tms:discovery`: becomes Fast DDS's discovery server, for sites whose network passes no multicast."""
 
 import os
 import sys
 from pathlib import Path
 
-from tms_core import processes
+from tms_core import pcs
 from tms_core.config import Site
 from tms_core.errors import ConfigError
 
@@ -15,7 +15,7 @@ def become(site: Site) -> None:
     Raises:
         ConfigError: the site uses none, or the program is missing.
     """
-    address = processes.discovery_server(site)
+    address = pcs.discovery_server(site)
     program = Path(sys.executable).parent / "fast-discovery-server"
     if address is None or not program.exists():
         raise ConfigError(f"{site.path}: network.discovery: no server to start ({program})")

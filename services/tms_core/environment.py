@@ -3,7 +3,7 @@
 import os
 from pathlib import Path
 
-from tms_core import pcs, processes
+from tms_core import pcs
 from tms_core.config import PROJECT, Site
 
 # UDP on one interface only, no shared memory: the LOCALHOST range of Fast DDS silently loses
@@ -18,7 +18,7 @@ def environment(site: Site) -> dict[str, str]:
     Raises:
         ConfigError: it is not known which PC of the site this is, or its address is not known.
     """
-    server = processes.discovery_server(site)
+    server = pcs.discovery_server(site)
     # A super client hears of all endpoints, not only of those that it uses: preflight asks for others' servers.
     discovery = {"ROS_DISCOVERY_SERVER": server, "ROS_SUPER_CLIENT": "TRUE"} if server else {}
     return {

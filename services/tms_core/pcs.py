@@ -35,7 +35,7 @@ class Pc(Settings):
 
 
 class Network(Settings):
-    """How processes find each other."""
+    """How processes of different PCs find each other."""
 
     # server: across segments that pass no multicast. A server that is killed may leave new processes unfound for half a
     # minute, so it is no default, not even for the many processes that it makes cheaper.
@@ -106,6 +106,22 @@ def required(site: "Site") -> None:
     if site.file.pcs and site.pc is None:
         choices = ", ".join(site.file.pcs)
         raise ConfigError(f"site '{site.name}' has several PCs: say which one this is with `tms up --role` ({choices})")
+
+
+def discovery_server(site: "Site") -> str | None:
+    """host:port of the discovery server, where the site uses one; on loopback where the site is one PC.
+
+    Raises:
+        ConfigError: no PC would run it, or its address is not known.
+    """
+    if site.file.network.discovery != "server":
+        return None
+    if not site.file.pcs:
+        return f"{LOOPBACK}:{site.file.network.port}"
+    cps = next((pc.address for name, pc in site.file.pcs.items() if "cps" in roles(name, pc)), None)
+    if cps is None:
+        raise ConfigError(f"{site.path}: network.discovery: server needs a PC with the role cps, where it runs")
+    return f"{resolve(site, cps)}:{site.file.network.port}"
 
 
 def resolve(site: "Site", address: str) -> str:

@@ -42,15 +42,12 @@ class Process:
 
 
 def table(site: Site) -> tuple[Process, ...]:
-    """All processes of a site, each with its own metrics port.
+    """All processes of a site, in start order, each with its own metrics port.
 
     Raises:
         ConfigError: a service or subtask that does not exist, or two rows with one name.
     """
     rows = [*_services(site), *(row for machine in site.file.machines for row in _machine(site, machine))]
-    if discovery_server(site) is not None:
-        purpose = "lets processes find each other"
-        rows.append(Process("tms", "discovery", "cps", "tms_core.discovery", 0, purpose, ours=False))
     base = site.file.ports.metrics
     numbered = tuple(_placed(site, replace(row, port=base + i)) for i, row in enumerate(rows))
     for row in numbered:
@@ -92,23 +89,6 @@ def find(site: Site, name: str) -> Process:
     raise ConfigError(f"no process '{name}': {hint}")
 
 
-def discovery_server(site: Site) -> str | None:
-    """host:port of the discovery server, where the site uses one; on loopback where the site is one PC.
-
-    Raises:
-        ConfigError: no PC would run it, or its address is not known.
-    """
-    network = site.file.network
-    if network.discovery != "server":
-        return None
-    if not site.file.pcs:
-        return f"{pcs.LOOPBACK}:{network.port}"
-    cps = next((pc.address for name, pc in site.file.pcs.items() if "cps" in pcs.roles(name, pc)), None)
-    if cps is None:
-        raise ConfigError(f"{site.path}: network.discovery: server needs a PC with the role cps, where it runs")
-    return f"{pcs.resolve(site, cps)}:{network.port}"
-
-
 def _placed(site: Site, row: Process) -> Process:
     pc = row.pc or pcs.place(site, row)
     return replace(row, pc=pc, address=site.file.pcs[pc].address if pc else site.file.bind)
@@ -118,6 +98,9 @@ def _services(site: Site) -> list[Process]:
     rows = []
     if site.embedded_store:
         rows.append(Process("tms", "store", "cps", "tms_core.store", 0, "embedded store of the demo", ours=False))
+    if pcs.discovery_server(site) is not None:
+        purpose = "lets the PCs' processes find each other"
+        rows.append(Process("tms", "discovery", "cps", "tms_core.discovery", 0, purpose, ours=False))
     for name, service in site.file.services.items():
         if name not in SERVICES:
             raise ConfigError(f"{site.path}: services.{name}: unknown (there: {', '.join(SERVICES)})")

@@ -64,10 +64,10 @@ class Journal:
             lines, end = self._spool.batch(BATCH)
             WAITING.set(self._spool.waiting())
             if not lines:
-                self._news.wait(0.2)
-                self._news.clear()
-                self._urgent.wait(GATHER)
-                self._urgent.clear()
+                if self._news.wait(0.2):
+                    self._news.clear()
+                    self._urgent.wait(GATHER)
+                    self._urgent.clear()
                 continue
             problem = self._deliver(lines)
             if problem is None:
