@@ -60,6 +60,7 @@ def main() -> int:
         late = _late(own)
     found = [*failed, *growth(samples), *([f"{late:.0f} ticks took longer than {LATE} s"] if late else [])]
     runs = max(map(len, samples.values()), default=0)
+    print(table(samples))
     for line in found:
         print(f"  {line}")
     print(f"{runs} runs, {len(samples)} processes: {'nothing grew' if not found else f'{len(found)} findings'}")
@@ -86,17 +87,35 @@ def _sample(pid: int) -> Sample:
     return Sample(pid, process.memory_full_info().uss / 1e6, process.num_fds(), process.num_threads())
 
 
+def _ends(rows: list[Sample], what: str) -> tuple[float, float]:
+    """Medians of the first third (but the very first, before caches are warm) and of the last."""
+    third = max(1, len(rows) // 3)
+    first, last = rows[1 : third + 1] or rows[:1], rows[-third:]
+    before, after = (statistics.median(getattr(row, what) for row in part) for part in (first, last))
+    return before, after
+
+
+def table(samples: dict[str, list[Sample]]) -> str:
+    """What each process held in the first third of the time and in the last."""
+    lines = [f"{'process':<24}{'memory [MB]':>18}{'handles':>14}{'threads':>14}"]
+    for name, rows in sorted(samples.items()):
+        memory, handles, threads = (_ends(rows, what) for what in SLACK)
+        lines.append(
+            f"{name:<24}{memory[0]:>8.1f} -> {memory[1]:<6.1f}{handles[0]:>6.0f} -> {handles[1]:<4.0f}"
+            f"{threads[0]:>6.0f} -> {threads[1]:<4.0f}"
+        )
+    return "\n".join(lines)
+
+
 def growth(samples: dict[str, list[Sample]]) -> list[str]:
-    """What grew from the first third of the samples (but the very first, before caches are warm) to the last."""
+    """What grew from the first third of the samples to the last."""
     found = []
     for name, rows in sorted(samples.items()):
         if len({row.pid for row in rows}) > 1:
             found.append(f"{name} was restarted")
             continue
-        third = max(1, len(rows) // 3)
-        first, last = rows[1 : third + 1] or rows[:1], rows[-third:]
         for what, slack in SLACK.items():
-            before, after = (statistics.median(getattr(row, what) for row in part) for part in (first, last))
+            before, after = _ends(rows, what)
             allowed = before + slack + (PART * before if what == "memory" else 0)
             if after > allowed:
                 found.append(f"{name}: {what} grew from {before:.1f} to {after:.1f}, allowed are {allowed:.1f}")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from soak import Sample, growth
+from soak import Sample, growth, table
 
 
 def rows(*memory: float, pid: int = 1) -> list[Sample]:
@@ -25,3 +25,9 @@ def test_a_leaked_handle_a_run_is_found() -> None:
 
 def test_a_restart_is_found() -> None:
     assert growth({"tms:ts": [*rows(30, 30), *rows(30, pid=2)]}) == ["tms:ts was restarted"]
+
+
+def test_the_table_tells_what_each_process_held() -> None:
+    head, line = table({"tms:ts": rows(20, 30, 32, 34, 36, 38, 40, 42, 44)}).splitlines()
+    assert head.split() == ["process", "memory", "[MB]", "handles", "threads"]
+    assert line.split() == ["tms:ts", *"32.0 -> 42.0 20 -> 20 14 -> 14".split()]

@@ -58,8 +58,9 @@ class Goal:
         """What a cancel request does; also called when the process stops."""
         first = not self.cancelled.is_set()
         self.cancelled.set()
-        if first and self.on_cancel is not None:
-            self.on_cancel()
+        step = self.on_cancel  # a copy: its worker may end this moment
+        if first and step is not None:
+            step()
 
 
 class _Server(ActionServer):  # type: ignore[misc]
@@ -77,13 +78,13 @@ class Served:
 
     def __init__(self, ros: "Ros") -> None:
         self._ros = ros
-        self._goals: set[Goal] = set()
+        self._goals: dict[bytes, Goal] = {}  # by id: a goal on its handle would be a cycle, freed late
         self._leaving = False
 
     def leave(self, seconds: float) -> None:
         """Cancel what is served and give the workers `seconds` to stop their motions."""
         self._leaving = True
-        for goal in list(self._goals):
+        for goal in list(self._goals.values()):
             goal.cancel()
         deadline = time.monotonic() + seconds
         while self._goals and time.monotonic() < deadline:
@@ -115,12 +116,13 @@ class Served:
 
         def accepted(handle: ServerGoalHandle) -> None:
             goal = Goal(handle, action_type)
-            handle.tms_goal = goal
-            self._goals.add(goal)
+            self._goals[goal.uuid] = goal
             threading.Thread(target=self._work, args=(action_type, run, goal, name), name=name, daemon=True).start()
 
         def cancel(handle: ServerGoalHandle) -> CancelResponse:
-            handle.tms_goal.cancel()
+            goal = self._goals.get(bytes(handle.goal_id.uuid))
+            if goal is not None:  # else it has ended and its result is being delivered
+                goal.cancel()
             return CancelResponse.ACCEPT
 
         server = _Server(
@@ -139,6 +141,7 @@ class Served:
         try:
             ended = run(goal)
         finally:
+            goal.on_cancel = None  # it refers to what the goal did, and that to the goal
             SECONDS.labels(name).observe(time.monotonic() - begun)
             GOALS.labels(name, ended[0].name.lower()).inc()
             self._ros.on_executor(lambda: self._deliver(goal, *ended))
@@ -157,7 +160,7 @@ class Served:
                 handle.abort()
             return result
 
-        self._goals.discard(goal)
+        self._goals.pop(goal.uuid)
         goal._handle.execute(finish)
 
 
