@@ -10,7 +10,7 @@ from geometry_msgs.msg import Twist
 from nav2_msgs.action import FollowWaypoints, NavigateThroughPoses, NavigateToPose
 from std_msgs.msg import Bool
 
-from tms_core.config import Border
+from tms_core.models import Border
 from tms_core.ros import Ros
 
 

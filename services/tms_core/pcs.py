@@ -17,8 +17,9 @@ from tms_core.errors import ConfigError
 from tms_core.models import Settings
 
 if TYPE_CHECKING:
-    from tms_core.config import Site, SiteFile
+    from tms_core.config import Site
     from tms_core.processes import Process
+    from tms_core.site_file import SiteFile
 
 Role = Literal["cps", "machine", "sensing", "sim"]
 ROLES: tuple[Role, ...] = ("cps", "machine", "sensing", "sim")

@@ -4,8 +4,10 @@ import difflib
 from dataclasses import dataclass, replace
 
 from tms_core import pcs
-from tms_core.config import CONFIGS, MachineModel, Role, Site
+from tms_core.config import CONFIGS, Site
 from tms_core.errors import ConfigError
+from tms_core.models import MachineModel
+from tms_core.pcs import Role
 
 # package of a service -> what it is for, shown by `tms ps`
 SERVICES = {

@@ -7,8 +7,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
-from tms_core.config import CONFIGS, Site, parse
+from tms_core.config import CONFIGS, Site
 from tms_core.models import NAME, Settings
+from tms_core.yaml_file import parse
 
 # Unit of a message -> factor to the unit that records use (m, rad, s, m/s, rad/s).
 UNITS: Mapping[str, float] = {

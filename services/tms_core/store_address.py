@@ -7,7 +7,7 @@ from urllib.parse import quote, urlencode
 from tms_core.errors import ConfigError
 
 if TYPE_CHECKING:
-    from tms_core.config import Store
+    from tms_core.site_file import Store
 
 
 def holds_password(uri: str) -> bool:

@@ -10,7 +10,6 @@ from tms_msg_db.srv import GetParameter
 from tms_msg_ts.action import LeafNodeBase
 
 from tms_core.app import App
-from tms_core.config import explain
 from tms_core.errors import RosError, SubtaskFailed
 from tms_core.machine import Cancelled, Machine
 from tms_core.permit import Permit, watch_server
@@ -18,6 +17,7 @@ from tms_core.record_lock import FLAG, RecordLock
 from tms_core.ros import Ended, Goal, Outcome, Peer, Rejection
 from tms_core.subtask import Params, Subtask, load
 from tms_core.values import Value, from_parameters
+from tms_core.yaml_file import explain
 
 DB_LIMIT = 10.0  # s to wait for it at the start; goals are refused with a reason after that
 RECORD_LIMIT = 0.8  # s for the database while a goal waits for its answer: a C++ leaf gives up after 1 s

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tms_core.config import read_yaml
 from tms_core.errors import DbError
+from tms_core.yaml_file import read_yaml
 
 Scalar = bool | int | float | str
 Value = Scalar | Sequence[Scalar]

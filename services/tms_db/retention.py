@@ -11,8 +11,8 @@ from datetime import datetime, timedelta, timezone
 
 from prometheus_client import Counter
 
-from tms_core.config import Store
 from tms_core.errors import DbError
+from tms_core.site_file import Store
 from tms_db import store
 from tms_db.connection import Connection
 from tms_db.machine_states import COLLECTIONS

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from tms_core.config import MachineModel
+from tms_core.models import MachineModel
 
 UNIT = 0.01  # how far the length of a quaternion may be from 1
 MARGIN = 0.05  # rad beyond a limit, and further out than at the start, that a moving joint may be seen

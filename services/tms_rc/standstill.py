@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from tms_core.config import Still
+from tms_core.models import Still
 
 JOINTS, ODOM = "joint states", "odometry"
 INFINITE = float("inf")

@@ -4,7 +4,7 @@ import math
 import random
 from collections.abc import Mapping, Sequence
 
-from tms_core.config import Joint
+from tms_core.models import Joint
 from tms_sim.path import Path, Point
 
 SUBSTEP = 0.01  # s, at most: keeps the motion the same at any time scale

@@ -5,7 +5,7 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from tms_core.config import Drive
+from tms_core.models import Drive
 
 SUBSTEP = 0.02  # s, at most
 THERE = 0.05  # m

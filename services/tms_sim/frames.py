@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from tms_core.config import Border, MachineModel
+from tms_core.models import Border, MachineModel
 
 MAP = "map"
 

@@ -2,7 +2,8 @@
 
 from collections.abc import Callable, Sequence
 
-from tms_core.config import Border, Fault, MachineModel
+from tms_core.models import Border, MachineModel
+from tms_core.site_file import Fault
 from tms_sim.arm import Arm
 from tms_sim.base import Base
 from tms_sim.controller import Controller

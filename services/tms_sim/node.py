@@ -10,7 +10,9 @@ from pydantic import ValidationError
 from std_msgs.msg import Bool, Float64, String
 
 from tms_core.app import App
-from tms_core.config import Border, Fault, explain
+from tms_core.models import Border
+from tms_core.site_file import Fault
+from tms_core.yaml_file import explain
 from tms_sim.arm_server import trajectory_server
 from tms_sim.joint_commands import POSITION
 from tms_sim.machine import StandIn

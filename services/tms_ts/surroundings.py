@@ -9,11 +9,11 @@ from tms_msg_db.srv import ListParameters
 from tms_msg_sp.msg import InputStates
 
 from tms_core.app import App
-from tms_core.config import explain
 from tms_core.errors import RosError
 from tms_core.models import MachineModel
 from tms_core.subtask import load
 from tms_core.values import from_parameters
+from tms_core.yaml_file import explain
 from tms_ts.preflight import Stored
 
 DB_LIMIT = 5.0  # s

@@ -14,9 +14,9 @@ from argon2 import PasswordHasher
 from argon2.exceptions import InvalidHashError, VerificationError
 from pydantic import Field, model_validator
 
-from tms_core.config import parse
 from tms_core.errors import ConfigError, TmsError
 from tms_core.models import Settings
+from tms_core.yaml_file import parse
 
 Role = Literal["viewer", "operator", "admin"]
 RANK: dict[Role, int] = {"viewer": 0, "operator": 1, "admin": 2}

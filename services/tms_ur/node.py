@@ -7,8 +7,9 @@ from pathlib import Path
 import uvicorn
 
 from tms_core.app import App
-from tms_core.config import Files, Site, SiteFile
+from tms_core.config import Site
 from tms_core.errors import ConfigError
+from tms_core.site_file import Files, SiteFile
 from tms_ur.access import Access
 from tms_ur.api import create_app
 from tms_ur.audit import Audit

@@ -8,10 +8,11 @@ from pathlib import Path
 import pytest
 
 from conftest import PROJECT
-from tms_core.config import CONFIGS, MachineModel, load_site, parse, read_yaml
-from tms_core.models import TURNED
+from tms_core.config import CONFIGS, load_site
+from tms_core.models import TURNED, MachineModel
 from tms_core.processes import table
 from tms_core.subtask_server import load
+from tms_core.yaml_file import parse, read_yaml
 from tms_host.supervisor import render
 
 MODELS = sorted((CONFIGS / "machines").glob("*.yaml"))

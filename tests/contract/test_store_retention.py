@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from tms_core.config import SiteFile, Store
 from tms_core.errors import DbError
+from tms_core.site_file import SiteFile, Store
 from tms_db import retention, store
 from tms_db.connection import Connection
 from tms_db.history import Event, History, Run

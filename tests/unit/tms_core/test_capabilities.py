@@ -10,9 +10,11 @@ from nav2_msgs.action import FollowWaypoints, NavigateThroughPoses, NavigateToPo
 from tms_msg_rp.action import TmsRpZx200ChangePose, TmsRpZx200ExcavateSimple
 
 from tms_core.acting import missed
-from tms_core.config import CONFIGS, MachineModel, parse
+from tms_core.config import CONFIGS
 from tms_core.errors import SubtaskFailed
 from tms_core.machine import Machine
+from tms_core.models import MachineModel
+from tms_core.yaml_file import parse
 
 PATH = [Pose(position=Point(x=float(x))) for x in range(3)]
 

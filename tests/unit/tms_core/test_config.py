@@ -7,9 +7,11 @@ import pytest
 import yaml
 
 from conftest import site_data
-from tms_core.config import MachineModel, load_site, parse, read_yaml
+from tms_core.config import load_site
 from tms_core.errors import ConfigError
+from tms_core.models import MachineModel
 from tms_core.processes import find, table
+from tms_core.yaml_file import parse, read_yaml
 
 
 def site(folder: Path, **changes: object) -> str:

@@ -3,10 +3,10 @@
 import pytest
 from pydantic import ValidationError
 
-from tms_core.config import explain
 from tms_core.errors import ConfigError
 from tms_core.subtask import Machine, Params, Progress, Subtask, subtask
 from tms_core.subtask_server import load
+from tms_core.yaml_file import explain
 
 
 class Heading(Params):

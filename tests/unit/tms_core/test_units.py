@@ -2,9 +2,11 @@
 
 import pytest
 
-from tms_core.config import CONFIGS, MachineModel, parse
+from tms_core.config import CONFIGS
+from tms_core.models import MachineModel
 from tms_core.subtask import load
 from tms_core.units import unit
+from tms_core.yaml_file import parse
 
 WITHOUT = {"trajectory", "pose", "position_with_angle", "qx", "qy", "qz", "qw"}  # flags, quaternions
 TEXTS = {"angles", "joint", "field", "plan_only", "angle"}  # inputs of variants, and what is picked from another field

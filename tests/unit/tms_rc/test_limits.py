@@ -2,7 +2,9 @@
 
 import pytest
 
-from tms_core.config import CONFIGS, MachineModel, parse
+from tms_core.config import CONFIGS
+from tms_core.models import MachineModel
+from tms_core.yaml_file import parse
 from tms_rc.limits import angle_problem, escaped, pose_problem, problem
 
 MODEL = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel)

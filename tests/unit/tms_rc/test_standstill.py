@@ -1,6 +1,6 @@
 """When a machine counts as standing, and how far it went."""
 
-from tms_core.config import Still
+from tms_core.models import Still
 from tms_rc.standstill import JOINTS, ODOM, StandStill
 
 STILL = Still(velocity=0.01, seconds=0.2)

@@ -2,7 +2,9 @@
 
 import pytest
 
-from tms_core.config import CONFIGS, MachineModel, parse
+from tms_core.config import CONFIGS
+from tms_core.models import MachineModel
+from tms_core.yaml_file import parse
 from tms_sim.arm import Arm
 from tms_sim.controller import GOAL_VIOLATED, Controller, Motion
 from tms_sim.path import Point

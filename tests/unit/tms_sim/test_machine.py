@@ -4,7 +4,10 @@ import math
 
 import pytest
 
-from tms_core.config import CONFIGS, Border, Fault, MachineModel, parse
+from tms_core.config import CONFIGS
+from tms_core.models import Border, MachineModel
+from tms_core.site_file import Fault
+from tms_core.yaml_file import parse
 from tms_sim.base import Leg
 from tms_sim.machine import StandIn
 from tms_sim.motion import Motion
