@@ -1,7 +1,7 @@
 """What configs/site.yaml and configs/sites/*.yaml may hold."""
 
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, ValidationError, field_validator, model_validator
 
@@ -146,7 +146,7 @@ class SiteFile(Settings):
     network: Network = Network()
     sensing: str | None = None  # file of the sensing inputs, beside this one; default: configs/sensing.yaml
     services: dict[str, Service]
-    machines: dict[str, MachineUse] = Field(default_factory=dict)
+    machines: dict[Annotated[str, Field(pattern=NAME)], MachineUse] = Field(default_factory=dict)
 
     @field_validator("services", mode="before")
     @classmethod

@@ -62,6 +62,8 @@ def _to_value(name: str, value: Any) -> ParameterValue:
 
 def _kind(value: Any) -> type | None:
     """Base type of a value; bool before int, since True is an int, and the store's own integers are ints."""
+    if isinstance(value, int) and not -(2**63) <= value < 2**63:
+        return None  # the wire has 64 bits
     return next((kind for kind in ALONE if isinstance(value, kind)), None)
 
 

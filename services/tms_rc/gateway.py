@@ -52,7 +52,10 @@ class Gateway:
         if hasattr(request, "trajectory"):
             wanted = request.trajectory
             points = [point.positions for point in wanted.points]
-            return limits.problem(self._model, wanted.joint_names, points, self._watch.positions)
+            present = self._watch.positions
+            return limits.problem(self._model, wanted.joint_names, points, present) or limits.pace_problem(
+                self._model, wanted.joint_names, [_point(point) for point in wanted.points], present
+            )
         if hasattr(request, "target_angle"):
             return limits.angle_problem(self._model, motion.field, request.target_angle, self._watch.positions)
         return limits.pose_problem([_numbers(stamped.pose) for stamped in poses_of(request)])
@@ -117,6 +120,10 @@ class Gateway:
             if frozen > FROZEN and active.stop is None:  # its own news of the machine are old, not the machine silent
                 self._guard.stop(f"{LOST_TEXT}: the gateway itself did not run for {frozen:.1f} s", Kind.HOLD)
                 break
+            if active.stop is None and active.call is not None and active.call.accepted and active.peer.left():
+                self._guard.stop(f"{LOST_TEXT}: {active.peer.name} went away during its goal", Kind.PLAIN)
+                active.peer.lost()  # ends the goal, which nobody answers any more
+                break
             wrong = limits.escaped(self._model, self._watch.positions, active.start)
             wrong = wrong or (f"{silent} while it moves" if (silent := self._guard.silent()) else None)
             if wrong is not None and active.stop is None:
@@ -157,12 +164,20 @@ def _numbers(pose: Any) -> tuple[float, ...]:
     return at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w
 
 
+def _seconds(duration: Any) -> float:
+    return float(duration.sec + duration.nanosec * 1e-9)
+
+
+def _point(point: Any) -> limits.Point:
+    rest = [*point.velocities, *point.accelerations, *point.effort]
+    return limits.Point(_seconds(point.time_from_start), point.positions, rest)
+
+
 def _duration(request: Any) -> float:
     """How long a goal says that it lasts [s]; navigation does not say."""
     if not hasattr(request, "trajectory"):
         return float("inf")
-    last = request.trajectory.points[-1].time_from_start
-    return float(last.sec + last.nanosec * 1e-9)
+    return _seconds(request.trajectory.points[-1].time_from_start)
 
 
 def reason_of(result: Any) -> str:

@@ -2,10 +2,14 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 from tms_core.models import MachineModel
 
 UNIT = 0.01  # how far the length of a quaternion may be from 1
+FASTER = 1.1  # times the limit of speed that a trajectory may ask for
+START = 0.1  # rad that a joint may be away from where its trajectory begins
+TINY = 1e-4  # rad
 MARGIN = 0.05  # rad beyond a limit, and further out than at the start, that a moving joint may be seen
 
 
@@ -23,6 +27,8 @@ def problem(
     unknown = [name for name in joints if name not in model.joints]
     if unknown:
         return f"joint '{unknown[0]}' is not one of {', '.join(model.joints)}"
+    if len(set(joints)) < len(joints):
+        return f"a joint is named twice: {', '.join(joints)}"
     if not points:
         return "the trajectory has no points"
     for number, point in enumerate(points):
@@ -32,6 +38,41 @@ def problem(
             broken = "is not a number" if not math.isfinite(angle) else model.joints[name].violation(angle)
             if broken and not _inside(model, name, angle, (present or {}).get(name)):
                 return f"{f'point {number}: ' if len(points) > 1 else ''}{name}: {broken}"
+    return None
+
+
+@dataclass(frozen=True)
+class Point:
+    """One point of a trajectory."""
+
+    time: float  # s from the start
+    positions: Sequence[float]  # rad
+    rest: Sequence[float]  # velocities, accelerations and efforts, whatever is given
+
+
+def pace_problem(
+    model: MachineModel, joints: Sequence[str], points: Sequence[Point], present: Mapping[str, float]
+) -> str | None:
+    """What is wrong with the times of a trajectory whose positions are right; `present` are the joints now [rad].
+
+    Between two points a joint may go at most as fast as its limit of speed, and a little more, for planners round.
+    """
+    before, slack = Point(0.0, [present.get(name, math.nan) for name in joints], []), START
+    for number, point in enumerate(points):
+        where = f"point {number}: " if len(points) > 1 else ""
+        if not all(map(math.isfinite, point.rest)):
+            return f"{where}a velocity, acceleration or effort is not a number"
+        passed = point.time - before.time
+        if passed < 0 or (passed == 0 and number > 0):
+            return f"{where}its time {point.time:.3f} s is not after the one before"
+        for name, old, new in zip(joints, before.positions, point.positions, strict=True):
+            allowed = model.joints[name].velocity * FASTER * passed + slack
+            if abs(new - old) > allowed:  # false where nobody knows the joint's place
+                return (
+                    f"{where}{name} would go {abs(new - old):.3f} rad in {passed:.3f} s, "
+                    f"its limit is {model.joints[name].velocity:.3f} rad/s"
+                )
+        before, slack = point, TINY
     return None
 
 

@@ -3,7 +3,7 @@
 import math
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from nav_msgs.msg import Odometry
@@ -23,6 +23,7 @@ from tms_rc.standstill import JOINTS, ODOM, StandStill
 
 TOLD_MOVING, TOLD_STILL = 0.2, 0.5  # s between messages about the machine; a change is told at once
 DEPTH = 10  # messages of the machine that may come between two looks
+SIGNALS = 100  # of all buttons that may wait: no `false` may push out the `true` of another one
 PERMIT = Gauge("tms_rc_permit", "1 while a run stands behind the machine's motions")
 LATCHED = Gauge("tms_rc_latched", "1 while the machine is stopped until a person re-arms it")
 HELD = Gauge("tms_rc_held", "1 while only the run that lost a process may move the machine")
@@ -44,7 +45,7 @@ def start(app: App) -> None:
         peer = ros.peer(motion.type, f"/{machine}/{getattr(border, motion.field)}")
         view.peers.append(peer)
         gateway.serve(motion, peer)
-    ros.subscribe(Bool, "/emergency_signal", guard.signal)
+    ros.subscribe(Bool, "/emergency_signal", guard.signal, depth=SIGNALS)
     ros.offer_slow(StopMachine, f"/{machine}/rc/stop", guard.stop_service)
     ros.offer_slow(StopMachine, "/tms/stop", guard.stop_service)  # every gateway hears it; the first one answers
     ros.offer(Rearm, f"/{machine}/rearm", guard.rearm)
@@ -111,8 +112,8 @@ class View:
         velocities: dict[str, float] = {}
         for message in messages:
             known = [(i, self._names[name]) for i, name in enumerate(message.name) if name in self._names]
-            positions |= {name: message.position[i] for i, name in known if i < len(message.position)}
-            velocities |= {name: message.velocity[i] for i, name in known if i < len(message.velocity)}
+            positions |= _numbers(known, message.position)
+            velocities |= _numbers(known, message.velocity)
         self._watch.update(time.monotonic(), positions, velocities)
 
     def _odometry_heard(self, messages: list[Any]) -> None:
@@ -145,3 +146,8 @@ class View:
             age=age, reason=reason or "",
             armed=not latch and not hold, latch=latch, hold=hold,
         )  # fmt: skip
+
+
+def _numbers(known: list[tuple[int, str]], values: Sequence[float]) -> dict[str, float]:
+    """By joint; what is not there or not a number was not heard."""
+    return {name: values[i] for i, name in known if i < len(values) and math.isfinite(values[i])}

@@ -17,6 +17,7 @@ class StandStill:
         self._still = still
         self._heard: dict[str, float | None] = dict.fromkeys(sources)
         self._slow: dict[str, bool] = {}
+        self._joints_at: dict[str, float] = {}
         self._positions: dict[str, float] = {}
         self._velocities: dict[str, float] = {}
         self._place: tuple[float, float] | None = None  # m
@@ -26,19 +27,25 @@ class StandStill:
         self._travel = 0.0
 
     def update(self, now: float, positions: Mapping[str, float], velocities: Mapping[str, float]) -> None:
-        """Take one joint state [rad, rad/s]; a joint without velocity gets it from its last position."""
-        heard = self._heard.get(JOINTS)
-        gap = None if heard is None else now - heard
+        """Take one joint state [rad, rad/s]; a joint without velocity gets it from its last position.
+
+        Every joint that was heard once counts: the joints are as old as the one that is silent for longest.
+        """
+        if not positions:
+            return
         speeds = dict(self._velocities)
         for name, position in positions.items():
+            gap = now - self._joints_at.get(name, now)
             if name in velocities:
                 speeds[name] = velocities[name]
-            elif gap and name in self._positions:
+            elif gap > 0:
                 speeds[name] = (position - self._positions[name]) / gap
             self._travel = max(self._travel, abs(position - self._mark.get(name, position)))
         # New dicts, not changed ones: stop paths read them from other threads without a lock.
         self._positions, self._velocities = {**self._positions, **positions}, speeds
+        self._joints_at |= dict.fromkeys(positions, now)
         self._see(JOINTS, now, all(abs(velocity) < self._still.velocity for velocity in speeds.values()))
+        self._heard[JOINTS] = min(self._joints_at.values())
 
     def update_odometry(self, now: float, place: tuple[float, float], linear: float, angular: float) -> None:
         """Take one odometry message: place [m], speeds [m/s, rad/s]."""

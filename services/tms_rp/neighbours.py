@@ -28,6 +28,8 @@ class Neighbours:
             name = self._frames.get(one.child_frame_id)
             if name is not None and one.header.frame_id == MAP:
                 at, q = one.transform.translation, one.transform.rotation
+                if not all(map(math.isfinite, (at.x, at.y, q.x, q.y, q.z, q.w))):
+                    continue  # a localisation without a fix; nothing would collide with such a place
                 yaw = math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
                 self._places[name] = placed(at.x, at.y, yaw)
 

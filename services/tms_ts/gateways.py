@@ -15,6 +15,7 @@ from tms_core.fence import Owner
 from tms_core.permit import NOBODY, Link, Permit
 
 SETTLE = 0.3  # s from the first word of a new gateway until it has discovered us as well
+SIGNALS = 100  # of all buttons that may wait: no `false` may push out the `true` of another one
 SOFTWARE_STOP = "software stop"
 
 
@@ -40,7 +41,7 @@ class Gateways:
         self._holders: dict[str, Holder] = {}
         for machine in app.site.file.machines:
             self._attend(machine)
-        app.ros.subscribe(Bool, "/emergency_signal", self._signal)
+        app.ros.subscribe(Bool, "/emergency_signal", self._signal, depth=SIGNALS)
 
     def _attend(self, machine: str) -> None:
         ros = self._app.ros

@@ -27,7 +27,8 @@ class Interrupted:
         self._app, self._journal, self._records = app, journal, records
         self._active: set[str] = set()
         self._receipts: deque[Any] = deque(maxlen=RECEIPTS)
-        self._lock = threading.Lock()
+        self._lock = threading.Lock()  # over the receipts; taken on the executor thread, so held for moments only
+        self._choosing = threading.Lock()  # a run is resumed or abandoned, and once
         threading.Thread(target=self._close_all, name="interrupted", daemon=True).start()
 
     # closing
@@ -77,8 +78,9 @@ class Interrupted:
         Raises:
             TaskError: NO_RUN.
         """
-        past, header = self._find(run_id)
-        self._active.add(header.run_id)
+        with self._choosing:
+            past, header = self._find(run_id)
+            self._active.add(header.run_id)
         return past, header
 
     def over(self, run_id: str) -> None:
@@ -100,16 +102,18 @@ class Interrupted:
     def abandon(self, request: CancelRun.Request, response: CancelRun.Response) -> CancelRun.Response:
         """Give an interrupted run up for good."""
         try:
-            past, header = self._find(request.run_id)
+            with self._choosing:
+                self._give_up(*self._find(request.run_id))
         except TaskError as error:
             response.error_code, response.error_msg = error.code, str(error)
-            return response
+        return response
+
+    def _give_up(self, past: Past, header: Header) -> None:
         stamp = self._app.ros.now()
         event = Event(run_id=header.run_id, number=past.last_event + 1, stamp=stamp, kind="run", text="abandoned")
         self._journal.put(event)
         self._journal.put(_row(header, "abandoned", "given up by an operator after an interruption", stamp))
         self._records.open(header.run_id).remove()
-        return response
 
     def _find(self, run_id: str) -> tuple[Past, Header]:
         past = self._records.find(run_id)

@@ -231,6 +231,7 @@ class Machines:
         goal.reason, goal.state = reason, state
         if state is not GoalState.CANCELLED and not goal.cancelled:
             self._record.done(goal.key, state is GoalState.SUCCEEDED)
+            self._replay.moved_on(goal.node)
         self._tell("goal", goal.node, f"{goal.name} {state.value}" + (f": {reason}" if reason else ""))
 
     def _look_for_loss(self, goal: SentGoal, call: Call) -> None:

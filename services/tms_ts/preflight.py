@@ -8,6 +8,7 @@ from tms_core.config import Site
 from tms_ts.bt import Tree
 from tms_ts.bt.errors import did_you_mean
 from tms_ts.bt.tree import LeafGoal, SharedValue
+from tms_ts.nodes.leaf_node import ROS_NAME
 
 
 @dataclass
@@ -91,6 +92,10 @@ def _check_goal(found: Findings, goal: LeafGoal, site: Site, around: Surrounding
         return
     if "{" in goal.machine or "{" in goal.subtask:
         found.warnings.append(f"{where}: machine or subtask is known only when the leaf starts")
+        return
+    if not ROS_NAME.fullmatch(goal.subtask):
+        text = f"subtask_name={goal.subtask!r} can be no ROS name: letters, digits and _, no blanks"
+        found.errors.append(f"{where}: {text}")
         return
     offered = site.model_of(goal.machine).subtasks
     if goal.subtask not in offered and around.served(goal.machine, goal.subtask):

@@ -10,7 +10,7 @@ import os
 import threading
 import time
 from collections import defaultdict, deque
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -80,9 +80,14 @@ class Record:
 
 
 class Replay:
-    """Leaf goals that have ended before: asked for again, in the same order, they are not repeated."""
+    """Leaf goals that have ended before: asked for again, in the same order, they are not repeated.
+
+    Flags are read anew, so the tree may go another way than before the interruption. What it has not asked for when
+    a goal is really done belongs to the past, and is done again should the tree come there later.
+    """
 
     def __init__(self, ended: list[tuple[Key, bool]]) -> None:
+        self.beside: Callable[[str, str], bool] = lambda node, other: False  # whether neither waits for the other
         self._ended: dict[Key, deque[bool]] = defaultdict(deque)
         for key, succeeded in ended:
             self._ended[key].append(succeeded)
@@ -91,6 +96,12 @@ class Replay:
         """How that leaf goal ended, once; None if it has to be done now."""
         found = self._ended.get(key)
         return found.popleft() if found else None
+
+    def moved_on(self, node: str) -> None:
+        """A goal of that node was really done: only nodes beside it may still have something to skip."""
+        for key in list(self._ended):
+            if not self.beside(key[0], node):
+                self._ended.pop(key, None)
 
 
 class Past:

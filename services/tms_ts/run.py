@@ -17,6 +17,7 @@ from tms_msg_ts.msg import NodeStatus, RunState
 from tms_core.ros import Goal, Ros
 from tms_core.values import to_parameters
 from tms_ts.bt import IDLE, Node, Status, Tree, TreeError
+from tms_ts.budget import Budget
 from tms_ts.flags import Flags
 from tms_ts.gateways import SOFTWARE_STOP
 from tms_ts.journal import Journal
@@ -26,6 +27,7 @@ from tms_ts.record import Record
 PERIOD = 0.05  # s between ticks when nothing wakes the loop
 FEEDBACK_PERIOD = 0.1  # s between messages to the client
 CHANGES_A_TICK = 200  # node changes recorded of one tick; an endless loop makes thousands
+FLOOD_TOLD = 10.0  # s between notes that changes are left out
 CHANGES_A_MESSAGE = 1000
 TICK_LIMIT = 0.4  # s without a tick after which the scheduler does not stand behind its motions any more
 SETTLE_LIMIT = 12.0  # s for goals to become terminal after a halt
@@ -66,6 +68,7 @@ class Run:
         self.wake = threading.Event()
         self.cancelled = threading.Event()
         self.ended = threading.Event()
+        self.over = False  # its end is in the history
         self._ros, self._journal, self._log, self._goal = ros, journal, log, goal
         self.record = record
         self.flags: Flags | None = None  # of its tree
@@ -74,7 +77,9 @@ class Run:
         self._numbering = threading.Lock()  # events come from the executor thread too
         self._failure = ""
         self._next_feedback = 0.0
-        self._changes_of_tick = 0
+        self._budget = Budget()
+        self._changes_of_tick = self._left_out = 0
+        self._flood_told = -FLOOD_TOLD
         self._ending = ("cancelled", "")  # outcome and reason of a run that is ended from outside
         self.states = b""  # of every node, for who looks
         self._leaf = ""
@@ -181,29 +186,32 @@ class Run:
                 return "success" if status is Status.SUCCESS else "failure"
             if took > PERIOD:
                 OVERRUNS.inc()
-            next_tick = max(next_tick + PERIOD, begun)
+            next_tick = min(max(next_tick + PERIOD, begun), begun + PERIOD)  # however often something woke it
             self.wake.wait(max(0.0, next_tick - time.monotonic()))
             self.wake.clear()
         outcome, self._failure = self._ending
         return outcome
 
     def _settle(self, tree: Tree, machines: Machines, outcome: str) -> str:
-        """After a success nothing moves; after anything else the machines are stopped and watched."""
+        """Machines are stopped and watched, but after a success that left no goal open: then nothing moves."""
         self._ticked = None
-        halted, receipts = False, []
+        moving, receipts = True, []
         try:
             if outcome != "success":
                 self.enter("stopping", self._failure or outcome)
             tree.halt()
             self._look(tree)
             self._tell_client(tree, last=True)
-            halted = True
+            moving = outcome != "success" or not machines.settled()
+            if moving and outcome == "success":  # the tree succeeded in the tick that halted a leaf
+                self._failure = ""
+                self.enter("stopping", "the tree has succeeded, and goals that it halted still end")
         finally:  # also when the lines above have a bug
-            if outcome != "success" or not halted:
+            if moving:
                 # Straight to the gateways, beside the cancels on their way through subtask and planner: a stop takes
                 # the shortest way, and its receipt measures from here.
                 receipts = machines.stop_all(self.facts.machines, outcome)
-        if outcome == "success":
+        if not moving:
             return self._end(outcome, "")
         for receipt in receipts:
             machines.receipt(receipt)
@@ -221,6 +229,7 @@ class Run:
         return self._end(outcome, reason)
 
     def _end(self, outcome: str, reason: str) -> str:
+        self.over = True
         self.enter(outcome, reason, ended=True)
         self.close_record(outcome)
         RUNS.labels(outcome).inc()
@@ -235,6 +244,7 @@ class Run:
 
     def refuse(self, code: str, reason: str) -> None:
         """End before anything moved."""
+        self.over = True
         if self._resumed:  # the run stays what it was: interrupted
             self.enter("interrupted", f"not resumed: {code}: {reason}", ended=True)
             self.record.interrupted()
@@ -249,18 +259,20 @@ class Run:
         if new is Status.FAILURE and node.reason and not node.children:
             self._failure = f"{node.name} ({node.path}): {node.reason}"
         self._changes_of_tick += 1
-        if self._changes_of_tick > CHANGES_A_TICK:
+        if self._changes_of_tick > CHANGES_A_TICK or not self._budget.take(node.path):
+            self._left_out += 1
+            self.facts.nodes_told = False  # the client gets the state of every node instead
             return
         self.facts.changes.append(_message(node, new))
         text = f"{old.name} -> {new.name}" + (f": {node.reason}" if new is not IDLE and node.reason else "")
         self.tell("node", node.path, f"{node.name}: {text}")
 
     def _tell_flood(self) -> None:
-        """A loop over children that finish at once must not fill the history with its rounds."""
-        more = self._changes_of_tick - CHANGES_A_TICK
-        if more > 0:
-            self.facts.nodes_told = False  # the client gets the state of every node instead
-            self.tell("node", "", f"{more} further changes in this tick: a loop spins")
+        """A loop that spins, or waits for hours, must not fill the history with its rounds."""
+        now = time.monotonic()
+        if self._left_out and now - self._flood_told >= FLOOD_TOLD:
+            self.tell("node", "", f"{self._left_out} further changes are left out: a loop goes round")
+            self._left_out, self._flood_told = 0, now
 
     def _look(self, tree: Tree) -> None:
         """Keep what state() tells of the nodes."""

@@ -134,6 +134,26 @@ def test_a_software_stop_ends_every_kind_of_motion(small: tuple[Mesh, Ros], watc
     arm(ros)
 
 
+def test_a_release_does_not_push_out_the_stop_before_it(small: tuple[Mesh, Ros], watch: Watch) -> None:
+    """A button that springs back, while the gateway is too busy to look at either message."""
+    mesh, ros = small
+    watch.wait(lambda: watch.state is not None and watch.state.ready, "the machine is ready")
+    button = ros.publisher(Bool, "/emergency_signal")
+    wait_until(lambda: button.get_subscription_count() > 0, 30, "the gateway hears the button")
+    rows = json.loads(mesh.tms("ps", "--json").stdout)
+    pid = next(int(row["pid"]) for row in rows if row["name"] == f"{MACHINE}:rc")
+    before = len(watch.receipts)
+    os.kill(pid, signal.SIGSTOP)
+    try:
+        button.publish(Bool(data=True))
+        button.publish(Bool(data=False))
+    finally:
+        os.kill(pid, signal.SIGCONT)
+    watch.wait(lambda: len(watch.receipts) > before, "a receipt")
+    watch.wait(lambda: watch.state.latch == "software stop", "the latch")
+    arm(ros)
+
+
 def test_a_frozen_process_is_restarted(small: tuple[Mesh, Ros], watch: Watch) -> None:
     mesh = small[0]
 

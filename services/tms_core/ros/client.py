@@ -174,6 +174,10 @@ class Peer:
             self._dead = frozenset()
         return not self._dead and bool(self._client.server_is_ready())
 
+    def left(self) -> bool:
+        """Whether every server that could have taken the last goal is gone; its successor knows nothing of it."""
+        return not self.ready() or (bool(self._taken_by) and not self._taken_by & self._servers())
+
     def found(self) -> None:
         """It was not dead, only frozen for a while."""
         self._dead = frozenset()

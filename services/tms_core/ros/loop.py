@@ -16,6 +16,8 @@ from typing import Any, TypeVar
 
 import rclpy
 from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
 from rclpy.context import Context
 from rclpy.exceptions import InvalidHandle
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
@@ -44,6 +46,7 @@ class Loop:
                 name, namespace=namespace, context=self._context, start_parameter_services=False, enable_rosout=False
             )
         self.group = ReentrantCallbackGroup()
+        self._steady = Clock(clock_type=ClockType.STEADY_TIME)  # a node's own stands still when NTP sets it back
         self._executor = _Executor(context=self._context)
         self._executor.add_node(self.node)
         self._asked: float | None = None  # monotonic time since which the executor has not shown itself
@@ -143,7 +146,7 @@ class Loop:
 
     def every(self, seconds: float, step: Callable[[], None]) -> Any:
         """Call `step` on the executor thread at a fixed rate."""
-        return self.node.create_timer(seconds, step, callback_group=self.group)
+        return self.node.create_timer(seconds, step, callback_group=self.group, clock=self._steady)
 
     def beside(self, seconds: float, step: Callable[[], None], name: str) -> None:
         """Call `step` at a fixed rate in a thread of its own, for what only samples: it costs a tenth of a timer."""

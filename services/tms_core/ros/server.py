@@ -15,7 +15,7 @@ from rclpy.action.server import ServerGoalHandle
 
 from tms_core import log
 from tms_core.fence import parse
-from tms_core.ros.goals import LOST_TEXT, Accept, Ended, InterfaceType, Message, Outcome, Request
+from tms_core.ros.goals import LOST_TEXT, Accept, Ended, InterfaceType, Message, Outcome, Rejection, Request
 from tms_core.ros.quality import SERVICE
 
 if TYPE_CHECKING:
@@ -78,7 +78,8 @@ class Served:
 
     def __init__(self, ros: "Ros") -> None:
         self._ros = ros
-        self._goals: dict[bytes, Goal] = {}  # by id: a goal on its handle would be a cycle, freed late
+        # By action and id; a goal on its handle would be a cycle, which is freed late.
+        self._goals: dict[tuple[str, bytes], Goal] = {}
         self._leaving = False
 
     def leave(self, seconds: float) -> None:
@@ -105,6 +106,8 @@ class Served:
             verdict = accept(request) if accept is not None else None
             if isinstance(verdict, Awaitable):
                 verdict = await verdict
+            if verdict is None and self._leaving:
+                verdict = Rejection(LOST_TEXT, f"{self._ros.node.get_name()} is being stopped")
             if verdict is None:
                 return GoalResponse.ACCEPT
             GOALS.labels(name, "rejected").inc()
@@ -116,11 +119,13 @@ class Served:
 
         def accepted(handle: ServerGoalHandle) -> None:
             goal = Goal(handle, action_type)
-            self._goals[goal.uuid] = goal
+            self._goals[name, goal.uuid] = goal
+            if self._leaving:  # since the decision
+                goal.cancel()
             threading.Thread(target=self._work, args=(action_type, run, goal, name), name=name, daemon=True).start()
 
         def cancel(handle: ServerGoalHandle) -> CancelResponse:
-            goal = self._goals.get(bytes(handle.goal_id.uuid))
+            goal = self._goals.get((name, bytes(handle.goal_id.uuid)))
             if goal is not None:  # else it has ended and its result is being delivered
                 goal.cancel()
             return CancelResponse.ACCEPT
@@ -144,9 +149,9 @@ class Served:
             goal.on_cancel = None  # it refers to what the goal did, and that to the goal
             SECONDS.labels(name).observe(time.monotonic() - begun)
             GOALS.labels(name, ended[0].name.lower()).inc()
-            self._ros.on_executor(lambda: self._deliver(goal, *ended))
+            self._ros.on_executor(lambda: self._deliver(name, goal, *ended))
 
-    def _deliver(self, goal: Goal, outcome: Outcome, result: Message) -> None:
+    def _deliver(self, name: str, goal: Goal, outcome: Outcome, result: Message) -> None:
         asked = goal._handle.is_cancel_requested
         if self._leaving and outcome is Outcome.CANCELED and not asked:
             goal.say(f"{LOST_TEXT}: {self._ros.node.get_name()} was stopped during its goal")
@@ -160,7 +165,7 @@ class Served:
                 handle.abort()
             return result
 
-        self._goals.pop(goal.uuid)
+        self._goals.pop((name, goal.uuid))
         goal._handle.execute(finish)
 
 

@@ -14,6 +14,7 @@ from tms_ts.bt.blackboard import Blackboard
 from tms_ts.bt.context import Context
 from tms_ts.bt.errors import TickError, TreeError
 from tms_ts.bt.node import Node, Observer
+from tms_ts.bt.parallel import Parallel
 from tms_ts.bt.status import IDLE, Status
 
 MAX_UID = 65_535  # 16 bit on Groot's wire
@@ -70,6 +71,7 @@ class Tree:
         self.blackboards = blackboards  # in creation order, the root's first
         self.context = context
         self.xml = xml
+        self._parallels = {node.path for node in nodes if isinstance(node, Parallel)}
         with _uid_lock:
             for node in nodes:
                 node.uid = next(_next_uid) % MAX_UID + 1
@@ -110,10 +112,6 @@ class Tree:
                 if deadline <= now and timer.deadline is not None:  # not disarmed by an earlier one
                     timer.expire()
 
-    def next_deadline(self) -> float | None:
-        """When the next timer expires, on the tree's clock."""
-        return min((t.deadline for t in self.context.timers if t.deadline is not None), default=None)
-
     def halt(self) -> None:
         """Halt the whole tree. A node that raises does not keep the others from being halted."""
         problems: list[Exception] = []
@@ -150,6 +148,12 @@ class Tree:
             for node in self.nodes
             if isinstance(node, UsesRecord)
         ]
+
+    def beside(self, path: str, other: str) -> bool:
+        """Whether a Parallel runs two nodes in branches of their own, so that neither waits for the other."""
+        pairs = zip(path.split("."), other.split("."), strict=False)
+        common = itertools.takewhile(lambda pair: pair[0] == pair[1], pairs)
+        return ".".join(one for one, _ in common) in self._parallels
 
     def running(self) -> list[Node]:
         """The leaves that are RUNNING now."""

@@ -17,7 +17,7 @@ from tms_ts.bt.registry import stand_in
 from tms_ts.bt.status import FAILURE, RUNNING, SUCCESS, Status
 from tms_ts.world import Goal, GoalState
 
-_ROS_NAME = re.compile(r"[A-Za-z_/~][A-Za-z0-9_/]*", re.ASCII)
+ROS_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*", re.ASCII)
 
 
 @stand_in
@@ -75,5 +75,5 @@ class LeafNode(PlainAction):
         return [
             f"{port}={name!r} has characters that no ROS name can have"
             for port, name in names.items()
-            if name and not _ROS_NAME.fullmatch(name)
+            if name and not ROS_NAME.fullmatch(name)
         ]

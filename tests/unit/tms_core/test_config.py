@@ -34,6 +34,8 @@ def clean_environment(monkeypatch: pytest.MonkeyPatch) -> None:
         ({"domain": 102}, "domain: "),
         ({"domain": "many"}, "domain: "),
         ({"machines": {"zx200": {"model": "zx999"}}}, "no model 'zx999' (there: "),
+        ({"machines": {"ZX200": {"model": "zx200"}}}, "machines.ZX200"),
+        ({"machines": {"zx 200": {"model": "zx200"}}}, "machines.zx 200"),
         ({"sim": {"speed": 0}}, "sim.speed: "),
         ({"backend": "real"}, "backend: "),
     ],

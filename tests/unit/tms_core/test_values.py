@@ -25,7 +25,7 @@ def test_a_mixed_array_becomes_doubles() -> None:
     assert from_parameters(to_parameters({"x": [1, 2.5]})) == {"x": [1.0, 2.5]}
 
 
-@pytest.mark.parametrize("value", [None, {"a": 1}, [True, 1], [[1]], b"x", ["a", 1]])
+@pytest.mark.parametrize("value", [None, {"a": 1}, [True, 1], [[1]], b"x", ["a", 1], 2**63, [-(2**63) - 1]])
 def test_what_cannot_travel(value: object) -> None:
     assert not can_travel(value)
     with pytest.raises(TypeError, match="field: a"):

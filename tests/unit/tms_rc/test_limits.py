@@ -5,7 +5,7 @@ import pytest
 from tms_core.config import CONFIGS
 from tms_core.models import MachineModel
 from tms_core.yaml_file import parse
-from tms_rc.limits import angle_problem, escaped, pose_problem, problem
+from tms_rc.limits import Point, angle_problem, escaped, pace_problem, pose_problem, problem
 
 MODEL = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel)
 JOINTS = ["swing_joint", "boom_joint"]
@@ -17,6 +17,7 @@ JOINTS = ["swing_joint", "boom_joint"]
         (JOINTS, [], "no points"),
         (["tail_joint"], [[0.0]], "joint 'tail_joint' is not one of"),
         (JOINTS, [[0.0, -0.5], [0.0]], "point 1 has 1 positions for 2 joints"),
+        (["boom_joint", "boom_joint"], [[-0.5, -0.6]], "a joint is named twice"),
         (JOINTS, [[0.0, 0.5]], "boom_joint: 0.500 rad is above its limit -0.100 rad"),
         (JOINTS, [[0.0, -2.0]], "boom_joint: -2.000 rad is below its limit -1.137 rad"),
         (JOINTS, [[float("nan"), -0.5]], "swing_joint: is not a number"),
@@ -25,6 +26,31 @@ JOINTS = ["swing_joint", "boom_joint"]
 )
 def test_refused(joints: list[str], points: list[list[float]], said: str) -> None:
     assert said in str(problem(MODEL, joints, points))
+
+
+SWING = MODEL.joints["swing_joint"].velocity
+
+
+@pytest.mark.parametrize(
+    ("points", "said"),
+    [
+        ([Point(1.0, [0.0], [float("nan")])], "a velocity, acceleration or effort is not a number"),
+        ([Point(5.0, [0.0], []), Point(1.0, [0.1], [])], "point 1: its time 1.000 s is not after the one before"),
+        ([Point(1.0, [0.0], []), Point(1.0, [0.0], [])], "point 1: its time 1.000 s is not after the one before"),
+        ([Point(-1.0, [0.0], [])], "its time -1.000 s is not after"),
+        ([Point(0.001, [3.0], [])], "swing_joint would go 3.000 rad in 0.001 s, its limit is"),
+        ([Point(0.0, [0.2], [])], "swing_joint would go 0.200 rad in 0.000 s"),
+        ([Point(1.0, [0.0], []), Point(2.0, [1.2 * SWING], [])], "point 1: swing_joint would go"),
+    ],
+)
+def test_a_trajectory_that_cannot_be_followed_is_refused(points: list[Point], said: str) -> None:
+    assert said in str(pace_problem(MODEL, ["swing_joint"], points, {"swing_joint": 0.0}))
+
+
+def test_a_trajectory_at_the_limit_of_speed_is_let_through() -> None:
+    points = [Point(0.0, [0.05], [0.0]), Point(1.0, [0.05 + SWING], [SWING, 0.0]), Point(3.0, [0.05 - SWING], [0.0])]
+    assert pace_problem(MODEL, ["swing_joint"], points, {"swing_joint": 0.0}) is None
+    assert pace_problem(MODEL, ["swing_joint"], points[1:], {}) is None  # nobody knows where the joint is
 
 
 def test_a_joint_that_turns_for_ever_has_no_bound() -> None:

@@ -69,3 +69,27 @@ def test_turning_on_the_spot_is_moving() -> None:
     watch = StandStill(STILL, (ODOM,))
     watch.update_odometry(0.0, (0.0, 0.0), 0.0, 0.5)
     assert watch.moving()
+
+
+def test_what_holds_no_joint_of_the_machine_is_no_news_of_it() -> None:
+    watch = StandStill(STILL)
+    for now in (0.0, 0.1, 0.2, 0.3):
+        watch.update(now, {}, {})
+    assert not watch.standing(0.3)
+    assert watch.silent(0.3, 1.0) == "no joint states from the machine yet"
+
+
+def test_a_joint_that_is_not_told_any_more_is_not_seen_to_stand() -> None:
+    watch = fed((0.0, 0.0, 0.0), (0.1, 0.0, 0.0))
+    for now in range(2, 20):
+        watch.update(now / 10, {"bucket": 0.0}, {"bucket": 0.0})
+    assert not watch.standing(1.9)
+    assert watch.silent(1.9, 1.0) == "joint states 1.8 s old"
+
+
+def test_the_speed_of_a_joint_that_comes_less_often_is_from_its_own_last_position() -> None:
+    watch = StandStill(STILL)
+    watch.update(0.0, {"swing": 0.0}, {})
+    watch.update(0.3, {"bucket": 0.0}, {})
+    watch.update(0.4, {"swing": 0.4}, {})
+    assert abs(watch.velocities["swing"] - 1.0) < 1e-9

@@ -133,17 +133,18 @@ class TestExceptions:
 
 
 class TestTimers:
-    def test_next_deadline_and_poll(self) -> None:
+    def test_a_poll_lets_a_timer_expire(self) -> None:
         fake = FakeWorld(FakeMachines(lasts=100))
         one = tree(f'<Timeout msec="1500">{leaf()}</Timeout>', fake=fake)
-        assert one.next_deadline() is None
         one.tick()
-        assert one.next_deadline() == 1.5
+        fake.clock.now = 1.4
+        one.poll()
+        assert [goal.cancels for goal in fake.machines.sent] == [0]
         fake.clock.now = 2.0
         one.poll()
         assert [goal.cancels for goal in fake.machines.sent] == [1]
         assert one.tick() is FAILURE
-        assert one.next_deadline() is None
+        assert not one.context.timers
 
     def test_delay_tells_why_it_runs(self) -> None:
         one = tree('<Delay delay_msec="2500"><AlwaysSuccess/></Delay>')
@@ -282,3 +283,14 @@ class TestAuthors:
         other = type("AlwaysSuccess", (SyncAction,), {})
         with pytest.raises(TypeError, match="is defined in"):
             node(other)
+
+
+def test_only_branches_of_a_parallel_do_not_wait_for_each_other() -> None:
+    one = leaf("a")
+    made = tree(
+        f'<Sequence><Parallel success_threshold="2"><Sequence>{one}{one}</Sequence>{one}</Parallel>{one}</Sequence>'
+    )
+    assert made.beside("0.0.0.1", "0.0.1")
+    assert not made.beside("0.0.0.0", "0.0.0.1")  # of one branch
+    assert not made.beside("0.0.1", "0.1")  # the Sequence above it
+    assert not made.beside("0.1", "0.1")

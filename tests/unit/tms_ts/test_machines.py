@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from tms_msg_rc.msg import StopReceipt
 
-from tms_core.ros import Call
+from tms_core.ros import Call, Outcome
 from tms_ts import machines
 from tms_ts.gateways import Gateways
 from tms_ts.machines import Identity, Machines
@@ -47,6 +47,7 @@ class Site:
         ros = SimpleNamespace(peer=lambda *_: self.peer)
         hosts = SimpleNamespace(pid=lambda *_: self.pid, trouble=lambda *_: "", fatal=lambda *_: "")
         gateways = SimpleNamespace(obstacle=lambda _: "", latch=lambda _: "")
+        self.replay = Replay([(("0.1", "zx200", "dig", "here"), True)])
         record = SimpleNamespace(sent=lambda _: None, done=lambda *_: None)
         self.machines = Machines(
             ros,  # type: ignore[arg-type]
@@ -54,7 +55,7 @@ class Site:
             gateways,  # type: ignore[arg-type]
             lambda: None,
             lambda kind, _, text: self.told.append(f"{kind}: {text}"),
-            Identity(1, RETRIES, record, Replay([])),  # type: ignore[arg-type]
+            Identity(1, RETRIES, record, self.replay),  # type: ignore[arg-type]
         )
         self.goal: SentGoal = self.machines.send("zx200", "subtask_zx200_change_pose", "pose", "0")
 
@@ -101,6 +102,16 @@ def test_a_process_that_ends_again_is_a_further_loss_however_soon(site: Site) ->
     site.lose()
     assert site.goal.state.final
     assert "ended during its goal" in site.goal.reason
+
+
+@pytest.mark.parametrize(("outcome", "again"), [(Outcome.SUCCEEDED, True), (Outcome.CANCELED, False)])
+def test_with_a_goal_that_was_really_done_the_past_is_over(site: Site, outcome: Outcome, again: bool) -> None:
+    if outcome is Outcome.CANCELED:
+        site.goal.cancel()
+    site.peer.calls[0].end(outcome)
+    after = site.machines.send("zx200", "dig", "here", "0.1")
+    assert (len(site.peer.calls) == 2) is again
+    assert after.state is (GoalState.SENDING if again else GoalState.SUCCEEDED)
 
 
 def test_a_receipt_is_told_once(site: Site) -> None:

@@ -196,3 +196,13 @@ def test_the_records_that_a_tree_names(site: Site) -> None:
     loaded = tree(GOOD, ("zx200", "{r}", "subtask_zx200_change_pose"))
     assert records_of(loaded) == ["zx200/pose", "zx200/*"]
     assert records_of(flags(READ.format("FREE"))) == ["/ROAD"]
+
+
+@pytest.mark.parametrize("name", ["st_zx200_dig ", "st-zx200", "", "st/", "1st", "掘る"])
+def test_a_subtask_that_can_be_no_ros_name_is_refused_before_ros_is_asked(site: Site, name: str) -> None:
+    class Asked(Around):
+        def served(self, machine: str, subtask: str) -> bool:
+            raise ValueError("rclpy takes no such name")
+
+    found = preflight(tree(("zx200", "pose", name)), site, Asked())
+    assert found.errors == [f"line 2: subtask_name={name!r} can be no ROS name: letters, digits and _, no blanks"]

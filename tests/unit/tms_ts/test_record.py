@@ -60,6 +60,20 @@ def test_ended_leaves_are_replayed_once_each_and_in_order() -> None:
     assert [replay.take(SECOND), replay.take(SECOND)] == [False, None]
 
 
+def test_what_the_tree_did_not_ask_for_again_is_done_again() -> None:
+    """No truck is there now: the tree poses, and digs for the next truck what it had dug for the last one."""
+    pose: Key = ("0.0.1.0", "zx200", "pose", "start")
+    dig: Key = ("0.0.1.1", "zx200", "dig", "here")
+    drive: Key = ("0.1.0", "ic120", "drive", "there")
+    replay = Replay([(pose, True), (dig, True), (drive, True)])
+    replay.beside = lambda node, other: node.split(".")[1] != other.split(".")[1]  # two branches of a Parallel
+    assert replay.take(pose) is True
+    assert replay.take(pose) is None
+    replay.moved_on(pose[0])
+    assert replay.take(dig) is None
+    assert replay.take(drive) is True
+
+
 def test_a_full_disk_keeps_nobody_from_going_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     made = Records(tmp_path).open("r")
 

@@ -1,42 +1,133 @@
-"""However a run ends, its machines are stopped."""
+"""However a run ends, its machines are stopped; and it ticks as long as it lasts."""
 
 import logging
+from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from builtin_interfaces.msg import Time
+from tms_msg_rc.msg import StopReceipt
 
-from tms_ts.run import Facts, Run
+from tms_ts import run as module
+from tms_ts.bt import Status
+from tms_ts.node import Scheduler
+from tms_ts.run import PERIOD, Facts, Run
 
 
 class Machines:
-    """Those of the run; what was asked of them."""
+    """Those of the run; what was asked of them. `open` are goals that end when the machine is stopped."""
 
-    def __init__(self) -> None:
-        self.stopped: list[str] = []
+    def __init__(self, *open_goals: str, confirmed: bool = True) -> None:
+        self.open, self.stopped, self._confirmed = list(open_goals), list[str](), confirmed
 
     def stop_all(self, machines: list[str], cause: str) -> list[Any]:
         self.stopped += machines
-        return []
+        self.open.clear()
+        return [StopReceipt(machine=name, confirmed=self._confirmed, cause=cause) for name in machines]
+
+    def receipt(self, receipt: Any) -> None: ...
+
+    def settled(self) -> bool:
+        return not self.open
+
+    def open_goals(self) -> list[str]:
+        return self.open
+
+    def advance(self) -> None: ...
 
 
 def broken() -> None:
     raise RuntimeError("a bug")
 
 
-@pytest.mark.parametrize("outcome", ["success", "failure", "cancelled"])
-def test_a_bug_while_the_tree_is_halted_does_not_keep_the_machines_from_being_stopped(outcome: str) -> None:
-    machines, record = Machines(), SimpleNamespace(event=lambda _: None)
-    run = Run(
+@pytest.fixture
+def rows() -> list[Any]:
+    """What the run puts into the history."""
+    return []
+
+
+@pytest.fixture
+def a_run(rows: list[Any]) -> Run:
+    record = SimpleNamespace(event=lambda _: None, remove=lambda: None)
+    return Run(
         SimpleNamespace(now=Time),  # type: ignore[arg-type]
-        SimpleNamespace(put=lambda _: None),  # type: ignore[arg-type]
+        SimpleNamespace(put=rows.append),  # type: ignore[arg-type]
         logging.getLogger("test"),
-        SimpleNamespace(request=SimpleNamespace(resume="")),  # type: ignore[arg-type]
+        SimpleNamespace(request=SimpleNamespace(resume=""), publish=lambda _: None),  # type: ignore[arg-type]
         Facts("run", 1, 1, "", ["zx200"], Time()),
         record,  # type: ignore[arg-type]
         lambda: None,
     )
+
+
+def tree(tick: Callable[[], Status] = lambda: Status.RUNNING, halt: Callable[[], None] = lambda: None) -> Any:
+    return SimpleNamespace(tick=tick, halt=halt, nodes=[], running=list)
+
+
+@pytest.mark.parametrize("outcome", ["success", "failure", "cancelled"])
+def test_a_bug_while_the_tree_is_halted_does_not_keep_the_machines_from_being_stopped(a_run: Run, outcome: str) -> None:
+    machines = Machines()
     with pytest.raises(RuntimeError, match="a bug"):
-        run._settle(SimpleNamespace(halt=broken), machines, outcome)  # type: ignore[arg-type]
+        a_run._settle(tree(halt=broken), machines, outcome)  # type: ignore[arg-type]
     assert machines.stopped == ["zx200"]
+
+
+def test_a_success_that_leaves_nothing_open_stops_nobody(a_run: Run) -> None:
+    machines = Machines()
+    assert a_run._settle(tree(), machines, "success") == "success"  # type: ignore[arg-type]
+    assert machines.stopped == []
+
+
+def test_a_tree_that_succeeds_while_a_halted_leaf_still_moves_has_its_machine_seen_to_stop(a_run: Run) -> None:
+    machines = Machines("/zx200/st_zx200_swing")
+    a_run._failure = "an earlier leaf failed"
+    assert a_run._settle(tree(), machines, "success") == "success"  # type: ignore[arg-type]
+    assert machines.stopped == ["zx200"]
+    assert a_run.facts.reason == ""
+
+
+def test_a_success_whose_last_motion_was_not_seen_to_end_is_none(a_run: Run) -> None:
+    machines = Machines("/zx200/st_zx200_swing", confirmed=False)
+    assert a_run._settle(tree(), machines, "success") == "stop_unconfirmed"  # type: ignore[arg-type]
+    assert "STOP UNCONFIRMED" in a_run.facts.reason
+
+
+def test_the_loop_never_sleeps_longer_than_its_period_after_many_wakes(
+    a_run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Feedback of three machines for three seconds, then silence: the permits need a tick again at once."""
+    now, wakes, waits = [0.0], [0.03] * 100, list[float]()
+
+    def wait(seconds: float) -> None:
+        waits.append(seconds)
+        now[0] += min(seconds, wakes.pop() if wakes else seconds)
+        if len(waits) > 110:
+            a_run.cancelled.set()
+
+    monkeypatch.setattr(module.time, "monotonic", lambda: now[0])
+    monkeypatch.setattr(a_run, "wake", SimpleNamespace(wait=wait, clear=lambda: None))
+    a_run._tick_to_end(tree(), Machines())  # type: ignore[arg-type]
+    assert max(waits) == pytest.approx(PERIOD)
+    assert len(waits) > 110
+
+
+def test_a_run_that_meets_a_bug_is_closed_in_the_history(a_run: Run, rows: list[Any]) -> None:
+    scheduler: Any = Scheduler.__new__(Scheduler)
+    scheduler._facts = lambda goal, past: a_run.facts
+    scheduler._execute = lambda *_: broken()
+    scheduler._ros = scheduler._journal = scheduler._app = SimpleNamespace(
+        log=logging.getLogger("test"), now=Time, put=rows.append
+    )
+    scheduler._records = SimpleNamespace(open=lambda _: a_run.record)
+    scheduler._runs, scheduler._holders = {}, {}
+    scheduler._lock, scheduler._news = a_run._numbering, a_run.ended
+    scheduler._gateways = SimpleNamespace(drop=lambda _: None)
+    goal = SimpleNamespace(
+        request=SimpleNamespace(resume=""), publish=lambda _: None, cancelled=SimpleNamespace(is_set=lambda: False)
+    )
+    with pytest.raises(RuntimeError, match="a bug"):
+        scheduler.execute(goal)
+    told = [row for row in rows if hasattr(row, "state")]
+    assert told[-1].state == "refused" and "INTERNAL" in told[-1].reason
+    assert scheduler._runs == {}

@@ -1,0 +1,41 @@
+"""A goal whose server is gone never ends by itself: the machine is stopped, and the goal given up."""
+
+from types import SimpleNamespace
+from typing import Any
+
+from tms_core.config import CONFIGS
+from tms_core.models import MachineModel
+from tms_core.yaml_file import parse
+from tms_rc.gateway import Gateway
+from tms_rc.guard import Active, Kind
+
+MODEL = parse(CONFIGS / "machines" / "ic120.yaml", MachineModel)
+
+
+class Peer:
+    """Its server leaves, while the machine itself is heard."""
+
+    name = "/ic120/navigate_to_pose"
+
+    def __init__(self) -> None:
+        self.looks = self.given_up = 0
+
+    def left(self) -> bool:
+        self.looks += 1
+        return self.looks > 2
+
+    def lost(self) -> None:
+        self.given_up += 1
+
+
+def test_a_server_that_leaves_during_a_drive_stops_the_machine() -> None:
+    stops: list[tuple[str, Kind]] = []
+    gateway: Any = Gateway.__new__(Gateway)
+    gateway._model, gateway._watch = MODEL, SimpleNamespace(positions={})
+    gateway._guard = SimpleNamespace(stop=lambda cause, kind: stops.append((cause, kind)), silent=lambda: None)
+    peer: Any = Peer()
+    goal: Any = SimpleNamespace(request=SimpleNamespace())
+    active = Active(goal, None, peer, {}, {}, call=SimpleNamespace(accepted=True, outcome=None))  # type: ignore[arg-type]
+    gateway._watch_motion(active)
+    assert stops == [("PROCESS_LOST: /ic120/navigate_to_pose went away during its goal", Kind.PLAIN)]
+    assert peer.given_up == 1
