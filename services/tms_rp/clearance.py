@@ -1,9 +1,11 @@
 """Refuses trajectories on which the machine would touch itself or another machine, and names the two.
 
 Bodies are boxes; whether two of them touch is computed by FCL. Coal, its successor, was dropped: it brings boost,
-assimp and octomap, ten times the size, for the same boxes.
+assimp and octomap, ten times the size, for the same boxes. Its Python binding leaks 32 bytes with every collision
+object (it frees the memory without the C++ destructor), so each body is one object for ever, which is moved.
 """
 
+import threading
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
@@ -38,9 +40,10 @@ class Clearance:
     def __init__(self, model: MachineModel) -> None:
         self._model = model
         moved = _moved_links(model)
-        self._bodies = {
-            link: (_body(box, PADDING if link in moved else 0.0), _box_place(box)) for link, box in model.shapes.items()
-        }
+        self._bodies = {link: _object(box, PADDING if link in moved else 0.0) for link, box in model.shapes.items()}
+        self._inner = {link: _box_place(box) for link, box in model.shapes.items()}
+        self._others: dict[tuple[str, Box], Any] = {}  # bodies of other machines: as many as the site has
+        self._looking = threading.Lock()  # over the places of all bodies
         parent = {origin.child: origin.parent for origin in model.geometry.values()}
         self._pairs = [
             (a, b) for a, b in combinations(self._bodies, 2) if parent.get(a) != b and parent.get(b) != a
@@ -53,13 +56,17 @@ class Clearance:
         Raises:
             SubtaskFailed: COLLISION, with the two bodies and the time.
         """
-        fixed = {one.name: _object(_body(one.box, 0.0), one.place @ _box_place(one.box)) for one in obstacles}
+        with self._looking:
+            self._check(made, {one.name: self._fixed(one) for one in obstacles})
+
+    def _check(self, made: Trajectory, fixed: Mapping[str, Any]) -> None:
         moving = [link for link in self._bodies if link in self._moved]
         pairs = [*self._pairs, *((link, name) for link in moving for name in fixed)]
         looks = _looks(made)
         touching: set[tuple[str, str]] = set()
         for number, (seconds, positions) in enumerate(looks):
-            bodies = {**self._objects(dict(zip(made.names, positions, strict=True))), **fixed}
+            self._move(dict(zip(made.names, positions, strict=True)))
+            bodies = {**self._bodies, **fixed}
             now = {pair for pair in pairs if _touch(bodies[pair[0]], bodies[pair[1]])}
             last = number == len(looks) - 1
             bad = now if last else now - touching if number else set()
@@ -71,11 +78,20 @@ class Clearance:
                 )
             touching = now if number == 0 else touching & now
 
-    def _objects(self, positions: Mapping[str, float]) -> dict[str, Any]:
+    def _fixed(self, obstacle: Obstacle) -> Any:
+        key = obstacle.name, obstacle.box
+        if key not in self._others:
+            self._others[key] = _object(obstacle.box, 0.0)
+        body = self._others[key]
+        _place(body, obstacle.place @ _box_place(obstacle.box))
+        return body
+
+    def _move(self, positions: Mapping[str, float]) -> None:
         places = {"base_link": np.eye(4)}
         for joint, origin in self._model.geometry.items():
             places[origin.child] = places[origin.parent] @ _step(origin, positions.get(joint, 0.0))
-        return {link: _object(body, places[link] @ inner) for link, (body, inner) in self._bodies.items()}
+        for link, body in self._bodies.items():
+            _place(body, places[link] @ self._inner[link])
 
 
 def placed(x: float, y: float, yaw: float) -> Matrix:
@@ -103,9 +119,9 @@ def _looks(made: Trajectory) -> list[tuple[float, Joints]]:
     return [*looks, (made.duration, made.samples[-1].positions)]
 
 
-def _body(box: Box, padding: float) -> Any:
+def _object(box: Box, padding: float) -> Any:
     size = [high - low + 2 * padding for low, high in zip(box.min, box.max, strict=True)]
-    return fcl.Box(*size)
+    return fcl.CollisionObject(fcl.Box(*size))
 
 
 def _box_place(box: Box) -> Matrix:
@@ -115,8 +131,8 @@ def _box_place(box: Box) -> Matrix:
     return _turned("y", box.pitch) @ inner
 
 
-def _object(body: Any, place: Matrix) -> Any:
-    return fcl.CollisionObject(body, fcl.Transform(place[:3, :3], place[:3, 3]))
+def _place(body: Any, place: Matrix) -> None:
+    body.setTransform(fcl.Transform(place[:3, :3], place[:3, 3]))
 
 
 def _touch(a: Any, b: Any) -> bool:
