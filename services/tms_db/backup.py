@@ -8,6 +8,7 @@ import tempfile
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any, BinaryIO, cast
 
@@ -132,13 +133,14 @@ def check(path: Path, wanted: str, say: Say) -> Report:
 
 
 def restore(db: Db, path: Path, say: Say, *, drop: bool = False) -> Report:
-    """Put an archive's documents into the database, unchanged.
+    """Put an archive's documents into the database, unchanged but for runs that were active at the time of the backup.
 
     Everything is read and checked first, then written beside what is there; only then the collections change places.
 
     Raises:
         DbError: the archive is wrong, the database is not empty (and not to be dropped), a run is active, or the
-            store is away. The database is then as it was.
+            store is away. The database is then as it was, unless the message says that it was replaced in part: the
+            store was lost between two collections.
     """
     report = check(path, db.name, say)
     there = look(db)
@@ -155,11 +157,16 @@ def restore(db: Db, path: Path, say: Say, *, drop: bool = False) -> Report:
     try:
         _clear(db)
         _stage(db, path, report.database, names, say)
+        _abandon(db, names)
     except DbError:
         _clear(db)
         raise
     say("replacing")
-    _exchange(db, names)
+    try:
+        _exchange(db, names)
+    except DbError as error:
+        text = f"{error}; database {db.name} is replaced only in part: run the same restore with --drop again"
+        raise DbError(text, error.code) from error
     schema.bring_up(db)
     return report
 
@@ -180,6 +187,15 @@ def _stage(db: Db, path: Path, database: str, names: list[str], say: Say) -> Non
                         raise
                     raise store.conflict(db, collection, first.get("keyValue")) from error
             say(f"writing: {reader.share():.0%}")
+
+
+def _abandon(db: Db, names: list[str]) -> None:
+    """Close the runs that a backup saw active: nobody goes on with them, and an open one locks records for ever."""
+    if "run" not in names:
+        return
+    end = {"state": "abandoned", "reason": "restored from a backup", "ended_at": datetime.now(timezone.utc)}
+    with errors():
+        db[STAGED + "run"].update_many({"ended_at": None}, {"$set": end})
 
 
 def _batches(reader: archive.Reader, database: str) -> Iterator[tuple[str, list[RawBSONDocument]]]:

@@ -31,6 +31,7 @@ class Past:
         self._lock = threading.Lock()
         self._storing = threading.Lock()  # while changes are on their way from memory to the store
         self._new: dict[Key, list[Change]] = {}
+        self._unclear = False  # nobody knows how much of an earlier write was done
         self._stopping = threading.Event()
         self._thread = threading.Thread(target=self._run, name="past", daemon=True)
 
@@ -43,6 +44,7 @@ class Past:
 
     def note(self, key: Key, stamp: datetime, source: str, values: Mapping[str, Value], often: bool = False) -> None:
         """Remember one change; returns at once. One that comes `often` takes the place of the one before."""
+        stamp = stamp.replace(microsecond=stamp.microsecond // 1000 * 1000)  # as the store gives it back
         change = {"stamp": stamp, "source": source, "values": dict(values)}
         with self._lock:
             changes = self._new.setdefault(key, [])
@@ -61,7 +63,7 @@ class Past:
             with self._lock:
                 new = list(self._new.get(key, ()))
             stored = self._load(key)
-        return [*stored, *new][-KEPT:][::-1][: limit or KEPT]
+        return [*stored, *_others(new, stored)][-KEPT:][::-1][: limit or KEPT]
 
     def _load(self, key: Key) -> list[Change]:
         with errors():
@@ -82,13 +84,19 @@ class Past:
         try:
             if new:
                 with self._connection.use():
-                    self._save(new)
+                    self._save(self._missing(new) if self._unclear else new)
+                self._unclear = False
         except DbError as error:  # kept in memory until the store is back
             self._log.info("event=history_waits %s", error)
+            self._unclear = True
             with self._lock:
                 for key, later in self._new.items():
                     new[key] = [*new.get(key, []), *later][-KEPT:]
                 self._new = new
+
+    def _missing(self, new: Mapping[Key, list[Change]]) -> dict[Key, list[Change]]:
+        """What an earlier write did not do, for a change that is pushed twice is told twice; a reading for each key."""
+        return {key: others for key, changes in new.items() if (others := _others(changes, self._load(key)))}
 
     def _save(self, new: Mapping[Key, list[Change]]) -> None:
         steps = [
@@ -99,5 +107,10 @@ class Past:
             )
             for (model, record), changes in new.items()
         ]
-        with errors():
-            self._stored.bulk_write(steps, ordered=False)
+        if steps:
+            with errors():
+                self._stored.bulk_write(steps, ordered=False)
+
+
+def _others(changes: list[Change], stored: list[Change]) -> list[Change]:
+    return [change for change in changes if change not in stored]

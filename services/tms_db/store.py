@@ -37,6 +37,7 @@ HINTS = {  # part of the driver's text -> what is wrong and what to do
     "No replica set members available": "none of its hosts is a member of the replica set that the URI names",
 }
 DISK_CODES = {14031, 28}  # OutOfDiskSpace, ENOSPC passed on by an engine
+SIZE_CODES = {10334, 17419, 17420}  # BSONObjectTooLarge, and what an update would make larger than allowed
 
 # Collection -> (fields, unique). `sparse` lets tasks of the C++ system, which have no text hash, stand.
 INDEXES: dict[str, list[tuple[list[tuple[str, int]], dict[str, Any]]]] = {
@@ -156,7 +157,7 @@ def errors() -> Iterator[None]:
     except ConnectionFailure as error:
         raise _unreachable(str(error)) from error
     except DocumentTooLarge as error:
-        raise DbError("the document is larger than the store's 16 MB: make it smaller", "TOO_LARGE") from error
+        raise _too_large() from error
     except OperationFailure as error:
         raise _refused(error) from error
     except PyMongoError as error:
@@ -177,11 +178,20 @@ def _unreachable(text: str) -> DbError:
     return DbError(f"the store cannot be used: {hint}", "STORE_DOWN") if hint else down()
 
 
+def _too_large() -> DbError:
+    return DbError("the document is larger than the store's 16 MB: make it smaller", "TOO_LARGE")
+
+
 def _refused(error: OperationFailure) -> DbError:
-    text = str((error.details or {}).get("errmsg", type(error).__name__)).splitlines()[0][:200]
-    if error.code in AUTH_CODES:
+    details = error.details or {}
+    first = (details.get("writeErrors") or [details])[0]  # of many writes, the one that it refused
+    code = first.get("code", error.code)
+    text = str(first.get("errmsg", type(error).__name__)).splitlines()[0][:200]
+    if code in SIZE_CODES or "object to insert too large" in text:  # which MongoDB itself gives a common code
+        return _too_large()
+    if code in AUTH_CODES:
         text = "the store refuses our login: check user and password (store.password_file, or TMS_MONGODB_URI)"
         return DbError(text, "STORE_DOWN")
-    if error.code in DISK_CODES or "no space" in text.lower():
+    if code in DISK_CODES or "no space" in text.lower():
         return DbError("the store's disk is full: free some space, then try again", "STORE_FULL")
     return DbError(f"the store refused the request ({text}): see the log of tms:db", "STORE_REFUSED")

@@ -1,16 +1,17 @@
 """From a message to new values of a record, or to the reason why not; a message is whatever has fields."""
 
 import math
-import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 from tms_core.sensing import FieldRule, Input
+from tms_sp.field_types import NAMES, PART, PLAIN, STAMPS, VALUES, Fields, FieldsOf, FieldTypes
 
 Key = tuple[str, str]  # model, record
 Getter = Callable[[Any], Any]
-PART = re.compile(r"(\w+)(?:\[([^\]]+)\])?")
+LARGEST = 2**63 - 1  # whole number, on the wire and in the store
+A_VALUE = "a number, text, true/false or an array of these"
 
 
 class Refused(Exception):
@@ -34,13 +35,14 @@ class Reading:
 class Mapping:
     """One input's way from messages to readings."""
 
-    def __init__(self, given: Input, fields: dict[str, str]) -> None:
-        """`fields`: names and types of the message's fields, as the message class tells them.
+    def __init__(self, given: Input, fields: Fields, fields_of: FieldsOf) -> None:
+        """`fields`: names and types of the message's fields; `fields_of`: those of the messages inside it.
 
         Raises:
-            ValueError: the message has no such field; names it.
+            ValueError: the message has no such field, or none that a record can hold; names it.
         """
         self._input = given
+        types = FieldTypes(fields, fields_of)
         self._model, self._record = _name(given.model, fields), _name(given.record, fields)
         self._keep = field_getter(given.keep, fields) if given.keep else None
         stamp = stamp_path(given, fields)
@@ -49,6 +51,20 @@ class Mapping:
         taken = {text[1:] for text in (given.model, given.record) if text.startswith("$")} | {given.keep, "header"}
         rules = given.fields or {name: FieldRule(path=name) for name in fields if name not in taken}
         self._rules = [(name, rule, field_getter(rule.path, fields)) for name, rule in rules.items()]
+        self._check(types)
+
+    def _check(self, types: FieldTypes) -> None:
+        given = self._input
+        for text in (given.model, given.record):
+            if text.startswith("$"):
+                types.check(text[1:], PLAIN, "a text or a number")
+        if given.keep:
+            types.check(given.keep, NAMES, "an array of texts")
+        if given.stamp:
+            types.check(given.stamp, STAMPS, "a time or a number of seconds")
+        missing = ": name under `fields` what is wanted" if self.loose else ""
+        for _, rule, _ in self._rules:
+            types.check(rule.path, VALUES, A_VALUE + missing)
 
     def read(self, message: Any) -> Reading:
         """The values of a message.
@@ -66,12 +82,11 @@ class Mapping:
 
     def _value(self, name: str, rule: FieldRule, getter: Getter, message: Any) -> Any:
         value = getter(message)
-        many = not isinstance(value, (bool, int, float, str))
-        if not many:
+        if isinstance(value, (bool, int, float, str)):
             return self._checked(name, _scaled(value, rule.factor))
-        parts = list(value.tolist() if hasattr(value, "tolist") else value)
-        if not all(isinstance(part, (bool, int, float, str)) for part in parts):
-            raise Refused("NO_FIELD", f"{rule.path} is a {type(value).__name__}: name one of its fields")
+        parts = value.tolist() if hasattr(value, "tolist") else value
+        if not isinstance(parts, (list, tuple)) or not all(isinstance(one, (bool, int, float, str)) for one in parts):
+            raise Refused("NO_FIELD", f"{rule.path} is a {type(value).__name__}, not {A_VALUE}")
         if rule.size is not None and len(parts) != rule.size:
             raise Refused("WRONG_SIZE", f"{name} has {len(parts)} values, not {rule.size}")
         return [self._checked(name, _scaled(part, rule.factor)) for part in parts]
@@ -79,6 +94,8 @@ class Mapping:
     def _checked(self, name: str, value: Any) -> Any:
         if isinstance(value, float) and not math.isfinite(value):
             raise Refused("NOT_FINITE", f"{name} is {value}")
+        if isinstance(value, int) and value > LARGEST:  # of a uint64
+            raise Refused("OUT_OF_RANGE", f"{name} is {value}, the largest whole number is {LARGEST}")
         limits = self._input.range.get(name.lower() if self.loose else name)
         if limits is not None and not isinstance(value, str) and not limits[0] <= value <= limits[1]:
             raise Refused("OUT_OF_RANGE", f"{name} is {value:g}, not from {limits[0]:g} to {limits[1]:g}")
@@ -131,7 +148,7 @@ def field_getter(path: str, fields: dict[str, str]) -> Getter:
 
 def _element(path: str, parent: Any, array: Any, index: str) -> Any:
     names = getattr(parent, "name", ())
-    number = int(index) if index.isdigit() else list(names).index(index) if index in names else -1
+    number = int(index) if index.isdecimal() else list(names).index(index) if index in names else -1
     if not 0 <= number < len(array):
         raise Refused("WRONG_SIZE", f"{path}: no such element among {len(array)}")
     value = array[number]

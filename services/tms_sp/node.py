@@ -12,6 +12,7 @@ from tms_core.app import App
 from tms_core.errors import ConfigError
 from tms_core.sensing import Input, load_sensing, sensing_path
 from tms_core.values import to_parameters
+from tms_sp.field_types import Fields
 from tms_sp.inputs import SensingInput
 from tms_sp.machine_states import MachineStates
 from tms_sp.mapping import Mapping
@@ -59,10 +60,16 @@ def message_class(name: str) -> Any:
         raise LookupError(f"no message type {name}: is its package built?") from error
 
 
+def fields_inside(kind: str) -> Fields:
+    """Fields of the message that another one calls `package/Name`."""
+    fields: Fields = message_class(kind.replace("/", "/msg/")).get_fields_and_field_types()
+    return fields
+
+
 def _input(app: App, name: str, given: Input, clock_limit: float, sender: "Sender") -> SensingInput:
     try:
         fields = message_class(given.type).get_fields_and_field_types()
-        return SensingInput(name, given, Mapping(given, fields), clock_limit, sender.put)
+        return SensingInput(name, given, Mapping(given, fields, fields_inside), clock_limit, sender.put)
     except (LookupError, ValueError) as error:
         raise ConfigError(f"{sensing_path(app.site)}: inputs.{name}: {error}") from error
 

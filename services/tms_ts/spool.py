@@ -6,6 +6,8 @@ import threading
 from pathlib import Path
 
 LARGEST = 256 * 2**20  # bytes; some days of a database that is away
+PIECE = 2**20  # bytes of one batch, if no line is longer
+OLD = 16 * 2**20  # bytes that are done before a queue that never gets empty is moved
 
 
 class SpoolFull(OSError):
@@ -17,6 +19,7 @@ class Spool:
 
     def __init__(self, path: Path, largest: int = LARGEST) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
+        self._path = path
         self._lock = threading.Lock()  # held for one write to the page cache
         self._file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o600)
         self._largest = largest
@@ -46,9 +49,13 @@ class Spool:
         """Bytes that were not taken yet."""
         return self._size - self._taken
 
-    def batch(self, most: int, limit: int = 2**20) -> tuple[list[bytes], int]:
+    def batch(self, most: int) -> tuple[list[bytes], int]:
         """The next lines, and what to give to `done` once they are delivered."""
+        limit = PIECE
         data = os.pread(self._file, limit, self._taken)
+        while len(data) == limit and b"\n" not in data:  # a line that is longer: it comes alone
+            limit, most = 2 * limit, 1
+            data = os.pread(self._file, limit, self._taken)
         lines = data.split(b"\n")[:-1][:most]
         return lines, self._taken + sum(len(line) + 1 for line in lines)
 
@@ -59,6 +66,22 @@ class Spool:
             if self._taken >= self._size:
                 os.ftruncate(self._file, 0)
                 self._taken = self._size = 0
+            elif self._taken > OLD and self.waiting() <= PIECE:
+                self._move()
+
+    def _move(self) -> None:
+        """Into a new file what waits still; a crash leaves the old file or the new one."""
+        new = self._path.with_suffix(".new")
+        try:
+            new.touch(0o600)
+            new.write_bytes(os.pread(self._file, self.waiting(), self._taken))
+            file = os.open(new, os.O_RDWR | os.O_APPEND)
+            new.replace(self._path)
+        except OSError:  # a full disk, most likely: the old file goes on
+            return
+        os.close(self._file)
+        self._file = file
+        self._size, self._taken = self.waiting(), 0
 
     def close(self) -> None:
         """Free the file; what is left waits for the next process."""

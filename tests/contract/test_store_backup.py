@@ -4,7 +4,9 @@ import gzip
 import json
 import stat
 from collections.abc import Callable, Iterator
-from datetime import datetime, timezone
+from dataclasses import replace
+from datetime import datetime, timedelta, timezone
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -14,13 +16,15 @@ import pytest
 from bson.int64 import Int64
 from bson.objectid import ObjectId
 from click.testing import CliRunner, Result
+from pymongo.collection import Collection
+from pymongo.errors import AutoReconnect
 
 from tms_cli.commands import db as verb
 from tms_core.errors import DbError, TmsError
 from tms_db import archive, backup, schema, store
 from tms_db.crc64 import Crc64
 from tms_db.history import Event, History, Run
-from tms_db.parameters import Parameters
+from tms_db.parameters import Change, Parameters
 from tms_db.tasks import Tasks
 
 BEGIN = datetime(2026, 1, 31, 6, 0, tzinfo=timezone.utc)
@@ -363,6 +367,53 @@ def test_a_restore_that_breaks_leaves_the_database_as_it_was(
     assert not [one for one in shared_db.list_collection_names() if one.startswith(backup.STAGED)]
     backup.restore(shared_db, file, silent, drop=True)
     assert [task.task_id for task in Tasks(shared_db).all()] == [1, 7]
+
+
+def test_a_run_that_was_active_at_the_backup_is_abandoned_by_the_restore(
+    shared_db: store.Db, other_db: store.Db, tmp_path: Path
+) -> None:
+    fill(shared_db)
+    schema.bring_up(shared_db)
+    ended = Run("r1", 4, "text", "success", "", ("zx200",), BEGIN, BEGIN)
+    active = Run("r2", 4, "text", "running", "", ("zx200",), BEGIN, None, ("zx200/initial_pose",))
+    History(shared_db).write([ended, active], [Event("r2", 1, BEGIN, "node")])
+    with pytest.raises(DbError, match="run r2 uses it"):
+        Parameters(shared_db).set("zx200", "initial_pose", Change({"trajectory": 2}))
+    file = tmp_path / "b.archive"
+    backup.backup(shared_db, file, silent)
+    backup.restore(other_db, file, silent)
+    runs = {run.run_id: run for run in History(other_db).runs()}
+    assert runs["r1"] == ended
+    closed = runs["r2"]
+    assert (closed.state, closed.reason) == ("abandoned", "restored from a backup")
+    assert closed.ended_at is not None
+    assert abs(datetime.now(timezone.utc) - closed.ended_at) < timedelta(minutes=1)
+    assert replace(closed, state="running", reason="", ended_at=None) == active
+    Parameters(other_db).set("zx200", "initial_pose", Change({"trajectory": 2}))  # static, and locked by no run
+    backup.restore(other_db, file, silent, drop=True)
+
+
+def test_a_store_that_is_lost_while_collections_change_places_is_told_as_such(
+    shared_db: store.Db, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "a.archive"
+    file.write_bytes(GOOD)
+    shared_db["task"].insert_one({"task_id": 5, "task_sequence": SEQUENCE})
+    rename, calls = Collection.rename, count(1)
+
+    def lost(self: Collection[Any], *given: Any, **more: Any) -> Any:
+        if next(calls) == 3:
+            raise AutoReconnect("connection closed")
+        return rename(self, *given, **more)
+
+    monkeypatch.setattr(Collection, "rename", lost)
+    code, text = refusal(lambda: backup.restore(shared_db, file, silent, drop=True))
+    assert code == "STORE_DOWN"
+    assert "the store does not answer" in text
+    assert "replaced only in part: run the same restore with --drop again" in text
+    backup.restore(shared_db, file, silent, drop=True)
+    assert content(shared_db) == {name: sorted(map(bson.encode, rows)) for name, rows in CPP.items() if rows}
+    assert not [one for one in shared_db.list_collection_names() if one.startswith(backup.STAGED)]
 
 
 @pytest.fixture

@@ -13,6 +13,8 @@ from itertools import count
 from typing import Any
 
 import pytest
+from pymongo.collection import Collection
+from pymongo.errors import AutoReconnect
 
 from stores import Server
 from tms_core.errors import DbError, TaskError
@@ -426,6 +428,36 @@ def test_the_last_changes_of_a_record(shared_db: store.Db) -> None:
     batched.connection.stop()
 
 
+@pytest.mark.parametrize("done", [0, 1, 2])
+def test_a_change_is_told_once_though_its_write_was_repeated(
+    shared_db: store.Db, monkeypatch: pytest.MonkeyPatch, done: int
+) -> None:
+    batched = Batched(shared_db)
+    past = Past(shared_db, batched.connection, logging.getLogger("test"))
+    write, keys = Collection.bulk_write, (("zx200", "a"), ("zx200", "b"))
+
+    def lost(self: Collection[Any], steps: list[Any], **more: Any) -> None:
+        if done:
+            write(self, steps[:done], **more)
+        raise AutoReconnect("the connection went before the answer came")
+
+    stamp = BEGIN.replace(microsecond=123_456)  # finer than the store keeps it
+    for key in keys:
+        past.note(key, stamp, "cli", {"x": 1, "s": "a", "d": [1.5, 2.0]})
+    with monkeypatch.context() as patch:
+        patch.setattr(Collection, "bulk_write", lost)
+        past._store_new()
+    assert [len(past.changes(key)) for key in keys] == [1, 1]
+    past.note(keys[0], stamp, "cli", {"x": 2})
+    deadline = time.monotonic() + 20
+    while past._new and time.monotonic() < deadline:  # the connection comes back by itself
+        past._store_new()
+        time.sleep(0.02)
+    assert not past._new
+    assert [[change["values"]["x"] for change in past.changes(key)] for key in keys] == [[2, 1], [1]]
+    batched.connection.stop()
+
+
 @pytest.mark.parametrize(
     ("stored", "sent", "said"),
     [
@@ -507,6 +539,16 @@ def test_bad_journal_is_refused_whole(db: store.Db) -> None:
     assert code_of(lambda: history.write([run("r1")], [event("r1", 1), event("r1", 0)])) == "BAD_JOURNAL"
     assert code_of(lambda: history.write([run("")], [])) == "BAD_JOURNAL"
     assert history.runs() == []
+
+
+@pytest.mark.parametrize("size", [16 * 2**20 + 100, 17 * 2**20, 50 * 2**20])
+def test_an_entry_that_is_too_large_is_told_as_such(shared_db: store.Db, size: int) -> None:
+    """By the store or by its driver, whichever looks first: who writes must not try again for ever."""
+    history, text = History(shared_db), "x" * size
+    assert code_of(lambda: history.write([], [event("r1", 1), replace(event("r1", 2), text=text)])) == "TOO_LARGE"
+    assert code_of(lambda: history.write([replace(run("r1"), reason=text)], [])) == "TOO_LARGE"
+    history.write([run("r1")], [event("r1", n) for n in (1, 3)])
+    assert [e.number for e in history.events("r1")] == [1, 3]
 
 
 def test_two_writers_of_one_journal_lose_nothing(shared_db: store.Db) -> None:

@@ -6,14 +6,13 @@ import time
 from collections.abc import Callable
 from typing import Protocol
 
-from tms_ts.bt.errors import short
+from tms_ts.bt.errors import MAX_WARNINGS, short
 from tms_ts.bt.node import Observer
 from tms_ts.world import World
 
 ENDLESS_ROUNDS = 100  # rounds that one endless loop may make in a tick
 ALL_ROUNDS = 10_000  # rounds of all loops of the tree together in a tick
 TICK_SECONDS = 0.02  # a loop that finds the tick older than this yields
-MAX_WARNINGS = 500
 
 
 class Timer(Protocol):

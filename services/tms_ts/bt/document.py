@@ -9,7 +9,7 @@ from pathlib import Path
 from lxml import etree
 
 from tms_core.xml_text import MAX_BYTES, MAX_DEPTH
-from tms_ts.bt.errors import TreeError
+from tms_ts.bt.errors import MAX_WARNINGS, TreeError, short
 from tms_ts.bt.source import Source, line_of, parse, read_file
 
 MAX_FILES = 50
@@ -31,6 +31,15 @@ class Document:
     trees: list[TreeElement] = field(default_factory=list)  # all of them, first registered first
     models: dict[str, frozenset[str]] = field(default_factory=dict)  # ID -> ports, by TreeNodesModel
     warnings: list[tuple[int, str]] = field(default_factory=list)
+
+    @property
+    def warns(self) -> bool:
+        """Whether further warnings are kept."""
+        return len(self.warnings) < MAX_WARNINGS
+
+    def warn(self, line: int, text: str) -> None:
+        if self.warns:
+            self.warnings.append((line, short(text)))
 
     def by_id(self) -> dict[str, TreeElement]:
         found: dict[str, TreeElement] = {}
@@ -98,8 +107,7 @@ class _Reader:
             if name is None:
                 name, self.unnamed = f"BehaviorTree_{self.unnamed}", self.unnamed + 1
             if name in known:
-                line = line_of(child)
-                self.document.warnings.append((line, f"there are two trees {name!r}; the first one is used"))
+                self.document.warn(line_of(child), f"there are two trees {name!r}; the first one is used")
             known.add(name)
             self.document.trees.append(TreeElement(name, child, source, v4))
 

@@ -11,6 +11,8 @@ from collections.abc import Iterable
 
 from tms_core.errors import TaskError
 
+MAX_WARNINGS = 500  # of one tree; more than that helps nobody
+
 
 class TreeError(TaskError):
     """A tree document that is refused, with the place to look at."""

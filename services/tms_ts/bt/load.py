@@ -59,10 +59,11 @@ def _build(document: Document, rules: Rules, context: Context, values: Mapping[s
     outermost = Blackboard()
     for key, value in (values or {}).items():
         outermost.set(key, value)
-    context.warnings.extend(document.warnings)
     builder = Builder(document, rules, context)
     root = builder.build(outermost)
     advise(builder.nodes)
+    for line, text in document.warnings:  # last: what is not used must leave room for what is
+        context.warn(line, text)
     return Tree(root, builder.nodes, builder.blackboards, context, document.text, document.main)
 
 

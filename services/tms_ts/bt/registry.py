@@ -66,9 +66,6 @@ class Registry(Mapping[str, type[Node]]):
             _prepare(cls)
         return Registry({**self._classes, **{cls.__name__: cls for cls in classes}}, self._stand_ins)
 
-    def without(self, *names: str) -> Registry:
-        return Registry({k: v for k, v in self._classes.items() if k not in names}, self._stand_ins)
-
     def stand_in_for(self, name: str, ports: frozenset[str]) -> type[Node] | None:
         """A class for an ID that only the document's TreeNodesModel knows, if its ports tell what it is."""
         for base in self._stand_ins:

@@ -98,16 +98,18 @@ class Rules:
             use = self.use(element, tree)
             count = sum(1 for _ in children(element))
             broken = self.broken_form(use, count, tree)
+            if not broken and not self.document.warns and (not used or ignored(element)):
+                continue  # looking for near names takes long: not for what nobody is told
             problem = broken or self.cannot_be_made(use, count, tree)
             if problem is None:
                 continue
             unused = f"the tree {tree.id!r} is not used" if not used else ""
-            if any(above.tag == "SubTreePlus" for above in element.iterancestors()):
+            if ignored(element):
                 unused = "what is inside a SubTreePlus is ignored"
             if broken or not unused:
                 yield self.error(tree, element, *problem)
             else:
-                self.document.warnings.append((line_of(element), f"{unused}, and could not be used: {problem[0]}"))
+                self.document.warn(line_of(element), f"{unused}, and could not be used: {problem[0]}")
 
     def used_trees(self) -> set[int]:
         """The `id` of the trees that the main tree leads to; of all trees if there is no main tree."""
@@ -187,3 +189,7 @@ class Rules:
             if port not in use.attributes and cls.ports[port].default is MISSING:
                 return f"{use.id} needs {port!r}", ""
         return None
+
+
+def ignored(element: etree._Element) -> bool:
+    return any(above.tag == "SubTreePlus" for above in element.iterancestors())

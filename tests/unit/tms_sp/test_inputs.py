@@ -21,7 +21,7 @@ class Heard:
         self.posts: list[Post] = []
         self.full = False
         parsed = Input.model_validate(wanted)
-        self.input = SensingInput("one", parsed, Mapping(parsed, FIELDS), 0.5, self.put)
+        self.input = SensingInput("one", parsed, Mapping(parsed, FIELDS, {}.__getitem__), 0.5, self.put)
 
     def put(self, post: Post) -> bool:
         self.posts.append(post)

@@ -17,8 +17,18 @@ JOINTS = {"header": "std_msgs/Header", "name": "sequence<string>", "position": "
 HEAD = {"model_name": "zx200", "record_name": "p"}
 
 
+# A stamped pose, and what is inside its parts.
+POSE = {"header": "std_msgs/Header", "pose": "geometry_msgs/Pose", "covariance": "double[36]"}
+INSIDE = {
+    "std_msgs/Header": {"stamp": "builtin_interfaces/Time", "frame_id": "string"},
+    "builtin_interfaces/Time": {"sec": "int32", "nanosec": "uint32"},
+    "geometry_msgs/Pose": {"position": "geometry_msgs/Point", "orientation": "geometry_msgs/Quaternion"},
+    "geometry_msgs/Point": {"x": "double", "y": "double", "z": "double"},
+}
+
+
 def mapping(message: dict[str, str], /, **given: Any) -> Mapping:
-    return Mapping(Input.model_validate({"topic": "/t", "type": "a/msg/B", **given}), message)
+    return Mapping(Input.model_validate({"topic": "/t", "type": "a/msg/B", **given}), message, INSIDE.__getitem__)
 
 
 def joints(*positions: float) -> Message:
@@ -58,6 +68,11 @@ def test_fields_of_its_own_with_units_elements_and_names() -> None:
         ({"x": math.inf, "y": 0.0}, "NOT_FINITE", "x is inf"),
         ({"x": 9.0, "y": 0.0}, "OUT_OF_RANGE", "x is 9, not from -5 to 5"),
         ({"x": 0.0, "y": 0.0, "record_name": " "}, "NO_RECORD", "names no record"),
+        ({"x": 0.0, "y": 2**63}, "OUT_OF_RANGE", "y is 9223372036854775808, the largest whole number is"),
+        ({"x": 0.0, "y": [1, 2**64 - 1]}, "OUT_OF_RANGE", "y is 18446744073709551615"),
+        ({"x": 0.0, "y": Message(z=1.0)}, "NO_FIELD", "y is a SimpleNamespace, not a number, text, true/false or an"),
+        ({"x": 0.0, "y": [Message(z=1.0)]}, "NO_FIELD", "y is a list, not a number"),
+        ({"x": 0.0, "y": b"\x01"}, "NO_FIELD", "y is a bytes, not a number"),
     ],
 )
 def test_what_is_refused(message: dict[str, Any], code: str, said: str) -> None:
@@ -83,6 +98,45 @@ def test_fields_that_stay() -> None:
 def test_a_message_without_the_field_is_told_before_anything_starts() -> None:
     with pytest.raises(ValueError, match="the message has no field 'z'"):
         mapping(EXCAVATE, fields={"z": "z"})
+
+
+@pytest.mark.parametrize(
+    ("fields", "given", "said"),
+    [
+        (POSE, {"fields": {"p": "pose.position"}}, "pose.position is a geometry_msgs/Point, not a number, text, "
+         "true/false or an array of these; there is pose.position.x, pose.position.y, pose.position.z"),
+        (POSE, {"fields": {"p": "pose"}}, "pose is a geometry_msgs/Pose, not a number"),
+        (POSE, {}, "pose is a geometry_msgs/Pose, not a number, text, true/false or an array of these: name under "
+         "`fields` what is wanted; there is pose.position, pose.orientation"),
+        (POSE, {"fields": {"p": "pose.position.a"}}, r"no 'a' \(there: x, y, z\)"),
+        (POSE, {"fields": {"p": "pose.position.x.a"}}, r"no 'a' \(there: none in a double\)"),
+        (POSE, {"fields": {"p": "pose.position.x[0]"}}, "x is a double, no array"),
+        (POSE, {"fields": {"p": "covariance[x]"}}, "no array of texts called 'name' beside covariance"),
+        (POSE, {"fields": {"p": "header.stamp"}}, "header.stamp is a builtin_interfaces/Time.*header.stamp.nanosec"),
+        ({"p": "sequence<geometry_msgs/Point>"}, {}, r"p is a geometry_msgs/Point\[\], not .* there is p\[0\].x"),
+        ({"p": "octet"}, {}, "p is a octet, not a number"),
+        (POSE, {"fields": {"x": "pose.position.x"}, "record": "$pose"}, "pose is a geometry_msgs/Pose, not a text or"),
+        (POSE, {"fields": {"x": "pose.position.x"}, "keep": "covariance"}, r"covariance is a double\[\], not an array"),
+        (POSE, {"fields": {"x": "pose.position.x"}, "stamp": "header.frame_id"}, "header.frame_id is a string, not a"),
+    ],
+)  # fmt: skip
+def test_a_field_that_no_record_can_hold_is_told_before_anything_starts(
+    fields: dict[str, str], given: dict[str, Any], said: str
+) -> None:
+    with pytest.raises(ValueError, match=said):
+        mapping(fields, **{"model": "m", "record": "r", **given})
+
+
+@pytest.mark.parametrize(
+    ("kind", "path"),
+    [
+        ("boolean", "a"), ("uint64", "a"), ("float", "a"), ("wstring", "a"), ("string<10>", "a"),
+        ("sequence<double, 3>", "a"), ("sequence<string<5>, 3>", "a"), ("double[9]", "a"), ("uint8[4]", "a[2]"),
+        ("sequence<geometry_msgs/Point>", "a[0].x"), ("geometry_msgs/Pose", "a.position.z"),
+    ],
+)  # fmt: skip
+def test_a_field_that_a_record_can_hold_is_taken(kind: str, path: str) -> None:
+    mapping({"a": kind, "b": "int8"}, model="m", record="r", fields={"f": path})
 
 
 @pytest.mark.parametrize(

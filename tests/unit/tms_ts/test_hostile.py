@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tms_ts.bt import TreeError, check, load
+from tms_ts.bt.errors import MAX_WARNINGS
 from unit.tms_ts.trees import document
 
 LAUGHS = [f'<Sequence><SubTree ID="T{i + 1}"/><SubTree ID="T{i + 1}"/></Sequence>' for i in range(1, 31)]
@@ -63,3 +64,28 @@ def test_the_text_may_declare_any_encoding() -> None:
     text = '<?xml version="1.0" encoding="Shift_JIS"?>\n' + document("<AlwaysSuccess name='待機'/>")
     assert load(text.encode()).root.name == "待機"
     assert load("\ufeff" + text).root.line == 4
+
+
+MANY = '<Action ID="AlwaysSucces"/>\n' * 100_000
+TWICE = '<BehaviorTree ID="M"><AlwaysFailure/></BehaviorTree>\n' * 9000
+UNUSED = {
+    "tree": document("<AlwaysSuccess/>", f"<Sequence>{MANY}</Sequence>").replace("T1", "T" * 1000),
+    "inside": document(f'<SubTreePlus ID="T1">{MANY}</SubTreePlus>', "<AlwaysSuccess/>"),
+    "twice": document("<AlwaysSuccess/>").replace("</root>", f"{TWICE}</root>"),
+}
+
+
+@pytest.mark.parametrize("text", UNUSED.values(), ids=UNUSED)
+def test_warnings_about_what_is_not_used_are_bounded(text: str) -> None:
+    """Each of them looks for a near name, which 160 000 times took half a minute."""
+    start = time.monotonic()
+    loaded = load(text)
+    report = check(text)
+    assert time.monotonic() - start < 10  # s, on a busy machine; alone it takes 2
+    assert len(loaded.warnings) == len(report.warnings) == MAX_WARNINGS
+    assert max(len(warning) for _, warning in loaded.warnings) <= 400
+
+
+def test_what_is_not_used_does_not_hide_warnings_about_what_is() -> None:
+    body = '<Repeat num_cycles="-1"><AlwaysSuccess/></Repeat>'
+    assert "endless" in load(document(body, f"<Sequence>{MANY}</Sequence>")).warnings[0][1]

@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from tms_ts.spool import Spool, SpoolFull
+from tms_ts import spool as module
+from tms_ts.spool import PIECE, Spool, SpoolFull
 
 
 def test_lines_come_in_order_and_are_forgotten_when_done(tmp_path: Path) -> None:
@@ -39,3 +40,34 @@ def test_it_is_bounded(tmp_path: Path) -> None:
     spool.put(b"0123456789")
     with pytest.raises(SpoolFull):
         spool.put(b"more")
+
+
+def test_a_line_longer_than_a_batch_comes_alone_and_blocks_nobody(tmp_path: Path) -> None:
+    spool = Spool(tmp_path / "journal")
+    long = b"x" * (5 * PIECE)
+    for line in (b"before", long, b"next"):
+        spool.put(line)
+    found = []
+    for _ in range(3):
+        lines, end = spool.batch(200)
+        found.append(lines)
+        spool.done(end)
+    assert found == [[b"before"], [long], [b"next"]]
+    assert not spool.waiting()
+
+
+def test_what_is_done_does_not_fill_a_queue_that_never_gets_empty(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, "OLD", 100)
+    spool = Spool(tmp_path / "journal", largest=300)
+    spool.put(b"%030d" % 0)
+    for number in range(1, 100):
+        spool.put(b"%030d" % number)  # one more always waits
+        lines, end = spool.batch(1)
+        assert lines == [b"%030d" % (number - 1)]
+        spool.done(end)
+    assert [file.name for file in tmp_path.iterdir()] == ["journal"]
+    assert (tmp_path / "journal").stat().st_mode & 0o777 == 0o600
+    spool.close()
+    assert Spool(tmp_path / "journal").batch(9)[0][-1] == b"%030d" % 99

@@ -1,0 +1,63 @@
+"""What a path of sensing.yaml ends at, told before the first message from the types of the message's fields."""
+
+import re
+from collections.abc import Callable, Collection
+
+NUMBERS = {"float", "double", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64))}
+PLAIN = {"boolean", "string", "wstring", *NUMBERS}  # an octet comes as bytes, which no record holds
+VALUES = {*PLAIN, *(f"{kind}[]" for kind in PLAIN)}
+NAMES = {"string[]", "wstring[]"}
+STAMPS = {"builtin_interfaces/Time", *NUMBERS}
+PART = re.compile(r"(\w+)(?:\[([^\]]+)\])?")  # a field, maybe with the number or name of an element
+ARRAY = re.compile(r"sequence<(.+?)(?:, \d+)?>|(.+)\[\d+\]")
+BOUND = re.compile(r"<\d+>")  # of a text's length
+
+Fields = dict[str, str]  # name -> type, as a message class tells them
+FieldsOf = Callable[[str], Fields]  # of a message inside another one, `package/Name`
+
+
+class FieldTypes:
+    """The types of a message's fields, and of what is inside them."""
+
+    def __init__(self, fields: Fields, fields_of: FieldsOf) -> None:
+        self._fields, self._fields_of = fields, fields_of
+
+    def check(self, path: str, allowed: Collection[str], what: str) -> None:
+        """Refuse a path that ends at anything but the `allowed` types.
+
+        Raises:
+            ValueError: names the path, its type, and what is inside it.
+        """
+        kind = self._at(path)
+        if kind in allowed:
+            return
+        inside = self._inside(kind.removesuffix("[]"))
+        stem = f"{path}[0]" if kind.endswith("[]") else path
+        hint = ", ".join(f"{stem}.{name}" for name in inside)
+        raise ValueError(f"{path} is a {kind}, not {what}" + (f"; there is {hint}" if hint else ""))
+
+    def _at(self, path: str) -> str:
+        """The type at the end of a path; `kind[]` for an array of whatever length."""
+        fields, kind = self._fields, ""
+        for name, index in (found.groups() for found in PART.finditer(path)):
+            fields = self._inside(kind) if kind else fields
+            if name not in fields:
+                there = ", ".join(fields) or f"none in a {kind}"
+                raise ValueError(f"the message has no field '{path}': no '{name}' (there: {there})")
+            kind = _plain(fields[name])
+            if index is not None:
+                if not kind.endswith("[]"):
+                    raise ValueError(f"{path}: {name} is a {kind}, no array")
+                if not index.isdecimal() and _plain(fields.get("name", "")) not in NAMES:
+                    raise ValueError(f"{path}: no array of texts called 'name' beside {name}: give a number")
+                kind = kind.removesuffix("[]")
+        return kind
+
+    def _inside(self, kind: str) -> Fields:
+        return self._fields_of(kind) if "/" in kind and not kind.endswith("[]") else {}
+
+
+def _plain(kind: str) -> str:
+    kind = BOUND.sub("", kind)
+    array = ARRAY.fullmatch(kind)
+    return f"{array[1] or array[2]}[]" if array else kind
