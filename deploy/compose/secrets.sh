@@ -10,7 +10,7 @@ random() { head -c "$1" /dev/urandom | base64 | tr -d '\n=+/'; }
 [ -e "$folder/grafana_password" ] || random 24 >"$folder/grafana_password"
 [ -e "$folder/mongodb_uri" ] || printf 'mongodb://tms:%s@127.0.0.1:27017/?replicaSet=rs0&authSource=admin' \
   "$(cat "$folder/mongodb_password")" >"$folder/mongodb_uri"
-# Containers read them as users of their own; the folder keeps others out.
+# Containers read them as users of their own, each bound by itself; the folder keeps everybody else here out.
 chmod 0444 "$folder"/*
-chmod 0711 "$folder"
+chmod 0700 "$folder"
 echo "secrets are in $folder"

@@ -24,6 +24,7 @@ from tms_core.environment import environment
 from tms_core.errors import ConfigError, TmsError
 from tms_core.processes import Process, here
 from tms_host.supervisor import Supervisor, render, runtime_folder
+from tms_ur.address import certificate
 
 NEEDED_BYTES = 100 * 2**20  # for logs
 READY_LIMIT = 60.0  # s for all processes to be able to work
@@ -57,6 +58,8 @@ def check(site: Site) -> tuple[Process, ...]:
     environment(site)
     if any(row.name == "store" for row in rows):  # another PC of the site has no need of it
         store.check(site)
+    if any(row.name == "ur" for row in rows):
+        certificate(site)
     try:
         (site.state / "log").mkdir(parents=True, exist_ok=True)
         (site.state / "ros").mkdir(exist_ok=True)
@@ -79,7 +82,7 @@ def up(site: Site, foreground: bool = False) -> bool:
     rows = check(site)
     if site.pc is not None:
         (site.state / pcs.CHOICE).write_text(site.pc, encoding="utf-8")  # for the verbs that follow
-    monitoring.render(site, site.state / "prometheus")
+    monitoring.render(site, site.state / "prometheus", os.environ.get("TMS_ALERTS_TO"))
     supervisor = Supervisor(site)
     with _domain(site.domain) as lock:
         if supervisor.alive():

@@ -1,6 +1,7 @@
 """Prometheus' folder for a site: its configuration, the rules, and the targets of the process table."""
 
 import json
+import re
 import shutil
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from tms_core.processes import table
 
 SOURCE = PROJECT / "deploy" / "prometheus"
 COPIED = ("prometheus.yml", "rules.yml")
+HOST_PORT = re.compile(r"(\[[0-9A-Fa-f:.]+\]|[0-9A-Za-z._-]+):([0-9]{1,5})")
 
 
 def targets(site: Site) -> list[dict[str, object]]:
@@ -35,8 +37,10 @@ def render(site: Site, folder: Path, alertmanager: str | None = None) -> None:
     """Write everything that `prometheus --config.file=FOLDER/prometheus.yml` reads; it notices new targets itself.
 
     Raises:
-        ConfigError: the folder cannot be written.
+        ConfigError: the folder cannot be written, or `alertmanager` is no HOST:PORT (Prometheus would not start).
     """
+    if alertmanager:
+        _check(alertmanager)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for name in COPIED:
@@ -47,6 +51,15 @@ def render(site: Site, folder: Path, alertmanager: str | None = None) -> None:
             _replace(folder / "alertmanagers.json", json.dumps(chosen))
     except OSError as error:
         raise ConfigError(f"{folder}: cannot be written ({error.strerror})") from error
+
+
+def _check(alertmanager: str) -> None:
+    found = HOST_PORT.fullmatch(alertmanager)
+    if found is None or not 0 < int(found[2]) < 65536:
+        raise ConfigError(
+            f"where alerts go is no HOST:PORT: '{alertmanager}': write it like 127.0.0.1:9093 "
+            "(TMS_ALERTS_TO, or `tms prometheus --alertmanager`)"
+        )
 
 
 def _replace(path: Path, text: str) -> None:

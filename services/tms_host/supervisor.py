@@ -176,7 +176,8 @@ class Supervisor:
         if name not in states:
             raise TmsError(f"no process '{name}' on this PC: `tms ps` lists them", "NO_PROCESS")
         up = states[name] in ("RUNNING", "STARTING")
-        if command in ("stop", "restart") and up:
+        again = states[name] == "BACKOFF"  # it has ended early and is about to be started again: stopping ends that
+        if again or (up and command in ("stop", "restart")):
             self._call("stopProcess", name, True)
         if command in ("start", "restart") and not (command == "start" and up):
             self._call("startProcess", name, False)

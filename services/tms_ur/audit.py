@@ -19,7 +19,11 @@ from tms_core.ros import Ros
 RUN = "audit"
 MOST_WAITING = 1000
 RETRY = 1.0  # s
-LOST = Counter("tms_ur_audit_lost_total", "Commands that are in the log only: the database was away too long")
+LOST = Counter(
+    "tms_ur_audit_lost_total", "Commands that are in the log only: the database was away too long, or could not take it"
+)
+# What a conversion to ROS raises: a text that is no Unicode (a ValueError), a number that does not fit, a wrong type.
+UNSENDABLE = (ValueError, OverflowError, TypeError, AssertionError)
 log = logging.getLogger(__name__)
 
 
@@ -58,9 +62,13 @@ class Audit:
                 event = self._waiting.get(timeout=0.2)
             except queue.Empty:
                 continue
-            while not self._written(event):
-                if self._closing.wait(RETRY):
-                    return
+            try:
+                while not self._written(event):
+                    if self._closing.wait(RETRY):
+                        return
+            except UNSENDABLE as error:  # this one never goes; those behind it must
+                LOST.inc()
+                log.error("event=audit_lost what=%s number=%d reason=%r", event.kind, event.number, str(error))
 
     def _written(self, event: Event) -> bool:
         try:

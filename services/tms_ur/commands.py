@@ -1,5 +1,6 @@
 """Endpoints that change something: each says who may, and each is audited."""
 
+import math
 import threading
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -166,8 +167,23 @@ def _typed(field: FieldGiven) -> Any:
     wrong = [one for one in values if not isinstance(one, kinds[kind]) or isinstance(one, bool) != (kind == "bool")]
     if wrong or several != isinstance(field.value, list):
         raise TmsError(f"{field.name}: {field.value!r} is no {field.type}", "BAD_VALUE")
+    if not all(_fits(kind, one) for one in values):
+        limits = {"int": "has 64 bits", "double": "is finite", "string": "is valid Unicode"}
+        raise TmsError(f"{field.name}: {field.value!r} cannot be stored: a {kind} {limits[kind]}", "BAD_VALUE")
     typed = [float(one) if kind == "double" else one for one in values]
     return typed if several else typed[0]
+
+
+def _fits(kind: str, value: Any) -> bool:
+    """Whether ROS and the database can hold it: JSON also has longer numbers, and halves of characters."""
+    try:
+        if kind == "double":
+            return math.isfinite(value)
+        if kind == "string":
+            value.encode()
+    except (OverflowError, UnicodeEncodeError):
+        return False
+    return kind != "int" or -(2**63) <= value < 2**63
 
 
 def _processes(app: FastAPI, gateway: "Gateway", note: _Note) -> None:

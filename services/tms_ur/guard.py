@@ -118,8 +118,8 @@ class Guard:
             return Refusal(403, "FOREIGN_ORIGIN", f"commands from pages of '{origin}' are refused: use our own console")
         if headers.get("content-type", "").partition(";")[0].strip().lower() != "application/json":
             return Refusal(415, "NOT_JSON", "send commands with `Content-Type: application/json`")
-        length = headers.get("content-length", "0" if "transfer-encoding" not in headers else "")
-        if not length.isdigit():
+        length = headers.get("content-length", "0")
+        if "transfer-encoding" in headers or not length.isdigit():  # chunks count, whatever length stands beside them
             return Refusal(411, "NO_LENGTH", "send commands with a Content-Length")
         if int(length) > most:
             return Refusal(413, "TOO_LARGE", f"this command has {most} bytes at most")

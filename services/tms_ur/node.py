@@ -2,7 +2,6 @@
 
 import socket
 import threading
-from pathlib import Path
 
 import uvicorn
 
@@ -10,6 +9,7 @@ from tms_core.app import App
 from tms_core.config import Site
 from tms_core.errors import ConfigError
 from tms_core.site_file import Files, SiteFile
+from tms_ur import address
 from tms_ur.access import Access
 from tms_ur.api import create_app
 from tms_ur.audit import Audit
@@ -21,17 +21,17 @@ STOP_LIMIT = 0.8  # s for open requests to end; the runtime ends the process wit
 
 def start(app: App) -> None:
     """Listen on the console's port of the site file."""
-    listener = _listen(app.site)
     file = app.site.file
-    access = Access(_beside(app.site, file.console.users))
+    tls = address.certificate(app.site)
+    access = Access(address.beside(app.site, file.console.users))
+    listener = _listen(app.site)
     gateway, audit = Gateway(app.ros, app.site), Audit(app.ros)
-    server = Server(create_app(gateway, audit, app.site, access), listener, file.console.tls)
+    server = Server(create_app(gateway, audit, app.site, access), listener, tls)
     app.on_stop(audit.close)
     app.on_stop(server.stop)
     app.on_stop(gateway.board.close)  # first, so that the streams end
     app.ready_when(server.unready)
-    scheme = "https" if file.console.tls else "http"
-    app.log.info("event=listening url=%s://%s:%d access=%r", scheme, file.bind, file.ports.console, _told(file, access))
+    app.log.info("event=listening url=%s bind=%s access=%r", address.url(file), file.bind, _told(file, access))
 
 
 def _told(file: SiteFile, access: Access) -> str:
@@ -41,11 +41,6 @@ def _told(file: SiteFile, access: Access) -> str:
             "" if file.console.tls else ", passwords travel in the clear: set console.tls"
         )
     return "everybody at this PC" if is_loopback(file.bind) else "everybody may look, nobody may command: no users"
-
-
-def _beside(site: Site, file: Path | None) -> Path | None:
-    """A path of the site file is relative to it."""
-    return None if file is None else site.path.parent / file
 
 
 class Server:

@@ -3,6 +3,7 @@
 import difflib
 import re
 import time
+from collections import deque
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from fastapi import FastAPI, Path, Query, Request, Response
@@ -115,16 +116,11 @@ def _stored(app: FastAPI, gateway: "Gateway") -> None:
         name = f'attachment; filename="{run_id}.{form}"'
         return Response(export.FORMS[form](run_id, found), 200, {"Content-Disposition": name}, export.TYPES[form])
 
-    @app.get("/api/audit", summary="Who did what, oldest first", responses=problems(503))
+    @app.get("/api/audit", summary="The last of who did what, oldest first", responses=problems(503))
     def audit(
         hours: Annotated[float, Query(gt=0, le=24 * 366)] = 24, limit: Annotated[int, Query(ge=1, le=PAGE)] = PAGE
     ) -> list[Event]:
-        try:
-            return gateway.events(AUDIT, max(0, int(time.time() - hours * 3600)), limit)
-        except TmsError as error:
-            if error.code == "RUN_MISSING":  # nothing in that time
-                return []
-            raise
+        return _newest_of_audit(gateway, max(0, int(time.time() - hours * 3600)), limit)
 
     @app.get("/api/parameters", summary="Parameter records", responses=problems(503))
     def parameters(
@@ -179,6 +175,22 @@ def _all_events(gateway: "Gateway", run_id: str) -> list[Event]:
         if len(page) < PAGE:
             break
     return found
+
+
+def _newest_of_audit(gateway: "Gateway", after: int, limit: int) -> list[Event]:
+    """The journal goes forwards only, so all of the time is read, and no more than the end of it kept."""
+    newest: deque[Event] = deque(maxlen=limit)
+    while True:
+        try:
+            page = gateway.events(AUDIT, after, PAGE)
+        except TmsError as error:
+            if error.code != "RUN_MISSING":  # nothing in that time, or nothing after a full page
+                raise
+            page = []
+        newest.extend(page)
+        if len(page) < PAGE:
+            return list(newest)
+        after = page[-1].number
 
 
 def _finding(text: str) -> Finding:

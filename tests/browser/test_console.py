@@ -31,6 +31,12 @@ ASKING = """<root main_tree_to_execute="MainTree"><BehaviorTree ID="MainTree">
 """
 
 
+LOOK = """hidden => {
+    Object.defineProperty(document, "hidden", { configurable: true, get: () => hidden });
+    document.dispatchEvent(new Event("visibilitychange"));
+}"""  # what a browser with a screen does when its tab is changed; a headless one shows all of its pages
+
+
 def open_page(page: Page, address: str, name: str) -> None:
     page.goto(f"{address}/#{name}")
     expect(page.locator("#page")).to_have_attribute("data-page", name)
@@ -255,6 +261,38 @@ def test_a_lost_server_is_shown_and_heals(page: Page, address: str, idle: Mesh) 
     expect(page.locator("#stop_report")).to_contain_text("zx200: seen to stand")  # it was asked for again
     rearm(page)
     expect(page.locator("#list_tasks tr").first).to_be_visible()
+
+
+def test_the_stop_of_a_seventh_page_is_not_kept_waiting(page: Page, address: str, idle: Mesh) -> None:
+    """A browser has six connections to a server over all its pages: those that nobody looks at must hold none."""
+    others = [page.context.new_page() for _ in range(6)]
+    for other in others:
+        open_page(other, address, "run")
+        other.evaluate(LOOK, True)
+    idle.tms("run", str(SWINGS))
+    open_page(page, address, "run")
+    stop(page)
+    card = others[0].locator("[data-machine=zx200]")
+    expect(card).not_to_contain_text("Stopped because")  # it does not listen
+    others[0].evaluate(LOOK, False)
+    expect(card).to_contain_text("Stopped because")
+
+
+def test_a_page_that_is_looked_at_again_shows_nothing_old_as_new(page: Page, address: str, idle: Mesh) -> None:
+    open_page(page, address, "run")
+    card, lost = page.locator("[data-machine=zx200]"), page.locator("#lost")
+    expect(card).not_to_contain_text("No word")
+    page.evaluate(LOOK, True)
+    page.wait_for_timeout(2500)  # ms: longer than the silence after which a page that is looked at is told
+    expect(lost).to_be_hidden()
+    page.route("**/api/events", lambda route: None)  # the server takes its time
+    page.evaluate(LOOK, False)
+    expect(page.locator("#connecting")).to_be_visible()
+    expect(card).to_contain_text("No word")
+    expect(lost).to_be_visible()
+    page.unroute("**/api/events")
+    expect(lost).to_be_hidden()
+    expect(card).not_to_contain_text("No word")
 
 
 def test_both_languages_and_the_choice_is_remembered(page: Page, address: str, mesh: Mesh) -> None:

@@ -4,6 +4,7 @@ import json
 import os
 import signal
 import socket
+import ssl
 import subprocess
 import sys
 import time
@@ -110,6 +111,27 @@ def console(site: Site, tmp_path: Path) -> Iterator[Console]:
     try:
         until(running.ready, "/readyz 200")
         yield running
+    finally:
+        running.process.kill()
+        running.process.wait(10)
+
+
+def test_the_certificate_is_beside_the_site_file(site: Site, tmp_path: Path) -> None:
+    """And not where somebody happened to start the mesh."""
+    subprocess.run(
+        ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2", "-subj", "/CN=localhost",
+         "-keyout", str(tmp_path / "key.pem"), "-out", str(tmp_path / "cert.pem")], check=True, capture_output=True,
+    )  # fmt: skip
+    with site.path.open("a") as file:
+        file.write("console: {tls: {certificate: cert.pem, key: key.pem}}\n")
+    running = Console(site, spawn(site, tmp_path / "log.txt"), tmp_path / "log.txt")
+    try:
+        until(running.ready, "/readyz 200")
+        ours = ssl.create_default_context(cafile=str(tmp_path / "cert.pem"))
+        port = site.file.ports.console
+        with urllib.request.urlopen(f"https://localhost:{port}/", timeout=LIMIT, context=ours) as page:
+            assert page.status == 200
+        assert f"url=https://127.0.0.1:{port} " in running.log.read_text()
     finally:
         running.process.kill()
         running.process.wait(10)

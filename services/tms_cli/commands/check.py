@@ -7,6 +7,7 @@ from tms_cli.words import say
 from tms_core.config import load_site
 from tms_core.processes import table
 from tms_core.sensing import load_sensing
+from tms_ur.address import certificate
 
 
 @click.command()
@@ -22,6 +23,8 @@ def command(chosen: str | None, as_json: bool) -> None:
     """
     site = load_site(chosen) if chosen else session.site()
     rows = table(site)
+    if any(row.name == "ur" and row.pc in ("", site.pc) for row in rows):  # other PCs do not have its files
+        certificate(site)
     inputs = load_sensing(site).inputs
     if as_json:
         session.show_json(

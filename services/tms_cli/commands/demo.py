@@ -8,6 +8,7 @@ from tms_cli import live, mesh, session, stored_records
 from tms_cli.commands import run, task, up
 from tms_cli.words import say
 from tms_core.config import CONFIGS
+from tms_ur import address
 
 PARAMETERS = CONFIGS / "parameters" / "zx200.yaml"
 TASK = CONFIGS / "tasks" / "one_loading_cycle.xml"
@@ -35,7 +36,7 @@ def command(ctx: click.Context, as_json: bool) -> None:
         _say(task.stored_line(stored))
         end = run.Runner(node, stored.task_id, ignore_warnings=False).finish(live.display(as_json))
     run.report(end, as_json)
-    _say(say("console and API: {url}", url=f"http://{site.file.bind}:{site.file.ports.console}"))
+    _say(say("console and API: {url}", url=address.url(site.file)))
     if shutil.which("tms") is None:
         _say(say("`. .venv/bin/activate` puts the command tms on the path"))
     _say(say("the mesh goes on running: `make status` looks at it, `make down` ends it"))

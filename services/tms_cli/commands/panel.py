@@ -7,6 +7,7 @@ import click
 
 from tms_cli import session
 from tms_core.errors import TmsError
+from tms_ur import address
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 
@@ -27,9 +28,7 @@ def command(task_id: int, only_url: bool, as_json: bool) -> None:
       tms panel --task 4
       tms panel --task 4 --url
     """
-    file = session.site().file
-    host = "127.0.0.1" if file.bind in ("0.0.0.0", "::") else file.bind
-    url = f"http{'s' if file.console.tls else ''}://{host}:{file.ports.console}/panel.html?task={task_id}"
+    url = f"{address.url(session.site().file)}/panel.html?task={task_id}"
     if as_json:
         session.show_json({"url": url})
     if only_url and not as_json:

@@ -9,7 +9,7 @@ from tms_cli import monitoring, session
 
 @click.command()
 @click.option("-o", "--output", type=click.Path(path_type=Path), metavar="FOLDER", help="Default: in the state folder.")
-@click.option("--alertmanager", metavar="HOST:PORT", help="Where alerts go.")
+@click.option("--alertmanager", metavar="HOST:PORT", envvar="TMS_ALERTS_TO", help="Where alerts go.")
 @session.json_option
 def command(output: Path | None, alertmanager: str | None, as_json: bool) -> None:
     """Write Prometheus' configuration, rules and the targets of every process of the site.

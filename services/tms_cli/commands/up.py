@@ -9,6 +9,7 @@ from tms_cli.words import say
 from tms_core.config import Site
 from tms_core.errors import ConfigError
 from tms_core.processes import here
+from tms_ur import address
 
 
 @click.command()
@@ -34,8 +35,7 @@ def command(role: str | None, foreground: bool, no_wait: bool) -> None:
     if not no_wait:
         mesh.wait_ready(site, lambda text: click.echo(text, err=True))
         console = any(row.name == "ur" for row in here(site))
-        url = f"http://{site.file.bind}:{site.file.ports.console}"
-        click.echo(say("ready: {url}", url=url) if console else say("ready"), err=True)
+        click.echo(say("ready: {url}", url=address.url(site.file)) if console else say("ready"), err=True)
 
 
 def mesh_line(site: Site, started: bool) -> str:

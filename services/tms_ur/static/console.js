@@ -73,8 +73,8 @@ async function tellEnd(id) {
 }
 
 function linked(there) {
-  at("connecting").hidden = true;
-  at("lost").hidden = there;
+  at("connecting").hidden = there !== null;
+  at("lost").hidden = there !== false;
   document.body.classList.toggle("old", !there);
   if (there) {
     PAGES[shown].load?.();

@@ -57,7 +57,8 @@ ask("/api/session").then((session) => {
   }
   load();
   watch(heard, (there) => {
-    at("lost").hidden = there;
+    at("connecting").hidden = there !== null;
+    at("lost").hidden = there !== false;
     document.body.classList.toggle("old", !there);
   });
 }, (error) => say(error.message, true));

@@ -28,11 +28,15 @@ export async function ask(path, body, limit = LIMIT) {
   return answer;
 }
 
-/** Calls onState with every state and onLink(true or false) when the connection comes and goes. */
+/**
+ * Calls onState with every state and onLink(true or false) when the connection comes and goes; onLink(null) when the
+ * page is looked at again and it is not known yet.
+ */
 export function watch(onState, onLink) {
   let source = null;
   let connected = null;
   let heard = performance.now();
+  let awaited = heard; // since when silence counts: not while nobody listens
   let tried = -RETRY;
   let prolonged = performance.now();
   let last = null;
@@ -50,6 +54,7 @@ export function watch(onState, onLink) {
     source = new EventSource("/api/events");
     source.addEventListener("state", (event) => {
       heard = performance.now();
+      awaited = heard;
       link(true);
       last = JSON.parse(event.data);
       onState(last);
@@ -72,24 +77,44 @@ export function watch(onState, onLink) {
     onState({ ...last, machines: last.machines.map((machine) => ({ ...machine, state: "silent", joint_age: age(machine) })) });
   }
 
+  // A browser has six connections to us, whatever the number of its pages. One that nobody looks at keeps none of
+  // them, so that a stop in another one finds its own; and what it shows is old until the first state comes again.
+  function shown() {
+    if (document.hidden) {
+      source?.close();
+      return;
+    }
+    awaited = performance.now();
+    link(null);
+    if (last !== null) {
+      grow();
+    }
+    connect();
+  }
+
   // EventSource retries by itself only after some kinds of loss, and never notices silence.
   function check() {
     const now = performance.now();
-    if (now - heard > SILENCE) {
+    if (now - prolonged > PROLONG) {
+      prolong();
+    }
+    if (document.hidden) {
+      return;
+    }
+    if (now - awaited > SILENCE) {
       link(false);
     }
-    if (connected === false && last !== null) {
+    if (connected !== true && last !== null) {
       grow();
     }
     if (connected === false && now - tried > RETRY) {
       connect();
       prolong();
-    } else if (now - prolonged > PROLONG) {
-      prolong();
     }
   }
 
-  connect();
+  shown();
+  document.addEventListener("visibilitychange", shown);
   setInterval(check, 250);
 }
 

@@ -86,12 +86,29 @@ def test_secrets_are_made_once_and_never_shown(tmp_path: Path) -> None:
     assert {path.name: path.read_text() for path in (folder / "secrets").iterdir()} == made
     assert made["mongodb_password"] in made["mongodb_uri"] and made["mongodb_password"] not in first.stdout
     assert run("git", "-C", str(PROJECT), "check-ignore", "-q", "deploy/compose/secrets/x").returncode == 0
+    assert (folder / "secrets").stat().st_mode & 0o777 == 0o700  # no other user of this PC gets to the files
+
+
+def test_secrets_stay_out_of_the_image() -> None:
+    rules = (PROJECT / ".dockerignore").read_text().split()  # the last rule that fits decides
+    assert "deploy/compose/secrets" in rules[rules.index("!deploy") :]
+
+
+def test_alerts_go_to_the_alertmanager_beside_prometheus() -> None:
+    services = yaml.safe_load((DEPLOY / "compose" / "cps.yml").read_text())["services"]
+    to = services["tms"]["environment"]["TMS_ALERTS_TO"]
+    assert f"--web.listen-address={to}" in services["alertmanager"]["command"]
 
 
 @pytest.mark.skipif(not shutil.which("nft") or os.getuid() != 0, reason="nft checks only for root")
 def test_the_firewall_is_valid() -> None:
     done = run("nft", "-c", "-f", str(DEPLOY / "network" / "nftables.conf"))
     assert done.returncode == 0, done.stderr
+
+
+def test_the_firewall_lets_the_pcs_ask_the_cps_pc_for_the_time() -> None:
+    rules = (DEPLOY / "network" / "nftables.conf").read_text()
+    assert "iifname $site_interface ip saddr $site_pcs udp dport 123 accept" in rules
 
 
 def test_the_example_site_is_right_and_listens_on_its_own_addresses_only() -> None:

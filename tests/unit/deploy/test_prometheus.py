@@ -7,10 +7,13 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
 from conftest import PROJECT
 from tms_cli import monitoring
+from tms_cli.commands import prometheus
 from tms_core.config import load_site
+from tms_core.errors import ConfigError
 from tms_core.processes import table
 
 FOLDER = PROJECT / "deploy" / "prometheus"
@@ -56,6 +59,27 @@ def test_a_chosen_alertmanager_outlives_the_next_start(tmp_path: Path) -> None:
     site = load_site()
     monitoring.render(site, tmp_path, alertmanager="10.0.0.9:9093")
     monitoring.render(site, tmp_path)
+    assert json.loads((tmp_path / "alertmanagers.json").read_text()) == [{"targets": ["10.0.0.9:9093"]}]
+
+
+@pytest.mark.parametrize(
+    "wrong", ["alerts", "http://alerts:9093", "alerts:", ":9093", "alerts:0", "alerts:65536", "a b:1"]
+)
+def test_an_address_that_prometheus_would_not_start_with_is_refused(tmp_path: Path, wrong: str) -> None:
+    with pytest.raises(ConfigError, match="HOST:PORT"):
+        monitoring.render(load_site(), tmp_path, alertmanager=wrong)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("right", ["127.0.0.1:9093", "alerts.example:80", "[fd00::1]:9093"])
+def test_an_alertmanager_by_number_or_name(tmp_path: Path, right: str) -> None:
+    monitoring.render(load_site(), tmp_path, alertmanager=right)
+    assert json.loads((tmp_path / "alertmanagers.json").read_text()) == [{"targets": [right]}]
+
+
+def test_the_alertmanager_may_come_by_environment(tmp_path: Path) -> None:
+    words = ["-o", str(tmp_path)]
+    CliRunner().invoke(prometheus.command, words, env={"TMS_ALERTS_TO": "10.0.0.9:9093"}, catch_exceptions=False)
     assert json.loads((tmp_path / "alertmanagers.json").read_text()) == [{"targets": ["10.0.0.9:9093"]}]
 
 

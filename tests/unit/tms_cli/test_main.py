@@ -113,6 +113,24 @@ def test_panel_tells_its_address() -> None:
     assert done.stdout.endswith("/panel.html?task=4\n")
 
 
+@pytest.mark.parametrize(("bind", "host"), [("0.0.0.0", "127.0.0.1"), ("::1", "[::1]")])
+def test_panel_and_up_tell_an_address_that_a_browser_opens(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, bind: str, host: str
+) -> None:
+    from click.testing import CliRunner
+
+    from tms_cli import mesh
+    from tms_cli.main import tms as group
+
+    site = tmp_path / "site.yaml"
+    tls = "{certificate: cert.pem, key: key.pem}"
+    site.write_text(f"name: yard\ndomain: 1\nbind: '{bind}'\nconsole: {{tls: {tls}}}\nservices: {{ur: {{}}}}\n")
+    monkeypatch.setattr(mesh, "up", lambda *_: True)
+    monkeypatch.setattr(mesh, "wait_ready", lambda *_: None)
+    for words in (["panel", "--task", "4", "--url"], ["up"]):
+        assert f"https://{host}:8080" in CliRunner().invoke(group, ["--site", str(site), *words]).output
+
+
 def test_a_node_that_does_not_come_back_from_closing_keeps_nobody_waiting(monkeypatch: pytest.MonkeyPatch) -> None:
     import click
 

@@ -1,13 +1,14 @@
 """Every endpoint, every error, and what stands before them, with a site that is a fake."""
 
 import inspect
+import time
 from collections.abc import AsyncIterator
 
 import pytest
 
 from tms_core.errors import TmsError
 from tms_ur.guard import SECURITY, is_loopback
-from tms_ur.models import ActiveRun, Host, Joint, Machine, Process
+from tms_ur.models import ActiveRun, Event, Host, Joint, Machine, Process
 from unit.tms_ur.fakes import HERE, XML, Client, FakeAudit, FakeGateway, app
 
 READS = [
@@ -155,6 +156,47 @@ def test_values_that_do_not_fit_their_type(client: Client, gateway: FakeGateway,
     assert gateway.calls == []
 
 
+HUGE = str(10**400)
+
+
+@pytest.mark.parametrize(
+    ("kind", "value"),
+    [
+        ("string", '"\\ud800"'), ("string[]", '["a", "\\udfff"]'), ("int", str(2**63)),
+        ("int[]", f"[1, {-(2**63) - 1}]"), ("double", HUGE), ("double", "1e400"), ("double", "NaN"),
+        ("double[]", f"[1, -{HUGE}]"),
+    ],
+)  # fmt: skip
+def test_values_that_neither_ros_nor_the_database_can_hold(gateway: FakeGateway, kind: str, value: str) -> None:
+    audit = FakeAudit()
+    fields = f'[{{"name": "a", "type": "{kind}", "value": {value}}}]'
+    body = f'{{"model_name": "zx200", "record_name": "pose", "fields": {fields}}}'
+    headers = {"Content-Type": "application/json"}
+    answer = Client(app(gateway, audit=audit)).post("/api/parameters", content=body, headers=headers)
+    assert (answer.status_code, answer.json()["code"]) == (409, "BAD_VALUE")
+    assert gateway.calls == audit.notes == []
+
+
+@pytest.mark.parametrize(
+    ("kind", "value"), [("int", 2**63 - 1), ("int", -(2**63)), ("double", 2**70), ("string", "掘")]
+)
+def test_values_at_the_limits(client: Client, gateway: FakeGateway, kind: str, value: object) -> None:
+    body = {**RECORD, "fields": [{"name": "a", "type": kind, "value": value}]}
+    assert client.post("/api/parameters", json=body).status_code == 200
+    assert gateway.calls[0][3] == {"a": value}
+
+
+@pytest.mark.parametrize("key", ["model_name", "record_name", "name", "\\ud800"])
+def test_names_are_unicode(client: Client, gateway: FakeGateway, key: str) -> None:
+    names = {"model_name": "zx200", "record_name": "pose", "name": "a", key: "\\ud800"}
+    name = names.pop("name")
+    told = ", ".join(f'"{one}": "{text}"' for one, text in names.items())
+    body = f'{{{told}, "fields": [{{"name": "{name}", "type": "int", "value": 1}}]}}'
+    answer = client.post("/api/parameters", content=body, headers={"Content-Type": "application/json"})
+    assert (answer.status_code, answer.json()["code"]) == (422, "BAD_REQUEST")
+    assert gateway.calls == []
+
+
 def test_processes(client: Client, gateway: FakeGateway) -> None:
     assert client.get("/api/processes/zx200:rc/log?size=1000").json() == {"text": "event=started\n"}
     assert client.post("/api/processes/zx200:rc/restart", json={}).status_code == 200
@@ -185,6 +227,27 @@ def test_every_command_is_audited(gateway: FakeGateway) -> None:
         "stop",
     }  # fmt: skip
     assert {(who, where) for who, where, _, _ in audit.notes} == {("local", "127.0.0.1")}
+
+
+def test_the_audit_shows_the_newest(client: Client, gateway: FakeGateway, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One entry a second for 2500 s, the last of them in the second before now."""
+    now = int(time.time())
+
+    def events(run_id: str, after: int, limit: int) -> list[Event]:
+        assert run_id == "audit"
+        numbers = range(max(after + 1, now - 2500), now)[:limit]
+        if not numbers:
+            raise TmsError("there is no run 'audit'", "RUN_MISSING")
+        return [Event(number=number, stamp=None, kind="stop", node="", text="") for number in numbers]
+
+    monkeypatch.setattr(gateway, "events", events)
+    shown = [row["number"] for row in client.get("/api/audit").json()]
+    assert shown == list(range(now - 1000, now))
+    assert [row["number"] for row in client.get("/api/audit?limit=2").json()] == [now - 2, now - 1]
+    now -= 500  # the last page is a full one
+    assert len(client.get("/api/audit?limit=700").json()) == 700
+    now -= 10**6
+    assert client.get("/api/audit").json() == []
 
 
 def test_the_site_is_described(client: Client) -> None:
@@ -319,6 +382,9 @@ def test_commands_are_short(client: Client, gateway: FakeGateway) -> None:
     unknown = client.post("/api/runs", content=chunks(), headers=kind)
     assert (long.status_code, long.json()["code"]) == (413, "TOO_LARGE")
     assert (unknown.status_code, unknown.json()["code"]) == (411, "NO_LENGTH")
+    framed = {"Content-Length": "2", "Transfer-Encoding": "chunked"}
+    both = client.post("/api/runs", content=chunks(), headers={**kind, **framed})  # the chunks count
+    assert (both.status_code, both.json()["code"]) == (411, "NO_LENGTH")
     assert gateway.calls == []
 
 

@@ -1,0 +1,51 @@
+"""Where the console is and with which certificate, as the site file says; loads no web server, so that `tms` may ask.
+
+A path of the site file is relative to it, whatever the folder is in which somebody starts the mesh.
+"""
+
+import ssl
+from pathlib import Path
+
+from tms_core.config import Site
+from tms_core.errors import ConfigError
+from tms_core.site_file import Files, SiteFile
+
+ALL = {"0.0.0.0": "127.0.0.1", "::": "::1"}  # bound to all addresses: a browser of this PC takes this one
+
+
+def url(file: SiteFile) -> str:
+    """Where a browser of this PC finds the console."""
+    host = ALL.get(file.bind, file.bind)
+    shown = f"[{host}]" if ":" in host else host
+    return f"http{'s' if file.console.tls else ''}://{shown}:{file.ports.console}"
+
+
+def beside(site: Site, file: Path | None) -> Path | None:
+    """A path of the site file."""
+    return None if file is None else site.path.parent / file
+
+
+def certificate(site: Site) -> Files | None:
+    """Certificate and key that the web server can use; None where the site has none.
+
+    Raises:
+        ConfigError: one cannot be read, or they do not belong together.
+    """
+    given = site.file.console.tls
+    if given is None:
+        return None
+    found = Files(certificate=site.path.parent / given.certificate, key=site.path.parent / given.key)
+    for name, path in (("certificate", found.certificate), ("key", found.key)):
+        try:
+            path.open("rb").close()
+        except OSError as error:
+            raise ConfigError(f"{site.path}: console.tls.{name}: {path}: cannot be read ({error.strerror})") from error
+    try:
+        # Without a password of ours OpenSSL would ask for that of an encrypted key on the terminal.
+        ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER).load_cert_chain(found.certificate, found.key, password=lambda: "none")
+    except ssl.SSLError as error:
+        raise ConfigError(
+            f"{site.path}: console.tls: {found.certificate} and {found.key} are no certificate and its unencrypted "
+            f"key in PEM ({error.reason or error})"
+        ) from error
+    return found

@@ -1,0 +1,67 @@
+"""What `tms up` and `tms check` do before anything starts."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from conftest import site_data
+from tms_cli import mesh
+from tms_cli.commands import check
+from tms_core.config import Site, load_site
+from tms_core.errors import ConfigError
+
+PCS = {
+    "cps": {"address": "127.0.0.1", "roles": ["cps", "machine", "sim"]},
+    "sensing": {"address": "127.0.0.1"},
+}
+TLS = {"tls": {"certificate": "cert.pem", "key": "key.pem"}}
+
+
+@pytest.fixture(autouse=True)
+def state(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TMS_STATE", str(tmp_path / "state"))
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+    for name in ("ROS_DOMAIN_ID", "TMS_ALERTS_TO", "TMS_PC"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr(mesh, "_start", lambda *_: pytest.fail("something was started"))
+
+
+def site(folder: Path, **changes: Any) -> Site:
+    file = folder / "site.yaml"
+    file.write_text(yaml.safe_dump({**site_data(51, 21000), **changes}))
+    return load_site(str(file))
+
+
+@pytest.mark.parametrize("to", [None, "127.0.0.1:9093"])
+def test_alerts_go_where_the_environment_says(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, to: str | None) -> None:
+    ours = site(tmp_path)
+    monkeypatch.setattr(mesh, "check", lambda _: ())
+    monkeypatch.setattr(mesh.Supervisor, "alive", lambda _: True)  # it runs already, so nothing is started
+    if to:
+        monkeypatch.setenv("TMS_ALERTS_TO", to)
+    (tmp_path / "state").mkdir()
+    assert mesh.up(ours) is False
+    written = json.loads((tmp_path / "state" / "prometheus" / "alertmanagers.json").read_text())
+    assert written == ([{"targets": [to]}] if to else [])
+
+
+def test_a_console_without_its_certificate_is_told_before_anything_starts(tmp_path: Path, tms: Any) -> None:
+    ours = site(tmp_path, console=TLS, store={"kind": "mongodb", "uri": "mongodb://x/"})
+    with pytest.raises(ConfigError, match=rf"console\.tls\.certificate: {tmp_path}/cert.pem: cannot be read"):
+        mesh.up(ours)
+    assert "console.tls.certificate" in str(tms(check.command, "--site", ours.path).exception)
+    assert not (tmp_path / "state" / "supervisord.conf").exists()
+
+
+def test_a_pc_without_the_console_needs_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, tms: Any) -> None:
+    facts = {"console": TLS, "store": {"kind": "mongodb", "uri": "mongodb://x/"}, "pcs": PCS}
+    monkeypatch.setenv("TMS_PC", "cps")
+    assert "console.tls.certificate" in str(tms(check.command, "--site", site(tmp_path, **facts).path).exception)
+    for other in ("sensing", ""):  # the other one, or one that nobody has chosen yet
+        monkeypatch.setenv("TMS_PC", other)
+        assert tms(check.command, "--site", site(tmp_path, **facts).path).exit_code == 0
+    monkeypatch.setenv("TMS_PC", "sensing")
+    mesh.check(site(tmp_path, **facts))

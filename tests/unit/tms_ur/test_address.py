@@ -1,0 +1,89 @@
+"""Where the console is, and its certificate beside the site file."""
+
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tms_core.config import Site
+from tms_core.errors import ConfigError
+from tms_core.site_file import SiteFile
+from tms_ur import address
+
+TLS = {"certificate": "cert.pem", "key": "key.pem"}
+
+
+def file(bind: str = "127.0.0.1", **console: Any) -> SiteFile:
+    facts = {"name": "yard", "domain": 1, "services": {}, "ports": {"console": 8443}}
+    return SiteFile.model_validate({**facts, "bind": bind, "console": console})
+
+
+def make_certificate(folder: Path) -> None:
+    subprocess.run(
+        ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2", "-subj", "/CN=localhost",
+         "-keyout", str(folder / "key.pem"), "-out", str(folder / "cert.pem")], check=True, capture_output=True,
+    )  # fmt: skip
+
+
+@pytest.fixture
+def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Site:
+    """Its files are in a folder; somebody starts it from another one."""
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    monkeypatch.chdir(elsewhere)
+    return Site(tmp_path / "yard.yaml", file(tls=TLS), {}, tmp_path / "state")
+
+
+@pytest.mark.parametrize(
+    ("bind", "tls", "wanted"),
+    [
+        ("127.0.0.1", None, "http://127.0.0.1:8443"),
+        ("0.0.0.0", None, "http://127.0.0.1:8443"),  # nobody can open http://0.0.0.0
+        ("0.0.0.0", TLS, "https://127.0.0.1:8443"),
+        ("192.0.2.7", TLS, "https://192.0.2.7:8443"),
+        ("::", None, "http://[::1]:8443"),
+        ("site-pc", None, "http://site-pc:8443"),
+    ],
+)
+def test_a_browser_can_open_it(bind: str, tls: dict[str, str] | None, wanted: str) -> None:
+    assert address.url(file(bind, tls=tls)) == wanted
+
+
+def test_the_certificate_is_beside_the_site_file(site: Site, tmp_path: Path) -> None:
+    make_certificate(tmp_path)
+    found = address.certificate(site)
+    assert found is not None
+    assert (found.certificate, found.key) == (tmp_path / "cert.pem", tmp_path / "key.pem")
+
+
+def test_a_site_without_tls_has_none(tmp_path: Path) -> None:
+    assert address.certificate(Site(tmp_path / "yard.yaml", file(), {}, tmp_path / "state")) is None
+
+
+@pytest.mark.parametrize(("name", "key"), [("cert.pem", "certificate"), ("key.pem", "key")])
+def test_a_missing_file_is_named(site: Site, tmp_path: Path, name: str, key: str) -> None:
+    make_certificate(tmp_path)
+    (tmp_path / name).unlink()
+    with pytest.raises(ConfigError, match=rf"console\.tls\.{key}: {tmp_path}/{name}: cannot be read"):
+        address.certificate(site)
+
+
+def test_files_that_do_not_belong_together_are_refused(site: Site, tmp_path: Path) -> None:
+    make_certificate(tmp_path)
+    other = (tmp_path / "key.pem").read_text()
+    make_certificate(tmp_path)
+    (tmp_path / "key.pem").write_text(other)
+    with pytest.raises(ConfigError, match="no certificate and its unencrypted key"):
+        address.certificate(site)
+    (tmp_path / "key.pem").write_text("nonsense")
+    with pytest.raises(ConfigError, match="no certificate and its unencrypted key"):
+        address.certificate(site)
+
+
+def test_a_key_with_a_password_is_refused_and_not_asked_for(site: Site, tmp_path: Path) -> None:
+    make_certificate(tmp_path)
+    words = ["openssl", "rsa", "-aes128", "-passout", "pass:secret", "-in", "key.pem", "-out", "key.pem"]
+    subprocess.run(words, cwd=tmp_path, check=True, capture_output=True)
+    with pytest.raises(ConfigError, match="no certificate and its unencrypted key"):
+        address.certificate(site)
