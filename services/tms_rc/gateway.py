@@ -29,6 +29,7 @@ class Gateway:
     def __init__(self, app: App, guard: Guard, watch: StandStill) -> None:
         self._app, self._guard, self._watch = app, guard, watch
         self._model = app.site.model_of(app.machine)
+        self._speed = app.site.file.sim.speed if app.site.file.backend == "sim" else 1.0
 
     def serve(self, motion: Motion, peer: Peer) -> None:
         """Offer /<machine>/rc/<action> in front of the machine's own action."""
@@ -54,7 +55,7 @@ class Gateway:
             points = [point.positions for point in wanted.points]
             present = self._watch.positions
             return limits.problem(self._model, wanted.joint_names, points, present) or limits.pace_problem(
-                self._model, wanted.joint_names, [_point(point) for point in wanted.points], present
+                self._model, wanted.joint_names, [_point(point) for point in wanted.points], present, self._speed
             )
         if hasattr(request, "target_angle"):
             return limits.angle_problem(self._model, motion.field, request.target_angle, self._watch.positions)

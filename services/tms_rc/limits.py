@@ -8,7 +8,7 @@ from tms_core.models import MachineModel
 
 UNIT = 0.01  # how far the length of a quaternion may be from 1
 FASTER = 1.1  # times the limit of speed that a trajectory may ask for
-START = 0.1  # rad that a joint may be away from where its trajectory begins
+UNHEARD = 0.2  # s; as far as it goes in this time, a joint may be away from where its trajectory begins
 TINY = 1e-4  # rad
 MARGIN = 0.05  # rad beyond a limit, and further out than at the start, that a moving joint may be seen
 
@@ -51,13 +51,18 @@ class Point:
 
 
 def pace_problem(
-    model: MachineModel, joints: Sequence[str], points: Sequence[Point], present: Mapping[str, float]
+    model: MachineModel,
+    joints: Sequence[str],
+    points: Sequence[Point],
+    present: Mapping[str, float],
+    speed: float = 1.0,
 ) -> str | None:
     """What is wrong with the times of a trajectory whose positions are right; `present` are the joints now [rad].
 
     Between two points a joint may go at most as fast as its limit of speed, and a little more, for planners round.
+    `speed` is that of a simulated machine: one that has just moved was last heard `speed` times further away.
     """
-    before, slack = Point(0.0, [present.get(name, math.nan) for name in joints], []), START
+    before, unheard = Point(0.0, [present.get(name, math.nan) for name in joints], []), UNHEARD * speed
     for number, point in enumerate(points):
         where = f"point {number}: " if len(points) > 1 else ""
         if not all(map(math.isfinite, point.rest)):
@@ -66,13 +71,13 @@ def pace_problem(
         if passed < 0 or (passed == 0 and number > 0):
             return f"{where}its time {point.time:.3f} s is not after the one before"
         for name, old, new in zip(joints, before.positions, point.positions, strict=True):
-            allowed = model.joints[name].velocity * FASTER * passed + slack
+            allowed = model.joints[name].velocity * (FASTER * passed + unheard) + TINY
             if abs(new - old) > allowed:  # false where nobody knows the joint's place
                 return (
                     f"{where}{name} would go {abs(new - old):.3f} rad in {passed:.3f} s, "
                     f"its limit is {model.joints[name].velocity:.3f} rad/s"
                 )
-        before, slack = point, TINY
+        before, unheard = point, 0.0
     return None
 
 
