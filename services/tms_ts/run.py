@@ -259,11 +259,14 @@ class Run:
         if new is Status.FAILURE and node.reason and not node.children:
             self._failure = f"{node.name} ({node.path}): {node.reason}"
         self._changes_of_tick += 1
-        if self._changes_of_tick > CHANGES_A_TICK or not self._budget.take(node.path):
+        if self._changes_of_tick > CHANGES_A_TICK:
             self._left_out += 1
             self.facts.nodes_told = False  # the client gets the state of every node instead
             return
         self.facts.changes.append(_message(node, new))
+        if not self._budget.take(node.path):
+            self._left_out += 1
+            return
         text = f"{old.name} -> {new.name}" + (f": {node.reason}" if new is not IDLE and node.reason else "")
         self.tell("node", node.path, f"{node.name}: {text}")
 

@@ -11,6 +11,7 @@ from tms_msg_rc.msg import StopReceipt
 
 from tms_ts import run as module
 from tms_ts.bt import Status
+from tms_ts.budget import AT_ONCE
 from tms_ts.node import Scheduler
 from tms_ts.run import PERIOD, Facts, Run
 
@@ -131,3 +132,17 @@ def test_a_run_that_meets_a_bug_is_closed_in_the_history(a_run: Run, rows: list[
     told = [row for row in rows if hasattr(row, "state")]
     assert told[-1].state == "refused" and "INTERNAL" in told[-1].reason
     assert scheduler._runs == {}
+
+
+def test_a_loop_that_waits_is_told_to_whoever_looks_and_in_part_to_the_history(a_run: Run, rows: list[Any]) -> None:
+    node: Any = SimpleNamespace(name="wait", path="0.1", uid=2, parent=None, registration_name="Wait", reason="")
+    for _ in range(AT_ONCE + 300):
+        a_run._changes_of_tick = 0
+        a_run._node_changed(node, Status.RUNNING, Status.SUCCESS)
+        a_run._tell_flood()
+    told = [row.text for row in rows if row.kind == "node" and row.node]
+    assert AT_ONCE <= len(told) < AT_ONCE + 10
+    assert [row.text for row in rows if row.kind == "node" and not row.node] == [
+        "1 further changes are left out: a loop goes round"
+    ]
+    assert len(a_run.facts.changes) == AT_ONCE + 300 and a_run._left_out > 280
