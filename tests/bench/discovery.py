@@ -18,12 +18,13 @@ from pathlib import Path
 
 import psutil
 
-from bench.rig.mesh import Rig, rig, until
+from bench.rig.mesh import LIMIT, Rig, rig
 from bench.runner import Figure
 from conftest import ports_of
 
 COUNT = 50
 SETTLE, WATCH = 3.0, 6.0  # s
+LATE = Path(__file__).parent / "rig/late.py"
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,7 @@ def _figures(way: str, alone: Cost, many: Cost, late_limit: float, note: str = "
 def _cost(own: Rig, count: int) -> Cost:
     with own.beside("fleet", str(count)) as (parent, _):
         time.sleep(SETTLE)
-        bare, late = own.bare("find", str(count))[0], _late(own, count)
+        bare, late = own.bare("find", str(count))[0], _late(count)
         nodes = psutil.Process(parent).children()
         assert len(nodes) == count
         before, begun = _used(nodes), time.perf_counter()
@@ -63,11 +64,9 @@ def _cost(own: Rig, count: int) -> Cost:
         return Cost(late, bare, idle, sum(node.memory_full_info().pss for node in nodes) / 1e6 / count)
 
 
-def _late(own: Rig, count: int) -> float:
-    begun = time.perf_counter()
-    with own.node() as ros:
-        until(lambda: len(ros.node.get_node_names()) > count, "all found")
-        return (time.perf_counter() - begun) * 1000
+def _late(count: int) -> float:
+    words = [sys.executable, str(LATE), str(count)]
+    return float(subprocess.run(words, stdout=subprocess.PIPE, text=True, timeout=LIMIT, check=True).stdout)
 
 
 def _used(nodes: list[psutil.Process]) -> float:
