@@ -17,6 +17,7 @@ ASK = 1.0  # s between questions to the executor whether it runs: each wakes it
 STUCK = 0.18  # s in one callback, or without an answer, after which nothing is asserted; with the lease below 0.7 s
 
 Step = Callable[[], None]
+Begin = Callable[[Step, str], threading.Thread]  # starts a thread that does this, under this name
 
 
 class Lateness:
@@ -48,7 +49,9 @@ class Lateness:
 class Pulse:
     """One a process. Without steps its thread sleeps, so an idle process costs nothing."""
 
-    def __init__(self, on_executor: Callable[[Step], None], busy_since: Callable[[], float | None]) -> None:
+    def __init__(
+        self, on_executor: Callable[[Step], None], busy_since: Callable[[], float | None], begin: Begin
+    ) -> None:
         """`on_executor` has a step run on the executor thread, soon; `busy_since`: when its present callback began."""
         self._on_executor, self._busy_since = on_executor, busy_since
         self._steps: tuple[Step, ...] = ()
@@ -56,8 +59,7 @@ class Pulse:
         self._wanted, self._closed = threading.Event(), threading.Event()
         self._asked = self._answered = 0.0
         self._lateness = Lateness()
-        self._thread = threading.Thread(target=self._run, name="pulse", daemon=True)
-        self._thread.start()
+        self._thread = begin(self._run, "pulse")
 
     def add(self, step: Step) -> None:
         """Call `step` at every beat from now on, in the pulse's thread; it must be quick."""

@@ -230,6 +230,7 @@ class Run:
 
     def _end(self, outcome: str, reason: str) -> str:
         self.over = True
+        self._tell_flood(last=True)
         self.enter(outcome, reason, ended=True)
         self.close_record(outcome)
         RUNS.labels(outcome).inc()
@@ -270,10 +271,10 @@ class Run:
         text = f"{old.name} -> {new.name}" + (f": {node.reason}" if new is not IDLE and node.reason else "")
         self.tell("node", node.path, f"{node.name}: {text}")
 
-    def _tell_flood(self) -> None:
+    def _tell_flood(self, last: bool = False) -> None:
         """A loop that spins, or waits for hours, must not fill the history with its rounds."""
         now = time.monotonic()
-        if self._left_out and now - self._flood_told >= FLOOD_TOLD:
+        if self._left_out and (last or now - self._flood_told >= FLOOD_TOLD):
             self.tell("node", "", f"{self._left_out} further changes are left out: a loop goes round")
             self._left_out, self._flood_told = 0, now
 

@@ -50,20 +50,26 @@ class Loop:
         self._executor = _Executor(context=self._context)
         self._executor.add_node(self.node)
         self._asked: float | None = None  # monotonic time since which the executor has not shown itself
-        self.failed = threading.Event()  # the executor thread died of an exception
+        self.failed = threading.Event()  # a thread of this node died of an exception: the process ends, not half of it
         self.closing = False  # nothing can be sent any more
-        self._thread = threading.Thread(target=self._spin, name="ros", daemon=True)
-        self._thread.start()
-        self.pulse = Pulse(self.on_executor, lambda: self._executor.busy_since)
+        self._thread = self._begin(self._spin, "ros")
+        self.pulse = Pulse(self.on_executor, lambda: self._executor.busy_since, self._begin)
+
+    def _begin(self, work: Callable[[], None], name: str) -> threading.Thread:
+        def run() -> None:
+            try:
+                work()
+            finally:
+                if not self.closing:
+                    self.failed.set()
+
+        thread = threading.Thread(target=run, name=name, daemon=True)
+        thread.start()
+        return thread
 
     def _spin(self) -> None:
-        try:
+        with suppress(ExternalShutdownException):
             self._executor.spin()
-        except ExternalShutdownException:
-            pass
-        finally:
-            if not self.closing:
-                self.failed.set()
 
     def close(self) -> None:
         """End the thread and leave the graph."""
@@ -151,7 +157,7 @@ class Loop:
     def beside(self, seconds: float, step: Callable[[], None], name: str) -> None:
         """Call `step` at a fixed rate in a thread of its own, for what only samples: it costs a tenth of a timer."""
 
-        def run() -> None:
+        def sample() -> None:
             while not self.closing:
                 try:
                     step()
@@ -159,7 +165,7 @@ class Loop:
                     return
                 time.sleep(seconds)
 
-        threading.Thread(target=run, name=name, daemon=True).start()
+        self._begin(sample, name)
 
     def after(self, seconds: float, step: Callable[[], None]) -> None:
         """Call `step` on the executor thread once, in a while. On the executor thread only."""

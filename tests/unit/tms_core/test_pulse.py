@@ -30,13 +30,19 @@ def test_an_overdue_beat_is_late_and_a_pause_is_not() -> None:
     assert not one.late(99.0)
 
 
+def begin(work: Step, name: str) -> threading.Thread:
+    thread = threading.Thread(target=work, name=name, daemon=True)
+    thread.start()
+    return thread
+
+
 @pytest.fixture
 def executor() -> list[Step]:
     return []
 
 
 def test_it_beats_while_there_are_steps_and_asks_the_executor_once_at_a_time(executor: list[Step]) -> None:
-    pulse, beaten = Pulse(executor.append, lambda: None), threading.Semaphore(0)
+    pulse, beaten = Pulse(executor.append, lambda: None, begin), threading.Semaphore(0)
     pulse.add(beaten.release)
     try:
         assert all(beaten.acquire(timeout=30) for _ in range(6))
@@ -52,7 +58,7 @@ def test_it_beats_while_there_are_steps_and_asks_the_executor_once_at_a_time(exe
 
 def test_an_executor_in_a_long_callback_does_not_work() -> None:
     since: list[float | None] = [None]
-    pulse = Pulse(lambda step: step(), lambda: since[0])
+    pulse = Pulse(lambda step: step(), lambda: since[0], begin)
     try:
         assert pulse.works()
         since[0] = time.monotonic() - 2 * STUCK

@@ -1,0 +1,40 @@
+"""A process whose threads do not all run ends, so that supervisord starts a whole one: half a process looks well."""
+
+import os
+import threading
+from collections.abc import Callable
+
+import pytest
+
+from conftest import wait_until
+from tms_core.ros import Ros
+
+LIMIT = 30.0  # s
+
+
+def broken() -> None:
+    raise RuntimeError("a bug")
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+@pytest.mark.parametrize(
+    "give",
+    [lambda ros: ros.pulse.add(broken), lambda ros: ros.beside(0.1, broken, "looks"), lambda ros: ros.every(0.1, broken)],
+    ids=["pulse", "beside", "executor"],
+)
+def test_a_thread_that_dies_of_a_bug_ends_the_process(two_nodes: tuple[Ros, Ros], give: Callable[[Ros], None]) -> None:
+    server, other = two_nodes
+    give(server)
+    wait_until(server.failed.is_set, LIMIT, "the node has failed")
+    assert not other.failed.is_set()
+
+
+def test_a_node_that_is_closed_has_not_failed(own_domain: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(os.environ, "ROS_DOMAIN_ID", str(own_domain))
+    node, before = Ros("server"), set(threading.enumerate())
+    node.pulse.add(lambda: None)
+    node.beside(0.01, lambda: None, "looks")
+    (looks,) = set(threading.enumerate()) - before
+    node.close()
+    looks.join(LIMIT)
+    assert not looks.is_alive() and not node.failed.is_set()
