@@ -98,7 +98,9 @@ class Gateway:
         return silent
 
     def _send(self, active: Active) -> None:
-        """On the executor thread, like stops: after a stop no goal leaves."""
+        """On the executor thread, like stops: after a stop no goal leaves, nor one that has been answered meanwhile."""
+        if self._guard.active is not active:  # this thread stood still for so long that it was given up
+            return
         self._guard.last_look(active)
         if active.goal.cancelled.is_set():
             self._cancel(active)

@@ -19,7 +19,11 @@ def broken() -> None:
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
 @pytest.mark.parametrize(
     "give",
-    [lambda ros: ros.pulse.add(broken), lambda ros: ros.beside(0.1, broken, "looks"), lambda ros: ros.every(0.1, broken)],
+    [
+        lambda ros: ros.pulse.add(broken),
+        lambda ros: ros.beside(0.1, broken, "looks"),
+        lambda ros: ros.every(0.1, broken),
+    ],
     ids=["pulse", "beside", "executor"],
 )
 def test_a_thread_that_dies_of_a_bug_ends_the_process(two_nodes: tuple[Ros, Ros], give: Callable[[Ros], None]) -> None:

@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 
 from tms_core.fence import Owner
+from tms_rc.gateway import Gateway
 from tms_rc.guard import Active, Guard, Kind
 from tms_rc.latch import Latch
 
@@ -43,3 +44,15 @@ def test_a_process_that_was_lost_meanwhile_keeps_it(gone: str) -> None:
 def test_a_run_that_took_the_machine_meanwhile_keeps_a_foreign_goal() -> None:
     ((cause, kind),) = stops(HELD, owner=None)
     assert "held by a run" in cause and kind is Kind.PLAIN
+
+
+@pytest.mark.parametrize(("answered", "sent"), [(False, 1), (True, 0)])
+def test_a_goal_that_was_given_up_while_the_executor_stood_still_does_not_leave(answered: bool, sent: int) -> None:
+    left: list[Any] = []
+    peer: Any = SimpleNamespace(send=lambda request, **_: left.append(request))
+    goal: Any = SimpleNamespace(cancelled=SimpleNamespace(is_set=lambda: False), request="swing", publish=None)
+    active = Active(goal, GOAL, peer, {}, {})
+    gateway: Any = Gateway.__new__(Gateway)
+    gateway._guard = SimpleNamespace(active=None if answered else active, last_look=lambda _: None)
+    gateway._send(active)
+    assert len(left) == sent
