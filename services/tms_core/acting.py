@@ -116,14 +116,15 @@ class Acting:
             raise SubtaskFailed("NO_ANSWER", f"/{self.name}/{action} did not answer a goal within {limit or 0:.0f} s")
 
     def release(self) -> bool:
-        """Stop every motion that still runs and wait until it has; False if one did not end."""
+        """Stop every motion that still runs and wait until it has; False if nobody has told of its end."""
         running = [(peer, call) for peer, call in self._calls if call.outcome is None]
         for peer, call in running:
             peer.cancel(call)
         deadline = time.monotonic() + STOP_LIMIT
         # One that nobody has accepted moves nothing: if it is accepted after all, its cancel follows at once.
         accepted = [call for _, call in running if call.wait_for(_known(call), UNANSWERED_LIMIT) and call.accepted]
-        return all([call.wait_for(_ended(call), deadline - time.monotonic()) for call in accepted])
+        ended = [call.wait_for(_ended(call), deadline - time.monotonic()) for call in accepted]
+        return all(ended) and not any(call.outcome is Outcome.LOST for call in accepted)
 
 
 def missed(result: Any) -> list[int]:

@@ -137,5 +137,14 @@ class MachineModel(Settings):
             raise ValueError(f"'{strange[0]}' is neither a link of geometry: nor a joint of joints:")
         return self
 
+    @model_validator(mode="after")
+    def _links_hang_together(self) -> "MachineModel":
+        known = {"base_link"}
+        for joint, origin in self.geometry.items():
+            if origin.parent not in known:
+                raise ValueError(f"geometry: {joint}: no joint above it has '{origin.parent}' as its child")
+            known.add(origin.child)
+        return self
+
     def _border_joints(self) -> list[str]:
         return [name for border in self.borders.values() for name in (*border.joints, *border.joint_angles)]

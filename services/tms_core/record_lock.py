@@ -16,6 +16,7 @@ from tms_core.ros import Ros
 from tms_core.values import Value, to_parameters
 
 FLAG, OWNER, UNTIL = "LOCK_FLG", "LOCK_OWNER", "LOCK_UNTIL"
+FIELDS = {FLAG, OWNER, UNTIL}
 LEASE = 300.0  # s from planning to the end of the motion
 LIMIT = 2.0  # s for the database
 SERVICE = "/tms/db/set_parameter"
@@ -30,6 +31,12 @@ def holder(fields: Mapping[str, Value], now: float) -> str | None:
     if fields.get(FLAG) is not True or (isinstance(until, (int, float)) and now >= until):
         return None
     return str(fields.get(OWNER) or "a system that gives no name")
+
+
+def locked_since(fields: Mapping[str, Value], now: float) -> float | None:
+    """Unix time [s] since which nobody but its holder changes the record; None if nobody holds a lease of it."""
+    until = fields.get(UNTIL)
+    return until - LEASE if isinstance(until, (int, float)) and holder(fields, now) is not None else None
 
 
 def taken(owner: str, now: float) -> dict[str, Value]:

@@ -48,7 +48,7 @@ class Subtask:
         raise NotImplementedError
 
     def on_cancel(self) -> None:
-        """Called before the motion is stopped; must return at once."""
+        """Called before the motion is stopped, twice if the cancel comes at the begin; must return at once."""
 
     def get_param_from_db(self, model_name: str, record_name: str, max_age: float = 0.0) -> dict[str, Value]:
         """The record as it is now, at any time and any number of times.

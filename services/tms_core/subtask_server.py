@@ -43,6 +43,7 @@ class _Server:
         self._reserved = False
         self._want: Params | None = None
         self._lock: RecordLock | None = None
+        self._plans = bool(inputs.get("plan_only"))
         self.offered = False
 
     def offer(self) -> None:
@@ -78,15 +79,30 @@ class _Server:
             return Rejection("NO_DATABASE", "tms:db did not answer; see `tms ps` and `tms restart tms:db`")
         if answer.error_code:
             return Rejection(answer.error_code, answer.error_msg)
-        try:
-            fields = from_parameters(answer.record.values)
-            self._want = self._kind.params.model_validate({**fields, **self._inputs})
-        except ValidationError as error:
-            name = f"{request.model_name}/{request.record_name}"
-            return Rejection("BAD_RECORD", f"record {name}: {explain(error)}; correct it with `tms param set`")
+        fields = from_parameters(answer.record.values)
         if FLAG in fields and answer.record.type == "dynamic" and "plan_only" in self._inputs:
             self._lock = RecordLock(self._app.ros, self._app.process.full, request.model_name, request.record_name)
+        try:
+            self._want = self._checked(request, fields)
+        except SubtaskFailed as error:
+            if self._lock is not None and not self._plans:
+                self._lock.release()  # the variant that moves gives it back however it ends
+            return Rejection(error.code, error.args[0])
         return None
+
+    def _checked(self, request: Any, fields: dict[str, Value]) -> Params:
+        """What the subtask needs of a record's fields.
+
+        Raises:
+            SubtaskFailed: BAD_RECORD, with what is wrong.
+        """
+        assert self._kind.params is not None
+        try:
+            return self._kind.params.model_validate({**fields, **self._inputs})
+        except ValidationError as error:
+            name = f"{request.model_name}/{request.record_name}"
+            text = f"record {name}: {explain(error)}; correct it with `tms param set`"
+            raise SubtaskFailed("BAD_RECORD", text) from None
 
     def run(self, goal: Goal) -> Ended:
         outcome = Outcome.ABORTED
@@ -106,7 +122,7 @@ class _Server:
         machine = Machine(app.ros, app.machine, use.model, model, limit, goal.uuid, self._watched())
         subtask = self._kind(machine, self._want, self._read)
         say = _Feedback(goal)
-        lock, plans = self._lock, bool(self._inputs.get("plan_only"))
+        lock = self._lock
 
         def cancel() -> None:
             subtask.on_cancel()
@@ -114,12 +130,14 @@ class _Server:
 
         goal.on_cancel = cancel
         if goal.cancelled.is_set():
-            machine.cancel()
+            cancel()
         failure: SubtaskFailed | None = None
-        finished = stopped = False
+        finished = stopped = cancelled = False
         try:
-            if lock is not None and plans:
+            if lock is not None and self._plans:
                 lock.take()
+                # Sensing may have written between the goal's check and the lock; what is planned is what is locked.
+                subtask.want = self._checked(request, self._read(request.model_name, request.record_name, 0.0))
             subtask.execute(request.model_name, request.record_name, say)
             finished = True
         except Cancelled:
@@ -129,27 +147,24 @@ class _Server:
         except SubtaskFailed as error:
             failure = error
         finally:
-            stopped = machine.release()
-            if lock is not None and not (plans and finished):
+            stopped, cancelled = machine.release(), goal.cancelled.is_set()
+            if lock is not None and not (self._plans and finished and not cancelled):
                 lock.release()
-            if not (finished or failure or goal.cancelled.is_set()):
+            if not (finished or failure or cancelled):
                 say.last(f"INTERNAL: the subtask has a bug, see `tms logs {app.process.full}`")
-        return self._outcome(goal, say, failure, stopped)
+        if not stopped:
+            failure = SubtaskFailed("NOT_STOPPED", f"{app.machine} did not end its motion")
+        if failure is None or (cancelled and stopped):
+            return Outcome.CANCELED if cancelled else Outcome.SUCCEEDED
+        app.log.warning("event=failed goal=%s reason=%r", goal.id, str(failure))
+        say.last(str(failure))
+        return Outcome.ABORTED
 
     def _watched(self) -> dict[str, Callable[[Peer], None]]:
         """Begins with the first goal: the gateway's lease, ten times a second, must not wake what nobody uses."""
         if not self._watches:
             self._watches = {name: watch_server(self._app.ros, self._app.machine, name) for name in ("rc", "rp")}
         return self._watches
-
-    def _outcome(self, goal: Goal, say: "_Feedback", failure: SubtaskFailed | None, stopped: bool) -> Outcome:
-        if not stopped:
-            failure = SubtaskFailed("NOT_STOPPED", f"{self._app.machine} did not end its motion")
-        if failure is not None and (not goal.cancelled.is_set() or not stopped):
-            self._app.log.warning("event=failed goal=%s reason=%r", goal.id, str(failure))
-            say.last(str(failure))
-            return Outcome.ABORTED
-        return Outcome.CANCELED if goal.cancelled.is_set() else Outcome.SUCCEEDED
 
     def _read(self, model_name: str, record_name: str, max_age: float) -> dict[str, Value]:
         limit = max_age or self._max_age

@@ -39,11 +39,18 @@ class Update:
 
     id: Any
     fields: dict[str, Value]
-    updated_at: datetime
+    updated_at: datetime | None  # None: what the record says is as old as before, and from whom it was
     source: str
 
     def stored(self) -> Document:
+        if self.updated_at is None:
+            return self.fields
         return {**self.fields, "updated_at": self.updated_at, "source": self.source}
+
+    def after(self, before: "Update") -> "Update":
+        """Both in one step."""
+        told = self if self.updated_at is not None else before
+        return Update(self.id, {**before.fields, **self.fields}, told.updated_at, told.source)
 
 
 class Batches:
@@ -89,7 +96,7 @@ class Batches:
         before = self._waiting.get(key)
         if before is not None and before.id == update.id:
             MERGED.inc()
-            update.fields = {**before.fields, **update.fields}
+            update = update.after(before)
         self._waiting[key] = update
 
     def newest(self, key: Key) -> Document:

@@ -3,11 +3,15 @@
 from datetime import datetime, timezone
 
 from tms_core.errors import DbError
+from tms_core.record_lock import locked_since
 from tms_db.records import Document, title
 
 
 def check(document: Document, max_age: float, now: datetime | None = None) -> None:
     """Refuse a dynamic record that is older than allowed; all ages are by the clock of this PC.
+
+    A locked record is judged as it was when it was locked: since then the lock itself has kept sensing out, and what
+    moves now was planned with it.
 
     Args:
         document: the record as stored.
@@ -17,7 +21,9 @@ def check(document: Document, max_age: float, now: datetime | None = None) -> No
     Raises:
         DbError: STALE_RECORD; names record, age and limit.
     """
-    limit = max_age or document.get("max_age") or 0.0
+    limit = max_age or document.get("max_age")
+    if not isinstance(limit, (int, float)):  # of another system
+        return
     if limit <= 0 or document.get("type") == "static":
         return
     where = title(str(document.get("model_name") or ""), str(document.get("record_name")))
@@ -25,7 +31,12 @@ def check(document: Document, max_age: float, now: datetime | None = None) -> No
     updated_at = document.get("updated_at")
     if not isinstance(updated_at, datetime):
         raise DbError(f"{where} may be {limit:g} s old, but nobody knows its age: let sensing write it", "STALE_RECORD")
-    age = ((now or datetime.now(timezone.utc)) - updated_at).total_seconds()
+    asked = (now or datetime.now(timezone.utc)).timestamp()
+    if updated_at.timestamp() - asked > limit:  # the clock was set back
+        text = f"{where}: its time lies in the future, so nobody knows its age (last from {source}): let sensing write it"
+        raise DbError(text, "STALE_RECORD")
+    since = locked_since(document, asked)
+    age = (asked if since is None else min(asked, since)) - updated_at.timestamp()
     if age > limit:
         text = f"{where} is {age:.1f} s old, allowed are {limit:g} s (last from {source}): see `tms sensing`"
         raise DbError(text, "STALE_RECORD")

@@ -21,7 +21,7 @@ from tms_msg_db.srv import (
 
 from tms_core.app import App
 from tms_core.errors import DbError
-from tms_core.record_lock import holder
+from tms_core.record_lock import FIELDS, holder
 from tms_db import freshness, messages
 from tms_db.answering import Answering
 from tms_db.batches import Batches, Update
@@ -35,6 +35,7 @@ from tms_db.values import from_parameters
 from tms_db.watching import Watching
 
 CHANGES_KEPT = 100  # messages for a reader that is slow
+OLDEST = 10 * 365 * 86400.0  # s; whatever is older than that, or of an age that is no number, counts as that old
 
 
 class ParameterServices:
@@ -84,7 +85,9 @@ class ParameterServices:
         )  # fmt: skip
         if change.plain and self._may_batch(key):
             change.check(where)
-            update = Update(self._heads.get(key).id, dict(change.values), _now(), request.source)
+            locks = bool(change.values) and FIELDS.issuperset(change.values)
+            stamp = None if locks else _now()  # a lock says nothing new in the record
+            update = Update(self._heads.get(key).id, dict(change.values), stamp, request.source)
             await self._put({key: update}, hurry=True)
         else:
             self._batches.settle(key)
@@ -133,7 +136,7 @@ class ParameterServices:
             raise DbError(f"{where} is locked by {owner} until the machine has moved with it", "LOCKED_RECORD")
         fitting = head.fit(where, values, wanted.loose)
         fields = {name: value for name, value in fitting.items() if name not in wanted.keep}
-        stamp = _now() - timedelta(seconds=max(0.0, wanted.age))
+        stamp = _now() - timedelta(seconds=max(0.0, wanted.age if wanted.age < OLDEST else OLDEST))
         if wanted.expected:  # only the store can tell and write in one step
             self._batches.settle(key)
             change = Change(fields, source=wanted.source, expected=from_parameters(where, wanted.expected))
@@ -167,7 +170,7 @@ class ParameterServices:
         self._batches.put(updates, tell, hurry)
         for key, update in updates.items():
             self._heads.get(key).change(update.stored())
-            self._past.note(key, update.updated_at, update.source, update.fields, often=not hurry)
+            self._past.note(key, update.updated_at or _now(), update.source, update.fields, often=not hurry)
         self._tell(updates)
         problem = await promise
         if problem is not None:

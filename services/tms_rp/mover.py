@@ -88,7 +88,7 @@ def _over(goal: Goal, call: Call) -> bool:
 def _verdict(goal: Goal, call: Call, name: str) -> Outcome:
     if call.outcome is Outcome.SUCCEEDED and not goal.cancelled.is_set():
         return Outcome.SUCCEEDED
-    if goal.cancelled.is_set() and call.outcome is not Outcome.ABORTED:
+    if goal.cancelled.is_set() and call.outcome not in (Outcome.ABORTED, Outcome.LOST):
         return Outcome.CANCELED  # also when it arrived, or was refused, just before: nothing moves
     if call.outcome is Outcome.LOST:
         raise SubtaskFailed(LOST_TEXT, f"the process behind {name} was lost during the motion")

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from pydantic import model_validator
+from pydantic import field_validator, model_validator
 
 from tms_core.subtask import Machine, Params, Progress, subtask
 
@@ -20,6 +20,13 @@ class Angle(Params):
         if fields.get("field") not in fields:
             raise ValueError(f"field '{fields.get('field')}' is missing")
         return {**fields, "angle": fields[fields["field"]]}
+
+    @field_validator("angle")
+    @classmethod
+    def _within_a_turn(cls, angle: float) -> float:
+        if abs(angle) > 360.0:  # the planner takes it for "as it stands"
+            raise ValueError(f"{angle:g} deg is more than one turn")
+        return angle
 
     def joint_angles(self) -> Mapping[str, float]:
         return {self.joint: math.radians(self.angle)}

@@ -1,5 +1,6 @@
 """Loops over everything that configs/ declares: models, subtasks, processes."""
 
+import math
 import subprocess
 import sys
 from dataclasses import replace
@@ -11,6 +12,8 @@ from conftest import PROJECT
 from tms_core.config import CONFIGS, load_site
 from tms_core.models import TURNED, MachineModel
 from tms_core.processes import table
+from tms_core.record_lock import FLAG
+from tms_core.sensing import load_sensing
 from tms_core.subtask_server import load
 from tms_core.yaml_file import parse, read_yaml
 from tms_host.supervisor import render
@@ -30,6 +33,32 @@ def test_model_is_consistent(path: Path) -> None:
     for border in model.borders.values():
         for action in TURNED:
             assert not getattr(border, action) or model.turned(action), f"no joint for {action}"
+
+
+TURNING = {"mst110cr": (3.099, 1.892), "mst2200": (3.099, 1.892)}  # m, furthest corner of the body's mesh
+
+
+@pytest.mark.parametrize("path", MODELS, ids=lambda path: path.stem)
+def test_a_footprint_holds_the_body_at_any_angle(path: Path) -> None:
+    model = parse(path, MachineModel)
+    turns = [model.geometry[joint] for joint in ("swing_joint", "rotate_joint") if joint in model.geometry]
+    if not turns:
+        return
+    (axis,) = turns
+    if path.stem in TURNING:
+        corner = math.hypot(*TURNING[path.stem])
+    else:
+        body = model.shapes[axis.child]
+        corner = max(math.hypot(x, y) for x in (body.min[0], body.max[0]) for y in (body.min[1], body.max[1]))
+    box = model.footprint["body"]
+    sides = [axis.xyz[i] - box.min[i] for i in (0, 1)] + [box.max[i] - axis.xyz[i] for i in (0, 1)]
+    assert min(sides) >= corner
+
+
+def test_the_lock_of_a_record_ends_for_every_input() -> None:
+    """tms:db knows when a lease has ended; a bare look at the flag would shut the input out for ever."""
+    inputs = load_sensing(load_site(str(CONFIGS / "site.yaml"))).inputs
+    assert [name for name, one in inputs.items() if FLAG in one.only_if] == []
 
 
 USES = [

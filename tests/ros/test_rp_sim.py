@@ -195,6 +195,7 @@ def test_one_motion_at_a_time_but_plans_always(machine: Rig) -> None:
     first = machine.change_pose(2.5, *START[1:])
     machine.until(machine.moving, "motion")
     assert machine.end(machine.change_pose(*START)) is Outcome.REJECTED
+    machine.until(lambda: any(text.startswith("BUSY: ") for text in machine.said), "the reason")
     planned = machine.change_pose(0.3, *START[1:], plan=True)
     assert machine.end(planned) is Outcome.SUCCEEDED
     assert any(text.startswith("PLANNED ") for text in machine.said)

@@ -153,10 +153,16 @@ def bad_messages_are_told_and_the_last_good_value_stays(sensing: Sensing) -> Non
 
 def a_record_that_is_locked_stays(sensing: Sensing) -> None:
     dig = sensing.publisher(ExcavateSimple, "/tms_sp_excavate_simple")
+    before = sensing.get("zx200/target").record
     sensing.set("zx200/target", {"LOCK_FLG": True, "LOCK_OWNER": "plan", "LOCK_UNTIL": time.time() + 300})
+    after = sensing.get("zx200/target").record
+    assert (after.updated_at, after.source) == (before.updated_at, before.source)
     dig(ExcavateSimple(model_name="zx200", record_name="target", x=7.0))
     sensing.refused("excavate_simple", "LOCKED_RECORD")
     assert sensing.values("zx200/target")["x"] == 1.0
+    sensing.set("zx200/target", {"LOCK_UNTIL": time.time() - 1})  # nobody has come to free it
+    dig(ExcavateSimple(model_name="zx200", record_name="target", x=6.0))
+    sensing.until(lambda: sensing.values("zx200/target")["x"] == 6.0, "the value after the lease")
     sensing.set("zx200/target", {"LOCK_FLG": False}, remove=["LOCK_OWNER", "LOCK_UNTIL"])
     dig(ExcavateSimple(model_name="zx200", record_name="target", x=7.0))
     sensing.until(lambda: sensing.values("zx200/target")["x"] == 7.0, "the value after the lock")

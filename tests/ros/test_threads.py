@@ -2,7 +2,8 @@
 
 import os
 import threading
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
+from functools import partial
 
 import pytest
 
@@ -42,3 +43,23 @@ def test_a_node_that_is_closed_has_not_failed(own_domain: int, monkeypatch: pyte
     node.close()
     looks.join(LIMIT)
     assert not looks.is_alive() and not node.failed.is_set()
+
+
+def test_what_is_asked_of_the_executor_runs_in_its_order(two_nodes: tuple[Ros, Ros]) -> None:
+    node, _ = two_nodes
+    go, ran = threading.Event(), list[str]()
+    node.on_executor(lambda: go.wait(LIMIT) and None)  # what comes meanwhile waits together
+
+    def begun(name: str) -> Callable[[], Awaitable[None]]:
+        async def step() -> None:
+            ran.append(name)
+
+        return step
+
+    for number in range(4):
+        node.on_executor(partial(ran.append, f"step {number}"))
+        node.start(begun(f"begun {number}"))
+    go.set()
+    wait_until(lambda: len(ran) == 8, LIMIT, "all of them")
+    for kind in ("step", "begun"):
+        assert [name for name in ran if name.startswith(kind)] == [f"{kind} {number}" for number in range(4)]

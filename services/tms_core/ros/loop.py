@@ -9,6 +9,7 @@ Why it is built this way (all measured with the rclpy in use):
 import os
 import threading
 import time
+from collections import deque
 from collections.abc import Awaitable, Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -49,6 +50,7 @@ class Loop:
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)  # a node's own stands still when NTP sets it back
         self._executor = _Executor(context=self._context)
         self._executor.add_node(self.node)
+        self._coming, self._starting = deque[Callable[[], None]](), deque[Callable[[], Awaitable[None]]]()
         self._asked: float | None = None  # monotonic time since which the executor has not shown itself
         self.failed = threading.Event()  # a thread of this node died of an exception: the process ends, not half of it
         self.closing = False  # nothing can be sent any more
@@ -81,11 +83,12 @@ class Loop:
         rclpy.shutdown(context=self._context)
 
     def on_executor(self, step: Callable[[], None]) -> None:
-        """Run `step` on the executor thread, soon."""
+        """Run `step` on the executor thread, soon, behind those that were asked for before."""
         if threading.current_thread() is self._thread:
             step()
         else:
-            self._executor.create_task(step)
+            self._coming.append(step)
+            self._executor.create_task(lambda: self._coming.popleft()())  # rclpy runs the newest task first
 
     def do(self, step: Callable[[], T], seconds: float) -> T:
         """Run `step` on the executor thread and wait for what it returns or raises; from worker threads only.
@@ -125,8 +128,13 @@ class Loop:
         self._asked = None
 
     def start(self, step: Callable[[], Awaitable[None]]) -> None:
-        """Run a coroutine function on the executor thread."""
-        self._executor.create_task(step)
+        """Run a coroutine function on the executor thread, begun behind those that were asked for before."""
+
+        async def oldest() -> None:
+            await self._starting.popleft()()
+
+        self._starting.append(step)
+        self._executor.create_task(oldest)
 
     def promise(self) -> Future:
         """A result that coroutines on the executor thread await; set it there, see `on_executor`."""

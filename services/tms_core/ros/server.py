@@ -49,10 +49,9 @@ class Goal:
 
     def say(self, text: str) -> None:
         """Send a reason as feedback, where the type of feedback has room for one."""
-        kind = self._type.Feedback
-        for field in ("status", "state"):
-            if field in kind.get_fields_and_field_types():
-                self.publish(kind(**{field: text}))
+        feedback = _saying(self._type, text)
+        if feedback is not None:
+            self.publish(feedback)
 
     def cancel(self) -> None:
         """What a cancel request does; also called when the process stops."""
@@ -112,8 +111,8 @@ class Served:
                 return GoalResponse.ACCEPT
             GOALS.labels(name, "rejected").inc()
             self._ros.node.get_logger().debug(f"{name}: {verdict.code}: {verdict.text}")
-            if hasattr(action_type.Feedback(), "status"):
-                feedback = action_type.Feedback(status=f"{verdict.code}: {verdict.text}")
+            feedback = _saying(action_type, f"{verdict.code}: {verdict.text}")
+            if feedback is not None:
                 reasons.publish(action_type.Impl.FeedbackMessage(goal_id=goal_id, feedback=feedback))
             return GoalResponse.REJECT
 
@@ -167,6 +166,14 @@ class Served:
 
         self._goals.pop((name, goal.uuid))
         goal._handle.execute(finish)
+
+
+def _saying(action_type: InterfaceType, text: str) -> Message | None:
+    """Feedback that is only a reason; None where its type has no room for one."""
+    kind = action_type.Feedback
+    known = kind.get_fields_and_field_types()
+    field = next((name for name in ("status", "state") if known.get(name) == "string"), None)
+    return None if field is None else kind(**{field: text})
 
 
 def _never(handle: ServerGoalHandle) -> Message:

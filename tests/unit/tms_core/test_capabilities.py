@@ -7,6 +7,7 @@ import pytest
 from com3_msgs.action import SetDumpAngle
 from geometry_msgs.msg import Point, Pose
 from nav2_msgs.action import FollowWaypoints, NavigateThroughPoses, NavigateToPose
+from pydantic import ValidationError
 from tms_msg_rp.action import TmsRpZx200ChangePose, TmsRpZx200ExcavateSimple
 
 from tms_core.acting import missed
@@ -14,7 +15,9 @@ from tms_core.config import CONFIGS
 from tms_core.errors import SubtaskFailed
 from tms_core.machine import Machine
 from tms_core.models import MachineModel
+from tms_core.ros import Call, Outcome
 from tms_core.yaml_file import parse
+from tms_subtasks.sample_joint import Angle
 
 PATH = [Pose(position=Point(x=float(x))) for x in range(3)]
 
@@ -65,6 +68,23 @@ def test_what_the_model_lacks_is_refused() -> None:
     with pytest.raises(SubtaskFailed, match="NO_CAPABILITY: ic120_1 has no set_swing_angle"):
         machine.set_swing_angle(print, 1.0)
     assert machine.sent == []
+
+
+@pytest.mark.parametrize("angle", [400.0, -361.0])
+def test_a_sample_of_more_than_a_turn_is_no_pose_to_stay_in(angle: float) -> None:
+    given = {"joint": "swing_joint", "field": "goal", "goal": angle}
+    with pytest.raises(ValidationError, match="more than one turn"):
+        Angle.model_validate(given)
+    assert Angle.model_validate({**given, "goal": 360.0}).angle == 360.0
+
+
+@pytest.mark.parametrize(("outcome", "stopped"), [(Outcome.CANCELED, True), (Outcome.LOST, False)])
+def test_a_motion_whose_server_was_lost_as_it_was_stopped_was_not_seen_to_end(outcome: Outcome, stopped: bool) -> None:
+    machine, call = Recorded("zx200"), Call(bytes(16), None, None)
+    call.accepted = True
+    peer: Any = SimpleNamespace(cancel=lambda one: one.end(outcome))
+    machine._calls = [(peer, call)]
+    assert machine.release() is stopped
 
 
 def test_goals_go_through_the_gateway_in_the_map() -> None:

@@ -1,6 +1,6 @@
 """LOCK_FLG as a lease: it holds, it ends by itself, and a bare flag of the C++ system holds until it is cleared."""
 
-from tms_core.record_lock import LEASE, holder, released, taken
+from tms_core.record_lock import LEASE, holder, locked_since, released, taken
 
 
 def test_a_lease_holds_and_ends() -> None:
@@ -15,3 +15,10 @@ def test_a_bare_flag_and_no_flag() -> None:
     assert holder({"LOCK_FLG": False, "LOCK_UNTIL": 2e9}, 1e9) is None
     assert holder({"x": 1.0}, 1e9) is None
     assert holder(released(), 1e9) is None
+
+
+def test_since_when_a_record_is_locked() -> None:
+    fields = taken("plan", 1000.0)
+    assert locked_since(fields, 1012.0) == 1000.0
+    assert locked_since(fields, 1000.0 + LEASE) is None
+    assert locked_since({"LOCK_FLG": True}, 1012.0) is None  # a bare flag does not tell

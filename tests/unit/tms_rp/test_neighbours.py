@@ -1,27 +1,52 @@
-"""Where other machines stand."""
+"""Where other machines stand, and what the collision check makes of it."""
 
+import logging
 from types import SimpleNamespace
 from typing import Any
 
-import numpy as np
+import pytest
 from geometry_msgs.msg import TransformStamped
 from tf2_msgs.msg import TFMessage
 
 from tms_rp.neighbours import Neighbours
 
+BASES = {"zx200": "base_link", "ic120": "ic120_tf/base_link"}
 
-def seen(x: float) -> TFMessage:
-    one = TransformStamped(child_frame_id="ic120_tf/base_link")
-    one.header.frame_id = "map"
+
+def at(child: str, x: float, parent: str = "map") -> TransformStamped:
+    one = TransformStamped(child_frame_id=child)
+    one.header.frame_id = parent
     one.transform.translation.x, one.transform.rotation.w = x, 1.0
-    return TFMessage(transforms=[one])
+    return one
+
+
+def neighbours(*told: TransformStamped) -> Neighbours:
+    """Those of zx200, who have heard `told` twice."""
+    site: Any = SimpleNamespace(
+        border=lambda name: SimpleNamespace(base_frame=BASES[name]),
+        file=SimpleNamespace(machines=BASES),
+        model_of=lambda _: SimpleNamespace(footprint={"body": object()}),
+    )
+    ros = SimpleNamespace(sample=lambda *_: lambda: [TFMessage(transforms=list(told))], beside=lambda *_: None)
+    made = Neighbours(SimpleNamespace(site=site, machine="zx200", log=logging.getLogger("test"), ros=ros))  # type: ignore[arg-type]
+    made._look()
+    return made
+
+
+def test_the_other_is_seen_from_here_also_through_odom() -> None:
+    (obstacle,) = neighbours(
+        at("odom", 2.0), at("base_link", 1.0, "odom"), at("ic120_tf/base_link", 10.0), at("other", 4.0)
+    ).obstacles()
+    assert obstacle.name == "body of ic120"
+    assert obstacle.place[0, 3] == pytest.approx(7.0)
 
 
 def test_a_place_that_is_not_a_number_leaves_the_machine_where_it_was() -> None:
-    made: Any = Neighbours.__new__(Neighbours)
-    made._frames, made._places, made._own = {"ic120_tf/base_link": "ic120"}, {"zx200": np.eye(4)}, "zx200"
-    footprint = {"body": object()}
-    made._site = SimpleNamespace(model_of=lambda _: SimpleNamespace(footprint=footprint))
-    made._news = lambda: [seen(7.0), seen(float("nan")), seen(float("inf"))]
-    (obstacle,) = made.obstacles()
+    bad = [at("ic120_tf/base_link", value) for value in (float("nan"), float("inf"))]
+    (obstacle,) = neighbours(at("base_link", 0.0), at("ic120_tf/base_link", 7.0), *bad).obstacles()
     assert obstacle.place[0, 3] == 7.0
+
+
+def test_who_does_not_know_its_own_place_says_so(caplog: pytest.LogCaptureFixture) -> None:
+    assert neighbours(at("ic120_tf/base_link", 7.0)).obstacles() == []
+    assert "event=place_unknown /tf does not tell where zx200 is" in caplog.text

@@ -1,0 +1,42 @@
+"""Old values are refused; those of a locked record are as old as they were when it was locked."""
+
+from datetime import datetime, timedelta, timezone
+
+import pytest
+
+from tms_core.errors import DbError
+from tms_core.record_lock import LEASE, released, taken
+from tms_db.freshness import check
+
+NOW = datetime(2026, 1, 31, 6, 0, tzinfo=timezone.utc)
+
+
+def record(age: float, **fields: object) -> dict[str, object]:
+    given = {"model_name": "zx200", "record_name": "p", "type": "dynamic", "max_age": 2.0, "source": "sp"}
+    return {**given, "updated_at": NOW - timedelta(seconds=age), **fields}
+
+
+def locked(ago: float, age: float) -> dict[str, object]:
+    """Locked `ago` seconds before NOW, when the values were `age` seconds old."""
+    return record(ago + age, **taken("plan", NOW.timestamp() - ago))
+
+
+def test_old_values_are_refused_with_age_and_limit() -> None:
+    check(record(1.9), 0.0, NOW)
+    with pytest.raises(DbError, match=r"record zx200/p is 2\.1 s old, allowed are 2 s \(last from sp\)"):
+        check(record(2.1), 0.0, NOW)
+    check(record(2.1), 5.0, NOW)
+    check(record(99.0), -1.0, NOW)
+    check(record(99.0, type="static"), 0.0, NOW)
+
+
+def test_what_was_fresh_when_it_was_locked_may_be_moved_with() -> None:
+    check(locked(ago=40.0, age=1.0), 0.0, NOW)
+    with pytest.raises(DbError, match=r"3\.0 s old"):
+        check(locked(ago=40.0, age=3.0), 0.0, NOW)
+
+
+def test_a_lock_that_has_ended_keeps_nothing_fresh() -> None:
+    for fields in (locked(ago=LEASE, age=1.0), record(41.0, **released())):
+        with pytest.raises(DbError, match="s old"):
+            check(fields, 0.0, NOW)

@@ -1,0 +1,36 @@
+"""What the end of a motion means to whoever asked for it."""
+
+import threading
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from tms_core.errors import SubtaskFailed
+from tms_core.ros import Outcome
+from tms_rp.mover import _verdict
+
+
+def verdict(outcome: Outcome, cancelled: bool) -> Outcome:
+    goal: Any = SimpleNamespace(cancelled=threading.Event())
+    if cancelled:
+        goal.cancelled.set()
+    call: Any = SimpleNamespace(outcome=outcome, result=SimpleNamespace(error_string="why"))
+    return _verdict(goal, call, "/zx200/rc/follow_joint_trajectory")
+
+
+def test_a_cancelled_motion_that_ended_moves_nothing_any_more() -> None:
+    for outcome in (Outcome.CANCELED, Outcome.SUCCEEDED, Outcome.REJECTED):
+        assert verdict(outcome, cancelled=True) is Outcome.CANCELED
+    assert verdict(Outcome.SUCCEEDED, cancelled=False) is Outcome.SUCCEEDED
+
+
+@pytest.mark.parametrize("cancelled", [False, True])
+def test_a_gateway_that_is_lost_has_seen_nobody_stand(cancelled: bool) -> None:
+    with pytest.raises(SubtaskFailed, match=r"PROCESS_LOST: the process behind /zx200/rc/.* was lost"):
+        verdict(Outcome.LOST, cancelled)
+
+
+def test_a_motion_that_was_aborted_says_why_also_after_a_cancel() -> None:
+    with pytest.raises(SubtaskFailed, match="ABORTED: why"):
+        verdict(Outcome.ABORTED, cancelled=True)
