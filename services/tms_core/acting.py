@@ -109,7 +109,7 @@ class Acting:
         end = self._deadline if limit is None else min(self._deadline, time.monotonic() + limit)
         while not (done() or self._cancelled.is_set()) and time.monotonic() < end:
             call.wait_for(lambda: done() or self._cancelled.is_set(), min(LOOK, end - time.monotonic()))
-            if call.accepted and call.outcome is None and not peer.ready():
+            if call.accepted and call.outcome is None and peer.left():
                 peer.lost()  # it left in order, but without a result
         if not done():
             self.check()

@@ -51,7 +51,7 @@ class Mover:
         while not _over(goal, call):
             if time.monotonic() > deadline:
                 return "TIMEOUT", f"{self._peer.name} was not done {OVERRUN:.0f} s after the end of the trajectory"
-            if not self._peer.ready():
+            if self._peer.left():
                 self._peer.lost()  # it left in order, but without a result
             call.wait_for(lambda: _over(goal, call), min(LOOK, deadline - time.monotonic()))
         return None
