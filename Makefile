@@ -4,12 +4,15 @@ PYTHON ?= python3
 P ?=
 SITE ?=
 ROLE ?=
+# Key under pcs: of the site file, where a PC is not named after its role, as the compose files are. (make knows a PC itself.)
+PC = $(ROLE)
 RUNTIME ?= native
 # Debian's client first: it needs no plugin to build.
 DOCKER ?= $(firstword $(wildcard /usr/bin/docker) docker)
 # Debian's Compose is a program of its own, others' are a plugin of the client.
 COMPOSE ?= $(if $(shell $(DOCKER) compose version 2>/dev/null),$(DOCKER) compose,docker-compose)
-NAV2_DISTRO ?= jazzy
+# The one that is built here: the next `make` must not undo `make interfaces NAV2_DISTRO=humble`.
+NAV2_DISTRO ?= $(or $(patsubst .interfaces-%,%,$(notdir $(firstword $(wildcard $(VENV)/.interfaces-*)))),jazzy)
 LOCK ?= requirements-dev.lock
 export NAV2_DISTRO
 UV := $(VENV)/bin/uv
@@ -57,16 +60,17 @@ demo: setup ## an excavator digs: set-up, mesh, task, SUCCESS; leaves the mesh r
 	@$(TMS) demo
 
 ifeq ($(RUNTIME),docker)
-COMPOSE_UP = TMS_SITE_NAME=$(SITE) TMS_PC=$(ROLE) $(COMPOSE) -p tms-$(ROLE) -f deploy/compose/$(ROLE).yml
+COMPOSE_UP = TMS_SITE_NAME=$(SITE) TMS_PC=$(PC) $(COMPOSE) -p tms-$(PC) -f deploy/compose/$(ROLE).yml
+ROLES := $(filter-out base,$(patsubst deploy/compose/%.yml,%,$(wildcard deploy/compose/*.yml)))
 up: ## start the mesh of this PC (SITE=name, ROLE=PC of a site with several, RUNTIME=docker)
-	@test -n "$(SITE)" -a -f "deploy/compose/$(ROLE).yml" || { echo "usage: make up SITE=yard ROLE=cps RUNTIME=docker (roles: $(patsubst deploy/compose/%.yml,%,$(wildcard deploy/compose/*.yml)))" >&2; exit 2; }
+	@test -n "$(SITE)" -a -n "$(filter $(ROLES),$(ROLE))" || { echo "usage: make up SITE=yard ROLE=cps RUNTIME=docker (roles: $(ROLES); a PC with another name: PC=truck_pc ROLE=machine)" >&2; exit 2; }
 	@test -n "$(TMS_IMAGE)" || DOCKER=$(DOCKER) sh deploy/image.sh $(if $(filter trial,$(ROLE)),ros2-tms-trial demo,ros2-tms)
 	@$(COMPOSE_UP) up --detach
 down: ## end the mesh of this PC; no process stays
 	@$(COMPOSE_UP) down
 else
 up: setup ## start the mesh of this PC (SITE=name, ROLE=PC of a site with several, RUNTIME=docker)
-	@$(TMS) up $(if $(ROLE),--role $(ROLE))
+	@$(TMS) up $(if $(PC),--role $(PC))
 
 down: ## end the mesh of this PC; no process stays
 	@test -x $(VENV)/bin/tms || { echo "nothing is set up here, so nothing runs"; exit 0; }; $(TMS) down
@@ -110,5 +114,5 @@ test-docker: setup ## a site of four PCs as containers; starts a Docker engine w
 	  trap '[ -z "$$started" ] || sh deploy/engine.sh stop $$started' EXIT; \
 	  DOCKER=$(DOCKER) $(PY) -m pytest -p no:randomly -m docker -s --durations=0 tests/docker
 
-clean: down ## remove the environments and all state of the demo
-	rm -rf $(VENV) $(VENV)-store .state
+clean: down ## remove the environments and the demo's state (SITE=name: that site's)
+	rm -rf $(VENV) $(VENV)-store .state/$(basename $(notdir $(or $(SITE),demo)))

@@ -39,6 +39,11 @@ SAID = {
     "{file}: right ({machines} machines, {processes} processes, {inputs} sensing inputs)": (
         "{file}: 正常(機械 {machines}、プロセス {processes}、センシング入力 {inputs})"
     ),
+    "nothing was done, since nobody can answer here: use a terminal (`docker exec -it`), "
+    "or --yes where the command has it": (
+        "何も行っていません。ここでは確認に答えられません: 端末から(`docker exec -it`)、"
+        "または --yes があるコマンドならそれを付けて実行してください"
+    ),
     # runs
     "run {run}": "実行 {run}",
     "run {run}: {state}{reason}": "実行 {run}: {state}{reason}",
@@ -143,6 +148,12 @@ SAID = {
     ),
     "no changes since the database module keeps them": "記録が始まってからの変更はありません",
     "last refused: {reason}": "最後に拒否した理由: {reason}",
+    # the database
+    "{name} on {address}, schema {schema} (this program knows {newest})": (
+        "{address} の {name}、形式の版 {schema}(このソフトは {newest} まで対応)"
+    ),
+    "Replace all of database {name} ({there})?": "データベース {name}({there})をすべて置き換えますか?",
+    "restored into {name}: {report}": "{name} に復元しました: {report}",
 }
 
 # What to do about an error, by its code (docs: tms_core/errors.py).
@@ -174,6 +185,7 @@ NEXT = {
     "RECORD_MISSING": "`tms param list` で確認し、`tms param set --create` で作成してください",
     "MESH_DOWN": "`tms up` でメッシュを起動してください",
     "SUPERVISOR": "`tms status` を確認し、必要なら `tms up` で起動してください",
+    "NO_ACCESS": "示されたファイルを読み書きできる利用者で実行するか、別の場所を指定してください",
     "NO_ANSWER": "応答がありません。`tms status` でメッシュが動いているか確認してください",
     "NO_SERVER": "応答がありません。`tms status` でメッシュが動いているか確認してください",
     "NO_PROCESS": "`tms ps` でプロセス名を確認してください",

@@ -52,6 +52,16 @@ def _hint(code: str) -> None:
         print(f"  {text}", file=sys.stderr)
 
 
+def _as_ours(error: OSError) -> TmsError:
+    """What the operating system did not do, and what helps."""
+    what = error.strerror or str(error) or type(error).__name__
+    if error.filename is None:
+        return TmsError(f"{what} (`tms status` and `tms logs` may tell more)")
+    return TmsError(
+        f"{error.filename}: {what}: choose another place, or a user of this PC who may use this one", "NO_ACCESS"
+    )
+
+
 def main() -> None:
     """0 done, 1 refused or failed, 2 usage, 130 interrupted."""
     try:
@@ -60,16 +70,24 @@ def main() -> None:
         error.show()
         _hint("USAGE")
         sys.exit(2)
-    except click.exceptions.Abort:
+    except click.exceptions.Abort as error:
+        if isinstance(error.__context__, EOFError):  # and not Ctrl-C, or "no" for an answer
+            text = (
+                "nothing was done, since nobody can answer here: use a terminal (`docker exec -it`), "
+                "or --yes where the command has it"
+            )
+            print(f"\ntms: {words.say(text)}", file=sys.stderr)
+            sys.exit(1)
         sys.exit(INTERRUPTED)
     except KeyboardInterrupt:
         sys.exit(INTERRUPTED)
     except click.ClickException as error:
         error.show()
         sys.exit(1)
-    except TmsError as error:
-        print(f"tms: {error}", file=sys.stderr)
-        _hint(error.code)
+    except (TmsError, OSError) as error:
+        ours = error if isinstance(error, TmsError) else _as_ours(error)
+        print(f"tms: {ours}", file=sys.stderr)
+        _hint(ours.code)
         sys.exit(1)
 
 

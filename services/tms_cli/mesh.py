@@ -24,7 +24,7 @@ from tms_core.environment import environment
 from tms_core.errors import ConfigError, TmsError
 from tms_core.processes import Process, here
 from tms_host.supervisor import Supervisor, render, runtime_folder
-from tms_ur.address import certificate
+from tms_ur.address import certificate, users
 
 NEEDED_BYTES = 100 * 2**20  # for logs
 READY_LIMIT = 60.0  # s for all processes to be able to work
@@ -60,6 +60,7 @@ def check(site: Site) -> tuple[Process, ...]:
         store.check(site)
     if any(row.name == "ur" for row in rows):
         certificate(site)
+        users(site)
     try:
         (site.state / "log").mkdir(parents=True, exist_ok=True)
         (site.state / "ros").mkdir(exist_ok=True)

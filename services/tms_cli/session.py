@@ -1,6 +1,7 @@
 """What verbs share: the site, a short-lived ROS node, typed calls to the services, output for people or machines."""
 
 import json
+import math
 import os
 import threading
 from collections.abc import Iterator
@@ -68,7 +69,16 @@ def latched(node: "Ros", message_type: Any, topic: str) -> Any:
 
 def show_json(data: Any) -> None:
     """The one JSON document that --json promises on stdout."""
-    click.echo(json.dumps(data, ensure_ascii=False, indent=2))
+    click.echo(json.dumps(_finite(data), ensure_ascii=False, indent=2, allow_nan=False))
+
+
+def _finite(data: Any) -> Any:
+    """JSON has no NaN and no infinity: null, as the API answers."""
+    if isinstance(data, float):
+        return data if math.isfinite(data) else None
+    if isinstance(data, dict):
+        return {key: _finite(value) for key, value in data.items()}
+    return [_finite(part) for part in data] if isinstance(data, (list, tuple)) else data
 
 
 json_option = click.option("--json", "as_json", is_flag=True, help="One JSON document on stdout.")

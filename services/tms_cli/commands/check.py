@@ -7,7 +7,7 @@ from tms_cli.words import say
 from tms_core.config import load_site
 from tms_core.processes import table
 from tms_core.sensing import load_sensing
-from tms_ur.address import certificate
+from tms_ur.address import certificate, users
 
 
 @click.command()
@@ -25,6 +25,7 @@ def command(chosen: str | None, as_json: bool) -> None:
     rows = table(site)
     if any(row.name == "ur" and row.pc in ("", site.pc) for row in rows):  # other PCs do not have its files
         certificate(site)
+        users(site)
     inputs = load_sensing(site).inputs
     if as_json:
         session.show_json(

@@ -9,7 +9,7 @@ import click
 
 from tms_cli import session
 from tms_cli.open_store import opened
-from tms_cli.words import Group
+from tms_cli.words import Group, say
 
 if TYPE_CHECKING:
     from tms_db.backup import Report
@@ -50,7 +50,8 @@ def info(as_json: bool) -> None:
     if as_json:
         session.show_json({**_as_dict(report), "address": address, "newest_schema": schema.NEWEST})
         return
-    click.echo(f"{report.database} on {address}, schema {report.schema} (this program knows {schema.NEWEST})")
+    text = "{name} on {address}, schema {schema} (this program knows {newest})"
+    click.echo(say(text, name=report.database, address=address, schema=report.schema, newest=schema.NEWEST))
     for name, number in sorted(report.documents.items()):
         click.echo(f"  {name:<22} {number:>9}")
 
@@ -101,13 +102,14 @@ def restore(file: Path, drop: bool, yes: bool, as_json: bool) -> None:
     with opened() as db:
         there = backup.look(db)
         if drop and not yes and any(there.documents.values()):
-            click.confirm(f"Replace all of database {db.name} ({there.text})?", abort=True, err=True)
+            question = say("Replace all of database {name} ({there})?", name=db.name, there=there.text)
+            click.confirm(question, abort=True, err=True)
         report = backup.restore(db, file, _progress(), drop=drop)
         into = db.name
     if as_json:
         session.show_json({**_as_dict(report), "file": str(file), "into": into})
     else:
-        click.echo(f"restored into {into}: {report.text}")
+        click.echo(say("restored into {name}: {report}", name=into, report=report.text))
 
 
 def _as_dict(report: "Report") -> dict[str, Any]:
@@ -118,10 +120,10 @@ def _progress() -> Callable[[str], None]:
     """Says on stderr how far long work is; short work stays silent."""
     last = time.monotonic()
 
-    def say(text: str) -> None:
+    def speak(text: str) -> None:
         nonlocal last
         if time.monotonic() - last >= SPEAK:
             last = time.monotonic()
             click.echo(text, err=True)
 
-    return say
+    return speak

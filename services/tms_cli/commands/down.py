@@ -10,6 +10,9 @@ from tms_cli.words import say
 def command() -> None:
     """Stop every process of the mesh on this PC and supervisord itself.
 
+    What systemd or Docker started they bring back: end that with `systemctl stop tms@cps` (its PC after the @), or with
+    `make down` and the words of its `make up`.
+
     \b
     Example:
       tms down

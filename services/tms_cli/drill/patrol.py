@@ -47,13 +47,13 @@ class Patrol:
                 continue
             self.rows.append(row or self._left_out(case))
             click.echo(f"{len(self.rows)}/{total} {line(self.rows[-1])}", err=True)
-        self._work.end()
+        self._end()
         return [*self.rows, *(self._left_out(case) for case in todo)]
 
     def _try(self, case: Case) -> Row | None:
         try:
             return self._trial.run(case, self._paths[case.leaf])
-        except TmsError as error:
+        except (TmsError, ProcessLookupError) as error:
             click.echo(f"{case.process} {case.how}: {error}", err=True)
             return self._row(case)
 
@@ -61,7 +61,8 @@ class Patrol:
         """Wait for a moment that fits one of the cases; None when none comes."""
         stalled = min(deadline, time.monotonic() + STALL_LIMIT)
         while time.monotonic() < stalled:
-            self._keep_going()
+            if not self._keeps_going():
+                return None
             if self._eyes.moving():
                 case = choose(todo, self._work.leaf, self._eyes.fresh() and self._work.losses < self._retries)
                 if case is not None:
@@ -70,12 +71,23 @@ class Patrol:
         click.echo("no leaf that is left to try comes to move the machine: see `tms events last`", err=True)
         return None
 
-    def _keep_going(self) -> None:
-        """Begin when nothing runs; resume what was interrupted."""
-        if self._work.lost and self._work.interrupted():
-            self._work.begin(resume=True)
-        elif self._work.idle():
-            self._work.begin()
+    def _keeps_going(self) -> bool:
+        """Begin when nothing runs; resume what was interrupted. What was seen so far outlives a mesh that cannot."""
+        try:
+            if self._work.lost and self._work.interrupted():
+                self._work.begin(resume=True)
+            elif self._work.idle():
+                self._work.begin()
+        except TmsError as error:
+            click.echo(f"the run does not go on, the rest is left out: {error}", err=True)
+            return False
+        return True
+
+    def _end(self) -> None:
+        try:
+            self._work.end()
+        except TmsError as error:
+            click.echo(f"the run was not ended: {error}", err=True)
 
     def _row(self, case: Case) -> Row:
         return Row(case.process, self._paths[case.leaf], case.how, self._machine, case.stops)

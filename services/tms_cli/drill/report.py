@@ -26,6 +26,7 @@ def markdown(rows: Sequence[Row], figures: dict[str, Any], site: str) -> str:
         ("Trials / 試行回数", figures["trials"]),
         ("Stops not confirmed / 停止を確認できなかった回数", unseen),
         ("Runs left hanging / 終わらなかった実行", hung),
+        ("Processes that did not come back / 復帰しなかったプロセス", figures["not_back"]),
         ("Cases left out / 未実施", figures["left_out"]),
         ("Told to stop after, p50 [s] / 停止指令まで 中央値", _number(figures["kill_to_stop_p50_s"])),
         ("Told to stop after, p99 [s] / 停止指令まで 99 %", _number(figures["kill_to_stop_p99_s"])),

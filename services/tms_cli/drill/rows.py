@@ -87,6 +87,7 @@ def summary(rows: Sequence[Row]) -> dict[str, Any]:
         "trials": len(tried),
         "left_out": len(rows) - len(tried),
         "unconfirmed": sum(not row.confirmed for row in tried),
+        "not_back": sum(row.back_s is None for row in tried),
         "hung": sum(row.outcome == HUNG for row in tried),
         "stop_p50_s": percentile(stops, 0.5),
         "stop_p99_s": percentile(stops, 0.99),

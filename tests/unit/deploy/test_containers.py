@@ -12,9 +12,12 @@ import yaml
 from conftest import PROJECT
 from tms_core.config import load_site
 from tms_core.pcs import ROLES
+from tms_core.processes import table
 
 DEPLOY = PROJECT / "deploy"
 COMPOSE = sorted(path for path in (DEPLOY / "compose").glob("*.yml") if path.stem != "base")
+
+needs_nft = pytest.mark.skipif(not shutil.which("nft") or os.getuid() != 0, reason="nft checks only for root")
 
 
 def run(*words: str, **variables: str) -> subprocess.CompletedProcess[str]:
@@ -92,6 +95,14 @@ def test_secrets_are_made_once_and_never_shown(tmp_path: Path) -> None:
 def test_secrets_stay_out_of_the_image() -> None:
     rules = (PROJECT / ".dockerignore").read_text().split()  # the last rule that fits decides
     assert "deploy/compose/secrets" in rules[rules.index("!deploy") :]
+    assert {"configs/**/users*", "configs/**/*.pem", "configs/**/*.key"} <= set(rules[rules.index("!configs") :])
+
+
+@pytest.mark.parametrize("file", ["users.yaml", "users_genba.yaml", "users.new", "cert.pem", "tls/site.key"])
+def test_who_may_use_a_console_and_its_key_stay_out_of_git(file: str) -> None:
+    for folder in ("configs", "configs/sites"):  # beside the site file, wherever it is
+        assert run("git", "-C", str(PROJECT), "check-ignore", "-q", f"{folder}/{file}").returncode == 0
+    assert run("git", "-C", str(PROJECT), "check-ignore", "-q", "configs/sites/genba.yaml").returncode == 1
 
 
 def test_alerts_go_to_the_alertmanager_beside_prometheus() -> None:
@@ -100,10 +111,23 @@ def test_alerts_go_to_the_alertmanager_beside_prometheus() -> None:
     assert f"--web.listen-address={to}" in services["alertmanager"]["command"]
 
 
-@pytest.mark.skipif(not shutil.which("nft") or os.getuid() != 0, reason="nft checks only for root")
+@needs_nft
 def test_the_firewall_is_valid() -> None:
     done = run("nft", "-c", "-f", str(DEPLOY / "network" / "nftables.conf"))
     assert done.returncode == 0, done.stderr
+
+
+@needs_nft
+def test_a_pc_that_is_taken_out_of_the_firewall_is_not_let_in_any_more(tmp_path: Path) -> None:
+    """In a network namespace of its own, where nothing else is."""
+    rules = (DEPLOY / "network" / "nftables.conf").read_text()
+    many, few = tmp_path / "many", tmp_path / "few"
+    many.write_text(rules.replace("10.77.0.1-10.77.0.250", "10.77.0.1, 10.77.0.66"))
+    few.write_text(rules.replace("10.77.0.1-10.77.0.250", "10.77.0.1"))
+    done = run("unshare", "-n", "sh", "-ec", f"nft -f {many}; nft -f {few}; nft list ruleset")
+    assert done.returncode == 0, done.stderr
+    assert "10.77.0.1 " in done.stdout and "10.77.0.66" not in done.stdout
+    assert done.stdout.count('iif "lo" accept') == 1
 
 
 def test_the_firewall_lets_the_pcs_ask_the_cps_pc_for_the_time() -> None:
@@ -114,3 +138,4 @@ def test_the_firewall_lets_the_pcs_ask_the_cps_pc_for_the_time() -> None:
 def test_the_example_site_is_right_and_listens_on_its_own_addresses_only() -> None:
     site = load_site("yard")
     assert set(site.file.pcs) == set(ROLES) and site.file.bind == "127.0.0.1"
+    assert next(row.pc for row in table(site) if row.full == "tms:sp") == "sensing"

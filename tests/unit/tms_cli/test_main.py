@@ -8,7 +8,10 @@ import threading
 from pathlib import Path
 from types import SimpleNamespace
 
+import click
 import pytest
+
+from tms_cli import main
 
 VERBS = (
     "abandon", "answer", "cancel", "check", "completion", "db", "demo", "drill", "events", "logs", "palette", "panel",
@@ -18,7 +21,12 @@ VERBS = (
 
 def tms(*words: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
-        [sys.executable, "-m", "tms_cli.main", *words], capture_output=True, text=True, timeout=30, check=False
+        [sys.executable, "-m", "tms_cli.main", *words],
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=30,
+        check=False,
     )
 
 
@@ -44,6 +52,62 @@ def test_every_verb_has_help_with_an_example() -> None:
     for verb in VERBS:
         shown = CliRunner().invoke(group, [verb, "--help"]).output
         assert "Example" in shown, verb
+
+
+def test_what_the_system_refuses_is_one_line_and_exit_code_1() -> None:
+    end = tms("user", "add", "logger", "--role", "viewer", "--token", "--file", "/proc/users.yaml")  # also as root
+    assert (end.returncode, end.stdout) == (1, "")
+    (line,) = end.stderr.splitlines()
+    assert line.startswith("tms: /proc/users.new: ") and "choose another place" in line
+
+
+@pytest.mark.parametrize(
+    ("error", "told"), [(TimeoutError("timed out"), "timed out (`tms status`"), (OSError(), "OSError (`tms status`")]
+)
+def test_what_the_system_refuses_without_naming_a_file(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], error: OSError, told: str
+) -> None:
+    def fails(**_: object) -> None:
+        raise error
+
+    monkeypatch.setattr(main, "tms", fails)
+    with pytest.raises(SystemExit) as end:
+        main.main()
+    assert end.value.code == 1
+    assert capsys.readouterr().err.startswith(f"tms: {told}")
+
+
+@pytest.mark.parametrize("locale", ["C.UTF-8", "ja_JP.UTF-8"])
+def test_a_question_that_nobody_can_answer_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, locale: str
+) -> None:
+    monkeypatch.setenv("LC_ALL", locale)
+    end = tms("user", "add", "mina", "--role", "viewer", "--file", str(tmp_path / "users.yaml"))
+    assert end.returncode == 1
+    line = end.stderr.splitlines()[-1]
+    assert "docker exec -it" in line and "--yes" in line
+    assert ("何も行っていません" if locale.startswith("ja") else "nothing was done") in line
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("answer", [KeyboardInterrupt, None])
+def test_ctrl_c_and_no_are_an_interruption_without_words(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], answer: type[BaseException] | None
+) -> None:
+    def ask(**_: object) -> None:
+        click.confirm("Is it safe?", abort=True, err=True)
+
+    def answered(_: str) -> str:
+        if answer:
+            raise answer
+        return "n"
+
+    monkeypatch.setattr(main, "tms", ask)
+    monkeypatch.setattr(click.termui, "visible_prompt_func", answered)
+    with pytest.raises(SystemExit) as end:
+        main.main()
+    assert end.value.code == 130
+    assert "nothing was done" not in capsys.readouterr().err
 
 
 def test_wrong_usage_is_exit_code_2() -> None:

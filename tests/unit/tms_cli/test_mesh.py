@@ -56,8 +56,26 @@ def test_a_console_without_its_certificate_is_told_before_anything_starts(tmp_pa
     assert not (tmp_path / "state" / "supervisord.conf").exists()
 
 
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [(None, "is not there: `tms user add"), ("users: {}\n", "everybody on this PC may read it"), ("user: 1\n", "user")],
+)
+def test_users_that_the_console_cannot_take_are_told_before_anything_starts(
+    tmp_path: Path, tms: Any, text: str | None, told: str
+) -> None:
+    file = tmp_path / "users.yaml"
+    if text is not None:
+        file.write_text(text)
+        file.chmod(0o644 if "users" in text else 0o600)
+    ours = site(tmp_path, console={"users": "users.yaml"}, store={"kind": "mongodb", "uri": "mongodb://x/"})
+    with pytest.raises(ConfigError, match=f"{file}: .*{told}"):
+        mesh.up(ours)
+    assert told in str(tms(check.command, "--site", ours.path).exception)
+    assert not (tmp_path / "state" / "supervisord.conf").exists()
+
+
 def test_a_pc_without_the_console_needs_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, tms: Any) -> None:
-    facts = {"console": TLS, "store": {"kind": "mongodb", "uri": "mongodb://x/"}, "pcs": PCS}
+    facts = {"console": {**TLS, "users": "users.yaml"}, "store": {"kind": "mongodb", "uri": "mongodb://x/"}, "pcs": PCS}
     monkeypatch.setenv("TMS_PC", "cps")
     assert "console.tls.certificate" in str(tms(check.command, "--site", site(tmp_path, **facts).path).exception)
     for other in ("sensing", ""):  # the other one, or one that nobody has chosen yet

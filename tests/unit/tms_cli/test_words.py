@@ -20,7 +20,7 @@ from tms_cli.main import tms as group
 
 SERVICES = Path(words.__file__).parents[1]
 NOT_DAILY = ("drill", "user.py", "palette.py", "panel.py", "prometheus.py", "monitoring.py", "japanese",
-             "db.py", "terrain.py", "replay", "open_store.py")  # fmt: skip
+             "terrain.py", "replay", "open_store.py")  # fmt: skip
 KEPT = {  # what is stored, what is found in a task (also in JSON), and parts of errors (they have NEXT)
     "software stop by an operator", "One loading cycle of the zx200",
     "it cannot be stored as a task: ", "this is no task: ", "its outermost element is <",
