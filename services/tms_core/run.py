@@ -24,9 +24,9 @@ NICE = -10
 def main(name: str) -> int:
     """Run one process of the table until SIGTERM or SIGINT; 0 on a clean end."""
     try:
+        _die_with_parent()
         site = load_site()
         row = find(site, name)
-        _die_with_parent()
         if row.name == "store":
             store.become(site)
         if row.name == "discovery":

@@ -1,5 +1,6 @@
 """Reads a YAML file into a frozen model; whatever is wrong is an error that names file and key."""
 
+from collections.abc import Hashable
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -20,6 +21,9 @@ def _mapping(loader: _Loader, node: yaml.MappingNode) -> dict[Any, Any]:
     seen: dict[Any, Any] = {}
     for key_node, value_node in node.value:
         key = loader.construct_object(key_node, deep=True)
+        if not isinstance(key, Hashable):  # `{{ address }}` is a mapping as key of a mapping
+            problem = "a key is itself a mapping or a list: was a {{ placeholder }} not filled in?"
+            raise yaml.MarkedYAMLError(problem=problem, problem_mark=key_node.start_mark)
         if key in seen:
             raise yaml.MarkedYAMLError(problem=f"key '{key}' is there twice", problem_mark=key_node.start_mark)
         seen[key] = loader.construct_object(value_node, deep=True)

@@ -27,6 +27,9 @@ from tms_db.store import Db, errors
 STAGED = "restoring."  # before the names of collections that are not complete yet
 BATCH = 500  # documents
 BATCH_BYTES = 4 * 2**20
+# A run is written as ended after its events, a file of GridFS after its chunks: a backup that reads these first holds
+# all that belongs to them.
+FIRST = ("run", "fs.files")
 DUPLICATE = 11000  # MongoDB's code of a unique key that is there already
 RAW: CodecOptions[RawBSONDocument] = CodecOptions(document_class=RawBSONDocument)
 NEEDED = {"task": ("task_id", "task_sequence"), "parameter": ("record_name",)}  # what tells a TMS database
@@ -88,8 +91,7 @@ def backup(db: Db, path: Path, say: Say, *, overwrite: bool = False) -> Report:
 def _dump(db: Db, file: BinaryIO, say: Say) -> dict[str, int]:
     counts: Counter[str] = Counter()
     with errors():
-        # A run is written as ended after its events; in this order a backup holds all events of such a run.
-        names = sorted(_collections(db), key=lambda name: (name != "run", name))
+        names = sorted(_collections(db), key=lambda name: (name not in FIRST, name))
         out = archive.Writer(file, db.name, str(db.client.server_info()["version"]), f"tms {version()}")
         out.describe({name: list(db[name].list_indexes()) for name in names})
         for name in names:

@@ -33,7 +33,7 @@ def check(document: Document, max_age: float, now: datetime | None = None) -> No
         raise DbError(f"{where} may be {limit:g} s old, but nobody knows its age: let sensing write it", "STALE_RECORD")
     asked = (now or datetime.now(timezone.utc)).timestamp()
     if updated_at.timestamp() - asked > limit:  # the clock was set back
-        text = f"{where}: its time lies in the future, so nobody knows its age (last from {source}): let sensing write it"
+        text = f"{where}: its time lies in the future (last from {source}): let sensing write it"
         raise DbError(text, "STALE_RECORD")
     since = locked_since(document, asked)
     age = (asked if since is None else min(asked, since)) - updated_at.timestamp()

@@ -147,11 +147,13 @@ class Heads:
         threading.Thread(target=self._look, args=(due,), name="heads", daemon=True).start()
 
     def _look(self, due: dict[Key, Head]) -> None:
+        found = None
         try:
             found = {document["_id"]: document for document in self._parameters.by_id([h.id for h in due.values()])}
         except DbError:  # whoever writes next is told
-            found = None
-        self._ros.on_executor(lambda: self._read(due, found))
+            pass
+        finally:
+            self._ros.on_executor(lambda: self._read(due, found))
 
     def _read(self, due: dict[Key, Head], found: dict[Any, Document] | None) -> None:
         self._reading = False

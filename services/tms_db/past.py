@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from datetime import datetime
 from typing import Any
 
+import bson
 from pymongo import UpdateOne
 
 from tms_core.errors import DbError
@@ -18,6 +19,7 @@ from tms_db.records import Value
 from tms_db.store import Db, errors
 
 KEPT = 50  # changes a record
+ROOM = 3 * 2**20  # bytes; the store takes documents of 16 MB, see `_room`
 PERIOD = 2.0  # s between writes; what sensing changes in between counts as one change
 
 Change = dict[str, Any]  # stamp, source, values
@@ -102,14 +104,24 @@ class Past:
         steps = [
             UpdateOne(
                 {"model_name": model, "record_name": record},
-                {"$push": {"changes": {"$each": changes, "$slice": -KEPT}}},
+                {"$push": {"changes": {"$each": changes[-room:], "$slice": -room}}},
                 upsert=True,
             )
             for (model, record), changes in new.items()
+            if (room := _room(changes))
         ]
         if steps:
             with errors():
                 self._stored.bulk_write(steps, ordered=False)
+
+
+def _room(changes: list[Change]) -> int:
+    """How many changes may be kept together with these; none when one of them alone is too large.
+
+    Whatever sizes came before, a document of changes that were let in like this holds at most 4.5 times ROOM: the
+    second oldest has left room for two of its size, the third oldest for three, and so on.
+    """
+    return min(KEPT, ROOM // max(len(bson.encode(change)) for change in changes))
 
 
 def _others(changes: list[Change], stored: list[Change]) -> list[Change]:

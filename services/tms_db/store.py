@@ -6,6 +6,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 import pymongo
+from bson.errors import InvalidBSON
 from pymongo import ASCENDING, DESCENDING, MongoClient
 from pymongo.database import Database
 from pymongo.errors import (
@@ -58,6 +59,11 @@ INDEXES: dict[str, list[tuple[list[tuple[str, int]], dict[str, Any]]]] = {
     "machine_pose": [([("time", DESCENDING)], {})],
     "machine_joints": [([("time", DESCENDING)], {})],
     "event": [([("run_id", ASCENDING), ("number", ASCENDING)], {"unique": True})],
+}
+# Made by GridFS itself with its first file, but not in collections that hold one already: for what is restored.
+GRIDFS: dict[str, list[tuple[list[tuple[str, int]], dict[str, Any]]]] = {
+    "fs.files": [([("filename", ASCENDING), ("uploadDate", ASCENDING)], {})],
+    "fs.chunks": [([("files_id", ASCENDING), ("n", ASCENDING)], {"unique": True})],
 }
 
 
@@ -116,7 +122,7 @@ def index(db: Db, collection: str, name: str = "") -> None:
     Raises:
         DbError: as `prepare`.
     """
-    for fields, options in INDEXES.get(collection, ()):
+    for fields, options in {**INDEXES, **GRIDFS}.get(collection, ()):
         try:
             with long_work(db):  # the first time, in a database of the C++ system
                 db[name or collection].create_index(fields, **options)
@@ -160,6 +166,9 @@ def errors() -> Iterator[None]:
         raise _too_large() from error
     except OperationFailure as error:
         raise _refused(error) from error
+    except InvalidBSON as error:  # text that is no UTF-8, a date that no calendar has: other systems write here, too
+        text = f"a stored document cannot be read ({_first(error)}): correct or remove it"
+        raise DbError(text, "BAD_RECORD") from error
     except PyMongoError as error:
         raise DbError(f"the store could not do it ({type(error).__name__}): see the log of tms:db") from error
 
@@ -178,6 +187,11 @@ def _unreachable(text: str) -> DbError:
     return DbError(f"the store cannot be used: {hint}", "STORE_DOWN") if hint else down()
 
 
+def _first(told: object) -> str:
+    """As much of a text as fits into a message."""
+    return str(told).partition("\n")[0][:200]
+
+
 def _too_large() -> DbError:
     return DbError("the document is larger than the store's 16 MB: make it smaller", "TOO_LARGE")
 
@@ -186,7 +200,7 @@ def _refused(error: OperationFailure) -> DbError:
     details = error.details or {}
     first = (details.get("writeErrors") or [details])[0]  # of many writes, the one that it refused
     code = first.get("code", error.code)
-    text = str(first.get("errmsg", type(error).__name__)).splitlines()[0][:200]
+    text = _first(first.get("errmsg", type(error).__name__))
     if code in SIZE_CODES or "object to insert too large" in text:  # which MongoDB itself gives a common code
         return _too_large()
     if code in AUTH_CODES:

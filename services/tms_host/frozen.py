@@ -67,8 +67,11 @@ class Watchdog:
             asked.close()
 
     def _restart(self, supervisor: Supervisor, row: Running) -> None:
-        self._app.log.error("event=frozen target=%s pid=%d action='restarted'", row.name, row.pid)
         try:
+            now = supervisor.process(row.name)
+            if (now.state, now.pid) != ("RUNNING", row.pid):  # somebody has stopped it while it was asked
+                return
+            self._app.log.error("event=frozen target=%s pid=%d action='restarted'", row.name, row.pid)
             supervisor.control("restart", row.name)
         except TmsError as error:
             self._app.log.error("event=not_restarted target=%s reason=%r", row.name, str(error))

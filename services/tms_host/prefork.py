@@ -30,24 +30,32 @@ INTERFACES = (
     "geometry_msgs", "nav_msgs", "sensor_msgs", "std_msgs", "std_srvs", "trajectory_msgs",
 )  # fmt: skip
 MIDDLEWARE = "librmw_fastrtps_cpp.so"
+PR_SET_PDEATHSIG = 1
 HANDLED = (signal.SIGTERM, signal.SIGINT, signal.SIGQUIT, signal.SIGHUP, signal.SIGCHLD, signal.SIGUSR2)
 
 
 class Options(ServerOptions):  # type: ignore[misc]
     """supervisord's dealings with the operating system, but for one call."""
 
+    parent = 0  # pid of supervisord, in its child
+
+    def fork(self) -> int:
+        self.parent = os.getpid()
+        return os.fork()
+
     def execve(self, filename: str, argv: list[str], env: dict[str, str]) -> None:
         """In the child: become the program. Pipes, group and working folder are set by supervisord already."""
         if argv[1:2] == ["-m"] and argv[2:3] == [MODULE]:
-            become(argv, env)
+            become(argv, env, self.parent)
         super().execve(filename, argv, env)
 
 
-def become(argv: list[str], env: dict[str, str]) -> NoReturn:
+def become(argv: list[str], env: dict[str, str], parent: int) -> NoReturn:
     """Run `python -m tms_core.run NAME` in this fork, and end with its exit code."""
     gc.freeze()  # what supervisord held is never collected here: its file numbers belong to others now
     for number in HANDLED:
         signal.signal(number, signal.SIG_DFL)
+    _end_with(parent)
     setproctitle.setproctitle(" ".join(argv))  # before the environment goes: it looks for its place there
     os.environ.clear()
     os.environ.update(env)
@@ -60,6 +68,13 @@ def become(argv: list[str], env: dict[str, str]) -> NoReturn:
     logging.shutdown()
     sys.stdout.flush()
     os._exit(code)
+
+
+def _end_with(parent: int) -> None:
+    """Before anything is imported: a supervisord that is killed meanwhile would leave an orphan."""
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)
+    if os.getppid() != parent:
+        os._exit(1)
 
 
 def load() -> None:

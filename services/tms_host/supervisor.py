@@ -4,6 +4,7 @@ import hashlib
 import os
 import sys
 import tempfile
+import time
 import xmlrpc.client
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +18,8 @@ from tms_core.processes import Process, here
 
 START_SECONDS = 1  # a process that ends sooner counts as failed to start
 STOP_SECONDS = 3  # the runtime ends within 2
+END_LIMIT = STOP_SECONDS + 1.0  # s; supervisord kills after STOP_SECONDS
+LOOK = 0.1  # s between looks at a process that is being stopped
 LOG_SIZE, LOG_FILES = "10MB", 3
 
 
@@ -91,7 +94,7 @@ supervisor.rpcinterface_factory=supervisor.rpcinterface:make_main_rpcinterface
 
 
 def _program(site: Site, row: Process) -> str:
-    log = _escape(str(site.state / "log" / f"{row.group}.{row.name}.log"))
+    log = _escape(str(_log_file(site, row.full)))
     return f"""[program:{_section(row)}]
 process_name={row.name}
 command="{_escape(sys.executable)}" -m tms_core.run {row.full}
@@ -110,6 +113,11 @@ redirect_stderr=true
 """
 
 
+def _log_file(site: Site, name: str) -> Path:
+    group, _, process = name.partition(":")
+    return site.state / "log" / f"{group}.{process}.log"
+
+
 def _section(row: Process) -> str:
     return f"{row.group}.{row.name}"
 
@@ -125,7 +133,7 @@ class Supervisor:
     """Calls to the supervisord of a site. Not thread safe: one object a thread."""
 
     def __init__(self, site: Site) -> None:
-        self._path = socket_path(site)
+        self._site, self._path = site, socket_path(site)
         self._proxy = self._connect()
 
     def _connect(self) -> xmlrpc.client.ServerProxy:
@@ -166,31 +174,63 @@ class Supervisor:
         assert isinstance(rows, list)
         return [_running(row) for row in rows]
 
+    def process(self, name: str) -> Running:
+        """One process of this PC.
+
+        Raises:
+            TmsError: there is none of this name.
+        """
+        for row in self.processes():
+            if row.name == name:
+                return row
+        raise TmsError(f"no process '{name}' on this PC: `tms ps` lists them", "NO_PROCESS")
+
     def control(self, command: str, name: str) -> None:
         """start, stop or restart one process; already started or stopped is no error.
 
         Raises:
             TmsError: it cannot be started; the message says where its log is.
         """
-        states = {row.name: row.state for row in self.processes()}
-        if name not in states:
-            raise TmsError(f"no process '{name}' on this PC: `tms ps` lists them", "NO_PROCESS")
-        up = states[name] in ("RUNNING", "STARTING")
-        again = states[name] == "BACKOFF"  # it has ended early and is about to be started again: stopping ends that
+        state = self._settled(name)
+        up = state in ("RUNNING", "STARTING")
+        again = state == "BACKOFF"  # it has ended early and is about to be started again: stopping ends that
         if again or (up and command in ("stop", "restart")):
             self._call("stopProcess", name, True)
         if command in ("start", "restart") and not (command == "start" and up):
             self._call("startProcess", name, False)
 
+    def _settled(self, name: str) -> str:
+        """State of a process once it is not being stopped any more: until then supervisord takes a start, and starts
+        nothing.
+
+        Raises:
+            TmsError: there is no such process, or it does not end.
+        """
+        deadline = time.monotonic() + END_LIMIT
+        while (state := self.process(name).state) == "STOPPING":
+            if time.monotonic() > deadline:
+                raise TmsError(f"'{name}' was told to end {END_LIMIT:.0f} s ago and has not: try again", "SUPERVISOR")
+            time.sleep(LOOK)
+        return state
+
     def log(self, name: str, size: int) -> str:
         """Whole lines from the end of a process's log, `size` bytes at most.
+
+        From the file: supervisord fails where a piece of it begins within a character.
 
         Raises:
             TmsError: there is no such process, or it has no log yet.
         """
-        text = str(self._call("readProcessStdoutLog", name, -size, 0))
-        begun = text.find("\n") + 1 if len(text.encode()) >= size else 0
-        return text[begun:]
+        path = _log_file(self._site, self.process(name).name)
+        try:
+            with path.open("rb") as file:
+                begin = max(0, file.seek(0, os.SEEK_END) - size)
+                file.seek(begin)
+                data = file.read(size)
+        except OSError as error:
+            raise TmsError(f"{path}: cannot be read ({error.strerror})", "SUPERVISOR") from error
+        begun = data.find(b"\n") + 1 if begin else 0
+        return data[begun:].decode(errors="replace")
 
     def shutdown(self) -> None:
         """Stop all processes at once (groups one after another take three times as long), then supervisord."""

@@ -10,6 +10,7 @@ from tms_if.framing import encode
 
 VERSION = "v0.7.0"  # the simulator wants v0.7; of its protocol, not of this project
 NAME = r"^/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*$"
+LONGEST = 246  # letters of a name; rmw takes 247 with the leading slash
 DEEPEST_QUEUE = 1000  # messages; a client may ask for more
 
 
@@ -22,7 +23,7 @@ class Registration(BaseModel):
 
     model_config = ConfigDict(frozen=True)
 
-    topic: str = Field(pattern=NAME, max_length=255)
+    topic: str = Field(pattern=NAME, max_length=LONGEST)
     message_name: str = Field(pattern=r"^\w+/(\w+/)?\w+$", max_length=255)
     queue_size: int = 10
     latch: bool = False

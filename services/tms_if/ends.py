@@ -6,6 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
+from rclpy.exceptions import NameValidationException
+
 from tms_core.errors import RosError
 from tms_core.ros import Ros, pack, unpack
 from tms_if import joint_cmd
@@ -146,8 +148,14 @@ class Ends:
 
         async def call() -> None:
             self._calls += 1
-            answer = await self._ros.ask(kind, full_name(topic), wanted, ANSWER_LIMIT)
-            self._calls -= 1
+            try:
+                answer = await self._ros.ask(kind, full_name(topic), wanted, ANSWER_LIMIT)
+            except NameValidationException as error:  # no reason to end the executor, and with it all clients
+                told = str(error).partition("\n")[0]
+                self._say(f"service {full_name(topic)}: {told}")
+                return
+            finally:
+                self._calls -= 1
             if answer is None:
                 self._say(f"service {full_name(topic)} did not answer within {ANSWER_LIMIT:.0f} s: is it there?")
             else:

@@ -30,7 +30,7 @@ class SourceClock:
 
     def age(self, stamp: float, now: float) -> float:
         """s between measurement and arrival, beyond the usual."""
-        if not self._least or now - self._began > WINDOW:
+        if not self._least or not 0 <= now - self._began <= WINDOW:  # below 0: our clock was set back
             self._least, self._began = [*self._least[-1:], now - stamp], now
         self._least[-1] = min(self._least[-1], now - stamp)
         return now - stamp - min(self._least)

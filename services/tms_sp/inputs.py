@@ -89,7 +89,8 @@ class SensingInput:
             text = f"its stamp lies {ahead + self._clock_limit:.1f} s in the future: set the clock of the sensing PC"
             raise Refused("FUTURE", text)
         before = self._stamps.get(reading.key)
-        if before is not None and reading.stamp < before:
+        set_back = before is not None and self._clock.ahead(before, wall) > 0  # ours: it was no future when it came
+        if before is not None and reading.stamp < before and not set_back:
             raise Refused("OLD", f"it was measured {before - reading.stamp:.3f} s before the one that came earlier")
         return self._clock.age(reading.stamp, wall)
 

@@ -160,4 +160,7 @@ def _scaled(value: Any, factor: float) -> Any:
 
 
 def _seconds(stamp: Any) -> float:
-    return float(stamp) if isinstance(stamp, (int, float)) else float(stamp.sec + stamp.nanosec * 1e-9)
+    seconds = float(stamp) if isinstance(stamp, (int, float)) else float(stamp.sec + stamp.nanosec * 1e-9)
+    if not math.isfinite(seconds):
+        raise Refused("NOT_FINITE", f"its stamp is {seconds}")
+    return seconds

@@ -26,6 +26,7 @@ from tms_db.crc64 import Crc64
 from tms_db.history import Event, History, Run
 from tms_db.parameters import Change, Parameters
 from tms_db.tasks import Tasks
+from tms_db.terrain import Terrain
 
 BEGIN = datetime(2026, 1, 31, 6, 0, tzinfo=timezone.utc)
 SEQUENCE = '<root><BehaviorTree ID="old"><AlwaysSuccess/></BehaviorTree></root>'
@@ -145,6 +146,27 @@ def test_what_is_backed_up_comes_back_byte_by_byte(shared_db: store.Db, other_db
     indexes = {name: sorted(other_db[name].index_information()) for name in store.INDEXES}
     assert indexes == {name: sorted(shared_db[name].index_information()) for name in store.INDEXES}
     assert not [name for name in other_db.list_collection_names() if name.startswith(backup.STAGED)]
+
+
+def test_terrain_comes_back_with_its_indexes_and_whole_though_some_is_added_meanwhile(
+    shared_db: store.Db, other_db: store.Db, tmp_path: Path
+) -> None:
+    schema.bring_up(shared_db)
+    terrain, later = Terrain(shared_db), ["later"]
+    terrain.put("early", "dynamic", b"1" * 300_000, {})
+
+    def say(text: str) -> None:
+        if text.startswith("fs.") and later:
+            terrain.put(later.pop(), "dynamic", b"2" * 300_000, {})
+
+    backup.backup(shared_db, tmp_path / "b.archive", say)
+    backup.restore(other_db, tmp_path / "b.archive", silent)
+    restored = Terrain(other_db)
+    assert not later
+    assert [(file.filename, len(restored.read(file))) for file in restored.all()] == [("early", 300_000)]
+    for name in store.GRIDFS:
+        assert other_db[name].index_information() == shared_db[name].index_information()
+    restored.put("new", "dynamic", b"3", {})
 
 
 def test_a_backup_has_the_form_that_mongorestore_reads(shared_db: store.Db, tmp_path: Path) -> None:

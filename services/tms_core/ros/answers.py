@@ -8,6 +8,8 @@ import warnings
 from collections.abc import Callable
 from typing import Any
 
+from rclpy.exceptions import InvalidHandle
+
 DROPPED = "failed to send response"
 AGAIN = 0.5  # s until the next attempt: each may hold the executor for 0.1 s
 ATTEMPTS = 6  # clients wait 5 s, and ask again themselves if they must
@@ -22,7 +24,10 @@ def send_surely(service: Any, later: Later) -> None:
     def attempt(response: Any, header: Any, left: int) -> None:
         with warnings.catch_warnings(record=True) as told:
             warnings.simplefilter("always")
-            send(response, header)
+            try:
+                send(response, header)
+            except InvalidHandle:  # the service was taken away meanwhile, and an exception would end the executor
+                return
         dropped = [one for one in told if DROPPED in str(one.message)]
         if dropped and left > 1:
             later(AGAIN, lambda: attempt(response, header, left - 1))

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from rclpy.exceptions import InvalidHandle
 
 from tms_core.ros.answers import ATTEMPTS, send_surely
 
@@ -62,3 +63,21 @@ def test_another_warning_is_told() -> None:
     with pytest.warns(RuntimeWarning, match="something else"):
         service.send_response("answer", "header")
     assert (service.sent, service.later) == (1, [])
+
+
+@pytest.mark.parametrize("drops", [0, 1])
+def test_a_service_that_was_taken_away_answers_nobody(drops: int) -> None:
+    service = Service(drops)
+    send = Service.send_response
+
+    def gone(response: object, header: object) -> None:
+        send(service, response, header)
+        if service.sent > drops:
+            raise InvalidHandle("cannot use Destroyable because destruction was requested")
+
+    del service.send_response
+    service.send_response = gone  # type: ignore[method-assign]
+    send_surely(service, lambda seconds, step: service.later.append(step))
+    service.send_response("answer", "header")
+    service.end()
+    assert service.sent == drops + 1

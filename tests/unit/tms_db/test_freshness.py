@@ -40,3 +40,19 @@ def test_a_lock_that_has_ended_keeps_nothing_fresh() -> None:
     for fields in (locked(ago=LEASE, age=1.0), record(41.0, **released())):
         with pytest.raises(DbError, match="s old"):
             check(fields, 0.0, NOW)
+
+
+def test_a_time_in_the_future_tells_no_age() -> None:
+    check(record(-1.9), 0.0, NOW)  # less than what is allowed either way
+    for fields in (record(-60.0), record(-60.0, **taken("plan", NOW.timestamp()))):
+        with pytest.raises(DbError, match=r"its time lies in the future.*let sensing write it") as refused:
+            check(fields, 0.0, NOW)
+        assert refused.value.code == "STALE_RECORD"
+    check(locked(ago=40.0, age=-30.0), 0.0, NOW)  # changed by hand while it was locked
+    check(record(-60.0), -1.0, NOW)
+
+
+def test_a_limit_that_is_no_number_is_none() -> None:
+    check(record(99.0, max_age="2.0"), 0.0, NOW)
+    with pytest.raises(DbError, match=r"99\.0 s old"):
+        check(record(99.0, max_age="2.0"), 5.0, NOW)

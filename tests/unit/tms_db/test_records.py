@@ -89,6 +89,9 @@ def test_file_that_is_no_yaml(tmp_path: Path) -> None:
         read(tmp_path, "- {record_name: p,\n  : :")
     with pytest.raises(ConfigError, match="key 'x' is there twice"):
         read(tmp_path, "- {record_name: p, type: static, x: 1, x: 2}")
+    for key in ("{{ ip }}", "{[a]: 1}"):
+        with pytest.raises(ConfigError, match=r"r\.yaml:2: a key is itself a mapping or a list"):
+            read(tmp_path, f"- record_name: p\n  x: {key}")
     with pytest.raises(ConfigError, match="cannot be read"):
         records.read_file(tmp_path / "none.yaml")
 

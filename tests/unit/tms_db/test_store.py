@@ -1,5 +1,8 @@
 """Addresses and errors of the store: no password gets out, each error says what to do."""
 
+from datetime import datetime
+
+import bson
 import pytest
 from pymongo.errors import (
     AutoReconnect,
@@ -90,3 +93,16 @@ def test_errors_say_what_to_do(error: PyMongoError, code: str, says: str) -> Non
 def test_a_duplicate_key_is_for_the_repository() -> None:
     with pytest.raises(DuplicateKeyError), store.errors():
         raise DuplicateKeyError("x")
+
+
+LATE = bson.encode({"a": datetime(2026, 1, 31)})[:-9] + (2**62).to_bytes(8, "little") + b"\0"
+FOREIGN = bson.encode({"a": "xx"}).replace(b"xx\0", b"\xff\xfe\0")
+
+
+@pytest.mark.parametrize("stored", [FOREIGN, LATE], ids=["text", "date"])
+def test_a_document_that_cannot_be_decoded_is_told(stored: bytes) -> None:
+    with pytest.raises(DbError, match=r"a stored document cannot be read \(.+\): correct or remove it") as caught:
+        with store.errors():
+            bson.decode(stored)
+    assert caught.value.code == "BAD_RECORD"
+    assert len(str(caught.value)) < 300

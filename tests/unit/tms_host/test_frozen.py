@@ -1,5 +1,6 @@
 """When a process that does not answer counts as frozen."""
 
+import logging
 import threading
 from pathlib import Path
 from types import SimpleNamespace
@@ -12,6 +13,7 @@ from tms_core.config import load_site
 from tms_core.metrics import Health
 from tms_core.processes import find
 from tms_host.frozen import Answers, Watchdog
+from tms_host.supervisor import Running
 
 
 def test_only_a_process_that_has_answered_can_be_frozen() -> None:
@@ -28,7 +30,8 @@ def test_a_new_process_starts_anew() -> None:
     assert not answers.frozen("zx200:rc", 8, False, 200.0)
 
 
-def test_a_process_is_asked_at_the_address_of_its_pc(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture
+def app(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
     monkeypatch.setenv("TMS_PC", "cps")
     file = tmp_path / "yard.yaml"
     file.write_text(yaml.safe_dump({
@@ -36,11 +39,28 @@ def test_a_process_is_asked_at_the_address_of_its_pc(tmp_path: Path, monkeypatch
         "pcs": {"cps": {"address": "127.0.0.9"}}, "services": {"db": {}, "host": {}},
     }))  # fmt: skip
     site = load_site(str(file))
-    app: Any = SimpleNamespace(site=site, process=find(site, "tms:host_cps"), stopping=threading.Event())
+    return SimpleNamespace(
+        site=site, process=find(site, "tms:host_cps"), stopping=threading.Event(), log=logging.getLogger("test")
+    )
+
+
+def test_a_process_is_asked_at_the_address_of_its_pc(app: Any) -> None:
     watchdog = Watchdog(app, list)
     assert not watchdog.answers("tms:db")
-    health = Health("127.0.0.9", find(site, "tms:db").port, unready=lambda: None)
+    health = Health("127.0.0.9", find(app.site, "tms:db").port, unready=lambda: None)
     try:
         assert watchdog.answers("tms:db")
     finally:
         health.close()
+
+
+@pytest.mark.parametrize(
+    ("state", "pid", "did"), [("RUNNING", 7, ["tms:db"]), ("STOPPING", 7, []), ("STOPPED", 0, []), ("RUNNING", 8, [])]
+)
+def test_what_somebody_has_stopped_meanwhile_stays_so(app: Any, state: str, pid: int, did: list[str]) -> None:
+    restarted: list[str] = []
+    supervisor: Any = SimpleNamespace(
+        process=lambda name: Running(name, state, pid, 5.0, ""), control=lambda _, name: restarted.append(name)
+    )
+    Watchdog(app, list)._restart(supervisor, Running("tms:db", "RUNNING", 7, 5.0, ""))
+    assert restarted == did

@@ -17,12 +17,33 @@ def main(name):
     return 3
 """
 FORK = """
-import signal
+import os, signal, time
 from tms_host import prefork
 
 prefork.MODULE = "program"
 signal.signal(signal.SIGTERM, signal.SIG_IGN)
-prefork.Options().execve("/nonexistent/python", ["python", "-m", {module!r}, {name!r}], {{"ONLY": "this"}})
+options = prefork.Options()
+parent = os.getpid()
+child = options.fork()
+if child:
+    os._exit({parent})
+while {orphan} and os.getppid() == parent:
+    time.sleep(0.01)
+options.execve("/nonexistent/python", ["python", "-m", {module!r}, {name!r}], {{"ONLY": "this"}})
+"""
+WAITS = "os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])"
+START = """
+import ctypes
+from tms_core import run
+from tms_core.errors import ConfigError
+
+def load_site():
+    signal = ctypes.c_int()
+    ctypes.CDLL(None).prctl(2, ctypes.byref(signal), 0, 0, 0)  # PR_GET_PDEATHSIG
+    raise ConfigError(f"ends with signal {signal.value}")
+
+run.load_site = load_site
+run.main("tms:db")
 """
 
 
@@ -30,9 +51,9 @@ prefork.Options().execve("/nonexistent/python", ["python", "-m", {module!r}, {na
 def run(tmp_path: Path):  # type: ignore[no-untyped-def]
     (tmp_path / "program.py").write_text(PROGRAM)
 
-    def become(name: str, module: str = "program") -> subprocess.CompletedProcess[str]:
+    def become(name: str, module: str = "program", parent: str = WAITS) -> subprocess.CompletedProcess[str]:
         code = f"import sys; sys.path.insert(0, {str(tmp_path)!r})" + textwrap.dedent(
-            FORK.format(module=module, name=name)
+            FORK.format(module=module, name=name, parent=parent, orphan=parent != WAITS)
         )
         return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
 
@@ -50,6 +71,16 @@ def test_an_exception_leaves_its_traceback_and_exit_code_1(run) -> None:  # type
     assert done.returncode == 1
     assert "RuntimeError: no such luck" in done.stderr
     assert "Traceback" in done.stderr
+
+
+def test_nothing_runs_when_supervisord_was_killed_meanwhile(run) -> None:  # type: ignore[no-untyped-def]
+    done = run("zx200:rc", parent="0")
+    assert (done.stdout, done.stderr) == ("", "")
+
+
+def test_a_program_ends_with_supervisord_from_its_first_step_on() -> None:
+    done = subprocess.run([sys.executable, "-c", START], capture_output=True, text=True, timeout=60, check=True)
+    assert done.stderr == "tms:db: ends with signal 15\n"
 
 
 def test_other_programs_are_executed(run) -> None:  # type: ignore[no-untyped-def]

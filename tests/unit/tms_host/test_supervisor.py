@@ -2,14 +2,16 @@
 
 import configparser
 from pathlib import Path
+from typing import Any
 
 import pytest
 import yaml
 
 from conftest import site_data
 from tms_core.config import Site, load_site
-from tms_core.errors import ConfigError
+from tms_core.errors import ConfigError, TmsError
 from tms_core.processes import table
+from tms_host import supervisor as module
 from tms_host.supervisor import Supervisor, SupervisorDown, render, runtime_folder, socket_path
 
 
@@ -65,3 +67,74 @@ def test_no_supervisord_is_told_in_one_line(site: Site) -> None:
     assert not supervisor.alive()
     with pytest.raises(SupervisorDown, match="make up"):
         supervisor.processes()
+
+
+class Scripted(Supervisor):
+    """A supervisord that shows one process in these states, one a look; the last one stays."""
+
+    def __init__(self, site: Site, *states: str) -> None:
+        super().__init__(site)
+        self.states, self.shown = list(states), ""
+        self.did: list[str] = []
+
+    def _call(self, method: str, *words: object) -> Any:
+        if method != "getAllProcessInfo":
+            if self.shown != "STOPPING":  # then it says that all is well, and does nothing
+                self.did.append(method)
+            return True
+        self.shown = self.states.pop(0) if len(self.states) > 1 else self.states[0]
+        row = {"group": "zx200", "name": "rc", "statename": self.shown, "pid": 7, "now": 9, "start": 1}
+        return [{**row, "description": ""}]
+
+
+@pytest.mark.parametrize(
+    ("command", "states", "did"),
+    [
+        ("start", ["STOPPED"], ["startProcess"]),
+        ("start", ["RUNNING"], []),
+        ("start", ["STOPPING", "STOPPING", "STOPPED"], ["startProcess"]),
+        ("restart", ["STOPPING", "STOPPED"], ["startProcess"]),
+        ("stop", ["STOPPING", "STOPPED"], []),
+        ("start", ["STOPPING", "RUNNING"], []),  # somebody else was faster
+        ("restart", ["RUNNING"], ["stopProcess", "startProcess"]),
+        ("start", ["BACKOFF"], ["stopProcess", "startProcess"]),
+    ],
+)
+def test_a_process_that_ends_is_waited_for(
+    site: Site, monkeypatch: pytest.MonkeyPatch, command: str, states: list[str], did: list[str]
+) -> None:
+    monkeypatch.setattr(module, "LOOK", 0.0)
+    supervisor = Scripted(site, *states)
+    supervisor.control(command, "zx200:rc")
+    assert supervisor.did == did
+
+
+def test_a_process_that_does_not_end_is_told(site: Site, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "LOOK", 0.0)
+    monkeypatch.setattr(module, "END_LIMIT", 0.02)
+    supervisor = Scripted(site, "STOPPING")
+    with pytest.raises(TmsError, match="'zx200:rc' was told to end"):
+        supervisor.control("start", "zx200:rc")
+    assert supervisor.did == []
+
+
+def test_the_end_of_a_log_begins_with_a_whole_line(site: Site) -> None:
+    supervisor = Scripted(site, "RUNNING")
+    with pytest.raises(TmsError, match="No such file"):
+        supervisor.log("zx200:rc", 100)
+    (site.state / "log").mkdir(parents=True)
+    (site.state / "log" / "zx200.rc.log").write_text("掘削\n" * 100, encoding="utf-8")
+    for size in range(100, 111):  # wherever in a character the cut falls
+        text = supervisor.log("zx200:rc", size)
+        assert set(text.splitlines()) == {"掘削"}
+        assert size - 7 <= len(text.encode()) <= size
+    assert supervisor.log("zx200:rc", 10_000) == "掘削\n" * 100
+    (site.state / "log" / "zx200.rc.log").write_bytes(b"\xff\n")
+    assert supervisor.log("zx200:rc", 100) == "\ufffd\n"
+
+
+@pytest.mark.parametrize("name", ["zx200:ts", "../secret", ":../../secret"])
+def test_only_logs_of_processes_are_read(site: Site, name: str) -> None:
+    with pytest.raises(TmsError, match="no process") as refused:
+        Scripted(site, "RUNNING").log(name, 100)
+    assert refused.value.code == "NO_PROCESS"

@@ -22,6 +22,7 @@ def test_the_handshake() -> None:
 def test_a_registration() -> None:
     assert parse(Registration, "__publish", GOOD).queue_size == 10
     assert parse(Registration, "__publish", GOOD.replace(b":10", b":99999999")).queue_size == 1000
+    assert parse(Registration, "__publish", GOOD.replace(b"zx200/odom", b"a" * 246))
     assert parse(ServiceId, "__request", b'{"srv_id": 101}\0').srv_id == 101
 
 
@@ -33,6 +34,7 @@ def test_a_registration() -> None:
         (b"[1]\0", "object"),
         (GOOD.replace(b"zx200/odom", b"zx200 odom"), "topic: "),
         (GOOD.replace(b"zx200/odom", b"a//b"), "topic: "),
+        (GOOD.replace(b"zx200/odom", b"a" * 247), "topic: String should have at most 246"),
         (GOOD.replace(b"nav_msgs/Odometry", b"Odometry"), "message_name: "),
         (GOOD.replace(b'"topic"', b'"tropic"'), "topic: "),
     ],

@@ -25,6 +25,15 @@ def test_a_clock_that_was_set_is_right_again_after_two_windows() -> None:
     assert not clock.off
 
 
+def test_after_our_clock_was_set_back_windows_go_on() -> None:
+    clock = SourceClock(0.5)
+    clock.age(3600.0, 3600.0)
+    for step in range(30):
+        now = step * WINDOW / 10
+        clock.age(now - 0.3, now)
+    assert clock.offset == pytest.approx(0.3)
+
+
 def test_only_what_is_further_ahead_than_allowed_is_the_future() -> None:
     clock = SourceClock(0.5)
     assert clock.ahead(10.4, 10.0) == 0.0

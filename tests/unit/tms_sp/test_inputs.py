@@ -83,3 +83,13 @@ def test_the_metrics_tell_the_age_and_when_it_is_too_old() -> None:
     heard.say(1.0, now)
     age = value("tms_sp_input_age_seconds")
     assert age is not None and age < 5.0
+
+
+def test_after_our_clock_was_set_back_stamps_are_taken_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    heard, now = Heard(), time.time()
+    assert heard.say(1.0, now) == "accepted"
+    monkeypatch.setattr(time, "time", lambda: now - 3600)
+    assert heard.say(2.0, now) == "FUTURE"  # the source's clock was not
+    assert heard.say(3.0, now - 3599.9) == "accepted"
+    assert heard.say(4.0, now - 3600.5) == "OLD"
+    assert [post.values["x"] for post in heard.posts] == [1.0, 3.0]

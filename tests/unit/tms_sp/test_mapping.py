@@ -153,3 +153,11 @@ def test_a_field_that_a_record_can_hold_is_taken(kind: str, path: str) -> None:
 def test_what_sensing_yaml_must_not_hold(given: dict[str, Any], said: str) -> None:
     with pytest.raises(ValidationError, match=said):
         mapping(EXCAVATE, **given)
+
+
+@pytest.mark.parametrize("stamp", [math.nan, math.inf, -math.inf])
+def test_a_stamp_that_is_no_time_is_refused(stamp: float) -> None:
+    given = mapping({**EXCAVATE, "measured": "double"}, fields={"x": "x"}, stamp="measured")
+    with pytest.raises(Refused, match=f"its stamp is {stamp}") as refused:
+        given.read(Message(**HEAD, x=1.0, measured=stamp))
+    assert refused.value.code == "NOT_FINITE"
