@@ -1,42 +1,61 @@
-"""Where frames stand in the map, as /tf tells; a machine's Nav2 puts `odom` between the map and the machine."""
+"""Where machines stand in the map, as /tf and /tf_static tell; a machine's Nav2 puts `odom` between the two."""
 
 import math
-from collections.abc import Iterable
-from typing import Any
+import time
+from collections.abc import Callable, Iterable
+from typing import Any, NamedTuple
 
 MAP = "map"
-Place = tuple[float, float, float]  # x m, y m, yaw rad
+
+
+class Seen(NamedTuple):
+    """Where a frame is in another one, and when that was heard last."""
+
+    x: float  # m
+    y: float  # m
+    yaw: float  # rad
+    heard: float  # monotonic, s; infinite for what never moves
 
 
 class Frames:
     """Keeps the last place of the given frames, and of those between them and the map; nobody needs the others."""
 
-    def __init__(self, frames: Iterable[str]) -> None:
-        self._wanted = set(frames)
-        self._seen: dict[str, tuple[str, Place]] = {}  # frame -> its parent, and where it is in that
+    def __init__(self, frames: Iterable[str], clock: Callable[[], float] = time.monotonic) -> None:
+        self._wanted, self._clock = set(frames), clock
+        self._seen: dict[str, tuple[str, Seen]] = {}  # frame -> its parent, and where it is in that
 
     def hear(self, message: Any) -> set[str]:
-        """Take a tf2_msgs/TFMessage; the frames that it told of."""
+        """Take a tf2_msgs/TFMessage of /tf; the frames of interest that it told of."""
+        return self._take(message, self._clock())
+
+    def hear_fixed(self, message: Any) -> None:
+        """Take one of /tf_static."""
+        self._take(message, math.inf)
+
+    def _take(self, message: Any, heard: float) -> set[str]:
         told = set()
         for one in message.transforms:
             at, q = one.transform.translation, one.transform.rotation
-            if one.child_frame_id not in self._wanted or not all(map(math.isfinite, (at.x, at.y, q.x, q.y, q.z, q.w))):
-                continue  # also a localisation without a fix
-            yaw = math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
-            self._seen[one.child_frame_id] = one.header.frame_id, (at.x, at.y, yaw)
-            self._wanted.add(one.header.frame_id)
-            told.add(one.child_frame_id)
+            if not all(map(math.isfinite, (at.x, at.y, q.x, q.y, q.z, q.w))):
+                continue  # a localisation without a fix
+            # A fixed one is told only once, maybe before it is wanted.
+            if one.child_frame_id in self._wanted or heard == math.inf:
+                yaw = math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
+                self._seen[one.child_frame_id] = one.header.frame_id, Seen(at.x, at.y, yaw, heard)
+                self._wanted.add(one.header.frame_id)
+                told.add(one.child_frame_id)
         return told
 
-    def place(self, frame: str) -> Place | None:
-        """In the map; None as long as /tf does not lead there."""
-        x = y = yaw = 0.0
+    def place(self, frame: str) -> Seen | None:
+        """In the map, as old as the oldest of what tells it; None as long as the frames do not lead there."""
+        x, y, yaw, heard = 0.0, 0.0, 0.0, math.inf
         passed = set[str]()
         while frame != MAP:
             if frame in passed or frame not in self._seen:
                 return None
             passed.add(frame)
-            frame, (px, py, turn) = self._seen[frame]
-            x, y = px + x * math.cos(turn) - y * math.sin(turn), py + x * math.sin(turn) + y * math.cos(turn)
-            yaw += turn
-        return x, y, math.remainder(yaw, math.tau)
+            frame, step = self._seen[frame]
+            cos, sin = math.cos(step.yaw), math.sin(step.yaw)
+            x, y, yaw = step.x + x * cos - y * sin, step.y + x * sin + y * cos, yaw + step.yaw
+            heard = min(heard, step.heard)
+        return Seen(x, y, math.remainder(yaw, math.tau), heard)

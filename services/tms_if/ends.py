@@ -6,8 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
-from rclpy.exceptions import NameValidationException
-
 from tms_core.errors import RosError
 from tms_core.ros import Ros, pack, unpack
 from tms_if import joint_cmd
@@ -150,9 +148,8 @@ class Ends:
             self._calls += 1
             try:
                 answer = await self._ros.ask(kind, full_name(topic), wanted, ANSWER_LIMIT)
-            except NameValidationException as error:  # no reason to end the executor, and with it all clients
-                told = str(error).partition("\n")[0]
-                self._say(f"service {full_name(topic)}: {told}")
+            except RosError as error:  # no reason to end the executor, and with it all clients
+                self._say(str(error))
                 return
             finally:
                 self._calls -= 1

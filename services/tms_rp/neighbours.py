@@ -8,7 +8,8 @@ from tms_core.frames import Frames
 from tms_rp.clearance import Matrix, Obstacle, placed
 
 LOOK = 1.0  # s
-DEPTH = 20  # transforms a look: every machine sends many between two looks
+DEPTH = 20  # messages a look: every machine sends many between two looks
+FIXED = 100  # messages that are told once, by as many processes
 
 
 class Neighbours:
@@ -19,6 +20,7 @@ class Neighbours:
         self._bases = {name: app.site.border(name).base_frame for name in app.site.file.machines}
         self._frames = Frames(self._bases.values())
         self._news = app.ros.sample(TFMessage, "/tf", DEPTH)
+        app.ros.subscribe(TFMessage, "/tf_static", self._frames.hear_fixed, depth=FIXED, latched=True)
         app.ros.beside(LOOK, self._look, "neighbours")
 
     def _look(self) -> None:
@@ -27,7 +29,7 @@ class Neighbours:
 
     def _place(self, name: str) -> Matrix | None:
         found = self._frames.place(self._bases[name])
-        return None if found is None else placed(*found)
+        return None if found is None else placed(found.x, found.y, found.yaw)
 
     def obstacles(self) -> list[Obstacle]:
         """Footprints of the others in our base_link, as far as both places are known."""

@@ -2,6 +2,7 @@
 
 import hashlib
 import secrets
+import stat
 import threading
 import time
 from collections import OrderedDict
@@ -106,7 +107,7 @@ class Access:
             ConfigError: the file cannot be read, is wrong, or may be read by everybody.
         """
         self.asks = file is not None
-        self._users: dict[str, User] = {} if file is None else _read(file)
+        self._users: dict[str, User] = {} if file is None else read_users(file)
         self._clock = clock
         self._brake = Brake(clock)
         self._decoy = hashed(secrets.token_urlsafe()) if self.asks else ""
@@ -194,9 +195,19 @@ def _digest(key: str) -> str:
     return hashlib.sha256(key.encode()).hexdigest()
 
 
-def _read(file: Path) -> dict[str, User]:
-    if not file.exists():
-        raise ConfigError(f"{file}: the users file of console.users is not there: `tms user add NAME --role admin`")
-    if file.stat().st_mode & 0o007:
+def read_users(file: Path) -> dict[str, User]:
+    """The users of a file that nobody else may read.
+
+    Raises:
+        ConfigError: it cannot be read, is wrong, or may be read by everybody.
+    """
+    try:
+        mode = file.stat().st_mode
+    except FileNotFoundError as error:
+        text = f"{file}: the users file of console.users is not there: `tms user add NAME --role admin`"
+        raise ConfigError(text) from error
+    except OSError as error:
+        raise ConfigError(f"{file}: the users file of console.users cannot be read ({error.strerror})") from error
+    if stat.S_ISREG(mode) and mode & 0o007:
         raise ConfigError(f"{file}: everybody on this PC may read it: `chmod 600 {file}`")
     return parse(file, Users).users

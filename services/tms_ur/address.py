@@ -1,4 +1,4 @@
-"""Where the console is and with which certificate, as the site file says; loads no web server, so that `tms` may ask.
+"""The console's address, certificate and users as the site file says; loads no web server, so that `tms` may ask.
 
 A path of the site file is relative to it, whatever the folder is in which somebody starts the mesh.
 """
@@ -18,11 +18,6 @@ def url(file: SiteFile) -> str:
     host = ALL.get(file.bind, file.bind)
     shown = f"[{host}]" if ":" in host else host
     return f"http{'s' if file.console.tls else ''}://{shown}:{file.ports.console}"
-
-
-def beside(site: Site, file: Path | None) -> Path | None:
-    """A path of the site file."""
-    return None if file is None else site.path.parent / file
 
 
 def certificate(site: Site) -> Files | None:
@@ -49,3 +44,19 @@ def certificate(site: Site) -> Files | None:
             f"key in PEM ({error.reason or error})"
         ) from error
     return found
+
+
+def users(site: Site) -> Path | None:
+    """The users file that `tms:ur` can use; None where the site has none.
+
+    Raises:
+        ConfigError: it cannot be read, is wrong, or may be read by everybody.
+    """
+    from tms_ur.access import read_users  # hashing takes a moment to load, and most of `tms` needs none
+
+    given = site.file.console.users
+    if given is None:
+        return None
+    file = site.path.parent / given
+    read_users(file)
+    return file

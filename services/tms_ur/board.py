@@ -9,6 +9,7 @@ from tms_ur.models import ActiveRun, Host, Machine, Place, Process, Question, Sc
 
 MACHINE_SILENT = 2.0  # s, four periods of a machine's gateway
 SCHEDULER_SILENT = 5.0  # s, five periods of the scheduler's list of runs
+HOST_SILENT = 6.0  # s, three periods of a host agent: its PC may have no power
 
 
 class Board:
@@ -20,7 +21,7 @@ class Board:
         self._machines: dict[str, tuple[Machine, float | None]] = {n: (Machine(name=n), None) for n in machines}
         self._runs: list[ActiveRun] = []
         self._questions: list[Question] = []
-        self._places: dict[str, Place] = {}
+        self._places: dict[str, tuple[Place, float]] = {}
         self._runs_at: float | None = None
         self._hosts: dict[str, tuple[Host, float]] = {}
         self._listeners: list[Callable[[], None]] = []
@@ -36,12 +37,12 @@ class Board:
         if before is None or _content(before) != _content(machine):
             self._tell()
 
-    def put_place(self, name: str, place: Place) -> None:
-        """Where a machine stands."""
+    def put_place(self, name: str, place: Place, age: float = 0.0) -> None:
+        """Where a machine stood `age` seconds ago."""
         with self._lock:
-            changed = self._places.get(name) != place
-            self._places[name] = place
-        if changed:
+            before, _ = self._places.get(name, (None, None))
+            self._places[name] = (place, self._clock() - age)
+        if before != place:
             self._tell()
 
     def put_runs(self, runs: list[ActiveRun], questions: list[Question] | None = None) -> None:
@@ -54,7 +55,7 @@ class Board:
             self._tell()
 
     def put_host(self, host: Host) -> None:
-        """All processes of one PC; its agent sends only changes."""
+        """All processes of one PC; its agent tells of changes at once, and every 2 s without one."""
         with self._lock:
             self._hosts[host.name] = (host, self._clock())
         self._tell()
@@ -100,16 +101,21 @@ def _content(machine: Machine) -> Machine:
     return machine.model_copy(update={"joint_age": None})
 
 
-def _aged(machine: Machine, now: float, at: float | None, place: Place | None) -> Machine:
+def _aged(machine: Machine, now: float, at: float | None, place: tuple[Place, float] | None) -> Machine:
     if at is None:
         why = f"{machine.name}:rc has not been heard yet: see the processes"
-        return machine.model_copy(update={"reason": why, "place": place})
+        return machine.model_copy(update={"reason": why, **_placed(now, place)})
     age = now - at
     joint_age = None if machine.joint_age is None else round(machine.joint_age + age, 1)
-    update: dict[str, object] = {"place": place, "age": round(age, 1), "joint_age": joint_age}
+    update: dict[str, object] = {"age": round(age, 1), "joint_age": joint_age, **_placed(now, place)}
     if age > MACHINE_SILENT:
         update |= {"state": "silent", "reason": f"{machine.name}:rc has said nothing for {age:.0f} s"}
     return machine.model_copy(update=update)
+
+
+def _placed(now: float, place: tuple[Place, float] | None) -> dict[str, object]:
+    """The last place stays, as an old one: whoever looks for the machine begins there."""
+    return {} if place is None else {"place": place[0], "place_age": round(now - place[1], 1)}
 
 
 def _scheduler(now: float, at: float | None) -> Scheduler:
@@ -117,7 +123,8 @@ def _scheduler(now: float, at: float | None) -> Scheduler:
 
 
 def _host(host: Host, age: float) -> Host:
-    processes = [_running(process, age) for process in host.processes]
+    shown = _unknown if age > HOST_SILENT else _running
+    processes = [shown(process, age) for process in host.processes]
     return host.model_copy(update={"age": round(age, 1), "processes": processes})
 
 
@@ -125,3 +132,7 @@ def _running(process: Process, age: float) -> Process:
     if process.state != "RUNNING":
         return process
     return process.model_copy(update={"uptime": round(process.uptime + age, 1)})
+
+
+def _unknown(process: Process, _: float) -> Process:
+    return process.model_copy(update={"state": "UNKNOWN", "pid": 0, "uptime": 0.0, "cpu": 0.0, "memory": 0})

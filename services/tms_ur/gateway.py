@@ -1,6 +1,5 @@
 """What the API asks of ROS: blocking calls for worker threads, and topics that feed the board."""
 
-import math
 import time
 from typing import Any
 
@@ -27,6 +26,7 @@ from tms_msg_ts.srv import AnswerQuestion, CancelRun, CheckTask
 
 from tms_core.config import Site
 from tms_core.errors import RosError, TmsError
+from tms_core.frames import Frames
 from tms_core.ros import Ros
 from tms_core.values import to_parameters
 from tms_ur import messages
@@ -40,7 +40,6 @@ START_LIMIT = 30.0  # s for a run to begin: the scheduler may start its subtasks
 PROCESS_LIMIT = 15.0  # s for a process to end and to be started
 FRAMES_PERIOD = 0.2  # s between looks at /tf: to be woken by each of its messages costs most of an idle console
 FRAMES_DEPTH = 200  # messages of all machines in that time
-MAP = "map"
 
 
 class Gateway:
@@ -52,7 +51,8 @@ class Gateway:
         self.board = Board(names)
         self._inputs: tuple[list[Any], float] | None = None  # read and replaced as one
         self._scheduler = ros.peer(ExecuteTask, "/tms/execute_task")
-        self._frames = {site.border(name).base_frame: name for name in names}
+        self._machines = {site.border(name).base_frame: name for name in names}
+        self._frames = Frames(self._machines)
         for name in names:
             ros.subscribe(MachineState, f"/{name}/rc/state", self._machine_heard, latched=True)
             ros.prepare(StopMachine, f"/{name}/rc/stop")
@@ -60,6 +60,7 @@ class Gateway:
         ros.subscribe(Processes, "/tms/host/processes", self._host_heard, depth=10, latched=True)
         ros.subscribe(InputStates, "/tms/sp/inputs", self._inputs_heard, latched=True)
         self._frame_news = ros.sample(TFMessage, "/tf", FRAMES_DEPTH)
+        ros.subscribe(TFMessage, "/tf_static", self._frames.hear_fixed, depth=FRAMES_DEPTH, latched=True)
         ros.beside(FRAMES_PERIOD, self._look_at_frames, "frames")
 
     # topics
@@ -82,12 +83,11 @@ class Gateway:
             self._frames_heard(message)
 
     def _frames_heard(self, message: Any) -> None:
-        for one in message.transforms:
-            name = self._frames.get(one.child_frame_id)
-            if name is not None and one.header.frame_id == MAP:
-                at, q = one.transform.translation, one.transform.rotation
-                yaw = math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
-                self.board.put_place(name, Place(x=round(at.x, 2), y=round(at.y, 2), yaw=round(yaw, 3)))
+        for frame in self._frames.hear(message) & self._machines.keys():
+            seen = self._frames.place(frame)
+            if seen is not None:
+                place = Place(x=round(seen.x, 2), y=round(seen.y, 2), yaw=round(seen.yaw, 3))
+                self.board.put_place(self._machines[frame], place, max(0.0, time.monotonic() - seen.heard))
 
     def sensing(self) -> Sensing:
         """The sensing inputs as `tms:sp` told of them last."""

@@ -51,6 +51,7 @@ class Machine(Model):
     latch: str = Field(default="", description="why it is stopped until somebody re-arms it, empty if it is armed")
     hold: str = Field(default="", description="why it is held until its run goes on")
     place: Place | None = Field(default=None, description="null: /tf has not told")
+    place_age: float | None = Field(default=None, description="s since /tf told the place, null: never")
     joints: list[Joint] = []
     joint_age: float | None = Field(default=None, description="s since the last joint states, null: never")
     age: float | None = Field(default=None, description="s since the gateway was heard, null: never")
@@ -91,7 +92,7 @@ class Scheduler(Model):
 
 class Process(Model):
     name: str = Field(description="group:name")
-    state: str = Field(description="as supervisord names it: RUNNING, STOPPED, FATAL, ...")
+    state: str = Field(description="as supervisord names it: RUNNING, STOPPED, FATAL, ...; UNKNOWN: its PC is silent")
     pid: int = 0
     restarts: int = Field(default=0, description="since the host agent started")
     uptime: float = Field(default=0.0, description="s")
@@ -101,10 +102,10 @@ class Process(Model):
 
 
 class Host(Model):
-    """One PC of the site; its agent speaks only when something changes."""
+    """One PC of the site; its agent speaks every 2 s, and at once when something changes."""
 
     name: str
-    age: float = Field(default=0.0, description="s since its last change")
+    age: float = Field(default=0.0, description="s since its agent was heard")
     processes: list[Process] = []
 
 

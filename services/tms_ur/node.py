@@ -23,7 +23,7 @@ def start(app: App) -> None:
     """Listen on the console's port of the site file."""
     file = app.site.file
     tls = address.certificate(app.site)
-    access = Access(address.beside(app.site, file.console.users))
+    access = Access(address.users(app.site))
     listener = _listen(app.site)
     gateway, audit = Gateway(app.ros, app.site), Audit(app.ros)
     server = Server(create_app(gateway, audit, app.site, access), listener, tls)

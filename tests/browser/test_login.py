@@ -5,6 +5,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
@@ -21,9 +22,33 @@ LIMIT = 60.0  # s for whatever must happen at all
 PASSWORD = "open-sesame"
 
 
+@dataclass
+class Server:
+    """A `tms:ur`, and how it is lost and comes back."""
+
+    url: str
+    env: dict[str, str]
+    log: Path
+    process: subprocess.Popen[bytes] | None = None
+
+    def start(self) -> None:
+        with self.log.open("wb") as out:
+            words = [sys.executable, "-m", "tms_core.run", "tms:ur"]
+            process = self.process = subprocess.Popen(words, env=self.env, stdout=out, stderr=out)
+        ended = lambda: process.poll() is not None  # noqa: E731
+        wait_until(lambda: ended() or "event=started" in self.log.read_text(), LIMIT, "tms:ur is up")
+        assert not ended(), self.log.read_text()
+        assert "users of console.users" in self.log.read_text()
+
+    def kill(self) -> None:
+        if self.process is not None:
+            self.process.kill()
+            self.process.wait(10)
+
+
 @pytest.fixture
-def console(own_domain: int, tmp_path: Path) -> Iterator[str]:
-    """Address of a `tms:ur` of its own; nothing else of its site runs."""
+def server(own_domain: int, tmp_path: Path) -> Iterator[Server]:
+    """A `tms:ur` of its own; nothing else of its site runs."""
     port = ports_of(own_domain)
     openssl = shutil.which("openssl")
     assert openssl, "openssl makes the certificate of this test"
@@ -39,7 +64,6 @@ def console(own_domain: int, tmp_path: Path) -> Iterator[str]:
     file = tmp_path / "site.yaml"
     tls = {"certificate": str(certificate), "key": str(key)}
     file.write_text(yaml.safe_dump(site_data(own_domain, port, console={"users": "users.yaml", "tls": tls})))
-    log = tmp_path / "log.txt"
     hidden = ("ROS_DOMAIN_ID", "TMS_SITE", "TMS_STATE", "TMS_MONGODB_URI")
     clean = {name: value for name, value in os.environ.items() if name not in hidden}
     with pytest.MonkeyPatch.context() as patch:
@@ -47,16 +71,18 @@ def console(own_domain: int, tmp_path: Path) -> Iterator[str]:
         patch.delenv("ROS_DOMAIN_ID", raising=False)
         env = {**clean, **environment.environment(load_site(str(file)))}
     (tmp_path / "state" / "ros").mkdir(parents=True)
-    with log.open("wb") as out:
-        process = subprocess.Popen([sys.executable, "-m", "tms_core.run", "tms:ur"], env=env, stdout=out, stderr=out)
+    server = Server(f"https://localhost:{port + 90}", env, tmp_path / "log.txt")
     try:
-        wait_until(lambda: process.poll() is not None or "event=started" in log.read_text(), LIMIT, "tms:ur is up")
-        assert process.poll() is None, log.read_text()
-        assert "users of console.users" in log.read_text()
-        yield f"https://localhost:{port + 90}"
+        server.start()
+        yield server
     finally:
-        process.kill()
-        process.wait(10)
+        server.kill()
+
+
+@pytest.fixture
+def console(server: Server) -> str:
+    """Its address."""
+    return server.url
 
 
 @pytest.fixture
@@ -124,3 +150,34 @@ def test_a_session_that_ends_shows_the_login_and_a_panel_comes_back(secure_page:
     expect(page).to_have_url(f"{console}/panel.html?task=1")
     page.clock.fast_forward(61_000)
     expect(page.locator("#login")).to_be_visible()
+
+
+@pytest.mark.parametrize(
+    ("path", "heard"), [("", "#list_machines article"), ("/panel.html?task=1", "#state:not(:empty)")]
+)
+def test_a_stop_that_a_lost_session_has_swallowed_is_told(
+    secure_page: Page, server: Server, path: str, heard: str
+) -> None:
+    page, report, state = secure_page, secure_page.locator("#stop_report"), secure_page.locator(heard)
+    page.goto(server.url + path)
+    login(page, "operator", PASSWORD)
+    expect(state).to_be_visible()
+    server.kill()
+    expect(page.locator("#lost")).to_be_visible()
+    page.locator("#stop").click()
+    expect(report).to_contain_text("NOT STOPPED: The server cannot be reached.")
+    server.start()  # which knows no session any more
+    expect(page.locator("#login")).to_be_visible()
+    expect(report).to_contain_text("NOT STOPPED: Your login ended before an answer to the stop came")
+    login(page, "operator", PASSWORD)
+    expect(state).to_be_visible()
+    expect(report).to_contain_text("NOT STOPPED: The page was loaded anew")
+    page.locator("#stop").click()
+    expect(report).to_contain_text("zx200: STOP UNCONFIRMED")  # an answer, though nobody is there
+    page.reload()
+    expect(state).to_be_visible()
+    expect(report).to_be_empty()
+    page.context.clear_cookies()
+    page.reload()
+    expect(page.locator("#login")).to_be_visible()
+    expect(report).to_be_empty()  # no more to tell

@@ -5,6 +5,7 @@ import time
 from collections.abc import Awaitable, Callable
 from typing import Any
 
+from rclpy.exceptions import NameValidationException
 from rclpy.task import Future
 
 from tms_core.errors import RosError
@@ -65,9 +66,12 @@ class Services(Topics):
         key = (service_type.__name__, name)
         with self._making:
             if key not in self._clients:
-                self._clients[key] = self.node.create_client(
-                    service_type, name, qos_profile=quality.SERVICE, callback_group=self.group
-                )
+                try:
+                    self._clients[key] = self.node.create_client(
+                        service_type, name, qos_profile=quality.SERVICE, callback_group=self.group
+                    )
+                except NameValidationException as error:
+                    raise RosError(f"service {name}: {str(error).partition(chr(10))[0]}", "BAD_NAME") from error
             return self._clients[key]
 
     def prepare(self, service_type: InterfaceType, name: str) -> None:
@@ -128,7 +132,11 @@ class Services(Topics):
         return lambda: client.remove_pending_request(future)
 
     async def ask(self, service_type: InterfaceType, name: str, request: Request, seconds: float) -> Response | None:
-        """Call a service from a callback on the executor thread; None when it did not answer in time."""
+        """Call a service from a callback on the executor thread; None when it did not answer in time.
+
+        Raises:
+            RosError: BAD_NAME.
+        """
         client = self._service(service_type, name)
         answer = Future(executor=self._executor)
         deadline = time.monotonic() + seconds

@@ -9,7 +9,7 @@ import * as tasks from "./pages/tasks.js";
 import * as tree from "./pages/tree.js";
 import { buildQuestion, fillQuestion } from "./questions.js";
 import { ask, watch } from "./server.js";
-import { stop } from "./stop.js";
+import { reportOpen, stop } from "./stop.js";
 import { onLanguage, switchLanguage, t, translatePage } from "./strings.js";
 import { told } from "./told.js";
 
@@ -86,6 +86,7 @@ function linked(there) {
 async function enter() {
   const session = await ask("/api/session");
   at("login").hidden = session.name !== null;
+  reportOpen(session);
   if (session.name === null) {
     at("connecting").hidden = true;
     at("stop").hidden = true;

@@ -127,6 +127,9 @@ export function say(text, bad = false) {
 /** Asks before something that cannot be taken back; resolves to true or false. */
 export function confirmed(text) {
   const dialog = at("dialog");
+  if (dialog.open) {
+    return Promise.resolve(false); // one answer must not count for two questions
+  }
   setText(at("dialog_text"), text);
   dialog.returnValue = "no";
   dialog.showModal();

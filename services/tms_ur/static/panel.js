@@ -2,7 +2,7 @@
 import { at, keep, once, say, setText } from "./dom.js";
 import { buildQuestion, fillQuestion } from "./questions.js";
 import { ask, watch } from "./server.js";
-import { stop } from "./stop.js";
+import { reportOpen, stop } from "./stop.js";
 import { onLanguage, switchLanguage, t, translatePage } from "./strings.js";
 import { told } from "./told.js";
 
@@ -18,8 +18,12 @@ function heard(now) {
   const stopped = latched.map((machine) => `${machine.name}: ${t("why_latched", { cause: told(machine.latch) })}`).join(" ");
   setText(at("machines"), stopped);
   at("machines").className = stopped ? "bad" : "";
-  setText(at("state"), run ? `${t(run.state)}: ${told(run.reason) || t(run.state === "running" ? "moving_on" : run.state)}` : t("panel_ready"));
+  setText(at("state"), now.scheduler.alive ? tellState(run) : t("scheduler_silent"));
   at("start").disabled = run !== undefined;
+}
+
+function tellState(run) {
+  return run ? `${t(run.state)}: ${told(run.reason) || t(run.state === "running" ? "moving_on" : run.state)}` : t("panel_ready");
 }
 
 function name() {
@@ -55,6 +59,7 @@ ask("/api/session").then((session) => {
     location.href = `/?panel=${id}`; // log in there first
     return;
   }
+  reportOpen(session);
   load();
   watch(heard, (there) => {
     at("connecting").hidden = there !== null;

@@ -1,6 +1,6 @@
 // Questions of WaitForClick nodes, with their buttons.
 import { button, make, once, part, parts, setText } from "./dom.js";
-import { ask } from "./server.js";
+import { ask, siteNow } from "./server.js";
 import { t } from "./strings.js";
 
 export function buildQuestion(asked) {
@@ -15,6 +15,6 @@ export function buildQuestion(asked) {
 export function fillQuestion(box, asked) {
   setText(part(box, "title"), asked.title || t("question"));
   setText(part(box, "text"), asked.text);
-  const left = asked.until && Math.max(0, Math.round((new Date(asked.until) - Date.now()) / 1000));
+  const left = asked.until && Math.max(0, Math.round((new Date(asked.until) - siteNow()) / 1000));
   setText(part(box, "left"), left === null ? "" : t("seconds_left", { seconds: left }));
 }

@@ -7,9 +7,11 @@ const AGAIN = 1000; // ms between attempts while the server cannot be reached
 const LONGEST = 60_000; // ms of attempts: nobody expects a stop later than that
 const ANSWER = 12_000; // ms; a gateway says after 8 s at the latest what it saw
 const SLOW = 3000; // ms; most machines stand by then
+const OPEN = "tms.stop"; // kept until machines have answered: a session that ends meanwhile loads the page anew
 
 export async function stop(machine = "") {
   const begun = performance.now();
+  keepOpen(true);
   report(t("stopping_now"), true);
   const slow = setTimeout(() => report(t("stop_slow"), true), SLOW);
   let error = await attempt(machine);
@@ -28,11 +30,41 @@ export async function stop(machine = "") {
 async function attempt(machine) {
   try {
     const receipts = await ask("/api/stop", { machine }, ANSWER);
+    keepOpen(false);
     const told = receipts.map((one) => t(one.confirmed ? "stood" : "not_stood", one));
     report(`${told.join(" ")} ${t("stop_note")}`, receipts.some((one) => !one.confirmed));
     return null;
   } catch (error) {
     return error;
+  }
+}
+
+/** Says on a page that was loaded anew that the stop which was asked for before was not done. */
+export function reportOpen(session) {
+  if (isOpen()) {
+    const loggedIn = session.name !== null;
+    report(t("not_stopped", { reason: t(loggedIn ? "press_again" : "log_in_and_press") }), true);
+    keepOpen(!loggedIn); // after the login once more, beside the button
+  }
+}
+
+function isOpen() {
+  try {
+    return sessionStorage.getItem(OPEN) !== null;
+  } catch {
+    return false; // a browser may forbid storage
+  }
+}
+
+function keepOpen(open) {
+  try {
+    if (open) {
+      sessionStorage.setItem(OPEN, "1");
+    } else {
+      sessionStorage.removeItem(OPEN);
+    }
+  } catch {
+    // not remembered then
   }
 }
 

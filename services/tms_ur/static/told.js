@@ -4,6 +4,7 @@ import { t } from "./strings.js";
 const KNOWN = [
   [/^software stop by (.+) at (.+)$/, "told_stop_by"],
   [/^software stop$/, "told_stop"],
+  [/^given up by an operator after an interruption$/, "told_given_up"],
   [/^(\w+) was stopped: (.+)$/, "told_was_stopped"],
   [/^(\w+) is being stopped$/, "told_being_stopped"],
   [/^(\w+) is in run (\S+?)(?:: .*)?$/, "told_busy"],

@@ -5,9 +5,9 @@ from collections.abc import Awaitable, Callable
 from typing import Any
 
 import pytest
-from rclpy.exceptions import InvalidServiceNameException
 from std_srvs.srv import Trigger
 
+from tms_core.errors import RosError
 from tms_core.ros import pack
 from tms_if import joint_cmd
 from tms_if.commands import CommandError, Registration
@@ -36,10 +36,10 @@ def test_a_call_that_rclpy_refuses_is_told_and_counts_no_longer() -> None:
     ros, sent, said = Ros(), [], []  # type: ignore[var-annotated]
     ends = Ends(ros, joint_cmd.OURS, frozenset(), lambda frame, _: sent.append(frame), said.append)  # type: ignore[arg-type]
     ends.ros_service(Registration(topic="spawn", message_name="std_srvs/Trigger"))
-    ros.trouble = InvalidServiceNameException("/spawn", "it must not be that long", 1)
+    ros.trouble = RosError("service /spawn: it must not be that long", "BAD_NAME")
     for _ in range(OPEN_CALLS + 1):
         ends.request("spawn", pack(Trigger.Request()), 101)
-    assert set(said) == {"service /spawn: Invalid service name: it must not be that long:"}
+    assert set(said) == {"service /spawn: it must not be that long"}
     assert sent == []
     ros.trouble = None
     ends.request("spawn", pack(Trigger.Request()), 102)

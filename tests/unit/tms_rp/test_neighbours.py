@@ -27,7 +27,11 @@ def neighbours(*told: TransformStamped) -> Neighbours:
         file=SimpleNamespace(machines=BASES),
         model_of=lambda _: SimpleNamespace(footprint={"body": object()}),
     )
-    ros = SimpleNamespace(sample=lambda *_: lambda: [TFMessage(transforms=list(told))], beside=lambda *_: None)
+    ros = SimpleNamespace(
+        sample=lambda *_: lambda: [TFMessage(transforms=list(told))],
+        beside=lambda *_: None,
+        subscribe=lambda *_, **__: None,
+    )
     made = Neighbours(SimpleNamespace(site=site, machine="zx200", log=logging.getLogger("test"), ros=ros))  # type: ignore[arg-type]
     made._look()
     return made

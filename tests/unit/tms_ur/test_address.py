@@ -87,3 +87,45 @@ def test_a_key_with_a_password_is_refused_and_not_asked_for(site: Site, tmp_path
     subprocess.run(words, cwd=tmp_path, check=True, capture_output=True)
     with pytest.raises(ConfigError, match="no certificate and its unencrypted key"):
         address.certificate(site)
+
+
+def users_of(tmp_path: Path, text: str | None, mode: int = 0o600) -> Site:
+    """A site whose users file holds `text`; it is not there for None."""
+    if text is not None:
+        (tmp_path / "users.yaml").write_text(text)
+        (tmp_path / "users.yaml").chmod(mode)
+    return Site(tmp_path / "yard.yaml", file(users="users.yaml"), {}, tmp_path / "state")
+
+
+def test_the_users_file_is_beside_the_site_file(tmp_path: Path) -> None:
+    hashed = "$argon2id$v=19$m=8,t=1,p=1$c2FsdHNhbHQ$aGFzaGhhc2g"
+    text = f"users: {{ken: {{role: operator, password: '{hashed}'}}}}\n"
+    assert address.users(users_of(tmp_path, text)) == tmp_path / "users.yaml"
+    assert address.users(Site(tmp_path / "yard.yaml", file(), {}, tmp_path / "state")) is None
+
+
+@pytest.mark.parametrize(
+    ("text", "mode", "told"),
+    [
+        (None, 0, r"is not there: `tms user add NAME --role admin`"),
+        ("users: {}\n", 0o644, r"everybody on this PC may read it: `chmod 600 "),
+        ("users: {ken: {role: boss}}\n", 0o600, r"users\.yaml: users\.ken\.role: "),
+        ("users: {ken: {role: viewer}}\n", 0o600, r"users\.ken: needs a password or a token: `tms user add`"),
+        ("users: [\n", 0o600, r"users\.yaml:2: "),
+    ],
+)
+def test_a_users_file_that_does_not_do_is_told(tmp_path: Path, text: str | None, mode: int, told: str) -> None:
+    with pytest.raises(ConfigError, match=told):
+        address.users(users_of(tmp_path, text, mode))
+
+
+def test_a_users_file_that_cannot_be_reached_is_told(tmp_path: Path) -> None:
+    site = users_of(tmp_path, "users: {}\n")
+    (tmp_path / "users.yaml").rename(tmp_path / "folder")
+    (tmp_path / "users.yaml").mkdir()
+    with pytest.raises(ConfigError, match=r"users\.yaml: cannot be read \(Is a directory\)"):
+        address.users(site)
+    (tmp_path / "users.yaml").rmdir()
+    (tmp_path / "users.yaml").symlink_to("users.yaml")
+    with pytest.raises(ConfigError, match=r"console\.users cannot be read \(Too many levels"):
+        address.users(site)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 from tms_ur.board import Board
-from tms_ur.models import ActiveRun, Host, Joint, Machine, Process
+from tms_ur.models import ActiveRun, Host, Joint, Machine, Place, Process
 
 
 @dataclass
@@ -71,7 +71,36 @@ def test_hosts_stand_side_by_side_and_uptime_goes_on() -> None:
     rows = [Process(name="tms:ts", state="RUNNING", uptime=5.0), Process(name="tms:db", state="STOPPED")]
     watched.board.put_host(Host(name="pc2", processes=rows))
     watched.board.put_host(Host(name="pc1"))
-    watched.now += 10
+    watched.now += 5
     hosts = watched.board.snapshot().hosts
     assert [host.name for host in hosts] == ["pc1", "pc2"]
-    assert [process.uptime for process in hosts[1].processes] == [15.0, 0.0]
+    assert [process.uptime for process in hosts[1].processes] == [10.0, 0.0]
+
+
+def test_the_processes_of_a_silent_pc_are_unknown_until_it_is_heard() -> None:
+    watched = Watched()
+    host = Host(name="pc1", processes=[Process(name="tms:ts", state="RUNNING", pid=7, uptime=5.0, cpu=3.0, memory=9)])
+    watched.board.put_host(host)
+    watched.now += 6.1
+    told = watched.board.snapshot().hosts[0]
+    assert (told.age, told.processes) == (6.1, [Process(name="tms:ts", state="UNKNOWN")])
+    assert watched.board.host_of("tms:ts") == "pc1"
+    watched.board.put_host(host)
+    assert watched.board.snapshot().hosts[0].processes == host.processes
+
+
+def test_a_place_has_an_age_of_its_own() -> None:
+    watched = Watched()
+    place = Place(x=1.0, y=2.0, yaw=0.0)
+    watched.board.put_place("zx200", place)
+    watched.now += 3
+    never_heard = watched.board.snapshot().machines[0]
+    assert (never_heard.age, never_heard.place, never_heard.place_age) == (None, place, 3.0)
+    watched.board.put_machine(machine(1.0))
+    watched.now += 1
+    heard = watched.board.snapshot().machines[0]
+    assert (heard.state, heard.place, heard.place_age) == ("standing", place, 4.0)
+    changes = watched.changes
+    watched.board.put_place("zx200", place)
+    assert (watched.changes, watched.board.snapshot().machines[0].place_age) == (changes, 0.0)
+    assert watched.board.snapshot().machines[1].place_age is None

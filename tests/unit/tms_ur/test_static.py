@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from tms_cli.japanese import STATES
 from tms_ts import bt
 from tms_ur.api import STATIC
 from tms_ur.guard import LOCAL
@@ -61,8 +62,15 @@ def test_what_other_processes_tell_is_told_in_both_languages() -> None:
     assert known(str(unknown.value)) == "told_node_near"
     assert known(f"software stop by {LOCAL.name} at 127.0.0.1") == "told_stop_by"
     assert known("waits 2.5 s") == "told_waits"
+    assert known("given up by an operator after an interruption") == "told_given_up"
     assert known("MOVING 2/3 68 % (theta_w 1.41 instead of 0.00 rad)") == "told_moving"
     assert known("the shovel is away") == ""
+
+
+def test_a_run_has_the_states_and_words_of_the_command_line() -> None:
+    wanted = {state: word for state, word in STATES.items() if state != "idle"}  # which none is
+    words = table()["ja"]
+    assert {state: words.get(state) for state in wanted} == wanted
 
 
 def test_every_element_that_the_code_asks_for_is_made_somewhere() -> None:

@@ -1,6 +1,6 @@
 // Data: records with type, age, source and history; static ones can be edited; and the sensing inputs.
 import { at, button, duration, heading, keep, make, once, part, parts, setBadge, setText, table } from "../dom.js";
-import { ask } from "../server.js";
+import { ask, siteNow } from "../server.js";
 import { t, when } from "../strings.js";
 
 const SENSING_EVERY = 2000; // ms
@@ -64,7 +64,7 @@ function show() {
 }
 
 const nameOf = (record) => `${record.model_name}/${record.record_name}`;
-const age = (stamp) => (stamp ? duration(Math.max(0, (Date.now() - new Date(stamp)) / 1000)) : t("never"));
+const age = (stamp) => (stamp ? duration(Math.max(0, (siteNow() - new Date(stamp)) / 1000)) : t("never"));
 
 function build_row(record) {
   const edit = button("edit", "", () => openEditor(nameOf(record)), ["edit_record", { name: nameOf(record) }]);

@@ -11,6 +11,7 @@ const MOST = 20000; // events that a browser replays
 const CODES = { IDLE: 0, RUNNING: 1, SUCCESS: 2, FAILURE: 3 };
 let view = null;
 let journal = [];
+let cut = false; // the journal is longer
 let chosen = null;
 
 export function build(root) {
@@ -24,7 +25,8 @@ export function build(root) {
       make("h2", { id: "past_title" }), make("div", { id: "exports", className: "bar" }),
       make("h3", { data: { t: "receipts" } }), make("ul", { id: "receipts", className: "plain" }),
       make("p", {}, make("label", { className: "wide" }, make("span", { data: { t: "timeline" } }), slider), make("output", { id: "moment" })),
-      zoomBar(() => view), box, make("h3", { data: { t: "journal" } }), table("list_events", "journal", ["at_time", "event", "node", "text"])),
+      make("p", { id: "journal_cut", className: "bad" }), make("section", { id: "past_tree" }, zoomBar(() => view), box),
+      make("h3", { data: { t: "journal" } }), table("list_events", "journal", ["at_time", "event", "node", "text"])),
   );
   view = new TreeView(box);
   if (chosen !== null) {
@@ -86,7 +88,7 @@ async function showRun(id) {
   chosen = id;
   [...at("list_history").children].forEach(markChosen);
   try {
-    journal = await allEvents(id);
+    await readJournal(id);
   } catch (error) {
     setText(at("lists_problem"), error.message);
     return;
@@ -97,9 +99,13 @@ async function showRun(id) {
   at("exports").replaceChildren(make("span", {}, `${t("export")}:`), ...["json", "csv", "mcap"].map((form) => (
     make("a", { className: "button", href: `/api/runs/${encodeURIComponent(id)}/export?form=${form}`, download: "" }, form.toUpperCase()))));
   const stops = journal.filter((event) => event.kind === "stop");
-  at("receipts").replaceChildren(...(stops.length === 0 ? [make("li", {}, t("no_receipts"))]
+  at("receipts").replaceChildren(...(stops.length === 0 ? [make("li", {}, t(cut ? "no_receipts_yet" : "no_receipts"))]
     : stops.map((event) => make("li", {}, `${clock(event.stamp)} ${event.text}`))));
-  if (tree !== undefined) {
+  setText(at("journal_cut"), cut ? t("journal_cut", { number: journal.length }) : "");
+  at("past_tree").hidden = tree === undefined; // a refused run has none
+  if (tree === undefined) {
+    view.tree = null; // that of another run
+  } else {
     view.show(tree.values);
   }
   at("slider").max = Math.max(0, journal.length - 1);
@@ -108,16 +114,16 @@ async function showRun(id) {
   at("past").scrollIntoView();
 }
 
-async function allEvents(id) {
+async function readJournal(id) {
   const found = [];
-  for (;;) {
+  let page;
+  do {
     const after = found.length > 0 ? found[found.length - 1].number : 0;
-    const page = await ask(`/api/runs/${encodeURIComponent(id)}/events?after=${after}&limit=${PAGE}`);
+    page = await ask(`/api/runs/${encodeURIComponent(id)}/events?after=${after}&limit=${PAGE}`);
     found.push(...page);
-    if (page.length < PAGE || found.length >= MOST) {
-      return found;
-    }
-  }
+  } while (page.length === PAGE && found.length <= MOST);
+  journal = found.slice(0, MOST);
+  cut = found.length > MOST;
 }
 
 /** The tree as it was after event number `index` of the journal. */

@@ -1,11 +1,12 @@
 // Site: a map with machines and goal poses, and the arms from the side.
 import { buildArm, fillArm } from "../arm.js";
-import { at, change, draw, heading, keep, make, mark, number, part, parts, setBadge, setText } from "../dom.js";
+import { at, change, draw, duration, heading, keep, make, mark, number, part, parts, setBadge, setText } from "../dom.js";
 import { ask, treeOf } from "../server.js";
 import { t } from "../strings.js";
 
 const GRID = 5; // m
 const MARGIN = 6; // m around everything
+const PLACE_OLD = 5; // s without /tf: the machine may have driven on
 let shapes = null;
 let goals = [];
 
@@ -39,13 +40,19 @@ export function update(state) {
     return;
   }
   const placed = state.machines.filter((machine) => machine.place !== null);
-  const unplaced = state.machines.filter((machine) => machine.place === null);
-  keep(at("unplaced"), unplaced, (machine) => machine.name, () => make("li"), (row, machine) => setText(row, t("no_place", machine)));
+  const unsure = state.machines.filter((machine) => machine.place === null || isOld(machine));
+  keep(at("unplaced"), unsure, (machine) => machine.name, () => make("li"), (row, machine) => setText(row, tellPlace(machine)));
   const wanted = new Set(state.runs.map(currentRecord));
   const points = goals.filter((goal) => wanted.has(goal.record) && state.machines.some((machine) => machine.name === goal.model));
   drawMap(placed, points);
   const armed = state.machines.filter((machine) => shapes[machine.name]?.arm.length > 1 && machine.joints.length > 0);
   keep(at("arms"), armed, (machine) => machine.name, (machine) => make("figure", { className: "card" }, buildArm(machine), make("figcaption", {}, ...parts("strong", ["name"]), ...parts("span", ["state", "joints"]))), fillFigure);
+}
+
+const isOld = (machine) => machine.place_age > PLACE_OLD;
+
+function tellPlace(machine) {
+  return t(machine.place === null ? "no_place" : "old_place", { name: machine.name, age: duration(machine.place_age) });
 }
 
 function fillFigure(figure, machine) {
@@ -96,11 +103,12 @@ function machineMark(machine) {
   const { x, y, yaw } = machine.place;
   const boxes = shapes[machine.name].footprint.map((box) => draw("rect", {
     x: box.min[0], y: -box.max[1], width: box.max[0] - box.min[0], height: box.max[1] - box.min[1] }));
+  const known = isOld(machine) ? "silent" : machine.state; // where it was, and not where it is
   const swing = machine.joints.find((joint) => joint.name === "swing_joint")?.position ?? 0;
   return [
-    draw("g", { class: `machine ${machine.state}`, "data-machine": machine.name,
+    draw("g", { class: `machine ${known}`, "data-machine": machine.name,
       transform: `translate(${x} ${-y}) rotate(${(-yaw * 180) / Math.PI})` }, ...boxes,
     draw("path", { class: "heading", d: "M0 0 H4 M3 -0.7 L4 0 L3 0.7", transform: `rotate(${(-swing * 180) / Math.PI})` })),
-    draw("text", { class: "name", x: x + 1, y: -y - 3.4 }, `${machine.name} ${mark(machine.state)}`),
+    draw("text", { class: "name", x: x + 1, y: -y - 3.4 }, `${machine.name} ${mark(known)}`),
   ];
 }

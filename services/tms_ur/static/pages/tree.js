@@ -40,11 +40,15 @@ export function update(state) {
       link.ariaCurrent = one === run ? "true" : "false";
     });
   const tree = run === undefined ? null : treeOf(run.run_id);
-  at("no_tree").hidden = run !== undefined || view.tree !== null;
+  const { alive } = state.scheduler;
+  at("no_tree").hidden = run !== undefined || (alive && view.tree !== null);
+  setText(at("no_tree"), t(alive ? "no_tree" : "scheduler_silent"));
   at("tree_why").hidden = run === undefined;
   if (run !== undefined) {
     const moving = state.machines.some((machine) => run.machines.includes(machine.name) && machine.state === "moving");
     setText(at("tree_why_head"), t(moving ? "doing" : "why"));
+    setBadge(at("tree_state"), alive ? run.state : "UNKNOWN");
+    setText(at("tree_reason"), !alive ? t("scheduler_silent") : told(run.reason) || t(run.state === "running" ? "moving_on" : run.state));
   }
   if (tree === null) {
     return; // the last one stays on the screen
@@ -54,8 +58,6 @@ export function update(state) {
     states = run.nodes;
     view.paint(run.nodes, run.leaf);
   }
-  setBadge(at("tree_state"), run.state);
-  setText(at("tree_reason"), told(run.reason) || t(run.state === "running" ? "moving_on" : run.state));
 }
 
 export function redraw() {
