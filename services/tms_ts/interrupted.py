@@ -68,6 +68,7 @@ class Interrupted:
             self._journal.put(Event(run_id=header.run_id, number=number, stamp=stamp, kind=kind, text=text))
         self._journal.put(_row(header, "interrupted", reason, self._app.ros.now()))
         record.interrupted()
+        record.close()
         self._app.log.warning("event=interrupted run=%s", header.run_id)
 
     # what a person does about it

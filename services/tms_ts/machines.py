@@ -16,7 +16,7 @@ from tms_core.fence import LEAVES, Owner
 from tms_core.ros import LOST_TEXT, Call, Outcome, Peer, Ros
 from tms_ts.gateways import Gateways
 from tms_ts.hosts import Hosts
-from tms_ts.record import Record, Replay
+from tms_ts.record import Key, Record, Replay
 from tms_ts.sent_goal import ACCEPT_LIMIT, SentGoal
 from tms_ts.world import GoalState
 
@@ -24,7 +24,7 @@ SERVER_LIMIT = 10.0  # s for a subtask's server to be there
 STOP_LIMIT = 8.0  # s for a gateway to answer a stop
 GATEWAY_LIMIT = 3.0  # s for a gateway that was lost to be back
 DATABASE_LIMIT = 15.0  # s that a leaf waits for a database that is away
-ASK_AGAIN = 0.5  # s
+ASK_AGAIN = 0.5  # s; also from a failure to the same goal: a loop around a leaf must not flood the history
 AWAY = ("NO_DATABASE", "STORE_DOWN")  # how a subtask begins its refusal when its record cannot be read now
 UNREACHED = (
     "NO_ANSWER",
@@ -65,6 +65,8 @@ class Machines:
         self._leaves = 0  # goals sent so far
         self._handed_over: float | None = None  # monotonic time of the last result that no acceptance has followed
         self._told: set[tuple[str, int, int]] = set()  # receipts in the journal
+        self._failed: dict[Key, float] = {}  # monotonic time of each goal's last failure
+        self._given_up: set[str] = set()  # processes in the journal that supervisord does not start any more
         self._open: list[SentGoal] = []
         self._stopping: set[str] = set()  # machines that are being stopped after a lost goal
 
@@ -81,6 +83,9 @@ class Machines:
             self._tell("goal", node, f"{goal.name} is not repeated: {goal.state.value} before the interruption")
             return goal
         goal.peer = self.peer(machine, subtask)
+        if goal.key in self._failed:
+            goal.not_before = self._failed[goal.key] + ASK_AGAIN
+            goal.reason = "it failed just now and is sent again soon"
         self._open.append(goal)
         self._try_send(goal)
         return goal
@@ -182,7 +187,8 @@ class Machines:
         if latch:
             return f"{goal.machine} is stopped ({latch}): re-arm it with `tms rearm {goal.machine}`"
         fatal = next(filter(None, (self._hosts.fatal(goal.machine, p) for p in ("rc", "rp", goal.subtask))), "")
-        if fatal:
+        if fatal and fatal not in self._given_up:
+            self._given_up.add(fatal)
             self._tell("alarm", goal.node, fatal)
         return fatal
 
@@ -228,10 +234,13 @@ class Machines:
         return not goal.cancelled and time.monotonic() - goal.waits_since < DATABASE_LIMIT
 
     def _end(self, goal: SentGoal, state: GoalState, reason: str) -> None:
-        goal.reason, goal.state = reason, state
+        if state is not GoalState.SUCCEEDED and not goal.cancelled:
+            self._failed[goal.key] = time.monotonic()
         if state is not GoalState.CANCELLED and not goal.cancelled:
+            for key, left in self._replay.moved_on(goal.node):
+                self._record.gone(key, left)
             self._record.done(goal.key, state is GoalState.SUCCEEDED)
-            self._replay.moved_on(goal.node)
+        goal.reason, goal.state = reason, state  # last: the tree may see it now and ask for the next goal
         self._tell("goal", goal.node, f"{goal.name} {state.value}" + (f": {reason}" if reason else ""))
 
     def _look_for_loss(self, goal: SentGoal, call: Call) -> None:

@@ -6,7 +6,7 @@ from typing import Any, Protocol
 
 from tms_core.config import Site
 from tms_ts.bt import Tree
-from tms_ts.bt.errors import did_you_mean
+from tms_ts.bt.errors import did_you_mean, short
 from tms_ts.bt.tree import LeafGoal, SharedValue
 from tms_ts.nodes.leaf_node import ROS_NAME
 
@@ -94,7 +94,8 @@ def _check_goal(found: Findings, goal: LeafGoal, site: Site, around: Surrounding
         found.warnings.append(f"{where}: machine or subtask is known only when the leaf starts")
         return
     if not ROS_NAME.fullmatch(goal.subtask):
-        text = f"subtask_name={goal.subtask!r} can be no ROS name: letters, digits and _, no blanks"
+        name = short(goal.subtask, 100)
+        text = f"subtask_name={name!r} can be no ROS name: at most 200 letters, digits and _, no blanks"
         found.errors.append(f"{where}: {text}")
         return
     offered = site.model_of(goal.machine).subtasks

@@ -28,7 +28,8 @@ class Questions:
 
     def __init__(self, ros: Ros, changed: Callable[[], None]) -> None:
         self._ros, self._changed = ros, changed
-        self._numbers = itertools.count(1)
+        # From the present second: no id comes again after a restart, and none is the beginning of another one.
+        self._numbers = itertools.count(ros.now().sec)
         self._open: dict[str, Asked] = {}
         self._lock = threading.Lock()
 
@@ -39,7 +40,7 @@ class Questions:
 
     def put(self, clicks: "Clicks", title: str, text: str, node: str, seconds: float | None) -> Answer[bool]:
         now = self._ros.now()
-        name = f"{clicks.run_id}-{next(self._numbers)}"
+        name = f"{clicks.run_id}-{next(self._numbers):010d}"
         until = Time() if seconds is None else _later(now, seconds)
         message = Question(
             id=name, run_id=clicks.run_id, node=node, title=title, text=text, asked_at=now, until=until

@@ -4,6 +4,7 @@ One file a run, one JSON object a line: first the run, then every event's number
 or has ended. A run that ended in order leaves no file.
 """
 
+import errno
 import json
 import logging
 import os
@@ -37,7 +38,10 @@ class Header:
 
 
 class Record:
-    """Written by the run; each line is one write, so a crash cuts off the last line at most."""
+    """Written by the run; each line is one write, so a crash cuts off the last line at most.
+
+    A line begins with its line break: what a crash or a full disk has cut off before it spoils no other line.
+    """
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -50,10 +54,15 @@ class Record:
             if self._file < 0:
                 return  # news of a run that is over
             try:
-                os.write(self._file, json.dumps({**data, "t": time.time()}).encode() + b"\n")
+                self._write(b"\n" + json.dumps({**data, "t": time.time()}).encode())
             except OSError as error:  # a full disk must not keep a run from stopping its machines
                 LOST.inc()
                 log.error("event=record_lost file=%s reason=%r", self.path.name, str(error))
+
+    def _write(self, line: bytes) -> None:
+        written = os.write(self._file, line)
+        if written < len(line):
+            raise OSError(errno.ENOSPC, f"only {written} of {len(line)} bytes could be written")
 
     def begin(self, header: Header) -> None:
         self._line({"run": asdict(header)})
@@ -67,15 +76,24 @@ class Record:
     def done(self, key: Key, succeeded: bool) -> None:
         self._line({"done": key, "ok": succeeded})
 
+    def gone(self, key: Key, left: int) -> None:
+        """The last `left` ends of that leaf goal belong to the past: they are not skipped by a later resume."""
+        self._line({"gone": key, "left": left})
+
     def interrupted(self) -> None:
         """The history says now that the run was interrupted."""
         self._line({"interrupted": True})
 
+    def close(self) -> None:
+        """Nothing more is written; the file stays."""
+        with self._using:
+            if self._file >= 0:
+                os.close(self._file)
+                self._file = -1
+
     def remove(self) -> None:
         """The run has ended in order."""
-        with self._using:
-            os.close(self._file)
-            self._file = -1
+        self.close()
         self.path.unlink(missing_ok=True)
 
 
@@ -97,11 +115,14 @@ class Replay:
         found = self._ended.get(key)
         return found.popleft() if found else None
 
-    def moved_on(self, node: str) -> None:
-        """A goal of that node was really done: only nodes beside it may still have something to skip."""
-        for key in list(self._ended):
-            if not self.beside(key[0], node):
-                self._ended.pop(key, None)
+    def moved_on(self, node: str) -> list[tuple[Key, int]]:
+        """A goal of that node was really done: only nodes beside it may still have something to skip.
+
+        Returns what is dropped: how often each leaf goal had ended and was not asked for again.
+        """
+        past = [key for key in list(self._ended) if not self.beside(key[0], node)]
+        dropped = [(key, len(self._ended.pop(key, ()))) for key in past]
+        return [(key, left) for key, left in dropped if left]
 
 
 class Past:
@@ -133,7 +154,14 @@ class Past:
             self.ended.append((key, line["ok"]))
             if key in self.open:
                 self.open.remove(key)
+        elif "gone" in line:
+            self._forget(_key(line["gone"]), line["left"])
         self.closed = self.closed or "interrupted" in line
+
+    def _forget(self, key: Key, left: int) -> None:
+        places = [place for place, (ended, _) in enumerate(self.ended) if ended == key]
+        for place in places[::-1][:left]:
+            del self.ended[place]
 
 
 def _key(words: list[str]) -> Key:

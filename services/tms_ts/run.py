@@ -249,6 +249,7 @@ class Run:
         if self._resumed:  # the run stays what it was: interrupted
             self.enter("interrupted", f"not resumed: {code}: {reason}", ended=True)
             self.record.interrupted()
+            self.record.close()
             return
         self.enter("refused", f"{code}: {reason}", ended=True)
         self.record.remove()

@@ -25,8 +25,8 @@ class Spool:
         self._largest = largest
         self._size = os.fstat(self._file).st_size
         self._taken = 0  # bytes that are done
-        if self._size and os.pread(self._file, 1, self._size - 1) != b"\n":
-            self._append(b"\n")  # cut short by a crash: the reader skips that line
+        # Whether the last line was cut short, by a crash or a full disk: the reader skips it once it is ended.
+        self._cut = self._size > 0 and os.pread(self._file, 1, self._size - 1) != b"\n"
 
     def put(self, line: bytes) -> None:
         """Add a line (without line break).
@@ -40,9 +40,11 @@ class Spool:
             self._append(line + b"\n")
 
     def _append(self, data: bytes) -> None:
+        data = b"\n" + data if self._cut else data
         written = os.write(self._file, data)
         self._size += written
-        if written < len(data):
+        self._cut = written < len(data)
+        if self._cut:
             raise OSError(errno.ENOSPC, f"only {written} of {len(data)} bytes could be written")
 
     def waiting(self) -> int:

@@ -25,7 +25,7 @@ def command(reply: str | None, question: str | None, as_json: bool) -> None:
     Examples:
       tms answer
       tms answer yes
-      tms answer no --question 20261121-104918-7419-1
+      tms answer no --question 20261121-104918-7419-1795258158
     """
     from tms_msg_ts.srv import AnswerQuestion
 

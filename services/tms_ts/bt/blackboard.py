@@ -15,12 +15,13 @@ from tms_ts.bt.errors import TickError, TreeError
 class Entry:
     """One value; the same object stands in every blackboard that shares the key."""
 
-    __slots__ = ("has_converter", "kind", "value")
+    __slots__ = ("has_converter", "kind", "value", "varies")
 
     def __init__(self, kind: Any, *, has_converter: bool) -> None:
         self.kind = kind  # Any: weak
         self.has_converter = has_converter
         self.value: Any = MISSING
+        self.varies = False  # a node may write it
 
 
 class Blackboard:
@@ -80,6 +81,17 @@ class Blackboard:
     def get(self, key: str) -> Any:
         entry = self.find(key)
         return MISSING if entry is None else entry.value
+
+    def constant(self, key: str) -> Any:
+        """The value that a key has before the first tick and keeps; MISSING if the run decides it."""
+        entry = self.find(key)
+        return MISSING if entry is None or entry.varies else entry.value
+
+    def vary(self, key: str) -> None:
+        """A node may write the key, if it is there."""
+        entry = self.find(key)
+        if entry is not None:
+            entry.varies = True
 
     def set(self, key: str, value: Any, kind: Any = None) -> None:
         """Write by the library's typing rules; `kind` is the type of the port that writes."""

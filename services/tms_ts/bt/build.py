@@ -11,7 +11,7 @@ from tms_ts.bt.convert import Missing, text_to_bool
 from tms_ts.bt.document import Document, TreeElement, children
 from tms_ts.bt.errors import TreeError
 from tms_ts.bt.node import Birth, Node
-from tms_ts.bt.ports import RESERVED, Pointer, bind
+from tms_ts.bt.ports import RESERVED, Direction, Pointer, bind
 from tms_ts.bt.source import line_of
 from tms_ts.bt.verify import Rules, Use
 
@@ -31,7 +31,19 @@ class Builder:
     def build(self, blackboard: Blackboard) -> Node:
         self.blackboards.append(blackboard)
         main = self.trees[self.document.main]
-        return self.tree(main, blackboard, "0", main.element)
+        root = self.tree(main, blackboard, "0", main.element)
+        for node in self.nodes:
+            self.mark_written(node)
+        return root
+
+    @staticmethod
+    def mark_written(node: Node) -> None:
+        """Which keys are no constants: outputs, and every key whose name a port gives as text, as Counter's does."""
+        for port, bound in node.bindings.items():
+            if isinstance(bound, str):
+                node.blackboard.vary(bound)
+            elif node.ports[port].direction is not Direction.INPUT:
+                node.blackboard.vary(bound.key)
 
     def tree(self, tree: TreeElement, blackboard: Blackboard, path: str, caller: etree._Element) -> Node:
         if tree.id in self.open_trees:

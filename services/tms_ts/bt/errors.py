@@ -12,6 +12,7 @@ from collections.abc import Iterable
 from tms_core.errors import TaskError
 
 MAX_WARNINGS = 500  # of one tree; more than that helps nobody
+MAX_NAMES = 1000  # to look for a near one among, which takes some 30 ms
 
 
 class TreeError(TaskError):
@@ -25,7 +26,7 @@ class TreeError(TaskError):
         self.message = message
         self.line = line
         self.path = path
-        self.hint = hint
+        self.hint = short(hint)
         self.file = file
 
     def __str__(self) -> str:
@@ -52,7 +53,8 @@ def short(text: str, length: int = 400) -> str:
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    if len(word) > 100:
+    names = list(known)
+    if len(word) > 100 or len(names) > MAX_NAMES:
         return ""
-    near = difflib.get_close_matches(word, list(known), n=1, cutoff=0.6)
+    near = difflib.get_close_matches(word, names, n=1, cutoff=0.6)
     return f"did you mean {near[0]!r}?" if near else ""

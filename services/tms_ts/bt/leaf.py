@@ -24,10 +24,14 @@ class PlainAction(Leaf):
     __slots__ = ()
 
     def told(self, port: str) -> str:
-        """What the document says of a port; what only the run decides reads as its {key}."""
+        """What the document says of a port, if need be as a constant of a SubTreePlus.
+
+        What only the run decides reads as its {key}.
+        """
         bound: Any = self.bindings.get(port)
         if isinstance(bound, Pointer):
-            return "{" + bound.key + "}"
+            value = self.blackboard.constant(bound.key)
+            return value if isinstance(value, str) else "{" + bound.key + "}"
         text = self.ports[port].default if bound is None else bound
         return "" if text is MISSING else str(text)
 

@@ -20,6 +20,7 @@ _MARKUP = re.compile(
 )  # fmt: skip
 _QUOTED = re.compile(r"\"[^\"]*\"|'[^']*'")
 _BREAK = re.compile(r"=\s*(?:\"[^\"<]*[\n\t]|'[^'<]*[\n\t])")
+LAST_LINE = 65_535  # that lxml can note at an element
 _PRIVATE = range(0xE000, 0xF8FF)
 
 
@@ -84,7 +85,7 @@ def _set_lines(root: etree._Element, text: str) -> None:
     for element, found in zip(root.iter("*"), tags, strict=False):
         line += text.count("\n", position, found.start())
         position = found.start()
-        setattr(element, "sourceline", line)  # noqa: B010 - the stubs call it read-only
+        setattr(element, "sourceline", min(line, LAST_LINE))  # noqa: B010 - the stubs call it read-only
 
 
 def parse(data: bytes | str, *, file: str = "", limit: int = MAX_BYTES) -> Source:

@@ -114,7 +114,7 @@ def _document(tree: Tree) -> bytes:
 def _element(parent: etree._Element, node: Node, paths: Mapping[int, str]) -> None:
     subtree = node.kind is Kind.SUBTREE
     kind = node.registration_name
-    element = etree.SubElement(parent, "SubTree" if subtree else V4_NAMES.get(kind, kind))
+    element = etree.SubElement(parent, "SubTree") if subtree else _named(parent, node, V4_NAMES.get(kind, kind))
     element.set("_uid", str(node.uid))
     if subtree:
         element.set("ID", node.name)
@@ -125,6 +125,13 @@ def _element(parent: etree._Element, node: Node, paths: Mapping[int, str]) -> No
         element.set(_v4_port(node.registration_name, port.name), text)
     for child in node.children:
         _element(element, child, paths)
+
+
+def _named(parent: etree._Element, node: Node, name: str) -> etree._Element:
+    try:
+        return etree.SubElement(parent, name)
+    except ValueError:  # an ID that can be no tag, which documents give as <Action ID="2nd try">
+        return etree.SubElement(parent, node.kind.name.capitalize(), ID=name)
 
 
 def _v4_port(kind: str, port: str) -> str:

@@ -33,13 +33,14 @@ class Monitors:
 
     @contextmanager
     def watch(self, run_id: str, tree: Tree) -> Iterator[None]:
-        """Let Groot look at a tree; a port that is taken costs the view, never the run."""
+        """Let Groot look at a tree; what goes wrong costs the view, never the run."""
         with self._lock:
             slot = next((slot for slot in range(MOST_RUNS) if slot not in self._used), None)
             if slot is not None:
                 self._used.add(slot)
-        monitor = None if slot is None else self._open(run_id, tree, self._first + slot * STEP)
+        monitor = None
         try:
+            monitor = None if slot is None else self._open(run_id, tree, self._first + slot * STEP)
             yield
         finally:
             if monitor is not None:
@@ -50,7 +51,7 @@ class Monitors:
     def _open(self, run_id: str, tree: Tree, port: int) -> Monitor | None:
         try:
             monitor = Monitor(tree, self._bind, port)
-        except zmq.ZMQError as error:
+        except (zmq.ZMQError, ValueError) as error:  # a port that is taken, an ID that no document can have
             self._log.warning("event=no_groot run=%s port=%d reason=%r", run_id, port, str(error))
             return None
         self._log.info("event=groot run=%s groot1=%d,%d groot2=%d", run_id, port, port + 1, port + 2)

@@ -21,7 +21,7 @@ MAX_LENGTH = 4000
 MAX_NESTING = 60
 _ALLOWED = re.compile(r"[\w\s()=!<>.\-]*", re.ASCII)
 _IDENTIFIER = re.compile(r"(?<![\w.])[A-Za-z_]\w*", re.ASCII)
-_NUMBER = re.compile(r"(?<![\w.])0*([0-9]+(?:\.[0-9]*)?(?:[eE]-?[0-9]+)?)(and|or|)(?![\w.])", re.ASCII)
+_NUMBER = re.compile(r"(?<![\w.])0*(?!0[0-9])([0-9]+(?:\.[0-9]*)?(?:[eE]-?[0-9]+)?)(and|or|)(?![\w.])", re.ASCII)
 _NO_NUMBER = re.compile(r"(?<![\w.])[0-9][0-9.]*(?![eE]-?[0-9]+(?![\w.]))[A-Za-z_]", re.ASCII)
 _WORDS = frozenset({"and", "or"})
 _PREFIX = "k_"  # keeps Python's own words from meaning anything

@@ -17,7 +17,8 @@ from tms_ts.bt.registry import stand_in
 from tms_ts.bt.status import FAILURE, RUNNING, SUCCESS, Status
 from tms_ts.world import Goal, GoalState
 
-ROS_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*", re.ASCII)
+# Names that ROS takes and prolongs: a topic may have 247 letters, with the machine and what an action adds.
+ROS_NAME = re.compile(r"(?!.{201})[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*", re.ASCII)
 
 
 @stand_in
@@ -73,7 +74,7 @@ class LeafNode(PlainAction):
     def preflight(self, texts: Mapping[str, str]) -> list[str]:
         names = {port: self.literal(port) or "" for port in ("model_name", "subtask_name")}
         return [
-            f"{port}={name!r} has characters that no ROS name can have"
+            f"{port}={name!r} can be no ROS name"
             for port, name in names.items()
             if name and not ROS_NAME.fullmatch(name)
         ]

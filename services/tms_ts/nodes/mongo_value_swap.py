@@ -18,6 +18,8 @@ class MongoValueSwap(Asking):
     """Write a value to a field of a record if the field holds the expected value; fail if it holds another one.
 
     Of several tasks that swap at the same time one succeeds: a road section is locked by swapping false for true.
+    A run that is resumed comes here again and would wait for its own lock. Let the field hold who has it, a text like
+    free or zx200, and take the lock in a Fallback of two swaps: free for zx200, then zx200 for zx200.
 
     mongo_record_name: the record
     mongo_param_name: the field

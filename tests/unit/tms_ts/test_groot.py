@@ -18,6 +18,7 @@ from lxml import etree
 from conformance.scripted import scripted_registry
 from tms_ts.bt import IDLE, RUNNING, SUCCESS, Tree, load
 from tms_ts.groot import groot1
+from tms_ts.groot.groot2 import Groot2
 from tms_ts.groot.monitor import Monitor, Monitors
 from unit.tms_ts import groot_client
 
@@ -225,3 +226,41 @@ def test_a_taken_port_costs_the_view_only(port: int, caplog: pytest.LogCaptureFi
             assert not one.observers
             assert one.tick() is RUNNING
     assert "no_groot" in caplog.text
+
+
+@pytest.mark.parametrize("name", ["2nd_LeafNode", "zx200 boom up"])
+def test_an_id_that_can_be_no_tag_is_shown_in_the_explicit_form(name: str) -> None:
+    ports = "".join(f'<input_port name="{port}"/>' for port in ("model_name", "record_name", "subtask_name"))
+    one = load(
+        f'<root main_tree_to_execute="M"><BehaviorTree ID="M"><Action ID="{name}" name="x" model_name="zx200" '
+        f'record_name="r" subtask_name="s"/></BehaviorTree><TreeNodesModel><Action ID="{name}">{ports}</Action>'
+        "</TreeNodesModel></root>"
+    )
+    _, xml = Groot2(one).answer([struct.pack("<BBI", 2, ord("T"), 1)], {}, {})
+    shown = etree.fromstring(xml).find("BehaviorTree/Action")
+    assert (shown.get("ID"), shown.get("name"), shown.get("record_name")) == (name, "x", "r")
+    assert load(xml.replace(b"_uid", b"_description").replace(b"_fullpath", b"name")).root.registration_name == name
+
+
+def test_a_tree_that_cannot_be_shown_costs_the_view_only(
+    port: int, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    def fail(tree: Tree) -> None:
+        raise ValueError("no such shape")
+
+    monkeypatch.setattr("tms_ts.groot.monitor.Groot2", fail)
+    monitors = Monitors(logging.getLogger("test"), "127.0.0.1", port)
+    with monitors.watch("r-1", load(SLOW)):
+        assert "no such shape" in caplog.text
+    assert not monitors._used
+
+
+def test_ports_are_free_again_however_the_view_fails(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    def end(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monitors = Monitors(logging.getLogger("test"), "127.0.0.1", port)
+    monkeypatch.setattr(monitors, "_open", end)
+    with pytest.raises(KeyboardInterrupt), monitors.watch("r-1", load(SLOW)):
+        pass
+    assert not monitors._used

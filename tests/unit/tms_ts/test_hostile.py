@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import difflib
 import time
 from pathlib import Path
 
 import pytest
 
 from tms_ts.bt import TreeError, check, load
-from tms_ts.bt.errors import MAX_WARNINGS
+from tms_ts.bt.errors import MAX_NAMES, MAX_WARNINGS, did_you_mean
 from unit.tms_ts.trees import document
 
 LAUGHS = [f'<Sequence><SubTree ID="T{i + 1}"/><SubTree ID="T{i + 1}"/></Sequence>' for i in range(1, 31)]
@@ -64,6 +65,29 @@ def test_the_text_may_declare_any_encoding() -> None:
     text = '<?xml version="1.0" encoding="Shift_JIS"?>\n' + document("<AlwaysSuccess name='待機'/>")
     assert load(text.encode()).root.name == "待機"
     assert load("\ufeff" + text).root.line == 4
+
+
+def test_a_line_that_lxml_cannot_count_to_is_its_last_one() -> None:
+    text = document("\n" * 70_000 + '<Sequence\n><AlwaysSuccess name="x"/></Sequence>')
+    assert load(text).root.line == 65_535
+    assert check(text).ok
+
+
+NAMES = [f"dig_and_load_{number}" for number in range(MAX_NAMES)]
+
+
+def test_a_near_name_is_not_looked_for_among_thousands(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert did_you_mean("dig_and_lode_7", NAMES) == "did you mean 'dig_and_load_7'?"
+    monkeypatch.setattr(difflib, "get_close_matches", None)
+    assert did_you_mean("dig_and_lode_7", [*NAMES, "one more"]) == ""
+
+
+@pytest.mark.parametrize("main", ["", 'main_tree_to_execute="none"'])
+def test_a_hint_does_not_list_thousands_of_names(main: str) -> None:
+    trees = "".join(f'<BehaviorTree ID="{name}"><AlwaysSuccess/></BehaviorTree>' for name in [*NAMES, "one more"])
+    (error,) = check(f"<root {main}>{trees}</root>").errors
+    assert "one of" in error.hint or "there is" in error.hint
+    assert len(str(error)) < 700
 
 
 MANY = '<Action ID="AlwaysSucces"/>\n' * 100_000

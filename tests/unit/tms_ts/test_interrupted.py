@@ -42,6 +42,17 @@ def interrupted(tmp_path: Path, journal: list[Any]) -> Interrupted:
     return Interrupted(app, SimpleNamespace(put=journal.append), records)  # type: ignore[arg-type]
 
 
+def test_a_lost_run_that_is_closed_leaves_no_open_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    journal: list[Any] = []
+    monkeypatch.setattr(threading.Thread, "start", lambda _: None)
+    runs = interrupted(tmp_path, journal)
+    (past,) = Records(tmp_path).past()
+    before = len(list(Path("/proc/self/fd").iterdir()))
+    runs._close(past, HEADER)
+    assert len(list(Path("/proc/self/fd").iterdir())) == before
+    assert journal[-1].state == "interrupted"
+
+
 @pytest.mark.parametrize("second", ["resume", "abandon"])
 def test_of_two_that_ask_at_once_one_gets_the_run(tmp_path: Path, second: str) -> None:
     journal: list[Any] = []

@@ -9,7 +9,7 @@ from tms_msg_rc.msg import StopReceipt
 from tms_core.ros import Call, Outcome
 from tms_ts import machines
 from tms_ts.gateways import Gateways
-from tms_ts.machines import Identity, Machines
+from tms_ts.machines import ASK_AGAIN, Identity, Machines
 from tms_ts.record import Replay
 from tms_ts.sent_goal import ACCEPT_LIMIT, RECOVERY, SentGoal
 from tms_ts.world import GoalState
@@ -41,14 +41,20 @@ class Site:
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.now, self.pid, self.peer = 0.0, 1, Peer()
         self.told: list[str] = []
+        self.kept: list[tuple[Any, ...]] = []  # what the record has of ends
+        self.fatal, self.trouble = "", ""
         monkeypatch.setattr(machines.time, "monotonic", lambda: self.now)
         monkeypatch.setattr(Machines, "_stop_after_loss", lambda one, machine, cause: one._stopping.discard(machine))
         self.peer.lost = lambda: None  # type: ignore[attr-defined]
         ros = SimpleNamespace(peer=lambda *_: self.peer)
-        hosts = SimpleNamespace(pid=lambda *_: self.pid, trouble=lambda *_: "", fatal=lambda *_: "")
+        hosts = SimpleNamespace(pid=lambda *_: self.pid, trouble=lambda *_: self.trouble, fatal=lambda *_: self.fatal)
         gateways = SimpleNamespace(obstacle=lambda _: "", latch=lambda _: "")
         self.replay = Replay([(("0.1", "zx200", "dig", "here"), True)])
-        record = SimpleNamespace(sent=lambda _: None, done=lambda *_: None)
+        record = SimpleNamespace(
+            sent=lambda _: None,
+            done=lambda key, succeeded: self.kept.append(("done", key, succeeded)),
+            gone=lambda key, left: self.kept.append(("gone", key, left)),
+        )
         self.machines = Machines(
             ros,  # type: ignore[arg-type]
             hosts,  # type: ignore[arg-type]
@@ -58,6 +64,18 @@ class Site:
             Identity(1, RETRIES, record, self.replay),  # type: ignore[arg-type]
         )
         self.goal: SentGoal = self.machines.send("zx200", "subtask_zx200_change_pose", "pose", "0")
+
+    def retry(self, seconds: float, outcome: Outcome | None = None) -> None:
+        """What a RetryUntilSuccessful around a leaf does, at 20 ticks a second; its goals may all end at once."""
+        for _ in range(round(seconds * 20)):
+            for call in self.peer.calls if outcome is not None else []:
+                call.end(outcome)
+            if self.goal.state.final:
+                self.goal = self.send_again()
+            self.pass_time(0.05)
+
+    def send_again(self) -> SentGoal:
+        return self.machines.send("zx200", "subtask_zx200_change_pose", "pose", "0")
 
     def pass_time(self, seconds: float) -> None:
         self.now += seconds
@@ -141,3 +159,52 @@ def test_a_request_is_made_again_when_the_gateway_is_lost_or_comes_back() -> Non
         link.alive = not before
         assert lost()
     assert not gateways.loss("zx9")()
+
+
+@pytest.mark.parametrize("outcome", [Outcome.REJECTED, Outcome.ABORTED, Outcome.CANCELED])
+def test_a_loop_around_a_goal_that_fails_at_once_floods_nothing(site: Site, outcome: Outcome) -> None:
+    site.retry(2.0, outcome)
+    assert 3 <= len(site.peer.calls) <= 1 + 2.0 / ASK_AGAIN
+    assert len(site.told) < 20
+    assert site.goal.reason == "it failed just now and is sent again soon"
+
+
+def test_only_the_goal_that_has_failed_waits(site: Site) -> None:
+    site.peer.calls[0].end(Outcome.ABORTED)
+    site.machines.send("zx200", "subtask_zx200_change_pose", "other pose", "1")
+    assert len(site.peer.calls) == 2
+    site.peer.calls[1].end(Outcome.SUCCEEDED)
+    site.machines.send("zx200", "subtask_zx200_change_pose", "other pose", "1")
+    assert len(site.peer.calls) == 3
+
+
+def test_a_goal_that_the_tree_has_halted_is_sent_again_at_once(site: Site) -> None:
+    site.goal.cancel()
+    site.peer.calls[0].end(Outcome.CANCELED)
+    site.send_again()
+    assert len(site.peer.calls) == 2
+
+
+def test_a_process_that_is_given_up_is_told_once(site: Site) -> None:
+    site.peer.calls[0].end(Outcome.ABORTED)
+    site.trouble = site.fatal = "process zx200:subtask_zx200_change_pose is FATAL"
+    site.retry(10.0)
+    assert len([text for text in site.told if text.startswith("alarm")]) == 1
+    assert site.told.count(f"goal: /zx200/subtask_zx200_change_pose failed: {site.fatal}") >= 10
+    assert len(site.peer.calls) == 1
+
+
+def test_what_the_tree_did_not_ask_for_again_is_gone_for_a_later_resume_too(site: Site) -> None:
+    site.peer.calls[0].end(Outcome.SUCCEEDED)
+    past = ("0.1", "zx200", "dig", "here")
+    assert site.kept == [("gone", past, 1), ("done", site.goal.key, True)]
+
+
+def test_the_past_is_over_before_the_tree_can_ask_for_the_next_goal(
+    site: Site, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen: list[bool] = []
+    monkeypatch.setattr(site.replay, "moved_on", lambda _: seen.append(site.goal.state.final) or [])
+    site.peer.calls[0].end(Outcome.SUCCEEDED)
+    assert seen == [False]
+    assert site.goal.state is GoalState.SUCCEEDED

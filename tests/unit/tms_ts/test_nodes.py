@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any
 
 import pytest
 
 from tms_ts.bt import FAILURE, RUNNING, SUCCESS, Status, TickError
-from tms_ts.nodes.expression import Invalid, evaluate, names
+from tms_ts.nodes.expression import _NUMBER, Invalid, evaluate, names
 from tms_ts.nodes.mongo_value_writer import typed as written_as
 from tms_ts.world import GoalState
 from unit.tms_ts.fakes import FakeClicks, FakeFlags, FakeMachines, FakeWorld
@@ -185,6 +186,12 @@ class TestExpression:
         with pytest.raises(Invalid):
             evaluate(text, lambda key: KEYS.get(key, ""))
 
+    def test_a_long_row_of_zeros_is_read_once(self) -> None:
+        row, start = "0" * 30_000 + "x", time.process_time()
+        assert _NUMBER.sub(r"\1 \2", row) == row
+        assert time.process_time() - start < 5  # s; a pattern that goes back to every zero takes half a minute
+        assert _NUMBER.sub(r"\1 \2", "000 == 007.50and 00e5 != 0.0") == "0  == 7.50 and 0e5  != 0.0 "
+
     def test_python_words_are_only_keys(self) -> None:
         assert evaluate("None == one and import == 1", {"None": 1, "import": 1, "one": 1}.__getitem__)
         assert names("(a==true or B_1 != 3) and false") == {"a", "B_1"}
@@ -315,3 +322,15 @@ class TestWaitForClick:
         assert fake.clicks.asked == [("Stop1", "go?")]
         one.halt()
         assert fake.clicks.withdrawn == 1
+
+
+def test_a_lock_that_says_who_has_it_is_not_waited_for_by_its_own_holder() -> None:
+    swap = '<MongoValueSwap mongo_record_name="ROAD" mongo_param_name="holder" expected_value="{}" input_value="{}"/>'
+    flags = FakeFlags({("ROAD", "holder"): "free"})
+
+    def take(me: str) -> Status:
+        body = f"<Fallback>{swap.format('free', me)}{swap.format(me, me)}</Fallback>"
+        return tree(body, fake=FakeWorld(flags=flags)).tick()
+
+    assert [take("zx200"), take("zx200"), take("ic120")] == [SUCCESS, SUCCESS, FAILURE]
+    assert flags.values["ROAD", "holder"] == "zx200"

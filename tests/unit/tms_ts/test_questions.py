@@ -12,8 +12,11 @@ from unit.tms_ts.trees import tree
 
 
 class FakeRos:
+    def __init__(self, seconds: int = 100) -> None:
+        self.seconds = seconds
+
     def now(self) -> Time:
-        return Time(sec=100, nanosec=900_000_000)
+        return Time(sec=self.seconds, nanosec=900_000_000)
 
 
 @dataclass
@@ -87,3 +90,14 @@ def test_the_reason_names_the_question() -> None:
     one = tree('<WaitForClick window_title="Safety" button_info="clear?"/>', fake=fake)
     one.tick()
     assert one.running()[0].reason == "waits for an operator: clear?"
+
+
+def test_no_id_comes_again_after_a_restart_or_is_the_beginning_of_another_one() -> None:
+    ids: list[str] = []
+    for second in (9, 100, 1_700_000_000):  # each a new process
+        clicks = Clicks(Questions(FakeRos(second), lambda: None), "r-1", lambda: None, lambda *_: None)  # type: ignore[arg-type]
+        for _ in range(12):
+            clicks.ask("", "clear?", "0", None)
+        ids += [question.id for question in clicks._questions.messages()]
+    assert len(set(ids)) == len(ids) == 36
+    assert len({len(name) for name in ids}) == 1

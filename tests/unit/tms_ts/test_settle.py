@@ -2,6 +2,7 @@
 
 import logging
 from collections.abc import Callable
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -13,6 +14,7 @@ from tms_ts import run as module
 from tms_ts.bt import Status
 from tms_ts.budget import AT_ONCE
 from tms_ts.node import Scheduler
+from tms_ts.record import Past, Records
 from tms_ts.run import PERIOD, Facts, Run
 
 
@@ -132,6 +134,18 @@ def test_a_run_that_meets_a_bug_is_closed_in_the_history(a_run: Run, rows: list[
     told = [row for row in rows if hasattr(row, "state")]
     assert told[-1].state == "refused" and "INTERNAL" in told[-1].reason
     assert scheduler._runs == {}
+
+
+def test_a_resume_that_is_refused_leaves_its_record_and_no_open_file(a_run: Run, tmp_path: Path) -> None:
+    def files() -> int:
+        return len(list(Path("/proc/self/fd").iterdir()))
+
+    before = files()
+    a_run._resumed, a_run.record = True, Records(tmp_path).open("run")
+    assert files() == before + 1
+    a_run.refuse("NOT_ARMED", "zx200 is stopped")
+    assert files() == before
+    assert Past(a_run.record.path).closed
 
 
 def test_a_loop_that_waits_is_told_to_whoever_looks_and_in_part_to_the_history(a_run: Run, rows: list[Any]) -> None:

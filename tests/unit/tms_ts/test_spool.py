@@ -1,5 +1,6 @@
 """Lines outlive the process, in order; only what is done is forgotten."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -33,6 +34,32 @@ def test_a_line_cut_short_by_a_crash_does_not_spoil_the_next(tmp_path: Path) -> 
     spool = Spool(tmp_path / "journal")
     spool.put(b"next")
     assert spool.batch(9)[0] == [b"whole", b"hal", b"next"]
+
+
+def test_a_line_cut_short_by_a_full_disk_does_not_spoil_the_next(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    spool, write = Spool(tmp_path / "journal"), os.write
+    spool.put(b"whole")
+    with monkeypatch.context() as patch:
+        patch.setattr("tms_ts.spool.os.write", lambda file, data: write(file, data[:3]))
+        with pytest.raises(OSError, match="only 3 of 7 bytes"):
+            spool.put(b"halved")
+    for line in (b"next", b"last"):
+        spool.put(line)
+    lines, end = spool.batch(9)
+    assert lines == [b"whole", b"hal", b"next", b"last"]
+    spool.done(end)
+    assert not spool.waiting()
+
+
+def test_a_full_disk_keeps_no_process_from_starting(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> int:
+        raise OSError(28, "No space left on device")
+
+    (tmp_path / "journal").write_bytes(b"whole\nhal")
+    monkeypatch.setattr("tms_ts.spool.os.write", full)
+    assert Spool(tmp_path / "journal").batch(9)[0] == [b"whole"]
 
 
 def test_it_is_bounded(tmp_path: Path) -> None:
