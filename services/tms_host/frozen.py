@@ -1,7 +1,8 @@
 """Notices processes that live but do not answer: frozen, or with a ROS thread that hangs.
 
 supervisord sees only processes that end. Each process tells on its health port whether it runs; one that has told so
-and then does not for some seconds is restarted. A process that has never answered is still starting.
+and then does not for some seconds is restarted. A process that has not been heard yet is still starting, for a minute:
+it may also have frozen while nobody watched.
 """
 
 import http.client
@@ -16,6 +17,7 @@ from tms_host.supervisor import Running, Supervisor
 
 PERIOD = 2.0  # s between rounds; a question costs about a millisecond of both processes
 ANSWER_LIMIT = 2.0  # s
+STARTING = 60.0  # s more for a process that has not answered yet; forty at once take 15 s
 
 
 class Answers:
@@ -31,7 +33,10 @@ class Answers:
             self._last[name] = (pid, now)
             return False
         known = self._last.get(name)
-        return known is not None and known[0] == pid and now - known[1] > self._limit
+        if known is None or known[0] != pid:
+            self._last[name] = (pid, now + STARTING)
+            return False
+        return now - known[1] > self._limit
 
 
 class Watchdog:

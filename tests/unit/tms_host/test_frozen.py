@@ -12,11 +12,11 @@ import yaml
 from tms_core.config import load_site
 from tms_core.metrics import Health
 from tms_core.processes import find
-from tms_host.frozen import Answers, Watchdog
+from tms_host.frozen import STARTING, Answers, Watchdog
 from tms_host.supervisor import Running
 
 
-def test_only_a_process_that_has_answered_can_be_frozen() -> None:
+def test_a_process_that_has_answered_may_be_silent_for_so_long() -> None:
     answers = Answers(10.0)
     assert not answers.frozen("zx200:rc", 7, False, 100.0)  # still starting
     assert not answers.frozen("zx200:rc", 7, True, 101.0)
@@ -28,6 +28,13 @@ def test_a_new_process_starts_anew() -> None:
     answers = Answers(10.0)
     answers.frozen("zx200:rc", 7, True, 100.0)
     assert not answers.frozen("zx200:rc", 8, False, 200.0)
+
+
+def test_a_process_that_froze_while_nobody_watched_is_found_too() -> None:
+    answers = Answers(10.0)
+    assert not answers.frozen("zx200:rc", 7, False, 100.0)
+    assert not answers.frozen("zx200:rc", 7, False, 100.0 + STARTING + 10.0)
+    assert answers.frozen("zx200:rc", 7, False, 100.0 + STARTING + 11.0)
 
 
 @pytest.fixture
