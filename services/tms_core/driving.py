@@ -8,8 +8,7 @@ from nav2_msgs.action import FollowWaypoints, NavigateThroughPoses, NavigateToPo
 
 from tms_core.acting import Acting, Progress, missed
 from tms_core.errors import SubtaskFailed
-
-MAP = "map"
+from tms_core.frames import MAP
 
 
 class Driving(Acting):

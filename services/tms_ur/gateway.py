@@ -79,11 +79,8 @@ class Gateway:
         self._inputs = (list(message.inputs), time.monotonic())
 
     def _look_at_frames(self) -> None:
-        for message in self._frame_news():
-            self._frames_heard(message)
-
-    def _frames_heard(self, message: Any) -> None:
-        for frame in self._frames.hear(message) & self._machines.keys():
+        told = set[str]().union(*map(self._frames.hear, self._frame_news()))
+        for frame in told & self._machines.keys():
             seen = self._frames.place(frame)
             if seen is not None:
                 place = Place(x=round(seen.x, 2), y=round(seen.y, 2), yaw=round(seen.yaw, 3))

@@ -37,7 +37,8 @@ class Backhoe:
 
     def __init__(self, model: MachineModel) -> None:
         missing = [name for name in (*NAMES, TOOL) if name not in model.joints or name not in model.geometry]
-        missing += [name for name in ("base_joint",) if name not in model.geometry]
+        if "base_joint" not in model.geometry:  # fixed, so it is no joint of joints:
+            missing.append("base_joint")
         if missing:
             raise ConfigError(f"a backhoe needs {', '.join(missing)} under joints: and geometry: of its machine file")
         self.limits = {name: model.joints[name] for name in NAMES}
