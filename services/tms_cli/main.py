@@ -4,15 +4,18 @@ import contextlib
 import importlib
 import os
 import pkgutil
+import signal
 import sys
 from typing import NoReturn
 
 import click
 
-from tms_cli import commands, words
+from tms_cli import commands, session, words
 from tms_core.errors import TmsError
+from tms_core.last_resort import end_after
 
 INTERRUPTED = 130
+LEAVE_LIMIT = 3.0  # s to leave the ROS graph
 click.Context.formatter_class = words.Formatter  # of every verb's help page
 
 
@@ -92,7 +95,7 @@ def main() -> None:
 
 
 def entry() -> NoReturn:
-    """`main`, but without the interpreter's clean-up, in which DDS was seen to hang once in thousands of times."""
+    """`main`; then leaves the ROS graph, which keeps nobody waiting for long, and ends without a clean-up of C++."""
     try:
         main()
         code = 0
@@ -100,6 +103,9 @@ def entry() -> NoReturn:
         code = int(end.code or 0)
     with contextlib.suppress(BrokenPipeError):  # whoever read us has heard enough
         sys.stdout.flush()
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # all is said and done
+    end_after(LEAVE_LIMIT, code)
+    session.leaving.close()
     os._exit(code)
 
 

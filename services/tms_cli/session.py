@@ -5,7 +5,7 @@ import math
 import os
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from tms_core.ros import Ros
 
 CALL_LIMIT = 5.0  # s
-LEAVE_LIMIT = 3.0  # s to leave the graph; what a command has found out does not wait longer for DDS
 LATCHED_LIMIT = 5.0  # s for a module to tell its state
+leaving = ExitStack()  # leaves the ROS graph; for the end of this process, since DDS hangs there now and then
 
 
 def site() -> Site:
@@ -34,12 +34,11 @@ def ros() -> Iterator["Ros"]:
     from tms_core.ros import Ros
 
     node = Ros(f"tms_cli_{os.getpid()}")
+    leaving.callback(node.leave)
     try:
         yield node
     finally:
-        leaving = threading.Thread(target=node.close, name="leave", daemon=True)
-        leaving.start()
-        leaving.join(LEAVE_LIMIT)
+        node.stop()
 
 
 def call(node: "Ros", service_type: Any, name: str, **fields: Any) -> Any:

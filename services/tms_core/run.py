@@ -12,6 +12,7 @@ import threading
 from tms_core import discovery, environment, log, metrics, store
 from tms_core.config import Site, load_site, version
 from tms_core.errors import ConfigError
+from tms_core.last_resort import end_after
 from tms_core.metrics import Health
 from tms_core.processes import Process, find
 
@@ -67,15 +68,13 @@ def _serve(site: Site, row: Process) -> int:
     logger.info("event=started pid=%d", os.getpid())
     while not stop.wait(0.5) and not ros.failed.is_set():
         pass
-    killer = threading.Timer(EXIT_LIMIT, _give_up)
-    killer.daemon = True
-    killer.start()
+    end_after(EXIT_LIMIT, 1)
     app.stop()
-    ros.close()
+    ros.stop()
     health.close()
     logger.info("event=stopped")
     log.close()
-    killer.cancel()
+    ros.leave()  # last of all: it may hang
     return 1 if ros.failed.is_set() else 0
 
 
@@ -84,14 +83,6 @@ def _come_first() -> None:
         PermissionError
     ):  # needs CAP_SYS_NICE; without it a busy PC may stop a machine for nothing
         os.setpriority(os.PRIO_PROCESS, 0, NICE)
-
-
-def _give_up() -> None:
-    """Something hangs in the clean-up: end all the same; supervisord would kill us anyway."""
-    os.set_blocking(2, False)  # what hangs may be the reader of this very pipe
-    with contextlib.suppress(OSError):
-        os.write(2, b"clean-up took too long, leaving\n")
-    os._exit(1)
 
 
 def _die_with_parent() -> None:

@@ -5,15 +5,20 @@ python -m tms_db.task_generator --ros-args -p bt_tree_xml_file_name:=one_loading
 
 import sys
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tms_core import environment
 from tms_core.config import CONFIGS, load_site
 from tms_core.errors import DbError, TaskError, TmsError
+from tms_core.last_resort import end_after
 from tms_db import task_text
+
+if TYPE_CHECKING:
+    from tms_core.ros import Ros
 
 TASKS = CONFIGS / "tasks"
 ANSWER = 10.0  # s
+LEAVE_LIMIT = 3.0  # s to leave the ROS graph
 
 
 def find(name: str) -> Path:
@@ -34,32 +39,42 @@ def main() -> int:
     """Register and print the number; 0 when the task is stored (also when it was before)."""
     try:
         environment.enter(load_site())
-        sys.stdout.write(f"{_register()}\n")
+    except TmsError as error:
+        sys.stderr.write(f"{error}\n")
+        return 1
+    from tms_core.ros import Ros  # after the environment is set, which rclpy reads
+
+    ros = Ros("task_generator")
+    code = _say(ros)
+    ros.stop()
+    end_after(LEAVE_LIMIT, code)
+    ros.leave()
+    return code
+
+
+def _say(ros: "Ros") -> int:
+    try:
+        sys.stdout.write(f"{_register(ros)}\n")
+        sys.stdout.flush()
     except TmsError as error:
         sys.stderr.write(f"{error}\n")
         return 1
     return 0
 
 
-def _register() -> str:
-    from rcl_interfaces.msg import ParameterDescriptor  # after the environment is set, which rclpy reads
+def _register(ros: "Ros") -> str:
+    from rcl_interfaces.msg import ParameterDescriptor
     from tms_msg_db.srv import AddTask
 
-    from tms_core.ros import Ros
+    loose = ParameterDescriptor(dynamic_typing=True)  # a name or text that looks like a number is fine
 
-    ros = Ros("task_generator")
-    try:
-        loose = ParameterDescriptor(dynamic_typing=True)  # a name or text that looks like a number is fine
+    def given(name: str) -> str:
+        value: Any = ros.node.declare_parameter(name, "", loose).value
+        return str(value)
 
-        def given(name: str) -> str:
-            value: Any = ros.node.declare_parameter(name, "", loose).value
-            return str(value)
-
-        text = task_text.read_file(find(given("bt_tree_xml_file_name")))
-        request = AddTask.Request(task_sequence=text, description=given("description"))
-        answer = ros.call(AddTask, "/tms/db/add_task", request, ANSWER)
-    finally:
-        ros.close()
+    text = task_text.read_file(find(given("bt_tree_xml_file_name")))
+    request = AddTask.Request(task_sequence=text, description=given("description"))
+    answer = ros.call(AddTask, "/tms/db/add_task", request, ANSWER)
     if answer.error_code:
         raise DbError(answer.error_msg, answer.error_code)
     return f"task {answer.task_id}" + (" (was stored before)" if answer.already_stored else "")

@@ -11,19 +11,20 @@ from tms_msg_rc.srv import StopMachine
 
 from tms_core import environment
 from tms_core.config import load_site
+from tms_core.last_resort import end_after
 from tms_core.ros import Ros
 
 LIMIT = 10.0  # s for a receipt
 
 
-def main(machine: str, presses: int) -> list[float]:
+def main(machine: str, presses: int) -> None:
     environment.enter(load_site())
     ros = Ros("press")
-    try:
-        ros.call(StopMachine, f"/{machine}/rc/stop", StopMachine.Request(cause="test"), LIMIT)  # found each other
-        return [press(ros, machine) for _ in range(presses)]
-    finally:
-        ros.close()
+    ros.call(StopMachine, f"/{machine}/rc/stop", StopMachine.Request(cause="test"), LIMIT)  # found each other
+    waits = [press(ros, machine) for _ in range(presses)]
+    print(json.dumps(waits), flush=True)
+    end_after(LIMIT, 0)
+    ros.close()
 
 
 def press(ros: Ros, machine: str) -> float:
@@ -34,4 +35,4 @@ def press(ros: Ros, machine: str) -> float:
 
 
 if __name__ == "__main__":
-    print(json.dumps(main(sys.argv[1], int(sys.argv[2]))))
+    main(sys.argv[1], int(sys.argv[2]))

@@ -70,15 +70,23 @@ class Loop:
         return thread
 
     def _spin(self) -> None:
-        with suppress(ExternalShutdownException):
+        try:
             self._executor.spin()
+        except ExternalShutdownException:
+            pass
+        except InvalidHandle:  # on a busy PC, the node may be gone before the last callback has ended
+            if not self.closing:
+                raise
 
-    def close(self) -> None:
-        """End the thread and leave the graph."""
+    def stop(self) -> None:
+        """End the thread: nothing is heard any more."""
         self.closing = True
         self.pulse.close()
         self._executor.shutdown(timeout_sec=0.5)
         self._thread.join(0.5)
+
+    def leave(self) -> None:
+        """Leave the graph, after `stop`. DDS hangs here now and then, see `last_resort`."""
         self.node.destroy_node()
         rclpy.shutdown(context=self._context)
 

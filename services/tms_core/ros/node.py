@@ -19,11 +19,16 @@ class Ros(Services):
         self._peers: dict[str, Peer] = {}
         self._served = Served(self)
 
-    def close(self, seconds: float = 1.0) -> None:
-        """Cancel what is served, give the workers `seconds` to stop their motions, and leave the graph."""
+    def stop(self, seconds: float = 1.0) -> None:
+        """Cancel what is served, give the workers `seconds` to stop their motions, and hear nothing any more."""
         self._served.leave(seconds)
         time.sleep(LAST_WORDS)
-        super().close()
+        super().stop()
+
+    def close(self) -> None:
+        """Stop, and leave the graph."""
+        self.stop()
+        self.leave()
 
     def peer(self, action_type: InterfaceType, name: str) -> Peer:
         """The action server called `name`; one client is kept for all goals."""

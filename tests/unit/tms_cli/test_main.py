@@ -4,9 +4,7 @@ import json
 import os
 import subprocess
 import sys
-import threading
 from pathlib import Path
-from types import SimpleNamespace
 
 import click
 import pytest
@@ -195,19 +193,31 @@ def test_panel_and_up_tell_an_address_that_a_browser_opens(
         assert f"https://{host}:8080" in CliRunner().invoke(group, ["--site", str(site), *words]).output
 
 
-def test_a_node_that_does_not_come_back_from_closing_keeps_nobody_waiting(monkeypatch: pytest.MonkeyPatch) -> None:
-    import click
+HANGS = """
+import ctypes, sys
+from types import SimpleNamespace
+from tms_cli import main, session
+from tms_core import ros
 
-    from tms_cli import session
-    from tms_core import ros
+def leave():
+    print("leaving", file=sys.stderr, flush=True)
+    ctypes.PyDLL(None).sleep(60)  # native code that keeps the interpreter, as DDS does
 
-    forever = threading.Event()
-    monkeypatch.setattr(ros, "Ros", lambda name: SimpleNamespace(close=forever.wait))
-    monkeypatch.setattr(session, "LEAVE_LIMIT", 0.01)
-    monkeypatch.setattr(session.environment, "enter", lambda site: None)
-    with click.Context(click.Command("tms")), session.ros() as node:
-        assert node.close == forever.wait
-    forever.set()
+ros.Ros = lambda name: SimpleNamespace(stop=lambda: None, leave=leave)
+session.call = lambda *_, **__: SimpleNamespace(runs=[])
+main.LEAVE_LIMIT = 0.1
+main.entry()
+"""
+
+
+@pytest.mark.parametrize(("words", "code"), [(["runs", "--json"], 0), (["events", "last"], 1)])
+def test_a_command_that_hangs_as_it_leaves_has_said_all_and_ends_as_it_should(words: list[str], code: int) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", HANGS, *words], capture_output=True, text=True, timeout=50, check=False
+    )
+    assert done.returncode == code, done.stderr
+    assert (done.stdout == "[]\n") is (code == 0)
+    assert done.stderr.endswith("leaving\n")
 
 
 def test_what_was_said_is_not_lost_in_a_pipe() -> None:
