@@ -12,10 +12,9 @@ import click
 
 from tms_cli import commands, session, words
 from tms_core.errors import TmsError
-from tms_core.last_resort import end_after
+from tms_core.last_resort import LEAVE_LIMIT, end_after
 
 INTERRUPTED = 130
-LEAVE_LIMIT = 3.0  # s to leave the ROS graph
 click.Context.formatter_class = words.Formatter  # of every verb's help page
 
 

@@ -10,6 +10,7 @@ import ctypes
 import os
 import time
 
+LEAVE_LIMIT = 1.0  # s to leave the ROS graph; without its goodbye, the others forget a process after some seconds
 SIGEV_THREAD = 2  # of <signal.h>: the timer calls a function in a thread of its own
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from tms_core import environment
 from tms_core.config import CONFIGS, load_site
 from tms_core.errors import DbError, TaskError, TmsError
-from tms_core.last_resort import end_after
+from tms_core.last_resort import LEAVE_LIMIT, end_after
 from tms_db import task_text
 
 if TYPE_CHECKING:
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 
 TASKS = CONFIGS / "tasks"
 ANSWER = 10.0  # s
-LEAVE_LIMIT = 3.0  # s to leave the ROS graph
 
 
 def find(name: str) -> Path:
