@@ -173,7 +173,11 @@ def _all_events(gateway: "Gateway", run_id: str) -> list[Event]:
         page = gateway.events(run_id, found[-1].number if found else 0, PAGE)
         found += page
         if len(page) < PAGE:
-            break
+            return found
+    last = found[-1].number
+    if gateway.events(run_id, last, 1):
+        text = f"cut after {len(found)} events: the rest is at /api/runs/{run_id}/events?after={last}"
+        found.append(Event(number=last, stamp=found[-1].stamp, kind="cut", node="", text=text))
     return found
 
 

@@ -217,6 +217,19 @@ def test_exports(client: Client, form: str, begins: bytes) -> None:
     assert answer.headers["content-disposition"] == f'attachment; filename="r-1.{form}"'
 
 
+@pytest.mark.parametrize(("stored", "last"), [(2000, "event 2000"), (2001, "cut after 2000 events: the rest is at ")])
+def test_an_export_that_is_cut_says_so(
+    client: Client, gateway: FakeGateway, monkeypatch: pytest.MonkeyPatch, stored: int, last: str
+) -> None:
+    def events(run_id: str, after: int, limit: int) -> list[Event]:
+        numbers = range(after + 1, stored + 1)[:limit]
+        return [Event(number=number, kind="node", node="", text=f"event {number}") for number in numbers]
+
+    monkeypatch.setattr(gateway, "events", events)
+    monkeypatch.setattr("tms_ur.reading.MOST_EVENTS", 2000)
+    assert client.get("/api/runs/r-1/export").json()["events"][-1]["text"].startswith(last)
+
+
 def test_every_command_is_audited(gateway: FakeGateway) -> None:
     audit = FakeAudit()
     client = Client(app(gateway, audit=audit))
