@@ -12,7 +12,7 @@ import threading
 from tms_core import discovery, environment, log, metrics, store
 from tms_core.config import Site, load_site, version
 from tms_core.errors import ConfigError
-from tms_core.last_resort import end_after
+from tms_core.last_resort import LEAVE_LIMIT, end_after
 from tms_core.metrics import Health
 from tms_core.processes import Process, find
 
@@ -74,8 +74,10 @@ def _serve(site: Site, row: Process) -> int:
     health.close()
     logger.info("event=stopped")
     log.close()
-    ros.leave()  # last of all: it may hang
-    return 1 if ros.failed.is_set() else 0
+    code = 1 if ros.failed.is_set() else 0
+    end_after(LEAVE_LIMIT, code)
+    ros.leave()
+    return code
 
 
 def _come_first() -> None:
