@@ -23,7 +23,7 @@ def told(*frames: str) -> TFMessage:
     return message
 
 
-def test_a_place_that_is_told_now_and_then_is_heard_among_the_joints_of_all_machines(two_nodes: tuple[Ros, Ros]) -> None:
+def test_a_place_that_is_told_now_and_then_is_heard_among_all_the_joints(two_nodes: tuple[Ros, Ros]) -> None:
     nav, planner = two_nodes
     site: Any = SimpleNamespace(
         border=lambda name: SimpleNamespace(base_frame=f"{name}/base"),
