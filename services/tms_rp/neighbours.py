@@ -7,8 +7,8 @@ from tms_core.app import App
 from tms_core.frames import Frames
 from tms_rp.clearance import Matrix, Obstacle, placed
 
-LOOK = 1.0  # s
-DEPTH = 200  # messages a look: what ten machines with joints and navigation tell in 0.2 s, at 0.1 to 0.25 ms each
+LOOK = 0.2  # s; a plan does not look itself, which would cost it some ms: 0.1 to 0.25 for each message
+DEPTH = 200  # messages a look: what ten machines with joints and navigation tell meanwhile
 FIXED = 100  # messages that are told once, by as many processes
 
 
@@ -19,6 +19,8 @@ class Neighbours:
         self._site, self._own, self._log = app.site, app.machine, app.log
         self._bases = {name: app.site.border(name).base_frame for name in app.site.file.machines}
         self._frames = Frames(self._bases.values())
+        if len(self._bases) == 1:
+            return  # nobody else is here
         self._news = app.ros.sample(TFMessage, "/tf", DEPTH)
         app.ros.subscribe(TFMessage, "/tf_static", self._frames.hear_fixed, depth=FIXED, latched=True)
         app.ros.beside(LOOK, self._look, "neighbours")
@@ -33,7 +35,6 @@ class Neighbours:
 
     def obstacles(self) -> list[Obstacle]:
         """Footprints of the others in our base_link, as far as both places are known."""
-        self._look()
         own = self._place(self._own)
         places = {name: self._place(name) for name in self._bases if name != self._own}
         others = {name: place for name, place in places.items() if place is not None}

@@ -34,6 +34,7 @@ def neighbours(*told: TransformStamped) -> Neighbours:
     )
     made = Neighbours(SimpleNamespace(site=site, machine="zx200", log=logging.getLogger("test"), ros=ros))  # type: ignore[arg-type]
     made._look()
+    made._look()
     return made
 
 
