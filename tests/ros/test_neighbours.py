@@ -16,10 +16,11 @@ pytestmark = pytest.mark.ros
 MACHINES = ("zx200", "ic120")
 
 
-def told(*frames: str) -> TFMessage:
+def told(*frames: str, x: float) -> TFMessage:
+    """The same place of some frames in the map."""
     message = TFMessage(transforms=[TransformStamped(child_frame_id=frame) for frame in frames])
     for one in message.transforms:
-        one.header.frame_id = "map"
+        one.header.frame_id, one.transform.translation.x, one.transform.rotation.w = "map", x, 1.0
     return message
 
 
@@ -33,8 +34,9 @@ def test_a_place_that_is_told_now_and_then_is_heard_among_all_the_joints(two_nod
     app: Any = SimpleNamespace(site=site, machine="zx200", log=logging.getLogger("test"), ros=planner)
     neighbours = Neighbours(app)
     say = nav.publisher(TFMessage, "/tf", depth=200)
-    wait_until(lambda: say.get_subscription_count() == 1, 30, "the planner listens")
-    say.publish(told("zx200/base", "ic120/base"))
+    places = lambda: [one.place[0, 3] for one in neighbours.obstacles()]  # noqa: E731
+    wait_until(lambda: say.publish(told("zx200/base", "ic120/base", x=0.0)) or places() == [0.0], 30, "both are heard")
+    say.publish(told("ic120/base", x=7.0))
     for number in range(150):
-        say.publish(told(f"joint_{number}"))
-    wait_until(lambda: [one.name for one in neighbours.obstacles()] == ["body of ic120"], 20, "the truck is seen")
+        say.publish(told(f"joint_{number}", x=0.0))
+    wait_until(lambda: places() == [7.0], 20, "the truck is seen to have gone on")
