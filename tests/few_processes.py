@@ -61,10 +61,10 @@ class Mesh:
             process.terminate()
         for process in self._running.values():
             try:
-                process.wait(10)
+                process.wait(30)
             except subprocess.TimeoutExpired:
                 process.kill()
-                process.wait(10)
+                process.wait(30)
 
     def call(self, service: Any, name: str, /, **fields: Any) -> Any:
         return self.ros.call(service, name, service.Request(**fields), LIMIT)

@@ -117,7 +117,7 @@ class Rig:
             process.terminate()
         try:
             for process in self.running.values():
-                process.wait(5)
+                process.wait(30)
         finally:
             for process in self.running.values():
                 process.kill()

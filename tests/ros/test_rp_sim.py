@@ -69,7 +69,7 @@ class Rig:
         process = self.running.pop(name)
         process.terminate()
         try:
-            assert process.wait(10) == 0, f"{name} did not end cleanly"
+            assert process.wait(30) == 0, f"{name} did not end cleanly"
         finally:
             process.kill()
 
