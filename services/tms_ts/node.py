@@ -238,9 +238,12 @@ class Scheduler:
         run.tell_tree(tree)
         self._refuse_errors(run, self._preflight(tree), goal.request.ignore_warnings)
         self._hold(run)
+        self._prepare(run, processes_of(tree, self._app.site), machines)
+        # Not before: while many processes start on a busy PC a permit may lapse, though nothing moves yet.
         holder = Holder(run.stopped, machines.receipt, run.alive)
         self._gateways.hold(facts.machines, facts.number, facts.run_id, holder)
-        self._prepare(run, processes_of(tree, self._app.site), machines)
+        if not run.cancelled.is_set():
+            self._refuse_latched(facts.machines)  # stopped meanwhile
         with self._monitors.watch(facts.run_id, tree):
             outcome = run.execute(tree, machines)
         return _ended(facts, outcome)
@@ -259,11 +262,14 @@ class Scheduler:
                 holder = self._holders.get(machine)
                 if holder is not None:
                     raise TaskError(f"{machine} is in run {holder}: wait or `tms cancel {holder}`", "MACHINE_BUSY")
-                latch = self._gateways.latch(machine)
-                if latch:
-                    text = f"{machine} is stopped ({latch}): re-arm it with `tms rearm {machine}`"
-                    raise TaskError(text, "NOT_ARMED")
+            self._refuse_latched(run.facts.machines)
             self._holders.update(dict.fromkeys(run.facts.machines, run.facts.run_id))
+
+    def _refuse_latched(self, machines: list[str]) -> None:
+        for machine in machines:
+            latch = self._gateways.latch(machine)
+            if latch:
+                raise TaskError(f"{machine} is stopped ({latch}): re-arm it with `tms rearm {machine}`", "NOT_ARMED")
 
     def _held_by(self, run_id: str) -> list[str]:
         with self._lock:

@@ -11,7 +11,7 @@ import pytest
 from builtin_interfaces.msg import Duration
 from control_msgs.action import FollowJointTrajectory
 from std_msgs.msg import Bool
-from test_mesh import events, newest, processes, run, stops, swinging
+from test_mesh import CHANGE_POSE, events, newest, processes, run, stops, swinging
 from tms_msg_rc.msg import MachineState
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
@@ -53,6 +53,29 @@ def test_after_a_software_stop_nothing_moves_until_somebody_rearms(mesh: Mesh, n
     assert "rearm" in mesh.tms("run", "1", "--wait", expect=1).stderr
     rearm(mesh)
     assert ask_to_move(node).outcome is Outcome.SUCCEEDED
+
+
+def test_a_stop_while_a_run_prepares_keeps_it_from_moving(mesh: Mesh, node: Ros) -> None:
+    """The scheduler stands behind a run when its processes are there; a machine stopped before stays stopped."""
+    host = processes(mesh)["tms:host"]["pid"]
+    mesh.tms("stop-process", CHANGE_POSE)
+    os.kill(host, signal.SIGSTOP)  # it is the one who starts a run's processes
+    answers: list[Any] = []
+    client = threading.Thread(target=lambda: answers.append(mesh.tms("run", "1", "--wait", "--json", expect=None)))
+    try:
+        client.start()
+        active = lambda: json.loads(mesh.tms("runs", "--limit", "1", "--json").stdout)[0]["state"]  # noqa: E731
+        wait_until(lambda: active() == "preparing", 60, "the run prepares")
+        mesh.tms("stop")
+    finally:
+        os.kill(host, signal.SIGCONT)
+    client.join(60)
+    answer = json.loads(answers[0].stdout)
+    assert (answer["outcome"], answer["error_code"]) == ("refused", "NOT_ARMED")
+    assert "software stop" in answer["error_msg"]
+    assert not [row for row in events(mesh, answer["run_id"]) if row["kind"] == "goal"]
+    rearm(mesh)
+    assert run(mesh, "1")["outcome"] == "success"
 
 
 def test_rearming_takes_two_steps_and_is_refused_while_the_stop_is_pressed(mesh: Mesh, node: Ros) -> None:
