@@ -64,8 +64,8 @@ def test_a_stop_while_a_run_prepares_keeps_it_from_moving(mesh: Mesh, node: Ros)
     client = threading.Thread(target=lambda: answers.append(mesh.tms("run", "1", "--wait", "--json", expect=None)))
     try:
         client.start()
-        active = lambda: json.loads(mesh.tms("runs", "--limit", "1", "--json").stdout)[0]["state"]  # noqa: E731
-        wait_until(lambda: active() == "preparing", 60, "the run prepares")
+        newest_run = lambda: json.loads(mesh.tms("runs", "--limit", "1", "--json").stdout)  # noqa: E731
+        wait_until(lambda: [row["state"] for row in newest_run()] == ["preparing"], 60, "the run prepares")
         mesh.tms("stop")
     finally:
         os.kill(host, signal.SIGCONT)
