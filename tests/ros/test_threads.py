@@ -9,6 +9,7 @@ import pytest
 
 from conftest import wait_until
 from tms_core.ros import Ros
+from tms_core.ros.loop import _undisturbed
 
 LIMIT = 30.0  # s
 
@@ -63,3 +64,19 @@ def test_what_is_asked_of_the_executor_runs_in_its_order(two_nodes: tuple[Ros, R
     wait_until(lambda: len(ran) == 8, LIMIT, "all of them")
     for kind in ("step", "begun"):
         assert [name for name in ran if name.startswith(kind)] == [f"{kind} {number}" for number in range(4)]
+
+
+def test_the_thread_that_makes_a_node_gives_way_after_all_that_it_has_started(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Otherwise theirs are the processors until they have read all answers, and permits of other processes lapse."""
+    changes: list[tuple[int, int]] = []
+    monkeypatch.setattr(os, "sched_setscheduler", lambda number, policy, _: changes.append((number, policy)))
+    go = threading.Event()
+    started = threading.Thread(target=go.wait)
+    with _undisturbed():
+        started.start()
+    go.set()
+    started.join()
+    assert changes[0] == (0, os.SCHED_FIFO)
+    assert {policy for _, policy in changes[1:]} == {os.SCHED_OTHER}
+    assert started.native_id in [number for number, _ in changes[1:-1]]
+    assert changes[-1][0] == threading.get_native_id()

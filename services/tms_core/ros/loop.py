@@ -209,9 +209,12 @@ def _undisturbed() -> Iterator[None]:
     try:
         yield
     finally:
-        for thread in Path("/proc/self/task").iterdir():  # those that were started meanwhile have inherited it
+        # Those that were started meanwhile have inherited it, and have hundreds of milliseconds of answers to read. This
+        # thread is the last: if it gave way to them, they would keep everybody else from the processors for so long.
+        threads = [int(thread.name) for thread in Path("/proc/self/task").iterdir()]
+        for number in sorted(threads, key=lambda number: number == threading.get_native_id()):
             with suppress(ProcessLookupError):  # it has ended
-                os.sched_setscheduler(int(thread.name), os.SCHED_OTHER, os.sched_param(0))
+                os.sched_setscheduler(number, os.SCHED_OTHER, os.sched_param(0))
 
 
 class _Executor(SingleThreadedExecutor):  # type: ignore[misc]
