@@ -209,8 +209,8 @@ def _undisturbed() -> Iterator[None]:
     try:
         yield
     finally:
-        # Those that were started meanwhile have inherited it, and have hundreds of milliseconds of answers to read. This
-        # thread is the last: if it gave way to them, they would keep everybody else from the processors for so long.
+        # Those that were started meanwhile have inherited it, and have answers to read for some hundred milliseconds.
+        # This thread comes last: if it gave way to them, they would keep everybody else from the processors.
         threads = [int(thread.name) for thread in Path("/proc/self/task").iterdir()]
         for number in sorted(threads, key=lambda number: number == threading.get_native_id()):
             with suppress(ProcessLookupError):  # it has ended
