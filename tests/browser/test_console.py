@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Browser, Page, Route, expect
 
 from conftest import Mesh, wait_until
 
@@ -139,7 +139,23 @@ def test_the_stop_is_in_reach_everywhere(page: Page, address: str, idle: Mesh) -
     page.get_by_role("button", name="Remove task 1", exact=True).click()
     page.locator("#dialog_stop").click()
     expect(page.locator("#stop_report")).to_contain_text("zx200: seen to stand after")
-    expect(page.locator("#list_tasks")).to_contain_text("1")  # and nothing was removed
+    expect(page.locator("#list_stored")).to_contain_text("1")  # and nothing was removed
+
+
+def test_a_list_that_comes_late_does_not_get_into_the_next_page(page: Page, address: str, idle: Mesh) -> None:
+    open_page(page, address, "system")
+    held: list[Route] = []
+    page.route("**/api/tasks", held.append)
+    for number, name in enumerate(("run", "tasks")):  # both show the tasks, with other buttons
+        page.evaluate("name => { location.hash = name; }", name)
+        wait_until(lambda: bool(page.evaluate("1")) and len(held) > number, 60, f"{name} asks")  # noqa: B023
+    with page.expect_response("**/api/tasks"):
+        held[0].continue_()
+    page.unroute("**/api/tasks")
+    for route in held[1:]:
+        route.continue_()
+    expect(page.get_by_role("button", name="Remove task 1", exact=True)).to_be_visible()
+    expect(page.get_by_role("button", name="Run task 1", exact=True)).to_have_count(0)
 
 
 def test_one_machine_is_stopped(page: Page, address: str, idle: Mesh) -> None:

@@ -12,6 +12,7 @@ from builtin_interfaces.msg import Duration
 from control_msgs.action import FollowJointTrajectory
 from std_msgs.msg import Bool
 from test_mesh import CHANGE_POSE, events, newest, processes, run, stops, swinging
+from tms_msg_host.msg import Processes
 from tms_msg_rc.msg import MachineState
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
@@ -57,8 +58,12 @@ def test_after_a_software_stop_nothing_moves_until_somebody_rearms(mesh: Mesh, n
 
 def test_a_stop_while_a_run_prepares_keeps_it_from_moving(mesh: Mesh, node: Ros) -> None:
     """The scheduler stands behind a run when its processes are there; a machine stopped before stays stopped."""
-    host = processes(mesh)["tms:host"]["pid"]
+    host, told = processes(mesh)["tms:host"]["pid"], dict[str, str]()
+    hear = lambda message: told.update((row.name, row.state) for row in message.processes)  # noqa: E731
+    heard = node.subscribe(Processes, "/tms/host/processes", hear, depth=10, latched=True)
     mesh.tms("stop-process", CHANGE_POSE)
+    wait_until(lambda: told.get(CHANGE_POSE) == "STOPPED", 60, "the scheduler is told, too")
+    node.node.destroy_subscription(heard)
     os.kill(host, signal.SIGSTOP)  # it is the one who starts a run's processes
     answers: list[Any] = []
     client = threading.Thread(target=lambda: answers.append(mesh.tms("run", "1", "--wait", "--json", expect=None)))

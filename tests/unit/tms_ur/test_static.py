@@ -80,6 +80,17 @@ def test_every_element_that_the_code_asks_for_is_made_somewhere() -> None:
     assert asked <= made
 
 
+def test_no_page_uses_the_ids_of_another_one() -> None:
+    """An answer that comes after a change of pages finds nothing to write into."""
+    made = [
+        re.findall(r'\bid(?:: | = )"(\w+)"|\btable\("(\w+)"', text)
+        for path, text in CODE.items()
+        if path.parent.name == "pages"
+    ]
+    names = [one or other for found in made for one, other in set(found)]
+    assert sorted(names) == sorted(set(names))
+
+
 @pytest.mark.parametrize("file", [*CODE], ids=lambda path: path.name)
 def test_modules_import_what_is_there(file: Path) -> None:
     for names, source in re.findall(r"^import (?:\{([^}]*)\}|\* as \w+) from \"([^\"]+)\";", CODE[file], re.MULTILINE):

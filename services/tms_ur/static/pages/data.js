@@ -11,7 +11,7 @@ let sensingAsked = 0;
 export function build(root) {
   const filter = make("input", { id: "record_filter", type: "search", oninput: show });
   root.append(
-    heading("p_data"), make("p", { id: "lists_problem", className: "bad", role: "status" }),
+    heading("p_data"), make("p", { id: "data_problem", className: "bad", role: "status" }),
     make("label", {}, make("span", { data: { t: "filter" } }), filter),
     button("new_record", "", () => openNew()),
     make("p", { id: "none_records", hidden: true, data: { t: "none_records" } }),
@@ -30,7 +30,7 @@ export function build(root) {
 export async function load() {
   try {
     records = await ask("/api/parameters");
-    setText(at("lists_problem"), "");
+    setText(at("data_problem"), "");
     const audit = (await ask("/api/audit?hours=720")).filter((event) => event.kind === "set_parameter").reverse();
     keep(at("list_changes"), audit, (event) => event.number, () => make("tr", {}, ...parts("td", ["time", "who", "target"])), (row, event) => {
       setText(part(row, "time"), when(event.stamp));
@@ -38,8 +38,8 @@ export async function load() {
       setText(part(row, "target"), event.node);
     });
   } catch (error) {
-    if (at("lists_problem") !== null) {
-      setText(at("lists_problem"), error.message);
+    if (at("data_problem") !== null) {
+      setText(at("data_problem"), error.message);
     }
   }
   show();

@@ -18,7 +18,7 @@ export function build(root) {
   const box = make("div", { className: "treebox", tabIndex: 0, role: "region", data: { label: "tree_label" } });
   const slider = make("input", { type: "range", id: "slider", min: 0, max: 0, value: 0, oninput: () => replay(Number(at("slider").value)) });
   root.append(
-    heading("history"), make("p", { id: "lists_problem", className: "bad", role: "status" }),
+    heading("history"), make("p", { id: "history_problem", className: "bad", role: "status" }),
     make("p", { id: "none_history", hidden: true, data: { t: "none_history" } }),
     table("list_history", "history", ["task", "started_at", "state", "duration", "reason", "show"]),
     make("section", { id: "past", hidden: true },
@@ -37,12 +37,12 @@ export function build(root) {
 export async function load() {
   try {
     const runs = await ask("/api/runs?limit=50");
-    setText(at("lists_problem"), "");
+    setText(at("history_problem"), "");
     at("none_history").hidden = runs.length > 0;
     keep(at("list_history"), runs, (run) => run.run_id, buildRun, fillRun);
   } catch (error) {
-    if (at("lists_problem") !== null) {
-      setText(at("lists_problem"), error.message);
+    if (at("history_problem") !== null) {
+      setText(at("history_problem"), error.message);
     }
   }
 }
@@ -90,7 +90,7 @@ async function showRun(id) {
   try {
     await readJournal(id);
   } catch (error) {
-    setText(at("lists_problem"), error.message);
+    setText(at("history_problem"), error.message);
     return;
   }
   const tree = journal.find((event) => event.kind === "tree");

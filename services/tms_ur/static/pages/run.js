@@ -12,7 +12,7 @@ export function build(root) {
   root.append(
     heading("active"), make("p", { id: "scheduler", className: "bad", hidden: true, data: { t: "scheduler_silent" } }),
     make("div", { className: "one_run" }, make("p", { id: "none_active", data: { t: "none_active" } }), make("ul", { id: "list_active", className: "rows" })),
-    heading("tasks"), make("p", { id: "lists_problem", className: "bad", role: "status" }),
+    heading("tasks"), make("p", { id: "run_problem", className: "bad", role: "status" }),
     make("p", { id: "none_tasks", hidden: true }, make("a", { className: "button", href: "#tasks", data: { t: "none_tasks" } })),
     table("list_tasks", "tasks", ["task", "model", "description", "run"]), make("div", { id: "checked", role: "status" }),
     heading("machines"), make("p", { id: "none_machines", hidden: true, data: { t: "none_machines" } }),
@@ -24,9 +24,9 @@ export function build(root) {
 export async function load() {
   try {
     tasks = await ask("/api/tasks");
-    setText(at("lists_problem"), "");
+    setText(at("run_problem"), "");
   } catch (error) {
-    setText(at("lists_problem"), error.message);
+    setText(at("run_problem"), error.message);
   }
   if (tasks !== null && at("list_tasks") !== null) {
     at("none_tasks").hidden = tasks.length > 0;

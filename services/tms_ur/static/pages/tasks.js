@@ -23,9 +23,9 @@ export function build(root) {
       make("label", {}, make("span", { data: { t: "description" } }), make("input", { id: "description", maxLength: 1000 })), store,
       make("label", {}, make("span", { data: { t: "compare" } }), compare), make("pre", { id: "difference", tabIndex: 0, hidden: true }),
       heading("file_text", "h3"), make("ol", { id: "source", className: "source", tabIndex: 0 })),
-    heading("tasks"), make("p", { id: "lists_problem", className: "bad", role: "status" }),
-    make("p", { id: "none_tasks", hidden: true, data: { t: "none_tasks_here" } }),
-    table("list_tasks", "tasks", ["task", "model", "description", "added_at", "commands"]),
+    heading("tasks"), make("p", { id: "tasks_problem", className: "bad", role: "status" }),
+    make("p", { id: "none_stored", hidden: true, data: { t: "none_tasks_here" } }),
+    table("list_stored", "tasks", ["task", "model", "description", "added_at", "commands"]),
   );
   given = found = null;
 }
@@ -33,18 +33,18 @@ export function build(root) {
 export async function load() {
   try {
     stored = await ask("/api/tasks");
-    setText(at("lists_problem"), "");
+    setText(at("tasks_problem"), "");
   } catch (error) {
-    if (at("lists_problem") !== null) {
-      setText(at("lists_problem"), error.message);
+    if (at("tasks_problem") !== null) {
+      setText(at("tasks_problem"), error.message);
     }
     return;
   }
   if (at("compare") === null) {
     return;
   }
-  at("none_tasks").hidden = stored.length > 0;
-  keep(at("list_tasks"), stored, (task) => task.id, buildTask, fillTask);
+  at("none_stored").hidden = stored.length > 0;
+  keep(at("list_stored"), stored, (task) => task.id, buildTask, fillTask);
   keep(at("compare"), [{ id: "" }, ...stored], (task) => task.id, (task) => make("option", { value: task.id }),
     (option, task) => setText(option, task.id === "" ? "-" : `${task.id} ${task.description}`));
 }
