@@ -14,6 +14,7 @@ from std_msgs.msg import Bool
 from test_mesh import CHANGE_POSE, events, newest, processes, run, stops, swinging
 from tms_msg_host.msg import Processes
 from tms_msg_rc.msg import MachineState
+from tms_msg_ts.msg import RunStates
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from conftest import Mesh, wait_until
@@ -63,17 +64,20 @@ def test_a_stop_while_a_run_prepares_keeps_it_from_moving(mesh: Mesh, node: Ros)
     heard = node.subscribe(Processes, "/tms/host/processes", hear, depth=10, latched=True)
     mesh.tms("stop-process", CHANGE_POSE)
     wait_until(lambda: told.get(CHANGE_POSE) == "STOPPED", 60, "the scheduler is told, too")
-    node.node.destroy_subscription(heard)
+    prepares = threading.Event()
+    look = lambda message: any(one.state == "preparing" for one in message.runs) and prepares.set()  # noqa: E731
+    seen = node.subscribe(RunStates, "/tms/runs", look, latched=True)
     os.kill(host, signal.SIGSTOP)  # it is the one who starts a run's processes
     answers: list[Any] = []
     client = threading.Thread(target=lambda: answers.append(mesh.tms("run", "1", "--wait", "--json", expect=None)))
     try:
         client.start()
-        newest_run = lambda: json.loads(mesh.tms("runs", "--limit", "1", "--json").stdout)  # noqa: E731
-        wait_until(lambda: [row["state"] for row in newest_run()] == ["preparing"], 60, "the run prepares")
+        assert prepares.wait(60)
         mesh.tms("stop")
     finally:
         os.kill(host, signal.SIGCONT)
+        node.node.destroy_subscription(heard)
+        node.node.destroy_subscription(seen)
     client.join(60)
     answer = json.loads(answers[0].stdout)
     assert (answer["outcome"], answer["error_code"]) == ("refused", "NOT_ARMED")
