@@ -95,16 +95,18 @@ def main() -> None:
 
 def entry() -> NoReturn:
     """`main`; then leaves the ROS graph, which keeps nobody waiting for long, and ends without a clean-up of C++."""
+    code = 1  # of a bug, which the interpreter tells
     try:
         main()
         code = 0
     except SystemExit as end:
         code = int(end.code or 0)
-    with contextlib.suppress(BrokenPipeError):  # whoever read us has heard enough
-        sys.stdout.flush()
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # all is said and done
-    end_after(LEAVE_LIMIT, code)
-    session.leaving.close()
+    finally:
+        with contextlib.suppress(BrokenPipeError):  # whoever read us has heard enough
+            sys.stdout.flush()
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # all is said and done
+        end_after(LEAVE_LIMIT, code)
+        session.leaving.close()
     os._exit(code)
 
 

@@ -8,6 +8,7 @@ from tms_core.ros.goals import Accept, Ended, InterfaceType
 from tms_core.ros.server import Goal, Served
 from tms_core.ros.services import Services
 
+STOP_LIMIT = 1.0  # s for the workers of served goals to stop their motions
 LAST_WORDS = 0.1  # s for results and reasons to leave before this process does
 
 
@@ -19,9 +20,9 @@ class Ros(Services):
         self._peers: dict[str, Peer] = {}
         self._served = Served(self)
 
-    def stop(self, seconds: float = 1.0) -> None:
-        """Cancel what is served, give the workers `seconds` to stop their motions, and hear nothing any more."""
-        self._served.leave(seconds)
+    def stop(self) -> None:
+        """Cancel what is served, give its workers a moment, and hear nothing any more."""
+        self._served.leave(STOP_LIMIT)
         time.sleep(LAST_WORDS)
         super().stop()
 
