@@ -1,11 +1,12 @@
 """What configs/machines/<model>.yaml may hold: a machine's body, its limits, its border names, its subtasks."""
 
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 Backend = Literal["sim", "opera", "physx"]
 Kind = Literal["backhoe", "crawler_dump", "bulldozer"]
+DRIVE = "drive"  # key of the tracks in `response`
 NAME = r"^[a-z][a-z0-9_]*$"
 # Action that brings one joint to an angle -> the names that models have for this joint.
 TURNED = {"set_dump_angle": ("vessel_pin_joint", "dump_joint"), "set_swing_angle": ("rotate_joint",)}
@@ -25,6 +26,7 @@ class Joint(Settings):
     velocity: float = Field(gt=0)  # rad/s
     acceleration: float = Field(gt=0)  # rad/s^2
     jerk: float = Field(gt=0)  # rad/s^3
+    passive: bool = False  # no command moves it, such as a virtual tool frame; it is still watched
 
     def violation(self, angle: float) -> str | None:
         """Which bound `angle` [rad] breaks, as text, or None."""
@@ -66,9 +68,32 @@ class Still(Settings):
     """When the machine counts as standing."""
 
     velocity: float = Field(gt=0)  # rad/s, every joint below it ...
-    linear: float = Field(gt=0, default=0.02)  # m/s, ... and, where there is odometry, the machine below this ...
-    angular: float = Field(gt=0, default=0.02)  # rad/s, ... and this ...
-    seconds: float = Field(gt=0, default=0.2)  # s, ... for this long
+    linear: float = Field(gt=0)  # m/s, ... and, where a source tells of the base, the base below this ...
+    angular: float = Field(gt=0)  # rad/s, ... and this ...
+    seconds: float = Field(gt=0)  # s, ... for this long, counted from the end of the dead time
+    origin: str = Field(min_length=1)  # where the figures come from
+
+
+class Response(Settings):
+    """How a joint, or the tracks, answer a command: not at all for the dead time, then as a first-order lag."""
+
+    dead_time: float = Field(ge=0)  # s
+    lag: float = Field(gt=0)  # s, time constant
+    origin: str = Field(min_length=1)  # where the figures come from
+
+
+SourceName = Literal["joint_states", "odom", "pose", "imu"]
+Stamps = Literal["utc", "since_start", "none"]
+
+
+class Source(Settings):
+    """What a border promises of one topic that tells of the machine's motion."""
+
+    period: float = Field(gt=0)  # s between messages
+    stamps: Stamps  # what the header's time counts from; `none`: it is empty, and only the arrival counts
+    frozen_after: float = Field(gt=0)  # s of values that are bit for bit the same while a goal should change them
+    origin: str = Field(min_length=1)  # where the figures come from
+    message: Literal["PoseStamped", "Odometry"] = "PoseStamped"  # type of `pose`
 
 
 class Border(Settings):
@@ -84,8 +109,13 @@ class Border(Settings):
     # topics
     joint_states: str | None = None
     odom: str | None = None
+    pose: str | None = None  # of the base in `map`
+    imu: str | None = None
+    sources: dict[SourceName, Source] = {}  # of the four above; each that is there has its entry
     cmd_vel: str | None = None
     emg_stop: str | None = None
+    emg_stop_at_once: bool = False  # emg_stop acts without the machine's dead time
+    manual: str | None = None  # std_msgs/Bool, true while a person drives the machine by its own levers
     joint_cmd: str | None = None  # com3_msgs/JointCmd; what a controller of the machine sends, nothing of ours
     joint_angles: dict[str, str] = {}  # joint -> topic of std_msgs/Float64 [rad], as some simulated machines take them
     dump_returns: bool = False  # a goal for the vessel is a whole cycle there: it tips, waits, and comes back by itself
@@ -93,6 +123,15 @@ class Border(Settings):
     frame_prefix: str = "{name}/"
     base_frame: str = "{name}/base_link"  # child of `map` that tells where the machine is
     joints: dict[str, str] = {}  # joint of the model -> its name here, where they differ
+
+    @model_validator(mode="after")
+    def _sources_known(self) -> "Border":
+        for name in get_args(SourceName):
+            if getattr(self, name) and name not in self.sources:
+                raise ValueError(f"{name}: sources.{name} is missing: say its period, stamps and frozen_after")
+            if name in self.sources and not getattr(self, name):
+                raise ValueError(f"sources.{name}: the border has no topic '{name}'")
+        return self
 
 
 class SubtaskUse(Settings):
@@ -113,6 +152,7 @@ class MachineModel(Settings):
     footprint: dict[str, Box] = {}  # what other machines must not touch, base_link
     shapes: dict[str, Box] = {}  # link -> its body in its own frame, for the planner
     drive: Drive | None = None
+    response: dict[str, Response] = {}  # joint, or `drive` for the tracks -> how it answers commands
     initial: dict[str, float] = {}  # rad, the simulator's start pose
     start: tuple[float, float, float] = (0.0, 0.0, 0.0)  # x m, y m, yaw rad, simulator, frame map
     still: Still
@@ -135,6 +175,18 @@ class MachineModel(Settings):
         strange += [name for name in (*self.initial, *self._border_joints()) if name not in self.joints]
         if strange:
             raise ValueError(f"'{strange[0]}' is neither a link of geometry: nor a joint of joints:")
+        return self
+
+    @model_validator(mode="after")
+    def _response_known(self) -> "MachineModel":
+        """Without dead time and lag nobody can tell when a stop is proven."""
+        moved = [name for name, joint in self.joints.items() if not joint.passive] + [DRIVE] * (self.drive is not None)
+        for name in moved:
+            if name not in self.response:
+                raise ValueError(f"response: no dead time and lag for {name}, which moves: no stop could be proven")
+        strange = [name for name in self.response if name not in moved]
+        if strange:
+            raise ValueError(f"response: {strange[0]} is no joint that moves, nor '{DRIVE}'")
         return self
 
     @model_validator(mode="after")

@@ -75,7 +75,10 @@ class Store(Settings):
 
 
 class Fault(Settings):
-    """What goes wrong in a stand-in; times are seconds of the machine, 0 is off."""
+    """What goes wrong in a stand-in; times are seconds of the machine, 0 is off.
+
+    What it reports lies: `zero_velocity` to `back_in_time`. How it moves is unkind: `coast` to `ignore_emg_stop`.
+    """
 
     stall: float | None = Field(ge=0, default=None)  # s in motion after which the machine stands and the goal goes on
     die: float | None = Field(ge=0, default=None)  # s in motion after which the process is gone
@@ -84,11 +87,25 @@ class Fault(Settings):
     refuse: tuple[str, ...] = ()  # actions, by their key under borders:, that take no goal
     drop_feedback: bool = False
     miss: tuple[int, ...] = ()  # waypoints, from 0, that follow_waypoints cannot reach
+    zero_velocity: bool = False  # every velocity is told as 0
+    frozen_stamp: bool = False  # the last message again and again, with its old stamp
+    replay: bool = False  # its last 2 s again and again, with new stamps
+    mute: tuple[str, ...] = ()  # joints that are left out
+    second_publisher: bool = False  # another publisher says at 60 Hz that the machine stands
+    jump: float = 0.0  # rad, m: every position is told this far off
+    nan: bool = False  # every number is told as NaN
+    back_in_time: float = Field(ge=0, default=0.0)  # s that stamps jump back
+    coast: float = Field(ge=0, default=0.0)  # s that it goes on as it was after every order to stop
+    dead_time: float = Field(ge=0, default=0.0)  # s more than its model has
+    creep: float = 0.0  # m/s or rad/s at which it leaves stand-still, 3 s after it came to it
+    ignore_cancel: bool = False
+    ignore_emg_stop: bool = False
 
 
 class Simulator(Settings):
     speed: float = Field(gt=0, le=100, default=1.0)  # times real time
     seed: int = 0
+    response: Literal["machine", "ideal"] = "machine"  # ideal: without dead time and lag, where no stop is tried
     names: Backend = "sim"  # whose names and joint names the stand-ins use
     faults: dict[str, Fault] = Field(default_factory=dict)  # machine -> what goes wrong from the start
 
