@@ -112,16 +112,23 @@ class Mesh:
             assert done.returncode == expect, f"tms {' '.join(words)}: {done.returncode}\n{done.stdout}\n{done.stderr}"
         return done
 
+    def arm(self) -> None:
+        """Re-arm what is latched, as at the first start: no note says how a machine was left."""
+        self.wait_ready()
+        self.tms("rearm", "--all", "--yes")
+
     def wait_ready(self) -> None:
         """Until `tms status` says that everything works."""
         wait_until(lambda: self.tms("status", expect=None).returncode == 0, 60, "the mesh is ready again")
 
 
 @contextmanager
-def running(mesh: Mesh) -> Iterator[Mesh]:
-    """The mesh, up; nothing of it is left afterwards, also when it did not get ready."""
+def running(mesh: Mesh, armed: bool = True) -> Iterator[Mesh]:
+    """The mesh, up and its machines armed; nothing of it is left afterwards, also when it did not get ready."""
     try:
         mesh.tms("up")
+        if armed:
+            mesh.arm()
         yield mesh
     finally:
         mesh.tms("down")

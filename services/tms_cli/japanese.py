@@ -83,14 +83,21 @@ SAID = {
     ", until {time}": "(期限 {time})",
     "nobody asks anything": "確認待ちはありません",
     # machines
-    "{machine}: stands, after {seconds:.2f} s and {travel:.3f} rad or m; latched": (
-        "{machine}: 停止を確認({seconds:.2f} 秒後、移動 {travel:.3f} rad または m)。停止を保持しています"
+    "{machine}: stands, after {seconds:.2f} s and {angle:.3f} rad, {way:.2f} m; latched": (
+        "{machine}: 停止を確認({seconds:.2f} 秒後、移動 {angle:.3f} rad、走行 {way:.2f} m)。停止を保持しています"
     ),
     "{machine}: STOP UNCONFIRMED: {detail}": "{machine}: 停止を確認できません: {detail}",
     "`tms rearm MACHINE` lets a machine move again": "`tms rearm 機械名` で再び動ける状態になります",
     "{machine} was stopped: {cause}": "{machine} の停止理由: {cause}",
     "Is it safe that {machine} moves again?": "周囲の安全を確認しましたか?{machine} が再び動ける状態になります",
     "{machine} is armed": "{machine} は運転可になりました",
+    "{machine}: {who} drives by hand": "{machine}: {who} が手動運転中です",
+    "{machine}: given back, seen to stand after {seconds:.2f} s": (
+        "{machine}: 返却されました。{seconds:.2f} 秒後に静止を確認しました"
+    ),
+    "{machine} is a stand-in and was never armed on this PC: armed now": (
+        "{machine} は模擬機で、この PC で初めて使うため、運転可にしました"
+    ),
     "moving": "動作中",
     "standing": "停止",
     "not ready: {reason}": "準備未完了: {reason}",
@@ -200,6 +207,10 @@ NEXT = {
     "NO_USERS": "サイトファイルに console.users を書くか、--file で指定してください",
     "SHORT_PASSWORD": "もっと長いパスワードにしてください",
     "NOT_ARMED": "機械は停止を保持しています。安全を確認して `tms rearm MACHINE` を実行してください",
+    "TAKEN": "`tms give-back 機械名` で手動運転を終えてください",
+    "NOT_TAKEN": "この機械は誰も預かっていません",
+    "NOT_KEPT": "この PC のディスクの空きを確認してください",
+    "HELD_BY_RUN": "実行を `tms cancel` で中止してから預かってください",
     "NOT_STOPPED": "機械は停止を保持していません。再起動許可は不要です",
     "PREFLIGHT": "示された点を直してください。警告だけなら --ignore-warnings で開始できます",
     "PROCESS_LOST": "`tms ps` と `tms logs` で終了したプロセスを確認してください",

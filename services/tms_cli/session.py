@@ -12,7 +12,7 @@ import click
 
 from tms_core import environment
 from tms_core.config import Site, load_site
-from tms_core.errors import TmsError
+from tms_core.errors import ConfigError, TmsError
 
 if TYPE_CHECKING:
     from tms_core.ros import Ros
@@ -41,13 +41,30 @@ def ros() -> Iterator["Ros"]:
         node.stop()
 
 
-def call(node: "Ros", service_type: Any, name: str, **fields: Any) -> Any:
+def machines(names: tuple[str, ...], every: bool) -> list[str]:
+    """Machines that a user has named, or all of the site.
+
+    Raises:
+        ConfigError: one is not there; UsageError: none is named.
+    """
+    known = site().file.machines
+    if every and not names:
+        return list(known)
+    if every or not names:
+        raise click.UsageError("name a machine, or give --all")
+    for name in names:
+        if name not in known:
+            raise ConfigError(f"the site has no machine '{name}' (there: {', '.join(known) or 'none'})")
+    return list(names)
+
+
+def call(node: "Ros", service_type: Any, name: str, seconds: float = CALL_LIMIT, **fields: Any) -> Any:
     """Call a service of ours and raise what it reports.
 
     Raises:
         TmsError: the service refused, is not there, or did not answer.
     """
-    answer = node.call(service_type, name, service_type.Request(**fields), CALL_LIMIT)
+    answer = node.call(service_type, name, service_type.Request(**fields), seconds)
     if answer.error_code:
         raise TmsError(answer.error_msg, answer.error_code)
     return answer

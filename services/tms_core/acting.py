@@ -5,6 +5,7 @@ import time
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from tms_core.border import STOP_PROVEN
 from tms_core.errors import SubtaskFailed
 from tms_core.fence import derived
 from tms_core.models import Joint, MachineModel
@@ -12,7 +13,7 @@ from tms_core.ros import LOST_TEXT, Call, Outcome, Peer, Ros
 
 SERVER_LIMIT = 5.0  # s for an action server to appear
 ACCEPT_LIMIT = 3.0  # s for it to answer a goal
-STOP_LIMIT = 10.0  # s for a cancelled motion to end
+STOP_LIMIT = STOP_PROVEN + 2.5  # s for a cancelled motion to end
 LOOK = 0.2  # s between looks whether the server is still there
 UNANSWERED_LIMIT = 1.0  # s for a goal to be accepted after all
 

@@ -13,6 +13,8 @@ from std_msgs.msg import Bool
 from tms_core.models import Border
 from tms_core.ros import Ros
 
+STOP_PROVEN = 10.0  # s after which a gateway has seen that a machine stands, or says that it has not
+
 
 @dataclass(frozen=True)
 class Motion:

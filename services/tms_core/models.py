@@ -89,10 +89,11 @@ Stamps = Literal["utc", "since_start", "none"]
 class Source(Settings):
     """What a border promises of one topic that tells of the machine's motion."""
 
-    period: float = Field(gt=0)  # s between messages
+    period: float = Field(gt=0, le=0.25)  # s between messages; a slower source cannot prove that a machine stands
     stamps: Stamps  # what the header's time counts from; `none`: it is empty, and only the arrival counts
     frozen_after: float = Field(gt=0)  # s of values that are bit for bit the same while a goal should change them
     origin: str = Field(min_length=1)  # where the figures come from
+    resolution: float = Field(ge=0, default=0.0)  # rad or m by which positions jitter while it stands
     message: Literal["PoseStamped", "Odometry"] = "PoseStamped"  # type of `pose`
 
 

@@ -5,19 +5,19 @@ from collections.abc import Sequence
 from typing import Any
 
 from tms_core.app import App
-from tms_core.border import Motion
+from tms_core.border import STOP_PROVEN, Motion
 from tms_core.errors import RosError
 from tms_core.fence import parse
 from tms_core.ros import LOST_TEXT, Call, Ended, Goal, Outcome, Peer
 from tms_rc import limits
+from tms_rc.following import Follower, ways
 from tms_rc.guard import Active, Guard, Kind
-from tms_rc.standstill import StandStill
-from tms_rc.stopper import STOP_LIMIT
+from tms_rc.standstill import JOINTS, StandStill
 
 SERVER_LIMIT = 3.0  # s for the machine's server to be there, and for news of the machine to be heard
 ACCEPT_LIMIT = 3.0  # s for it to answer a goal
 OVERRUN = 10.0  # s that a trajectory may last beyond its own duration
-FROZEN = 0.8  # s that a look may take
+FROZEN = 0.6  # s that a look may take
 LOOK = 0.1  # s between looks at limits and sensors while it moves
 REFUSED = -1  # control_msgs INVALID_GOAL
 UNKNOWN = 600  # nav2_msgs, where a result has an unsigned code
@@ -29,7 +29,7 @@ class Gateway:
     def __init__(self, app: App, guard: Guard, watch: StandStill) -> None:
         self._app, self._guard, self._watch = app, guard, watch
         self._model = app.site.model_of(app.machine)
-        self._speed = app.site.file.sim.speed if app.site.file.backend == "sim" else 1.0
+        self._speed = speed_of(app)
 
     def serve(self, motion: Motion, peer: Peer) -> None:
         """Offer /<machine>/rc/<action> in front of the machine's own action."""
@@ -66,6 +66,9 @@ class Gateway:
         unseen = self._unseen(active.goal)
         if unseen is not None:
             return aborted(motion, f"not ready: {unseen}")
+        refused = self._guard.watch.trouble(time.monotonic())
+        if refused is not None:
+            return aborted(motion, f"not ready: {refused.text}")
         active.goal.on_cancel = lambda: self._app.ros.on_executor(lambda: self._cancel(active))
         self._app.ros.on_executor(lambda: self._send(active))
         self._wait(active, lambda call: call.accepted, ACCEPT_LIMIT)
@@ -73,7 +76,7 @@ class Gateway:
             self._guard.stop(f"{LOST_TEXT}: {active.peer.name} did not answer a goal", Kind.PLAIN)
             if active.call is not None:
                 active.peer.doubt(active.call)
-        self._watch_motion(active)
+        self._watch_motion(motion, active)
         call = active.call
         if active.stop is not None or call is None:
             return self._stopped(motion, active)
@@ -113,7 +116,7 @@ class Gateway:
         if active.stop is None and self._guard.active is active:
             self._guard.stop_now("cancel", Kind.PLAIN)
 
-    def _watch_motion(self, active: Active) -> None:
+    def _watch_motion(self, motion: Motion, active: Active) -> None:
         """Until the goal is terminal or a stop has begun."""
         deadline = time.monotonic() + _duration(active.goal.request) + OVERRUN
         while active.stop is None and not (active.call is not None and active.ended()):
@@ -127,12 +130,63 @@ class Gateway:
                 self._guard.stop(f"{LOST_TEXT}: {active.peer.name} went away during its goal", Kind.PLAIN)
                 active.peer.lost()  # ends the goal, which nobody answers any more
                 break
-            wrong = limits.escaped(self._model, self._watch.positions, active.start)
-            wrong = wrong or (f"{silent} while it moves" if (silent := self._guard.silent()) else None)
+            wrong = self._wrong(motion, active)
             if wrong is not None and active.stop is None:
-                self._guard.stop(wrong, Kind.LATCH)
+                self._guard.stop(*wrong)
             elif time.monotonic() > deadline and active.stop is None:
                 self._guard.stop("the motion takes too long", Kind.PLAIN)
+
+    def _wrong(self, motion: Motion, active: Active) -> tuple[str, Kind] | None:
+        """What makes it stop, and what that means for the next motion."""
+        now, watch = time.monotonic(), self._watch
+        escaped = limits.escaped(self._model, watch.positions, active.start)
+        if escaped is not None:
+            return escaped, Kind.LATCH
+        if (silent := self._guard.silent()) is not None:
+            return f"{silent} while it moves", Kind.LATCH
+        if (trouble := watch.trouble(now)) is not None:
+            return f"{trouble.text}, while it moves", Kind.HOLD if trouble.passes and active.owner else Kind.LATCH
+        if active.call is None or not active.call.accepted:
+            return None
+        if not active.begun:
+            self._begin(motion, active, now)
+        if active.follower is None:
+            return None
+        if (frozen := self._frozen(active, active.follower, now)) is not None:
+            return frozen, Kind.LATCH
+        wrong = active.follower.look(now, watch.positions)
+        return None if wrong is None else (wrong, Kind.LATCH if wrong.startswith("OFF_PATH") else Kind.PLAIN)
+
+    def _begin(self, motion: Motion, active: Active, now: float) -> None:
+        """The goal was accepted: from now on the machine should follow."""
+        wanted = getattr(active.goal.request, "trajectory", None)
+        if wanted is not None:
+            points = [(_seconds(point.time_from_start), point.positions) for point in wanted.points]
+            found = ways(wanted.joint_names, points, active.start)
+            active.follower = Follower(found, self._watch.reached, now, self._speed)
+        elif hasattr(active.goal.request, "target_angle") and not self._app.site.border(self._app.machine).dump_returns:
+            active.follower = self._turn(motion, active, now)
+        active.begun = now
+
+    def _turn(self, motion: Motion, active: Active, now: float) -> Follower | None:
+        """One joint to an angle, as slowly as its server may do it: no way of it is known but the end."""
+        joint = self._model.turned(motion.field)
+        if joint is None or joint not in active.start:
+            return None
+        limits_of, angle = self._model.joints[joint], float(active.goal.request.target_angle)
+        seconds = abs(angle - active.start[joint]) / limits_of.velocity + limits_of.velocity / limits_of.acceleration
+        found = ways([joint], [(seconds, [angle])], active.start)
+        return Follower(found, self._watch.reached, now, self._speed)
+
+    def _frozen(self, active: Active, follower: Follower, now: float) -> str | None:
+        """Values that are bit for bit the same while the goal should change them."""
+        source = self._watch.sources.get(JOINTS)
+        if source is None or not follower.moves(now):
+            return None
+        same = now - max(source.changed, active.begun + self._watch.reached / self._speed)
+        if same <= source.source.frozen_after:
+            return None
+        return f"FROZEN: {source.label} are the same to the last bit for {same:.1f} s while the machine should move"
 
     def _wait(self, active: Active, enough: Any, seconds: float) -> None:
         def over() -> bool:
@@ -144,17 +198,28 @@ class Gateway:
 
     def _stopped(self, motion: Motion, active: Active) -> Ended:
         stop = active.stop
-        if stop is None or not stop.over.wait(STOP_LIMIT + 1.0) or stop.receipt is None:
+        if stop is None or not stop.over.wait(STOP_PROVEN + 1.0) or stop.receipt is None:
             return aborted(motion, "stopped, but nobody saw the end of it")
         receipt = stop.receipt
         if not receipt.confirmed:
             return aborted(motion, f"stop unconfirmed: {receipt.detail} ({stop.cause})")
-        text = f"stood after {receipt.seconds:.2f} s, {receipt.travel:.3f} rad or m ({stop.cause})"
+        text = f"stood after {receipt.seconds:.2f} s, {travel_text(receipt)} ({stop.cause})"
         if not active.goal.cancelled.is_set() or self._guard.latch.cause:
             return aborted(motion, text)
         if self._app.stopping.is_set():
             return Outcome.CANCELED, with_reason(motion, f"{LOST_TEXT}: the gateway was stopped; {text}")
         return Outcome.CANCELED, with_reason(motion, text, 0)
+
+
+def speed_of(app: App) -> float:
+    """Seconds of the machine in one second: stand-ins may run faster."""
+    return app.site.file.sim.speed if app.site.file.backend == "sim" else 1.0
+
+
+def travel_text(receipt: Any) -> str:
+    """How far it went until it stood."""
+    parts = [f"{receipt.travel_rad:.3f} rad ({receipt.travel_joint})"] if receipt.travel_joint else []
+    return ", ".join([*parts, f"{receipt.travel_m:.2f} m"])
 
 
 def poses_of(request: Any) -> Sequence[Any]:

@@ -1,4 +1,4 @@
-"""Decides whether the machine may move, and stops it: permit, latch, software stop, re-arm.
+"""Decides whether the machine may move, and stops it: permit, latch, software stop, stand-still that stays proven.
 
 Stops begin on the executor thread, as goals are sent there: a goal either left before the stop, and is cancelled by
 it, or does not leave any more.
@@ -11,25 +11,26 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any
 
-from tms_msg_rc.srv import Rearm, StopMachine
+from tms_msg_rc.srv import StopMachine
 
 from tms_core.app import App
-from tms_core.border import Controls
+from tms_core.border import STOP_PROVEN, Controls
 from tms_core.fence import Owner
 from tms_core.permit import NOBODY, Link
 from tms_core.ros import LOST_TEXT, Call, Goal, Peer
 from tms_rc.chain import SCHEDULER, gap, members
-from tms_rc.latch import ANY_LEAF, UNKNOWN_RUN, Latch
-from tms_rc.memory import Memory
+from tms_rc.following import Follower
+from tms_rc.latch import Latch
+from tms_rc.notes import Notes
 from tms_rc.permits import Permits
 from tms_rc.standstill import StandStill
-from tms_rc.stopper import STOP_LIMIT, Stop, Stopper
+from tms_rc.stopper import Stop, Stopper
+from tms_rc.vigil import Vigil
 
 PERMIT_LIMIT = 3.0  # s that a goal may come before the permits behind it: a new process is discovered late on a busy PC
 PRESSED = 1.0  # s that a software stop counts as pressed after its last message
 FRESH = 1.0  # s, older news of the machine make it not ready
-LEFT_MOVING = 2.0  # s that a new gateway looks for a motion that its predecessor left
-RUN_TOLD = 3.0  # s for a new gateway to hear of the run whose machine it has stopped, before it latches
+FOREIGN = "a foreign client"
 
 
 class Kind(Enum):
@@ -49,9 +50,16 @@ class Active:
     peer: Peer
     chain: dict[str, Owner]
     start: dict[str, float]  # rad, joints when it began
+    begun: float = 0.0  # s, monotonic: when it was accepted; 0 before
+    follower: Follower | None = None  # of a trajectory, once it was accepted
     call: Call | None = None
     stop: Stop | None = None
     changed: threading.Condition = field(default_factory=threading.Condition)
+
+    def since(self, now: float) -> float | None:
+        """When the motion began that must have been seen by now; None where nothing had to move."""
+        moves = self.begun and (self.follower is None or self.follower.should_have_moved(now))
+        return self.begun if moves else None
 
     def ended(self) -> bool:
         """Whether nothing of it can move the machine any more."""
@@ -65,24 +73,24 @@ class Active:
 class Guard:
     """Of one machine."""
 
-    def __init__(self, app: App, watch: StandStill, controls: Controls) -> None:
-        self._app, self._watch, self._controls = app, watch, controls
-        self._memory = Memory(app.site.state, app.machine)
-        self.latch = Latch(self._memory.read())
-        self.stopper = Stopper(app, controls, watch, self.silent, self._proof)
+    def __init__(self, app: App, watch: StandStill, controls: Controls, latch: Latch, notes: Notes) -> None:
+        self._app, self.watch, self.controls = app, watch, controls
+        self.latch, self.notes = latch, notes
+        self.stopper = Stopper(app, controls, watch, self._note)
+        self.vigil = Vigil()
         self._news = threading.Condition()  # of permits
         self._taking = threading.Lock()
-        self._run: int | None = None  # that holds the machine
-        self._restarted = f"{LOST_TEXT}: {app.machine}:rc was restarted"
-        self._unclaimed = True  # whether the last gateway may have left a motion of a run that is not known yet
-        self._pressed = 0.0  # monotonic time of the last software stop message
+        self.run: int | None = None  # that holds the machine
+        self.run_told: Callable[[int], None] = lambda run: None  # called with each run that takes the machine
+        self.pressed = 0.0  # monotonic time of the last software stop message
+        self.by_hand = ""  # who drives it by hand
         self.active: Active | None = None
         self.told: Callable[[], None] = lambda: None  # called when the latch has changed, to tell it at once
         self.permits = Permits(app, self._permit_changed)
 
     def silent(self) -> str | None:
         """What is not heard of the machine."""
-        return self._watch.silent(time.monotonic(), FRESH)
+        return self.watch.silent(time.monotonic(), FRESH)
 
     # who may move
 
@@ -94,11 +102,21 @@ class Guard:
         with self._taking:
             if self.active is not None:
                 return f"{self._app.machine} is still moved by another goal"
-            wrong = self.latch.refusal(active.owner)
+            wrong = self._driven() or self.latch.refusal(active.owner) or self._noted(active.owner)
             if wrong is None:
                 active.chain = members(active.owner, self.permits.held())
                 self.active = active
+                self.vigil.end()
         return wrong
+
+    def _driven(self) -> str | None:
+        return f"{self.by_hand} drives {self._app.machine} by hand: `tms give-back` first" if self.by_hand else None
+
+    def _noted(self, owner: Owner | None) -> str | None:
+        """Whose goal it is has to be on the disk before it leaves: a power cut must not leave the machine armed."""
+        if owner is None:
+            return self.notes.hold(FOREIGN, 0)
+        return self.notes.hold(self.permits.holder() or f"run number {owner.run}", owner.run)
 
     def last_look(self, active: Active) -> None:
         """Stop a goal that is about to leave if a stop or a loss came since it was let in. On the executor thread."""
@@ -113,7 +131,9 @@ class Guard:
 
     def release(self) -> None:
         """The goal is over."""
-        self.active = None
+        active, self.active = self.active, None
+        if active is not None and active.owner is None and active.stop is None:
+            self.notes.release()
 
     def _wait_for_permit(self, owner: Owner | None) -> str | None:
         deadline = time.monotonic() + PERMIT_LIMIT
@@ -137,15 +157,17 @@ class Guard:
 
     def _scheduler_changed(self, link: Link) -> None:
         run = self.permits.held().get(SCHEDULER)
-        if run is None and self._run is not None and link.goal != NOBODY:
-            lost, self._run = self._run, None
+        if run is None and self.run is not None and link.goal != NOBODY:
+            lost, self.run = self.run, None
             self.latch.run_lost()
             self.stop_now("tms:ts, the scheduler, was lost during a run", Kind.LATCH, run=lost)
             return
-        self._run = None if run is None else run.run
-        self.latch.run_is(self._run)
-        if self._run is not None:
-            self._take_over(self._run)
+        before, self.run = self.run, None if run is None else run.run
+        self.latch.run_is(self.run)
+        if self.run is not None:
+            self.run_told(self.run)
+        elif before is not None:
+            self.notes.release()
 
     def check_chain(self) -> None:
         """Stop when a process behind the present goal is gone."""
@@ -160,23 +182,42 @@ class Guard:
 
     # stop
 
-    def stop_now(self, cause: str, kind: Kind, run: int = 0) -> Stop:
-        """Stop whoever moves the machine. On the executor thread only; returns at once."""
-        active = self.active
+    def stop_now(self, cause: str, kind: Kind, run: int = 0, since: float | None = None, broken: str = "") -> Stop:
+        """Stop whoever moves the machine. On the executor thread only; returns at once.
+
+        `since`, `broken`: see `Stopper.begin`; of a goal under way it is known here since when it moves.
+        """
+        active, now = self.active, time.monotonic()
         if kind is Kind.LATCH:
             self.latch.close(cause)
         elif kind is Kind.HOLD and active is not None and active.owner is not None:
             self.latch.keep(cause, active.owner)
         ended = active.ended if active is not None else lambda: True
-        run = run or (active.owner.run if active is not None and active.owner is not None else self._run or 0)
-        stop = self.stopper.begin(cause, latched=kind is Kind.LATCH, run=run, ended=ended)
+        run = run or (active.owner.run if active is not None and active.owner is not None else self.run or 0)
+        since = active.since(now) if active is not None and since is None else since
+        stop = self.stopper.begin(cause, latched=kind is Kind.LATCH, run=run, ended=ended, since=since, broken=broken)
         if active is not None and active.call is not None:
             active.peer.cancel(active.call)  # also one that the machine has not answered yet
         if active is not None:
             active.stop = active.stop or stop
             active.wake()
+        self.vigil.begin()
         self.told()
         return stop
+
+    def look(self) -> None:
+        """At every beat of the pulse: a machine that was stopped must go on standing."""
+        now = time.monotonic()
+        self.watch.settle(now)
+        if self.active is not None:
+            self.watch.commanded(now)
+        elif self.vigil.left(now, self.watch.moved_at) and not self.by_hand and not self.stopper.busy:
+            self._app.ros.on_executor(self._left_stand_still)
+
+    def _left_stand_still(self) -> None:
+        if self.active is None and not self.stopper.busy:
+            text = "it left stand-still without a goal of its own"
+            self.stop_now(text, Kind.LATCH, broken=text)
 
     def stop(self, cause: str, kind: Kind) -> Stop:
         """`stop_now` from any other thread; waits for the commands to have left, not for the machine."""
@@ -188,7 +229,7 @@ class Guard:
             there.set()
 
         self._app.ros.on_executor(step)
-        if not there.wait(STOP_LIMIT):
+        if not there.wait(STOP_PROVEN):
             raise RuntimeError("the gateway's executor does not run any more")
         return begun[0]
 
@@ -196,102 +237,24 @@ class Guard:
         """/emergency_signal: true stops and latches, as often as it is repeated; false does not arm anything."""
         now = time.monotonic()
         if not message.data:
-            self._pressed = 0.0
+            self.pressed = 0.0
             return
-        fresh = now - self._pressed > PRESSED
-        self._pressed = now
+        fresh = now - self.pressed > PRESSED
+        self.pressed = now
         if fresh or not self.latch.cause:
             self.stop_now("software stop", Kind.LATCH)
 
     def stop_service(self, request: StopMachine.Request, response: StopMachine.Response) -> StopMachine.Response:
         """Stop whoever moves the machine, foreign clients too; answers with what was seen."""
         stop = self.stop(request.cause or "software stop", Kind.PLAIN if request.orderly else Kind.LATCH)
-        stop.over.wait(STOP_LIMIT + 1.0)
+        stop.over.wait(STOP_PROVEN + 1.0)
         response.receipt = stop.receipt
         return response
 
-    def _proof(self, stop: Stop) -> None:
-        """Called in the stop's own thread: at its begin, and when the machine was not seen to stand."""
+    def _note(self, stop: Stop) -> None:
+        """Called in the stop's own thread: after its commands, and with its receipt before that is told."""
         if stop.receipt is not None and not stop.receipt.confirmed:
             self.latch.close(f"{stop.cause}: not seen to stand ({stop.receipt.detail})")
-            self._controls.emergency(True)
-        self._remember()
-
-    def _remember(self) -> None:
-        try:
-            self._memory.write(lambda: self.latch.cause)
-        except OSError as error:  # the latch itself holds; it only would not outlive this process
-            self._app.log.error("event=latch_not_kept reason=%r", str(error))
-
-    # re-arm
-
-    def rearm(self, request: Rearm.Request, response: Rearm.Response) -> Rearm.Response:
-        """Two steps: without a token the cause and a token, with it the machine is armed."""
-        response.cause = self.latch.cause or self.latch.hold
-        code, text = self._keeps_from_arming(response.cause)
-        now = time.monotonic()
-        if not code and request.token:
-            text = self.latch.confirm(request.token, now) or ""
-            code = "BAD_TOKEN" if text else ""
-            if not code:
-                self._arm()
-        elif not code:
-            response.token = self.latch.request(now)
-        response.armed = not self.latch.cause and not self.latch.hold
-        response.error_code, response.error_msg = code, text
-        return response
-
-    def _arm(self) -> None:
-        self._controls.emergency(False)
-        self._remember()
-        self._app.log.info("event=armed")
-        self.told()
-
-    def _keeps_from_arming(self, cause: str) -> tuple[str, str]:
-        machine = self._app.machine
-        if not cause:
-            return "NOT_STOPPED", f"{machine} is armed: there is nothing to do"
-        if self.active is not None:
-            return "STILL_ACTIVE", f"{machine} still has an open goal: cancel its run first"
-        if time.monotonic() - self._pressed < PRESSED:
-            return "CAUSE_PERSISTS", "the software stop is still pressed: release it (false on /emergency_signal)"
-        silent = self.silent()
-        if silent is not None:
-            return "CAUSE_PERSISTS", f"nobody sees whether {machine} stands: {silent}; is the machine on?"
-        if not self._watch.standing(time.monotonic()):
-            return "CAUSE_PERSISTS", f"{machine} does not stand still yet"
-        return "", ""
-
-    # start
-
-    def recover(self) -> None:
-        """After a start nobody knows what the last gateway left moving: cancel it, and stop a run's machine."""
-        deadline = time.monotonic() + STOP_LIMIT
-        while not self._controls.reachable() and time.monotonic() < deadline and not self._app.stopping.wait(0.02):
-            pass
-        self._controls.zero()
-        self._controls.cancel_everything()
-        if self.latch.cause:
-            self._controls.emergency(True)
-        deadline, stopped = time.monotonic() + LEFT_MOVING, False
-        while self._unclaimed and self.active is None and time.monotonic() < deadline:
-            if self._app.stopping.wait(0.02):
-                return
-            if not stopped and self.silent() is None and self._watch.moving():
-                deadline, stopped = time.monotonic() + RUN_TOLD, True
-                self._app.ros.on_executor(lambda: self._take_over(UNKNOWN_RUN))
-        self._app.ros.on_executor(lambda: self._recovered(stopped))
-
-    def _take_over(self, run: int) -> None:
-        """Stop what the last gateway left moving for this run."""
-        if not self._unclaimed or self.active is not None:
-            return
-        self._unclaimed = run == UNKNOWN_RUN
-        self.latch.keep(self._restarted, Owner(run, ANY_LEAF))
-        self.stop_now(self._restarted, Kind.PLAIN, run=0 if run == UNKNOWN_RUN else run)
-
-    def _recovered(self, stopped: bool) -> None:
-        """Whose motion was stopped is known by now, or it was nobody's."""
-        if self._unclaimed and stopped and self.active is None:
-            self.stop_now(f"{self._restarted} while it moved, and no run told of it", Kind.LATCH)
-        self._unclaimed = False
+            self.controls.emergency(True)
+            self.told()
+        self.notes.keep()

@@ -1,32 +1,115 @@
-"""Keeps the latch over a restart of the gateway: a file on this PC, written after the stop was commanded."""
+"""What a gateway knows of the time before its start: notes on the disk of this PC, where no proof means latched.
+
+A machine is armed while its note says so, and only then: the note is synced before the machine counts as armed, and
+before the first goal of a run leaves it says which run that is. To latch is to take the note away, which also works on
+a full disk. Nothing here is called on the executor thread.
+"""
 
 import json
+import os
 import threading
-from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
+
+from tms_core.permit import NO_NOTE
+
+UNREADABLE = "the note of how the machine was left cannot be read: look at it, then re-arm it"
+
+
+@dataclass(frozen=True)
+class Left:
+    """How the machine was left; `latched` is empty when it was armed."""
+
+    latched: str
+    holder: str = ""  # the run, or the foreign goal, that may have left it moving
+    run: int = 0  # fencing number of that run
+    taken: str = ""  # who drives it by hand
 
 
 class Memory:
-    """The cause of the latch in `<state>/rc/<machine>.json`."""
+    """`<state>/rc/<machine>.armed` and, for people, `.latched` with the cause."""
 
     def __init__(self, folder: Path, machine: str) -> None:
-        self._path = folder / "rc" / f"{machine}.json"
+        self._folder = folder / "rc"
+        self._armed, self._latched = self._folder / f"{machine}.armed", self._folder / f"{machine}.latched"
+        self._taken = self._folder / f"{machine}.taken"
         self._writing = threading.Lock()
 
-    def read(self) -> str:
-        """The cause that was kept; a file that cannot be read latches, since nobody knows what it said."""
-        try:
-            cause = json.loads(self._path.read_text(encoding="utf-8"))["latched"]
-        except FileNotFoundError:
-            return ""
-        except (OSError, ValueError, KeyError, TypeError):
-            return f"the note of the last stop cannot be read ({self._path})"
-        return str(cause)
+    def read(self) -> Left:
+        """How the machine was left. A damaged note, as a power cut leaves it, latches."""
+        taken = str((_load(self._taken) or {}).get("taken", ""))
+        note = _load(self._armed)
+        if note is None or note.get("armed") is not True:
+            return Left(self._cause() if note is None and not self._armed.exists() else UNREADABLE, taken=taken)
+        holder, run = note.get("holder"), note.get("run")
+        if not isinstance(holder, str) or not isinstance(run, int):
+            return Left(UNREADABLE, taken=taken)
+        return Left("", holder, run, taken)
 
-    def write(self, cause: Callable[[], str]) -> None:
-        """Keep what `cause` returns now, empty for armed; several stops may end at once, and the last word counts."""
-        self._path.parent.mkdir(parents=True, exist_ok=True)
-        part = self._path.with_suffix(".part")
+    def _cause(self) -> str:
+        cause = (_load(self._latched) or {}).get("cause")
+        return cause if isinstance(cause, str) and cause else NO_NOTE
+
+    def arm(self, holder: str = "", run: int = 0) -> None:
+        """From now on a restart finds the machine armed, and held by a run where one is named.
+
+        Raises:
+            OSError: it could not be written: the machine must not count as armed.
+        """
         with self._writing:
-            part.write_text(json.dumps({"latched": cause()}), encoding="utf-8")
-            part.replace(self._path)
+            _write(self._armed, {"armed": True, "holder": holder, "run": run})
+
+    def latch(self, cause: str) -> None:
+        """From now on a restart finds the machine latched; the cause is kept where there is room for it.
+
+        Raises:
+            OSError: the note could not be taken away.
+        """
+        with self._writing:
+            self._armed.unlink(missing_ok=True)
+            if self._folder.exists():
+                _sync(self._folder)
+            try:
+                _write(self._latched, {"cause": cause})
+            except OSError:
+                self._latched.unlink(missing_ok=True)  # an older cause would be a wrong one
+
+    def take(self, who: str) -> None:
+        """Who drives the machine by hand, empty for nobody.
+
+        Raises:
+            OSError: it could not be written.
+        """
+        with self._writing:
+            _write(self._taken, {"taken": who})
+
+
+def _load(path: Path) -> dict[str, Any] | None:
+    """A note, None if it is not there or cannot be read."""
+    try:
+        found = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    return found if isinstance(found, dict) else None
+
+
+def _write(path: Path, note: dict[str, Any]) -> None:
+    """The whole note or the old one, whatever happens, and on the disk before this returns."""
+    path.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
+    part = path.with_suffix(path.suffix + ".part")
+    with os.fdopen(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "w", encoding="utf-8") as file:
+        json.dump(note, file)
+        file.flush()
+        os.fsync(file.fileno())
+    part.replace(path)
+    _sync(path.parent)
+
+
+def _sync(folder: Path) -> None:
+    """Have the names in a folder on the disk."""
+    number = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(number)
+    finally:
+        os.close(number)

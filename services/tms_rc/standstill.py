@@ -1,104 +1,250 @@
-"""Tells from joint states and odometry whether a machine stands, and how far it has moved since a mark. Pure logic."""
+"""What counts as seen to stand: every joint and every source, after the stop, by positions and velocities. Pure logic.
+
+A stop is proven when samples that were received *and* measured after the stop and after the machine's dead time show,
+for every channel of every source, that it stood for a while: before that, a command that is still on its way through
+the hydraulics may move it. Nothing that was not heard counts as standing.
+"""
 
 import math
-from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
-from tms_core.models import Still
+from tms_core.models import DRIVE, Border, MachineModel
+from tms_rc.channel import WORST, Limits, Place
+from tms_rc.source import LABELS, Sample, SourceWatch, Trouble
 
-JOINTS, ODOM = "joint states", "odometry"
+JOINTS, ODOM, POSE, IMU = "joint_states", "odom", "pose", "imu"
+PLACE, HEADING, TURNING = "place", "heading", "turning"
+HARD = 0.2  # rad beyond its limit at which a joint cannot be: its sensor, or its name, is wrong
 INFINITE = float("inf")
 
 
+@dataclass(frozen=True)
+class Travel:
+    """How far a machine went."""
+
+    joint: str = ""  # that went furthest, or `heading`
+    angle: float = 0.0  # rad
+    way: float = 0.0  # m, of the base
+
+
+@dataclass(frozen=True)
+class Proof:
+    """What has to be seen after one stop."""
+
+    start: float  # s, monotonic: only what is measured later counts ...
+    unseen: float  # s, ... and later than this, where the motion of `since` was never seen
+    since: float | None  # s, when the motion began that must have been seen; None: nothing was to move
+    seconds: float  # s of standing
+
+
 class StandStill:
-    """Fed with joint states and odometry; all times are seconds of one monotonic clock."""
+    """Of one machine; all times are seconds of one monotonic clock."""
 
-    def __init__(self, still: Still, sources: Sequence[str] = (JOINTS,)) -> None:
-        """`sources` are those that the machine has: each must be fresh for the machine to count as standing."""
-        self._still = still
-        self._heard: dict[str, float | None] = dict.fromkeys(sources)
-        self._slow: dict[str, bool] = {}
-        self._joints_at: dict[str, float] = {}
-        self._positions: dict[str, float] = {}
-        self._velocities: dict[str, float] = {}
-        self._place: tuple[float, float] | None = None  # m
-        self._slow_since: float | None = None
-        self._mark: dict[str, float] = {}
-        self._mark_place: tuple[float, float] | None = None
-        self._travel = 0.0
+    def __init__(self, model: MachineModel, border: Border, scale: float = 1.0) -> None:
+        """`scale`: seconds of the machine in one second, the speed of a stand-in."""
+        self._model, self._scale = model, scale
+        self._at_once = bool(border.emg_stop) and border.emg_stop_at_once
+        self.sources: dict[str, SourceWatch] = {
+            name: SourceWatch(name, source, _channels(name, model, source.resolution, scale))
+            for name, source in border.sources.items()
+        }
+        self._marks: dict[str, dict[str, Place]] = {}
+        self._angles: dict[str, float] = {}
+        self._way = 0.0
+        self._quiet_since = -INFINITE  # when the last goal of ours ended: what it commanded may still be on its way
+        self._motion_at = -INFINITE  # when a motion was seen last
 
-    def update(self, now: float, positions: Mapping[str, float], velocities: Mapping[str, float]) -> None:
-        """Take one joint state [rad, rad/s]; a joint without velocity gets it from its last position.
+    @property
+    def dead_time(self) -> float:
+        """Seconds for which a command may still be on its way."""
+        return max((one.dead_time for one in self._model.response.values()), default=0.0) / self._scale
 
-        Every joint that was heard once counts: the joints are as old as the one that is silent for longest.
-        """
-        if not positions:
-            return
-        speeds = dict(self._velocities)
-        for name, position in positions.items():
-            gap = now - self._joints_at.get(name, now)
-            if name in velocities:
-                speeds[name] = velocities[name]
-            elif gap > 0:
-                speeds[name] = (position - self._positions[name]) / gap
-            self._travel = max(self._travel, abs(position - self._mark.get(name, position)))
-        # New dicts, not changed ones: stop paths read them from other threads without a lock.
-        self._positions, self._velocities = {**self._positions, **positions}, speeds
-        self._joints_at |= dict.fromkeys(positions, now)
-        self._see(JOINTS, now, all(abs(velocity) < self._still.velocity for velocity in speeds.values()))
-        self._heard[JOINTS] = min(self._joints_at.values())
+    @property
+    def braking(self) -> float:
+        """Seconds after the dead time in which every motion has ended: from full speed, and a lag more."""
+        return max((seconds for seconds in map(self._brakes, self._model.response)), default=0.0) / self._scale
 
-    def update_odometry(self, now: float, place: tuple[float, float], linear: float, angular: float) -> None:
-        """Take one odometry message: place [m], speeds [m/s, rad/s]."""
-        start = self._mark_place or place
-        self._travel = max(self._travel, math.dist(start, place))
-        self._place = place
-        self._see(ODOM, now, abs(linear) < self._still.linear and abs(angular) < self._still.angular)
+    @property
+    def reached(self) -> float:
+        """Seconds of the machine after which it is where its reference was: dead time and lag of the slowest joint."""
+        response = [one for name, one in self._model.response.items() if name != DRIVE]
+        return max((one.dead_time for one in response), default=0.0) + max((one.lag for one in response), default=0.0)
 
-    def _see(self, source: str, now: float, slow: bool) -> None:
-        self._heard[source] = now
-        self._slow[source] = slow
-        if not all(self._slow.values()):
-            self._slow_since = None
-        elif self._slow_since is None:
-            self._slow_since = now
+    def _brakes(self, name: str) -> float:
+        model, lag = self._model, self._model.response[name].lag
+        if name != DRIVE:
+            return model.joints[name].velocity / model.joints[name].acceleration + lag
+        assert model.drive is not None, "the model says so"
+        drive = model.drive
+        return max(drive.velocity / drive.acceleration, drive.turn_velocity / drive.turn_acceleration) + lag
+
+    @property
+    def unstamped(self) -> list[str]:
+        """Sources whose messages are not stamped: for them only the arrival counts."""
+        return [one.label for one in self.sources.values() if one.source.stamps == "none"]
+
+    def take(self, name: str, sample: Sample) -> None:
+        """One message of a source."""
+        source = self.sources[name]
+        source.take(sample)
+        if source.fast:
+            self._motion_at = max(self._motion_at, sample.received)
+        for channel, away in source.travel(self._marks.get(name, {})).items():
+            if channel == PLACE:
+                self._way = max(self._way, away)
+            else:
+                self._angles[channel] = max(self._angles.get(channel, 0.0), away)
+
+    # what is known
 
     @property
     def positions(self) -> dict[str, float]:
         """Last position of each joint [rad]."""
-        return dict(self._positions)
+        joints = self.sources.get(JOINTS)
+        return {name: place[0] for name, place in joints.places().items()} if joints else {}
 
     @property
     def velocities(self) -> dict[str, float]:
-        """Last velocity of each joint [rad/s]."""
-        return dict(self._velocities)
+        """Last velocity of each joint, where it is told [rad/s]."""
+        joints = self.sources.get(JOINTS)
+        last = {name: one.last for name, one in joints.channels.items()} if joints else {}
+        return {name: seen.speed for name, seen in last.items() if seen is not None and seen.speed is not None}
 
     def age(self, now: float) -> float:
-        """Seconds since the last message of the source that is silent for longest, infinite before the first."""
-        return max((INFINITE if at is None else now - at for at in self._heard.values()), default=INFINITE)
+        """Seconds since the last word of the channel that is silent for longest, infinite before the first."""
+        return max((source.age(now) for source in self.sources.values()), default=INFINITE)
 
     def silent(self, now: float, limit: float) -> str | None:
-        """The source that was not heard for `limit` seconds, in words."""
-        for source, at in self._heard.items():
-            if at is None:
-                return f"no {source} from the machine yet"
-            if now - at > limit:
-                return f"{source} {now - at:.1f} s old"
+        """What was not heard for `limit` seconds, in words."""
+        if not self.sources:
+            return "the border declares no source that tells of its motion"
+        return next(filter(None, (source.silent(now, limit) for source in self.sources.values())), None)
+
+    def trouble(self, now: float) -> Trouble | None:
+        """Why what is heard cannot be believed; what does not pass comes first."""
+        found = [one for source in self.sources.values() if (one := source.trouble(now)) is not None]
+        found += [Trouble(text) for text in [self._beyond()] if text]
+        return min(found, key=lambda one: one.passes, default=None)
+
+    def _beyond(self) -> str | None:
+        for name, angle in self.positions.items():
+            joint = self._model.joints[name]
+            low, high = (joint.min or 0.0) - HARD, (joint.max or 0.0) + HARD
+            if (joint.min is not None and angle < low) or (joint.max is not None and angle > high):
+                bound = joint.min if joint.min is not None and angle < low else joint.max
+                return (
+                    f"{LABELS[JOINTS]}: {name} is told at {angle:.3f} rad, where it cannot be (limit {bound:.3f} rad)"
+                )
         return None
 
-    def moving(self) -> bool:
-        """Whether the last messages showed a motion, or there were none."""
-        return self._slow_since is None
+    def changed(self, name: str) -> float:
+        """When the values of a source were last not the same bit for bit; infinitely long ago before the first."""
+        source = self.sources.get(name)
+        return source.changed if source is not None else -INFINITE
 
-    def standing(self, now: float) -> bool:
-        """Whether it has been seen to stand long enough, by messages that are still fresh."""
-        since = self._slow_since  # read once: another thread may reset it
-        fresh = self.age(now) < max(0.5, self._still.seconds)
-        return fresh and since is not None and now - since >= self._still.seconds
+    # motion
+
+    @property
+    def moved_at(self) -> float:
+        """When a motion was seen last [s]; infinitely long ago if never."""
+        return self._motion_at
+
+    def moving(self) -> bool:
+        """Whether any of the last messages showed a motion, or something was not heard."""
+        return not self.sources or any(source.moving() for source in self.sources.values())
+
+    def standing(self, now: float, passing: bool = False) -> bool:
+        """Whether it has been seen to stand for long enough, whatever came before; `passing`: by a new clock, too."""
+        trouble = self.trouble(now)
+        return (trouble is None or (passing and trouble.passes)) and self._stands(-INFINITE, now)
+
+    def _stands(self, start: float, now: float) -> bool:
+        seconds = self._model.still.seconds
+        return bool(self.sources) and all(one.proves(start, now, seconds) for one in self.sources.values())
+
+    def settle(self, now: float) -> None:
+        """Take new clocks for good once the machine has stood by them for a while."""
+        if any(source.new_clock for source in self.sources.values()):
+            stands = self._stands(-INFINITE, now)
+            for source in self.sources.values():
+                source.settle(now, stands)
+
+    def accept_clocks(self) -> None:
+        """A person has looked at the machine."""
+        for source in self.sources.values():
+            source.accept_clock()
+
+    # proof
+
+    def commanded(self, now: float) -> None:
+        """A goal of ours moves the machine now."""
+        self._quiet_since = now
+
+    def proof(self, begun: float, strongest: bool, since: float | None = None) -> Proof:
+        """What must be seen after a stop that was commanded at `begun`.
+
+        A strongest stop that acts at once (`emg_stop_at_once`) needs no dead time if it can be seen to act: the machine
+        moves, or nothing is on its way. Else one that ignores it would be believed to stand.
+        A motion that began at `since` and was never seen makes what is heard doubtful: then nothing counts before
+        every motion must have ended.
+        """
+        visible = self._motion_at > begun - WORST or begun - self._quiet_since > self.dead_time
+        wait = 0.0 if strongest and self._at_once and visible else self.dead_time
+        return Proof(begun + wait, begun + self.dead_time + self.braking, since, self._model.still.seconds)
+
+    def proven(self, proof: Proof, now: float) -> bool:
+        """Whether it was seen."""
+        if self.trouble(now) is not None:
+            return False
+        return self._stands(max(self._start(proof), self._surprised() + self.dead_time + self.braking), now)
+
+    def _start(self, proof: Proof) -> float:
+        seen = proof.since is None or self._motion_at > proof.since
+        return proof.start if seen else proof.unseen
+
+    def _surprised(self) -> float:
+        return max((source.surprised for source in self.sources.values()), default=-INFINITE)
+
+    def obstacle(self, now: float) -> str:
+        """Why a stop is not proven."""
+        trouble = self.trouble(now)
+        if trouble is not None:
+            return trouble.text
+        for source in self.sources.values():
+            if silent := source.silent(now, source.longest):
+                return silent
+        return "still moving" if self.moving() else "not seen to stand for long enough"
+
+    # travel
 
     def mark(self) -> None:
         """Begin to count travel anew."""
-        self._mark, self._mark_place, self._travel = dict(self._positions), self._place, 0.0
+        self._marks = {name: source.places() for name, source in self.sources.items()}
+        self._angles, self._way = {}, 0.0
 
-    def travel(self) -> float:
-        """Largest motion since the mark: of one joint [rad], or of the machine [m]."""
-        return self._travel
+    def travel(self) -> Travel:
+        """Furthest that each part was away since the mark."""
+        joint = max(self._angles, key=lambda name: self._angles[name], default="")
+        return Travel(joint, self._angles.get(joint, 0.0), self._way)
+
+
+def _channels(name: str, model: MachineModel, resolution: float, scale: float) -> dict[str, Limits]:
+    """What a source tells of, and when that counts as standing."""
+    still, drive = model.still, model.drive
+    if name == JOINTS:
+        return {
+            joint: Limits(still.velocity, limits.velocity, resolution, limits.min is None and limits.max is None, scale)
+            for joint, limits in model.joints.items()
+        }
+    way, turn = (drive.velocity, drive.turn_velocity) if drive is not None else (INFINITE, INFINITE)
+    if name == IMU:
+        return {TURNING: Limits(still.angular, INFINITE, scale=scale)}
+    return {
+        PLACE: Limits(still.linear, way, resolution, scale=scale),
+        HEADING: Limits(still.angular, turn, resolution, True, scale),
+    }
+
+
+def yaw_of(x: float, y: float, z: float, w: float) -> float:
+    """Heading [rad] of a quaternion: its turn about z."""
+    return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))

@@ -1,7 +1,8 @@
-"""Stops a machine and proves it: commands at once, then watches until it stands, then a receipt.
+"""Stops a machine and proves it: commands at once, then watches until it was seen to stand, then a receipt.
 
 The commands leave in the caller's thread, which is the executor thread for software stops and lost permits: nothing
-here waits for a database, a scheduler, a console or a lock that one of those holds.
+here waits for a database, a scheduler, a console, a disk or a lock that one of those holds. The order of a stop is
+command, proof, note, receipt: what is told is on the disk.
 """
 
 import threading
@@ -14,19 +15,21 @@ from prometheus_client import Counter, Histogram
 from tms_msg_rc.msg import StopReceipt
 
 from tms_core.app import App
-from tms_core.border import Controls
-from tms_rc.standstill import StandStill
+from tms_core.border import STOP_PROVEN, Controls
+from tms_core.ros import pack, unpack
+from tms_rc.receipts import Receipts
+from tms_rc.standstill import Proof, StandStill
 
-STOP_LIMIT = 5.0  # s to be seen standing
-AGAIN = 0.5  # s between repeated commands while it does not stand
+AGAIN = 0.5  # s between repeated commands while it is not proven
 LOOK = 0.01  # s
 
 STOPS = Counter("tms_rc_stops_total", "Stops by whether the machine was seen to stand", ["confirmed"])
 for _answer in ("yes", "no"):  # a series that only appears with its first stop has no increase to alert on
     STOPS.labels(_answer)
 STOP_SECONDS = Histogram(
-    "tms_rc_stop_seconds", "From the wish to stop until the machine stood", buckets=(0.1, 0.2, 0.35, 0.5, 0.7, 1, 2, 5)
+    "tms_rc_stop_seconds", "From the wish to stop until it was proven", buckets=(0.35, 0.5, 0.7, 1, 1.5, 2, 3, 5, 10)
 )
+UNKEPT = Counter("tms_rc_notes_lost_total", "Latches and receipts that could not be kept on the disk")
 
 
 @dataclass
@@ -39,6 +42,8 @@ class Stop:
     ended: Callable[[], bool]  # whether the goal that was stopped is terminal
     begun: float
     stamp: Any
+    proof: Proof
+    broken: str = ""  # why it cannot be confirmed whatever is seen: it had moved without a goal
     receipt: StopReceipt | None = None
     over: threading.Event = field(default_factory=threading.Event)
 
@@ -46,24 +51,31 @@ class Stop:
 class Stopper:
     """Of one machine; several stops may be under way."""
 
-    def __init__(
-        self,
-        app: App,
-        controls: Controls,
-        watch: StandStill,
-        unready: Callable[[], str | None],
-        proof: Callable[[Stop], None],
-    ) -> None:
-        """`proof` is called in the stop's own thread, after its commands and again with the receipt."""
-        self._proof = proof
-        self._app, self._controls, self._watch, self._unready = app, controls, watch, unready
+    def __init__(self, app: App, controls: Controls, watch: StandStill, note: Callable[[Stop], None]) -> None:
+        """`note` is called in the stop's own thread: after its commands, and again with the receipt."""
+        self._note = note
+        self._app, self._controls, self._watch = app, controls, watch
         self._under_way: list[Stop] = []
+        self._kept = Receipts(app.site.state, app.machine)
+        self._keeping = threading.Lock()
         self._receipts = app.ros.publisher(StopReceipt, f"/{app.machine}/rc/receipts", depth=20, latched=True)
+        for data in self._kept.all():
+            self._receipts.publish(unpack(data, StopReceipt))
 
-    def begin(self, cause: str, *, latched: bool, run: int = 0, ended: Callable[[], bool] = lambda: True) -> Stop:
-        """Command the stop now and have it watched; returns at once."""
-        stop = Stop(cause, latched, run, ended, time.monotonic(), self._app.ros.now())
+    @property
+    def busy(self) -> bool:
+        """Whether a stop is under way."""
+        return bool(self._under_way)
+
+    def begin(
+        self, cause: str, *, latched: bool, run: int = 0, ended: Callable[[], bool] = lambda: True,
+        since: float | None = None, broken: str = "",
+    ) -> Stop:  # fmt: skip
+        """Command the stop now and have it watched; returns at once. `since`: see `StandStill.proof`."""
+        begun = time.monotonic()
         self._command(latched)
+        proof = self._watch.proof(begun, latched, since)
+        stop = Stop(cause, latched, run, ended, begun, self._app.ros.now(), proof, broken)
         if not self._under_way:
             self._watch.mark()
         self._under_way.append(stop)
@@ -77,10 +89,10 @@ class Stopper:
         self._controls.cancel_everything()
 
     def _prove(self, stop: Stop) -> None:
-        """Watch until the machine stands, repeating the commands; then tell."""
-        self._proof(stop)
+        """Watch until the stop is proven, repeating the commands; then tell."""
+        self._note(stop)
         now, again = stop.begun, stop.begun + AGAIN
-        while not self._seen(stop, now) and now - stop.begun < STOP_LIMIT:
+        while not self._seen(stop, now) and now - stop.begun < STOP_PROVEN:
             time.sleep(LOOK)
             now = time.monotonic()
             if self._app.ros.closing:
@@ -89,27 +101,37 @@ class Stopper:
                 again = now + AGAIN
                 self._command(stop.latched)
         stop.receipt = self._receipt(stop, now)
-        self._proof(stop)
+        self._note(stop)
         self._tell(stop.receipt)
         self._under_way.remove(stop)
         stop.over.set()
 
     def _seen(self, stop: Stop, now: float) -> bool:
-        return stop.ended() and self._watch.standing(now)
+        return stop.ended() and self._watch.proven(stop.proof, now)
 
     def _receipt(self, stop: Stop, now: float) -> StopReceipt:
-        confirmed = self._seen(stop, now)
-        obstacle = self._unready() or ("still moving" if self._watch.moving() else "its goal is still open")
+        seen, travel = self._seen(stop, now), self._watch.travel()
+        obstacle = stop.broken or ("its goal is still open" if not stop.ended() else self._watch.obstacle(now))
+        confirmed, unstamped = seen and not stop.broken, self._watch.unstamped
         return StopReceipt(
-            machine=self._app.machine, confirmed=confirmed, seconds=now - stop.begun, travel=self._watch.travel(),
-            cause=stop.cause, detail="" if confirmed else obstacle, stamp=stop.stamp,
-            latched=stop.latched or not confirmed, run=stop.run,
+            machine=self._app.machine, confirmed=confirmed, seconds=now - stop.begun, cause=stop.cause,
+            travel_joint=travel.joint, travel_rad=travel.angle, travel_m=travel.way,
+            detail="" if confirmed else obstacle, stamp=stop.stamp, latched=stop.latched or not confirmed, run=stop.run,
+            evidence=f"by arrival: {', '.join(unstamped)} not stamped" if unstamped else "",
         )  # fmt: skip
 
     def _tell(self, receipt: StopReceipt) -> None:
         STOPS.labels("yes" if receipt.confirmed else "no").inc()
         STOP_SECONDS.observe(receipt.seconds)
+        try:
+            with self._keeping:
+                self._kept.keep(pack(receipt))
+        except OSError as error:  # told all the same, with what is wrong: a run must not wait for a full disk
+            UNKEPT.inc()
+            receipt.evidence = "; ".join(filter(None, (receipt.evidence, f"not on the disk: {error.strerror}")))
         self._receipts.publish(receipt)
-        self._app.log.info("event=stop cause=%r confirmed=%s latched=%s seconds=%.3f travel=%.3f detail=%r",
-                           receipt.cause, receipt.confirmed, receipt.latched, receipt.seconds, receipt.travel,
-                           receipt.detail)  # fmt: skip
+        self._app.log.info(
+            "event=stop cause=%r confirmed=%s latched=%s seconds=%.3f joint=%s rad=%.3f m=%.3f detail=%r",
+            receipt.cause, receipt.confirmed, receipt.latched, receipt.seconds, receipt.travel_joint,
+            receipt.travel_rad, receipt.travel_m, receipt.detail,
+        )  # fmt: skip

@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
+from tms_core.border import STOP_PROVEN
 from tms_core.errors import SubtaskFailed
 from tms_core.fence import derived
 from tms_core.ros import LOST_TEXT, Call, Goal, Outcome, Peer
@@ -13,7 +14,7 @@ from tms_rp.trajectory import Trajectory
 SERVER_LIMIT = 3.0  # s for the gateway to be there
 ACCEPT_LIMIT = 5.0  # s for it to answer; it asks nobody before it does
 OVERRUN = 20.0  # s beyond the trajectory's own duration: the gateway gives up after 10 s and needs 5 s to stop
-STOP_LIMIT = 8.0  # s for a cancelled motion to have ended; the gateway gives itself 5 s
+STOP_LIMIT = STOP_PROVEN + 2.0  # s for a cancelled motion to have ended
 LOOK = 0.5  # s between looks whether the gateway is still there
 
 

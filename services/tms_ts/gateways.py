@@ -82,6 +82,8 @@ class Gateways:
             return f"process {machine}:rc is not there, see `tms logs {machine}:rc`"
         if state.latch:
             return f"{machine} is stopped ({state.latch})"
+        if state.by_hand:
+            return f"{state.by_hand} drives {machine} by hand"
         return "" if state.ready else f"{machine} is not ready: {state.reason}"
 
     def wait_alive(self, machine: str, seconds: float) -> None:
@@ -110,6 +112,11 @@ class Gateways:
         """Why the machine is stopped until it is re-armed; empty if it is not."""
         state = self._states.get(machine)
         return str(state.latch) if state is not None else ""
+
+    def by_hand(self, machine: str) -> str:
+        """Who drives the machine by hand; empty if nobody does."""
+        state = self._states.get(machine)
+        return str(state.by_hand) if state is not None else ""
 
     def _state(self, machine: str, state: Any) -> None:
         self._states[machine] = state

@@ -10,12 +10,13 @@ from tms_msg_db.msg import Event, Run
 from tms_msg_ts.srv import CancelRun, ResumePlan
 
 from tms_core.app import App
+from tms_core.border import STOP_PROVEN
 from tms_core.errors import TaskError
 from tms_ts.journal import Journal
 from tms_ts.machines import receipt_text
 from tms_ts.record import Header, Key, Past, Records
 
-STOP_LIMIT = 8.0  # s for the gateways to tell how they stopped the machines; they give themselves 5 s
+STOP_LIMIT = STOP_PROVEN + 3.0  # s for the gateways to tell how they stopped the machines
 LOOK = 0.05  # s
 RECEIPTS = 1000  # every gateway keeps its last 20 for late comers
 

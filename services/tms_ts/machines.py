@@ -11,6 +11,7 @@ from tms_msg_rc.msg import StopReceipt
 from tms_msg_rc.srv import StopMachine
 from tms_msg_ts.action import LeafNodeBase
 
+from tms_core.border import STOP_PROVEN
 from tms_core.errors import RosError
 from tms_core.fence import LEAVES, Owner
 from tms_core.ros import LOST_TEXT, Call, Outcome, Peer, Ros
@@ -21,7 +22,7 @@ from tms_ts.sent_goal import ACCEPT_LIMIT, SentGoal
 from tms_ts.world import GoalState
 
 SERVER_LIMIT = 10.0  # s for a subtask's server to be there
-STOP_LIMIT = 8.0  # s for a gateway to answer a stop
+STOP_LIMIT = STOP_PROVEN + 3.0  # s for a gateway to answer a stop
 GATEWAY_LIMIT = 3.0  # s for a gateway that was lost to be back
 DATABASE_LIMIT = 15.0  # s that a leaf waits for a database that is away
 ASK_AGAIN = 0.5  # s; also from a failure to the same goal: a loop around a leaf must not flood the history
@@ -302,5 +303,7 @@ class Machines:
 def receipt_text(receipt: StopReceipt) -> str:
     """A receipt in one line."""
     if receipt.confirmed:
-        return f"{receipt.machine} stood after {receipt.seconds:.2f} s and {receipt.travel:.3f} rad ({receipt.cause})"
+        way = f"{receipt.travel_rad:.3f} rad ({receipt.travel_joint})" if receipt.travel_joint else "0 rad"
+        how = f", {receipt.evidence}" if receipt.evidence else ""
+        return f"{receipt.machine} stood after {receipt.seconds:.2f} s, {way} and {receipt.travel_m:.2f} m{how} ({receipt.cause})"
     return f"{receipt.machine}: STOP UNCONFIRMED: {receipt.detail} ({receipt.cause})"

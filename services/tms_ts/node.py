@@ -270,6 +270,8 @@ class Scheduler:
             latch = self._gateways.latch(machine)
             if latch:
                 raise TaskError(f"{machine} is stopped ({latch}): re-arm it with `tms rearm {machine}`", "NOT_ARMED")
+            if who := self._gateways.by_hand(machine):
+                raise TaskError(f"{who} drives {machine} by hand: `tms give-back {machine}` first", "TAKEN")
 
     def _held_by(self, run_id: str) -> list[str]:
         with self._lock:

@@ -14,6 +14,7 @@ from tms_msg_db.msg import Run as RunRow
 from tms_msg_ts.action import ExecuteTask
 from tms_msg_ts.msg import NodeStatus, RunState
 
+from tms_core.border import STOP_PROVEN
 from tms_core.ros import Goal, Ros
 from tms_core.values import to_parameters
 from tms_ts.bt import IDLE, Node, Status, Tree, TreeError
@@ -30,7 +31,7 @@ CHANGES_A_TICK = 200  # node changes recorded of one tick; an endless loop makes
 FLOOD_TOLD = 10.0  # s between notes that changes are left out
 CHANGES_A_MESSAGE = 1000
 TICK_LIMIT = 0.4  # s without a tick after which the scheduler does not stand behind its motions any more
-SETTLE_LIMIT = 12.0  # s for goals to become terminal after a halt
+SETTLE_LIMIT = STOP_PROVEN + 7.0  # s for goals to become terminal after a halt
 
 RUNS = Counter("tms_ts_runs_total", "Runs by outcome", ["outcome"])
 TICKS = Histogram("tms_ts_tick_seconds", "Duration of a tick", buckets=(0.001, 0.005, 0.01, 0.05, 0.1, 0.25, 0.5))

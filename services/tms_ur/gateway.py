@@ -24,6 +24,7 @@ from tms_msg_ts.action import ExecuteTask
 from tms_msg_ts.msg import RunStates
 from tms_msg_ts.srv import AnswerQuestion, CancelRun, CheckTask
 
+from tms_core.border import STOP_PROVEN
 from tms_core.config import Site
 from tms_core.errors import RosError, TmsError
 from tms_core.frames import Frames
@@ -35,7 +36,7 @@ from tms_ur.data_models import Change, Record, Sensing
 from tms_ur.models import Event, Host, Place, Rearmed, Receipt, Run, Task, TaskText
 
 CALL_LIMIT = 4.0  # s for an answer of a module
-STOP_LIMIT = 8.0  # s; a machine's gateway gives itself 5 s to see it stand
+STOP_LIMIT = STOP_PROVEN + 3.0  # s for the receipt of a stop
 START_LIMIT = 30.0  # s for a run to begin: the scheduler may start its subtasks first
 PROCESS_LIMIT = 15.0  # s for a process to end and to be started
 FRAMES_PERIOD = 0.2  # s between looks at /tf: to be woken by each of its messages costs most of an idle console
@@ -197,7 +198,16 @@ class Gateway:
             answer = self._ros.call(StopMachine, f"/{machine}/rc/stop", request, STOP_LIMIT)
         except RosError as error:
             return Receipt(
-                machine=machine, confirmed=False, seconds=0.0, travel=0.0, cause=cause, detail=str(error), latched=False
+                machine=machine,
+                confirmed=False,
+                seconds=0.0,
+                travel_joint="",
+                travel_rad=0.0,
+                travel_m=0.0,
+                cause=cause,
+                detail=str(error),
+                evidence="",
+                latched=False,
             )
         return messages.receipt(answer.receipt)
 

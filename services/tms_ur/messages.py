@@ -54,8 +54,9 @@ def question(asked: Any) -> Question:
 
 def receipt(made: Any) -> Receipt:
     return Receipt(
-        machine=made.machine, confirmed=made.confirmed, seconds=round(made.seconds, 3), travel=round(made.travel, 4),
-        cause=made.cause, detail=made.detail, latched=made.latched,
+        machine=made.machine, confirmed=made.confirmed, seconds=round(made.seconds, 3),
+        travel_joint=made.travel_joint, travel_rad=round(made.travel_rad, 4), travel_m=round(made.travel_m, 3),
+        cause=made.cause, detail=made.detail, evidence=made.evidence, latched=made.latched,
     )  # fmt: skip
 
 

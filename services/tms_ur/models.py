@@ -173,9 +173,12 @@ class Receipt(Model):
     machine: str
     confirmed: bool = Field(description="the machine was seen to stand still")
     seconds: float = Field(description="s from the request until it stood")
-    travel: float = Field(description="largest motion meanwhile: rad of a joint, m of the machine")
+    travel_joint: str = Field(description="joint that went furthest meanwhile, empty if none did")
+    travel_rad: float = Field(description="rad that this joint went")
+    travel_m: float = Field(description="m that the machine went")
     cause: str
-    detail: str
+    detail: str = Field(description="why it is not confirmed")
+    evidence: str = Field(description="what it rests on, where that is less than stamped messages")
     latched: bool = Field(description="nothing moves until it is re-armed")
 
 

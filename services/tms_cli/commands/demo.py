@@ -1,14 +1,18 @@
 """`tms demo`: from nothing to a simulated excavator that has done one loading cycle."""
 
 import shutil
+from typing import TYPE_CHECKING
 
 import click
 
 from tms_cli import live, mesh, session, stored_records
-from tms_cli.commands import run, task, up
+from tms_cli.commands import rearm, run, task, up
 from tms_cli.words import say
-from tms_core.config import CONFIGS
+from tms_core.config import CONFIGS, Site
 from tms_ur import address
+
+if TYPE_CHECKING:
+    from tms_core.ros import Ros
 
 PARAMETERS = CONFIGS / "parameters" / "zx200.yaml"
 TASK = CONFIGS / "tasks" / "one_loading_cycle.xml"
@@ -31,6 +35,7 @@ def command(ctx: click.Context, as_json: bool) -> None:
     _say(up.mesh_line(site, started))
     mesh.wait_ready(site, lambda line: _say(f"  {line}"))
     with session.ros() as node:
+        _arm(node, site)
         _say(say("records: {done}", done=stored_records.summary(stored_records.load_file(node, PARAMETERS))))
         stored = task.store(node, str(TASK), "One loading cycle of the zx200")
         _say(task.stored_line(stored))
@@ -41,6 +46,17 @@ def command(ctx: click.Context, as_json: bool) -> None:
         _say(say("`. .venv/bin/activate` puts the command tms on the path"))
     _say(say("the mesh goes on running: `make status` looks at it, `make down` ends it"))
     ctx.exit(end.exit_code)
+
+
+def _arm(node: "Ros", site: Site) -> None:
+    """A stand-in of a new clone was never armed; nobody can be in its way. A machine that was stopped stays so."""
+    from tms_msg_rc.msg import MachineState
+
+    for machine in site.file.machines if site.file.backend == "sim" else ():
+        if not rearm.never_armed(session.latched(node, MachineState, f"/{machine}/rc/state")):
+            continue
+        rearm.ask(node, machine, rearm.ask(node, machine).token)
+        _say(say("{machine} is a stand-in and was never armed on this PC: armed now", machine=machine))
 
 
 def _say(text: str) -> None:

@@ -1,4 +1,4 @@
-"""`tms rearm`: let a stopped machine move again, in two steps, by a person who has looked at it."""
+"""`tms rearm`: let stopped machines move again, in two steps, by a person who has looked at them."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -6,10 +6,13 @@ import click
 
 from tms_cli import session
 from tms_cli.words import say
-from tms_core.errors import ConfigError
+from tms_core.errors import TmsError
+from tms_core.permit import NO_NOTE
 
 if TYPE_CHECKING:
     from tms_core.ros import Ros
+
+ARMED = "NOT_STOPPED"  # code of a gateway whose machine is armed already
 
 
 def ask(node: "Ros", machine: str, token: str = "") -> Any:
@@ -23,30 +26,45 @@ def ask(node: "Ros", machine: str, token: str = "") -> Any:
     return session.call(node, Rearm, f"/{machine}/rearm", token=token)
 
 
+def never_armed(state: Any) -> bool:
+    """Whether a machine is stopped only because no note of this PC says how it was left."""
+    return state is not None and state.latch == NO_NOTE
+
+
 @click.command()
-@click.argument("machine")
+@click.argument("machines", nargs=-1)
+@click.option("--all", "every", is_flag=True, help="Every machine of the site that is stopped, one after another.")
 @click.option("--yes", is_flag=True, help="Do not ask; for scripts that have made sure that nobody is in danger.")
 @session.json_option
-def command(machine: str, yes: bool, as_json: bool) -> None:
-    """Arm a machine again after a stop.
+def command(machines: tuple[str, ...], every: bool, yes: bool, as_json: bool) -> None:
+    """Arm machines again after a stop, or after the first start: nobody knows then how a machine was left.
 
-    Shows why it was stopped and asks. Refused while it has an open goal, still moves, is not heard, or while the
+    Shows why each was stopped and asks. Refused while it has an open goal, still moves, is not heard, or while the
     software stop is pressed.
 
     \b
-    Example:
+    Examples:
       tms rearm zx200
+      tms rearm --all
     """
-    machines = session.site().file.machines
-    if machine not in machines:
-        raise ConfigError(f"the site has no machine '{machine}' (there: {', '.join(machines) or 'none'})")
+    chosen = session.machines(machines, every)
     with session.ros() as node:
-        first = ask(node, machine)
-        click.echo(say("{machine} was stopped: {cause}", machine=machine, cause=first.cause), err=True)
-        if not yes:
-            click.confirm(say("Is it safe that {machine} moves again?", machine=machine), abort=True, err=True)
-        ask(node, machine, first.token)
+        armed = [one for machine in chosen if (one := _rearm(node, machine, yes, optional=every)) is not None]
     if as_json:
-        session.show_json({"machine": machine, "armed": True, "cause": first.cause})
-    else:
-        click.echo(say("{machine} is armed", machine=machine))
+        session.show_json(armed if every or len(armed) != 1 else armed[0])
+
+
+def _rearm(node: "Ros", machine: str, yes: bool, optional: bool) -> dict[str, Any] | None:
+    """None for a machine that is armed already, where that is no mistake."""
+    try:
+        first = ask(node, machine)
+    except TmsError as error:
+        if optional and error.code == ARMED:
+            return None
+        raise
+    click.echo(say("{machine} was stopped: {cause}", machine=machine, cause=first.cause), err=True)
+    if not yes:
+        click.confirm(say("Is it safe that {machine} moves again?", machine=machine), abort=True, err=True)
+    ask(node, machine, first.token)
+    click.echo(say("{machine} is armed", machine=machine), err=True)
+    return {"machine": machine, "armed": True, "cause": first.cause}

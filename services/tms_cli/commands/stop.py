@@ -40,7 +40,10 @@ def as_dict(receipt: Any) -> dict[str, Any]:
         "machine": receipt.machine,
         "confirmed": receipt.confirmed,
         "seconds": round(receipt.seconds, 3),
-        "travel": round(receipt.travel, 4),
+        "travel_joint": receipt.travel_joint,
+        "travel_rad": round(receipt.travel_rad, 4),
+        "travel_m": round(receipt.travel_m, 3),
+        "evidence": receipt.evidence,
         "latched": receipt.latched,
         "cause": receipt.cause,
         "detail": receipt.detail,
@@ -51,10 +54,11 @@ def as_dict(receipt: Any) -> dict[str, Any]:
 def _line(receipt: Any) -> str:
     if receipt.confirmed:
         return say(
-            "{machine}: stands, after {seconds:.2f} s and {travel:.3f} rad or m; latched",
+            "{machine}: stands, after {seconds:.2f} s and {angle:.3f} rad, {way:.2f} m; latched",
             machine=receipt.machine,
             seconds=receipt.seconds,
-            travel=receipt.travel,
+            angle=receipt.travel_rad,
+            way=receipt.travel_m,
         )
     line = say("{machine}: STOP UNCONFIRMED: {detail}", machine=receipt.machine, detail=receipt.detail)
     return click.style(line, fg="red", bold=True)

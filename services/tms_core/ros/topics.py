@@ -4,7 +4,9 @@ rclpy's own warnings of ends that do not fit are switched off: they are events t
 topic's cost every wake-up 10 us, three quarters of it all. `mismatches` tells the same when it is asked.
 """
 
+import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from itertools import product
 from typing import Any
 
@@ -20,6 +22,15 @@ from tms_core.ros.loop import Loop
 
 RCLPYS_OWN = "/parameter_events"
 UNKNOWN = "_NODE_NAME_UNKNOWN_"  # of an end that discovery has found a moment before its node
+
+
+@dataclass(frozen=True)
+class Arrival:
+    """A message with what the middleware knows of its way."""
+
+    message: Message
+    received: float  # s, monotonic
+    number: int  # of the publisher's messages
 
 
 class Topics(Loop):
@@ -90,17 +101,31 @@ class Topics(Loop):
 
         Messages do not wake the executor, which costs more than to take them.
         """
+        arrivals = self.sample_arrivals(message_type, topic, depth)
+        return lambda: [arrival.message for arrival in arrivals()]
+
+    def sample_arrivals(self, message_type: InterfaceType, topic: str, depth: int = 1) -> Callable[[], list[Arrival]]:
+        """As `sample`, with when each message came and its number."""
         subscription = self._subscribed(
             message_type, topic, _unheard, quality.topic(depth, False, best_effort=True), _Asleep()
         )
 
-        def news() -> list[Message]:
-            found: list[Message] = []
-            while len(found) < depth and (message := _take(subscription)) is not None:
-                found.append(message)
+        def news() -> list[Arrival]:
+            found: list[Arrival] = []
+            while len(found) < depth and (arrival := _arrival(subscription)) is not None:
+                found.append(arrival)
             return found
 
         return news
+
+    def publishers(self, topic: str) -> list[tuple[str, str]]:
+        """Node and type of each publisher of a topic in the whole graph."""
+        found = self.node.get_publishers_info_by_topic(topic)
+        return [(f"{end.node_namespace.rstrip('/')}/{end.node_name}", end.topic_type) for end in found]
+
+    def publisher_count(self, topic: str) -> int:
+        """How many publishers a topic has in the whole graph."""
+        return int(self.node.count_publishers(topic))
 
     def subscribe_raw(self, message_type: InterfaceType, topic: str, heard: Callable[[bytes], None]) -> Any:
         """Call `heard` with each message as it is on the wire, with the QoS of those who publish now."""
@@ -177,9 +202,19 @@ class _Asleep(CallbackGroup):  # type: ignore[misc]
 
 def _take(subscription: Any) -> Message | None:
     """The oldest message that waits."""
+    arrival = _arrival(subscription)
+    return None if arrival is None else arrival.message
+
+
+def _arrival(subscription: Any) -> Arrival | None:
+    """The oldest message that waits, and how it came."""
     with subscription.handle:
         taken = subscription.handle.take_message(subscription.msg_type, False)
-    return None if taken is None else taken[0]
+    if taken is None:
+        return None
+    message, way = taken
+    waited = max(0.0, (time.time_ns() - way["received_timestamp"]) * 1e-9)  # the middleware tells wall time
+    return Arrival(message, time.monotonic() - waited, way["publication_sequence_number"])
 
 
 def _unheard(message: Message) -> None:

@@ -1,0 +1,142 @@
+"""One quantity of a machine, such as a joint's angle or the place of its base, and whether it moved. Pure logic."""
+
+import math
+from collections import deque
+from dataclasses import dataclass
+
+WORST = 0.3  # s; the worst speed within this time counts, not the last message
+KEPT = 1.2  # s of samples
+SPAN = 0.8  # share of WORST that samples must span before positions and velocities are compared
+CLEARLY = 2.0  # times the limit: slower motions may be told either way
+FASTER = 1.5  # times its top speed: nothing goes further from one sample to the next
+BETWEEN = 0.004  # rad or m that a motion may differ from what the velocities at both its ends allow
+
+Place = tuple[float, ...]  # rad, or m; empty where only a speed is told
+
+
+@dataclass(frozen=True)
+class Limits:
+    """When the quantity counts as standing."""
+
+    speed: float  # rad/s or m/s, of the machine's own time
+    top: float = float("inf")  # rad/s or m/s that it can go
+    resolution: float = 0.0  # rad or m by which positions jitter
+    turns: bool = False  # an angle that may wrap
+    scale: float = 1.0  # seconds of the machine in one second: the speed of a stand-in
+
+
+@dataclass(frozen=True)
+class Seen:
+    """One sample; times are seconds of the receiver's monotonic clock."""
+
+    received: float
+    stamped: float  # when it was measured, as far as its stamp tells
+    place: Place
+    speed: float | None  # rad/s or m/s as told
+    fast: bool  # it showed a motion, by its speed or against the sample before
+
+
+class Channel:
+    """Fed in order of time."""
+
+    def __init__(self, limits: Limits) -> None:
+        self._limits = limits
+        self._seen: deque[Seen] = deque()
+        self.surprised = float("-inf")  # when it was last somewhere that no motion leads to, as a replayed record is
+
+    @property
+    def last(self) -> Seen | None:
+        """The newest sample."""
+        return self._seen[-1] if self._seen else None
+
+    def add(self, received: float, stamped: float, place: Place, speed: float | None) -> None:
+        """Take one sample."""
+        before = self.last
+        fast = speed is not None and abs(speed) >= self._limits.speed
+        fast = fast or (before is not None and self._moved(before.received, before.stamped, before.place,
+                                                           received, stamped, place))  # fmt: skip
+        if before is not None and before.place and self._leaps(before, stamped - before.stamped, place, speed):
+            self.surprised = received
+        self._seen.append(Seen(received, stamped, place, speed, fast))
+        while received - self._seen[0].received > KEPT:
+            self._seen.popleft()
+
+    def clear(self) -> None:
+        """Forget everything: what was heard belongs to another clock."""
+        self._seen.clear()
+
+    def moving(self) -> bool:
+        """Whether any of the last samples showed a motion; unknown counts as moving."""
+        recent = self._recent()
+        if len(recent) < 2:
+            return True
+        first, last = recent[0], recent[-1]
+        return any(one.fast for one in recent) or self._moved(
+            first.received, first.stamped, first.place, last.received, last.stamped, last.place
+        )
+
+    def stood_since(self, start: float, seconds: float) -> bool:
+        """Whether samples received and measured after `start` span `seconds` of standing, up to the newest."""
+        if self.moving():
+            return False
+        after = [one for one in self._seen if one.received > start and one.stamped > start]
+        fast = max((i for i, one in enumerate(after) if one.fast), default=-1)
+        still = after[fast + 1 :]
+        if len(still) < 2:
+            return False
+        first, last = still[0], still[-1]
+        return min(last.received - first.received, last.stamped - first.stamped) >= seconds
+
+    def disagreement(self) -> str:
+        """Which of position and velocity says motion while the other one says none; empty if they agree."""
+        recent = self._recent()
+        if not recent or not recent[0].place or recent[-1].received - recent[0].received < SPAN * WORST:
+            return ""
+        told = [abs(one.speed) for one in recent if one.speed is not None]
+        if len(told) < len(recent):
+            return ""
+        first, last, limit = recent[0], recent[-1], self._limits.speed
+        seconds = last.stamped - first.stamped
+        if seconds <= 0:
+            return ""
+        away = max(0.0, self._distance(first.place, last.place) - self._limits.resolution)
+        mean = away / (seconds * self._limits.scale)
+        if mean > CLEARLY * limit and max(told) < limit:
+            return "positions move, velocities say that it stands"
+        if min(told) > CLEARLY * limit and mean < limit:
+            return "velocities say that it moves, positions stand"
+        return ""
+
+    def _recent(self) -> list[Seen]:
+        newest = self.last
+        return [] if newest is None else [one for one in self._seen if newest.received - one.received <= WORST + 1e-9]
+
+    def _moved(self, received: float, stamped: float, place: Place, then: float, measured: float, now: Place) -> bool:
+        """Whether the way between two samples is longer than a standing machine may have gone."""
+        seconds = max(0.0, min(then - received, measured - stamped)) * self._limits.scale
+        return self._distance(place, now) > self._limits.speed * seconds + self._limits.resolution + 1e-9
+
+    def _leaps(self, before: Seen, seconds: float, place: Place, speed: float | None) -> bool:
+        """Whether no motion leads from one sample to the next."""
+        limits, way = self._limits, self._distance(before.place, place)
+        seconds, spare = seconds * limits.scale, limits.resolution + BETWEEN
+        if way > FASTER * limits.top * seconds + spare:
+            return True
+        if speed is None or before.speed is None or seconds > WORST / 2 * limits.scale:
+            return False
+        if len(place) == 1:  # with its direction
+            way = math.remainder(place[0] - before.place[0], math.tau) if limits.turns else place[0] - before.place[0]
+            speeds = before.speed, speed
+        else:
+            speeds = abs(before.speed), abs(speed)
+        return not min(speeds) * seconds - spare <= way <= max(speeds) * seconds + spare
+
+    def _distance(self, a: Place, b: Place) -> float:
+        return distance(a, b, self._limits.turns)
+
+
+def distance(a: Place, b: Place, turns: bool = False) -> float:
+    """How far two positions are apart [rad or m]; angles that turn are apart by the shorter way."""
+    if turns:
+        return abs(math.remainder(b[0] - a[0], math.tau))
+    return math.dist(a, b)

@@ -1,0 +1,93 @@
+"""One gateway a machine: each asserts that it is there, and one that finds another at work does not serve."""
+
+import os
+import secrets
+import socket
+import time
+
+from prometheus_client import Gauge
+from tms_msg_rc.msg import GatewayClaim
+
+from tms_core.app import App
+from tms_core.permit import BEATS, LEASE
+
+SETTLE = 0.4  # s for gateways to find each other; one that is found later is told then
+LOOK = 0.1  # s
+GATEWAYS = Gauge("tms_rc_gateways", "Gateways of this machine, this one included; more than one is a mistake")
+
+
+class Claim:
+    """Of this process. All but `rival` and `serve` happens on the executor thread."""
+
+    def __init__(self, app: App) -> None:
+        self._app, self._id, self._serving = app, secrets.token_hex(8), False
+        self._where = f"pid {os.getpid()} on {socket.gethostname()}"
+        self._others: dict[str, GatewayClaim] = {}
+        self._alive, self._beats = 1, 0
+        GATEWAYS.set(1)
+        topic = f"/{app.machine}/rc/claim"
+        self._publisher = app.ros.lease_publisher(GatewayClaim, topic, LEASE)
+        app.ros.on_executor(
+            lambda: app.ros.lease_subscribe(GatewayClaim, topic, LEASE, self._on_claim, self._on_liveliness)
+        )
+        self._tell()
+        app.ros.pulse.add(self._beat)
+
+    @property
+    def rival(self) -> str:
+        """Another gateway for this machine, empty if there is none."""
+        other = self._other()
+        return f"another gateway for {self._app.machine} runs ({other.where})" if other is not None else ""
+
+    def serve(self) -> bool:
+        """Wait until no other gateway is at work, then say that this one is; False when the process ends before."""
+        self._app.stopping.wait(SETTLE)
+        told = False
+        while not self._app.stopping.is_set():
+            other = self._other()
+            if other is None or not (other.serving or other.id < self._id):
+                break
+            if not told:
+                self._app.log.error("event=second_gateway other=%r action='does not serve'", other.where)
+                told = True
+            time.sleep(LOOK)
+        if self._app.stopping.is_set():
+            return False
+        self._serving = True
+        self._tell()
+        return True
+
+    def _other(self) -> GatewayClaim | None:
+        others = list(self._others.values())
+        return others[-1] if others and self._alive > 1 else None
+
+    def _tell(self) -> None:
+        self._publisher.publish(GatewayClaim(id=self._id, serving=self._serving, where=self._where))
+
+    def _beat(self) -> None:
+        self._beats += 1
+        if self._beats % BEATS == 0:
+            self._publisher.assert_liveliness()
+
+    def _on_claim(self, claim: GatewayClaim) -> None:
+        if claim.id == self._id:
+            return
+        self._others.pop(claim.id, None)
+        self._others[claim.id] = claim
+        self._alive = max(self._alive, 2)
+        self._judge()
+
+    def _on_liveliness(self, alive: int, _not_alive: int) -> None:
+        self._alive = max(1, alive)
+        if alive <= 1:
+            self._others.clear()
+        self._judge()
+
+    def _judge(self) -> None:
+        other = self._other()
+        GATEWAYS.set(1 if other is None else self._alive)
+        if other is None or not self._serving or not other.serving:
+            return
+        if other.id < self._id:  # both were at work before they found each other: one of them ends, and comes back
+            self._app.log.error("event=second_gateway other=%r action='ends'", other.where)
+            self._app.ros.failed.set()

@@ -1,0 +1,108 @@
+"""Whether the machine does what it was told: joints that do not follow, or go the wrong way, are told at once. Pure.
+
+Controllers differ in how far they run behind their reference, so nothing is compared with the reference of this moment
+but with what must have been reached after dead time and lag, and with the way as a whole.
+"""
+
+import bisect
+import math
+from collections import deque
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+QUIET = 0.8  # s for which a joint that is behind must not have moved at all
+QUIET_ANGLE = 0.005  # rad that count as no motion
+BEHIND = 0.05  # rad
+OFF_PATH = 0.2  # rad outside of everything the reference has been through
+SMALLEST = 0.003  # rad of a reference that must show as motion
+
+
+@dataclass(frozen=True)
+class Way:
+    """The reference of one joint: angles [rad] at times [s] from its begin."""
+
+    times: Sequence[float]
+    angles: Sequence[float]
+
+    def at(self, time: float) -> float:
+        """Angle at a time, straight between the points."""
+        i = bisect.bisect_right(self.times, time)
+        if i == 0:
+            return self.angles[0]
+        if i == len(self.times):
+            return self.angles[-1]
+        gap = self.times[i] - self.times[i - 1]
+        share = (time - self.times[i - 1]) / gap if gap > 0 else 1.0
+        return self.angles[i - 1] + (self.angles[i] - self.angles[i - 1]) * share
+
+    def hull(self, time: float) -> tuple[float, float]:
+        """Lowest and highest angle up to a time."""
+        passed = [angle for at, angle in zip(self.times, self.angles, strict=True) if at <= time]
+        passed += [self.angles[0], self.at(time)]
+        return min(passed), max(passed)
+
+
+def ways(
+    names: Sequence[str], points: Sequence[tuple[float, Sequence[float]]], start: Mapping[str, float]
+) -> dict[str, Way]:
+    """The reference of each joint that is known; points are times [s] and angles [rad] in the order of `names`.
+
+    Angles that turn for ever may be told some whole turns away from where the joint is.
+    """
+    found = {}
+    for i, name in enumerate(names):
+        if name not in start:
+            continue
+        begin = start[name]
+        turns = round((begin - points[0][1][i]) / math.tau) * math.tau
+        times = [0.0, *(time for time, _ in points if time > 0)]
+        angles = [begin, *(angles[i] + turns for time, angles in points if time > 0)]
+        found[name] = Way(times, angles)
+    return found
+
+
+class Follower:
+    """Looked at while one goal runs; times are monotonic seconds."""
+
+    def __init__(self, found: Mapping[str, Way], reached: float, begun: float, scale: float = 1.0) -> None:
+        """`reached`: s after which a joint is where its reference was, dead time and lag; `scale` of a stand-in."""
+        self._ways, self._reached, self._begun, self._scale = dict(found), reached, begun, scale
+        self._seen: dict[str, deque[tuple[float, float]]] = {name: deque() for name in found}
+
+    def should_have_moved(self, now: float) -> bool:
+        """Whether the reference has moved by now."""
+        passed = (now - self._begun) * self._scale
+        return any(max(map(abs, (high - way.angles[0], low - way.angles[0]))) > SMALLEST
+                   for way in self._ways.values() for low, high in [way.hull(passed)])  # fmt: skip
+
+    def moves(self, now: float) -> bool:
+        """Whether a goal should be changing what is heard now: it is not over yet."""
+        last = max((way.times[-1] for way in self._ways.values()), default=0.0)
+        return (now - self._begun) * self._scale < last
+
+    def look(self, now: float, angles: Mapping[str, float]) -> str | None:
+        """What is wrong with where the joints are [rad], None if nothing."""
+        for name, way in self._ways.items():
+            if name not in angles:
+                continue
+            wrong = self._stalled(name, way, now, angles[name]) or self._off(name, way, now, angles[name])
+            if wrong:
+                return wrong
+        return None
+
+    def _stalled(self, name: str, way: Way, now: float, angle: float) -> str | None:
+        seen = self._seen[name]
+        seen.append((now, angle))
+        while len(seen) > 1 and now - seen[1][0] >= QUIET:
+            seen.popleft()
+        due = way.at((now - self._begun) * self._scale - self._reached)
+        past = [at for _, at in seen]
+        if now - seen[0][0] < QUIET or abs(due - angle) <= BEHIND or max(past) - min(past) > QUIET_ANGLE:
+            return None
+        return f"STALLED: {name} stands at {angle:.3f} rad, it should have passed {due:.3f} rad"
+
+    def _off(self, name: str, way: Way, now: float, angle: float) -> str | None:
+        low, high = way.hull((now - self._begun) * self._scale)
+        if low - OFF_PATH <= angle <= high + OFF_PATH:
+            return None
+        return f"OFF_PATH: {name} is at {angle:.3f} rad, its way has been between {low:.3f} and {high:.3f} rad"

@@ -1,0 +1,60 @@
+"""Keeps on disk what the latch is: the last word counts, what cannot be kept is told."""
+
+import threading
+
+from tms_core.app import App
+from tms_rc.latch import Latch
+from tms_rc.memory import Memory
+from tms_rc.stopper import UNKEPT
+
+
+class Notes:
+    """Between a machine's latch and its memory."""
+
+    def __init__(self, app: App, memory: Memory, latch: Latch) -> None:
+        self._app, self._memory, self._latch = app, memory, latch
+        self._writing = threading.Lock()
+        self._kept: tuple[str, str, int] | None = None  # what the disk says
+        self.holder, self.run = "", 0  # who may move the machine now
+
+    def keep(self) -> str | None:
+        """Have what is so now on the disk; why it is not there."""
+        with self._writing:
+            now = (self._latch.cause, self.holder, self.run)
+            if now == self._kept:
+                return None
+            try:
+                if self._latch.cause:
+                    self._memory.latch(self._latch.cause)
+                else:
+                    self._memory.arm(self.holder, self.run)
+            except OSError as error:
+                self._kept = None
+                UNKEPT.inc()
+                self._app.log.error("event=note_not_kept reason=%r", str(error))
+                return f"the note of its state cannot be written ({error.strerror}): make room on the disk of this PC"
+            self._kept = now
+        return None
+
+    def soon(self) -> None:
+        """`keep`, from the executor thread."""
+        threading.Thread(target=self.keep, name="note", daemon=True).start()
+
+    def hold(self, holder: str, run: int) -> str | None:
+        """Before a goal leaves: whose it is has to be on the disk; why it is not there."""
+        self.holder, self.run = holder, run
+        return self.keep()
+
+    def release(self) -> None:
+        """Nobody's goal moves the machine any more."""
+        self.holder, self.run = "", 0
+        self.soon()
+
+    def take(self, who: str) -> str | None:
+        """Who drives by hand; why it is not on the disk."""
+        try:
+            self._memory.take(who)
+        except OSError as error:
+            UNKEPT.inc()
+            return f"the note of who drives cannot be written ({error.strerror}): make room on the disk of this PC"
+        return None

@@ -1,0 +1,99 @@
+"""The start of a gateway: nobody knows what the last one left moving, so it is stopped, proven, and held or latched."""
+
+import time
+
+from tms_core.app import App
+from tms_core.border import STOP_PROVEN
+from tms_core.fence import Owner
+from tms_core.ros import LOST_TEXT
+from tms_rc.guard import Guard, Kind
+from tms_rc.latch import ANY_LEAF, UNKNOWN_RUN
+from tms_rc.memory import Left
+from tms_rc.stopper import Stop
+
+REACHED = 5.0  # s for the machine's servers to be there
+LEFT_MOVING = 2.0  # s that a machine that was left armed and idle is watched for a motion
+RUN_TOLD = 3.0  # s to hear of the run whose machine was stopped, before it is latched
+LOOK = 0.02  # s
+
+
+class Recovery:
+    """Runs in a thread of its own; `claimed` and what it starts there run on the executor thread."""
+
+    def __init__(self, app: App, guard: Guard, left: Left) -> None:
+        self._app, self._guard, self._left = app, guard, left
+        self._open = True  # whether the last gateway may have left a motion of a run that has not told of itself yet
+        self._stop: Stop | None = None
+        self._begun = time.monotonic()
+        guard.run_told = self.claimed
+        guard.by_hand = left.taken
+        if left.latched:
+            guard.vigil.begin()
+
+    @property
+    def _cause(self) -> str:
+        held = f" while {self._left.holder} held it" if self._left.holder else ""
+        return f"{LOST_TEXT}: {self._app.machine}:rc was restarted{held}"
+
+    def run(self) -> None:
+        """Cancel whatever runs; stop a machine that a run held, or that moves."""
+        guard, app = self._guard, self._app
+        deadline = time.monotonic() + REACHED
+        self._command()
+        while not guard.controls.reachable() and time.monotonic() < deadline and not app.stopping.wait(LOOK):
+            pass
+        self._command()
+        if self._left.holder:
+            app.ros.on_executor(lambda: self._take_over(self._left.run or UNKNOWN_RUN))
+        deadline = time.monotonic() + (RUN_TOLD if self._left.holder else LEFT_MOVING)
+        while self._open and guard.active is None and time.monotonic() < deadline:
+            if app.stopping.wait(LOOK):
+                return
+            if self._stop is None and guard.watch.moved_at > self._begun:
+                deadline = time.monotonic() + RUN_TOLD
+                app.ros.on_executor(lambda: self._take_over(UNKNOWN_RUN))
+        app.ros.on_executor(self._close)
+        self._release()
+
+    def _release(self) -> None:
+        """Whoever stood in for the lost gateway may have pressed the machine's own stop: a held machine goes on."""
+        stop, guard = self._stop, self._guard
+        if stop is None or not stop.over.wait(STOP_PROVEN + 1.0) or stop.receipt is None:
+            return
+        if stop.receipt.confirmed and not guard.latch.cause:
+            guard.controls.emergency(False)
+
+    def _command(self) -> None:
+        controls = self._guard.controls
+        controls.zero()
+        if self._left.latched:
+            controls.emergency(True)
+        controls.cancel_everything()
+
+    def claimed(self, run: int) -> None:
+        """A scheduler stands behind a run: the machine is held for it, if it may have been left moving."""
+        if not self._open or self._guard.active is not None:
+            return
+        self._open = False
+        if self._left.run and run != self._left.run:
+            self._guard.stop_now(f"{self._cause}, and another run took it", Kind.LATCH)
+            return
+        self._guard.latch.keep(self._cause, Owner(run, ANY_LEAF))
+        if self._stop is None or self._stop.run != run:
+            self._begin(run)
+
+    def _take_over(self, run: int) -> None:
+        if self._open and self._guard.active is None:
+            self._guard.latch.keep(self._cause, Owner(run, ANY_LEAF))
+            self._begin(run)
+
+    def _begin(self, run: int) -> None:
+        number = 0 if run == UNKNOWN_RUN else run
+        # What was commanded is not known: unless a motion is seen, the proof waits until every motion must be over.
+        self._stop = self._guard.stop_now(self._cause, Kind.PLAIN, run=number, since=self._begun)
+
+    def _close(self) -> None:
+        """Whose motion was stopped is known by now, or it was nobody's."""
+        if self._open and self._stop is not None and self._guard.active is None:
+            self._guard.stop_now(f"{self._cause}, and no run told of it", Kind.LATCH, since=self._begun)
+        self._open = False

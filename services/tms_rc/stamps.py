@@ -1,0 +1,77 @@
+"""The stamps of one source: what they mean on this PC's clock, and whether they can be believed. Pure logic."""
+
+from dataclasses import dataclass
+from enum import Enum
+
+from tms_core.models import Stamps
+
+AHEAD = 1.0  # s that a stamp may be ahead of its estimated offset
+BACK = 0.5  # s that a stamp may be before the last one without a new clock behind it
+REMEMBERED = 30.0  # s for which the smallest delay is remembered: clocks drift
+CLOCKS = {"utc": "the clock of the PC that stamps them (UTC)", "since_start": "the simulator's clock"}
+
+
+class Verdict(Enum):
+    """What a stamp says of its message."""
+
+    NEW = "measured after the one before"
+    REPEATED = "not measured after the one before"
+    NEW_CLOCK = "of another clock than the ones before"
+
+
+@dataclass(frozen=True)
+class Judged:
+    """`measured` is on this PC's monotonic clock [s]; `why` tells of a new clock."""
+
+    verdict: Verdict
+    measured: float
+    why: str = ""
+
+
+class StampClock:
+    """Estimates the offset of a source's clock: the smallest delay seen between measuring and hearing."""
+
+    def __init__(self, kind: Stamps) -> None:
+        self.kind = kind
+        self._last: float | None = None
+        self._delay: float | None = None  # s, smallest of this period
+        self._delay_before: float | None = None  # and of the one before
+        self._begun = 0.0
+
+    def judge(self, received: float, stamp: float) -> Judged:
+        """Take one stamp [s of its own clock]; `received` is monotonic [s]."""
+        if self.kind == "none":
+            return Judged(Verdict.NEW, received)
+        delay, known = received - stamp, self._offset()
+        if known is not None and known - delay > AHEAD:
+            return self._begin(received, stamp, f"their stamps are {known - delay:.1f} s ahead of {CLOCKS[self.kind]}")
+        if self._last is not None and stamp < self._last - BACK:
+            why = f"{CLOCKS[self.kind]} jumped back by {self._last - stamp:.1f} s"
+            return self._begin(received, stamp, why)
+        if self._last is not None and stamp <= self._last:
+            return Judged(Verdict.REPEATED, self._last + (known or 0.0))
+        self._last = stamp
+        self._learn(received, delay)
+        return Judged(Verdict.NEW, stamp + self._known())
+
+    def _begin(self, received: float, stamp: float, why: str) -> Judged:
+        """A new epoch: nothing that was learnt of the old clock holds."""
+        self._last, self._delay, self._delay_before, self._begun = stamp, received - stamp, None, received
+        return Judged(Verdict.NEW_CLOCK, received, why)
+
+    def _learn(self, received: float, delay: float) -> None:
+        if self._delay is None:
+            self._delay, self._begun = delay, received
+        elif received - self._begun > REMEMBERED:
+            self._delay_before, self._delay, self._begun = self._delay, delay, received
+        else:
+            self._delay = min(self._delay, delay)
+
+    def _offset(self) -> float | None:
+        found = [one for one in (self._delay, self._delay_before) if one is not None]
+        return min(found) if found else None
+
+    def _known(self) -> float:
+        known = self._offset()
+        assert known is not None, "learnt just before"
+        return known

@@ -1,0 +1,135 @@
+"""What is heard of the machine: ROS messages of every source into samples, and who else publishes them."""
+
+import math
+import time
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from geometry_msgs.msg import PoseStamped
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import Imu, JointState
+
+from tms_core.app import App
+from tms_core.models import Border
+from tms_core.ros.topics import Arrival
+from tms_rc.channel import Place
+from tms_rc.source import LABELS, Sample
+from tms_rc.standstill import HEADING, IMU, JOINTS, ODOM, PLACE, POSE, TURNING, StandStill, yaw_of
+
+DEPTH = 10  # messages of a source that may come between two looks
+VOICES = 0.25  # s between looks at who publishes
+
+Numbers = tuple[Mapping[str, Place], Mapping[str, float]]  # places and speeds by channel
+
+
+class View:
+    """Takes what the machine has told since the last look, at every beat of the pulse: no callback delays it."""
+
+    def __init__(self, app: App, watch: StandStill) -> None:
+        self._app, self._watch = app, watch
+        border = app.site.border(app.machine)
+        self._names = {border.joints.get(name, name): name for name in app.site.model_of(app.machine).joints}
+        self._topics = {name: f"/{app.machine}/{getattr(border, name)}" for name in border.sources}
+        self._news = [
+            (name, app.ros.sample_arrivals(_type(name, border), topic, DEPTH), self._reader(name, border))
+            for name, topic in self._topics.items()
+        ]
+        self._counted = 0.0  # monotonic
+
+    def look(self) -> None:
+        """Take what waits."""
+        for name, news, read in self._news:
+            for arrival in news():
+                self._watch.take(name, _sample(arrival, *read(arrival.message)))
+        if time.monotonic() - self._counted >= VOICES:
+            self._counted = time.monotonic()
+            for name, topic in self._topics.items():
+                self._count(name, topic)
+
+    def _count(self, name: str, topic: str) -> None:
+        """Whether somebody else speaks for the machine. Its own publisher, killed, counts until discovery drops it."""
+        source = self._watch.sources[name]
+        count = self._app.ros.publisher_count(topic)
+        if count < 2:
+            source.publishers = ()
+        elif len(source.publishers) != count:
+            source.publishers = tuple(node for node, _ in self._app.ros.publishers(topic))
+
+    def strange_type(self) -> str | None:
+        """A source that is published under another type than the border has: nothing of it can be heard."""
+        for name, news, _ in self._news:
+            del news
+            source, topic = self._watch.sources[name], self._topics[name]
+            if source.age(time.monotonic()) <= source.longest:
+                continue
+            wanted = _full_name(_type(name, self._app.site.border(self._app.machine)))
+            for node, kind in self._app.ros.publishers(topic):
+                if kind != wanted:
+                    return f"{LABELS[name]}: {node} publishes {topic} as {kind}, which is no {wanted}"
+        return None
+
+    def _reader(self, name: str, border: Border) -> Callable[[Any], Numbers]:
+        if name == JOINTS:
+            return self._joints
+        if name == IMU:
+            return _imu
+        if name == ODOM:
+            return _odometry
+        return _global_odometry if border.sources["pose"].message == "Odometry" else _pose
+
+    def _joints(self, message: Any) -> Numbers:
+        """Joint states are matched by name: backends order them differently, and may send some joints at a time."""
+        known = [(i, self._names[name]) for i, name in enumerate(message.name) if name in self._names]
+        places = {name: (value,) for name, value in _numbers(known, message.position).items()}
+        return places, _numbers(known, message.velocity)
+
+
+def _type(name: str, border: Border) -> Any:
+    if name == JOINTS:
+        return JointState
+    if name == IMU:
+        return Imu
+    return Odometry if name == ODOM or (name == POSE and border.sources["pose"].message == "Odometry") else PoseStamped
+
+
+def _full_name(kind: Any) -> str:
+    return f"{kind.__module__.split('.')[0]}/msg/{kind.__name__}"
+
+
+def _sample(arrival: Arrival, places: Mapping[str, Place], speeds: Mapping[str, float]) -> Sample:
+    stamp = arrival.message.header.stamp
+    return Sample(arrival.received, stamp.sec + stamp.nanosec * 1e-9, arrival.number, places, speeds)
+
+
+def _numbers(known: list[tuple[int, str]], values: Any) -> dict[str, float]:
+    """By joint; what is not there or not a number was not heard."""
+    return {name: values[i] for i, name in known if i < len(values) and math.isfinite(values[i])}
+
+
+def _placed(pose: Any) -> dict[str, Place]:
+    at, turn = pose.position, pose.orientation
+    numbers = (at.x, at.y, turn.x, turn.y, turn.z, turn.w)
+    if not all(map(math.isfinite, numbers)):
+        return {}
+    return {PLACE: (at.x, at.y), HEADING: (yaw_of(turn.x, turn.y, turn.z, turn.w),)}
+
+
+def _pose(message: Any) -> Numbers:
+    return _placed(message.pose), {}
+
+
+def _global_odometry(message: Any) -> Numbers:
+    """A pose as odometry: its twist is empty, which is no speed of 0."""
+    return _placed(message.pose.pose), {}
+
+
+def _odometry(message: Any) -> Numbers:
+    speed = message.twist.twist
+    speeds = {PLACE: math.hypot(speed.linear.x, speed.linear.y), HEADING: speed.angular.z}
+    return _placed(message.pose.pose), {name: value for name, value in speeds.items() if math.isfinite(value)}
+
+
+def _imu(message: Any) -> Numbers:
+    turning = message.angular_velocity
+    speed = math.hypot(turning.x, turning.y, turning.z)
+    return ({TURNING: ()}, {TURNING: speed}) if math.isfinite(speed) else ({}, {})

@@ -1,0 +1,32 @@
+"""A machine that was stopped stays proven to stand: one that moves without a goal is stopped again."""
+
+LASTS = 0.2  # s for which a motion must be seen: one shake of the ground is none
+SETTLED = 5.0  # s after a re-arm for which it is still watched: some machines jump when their stop is released
+
+
+class Vigil:
+    """Looked at by the pulse; times are monotonic seconds."""
+
+    def __init__(self) -> None:
+        self._watching = False
+        self._until: float | None = None
+        self._since: float | None = None
+
+    def begin(self) -> None:
+        """It was stopped, or is held or latched."""
+        self._watching, self._until = True, None
+
+    def end(self, now: float | None = None) -> None:
+        """A goal may move it again; or it was re-armed at `now`."""
+        self._watching, self._since = now is not None and self._watching, None
+        self._until = None if now is None else now + SETTLED
+
+    def left(self, now: float, moved_at: float) -> bool:
+        """Whether it has left stand-still; `moved_at` is when a motion was last seen."""
+        if self._until is not None and now > self._until:
+            self.end()
+        if not self._watching or now - moved_at > LASTS:
+            self._since = None
+            return False
+        self._since = now if self._since is None else self._since
+        return now - self._since >= LASTS
