@@ -9,7 +9,8 @@ KEPT = 1.2  # s of samples
 SPAN = 0.8  # share of WORST that samples must span before positions and velocities are compared
 CLEARLY = 2.0  # times the limit: slower motions may be told either way
 FASTER = 1.5  # times its top speed: nothing goes further from one sample to the next
-BETWEEN = 0.004  # rad or m that a motion may differ from what the velocities at both its ends allow
+BETWEEN = 0.004  # rad or m that a motion may differ from what the velocities at both its ends allow ...
+JITTER = 0.025  # s, ... and as far as it goes in this time: drivers stamp what they have measured a little earlier
 
 Place = tuple[float, ...]  # rad, or m; empty where only a speed is told
 
@@ -120,6 +121,7 @@ class Channel:
         """Whether no motion leads from one sample to the next."""
         limits, way = self._limits, self._distance(before.place, place)
         seconds, spare = seconds * limits.scale, limits.resolution + BETWEEN
+        spare += JITTER * limits.scale * max(abs(one or 0.0) for one in (speed, before.speed))
         if way > FASTER * limits.top * seconds + spare:
             return True
         if speed is None or before.speed is None or seconds > WORST / 2 * limits.scale:

@@ -17,7 +17,7 @@ from tms_rc.standstill import JOINTS, StandStill
 SERVER_LIMIT = 3.0  # s for the machine's server to be there, and for news of the machine to be heard
 ACCEPT_LIMIT = 3.0  # s for it to answer a goal
 OVERRUN = 10.0  # s that a trajectory may last beyond its own duration
-FROZEN = 0.6  # s that a look may take
+FROZEN = 0.65  # s that a look may take: a gateway that stood still for 0.7 s stops its machine
 LOOK = 0.1  # s between looks at limits and sensors while it moves
 REFUSED = -1  # control_msgs INVALID_GOAL
 UNKNOWN = 600  # nav2_msgs, where a result has an unsigned code

@@ -305,5 +305,6 @@ def receipt_text(receipt: StopReceipt) -> str:
     if receipt.confirmed:
         way = f"{receipt.travel_rad:.3f} rad ({receipt.travel_joint})" if receipt.travel_joint else "0 rad"
         how = f", {receipt.evidence}" if receipt.evidence else ""
-        return f"{receipt.machine} stood after {receipt.seconds:.2f} s, {way} and {receipt.travel_m:.2f} m{how} ({receipt.cause})"
+        what = f"{receipt.seconds:.2f} s, {way} and {receipt.travel_m:.2f} m{how}"
+        return f"{receipt.machine} stood after {what} ({receipt.cause})"
     return f"{receipt.machine}: STOP UNCONFIRMED: {receipt.detail} ({receipt.cause})"

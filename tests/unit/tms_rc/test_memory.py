@@ -1,28 +1,93 @@
-"""The latch outlives the gateway."""
+"""A machine is armed while its note says so; whatever else is found means latched."""
 
-from concurrent.futures import ThreadPoolExecutor
+import json
 from pathlib import Path
+from typing import Any
 
-from tms_rc.memory import Memory
+import pytest
 
-
-def test_the_cause_is_kept(tmp_path: Path) -> None:
-    assert Memory(tmp_path, "zx200").read() == ""
-    Memory(tmp_path, "zx200").write(lambda: "software stop")
-    assert Memory(tmp_path, "zx200").read() == "software stop"
-    assert Memory(tmp_path, "ic120").read() == ""
-    Memory(tmp_path, "zx200").write(lambda: "")
-    assert Memory(tmp_path, "zx200").read() == ""
+from tms_core.permit import NO_NOTE
+from tms_rc.memory import UNREADABLE, Left, Memory
 
 
-def test_a_note_that_cannot_be_read_latches(tmp_path: Path) -> None:
-    Memory(tmp_path, "zx200").write(lambda: "x")
-    (tmp_path / "rc" / "zx200.json").write_text("{")
-    assert "cannot be read" in Memory(tmp_path, "zx200").read()
+def test_a_machine_without_a_note_is_latched(tmp_path: Path) -> None:
+    assert Memory(tmp_path, "zx200").read() == Left(NO_NOTE)
 
 
-def test_stops_that_end_at_once_do_not_lose_the_note(tmp_path: Path) -> None:
+def test_armed_is_what_the_note_says(tmp_path: Path) -> None:
+    Memory(tmp_path, "zx200").arm()
+    assert Memory(tmp_path, "zx200").read() == Left("")
+    assert Memory(tmp_path, "ic120").read() == Left(NO_NOTE)
+
+
+def test_the_run_that_may_have_left_it_moving_is_told(tmp_path: Path) -> None:
+    Memory(tmp_path, "zx200").arm("20261122-1", 7)
+    assert Memory(tmp_path, "zx200").read() == Left("", "20261122-1", 7)
+
+
+def test_a_latch_and_its_cause_are_kept(tmp_path: Path) -> None:
     memory = Memory(tmp_path, "zx200")
-    with ThreadPoolExecutor(8) as threads:
-        list(threads.map(lambda _: memory.write(lambda: "software stop"), range(400)))
-    assert memory.read() == "software stop"
+    memory.arm("20261122-1", 7)
+    memory.latch("software stop")
+    assert Memory(tmp_path, "zx200").read() == Left("software stop")
+    memory.arm()
+    assert Memory(tmp_path, "zx200").read() == Left("")
+
+
+def test_who_drives_by_hand_is_kept(tmp_path: Path) -> None:
+    memory = Memory(tmp_path, "zx200")
+    memory.arm()
+    memory.take("mina")
+    assert Memory(tmp_path, "zx200").read() == Left("", taken="mina")
+    memory.take("")
+    assert Memory(tmp_path, "zx200").read() == Left("")
+
+
+@pytest.mark.parametrize(
+    "torn",
+    ["", "{", '{"armed": tr', "[]", '{"armed": 1}', '{"armed": true}', '{"armed": true, "holder": ""}', "\0\0\0"],
+)
+def test_a_torn_note_latches(tmp_path: Path, torn: str) -> None:
+    memory = Memory(tmp_path, "zx200")
+    memory.arm()
+    (tmp_path / "rc" / "zx200.armed").write_text(torn)
+    assert memory.read() == Left(UNREADABLE)
+
+
+def test_a_note_that_may_not_be_read_latches(tmp_path: Path) -> None:
+    (tmp_path / "rc" / "zx200.armed").mkdir(parents=True)
+    assert Memory(tmp_path, "zx200").read() == Left(UNREADABLE)
+
+
+def full_disk(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fails(*_: Any) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("tms_rc.memory.json.dump", fails)
+
+
+def test_a_full_disk_latches_all_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The note is taken away; only the cause finds no room."""
+    memory = Memory(tmp_path, "zx200")
+    memory.arm()
+    full_disk(monkeypatch)
+    memory.latch("software stop")
+    assert Memory(tmp_path, "zx200").read() == Left(NO_NOTE)
+
+
+def test_a_full_disk_arms_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    memory = Memory(tmp_path, "zx200")
+    memory.arm()
+    memory.latch("software stop")
+    full_disk(monkeypatch)
+    with pytest.raises(OSError, match="No space left"):
+        memory.arm()
+    monkeypatch.undo()
+    assert Memory(tmp_path, "zx200").read() == Left("software stop")
+
+
+def test_a_crash_while_it_is_written_leaves_the_old_note(tmp_path: Path) -> None:
+    memory = Memory(tmp_path, "zx200")
+    memory.latch("software stop")
+    (tmp_path / "rc" / "zx200.armed.part").write_text(json.dumps({"armed": True, "holder": "", "run": 0}))
+    assert memory.read() == Left("software stop")

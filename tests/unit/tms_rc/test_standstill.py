@@ -60,10 +60,15 @@ class Reporter:
 
 
 def stood_after(
-    reporter: Reporter, step: Callable[[], None], begun: float, limit: float = 8.0, **proof: object
+    reporter: Reporter,
+    step: Callable[[], None],
+    begun: float,
+    limit: float = 8.0,
+    strongest: bool = False,
+    since: float | None = None,
 ) -> float:
     """Seconds from the stop until it is proven; infinite when it is not."""
-    wanted = reporter.watch.proof(begun, bool(proof.get("strongest")), proof.get("since"))  # type: ignore[arg-type]
+    wanted = reporter.watch.proof(begun, strongest, since)
     while reporter.now - begun < limit:
         if reporter.watch.proven(wanted, reporter.now):
             return reporter.now - begun

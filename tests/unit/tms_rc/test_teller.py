@@ -17,7 +17,10 @@ class Rig:
     def __init__(self) -> None:
         self.now, self.told, self.moving = 100.0, 0, False
         self.guard: Any = SimpleNamespace(
-            active=None, latch=SimpleNamespace(cause="", hold=""), permits=SimpleNamespace(holder=lambda: "")
+            active=None,
+            latch=SimpleNamespace(cause="", hold=""),
+            permits=SimpleNamespace(holder=lambda: ""),
+            by_hand="",
         )
         watch = SimpleNamespace(moving=lambda: self.moving)
         self.teller = Teller(cast(Guard, self.guard), cast(StandStill, watch), self._publish)

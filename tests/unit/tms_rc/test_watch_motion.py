@@ -3,6 +3,7 @@
 from types import SimpleNamespace
 from typing import Any
 
+from tms_core.border import MOTIONS
 from tms_core.config import CONFIGS
 from tms_core.models import MachineModel
 from tms_core.yaml_file import parse
@@ -31,11 +32,12 @@ class Peer:
 def test_a_server_that_leaves_during_a_drive_stops_the_machine() -> None:
     stops: list[tuple[str, Kind]] = []
     gateway: Any = Gateway.__new__(Gateway)
-    gateway._model, gateway._watch = MODEL, SimpleNamespace(positions={})
+    gateway._model, gateway._watch = MODEL, SimpleNamespace(positions={}, trouble=lambda now: None)
+    gateway._begin = lambda motion, active, now: None
     gateway._guard = SimpleNamespace(stop=lambda cause, kind: stops.append((cause, kind)), silent=lambda: None)
     peer: Any = Peer()
     goal: Any = SimpleNamespace(request=SimpleNamespace())
     active = Active(goal, None, peer, {}, {}, call=SimpleNamespace(accepted=True, outcome=None))  # type: ignore[arg-type]
-    gateway._watch_motion(active)
+    gateway._watch_motion(MOTIONS[1], active)
     assert stops == [("PROCESS_LOST: /ic120/navigate_to_pose went away during its goal", Kind.PLAIN)]
     assert peer.given_up == 1
