@@ -11,7 +11,9 @@ from collections import deque
 from itertools import pairwise
 
 GAIN = 1.0  # 1/s, of the difference between reference and prediction
-MARGIN = 1.5  # times its velocity limit: a joint that is led at its limit still catches up if its lag is known a third wrong
+MARGIN = (
+    1.5  # times its velocity limit: a joint that is led at its limit still catches up if its lag is known a third wrong
+)
 
 
 class ControlLaw:

@@ -19,7 +19,7 @@ class Servo:
         self.led = False  # the controller sends commands
         self._leak = 0.0  # rad/s, it moves without being told
         self._stood = math.inf  # s since the setpoint came to stand
-        self._braking = False
+        self._braking = self._halted = False
         self._drive = Drive(joint, response, position) if response else None
         self._law = ControlLaw(response.dead_time, response.lag, joint.velocity) if response else None
 
@@ -53,7 +53,7 @@ class Servo:
         """Whether a goal that was cancelled is over, as far as a controller can tell."""
         if self._drive is None:
             return self.still
-        if not self.led:
+        if self._halted:
             return self._drive.slower(STANDS)
         return self._stood >= self.ahead and abs(self._drive.velocity) <= STANDS
 
@@ -92,14 +92,14 @@ class Servo:
         if self._drive is not None and self._law is not None:
             self._drive.halt(now, at_once, more)
             self._law.rest()
-            self.led, self.rate = False, 0.0
+            self.led, self.rate, self._halted = False, 0.0, True
 
     def rest(self) -> None:
         """It stands from this moment on, whatever is under way."""
         if self._drive is not None and self._law is not None:
             self._drive.rest()
             self._law.rest()
-        self.led, self.rate, self._stood = False, 0.0, math.inf
+        self.led, self.rate, self._stood, self._halted = False, 0.0, math.inf, False
         self.setpoint = self.position
 
     def leak(self, velocity: float, h: float) -> None:
@@ -113,7 +113,7 @@ class Servo:
         self._leak = (self.position - before) / h
 
     def _wake(self) -> None:
-        self._braking = False
+        self._braking = self._halted = False
         if self._drive is not None and not self.led:
             self.led, self.setpoint, self.rate = True, self._drive.position, 0.0
 

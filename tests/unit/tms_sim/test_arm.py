@@ -185,7 +185,7 @@ def test_braking_takes_the_dead_time_and_the_ramp() -> None:
     while not made.stands:
         made.step(STEP)
         slower.append(made.velocities[0])
-    assert made.now - begun == pytest.approx(seen[-1][1][0] / 0.35, abs=0.5)
+    assert made.now - begun == pytest.approx(seen[-1][1][0] / 0.35, abs=0.3)
     assert all(later < before + 0.02 for before, later in pairwise(slower))
 
 

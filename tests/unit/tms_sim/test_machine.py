@@ -210,9 +210,7 @@ def test_the_emergency_stop_ends_joint_commands_too() -> None:
 
 
 def test_names_of_the_border_are_taken_for_joints() -> None:
-    made = StandIn(
-        CARRIER, (0.0, 0.0, 0.0), Fault(), lambda: None, Border(joints={"dump_joint": "vessel_pin_joint"})
-    )
+    made = StandIn(CARRIER, (0.0, 0.0, 0.0), Fault(), lambda: None, Border(joints={"dump_joint": "vessel_pin_joint"}))
     made.turn(["vessel_pin_joint"], 0, [-0.2], [])
     run(made, 5)
     assert made.arm.positions[1] == pytest.approx(-0.2, abs=0.002)
