@@ -11,9 +11,7 @@ from collections import deque
 from itertools import pairwise
 
 GAIN = 1.0  # 1/s, of the difference between reference and prediction
-MARGIN = (
-    1.5  # times its velocity limit: a joint that is led at its limit still catches up if its lag is known a third wrong
-)
+MARGIN = 1.5  # times its velocity limit: room to catch up at the limit, also with the lag a third wrong
 
 
 class ControlLaw:

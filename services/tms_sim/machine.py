@@ -44,7 +44,6 @@ class StandIn:
         self._pressed = False  # the emergency stop
         self._in_motion = 0.0  # s since the first of the open goals
         self._stood = 0.0  # s since it came to stand
-        self._leaking = 0.0  # m/s, rad/s
         self._later: list[tuple[float, Callable[[], object]]] = []
         self._lock = threading.Lock()  # of what comes later
 
@@ -111,8 +110,7 @@ class StandIn:
 
     def _sleeps(self) -> bool:
         """Whether nothing will happen however long it waits."""
-        leaks = self.fault.drift or self.fault.creep or self._leaking
-        moves = leaks or not self.arm.still or not (self.base is None or self.base.still)
+        moves = self.fault.drift or self.fault.creep or not self.arm.still or not (self.base is None or self.base.still)
         return not (self.busy or self._later or moves)
 
     def _step(self, seconds: float) -> None:
@@ -151,7 +149,6 @@ class StandIn:
         moves = busy or self.arm.driven or (base is not None and (base.v != 0.0 or base.w != 0.0))
         self._stood = 0.0 if moves else self._stood + seconds
         velocity = (0.0 if busy else self.fault.drift) + (self.fault.creep if self._stood >= CREEPS else 0.0)
-        self._leaking = velocity
         self.arm.leak(velocity, seconds)
         if base is not None:
             base.leak = velocity

@@ -1,6 +1,7 @@
 """Tracks answer speeds as a lag, and brake where they are told to stand."""
 
 import math
+from itertools import pairwise
 
 import pytest
 
@@ -62,6 +63,16 @@ def test_the_emergency_stop_drops_what_is_under_way_where_it_acts_at_once() -> N
         assert (made.v > 0.1) is not at_once
         run(made, 2.0)
         assert made.still
+
+
+def test_the_navigation_slows_down_without_the_brakes() -> None:
+    for way in range(20):
+        made, speeds = base(), [0.0]
+        made.go([Leg(4 + way / 97, 0, 0.0)])
+        while made.legs:
+            made.step(SUBSTEP)
+            speeds.append(made.v)
+        assert min(b - a for a, b in pairwise(speeds)) >= -DRIVE.acceleration * SUBSTEP - 1e-4
 
 
 @pytest.mark.parametrize("lag", [0.54, 1.34])
