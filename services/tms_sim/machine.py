@@ -44,8 +44,21 @@ class StandIn:
         self._pressed = False  # the emergency stop
         self._in_motion = 0.0  # s since the first of the open goals
         self._stood = 0.0  # s since it came to stand
+        self._leaking = 0.0  # m/s, rad/s
         self._later: list[tuple[float, Callable[[], object]]] = []
         self._lock = threading.Lock()  # of what comes later
+
+    @property
+    def fault(self) -> Fault:
+        """What goes wrong."""
+        return self._fault
+
+    @fault.setter
+    def fault(self, fault: Fault) -> None:
+        self._fault = fault
+        self.arm.more_dead_time = fault.dead_time
+        if self.base is not None:
+            self.base.more_dead_time = fault.dead_time
 
     @property
     def busy(self) -> bool:
@@ -104,13 +117,22 @@ class StandIn:
     def step(self, seconds: float) -> None:
         """Let time pass."""
         while seconds > 1e-9:
-            part = seconds if self._sleeps() else min(seconds, MOST)
+            if self._sleeps():
+                self.time, self._stood, self._in_motion = self.time + seconds, self._stood + seconds, 0.0
+                return
+            part = min(seconds, MOST)
             self._step(part)
             seconds -= part
 
     def _sleeps(self) -> bool:
         """Whether nothing will happen however long it waits."""
-        moves = self.fault.drift or self.fault.creep or not self.arm.still or not (self.base is None or self.base.still)
+        moves = (
+            self.fault.drift
+            or self.fault.creep
+            or self._leaking
+            or not self.arm.still
+            or not (self.base is None or self.base.still)
+        )
         return not (self.busy or self._later or moves)
 
     def _step(self, seconds: float) -> None:
@@ -139,9 +161,8 @@ class StandIn:
         if fault.die is not None and busy and self._in_motion >= fault.die:
             self._die()
         self.arm.stuck = stuck = fault.stall is not None and busy and self._in_motion >= fault.stall
-        self.arm.more_dead_time = fault.dead_time
         if self.base is not None:
-            self.base.stuck, self.base.more_dead_time = stuck, fault.dead_time
+            self.base.stuck = stuck
 
     def _leak(self, busy: bool, seconds: float) -> None:
         """`drift` and `creep` move it although nobody told it to."""
@@ -149,6 +170,7 @@ class StandIn:
         moves = busy or self.arm.driven or (base is not None and (base.v != 0.0 or base.w != 0.0))
         self._stood = 0.0 if moves else self._stood + seconds
         velocity = (0.0 if busy else self.fault.drift) + (self.fault.creep if self._stood >= CREEPS else 0.0)
+        self._leaking = velocity
         self.arm.leak(velocity, seconds)
         if base is not None:
             base.leak = velocity

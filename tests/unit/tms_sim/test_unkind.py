@@ -129,8 +129,9 @@ def test_dead_time_lets_it_move_after_its_controller_thinks_it_stands() -> None:
 
 
 def test_dead_time_of_the_tracks() -> None:
-    made = machine(dead_time=1.0)
-    made.step(STEP)
+    made = machine()
+    run(made, 1)
+    made.fault = Fault(dead_time=1.0)
     made.drive(1.0, 0.0)
     run(made, 0.9)
     assert base(made).v == 0.0
@@ -177,6 +178,19 @@ def test_stall_loses_what_is_under_way() -> None:
     assert motion.verdict is not None and motion.verdict.outcome == "ABORTED"
     run(made, 5)
     assert made.arm.positions == there
+
+
+def test_stall_is_counted_anew_for_each_goal() -> None:
+    made = machine(stall=2.0)
+    for _ in range(2):
+        assert made.travel is not None
+        trip = made.travel.begin([Leg(80, 0, 0)])
+        run(made, 1.9)
+        assert base(made).v > 0.5
+        run(made, 0.3)
+        assert base(made).v == 0.0
+        cancel(made, trip)
+        run(made, 1)
 
 
 def test_a_stop_that_is_repeated_holds_where_the_first_one_found_it() -> None:
