@@ -1,91 +1,150 @@
-"""Joints that follow a reference as well as their limits let them. Pure logic, same result for the same seed."""
+"""Joints that are led along a reference as well as their limits let them. Pure logic."""
 
 import math
-import random
+import threading
 from collections.abc import Mapping, Sequence
 
-from tms_core.models import Joint
+from tms_core.models import Joint, Response
 from tms_sim.path import Path, Point
+from tms_sim.servo import Servo
 
-SUBSTEP = 0.01  # s, at most: keeps the motion the same at any time scale
+SUBSTEP = 0.01  # s: the same motion at any time scale
+EXACT = 1e-9  # rad
+TURN = 2  # substeps a turn of the controllers: 50 Hz
 
 
 class Arm:
     """Positions [rad] and velocities [rad/s] of all joints, in the order of the controller."""
 
     def __init__(
-        self, joints: Mapping[str, Joint], initial: Mapping[str, float], seed: int = 0, noise: float = 0.0
+        self, joints: Mapping[str, Joint], initial: Mapping[str, float], response: Mapping[str, Response]
     ) -> None:
-        """`noise` [rad] is the standard deviation of the reported positions."""
+        """`response` holds the joints that answer late and sluggishly; none: an ideal machine."""
         self.joints = dict(joints)
-        self.positions = [initial.get(name, 0.0) for name in self.joints]
-        self.velocities = [0.0] * len(self.joints)
-        self.elapsed = 0.0  # s since the present path began
+        self.servos = {name: Servo(joint, initial.get(name, 0.0), response.get(name)) for name, joint in joints.items()}
+        self.now = 0.0  # s
+        self.elapsed = 0.0  # s since the present path began; below 0: it waits for the longest dead time
+        self.more_dead_time = 0.0  # s, which the controllers do not know of
         self.targets: dict[str, float] = {}  # rad, of joints that turn by themselves while there is no path
         self.speeds: dict[str, float] = {}  # rad/s, of joints that turn until they are told something else
-        self.stuck = False  # nothing moves, whatever is asked
+        self.lock = threading.RLock()  # of whoever gives goals, and of the time
+        self._longest = max((servo.ahead for servo in self.servos.values()), default=0.0)
         self._path: Path | None = None
-        self._noise, self._random = noise, random.Random(seed)
+        self._stuck = False
+        self._owed, self._count = 0.0, 0  # s not yet stepped; substeps so far
+
+    @property
+    def positions(self) -> list[float]:
+        """True positions [rad]."""
+        return [servo.position for servo in self.servos.values()]
+
+    @property
+    def velocities(self) -> list[float]:
+        """True velocities [rad/s]."""
+        return [servo.velocity for servo in self.servos.values()]
+
+    @property
+    def driven(self) -> bool:
+        """Whether anything moves because it was told to."""
+        return any(servo.driven for servo in self.servos.values())
+
+    @property
+    def still(self) -> bool:
+        """Whether nothing moves or will move."""
+        return self._idle() and all(servo.still for servo in self.servos.values())
+
+    @property
+    def stands(self) -> bool:
+        """Whether nothing moves, as far as a controller can tell."""
+        return all(servo.stands for servo in self.servos.values())
+
+    @property
+    def stuck(self) -> bool:
+        """Nothing moves, whatever is asked; what is sent meanwhile is lost."""
+        return self._stuck
+
+    @stuck.setter
+    def stuck(self, stuck: bool) -> None:
+        if stuck and not self._stuck:
+            for servo in self.servos.values():
+                servo.rest()
+        self._stuck = stuck
 
     def follow(self, names: Sequence[str], points: Sequence[Point]) -> Path:
         """Begin a trajectory from wherever the arm is, moving or not."""
-        now = Point(0.0, tuple(self.positions), tuple(self.velocities))
-        self._path, self.elapsed = Path(self.joints, now, names, points), 0.0
+        servos = self.servos.values()
+        start = Point(0.0, tuple(s.setpoint if s.led else s.position for s in servos), tuple(s.rate for s in servos))
+        self._path, self.elapsed = Path(self.joints, start, names, points), -self._longest
         self.targets.clear()  # what was commanded before must not go on afterwards
         self.speeds.clear()
         return self._path
 
-    def hold(self) -> None:
-        """Give up the path and brake, each joint as hard as its acceleration limit lets it."""
+    def finish(self) -> None:
+        """The path is done: stay at its end."""
         self._path = None
 
-    @property
-    def still(self) -> bool:
-        """Whether nothing moves."""
-        return not any(self.velocities)
+    def hold(self) -> None:
+        """Give up the path and brake, each joint as soon as its dead time and its acceleration limit let it."""
+        self._path = None
+        for servo in self.servos.values():
+            servo.brake(self.now)
 
-    def reading(self) -> list[float]:
-        """Positions as sensors report them [rad]."""
-        if not self._noise:
-            return list(self.positions)
-        return [position + self._random.gauss(0.0, self._noise) for position in self.positions]
+    def release(self, name: str) -> None:
+        """Give up the target of one joint and brake it."""
+        self.targets.pop(name, None)
+        self.servos[name].brake(self.now)
+
+    def halt(self, at_once: bool) -> None:
+        """Emergency stop, with or without the dead time."""
+        self._path = None
+        self.targets.clear()
+        self.speeds.clear()
+        for servo in self.servos.values():
+            servo.halt(self.now, at_once, self.more_dead_time)
+
+    def leak(self, velocity: float, seconds: float) -> None:
+        """The first joint moves [rad/s] without being told."""
+        next(iter(self.servos.values())).leak(velocity, seconds)
 
     def step(self, seconds: float) -> None:
         """Let time pass."""
-        if self.stuck:
-            self.velocities, self.elapsed = [0.0] * len(self.joints), self.elapsed + seconds
+        self._owed += seconds
+        count = int(self._owed / SUBSTEP + 1e-6)
+        self._owed -= count * SUBSTEP
+        if self._stuck or self.still:
+            self.now, self.elapsed = self.now + count * SUBSTEP, self.elapsed + count * SUBSTEP
             return
-        count = max(1, math.ceil(seconds / SUBSTEP - 1e-9))
         for _ in range(count):
-            if self._path is None and not self.targets and not self.speeds and self.still:
-                return
-            self._substep(seconds / count)
+            self._substep(SUBSTEP)
 
     def _substep(self, h: float) -> None:
-        path = self._path
-        before = path.at(self.elapsed) if path else self.positions
-        after = path.at(self.elapsed + h) if path else before
+        self.now += h
+        self._count += 1
+        sends = self._count % TURN == 0
+        for i, (name, servo) in enumerate(self.servos.items()):
+            wanted = None if servo.joint.passive else self._wanted(i, name, servo, h)
+            servo.step(self.now, h, wanted)
+            if sends:
+                servo.send(self.now, self.more_dead_time, wanted is None)
         self.elapsed += h
-        for i, (name, joint) in enumerate(self.joints.items()):
-            wanted = 0.0 if path is None else (after[i] - before[i]) / h
-            if path is not None:
-                wanted += _catch_up(before[i] - self.positions[i], joint.acceleration, h)
-            elif name in self.targets:
-                wanted = _catch_up(self.targets[name] - self.positions[i], joint.acceleration, h)
-            else:
-                wanted = self.speeds.get(name, 0.0)
-            self._move(i, joint, max(-joint.velocity, min(joint.velocity, wanted)), h)
 
-    def _move(self, i: int, joint: Joint, wanted: float, h: float) -> None:
-        """Change the velocity of one joint towards `wanted` [rad/s] and its position by it."""
-        most = joint.acceleration * h
-        velocity = self.velocities[i] + max(-most, min(most, wanted - self.velocities[i]))
-        position = self.positions[i] + velocity * h
-        low, high = (-math.inf if joint.min is None else joint.min), (math.inf if joint.max is None else joint.max)
-        self.positions[i] = max(low, min(high, position))
-        self.velocities[i] = velocity if low <= position <= high else 0.0  # the end stop
+    def _wanted(self, i: int, name: str, servo: Servo, h: float) -> float | None:
+        """Velocity [rad/s] to lead a joint with; None: it has nothing to do."""
+        acceleration = servo.joint.acceleration
+        if self._path is not None:
+            since = self.elapsed + servo.ahead
+            before, after = self._path.joint(i, since), self._path.joint(i, since + h)
+            return (after - before) / h + _catch_up(before - servo.setpoint, acceleration, h)
+        if name in self.targets:
+            return _catch_up(self.targets[name] - servo.setpoint, acceleration, h)
+        return self.speeds.get(name)
+
+    def _idle(self) -> bool:
+        return self._path is None and not self.targets and not self.speeds
 
 
 def _catch_up(behind: float, acceleration: float, h: float) -> float:
     """Extra velocity [rad/s] to close a gap [rad] to the reference, such that it can still brake in time."""
+    if abs(behind) < EXACT:
+        return 0.0
     return math.copysign(min(abs(behind) / h, math.sqrt(acceleration * abs(behind))), behind)

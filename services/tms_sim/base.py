@@ -1,18 +1,19 @@
-"""Tracks on flat ground: velocities with limits, and a way along poses. Pure logic, all in the frame `map`."""
+"""A way along poses, for tracks on flat ground. Pure logic, all in the frame `map`."""
 
 import itertools
 import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from tms_core.models import Drive
+from tms_core.models import Drive, Response
+from tms_sim.tracks import SUBSTEP, Tracks, cut
 
-SUBSTEP = 0.02  # s, at most
 THERE = 0.05  # m
 ALIGNED = 0.01  # rad
 PASSED = 0.5  # m, a pose that is only passed counts from here
 STEERS = 0.35  # rad, beyond it the machine turns on the spot
 GENTLE = 0.8  # share of the acceleration that braking for a goal uses
+STOPPED = 1e-3  # m/s
 
 
 class Leg(NamedTuple):
@@ -23,36 +24,35 @@ class Leg(NamedTuple):
     yaw: float | None
 
 
-class Base:
-    """Position [m], heading [rad] and velocities [m/s, rad/s] of a machine."""
+class Base(Tracks):
+    """Tracks, and the navigation that leads them."""
 
-    def __init__(self, drive: Drive, start: tuple[float, float, float]) -> None:
-        self.drive = drive
-        self.x, self.y, self.yaw = start
-        self.v = self.w = 0.0
+    def __init__(self, drive: Drive, start: tuple[float, float, float], response: Response | None = None) -> None:
+        super().__init__(drive, start, response)
         self.stuck = False  # nothing moves, whatever is asked
         self.legs: list[Leg] = []
         self._aligning = False
-        self._twist = (0.0, 0.0)
-
-    @property
-    def still(self) -> bool:
-        """Whether nothing moves."""
-        return self.v == 0.0 and self.w == 0.0
+        self._owed = 0.0  # s not yet stepped
 
     def command(self, v: float, w: float) -> None:
         """Velocities that hold until the next command, as the simulator's tracks have them; a way goes first."""
-        if math.isfinite(v) and math.isfinite(w):
-            most = self.drive
-            self._twist = (_cut(v, most.velocity), _cut(w, most.turn_velocity))
+        if math.isfinite(v) and math.isfinite(w) and not self.legs:
+            self.send(cut(v, self.drive.velocity), cut(w, self.drive.turn_velocity))
 
     def go(self, legs: Sequence[Leg]) -> None:
         """Begin a way from wherever the machine is."""
-        self.legs, self._aligning, self._twist = list(legs), False, (0.0, 0.0)
+        self.legs, self._aligning = list(legs), False
 
     def hold(self) -> None:
         """Give up way and velocities, and brake."""
         self.go(())
+        self.send(0.0, 0.0)
+
+    def halt(self, at_once: bool) -> None:
+        """Emergency stop, with or without the dead time."""
+        self.hold()
+        if at_once:
+            self.brake_at_once()
 
     def left(self) -> float:
         """Distance to go [m], straight from pose to pose."""
@@ -61,22 +61,24 @@ class Base:
 
     def step(self, seconds: float) -> None:
         """Let time pass."""
+        self._owed += seconds
+        count = int(self._owed / SUBSTEP + 1e-6)
+        self._owed -= count * SUBSTEP
         if self.stuck:
             self.v = self.w = 0.0
+            self.brake_at_once()
+        if self.stuck or (self.still and not self.legs and not self.leak):
+            self.now += count * SUBSTEP
             return
-        count = max(1, math.ceil(seconds / SUBSTEP - 1e-9))
         for _ in range(count):
-            if self.still and not self.legs and self._twist == (0.0, 0.0):
-                return
-            self._substep(seconds / count)
+            self._substep(SUBSTEP)
 
     def _substep(self, h: float) -> None:
-        v, w = self._wanted() if self.legs else self._twist
-        self.v = _towards(self.v, v, self.drive.acceleration * h)
-        self.w = _towards(self.w, w, self.drive.turn_acceleration * h)
-        self.yaw = math.remainder(self.yaw + self.w * h, math.tau)
-        self.x += self.v * math.cos(self.yaw) * h
-        self.y += self.v * math.sin(self.yaw) * h
+        if self.legs:
+            self.lead(*self._wanted(), h)
+            if not self.legs:
+                self.send(0.0, 0.0)
+        self.move(h)
 
     def _wanted(self) -> tuple[float, float]:
         """Velocities for the first leg; takes it off the way when it is done."""
@@ -96,7 +98,7 @@ class Base:
 
     def _align(self, leg: Leg) -> float:
         off = 0.0 if leg.yaw is None else math.remainder(leg.yaw - self.yaw, math.tau)
-        if abs(off) <= ALIGNED and self.v == 0.0 and abs(self.w) < ALIGNED:
+        if abs(off) <= ALIGNED and abs(self.v) < STOPPED and abs(self.w) < ALIGNED:
             self.legs.pop(0)
             self._aligning = False
             return 0.0
@@ -110,11 +112,3 @@ class Base:
 def _braking(way: float, acceleration: float) -> float:
     """The velocity from which braking takes `way`."""
     return math.sqrt(2 * GENTLE * acceleration * way)
-
-
-def _towards(now: float, wanted: float, most: float) -> float:
-    return now + _cut(wanted - now, most)
-
-
-def _cut(value: float, most: float) -> float:
-    return max(-most, min(most, value))

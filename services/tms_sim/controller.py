@@ -1,6 +1,5 @@
 """A joint trajectory controller as ros2_control runs it: one goal at a time, tolerance at the end, soft stop."""
 
-import threading
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -9,6 +8,7 @@ from tms_sim.motion import Motion, Verdict
 from tms_sim.path import Path, Point, refusal
 
 TOLERANCE = 0.03  # rad, at the end of a goal
+STOPPED = 0.01  # rad/s, the same
 GOAL_TIME = 60.0  # s after the end in which the arm may still arrive
 SUCCESSFUL, INVALID_GOAL, PATH_VIOLATED, GOAL_VIOLATED = 0, -1, -4, -5  # control_msgs result codes
 
@@ -29,7 +29,7 @@ class Controller:
         self.emergency = False
         self._motion: PathMotion | None = None
         self._braking: Verdict | None = None  # verdict of the motion once the arm stands
-        self._lock = threading.Lock()
+        self._lock = arm.lock
 
     @property
     def busy(self) -> bool:
@@ -60,11 +60,11 @@ class Controller:
                 self._brake(Verdict("CANCELED", SUCCESSFUL, "stopped on request"))
 
     def stop(self, on: bool) -> None:
-        """Level of the emergency stop: while true the arm brakes, then ignores motions."""
+        """Level of the emergency stop: while true motions are ignored. Who presses it stops the arm."""
         with self._lock:
             self.emergency = on
             if on and self._braking is None:
-                self._brake(Verdict("ABORTED", PATH_VIOLATED, "emergency stop"))
+                self._braking = Verdict("ABORTED", PATH_VIOLATED, "emergency stop")
 
     def _brake(self, verdict: Verdict) -> None:
         self.arm.hold()
@@ -80,18 +80,24 @@ class Controller:
                 return
             verdict = self._ended(motion)
             if verdict is not None:
-                self.arm.hold()
+                self._leave(verdict)
                 self._motion = self._braking = None
                 motion.end(verdict)
 
+    def _leave(self, verdict: Verdict) -> None:
+        if verdict.outcome == "SUCCEEDED":
+            self.arm.finish()
+        elif self._braking is None:
+            self.arm.hold()
+
     def _ended(self, motion: PathMotion) -> Verdict | None:
         if self._braking is not None:
-            return self._braking if self.arm.still else None
+            return self._braking if self.arm.stands else None
         late = self.arm.elapsed - motion.path.duration
         if late < 0:
             return None
         apart = [abs(q - end) for q, end in zip(self.arm.positions, motion.path.end, strict=True)]
-        if max(apart) <= TOLERANCE and all(abs(velocity) < 1e-3 for velocity in self.arm.velocities):
+        if max(apart) <= TOLERANCE and all(abs(velocity) <= STOPPED for velocity in self.arm.velocities):
             return Verdict("SUCCEEDED")
         if late <= motion.goal_time:
             return None

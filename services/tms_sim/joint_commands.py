@@ -33,7 +33,7 @@ class JointCommands:
     def move(self, joint: str, value: float, control: int = POSITION) -> None:
         """Bring one joint to an angle [rad] or a velocity [rad/s], within its limits."""
         arm = self._arm
-        if joint not in arm.joints or not math.isfinite(value) or self.emergency:
+        if joint not in arm.joints or arm.joints[joint].passive or not math.isfinite(value) or self.emergency:
             return
         limits = arm.joints[joint]
         arm.targets.pop(joint, None)
@@ -45,17 +45,14 @@ class JointCommands:
         arm.targets[joint] = max(low, min(high, value))
 
     def stop(self, on: bool) -> None:
-        """Level of the emergency stop: while true nothing is taken, and what was is forgotten."""
+        """Level of the emergency stop: while true nothing is taken."""
         self.emergency = on
-        if on:
-            self._arm.targets.clear()
-            self._arm.speeds.clear()
 
     def step(self) -> None:
-        """Forget what has been reached; the arm itself has been stepped."""
+        """Forget what the joints have been led to; the arm itself has been stepped."""
         arm = self._arm
-        for i, name in enumerate(arm.joints):
-            if name in arm.targets and arm.velocities[i] == 0 and abs(arm.targets[name] - arm.positions[i]) < THERE:
+        for name, servo in arm.servos.items():
+            if name in arm.targets and servo.rate == 0 and abs(arm.targets[name] - servo.setpoint) < THERE:
                 del arm.targets[name]
-            if arm.speeds.get(name) == 0.0 and arm.velocities[i] == 0:
+            if arm.speeds.get(name) == 0.0 and servo.rate == 0:
                 del arm.speeds[name]

@@ -1,15 +1,20 @@
 """A stand-in machine as a whole: joints, tracks, what goes wrong, and its time. Pure logic."""
 
+import threading
 from collections.abc import Callable, Sequence
 
-from tms_core.models import Border, MachineModel
+from tms_core.models import DRIVE, Border, MachineModel
 from tms_core.site_file import Fault
 from tms_sim.arm import Arm
 from tms_sim.base import Base
 from tms_sim.controller import Controller
 from tms_sim.joint_commands import JointCommands
+from tms_sim.tracks import ZERO
 from tms_sim.travel import Travel
 from tms_sim.turner import Turner
+
+MOST = 0.04  # s, step: goals end and faults strike as exactly at any time scale
+CREEPS = 3.0  # s of stand-still after which the fault `creep` begins
 
 
 class StandIn:
@@ -19,23 +24,41 @@ class StandIn:
         self,
         model: MachineModel,
         start: tuple[float, float, float],
-        seed: int,
         fault: Fault,
         die: Callable[[], None],
         border: Border | None = None,
+        ideal: bool = False,
     ) -> None:
-        border = border or Border()
-        self.arm = Arm(model.joints, model.initial, seed)
+        """`ideal`: without dead time and lag."""
+        self._border = border or Border()
+        response = {} if ideal else model.response
+        self.arm = Arm(model.joints, model.initial, response)
         self.controller = Controller(self.arm)
-        self.turner = Turner(self.arm, border.dump_returns)
-        self.commands = JointCommands(self.arm, border.joints)
-        self.base = Base(model.drive, start) if model.drive else None
+        self.turner = Turner(self.arm, self._border.dump_returns)
+        self.commands = JointCommands(self.arm, self._border.joints)
+        self.base = Base(model.drive, start, response.get(DRIVE)) if model.drive else None
         self.travel = Travel(self.base) if self.base else None
         self.fault = fault
         self.time = 0.0  # s
         self._die = die
+        self._pressed = False  # the emergency stop
         self._in_motion = 0.0  # s since the first of the open goals
+        self._stood = 0.0  # s since it came to stand
+        self._leaking = 0.0  # m/s, rad/s
         self._later: list[tuple[float, Callable[[], object]]] = []
+        self._lock = threading.Lock()  # of what comes later
+
+    @property
+    def fault(self) -> Fault:
+        """What goes wrong."""
+        return self._fault
+
+    @fault.setter
+    def fault(self, fault: Fault) -> None:
+        self._fault = fault
+        self.arm.more_dead_time = fault.dead_time
+        if self.base is not None:
+            self.base.more_dead_time = fault.dead_time
 
     @property
     def busy(self) -> bool:
@@ -43,21 +66,33 @@ class StandIn:
         return self.controller.busy or self.turner.busy or (self.travel is not None and self.travel.busy)
 
     def stop(self, on: bool) -> None:
-        """Level of the emergency stop; with a late machine it comes late, too."""
-        self.later(lambda: self._stop(on))
+        """Level of the emergency stop."""
+        if not on:
+            self.later(lambda: self._stop(False))
+        elif not self.fault.ignore_emg_stop:
+            self._order_stop(lambda: self._stop(True))
 
     def _stop(self, on: bool) -> None:
         for part in (self.controller, self.turner, self.commands, self.travel):
             if part is not None:
                 part.stop(on)
-        if self.base is not None and on:
-            self.base.hold()
+        if on and not self._pressed:  # it holds what was measured when it was pressed
+            self.arm.halt(self._border.emg_stop_at_once)
+            if self.base is not None:
+                self.base.halt(self._border.emg_stop_at_once)
+        self._pressed = on
+
+    def cancel(self, command: Callable[[], object]) -> None:
+        """A request to cancel a goal."""
+        if not self.fault.ignore_cancel:
+            self._order_stop(command)
 
     def drive(self, v: float, w: float) -> None:
-        """A velocity command [m/s, rad/s]."""
+        """A velocity command [m/s, rad/s]; zero is an order to stop."""
         base, travel = self.base, self.travel
         if base is not None and travel is not None and not travel.emergency:
-            self.later(lambda: base.command(v, w))
+            order = self._order_stop if max(abs(v), abs(w)) < ZERO else self.later
+            order(lambda: base.command(v, w))
 
     def turn(self, names: Sequence[str], control: int, position: Sequence[float], velocity: Sequence[float]) -> None:
         """A joint command; a goal goes first."""
@@ -66,46 +101,76 @@ class StandIn:
 
     def later(self, command: Callable[[], object]) -> None:
         """Do it now, or `late` seconds of the machine's time from now."""
-        if self.fault.late:
-            self._later.append((self.time + self.fault.late, command))
+        self._after(self.fault.late, command)
+
+    def _order_stop(self, command: Callable[[], object]) -> None:
+        """A machine that coasts goes on as it was for a while."""
+        self._after(self.fault.late + self.fault.coast, command)
+
+    def _after(self, seconds: float, command: Callable[[], object]) -> None:
+        if seconds:
+            with self._lock:
+                self._later.append((self.time + seconds, command))
         else:
             command()
 
     def step(self, seconds: float) -> None:
         """Let time pass."""
+        while seconds > 1e-9:
+            if self._sleeps():
+                self.time, self._stood, self._in_motion = self.time + seconds, self._stood + seconds, 0.0
+                return
+            part = min(seconds, MOST)
+            self._step(part)
+            seconds -= part
+
+    def _sleeps(self) -> bool:
+        """Whether nothing will happen however long it waits."""
+        moves = (
+            self.fault.drift
+            or self.fault.creep
+            or self._leaking
+            or not self.arm.still
+            or not (self.base is None or self.base.still)
+        )
+        return not (self.busy or self._later or moves)
+
+    def _step(self, seconds: float) -> None:
         self.time += seconds
-        due = [one for one in self._later if one[0] <= self.time]
-        self._later = [one for one in self._later if one[0] > self.time]
-        for _, command in due:
+        for command in self._due():
             command()
         busy = self.busy
         self._in_motion = self._in_motion + seconds if busy else 0.0
         self._strike(busy)
+        self._leak(busy, seconds)
         self.controller.step(seconds)
         self.turner.step(seconds)
         if not busy:
             self.commands.step()
-        if self.base is not None and self.travel is not None:
-            self.base.step(seconds)
+        if self.travel is not None:
             self.travel.step(seconds)
-        if self.fault.drift and not busy:
-            self._creep(self.fault.drift * seconds)
+
+    def _due(self) -> list[Callable[[], object]]:
+        with self._lock:
+            due = [command for time, command in self._later if time <= self.time]
+            self._later = [one for one in self._later if one[0] > self.time]
+        return due
 
     def _strike(self, busy: bool) -> None:
         fault = self.fault
         if fault.die is not None and busy and self._in_motion >= fault.die:
             self._die()
-        stuck = fault.stall is not None and busy and self._in_motion >= fault.stall
-        self.arm.stuck = stuck
+        self.arm.stuck = stuck = fault.stall is not None and busy and self._in_motion >= fault.stall
         if self.base is not None:
             self.base.stuck = stuck
 
-    def _creep(self, way: float) -> None:
-        self.arm.positions[0] += way
-        if self.base is not None:
-            self.base.x += way
-
-    @property
-    def creeping(self) -> float:
-        """Velocity [m/s, rad/s] at which it drifts while it should stand."""
-        return 0.0 if self.busy else self.fault.drift
+    def _leak(self, busy: bool, seconds: float) -> None:
+        """`drift` and `creep` move it although nobody told it to."""
+        base = self.base
+        moves = busy or self.arm.driven or (base is not None and (base.v != 0.0 or base.w != 0.0))
+        self._stood = 0.0 if moves else self._stood + seconds
+        velocity = (0.0 if busy else self.fault.drift) + (self.fault.creep if self._stood >= CREEPS else 0.0)
+        self._leaking = velocity
+        self.arm.leak(velocity, seconds)
+        if base is not None:
+            base.leak = velocity

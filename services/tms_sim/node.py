@@ -27,7 +27,8 @@ def start(app: App) -> None:
     site, name = app.site, app.machine
     border, model, settings = site.border(name), site.model_of(name), site.file.sim
     fault = settings.faults.get(name, Fault())
-    machine = StandIn(model, site.start_of(name), settings.seed, fault, lambda: os._exit(1), border)
+    machine = StandIn(model, site.start_of(name), fault, lambda: os._exit(1), border,
+                      ideal=settings.response == "ideal")  # fmt: skip
     for served in _served(machine, border):
         server = Server(app, machine, served)
         app.ros.serve(served.type, f"/{name}/{getattr(border, served.field)}", server.run, server.accept)

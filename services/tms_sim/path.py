@@ -78,19 +78,21 @@ class Path:
 
     def at(self, time: float) -> tuple[float, ...]:
         """Reference positions [rad]."""
+        return tuple(self.joint(i, time) for i in range(len(self.end)))
+
+    def joint(self, number: int, time: float) -> float:
+        """Reference position [rad] of one joint, counted in the order of the controller."""
         if time >= self.duration:
-            return self.end
+            return self.end[number]
         i = max(1, bisect.bisect_right(self._times, time))
-        if i >= len(self._points):
-            return self._points[0].positions
+        if time <= self._times[0] or i >= len(self._points):
+            return self._points[0].positions[number]
         a, b = self._points[i - 1], self._points[i]
         gap = b.time - a.time
-        share = (time - a.time) / gap
+        share, p, q = (time - a.time) / gap, a.positions[number], b.positions[number]
         if not (a.velocities and b.velocities):
-            return tuple(p + (q - p) * share for p, q in zip(a.positions, b.positions, strict=True))
-        return tuple(
-            _cubic(share, gap, *ends) for ends in zip(a.positions, b.positions, a.velocities, b.velocities, strict=True)
-        )
+            return p + (q - p) * share
+        return _cubic(share, gap, p, q, a.velocities[number], b.velocities[number])
 
 
 def _cubic(s: float, gap: float, p: float, q: float, v: float, w: float) -> float:

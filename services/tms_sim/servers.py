@@ -50,9 +50,9 @@ class Server:
             if goal.cancelled.wait(FEEDBACK / 5):
                 return Outcome.CANCELED, served.type.Result()
         motion: Motion = served.begin(goal.request)
-        goal.on_cancel = lambda: machine.later(lambda: served.cancel(motion))
+        goal.on_cancel = lambda: machine.cancel(lambda: served.cancel(motion))
         if goal.cancelled.is_set():  # it came before there was something to cancel
-            served.cancel(motion)
+            goal.on_cancel()
         while not motion.over.wait(FEEDBACK):
             if not machine.fault.drop_feedback:
                 goal.publish(served.feedback(motion))

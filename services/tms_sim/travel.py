@@ -89,8 +89,9 @@ class Travel:
             self._trip.braking = verdict
 
     def step(self, seconds: float) -> None:
-        """End what is due; the base itself has been stepped."""
+        """Let time pass and end what is due."""
         with self._lock:
+            self.base.step(seconds)
             trip = self._trip
             if trip is None:
                 return

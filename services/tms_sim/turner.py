@@ -1,13 +1,13 @@
 """Joints that go to an angle on request, as the servers of a carrier's vessel and upper body do."""
 
 import math
-import threading
 from dataclasses import dataclass
 
 from tms_sim.arm import Arm
 from tms_sim.motion import ABORTED, CANCELED, SUCCEEDED, Motion, Verdict
 
 TOLERANCE = 0.005  # rad
+STOPPED = 0.01  # rad/s
 HELD = 3.0  # s that a vessel stays tipped before it returns by itself
 
 
@@ -29,7 +29,7 @@ class Turner:
         the simulator has it."""
         self.arm, self._returns = arm, returns
         self._turns: dict[str, Turn] = {}
-        self._lock = threading.Lock()
+        self._lock = arm.lock
         self.emergency = False
 
     @property
@@ -79,27 +79,30 @@ class Turner:
 
     def angle(self, joint: str) -> float:
         """Where a joint is [rad]."""
-        return self.arm.positions[list(self.arm.joints).index(joint)]
+        return self.arm.servos[joint].position
 
     def _brake(self, turn: Turn, verdict: Verdict) -> None:
-        self.arm.targets.pop(turn.joint, None)
+        self.arm.release(turn.joint)
         turn.braking = verdict
 
     def step(self, seconds: float) -> None:
         """End what is due; the arm itself has been stepped."""
         with self._lock:
             for turn in list(self._turns.values()):
-                i = list(self.arm.joints).index(turn.joint)
-                if abs(self.arm.velocities[i]) > 1e-3:
-                    continue
-                there = abs(self.arm.positions[i] - turn.target) <= TOLERANCE
-                if there and self._returns and turn.target != 0.0:
-                    there = self._return(turn, seconds)
-                verdict = turn.braking or (Verdict(SUCCEEDED) if there else None)
+                verdict = self._ended(turn, seconds)
                 if verdict is not None:
                     self.arm.targets.pop(turn.joint, None)
                     del self._turns[turn.joint]
                     turn.end(verdict)
+
+    def _ended(self, turn: Turn, seconds: float) -> Verdict | None:
+        servo = self.arm.servos[turn.joint]
+        if turn.braking is not None:
+            return turn.braking if servo.stands else None
+        there = abs(servo.position - turn.target) <= TOLERANCE and abs(servo.velocity) <= STOPPED
+        if there and self._returns and turn.target != 0.0:
+            there = self._return(turn, seconds)
+        return Verdict(SUCCEEDED) if there else None
 
     def _return(self, turn: Turn, seconds: float) -> bool:
         """Wait at the target, then go back; it is not there yet."""

@@ -1,0 +1,33 @@
+"""Commands on their way to what they move. Pure logic."""
+
+from collections import deque
+from collections.abc import Iterator
+from typing import Generic, TypeVar
+
+T = TypeVar("T")
+MOST = 10_000  # commands under way; older ones are lost beyond it
+EARLY = 1e-6  # s, a command that is due within this is due
+
+
+class DeadTime(Generic[T]):
+    """First in, first out, each a dead time after it was sent."""
+
+    def __init__(self, seconds: float) -> None:
+        self._seconds = seconds
+        self._under_way: deque[tuple[float, T]] = deque(maxlen=MOST)
+
+    def __len__(self) -> int:
+        return len(self._under_way)
+
+    def put(self, now: float, command: T, more: float = 0.0) -> None:
+        """Send a command; `more` [s] is added to the dead time."""
+        self._under_way.append((now + self._seconds + more, command))
+
+    def due(self, now: float) -> Iterator[T]:
+        """Take those whose time has come, the oldest first."""
+        while self._under_way and self._under_way[0][0] <= now + EARLY:
+            yield self._under_way.popleft()[1]
+
+    def clear(self) -> None:
+        """Lose what is under way."""
+        self._under_way.clear()

@@ -1,0 +1,75 @@
+"""What a joint's hydraulics do with the angles they are sent: dead time, lag, end stops. Pure logic.
+
+dq/dt = (u(t - D) - q) / tau, as in the simulator, whose drives were fitted to the real machines. The torque limit
+shapes only how a motion starts and ends. It is given as an acceleration: the simulator's torque gives the swing of a
+zx200 about twice the acceleration that its motions are planned with.
+"""
+
+import math
+
+from tms_core.models import Joint, Response
+from tms_sim.dead_time import DeadTime
+
+TORQUE = 2.0  # times the acceleration limit of planned motions
+STICKS = 5e-4  # rad/s, slower than this a joint stands as soon as nothing more is on its way to it
+
+
+class Drive:
+    """One joint: true position [rad] and velocity [rad/s]."""
+
+    def __init__(self, joint: Joint, response: Response, position: float) -> None:
+        self.position, self.velocity = position, 0.0
+        self._lag, self._most = response.lag, TORQUE * joint.acceleration
+        self._low = -math.inf if joint.min is None else joint.min
+        self._high = math.inf if joint.max is None else joint.max
+        self._commands: DeadTime[float | None] = DeadTime(response.dead_time)
+        self._target: float | None = None  # rad; None: the valve is shut
+
+    @property
+    def still(self) -> bool:
+        """Whether it stands and nothing is on its way to it."""
+        return self._target is None and self.velocity == 0.0 and not self._commands
+
+    def slower(self, velocity: float) -> bool:
+        """Whether it moves slower than this [rad/s], and neither its target nor a command under way speeds it up."""
+        towards = 0.0 if self._target is None else (self._target - self.position) / self._lag
+        return not self._commands and max(abs(self.velocity), abs(towards)) < velocity
+
+    def send(self, angle: float, now: float, more: float = 0.0) -> None:
+        """Bring it to an angle [rad], as far as the end stops let it; `more` [s] lengthens the dead time."""
+        self._commands.put(now, angle, more)
+
+    def halt(self, now: float, at_once: bool, more: float = 0.0) -> None:
+        """Emergency stop: hold where it is when the stop takes effect. At once: what is under way is dropped."""
+        if at_once:
+            self._commands.clear()
+            self._target = self.position
+        else:
+            self._commands.put(now, None, more)
+
+    def rest(self) -> None:
+        """Stand from this moment on; what is under way is lost."""
+        self._commands.clear()
+        self._target, self.velocity = None, 0.0
+
+    def shift(self, way: float) -> None:
+        """Leak: it moves [rad] without being told."""
+        self.position = max(self._low, min(self._high, self.position + way))
+        if self._target is not None:
+            self._target += way
+
+    def step(self, now: float, h: float) -> None:
+        """Let `h` seconds pass up to `now`."""
+        for angle in self._commands.due(now):
+            self._target = self.position if angle is None else angle
+        if self._target is None:
+            return
+        wanted = (self._target - self.position) / self._lag
+        change = self._most * h
+        self.velocity += max(-change, min(change, wanted - self.velocity))
+        position = self.position + self.velocity * h
+        self.position = max(self._low, min(self._high, position))
+        if position != self.position:
+            self.velocity = wanted = 0.0  # the end stop
+        if not self._commands and abs(self.velocity) < STICKS and abs(wanted) < STICKS:
+            self._target, self.velocity = None, 0.0

@@ -1,0 +1,37 @@
+"""The fault `second_publisher`: somebody else tells that the machine stands where it was when the fault began."""
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+from tms_core.ros import Ros
+from tms_sim.report import Reading
+from tms_sim.sources import Topic
+
+PERIOD = 1 / 60  # s
+
+
+class Impostor:
+    """Publishers of its own on the topics of the machine, while the fault is on."""
+
+    def __init__(self, ros: Ros, made: Callable[[], list[Topic]]) -> None:
+        self._ros, self._made = ros, made
+        self._topics: list[Topic] = []
+        self._timer: Any = None
+        self._reading: Reading | None = None
+
+    def look(self, told: Reading, on: bool) -> None:
+        """Begin or end, on the executor thread."""
+        if on and self._timer is None:
+            self._reading, self._topics = told.standing(), self._made()
+            self._timer = self._ros.every(PERIOD, self._tell)
+        elif not on and self._timer is not None:
+            self._ros.node.destroy_timer(self._timer)
+            for topic in self._topics:
+                self._ros.node.destroy_publisher(topic.publisher)
+            self._timer, self._topics = None, []
+
+    def _tell(self) -> None:
+        assert self._reading is not None
+        for topic in self._topics:
+            topic.tell(self._reading._replace(stamp=time.time_ns()))

@@ -1,0 +1,73 @@
+"""What a stand-in says of its motion, and how faults make a lie of it. Pure logic."""
+
+import math
+from collections import deque
+from collections.abc import Callable
+from typing import NamedTuple
+
+from tms_core.site_file import Fault
+
+SECOND = 1_000_000_000  # ns
+
+
+class Reading(NamedTuple):
+    """One look at a machine: joints in the order of the controller, place and speeds of the base."""
+
+    stamp: int  # ns, utc
+    positions: tuple[float, ...]  # rad
+    velocities: tuple[float, ...]  # rad/s
+    place: tuple[float, float, float]  # x m, y m, yaw rad, in `map`
+    speeds: tuple[float, float]  # m/s, rad/s
+
+    def each(self, change: Callable[[float], float]) -> "Reading":
+        """The same with every number changed; the stamp stays."""
+        x, y, yaw = map(change, self.place)
+        v, w = map(change, self.speeds)
+        return Reading(
+            self.stamp, tuple(map(change, self.positions)), tuple(map(change, self.velocities)), (x, y, yaw), (v, w)
+        )
+
+    def standing(self) -> "Reading":
+        """The same with all velocities 0."""
+        return self._replace(velocities=(0.0,) * len(self.velocities), speeds=(0.0, 0.0))
+
+    def displaced(self, way: float) -> "Reading":
+        """The same with every position [rad, m] this far off; the heading counts as none."""
+        x, y, yaw = self.place
+        return self._replace(positions=tuple(q + way for q in self.positions), place=(x + way, y + way, yaw))
+
+
+class Report:
+    """Readings in, what is told out."""
+
+    def __init__(self, kept: int) -> None:
+        """`kept` readings are repeated by the fault `replay`."""
+        self._last: deque[Reading] = deque(maxlen=max(1, kept))
+        self._frozen: Reading | None = None
+
+    def tell(self, true: Reading, fault: Fault) -> Reading:
+        """What is told at the time of a reading."""
+        if fault.frozen_stamp:
+            if self._frozen is None:
+                self._frozen = self._last[-1] if self._last else true
+            return self._frozen
+        self._frozen = None
+        if fault.replay and self._last:
+            self._last.rotate(-1)
+            told = self._last[-1]._replace(stamp=true.stamp)
+        else:
+            told = true
+            self._last.append(true)
+        return _lie(told, fault)
+
+
+def _lie(told: Reading, fault: Fault) -> Reading:
+    if fault.zero_velocity:
+        told = told.standing()
+    if fault.jump:
+        told = told.displaced(fault.jump)
+    if fault.nan:
+        told = told.each(lambda _: math.nan)
+    if fault.back_in_time:
+        told = told._replace(stamp=told.stamp - int(fault.back_in_time * SECOND))
+    return told
