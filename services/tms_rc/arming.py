@@ -3,10 +3,10 @@
 import time
 from typing import Any
 
+from tms_msg_rc.msg import StopReceipt
 from tms_msg_rc.srv import Rearm, TakeMachine
 
 from tms_core.app import App
-from tms_core.border import STOP_PROVEN
 from tms_rc.guard import PRESSED, Guard, Kind
 
 MANUAL = "the machine's own manual mode"
@@ -88,11 +88,10 @@ class Arming:
         response.error_code, response.error_msg = code, text
         return response
 
-    def _give_back(self, who: str) -> object:
+    def _give_back(self, who: str) -> StopReceipt:
         self._guard.by_hand = ""
         stop = self._guard.stop(f"given back by {who}", Kind.PLAIN)
-        stop.over.wait(STOP_PROVEN + 1.0)
-        return stop.receipt
+        return stop.wait(self._app.machine)
 
     def _keeps_from_taking(self, who: str) -> tuple[str, str]:
         guard, machine = self._guard, self._app.machine

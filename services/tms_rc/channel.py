@@ -1,7 +1,6 @@
 """One quantity of a machine, such as a joint's angle or the place of its base, and whether it moved. Pure logic."""
 
 import math
-from collections import deque
 from dataclasses import dataclass
 
 WORST = 0.3  # s; the worst speed within this time counts, not the last message
@@ -38,17 +37,18 @@ class Seen:
 
 
 class Channel:
-    """Fed in order of time."""
+    """Fed in order of time by one thread, read by any."""
 
     def __init__(self, limits: Limits) -> None:
         self._limits = limits
-        self._seen: deque[Seen] = deque()
+        self._seen: tuple[Seen, ...] = ()  # a new one a sample, never changed: other threads read it without a lock
         self.surprised = float("-inf")  # when it was last somewhere that no motion leads to, as a replayed record is
 
     @property
     def last(self) -> Seen | None:
         """The newest sample."""
-        return self._seen[-1] if self._seen else None
+        seen = self._seen
+        return seen[-1] if seen else None
 
     def add(self, received: float, stamped: float, place: Place, speed: float | None) -> None:
         """Take one sample."""
@@ -58,13 +58,12 @@ class Channel:
                                                            received, stamped, place))  # fmt: skip
         if before is not None and before.place and self._leaps(before, stamped - before.stamped, place, speed):
             self.surprised = received
-        self._seen.append(Seen(received, stamped, place, speed, fast))
-        while received - self._seen[0].received > KEPT:
-            self._seen.popleft()
+        kept = [one for one in self._seen if received - one.received <= KEPT]
+        self._seen = (*kept, Seen(received, stamped, place, speed, fast))
 
     def clear(self) -> None:
         """Forget everything: what was heard belongs to another clock."""
-        self._seen.clear()
+        self._seen = ()
 
     def moving(self) -> bool:
         """Whether any of the last samples showed a motion; unknown counts as moving."""
@@ -109,8 +108,8 @@ class Channel:
         return ""
 
     def _recent(self) -> list[Seen]:
-        newest = self.last
-        return [] if newest is None else [one for one in self._seen if newest.received - one.received <= WORST + 1e-9]
+        seen = self._seen
+        return [one for one in seen if seen[-1].received - one.received <= WORST + 1e-9]
 
     def _moved(self, received: float, stamped: float, place: Place, then: float, measured: float, now: Place) -> bool:
         """Whether the way between two samples is longer than a standing machine may have gone."""

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from tms_core.app import App
-from tms_core.border import STOP_PROVEN, Motion
+from tms_core.border import Motion
 from tms_core.errors import RosError
 from tms_core.fence import parse
 from tms_core.ros import LOST_TEXT, Call, Ended, Goal, Outcome, Peer
@@ -198,9 +198,9 @@ class Gateway:
 
     def _stopped(self, motion: Motion, active: Active) -> Ended:
         stop = active.stop
-        if stop is None or not stop.over.wait(STOP_PROVEN + 1.0) or stop.receipt is None:
+        if stop is None:
             return aborted(motion, "stopped, but nobody saw the end of it")
-        receipt = stop.receipt
+        receipt = stop.wait(self._app.machine)
         if not receipt.confirmed:
             return aborted(motion, f"stop unconfirmed: {receipt.detail} ({stop.cause})")
         text = f"stood after {receipt.seconds:.2f} s, {travel_text(receipt)} ({stop.cause})"

@@ -247,8 +247,7 @@ class Guard:
     def stop_service(self, request: StopMachine.Request, response: StopMachine.Response) -> StopMachine.Response:
         """Stop whoever moves the machine, foreign clients too; answers with what was seen."""
         stop = self.stop(request.cause or "software stop", Kind.PLAIN if request.orderly else Kind.LATCH)
-        stop.over.wait(STOP_PROVEN + 1.0)
-        response.receipt = stop.receipt
+        response.receipt = stop.wait(self._app.machine)
         return response
 
     def _note(self, stop: Stop) -> None:

@@ -1,6 +1,5 @@
 """One source that tells of a machine's motion: what it said, and why its word may count for nothing. Pure logic."""
 
-from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -43,8 +42,9 @@ class SourceWatch:
         self._limits = dict(channels)
         self._clock = StampClock(source.stamps)
         self._advanced: float | None = None  # when a sample with a new stamp came
-        self._repeats: deque[float] = deque(maxlen=PERIODS)  # when stamps came that did not advance
-        self._number, self._back = 0, deque[float](maxlen=2)
+        # Tuples that are replaced, never changed: other threads read them without a lock.
+        self._repeats: tuple[float, ...] = ()  # when stamps came that did not advance
+        self._number, self._back = 0, tuple[float, ...]()  # last number, and when numbers went back
         self.new_clock: tuple[float, str] | None = None  # since when, why
         self.fast = False  # its last message showed a motion
         self.publishers: tuple[str, ...] = ()  # nodes, where there is more than one
@@ -59,17 +59,17 @@ class SourceWatch:
     def take(self, sample: Sample) -> None:
         """Take one message."""
         if sample.number < self._number or (sample.number == self._number and sample.number > 0):
-            self._back.append(sample.received)
+            self._back = (*self._back, sample.received)[-2:]
         self._number = sample.number
         judged = self._clock.judge(sample.received, sample.stamp)
         if judged.verdict is Verdict.REPEATED:
-            self._repeats.append(sample.received)
+            self._repeats = (*self._repeats, sample.received)[-PERIODS:]
             return
         if judged.verdict is Verdict.NEW_CLOCK:
             self.new_clock = sample.received, judged.why
             for channel in self.channels.values():
                 channel.clear()
-        self._repeats.clear()
+        self._repeats = ()
         self._advanced = sample.received
         values = (dict(sample.places), dict(sample.speeds))
         if values != self._values:
@@ -98,17 +98,18 @@ class SourceWatch:
 
     def trouble(self, now: float) -> Trouble | None:
         """Why its word counts for nothing now."""
-        if self.publishers:
-            return Trouble(f"{self.label} come from {len(self.publishers)} publishers: {', '.join(self.publishers)}")
-        if len(self._back) == 2 and now - self._back[0] < MIXED:
+        publishers, back, repeats, new_clock = self.publishers, self._back, self._repeats, self.new_clock
+        if publishers:
+            return Trouble(f"{self.label} come from {len(publishers)} publishers: {', '.join(publishers)}")
+        if len(back) == 2 and now - back[0] < MIXED:
             return Trouble(f"{self.label} come from two publishers: their numbers go back and forth")
-        if len(self._repeats) == PERIODS and now - self._repeats[0] < MIXED:
+        if len(repeats) == PERIODS and now - repeats[0] < MIXED:
             return Trouble(f"{self.label} repeat a stamp that does not advance")
         for name, channel in self.channels.items():
             if why := channel.disagreement():
                 return Trouble(f"{self.label} are implausible: {name}: {why}")
-        if self.new_clock is not None:
-            return Trouble(f"{self.label}: {self.new_clock[1]}", passes=True)
+        if new_clock is not None:
+            return Trouble(f"{self.label}: {new_clock[1]}", passes=True)
         return None
 
     def accept_clock(self) -> None:
@@ -117,11 +118,11 @@ class SourceWatch:
 
     def settle(self, now: float, stands: bool) -> None:
         """Take a new clock for good once the machine has stood long enough by it."""
-        if self.new_clock is not None:
-            if not stands:
-                self.new_clock = max(self.new_clock[0], now), self.new_clock[1]
-            elif now - self.new_clock[0] >= SETTLED:
-                self.new_clock = None
+        new_clock = self.new_clock
+        if new_clock is not None and not stands:
+            self.new_clock = max(new_clock[0], now), new_clock[1]
+        elif new_clock is not None and now - new_clock[0] >= SETTLED:
+            self.new_clock = None
 
     @property
     def surprised(self) -> float:

@@ -93,7 +93,8 @@ class StandStill:
             if channel == PLACE:
                 self._way = max(self._way, away)
             else:
-                self._angles[channel] = max(self._angles.get(channel, 0.0), away)
+                # A new dict: other threads read the old one without a lock.
+                self._angles = {**self._angles, channel: max(self._angles.get(channel, 0.0), away)}
 
     # what is known
 
@@ -224,8 +225,9 @@ class StandStill:
 
     def travel(self) -> Travel:
         """Furthest that each part was away since the mark."""
-        joint = max(self._angles, key=lambda name: self._angles[name], default="")
-        return Travel(joint, self._angles.get(joint, 0.0), self._way)
+        angles = self._angles
+        joint = max(angles, key=lambda name: angles[name], default="")
+        return Travel(joint, angles.get(joint, 0.0), self._way)
 
 
 def _channels(name: str, model: MachineModel, resolution: float, scale: float) -> dict[str, Limits]:
