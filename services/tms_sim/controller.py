@@ -67,7 +67,8 @@ class Controller:
                 self._braking = Verdict("ABORTED", PATH_VIOLATED, "emergency stop")
 
     def _brake(self, verdict: Verdict) -> None:
-        self.arm.hold()
+        if self._braking is None:  # asked again, it goes on braking
+            self.arm.hold()
         self._braking = verdict
 
     def step(self, seconds: float) -> None:

@@ -82,7 +82,8 @@ class Turner:
         return self.arm.servos[joint].position
 
     def _brake(self, turn: Turn, verdict: Verdict) -> None:
-        self.arm.release(turn.joint)
+        if turn.braking is None:  # asked again, it goes on braking
+            self.arm.release(turn.joint)
         turn.braking = verdict
 
     def step(self, seconds: float) -> None:
