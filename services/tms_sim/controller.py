@@ -67,8 +67,7 @@ class Controller:
                 self._braking = Verdict("ABORTED", PATH_VIOLATED, "emergency stop")
 
     def _brake(self, verdict: Verdict) -> None:
-        if self._braking is None:  # asked again, it goes on braking
-            self.arm.hold()
+        self.arm.hold()
         self._braking = verdict
 
     def step(self, seconds: float) -> None:

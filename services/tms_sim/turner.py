@@ -82,8 +82,7 @@ class Turner:
         return self.arm.servos[joint].position
 
     def _brake(self, turn: Turn, verdict: Verdict) -> None:
-        if turn.braking is None:  # asked again, it goes on braking
-            self.arm.release(turn.joint)
+        self.arm.release(turn.joint)
         turn.braking = verdict
 
     def step(self, seconds: float) -> None:
