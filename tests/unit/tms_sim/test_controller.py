@@ -53,6 +53,23 @@ def test_cancel_ends_when_the_arm_stands(controller: Controller) -> None:
     assert controller.arm.still
 
 
+def test_a_cancel_that_is_repeated_makes_it_no_slower() -> None:
+    took = []
+    for again in (False, True):
+        controller = Controller(Arm(MODEL.joints, MODEL.initial, MODEL.response))
+        motion = controller.begin(NAMES, goal(2.5))
+        run(controller, 3.0)
+        controller.cancel(motion)
+        for tick in range(500):
+            if again and tick % 5 == 0:
+                controller.cancel(motion)  # as somebody does who does not see it stand
+            controller.step(0.02)
+            if motion.verdict:
+                took.append(tick * 0.02)
+                break
+    assert took[1] == pytest.approx(took[0], abs=0.2)
+
+
 def test_a_newer_goal_preempts(controller: Controller) -> None:
     old = controller.begin(NAMES, goal(2.0))
     run(controller, 1.0)
