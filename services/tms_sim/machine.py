@@ -45,6 +45,7 @@ class StandIn:
         self._in_motion = 0.0  # s since the first of the open goals
         self._stood = 0.0  # s since it came to stand
         self._leaking = 0.0  # m/s, rad/s
+        self._releases = 0  # of the emergency stop
         self._later: list[tuple[float, Callable[[], object]]] = []
         self._lock = threading.Lock()  # of what comes later
 
@@ -68,9 +69,16 @@ class StandIn:
     def stop(self, on: bool) -> None:
         """Level of the emergency stop."""
         if not on:
+            self._releases += 1
             self.later(lambda: self._stop(False))
         elif not self.fault.ignore_emg_stop:
-            self._order_stop(lambda: self._stop(True))
+            release = self._releases
+            self._order_stop(lambda: self._press(release))
+
+    def _press(self, release: int) -> None:
+        """A press that comes late counts for nothing once it was released."""
+        if release == self._releases:
+            self._stop(True)
 
     def _stop(self, on: bool) -> None:
         for part in (self.controller, self.turner, self.commands, self.travel):

@@ -1,0 +1,284 @@
+"""A receipt says *confirmed* only of a machine that stands, whatever the machine does and reports.
+
+The stand-in tells its true motion on a way of its own. Each of these has fooled receipts once.
+"""
+
+import json
+import threading
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+import yaml
+from builtin_interfaces.msg import Duration
+from control_msgs.action import FollowJointTrajectory
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Bool, String
+from tms_msg_rc.msg import MachineState, StopReceipt
+from tms_msg_rc.srv import Rearm
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+from conftest import Mesh, claimed_domain, ports_of, site_data, wait_until
+from tms_core import environment
+from tms_core.config import load_site
+from tms_core.ros import Call, Ros
+
+pytestmark = [pytest.mark.ros, pytest.mark.timeout(300)]
+LIMIT = 60.0  # s for whatever must happen at all
+SWING = 1.2  # rad
+MOVES = 0.05  # rad/s: clearly on its way
+STANDS = 0.011  # rad/s, the limit of the model and what 50 Hz of the truth add to it
+WINDOW = 0.2  # s of standing that a receipt claims
+AFTER = 1.0  # s after it in which nothing may move either
+
+
+class Machine:
+    """The stand-in as it truly is, and what its gateway says."""
+
+    def __init__(self, mesh: Mesh, ros: Ros) -> None:
+        self.mesh, self.ros = mesh, ros
+        self.changed = threading.Condition()
+        self.truth: list[tuple[float, float]] = []  # s since 1970, fastest joint rad/s
+        self.state: Any = None
+        self.receipts: list[Any] = []
+        ros.subscribe(JointState, "/zx200/sim/truth", self._on_truth, depth=50)
+        ros.subscribe(MachineState, "/zx200/rc/state", self._on_state, latched=True)
+        ros.subscribe(StopReceipt, "/zx200/rc/receipts", self._on_receipt, depth=20, latched=True)
+        self._fault = ros.publisher(String, "/zx200/sim/fault")
+        self.button = ros.publisher(Bool, "/emergency_signal")
+        self.gateway = ros.peer(FollowJointTrajectory, "/zx200/rc/follow_joint_trajectory")
+        self.own = ros.peer(FollowJointTrajectory, "/zx200/upper_arm_controller/follow_joint_trajectory")
+        self.until(lambda: len(self.truth) > 10, "the true motion")
+
+    def _on_truth(self, message: Any) -> None:
+        speeds = [abs(speed) for name, speed in zip(message.name, message.velocity, strict=True) if "joint" in name]
+        with self.changed:
+            self.truth.append((message.header.stamp.sec + message.header.stamp.nanosec * 1e-9, max(speeds)))
+            self.changed.notify_all()
+
+    def _on_state(self, state: Any) -> None:
+        with self.changed:
+            self.state = state
+            self.changed.notify_all()
+
+    def _on_receipt(self, receipt: Any) -> None:
+        with self.changed:
+            self.receipts.append(receipt)
+            self.changed.notify_all()
+
+    def until(self, holds: Any, what: str) -> None:
+        with self.changed:
+            assert self.changed.wait_for(holds, LIMIT), f"not within {LIMIT} s: {what}"
+
+    def be(self, **fault: object) -> None:
+        self._fault.publish(String(data=json.dumps(fault)))
+
+    def arm(self) -> None:
+        """In order again, standing and armed."""
+        self.button.publish(Bool(data=False))
+        self.be()
+
+        def armed() -> bool:
+            first = self.ros.call(Rearm, "/zx200/rearm", Rearm.Request(), 30)
+            if first.error_code == "NOT_STOPPED":
+                return bool(self.state.ready and not self.state.moving)
+            return bool(self.ros.call(Rearm, "/zx200/rearm", Rearm.Request(token=first.token), 30).armed)
+
+        wait_until(armed, LIMIT, "zx200 is armed", every=0.2)
+        self.until(lambda: self.state.armed and self.state.ready, "ready")
+        del self.receipts[:]
+
+    def swing(self, peer: Any = None, seconds: float = 5.0) -> Call:
+        """A long swing to the other side, by the gateway if nothing else is said."""
+        peer = peer or self.gateway
+        peer.wait_ready(LIMIT)
+        joints = dict(zip(self.state.joint_names, self.state.positions, strict=True))
+        goal = JointTrajectory(joint_names=list(joints))
+        joints["swing_joint"] += SWING if joints["swing_joint"] < 0.5 else -SWING
+        goal.points = [
+            JointTrajectoryPoint(positions=list(joints.values()), time_from_start=Duration(sec=int(seconds)))
+        ]
+        call: Call = peer.send(FollowJointTrajectory.Goal(trajectory=goal))
+        return call
+
+    def wait_moving(self, call: Call) -> None:
+        self.until(lambda: self.truth[-1][1] > MOVES or call.outcome is not None, "it moves")
+        assert call.outcome is None, call.result
+
+    def wait_receipt(self) -> Any:
+        self.until(lambda: bool(self.receipts), "a receipt")
+        return self.receipts[0]
+
+    def moved(self, receipt: Any) -> float:
+        """Fastest true motion [rad/s] in the window that a confirmed receipt claims, and shortly after it."""
+        end = receipt.stamp.sec + receipt.stamp.nanosec * 1e-9 + receipt.seconds
+        self.until(lambda: self.truth[-1][0] > end + AFTER, "more of the true motion")
+        return max(speed for at, speed in self.truth if end - WINDOW < at < end + AFTER)
+
+    def honest(self, receipt: Any) -> None:
+        """Confirmed and standing, or not confirmed and latched."""
+        if receipt.confirmed:
+            assert self.moved(receipt) < STANDS, receipt
+        else:
+            self.until(lambda: bool(self.state.latch), "a latch")
+            assert receipt.latched and receipt.detail
+
+
+@pytest.fixture(scope="module")
+def machine(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Machine]:
+    """A zx200 with its gateway; no scheduler, database or console."""
+    with claimed_domain() as domain, pytest.MonkeyPatch.context() as patch:
+        folder = tmp_path_factory.mktemp("receipts")
+        data = site_data(
+            domain, ports_of(domain), services={"host": {}}, sim={"speed": 1.0},
+            store={"kind": "mongodb", "uri": "mongodb://127.0.0.1:1"},
+        )  # fmt: skip
+        (folder / "site.yaml").write_text(yaml.safe_dump(data))
+        mesh = Mesh(folder / "site.yaml", folder / "state")
+        for key, value in mesh.env.items():
+            patch.setenv(key, value)
+        for key, value in environment.environment(load_site()).items():
+            patch.setenv(key, value)
+        mesh.tms("up")
+        try:
+            ros = Ros("tms_tests_receipts")
+            yield Machine(mesh, ros)
+            ros.close()
+        finally:
+            mesh.tms("down")
+
+
+@pytest.fixture(autouse=True)
+def in_order(machine: Machine) -> Iterator[None]:
+    machine.until(lambda: machine.state is not None, "the gateway")
+    machine.arm()
+    yield
+    machine.be()
+
+
+def test_a_machine_that_was_never_armed_is_latched(machine: Machine) -> None:
+    """The first start of a gateway: the fixture had to re-arm it."""
+    assert json.loads((machine.mesh.state / "rc" / "zx200.armed").read_text())["armed"] is True
+
+
+LIES: list[dict[str, Any]] = [
+    {"zero_velocity": True}, {"frozen_stamp": True}, {"mute": ["swing_joint"]}, {"second_publisher": True},
+    {"replay": True}, {"nan": True}, {"back_in_time": 5.0},
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("lie", LIES, ids=lambda lie: next(iter(lie)))
+def test_a_machine_that_coasts_and_lies_is_not_believed(machine: Machine, lie: dict[str, Any]) -> None:
+    """It goes on for 3 s after the cancel, and says something else."""
+    call = machine.swing()
+    machine.wait_moving(call)
+    machine.be(coast=3.0, **lie)
+    machine.gateway.cancel(call)
+    machine.honest(machine.wait_receipt())
+
+
+def test_a_stop_in_the_dead_time_is_proven_after_it(machine: Machine) -> None:
+    call = machine.swing()
+    machine.until(lambda: bool(machine.state.goal) or call.outcome is not None, "the goal is under way")
+    assert call.outcome is None, call.result
+    machine.gateway.cancel(call)
+    receipt = machine.wait_receipt()
+    machine.honest(receipt)
+    assert receipt.confirmed and receipt.seconds > 0.9
+
+
+def test_a_software_stop_in_the_dead_time_that_is_ignored(machine: Machine) -> None:
+    machine.be(ignore_emg_stop=True, ignore_cancel=True)
+    call = machine.swing()
+    machine.until(lambda: bool(machine.state.goal) or call.outcome is not None, "the goal is under way")
+    assert call.outcome is None, call.result
+    machine.button.publish(Bool(data=True))
+    receipt = machine.wait_receipt()
+    machine.honest(receipt)
+    assert not receipt.confirmed
+
+
+def test_a_joint_that_is_not_heard_after_a_restart_is_unknown(machine: Machine) -> None:
+    call = machine.swing()
+    machine.wait_moving(call)
+    machine.be(mute=["boom_joint"], coast=3.0)
+    machine.mesh.tms("restart", "zx200:rc")
+    for receipt in [machine.wait_receipt()]:
+        machine.honest(receipt)
+    machine.until(lambda: bool(machine.state.latch), "a latch")
+
+
+def test_a_goal_behind_the_gateways_back_is_stopped(machine: Machine) -> None:
+    """At the machine's own server, while the gateway has it latched."""
+    machine.button.publish(Bool(data=True))
+    machine.until(lambda: bool(machine.state.latch), "latched")
+    machine.wait_receipt()
+    machine.button.publish(Bool(data=False))
+    from tms_core.border import Controls
+
+    Controls(machine.ros, "zx200", load_site().border("zx200")).emergency(False)  # somebody else releases it
+    del machine.receipts[:]
+    call = machine.swing(machine.own)
+    machine.until(lambda: call.outcome is not None, "the end of the goal")
+    receipt = machine.wait_receipt()
+    assert not receipt.confirmed and receipt.detail == "it left stand-still without a goal of its own"
+    assert abs(machine.state.velocities[0]) < SWING and call.outcome is not None and call.outcome.name != "SUCCEEDED"
+
+
+def test_a_stopped_machine_that_creeps_is_stopped_again(machine: Machine) -> None:
+    machine.be(creep=0.05)
+    call = machine.swing()
+    machine.wait_moving(call)
+    machine.gateway.cancel(call)
+    machine.until(lambda: any("left stand-still" in one.detail for one in machine.receipts), "it is noticed")
+    machine.until(lambda: "left stand-still" in machine.state.latch, "latched")
+
+
+def test_a_person_may_drive_a_machine_that_was_taken(machine: Machine) -> None:
+    machine.mesh.tms("take", "zx200", "--by", "mina")
+    call = machine.swing()
+    machine.until(lambda: call.outcome is not None, "refused")
+    assert "mina drives zx200 by hand" in call.result.error_string
+    call = machine.swing(machine.own, seconds=4.0)
+    machine.until(lambda: call.outcome is not None, "its end")
+    assert call.outcome is not None and call.outcome.name == "SUCCEEDED"
+    given = json.loads(machine.mesh.tms("give-back", "zx200", "--json").stdout)
+    assert given["confirmed"] is True and machine.state.by_hand == ""
+
+
+def test_a_stall_is_told_at_once(machine: Machine) -> None:
+    machine.be(stall=1.5)
+    begun = time.monotonic()
+    call = machine.swing(seconds=20.0)
+    machine.until(lambda: call.outcome is not None, "its end")
+    assert "STALLED: swing_joint stands at" in call.result.error_string
+    assert time.monotonic() - begun < 20.0
+
+
+def test_a_second_gateway_does_not_serve(machine: Machine, tmp_path_factory: pytest.TempPathFactory) -> None:
+    import subprocess
+    import sys
+
+    folder = tmp_path_factory.mktemp("second")
+    data = yaml.safe_load(machine.mesh.site.read_text())
+    data["ports"]["metrics"] += 30
+    (folder / "site.yaml").write_text(yaml.safe_dump(data))
+    env = {**machine.mesh.env, "TMS_SITE": str(folder / "site.yaml"), "TMS_STATE": str(folder / "state")}
+    from tms_core import metrics
+    from tms_core.processes import find
+
+    second = subprocess.Popen([sys.executable, "-m", "tms_core.run", "zx200:rc"], env=env)
+    try:
+        machine.until(lambda: "another gateway for zx200 runs (pid" in machine.state.reason, "the first one says so")
+        row = find(load_site(str(folder / "site.yaml")), "zx200:rc")
+        wait_until(
+            lambda: "another gateway for zx200 runs (pid" in (metrics.unready(row.address, row.port) or ""), LIMIT,
+            "the second one says so",
+        )  # fmt: skip
+        assert "another gateway for zx200" in machine.mesh.tms("status", expect=1).stdout
+        assert not (folder / "state" / "rc").exists()
+    finally:
+        second.terminate()
+        second.wait(30)
+    machine.until(lambda: machine.state.ready, "ready again")
