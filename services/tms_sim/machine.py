@@ -42,6 +42,7 @@ class StandIn:
         self.time = 0.0  # s
         self._die = die
         self._pressed = False  # the emergency stop
+        self._releases = 0  # of it: a stop on its way that has been released since is void
         self._in_motion = 0.0  # s since the first of the open goals
         self._stood = 0.0  # s since it came to stand
         self._leaking = 0.0  # m/s, rad/s
@@ -70,7 +71,8 @@ class StandIn:
         if not on:
             self.later(lambda: self._stop(False))
         elif not self.fault.ignore_emg_stop:
-            self._order_stop(lambda: self._stop(True))
+            releases = self._releases
+            self._order_stop(lambda: self._stop(True) if releases == self._releases else None)
 
     def _stop(self, on: bool) -> None:
         for part in (self.controller, self.turner, self.commands, self.travel):
@@ -81,6 +83,7 @@ class StandIn:
             if self.base is not None:
                 self.base.halt(self._border.emg_stop_at_once)
         self._pressed = on
+        self._releases += not on
 
     def cancel(self, command: Callable[[], object]) -> None:
         """A request to cancel a goal."""
