@@ -24,11 +24,12 @@ def trajectory_server(controller: Controller) -> Served:
 
     def feedback(motion: PathMotion) -> Any:
         arm = controller.arm
-        desired, actual = list(motion.path.at(arm.elapsed)), list(arm.positions)
+        since = max(0.0, arm.elapsed)  # s, it begins a dead time after the goal was taken
+        desired, actual = list(motion.path.at(since)), arm.positions
         return FollowJointTrajectory.Feedback(
             joint_names=list(arm.joints),
-            desired=JointTrajectoryPoint(positions=desired, time_from_start=_duration(arm.elapsed)),
-            actual=JointTrajectoryPoint(positions=actual, velocities=list(arm.velocities)),
+            desired=JointTrajectoryPoint(positions=desired, time_from_start=_duration(since)),
+            actual=JointTrajectoryPoint(positions=actual, velocities=arm.velocities),
             error=JointTrajectoryPoint(positions=[d - a for d, a in zip(desired, actual, strict=True)]),
         )
 

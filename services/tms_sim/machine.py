@@ -42,10 +42,10 @@ class StandIn:
         self.time = 0.0  # s
         self._die = die
         self._pressed = False  # the emergency stop
+        self._releases = 0  # of it: a stop on its way that has been released since is void
         self._in_motion = 0.0  # s since the first of the open goals
         self._stood = 0.0  # s since it came to stand
         self._leaking = 0.0  # m/s, rad/s
-        self._releases = 0  # of the emergency stop
         self._later: list[tuple[float, Callable[[], object]]] = []
         self._lock = threading.Lock()  # of what comes later
 
@@ -69,16 +69,10 @@ class StandIn:
     def stop(self, on: bool) -> None:
         """Level of the emergency stop."""
         if not on:
-            self._releases += 1
             self.later(lambda: self._stop(False))
         elif not self.fault.ignore_emg_stop:
-            release = self._releases
-            self._order_stop(lambda: self._press(release))
-
-    def _press(self, release: int) -> None:
-        """A press that comes late counts for nothing once it was released."""
-        if release == self._releases:
-            self._stop(True)
+            releases = self._releases
+            self._order_stop(lambda: self._stop(True) if releases == self._releases else None)
 
     def _stop(self, on: bool) -> None:
         for part in (self.controller, self.turner, self.commands, self.travel):
@@ -89,6 +83,7 @@ class StandIn:
             if self.base is not None:
                 self.base.halt(self._border.emg_stop_at_once)
         self._pressed = on
+        self._releases += not on
 
     def cancel(self, command: Callable[[], object]) -> None:
         """A request to cancel a goal."""

@@ -235,10 +235,11 @@ def test_emergency_stop_ends_a_motion_until_it_is_released(machine: Rig) -> None
 def test_a_planner_that_ends_takes_its_motion_with_it(machine: Rig) -> None:
     call = machine.change_pose(2.5, *START[1:])
     machine.until(machine.moving, "motion")
-    machine.end_process(f"{MACHINE}:rp", (0, 1))  # 1: the machine takes longer to stand than a process has to leave
+    machine.end_process(f"{MACHINE}:rp", (0, 1))  # 1: it has less time to leave than the machine needs to stand
     machine.until(lambda: not machine.moving(), "standing machine")
     assert machine.states[-1].position[0] < 2.4
-    machine.until(lambda: call.outcome is Outcome.ABORTED, "end of the goal")
+    planner = machine.ros.peer(TmsRpZx200ChangePose, f"/{MACHINE}/tms_rp_zx200_change_pose")
+    machine.until(lambda: call.outcome is Outcome.ABORTED or planner.left(), "news that the planner is gone")
     machine.start(f"{MACHINE}:rp")
     machine.until(lambda: machine.end(machine.change_pose(*START)) is Outcome.SUCCEEDED, "motion afterwards")
 

@@ -75,6 +75,16 @@ def test_coast_goes_on_as_it_was_and_then_obeys(order: Order) -> None:
     assert base(made).still and trip.verdict is not None
 
 
+def test_a_stop_that_was_released_while_it_coasted_does_not_come_back() -> None:
+    made = machine(coast=3.0)
+    press(made, driving(made))
+    run(made, 1)
+    made.stop(False)
+    run(made, 5)
+    assert base(made).v == pytest.approx(1.0, abs=0.01)
+    assert made.travel is not None and made.travel.refusal([]) is None
+
+
 def test_coast_after_a_zero() -> None:
     made = machine(coast=3.0)
     made.drive(1.0, 0.0)
