@@ -84,10 +84,11 @@ class Health:
             lambda: _Connection(self._connections, self._answer), sock=self._socket, backlog=BACKLOG
         )
         await self._stop.wait()
-        server.close()
+        self._loop.remove_reader(self._socket)  # nobody else is taken; asyncio would lose who is being taken now
         self._connections.limit = 0
-        while self._connections.drop_oldest() or len(asyncio.all_tasks()) > 1:  # other tasks: those that come just now
+        while self._connections.drop_oldest() or len(asyncio.all_tasks()) > 1:
             await asyncio.sleep(0)
+        server.close()
         await asyncio.sleep(0)
 
 
