@@ -166,6 +166,7 @@ NEXT = {
     "BAD_JOURNAL": "実行の記録が読めません。`tms runs` で別の実行を確認してください",
     "BAD_NAME": "名前を確認してください",
     "BAD_RECORD": "`tms param get MODEL/RECORD` で項目を確認し、`tms param set` で直してください",
+    "BAD_TEXT": "制御文字を取り除いてください",
     "BAD_VALUE": "値の形式を確認してください(`tms param set --help`)",
     "BAD_TOKEN": "もう一度 `tms rearm MACHINE` をやり直してください",
     "AMBIGUOUS": "示された候補から 1 つを指定してください",

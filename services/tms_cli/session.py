@@ -13,6 +13,7 @@ import click
 from tms_core import environment
 from tms_core.config import Site, load_site
 from tms_core.errors import TmsError
+from tms_core.names import check_sent
 
 if TYPE_CHECKING:
     from tms_core.ros import Ros
@@ -45,9 +46,11 @@ def call(node: "Ros", service_type: Any, name: str, **fields: Any) -> Any:
     """Call a service of ours and raise what it reports.
 
     Raises:
-        TmsError: the service refused, is not there, or did not answer.
+        TmsError: the service refused, is not there, or did not answer; or a text would arrive cut.
     """
-    answer = node.call(service_type, name, service_type.Request(**fields), CALL_LIMIT)
+    request = service_type.Request(**fields)
+    check_sent(name, request)
+    answer = node.call(service_type, name, request, CALL_LIMIT)
     if answer.error_code:
         raise TmsError(answer.error_msg, answer.error_code)
     return answer

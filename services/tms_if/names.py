@@ -86,7 +86,7 @@ def _one(kind: str) -> frozenset[str]:
 
 def _sensors(site: Site) -> dict[str, frozenset[str]]:
     """Topics that tell of the machines' motion."""
-    found = {}
+    found: dict[str, frozenset[str]] = {}
     for machine in site.file.machines:
         border = site.border(machine)
         topics = {border.joint_states: "sensor_msgs/JointState", border.odom: "nav_msgs/Odometry"}
@@ -110,11 +110,12 @@ def _inputs(site: Site) -> dict[str, frozenset[str]]:
 
 def _commands(site: Site) -> dict[str, str]:
     """Topics that command the machines."""
-    found = {}
+    found: dict[str, str] = {}
     for machine in site.file.machines:
         border = site.border(machine)
-        topics = {border.cmd_vel: "geometry_msgs/Twist", border.emg_stop: "std_msgs/Bool"}
-        topics |= {border.joint_cmd: "com3_msgs/JointCmd", **HEARD}
-        topics |= {topic: "std_msgs/Float64" for topic in border.joint_angles.values()}
+        topics: dict[str | None, str] = {border.cmd_vel: "geometry_msgs/Twist", border.emg_stop: "std_msgs/Bool"}
+        topics[border.joint_cmd] = "com3_msgs/JointCmd"
+        topics |= dict.fromkeys(border.joint_angles.values(), "std_msgs/Float64")
+        topics.update(HEARD)
         found |= {f"/{machine}/{topic}": kind for topic, kind in topics.items() if topic}
     return found
