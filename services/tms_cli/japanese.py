@@ -25,6 +25,7 @@ SAID = {
     "{name} ready": "{name} 準備完了",
     "ready": "準備完了",
     "ready: {url}": "準備完了: {url}",
+    "{folder}: closed {count} files to other users": "{folder}: 他の利用者が読めた {count} 件を非公開にしました",
     "mesh {name} started, state in {folder}": "メッシュ {name} を起動しました(状態の保存先 {folder})",
     "mesh {name} already runs, state in {folder}": "メッシュ {name} はすでに動いています(状態の保存先 {folder})",
     "mesh '{site}' ended": "メッシュ '{site}' を終了しました",

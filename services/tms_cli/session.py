@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from tms_core import environment
+from tms_core import environment, state_folder
 from tms_core.config import Site, load_site
 from tms_core.errors import TmsError
 from tms_core.names import check_sent
@@ -34,7 +34,8 @@ def ros() -> Iterator["Ros"]:
     environment.enter(site())
     from tms_core.ros import Ros
 
-    node = Ros(f"tms_cli_{os.getpid()}")
+    with state_folder.private():  # it writes a log of its own
+        node = Ros(f"tms_cli_{os.getpid()}")
     leaving.callback(node.leave)
     try:
         yield node
