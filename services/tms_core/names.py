@@ -4,6 +4,7 @@ A ROS string ends at its first NUL: the rest is lost without an error, and the r
 sends checks first.
 """
 
+import re
 import unicodedata
 from collections.abc import Iterable, Iterator
 from typing import Annotated, Any
@@ -13,6 +14,7 @@ from pydantic import AfterValidator, Field
 from tms_core.errors import TmsError
 
 LONGEST = 200  # letters
+CUT = re.compile("[\0\ud800-\udfff]")
 CONTROL = ("Cc", "Cs", "Zl", "Zp")  # Unicode categories: control characters, halves of characters, breaks
 
 
@@ -44,14 +46,14 @@ def check_text(what: str, text: str) -> None:
 
 
 def check_sent(what: str, message: Any) -> None:
-    """Refuse a ROS message of ours that would arrive cut, because one of its texts holds a NUL.
+    """Refuse a ROS message of ours that would not arrive whole: a text is cut at a NUL, half a character has no bytes.
 
     Raises:
         TmsError: BAD_TEXT.
     """
     for field, text in _texts(message):
-        if "\0" in text:
-            raise TmsError(f"{what}: {field} {text[:40]!r} holds the control character U+0000: remove it", "BAD_TEXT")
+        if (found := CUT.search(text)) is not None:
+            raise TmsError(f"{what}: {field} {text[:40]!r} holds {control(found[0])}: remove it", "BAD_TEXT")
 
 
 def _texts(message: Any) -> Iterator[tuple[str, str]]:
