@@ -58,7 +58,7 @@ HELP = {
     "Take a field away (may be repeated).": "項目を取り除く(複数指定できる)",
     "Write Prometheus' configuration, rules and the targets of every process of the site.": "Prometheus の設定、規則、監視する対象の一覧を書き出す。",
     "`tms up` does the same; a running Prometheus notices changed targets by itself.": "`tms up` も同じことをします。動いている Prometheus は対象の変更に自分で気づきます。",
-    "Default: in the state folder.": "既定: 状態の保存先の中",
+    "Default: TMS_PROMETHEUS, or in the state folder.": "既定: TMS_PROMETHEUS、なければ状態の保存先の中",
     "Where alerts go.": "警報の送り先",
     "List processes: state, pid, uptime, metrics port, purpose.": "プロセスを一覧する: 状態、pid、稼働時間、計測ポート、役割。",
     "Subtasks are started when a task names them, so STOPPED is their normal state before.": "サブタスクはタスクで使うときに起動するため、それまでは STOPPED が正常です。",

@@ -18,7 +18,7 @@ import psutil
 
 from tms_cli import monitoring
 from tms_cli.words import say
-from tms_core import metrics, pcs, store
+from tms_core import metrics, pcs, state_folder, store
 from tms_core.config import Site
 from tms_core.environment import environment
 from tms_core.errors import ConfigError, TmsError
@@ -62,8 +62,9 @@ def check(site: Site) -> tuple[Process, ...]:
         certificate(site)
         users(site)
     try:
-        (site.state / "log").mkdir(parents=True, exist_ok=True)
-        (site.state / "ros").mkdir(exist_ok=True)
+        state_folder.make(site.state)
+        for name in ("log", "ros"):
+            (site.state / name).mkdir(mode=0o700, exist_ok=True)
         free = shutil.disk_usage(site.state).free
     except OSError as error:
         raise ConfigError(f"{site.state}: cannot be written ({error.strerror}): set TMS_STATE") from error
@@ -81,9 +82,17 @@ def up(site: Site, foreground: bool = False) -> bool:
         ConfigError, TmsError: a port or the ROS domain is taken, or supervisord does not start.
     """
     rows = check(site)
+    if closed := state_folder.tighten(site.state):
+        told = say("{folder}: closed {count} files to other users", folder=site.state, count=closed)
+        print(told, file=sys.stderr)
+    monitoring.render(site, monitoring.folder(site), os.environ.get("TMS_ALERTS_TO"))
+    with state_folder.private():
+        return _up(site, rows, foreground)
+
+
+def _up(site: Site, rows: tuple[Process, ...], foreground: bool) -> bool:
     if site.pc is not None:
         (site.state / pcs.CHOICE).write_text(site.pc, encoding="utf-8")  # for the verbs that follow
-    monitoring.render(site, site.state / "prometheus", os.environ.get("TMS_ALERTS_TO"))
     supervisor = Supervisor(site)
     with _domain(site.domain) as lock:
         if supervisor.alive():

@@ -1,10 +1,11 @@
 """Prometheus' folder for a site: its configuration, the rules, and the targets of the process table."""
 
 import json
+import os
 import re
-import shutil
 from pathlib import Path
 
+from tms_core import state_folder
 from tms_core.config import PROJECT, Site
 from tms_core.errors import ConfigError
 from tms_core.processes import table
@@ -12,6 +13,11 @@ from tms_core.processes import table
 SOURCE = PROJECT / "deploy" / "prometheus"
 COPIED = ("prometheus.yml", "rules.yml")
 HOST_PORT = re.compile(r"(\[[0-9A-Fa-f:.]+\]|[0-9A-Za-z._-]+):([0-9]{1,5})")
+
+
+def folder(site: Site) -> Path:
+    """Where Prometheus' folder is: TMS_PROMETHEUS, or in the state folder, which is for this user alone."""
+    return Path(os.environ.get("TMS_PROMETHEUS") or site.state / "prometheus").resolve()
 
 
 def targets(site: Site) -> list[dict[str, object]]:
@@ -36,19 +42,24 @@ def targets(site: Site) -> list[dict[str, object]]:
 def render(site: Site, folder: Path, alertmanager: str | None = None) -> None:
     """Write everything that `prometheus --config.file=FOLDER/prometheus.yml` reads; it notices new targets itself.
 
+    Outside the state folder Prometheus' own user may read it: it holds no secrets.
+
     Raises:
         ConfigError: the folder cannot be written, or `alertmanager` is no HOST:PORT (Prometheus would not start).
     """
     if alertmanager:
         _check(alertmanager)
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for name in COPIED:
-            shutil.copyfile(SOURCE / name, folder / name)
-        _replace(folder / "targets.json", json.dumps(targets(site), indent=1))
+        shared = not folder.is_relative_to(site.state)
+        if not shared:
+            state_folder.make(site.state)
+        folder.mkdir(mode=0o755 if shared else 0o700, parents=True, exist_ok=True)
+        texts = {name: (SOURCE / name).read_text(encoding="utf-8") for name in COPIED}
+        texts["targets.json"] = json.dumps(targets(site), indent=1)
         if alertmanager or not (folder / "alertmanagers.json").exists():
-            chosen = [{"targets": [alertmanager]}] if alertmanager else []
-            _replace(folder / "alertmanagers.json", json.dumps(chosen))
+            texts["alertmanagers.json"] = json.dumps([{"targets": [alertmanager]}] if alertmanager else [])
+        for name, text in texts.items():
+            _replace(folder / name, text, 0o644 if shared else 0o600)
     except OSError as error:
         raise ConfigError(f"{folder}: cannot be written ({error.strerror})") from error
 
@@ -62,8 +73,9 @@ def _check(alertmanager: str) -> None:
         )
 
 
-def _replace(path: Path, text: str) -> None:
+def _replace(path: Path, text: str, mode: int) -> None:
     """At once: Prometheus may read at any moment."""
     new = path.with_suffix(".new")
     new.write_text(text, encoding="utf-8")
+    new.chmod(mode)
     new.replace(path)

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from tms_core import environment
+from tms_core import environment, state_folder
 from tms_core.config import Site, load_site
 from tms_core.errors import ConfigError, TmsError
+from tms_core.names import check_sent
 
 if TYPE_CHECKING:
     from tms_core.ros import Ros
@@ -33,7 +34,8 @@ def ros() -> Iterator["Ros"]:
     environment.enter(site())
     from tms_core.ros import Ros
 
-    node = Ros(f"tms_cli_{os.getpid()}")
+    with state_folder.private():  # it writes a log of its own
+        node = Ros(f"tms_cli_{os.getpid()}")
     leaving.callback(node.leave)
     try:
         yield node
@@ -62,9 +64,11 @@ def call(node: "Ros", service_type: Any, name: str, seconds: float = CALL_LIMIT,
     """Call a service of ours and raise what it reports.
 
     Raises:
-        TmsError: the service refused, is not there, or did not answer.
+        TmsError: the service refused, is not there, or did not answer; or a text would arrive cut.
     """
-    answer = node.call(service_type, name, service_type.Request(**fields), seconds)
+    request = service_type.Request(**fields)
+    check_sent(name, request)
+    answer = node.call(service_type, name, request, seconds)
     if answer.error_code:
         raise TmsError(answer.error_msg, answer.error_code)
     return answer

@@ -3,7 +3,7 @@
 import os
 from pathlib import Path
 
-from tms_core import pcs
+from tms_core import pcs, state_folder
 from tms_core.config import PROJECT, Site
 
 # UDP on one interface only, no shared memory: the LOCALHOST range of Fast DDS silently loses
@@ -48,12 +48,14 @@ def _profile(site: Site) -> Path:
     path = site.state / "dds.xml"
     text = PROFILE.read_text(encoding="utf-8").replace(LOOPBACK, f"<address>{address}</address>{LOOPBACK}")
     if not path.exists() or path.read_text(encoding="utf-8") != text:
-        site.state.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="utf-8")
+        state_folder.make(site.state)
+        with state_folder.private():
+            path.write_text(text, encoding="utf-8")
     return path
 
 
 def enter(site: Site) -> None:
     """Give this process the environment of the site, for programs that a person starts."""
     os.environ.update(environment(site))
-    (site.state / "ros").mkdir(parents=True, exist_ok=True)
+    state_folder.make(site.state)
+    (site.state / "ros").mkdir(mode=0o700, exist_ok=True)

@@ -4,12 +4,13 @@ Which process, machine and role a figure belongs to is told by the scrape target
 Labels in a metric take their values from the code or from the process table, never from data.
 """
 
+import asyncio
 import http.client
+import re
 import socket
 import threading
 from collections.abc import Callable
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from socketserver import TCPServer
+from http import HTTPStatus
 
 from prometheus_client import CONTENT_TYPE_LATEST, REGISTRY, CollectorRegistry, Gauge, Info, generate_latest
 
@@ -19,6 +20,13 @@ READY = Gauge("tms_process_ready", "1 when the process can do its job")
 BUILD = Info("tms_build", "Version that runs")
 ENDPOINTS = Gauge("tms_ros_matched_endpoints", "Remote ends that this process is connected to", ["kind"])
 NODES = Gauge("tms_ros_nodes", "Nodes that this process sees in its domain")
+
+MOST = 64  # connections; the oldest that has asked nothing yet gives way
+BACKLOG = 512  # connections that wait to be taken; beyond it the system keeps them waiting for a second and more
+LIMIT = 5.0  # s for a request to be there, and again for its answer to be taken
+LONGEST = 8192  # bytes of a request's line and headers
+END = b"\r\n\r\n"
+REQUEST = re.compile(rb"([A-Z]{1,20}) (/[!-~]*) HTTP/1\.[0-9]\r\n")
 
 
 def unready(address: str, port: int, seconds: float = 2.0) -> str | None:
@@ -35,17 +43,11 @@ def unready(address: str, port: int, seconds: float = 2.0) -> str | None:
     return None if answer.status == http.HTTPStatus.OK else text
 
 
-class _Server(ThreadingHTTPServer):
-    daemon_threads = True
-
-    def server_bind(self) -> None:
-        """Without HTTPServer's question for this PC's name: 6 s a start where no name server answers."""
-        TCPServer.server_bind(self)
-        self.server_name, self.server_port = str(self.server_address[0]), int(self.server_address[1])
-
-
 class Health:
-    """HTTP server of one process; `unready` returns why it cannot work, `hangs` why it needs a restart, or None."""
+    """HTTP server of one process; `unready` returns why it cannot work, `hangs` why it needs a restart, or None.
+
+    One thread for all connections, which sleeps while nobody asks. Each connection is for one answer.
+    """
 
     def __init__(
         self,
@@ -55,42 +57,111 @@ class Health:
         hangs: Callable[[], str | None] = lambda: None,
         registry: CollectorRegistry = REGISTRY,
     ) -> None:
-        class Handler(BaseHTTPRequestHandler):
-            def do_GET(self) -> None:
-                self.send(*_answer(self.path, unready, hangs, registry))
-
-            def send(self, status: int, kind: str, body: bytes) -> None:
-                self.send_response(status)
-                self.send_header("Content-Type", kind)
-                self.send_header("Content-Length", str(len(body)))
-                self.end_headers()
-                self.wfile.write(body)
-
-            def log_message(self, format: str, *args: object) -> None:
-                """Scrapes are no news."""
-
+        self._answer = lambda path: _answer(path, unready, hangs, registry)
         try:
-            self._server = _Server((bind, port), Handler)
+            self._socket = socket.create_server((bind, port), backlog=BACKLOG)  # asks no name server
         except OSError as error:
             raise ConfigError(
                 f"port {port} on {bind} is taken ({error.strerror}): "
                 "stop the other program or change ports.metrics in the site file"
             ) from error
-        self._closing = False
-        self._thread = threading.Thread(target=self._serve, name="metrics", daemon=True)
+        self._loop, self._stop = asyncio.new_event_loop(), asyncio.Event()
+        self._connections = _Connections()
+        self._thread = threading.Thread(target=self._run, name="metrics", daemon=True)
         self._thread.start()
 
-    def _serve(self) -> None:
-        """Without `serve_forever`, which looks every 0.5 s whether it should end, and takes as long to do so."""
-        while not self._closing:
-            self._server.handle_request()
-
     def close(self) -> None:
-        """Free the port."""
-        self._closing = True
-        self._server.socket.shutdown(socket.SHUT_RDWR)  # wakes the thread
+        """Free the port; whoever is connected gets no answer."""
+        self._loop.call_soon_threadsafe(self._stop.set)
         self._thread.join()
-        self._server.server_close()
+
+    def _run(self) -> None:
+        self._loop.run_until_complete(self._serve())
+        self._loop.close()
+
+    async def _serve(self) -> None:
+        server = await self._loop.create_server(
+            lambda: _Connection(self._connections, self._answer), sock=self._socket, backlog=BACKLOG
+        )
+        await self._stop.wait()
+        self._loop.remove_reader(self._socket)  # nobody else is taken; asyncio would lose who is being taken now
+        self._connections.limit = 0
+        while self._connections.drop_oldest() or len(asyncio.all_tasks()) > 1:
+            await asyncio.sleep(0)
+        server.close()
+        await asyncio.sleep(0)
+
+
+class _Connections:
+    """Those that are open, in the order in which they came, or were answered."""
+
+    def __init__(self) -> None:
+        self.limit = MOST
+        self._open: dict[asyncio.Transport, None] = {}
+
+    def add(self, one: asyncio.Transport) -> None:
+        self._open.pop(one, None)
+        self._open[one] = None
+        while len(self._open) > self.limit:
+            self.drop_oldest()
+
+    def drop_oldest(self) -> bool:
+        oldest = next(iter(self._open), None)
+        if oldest is not None:
+            del self._open[oldest]
+            oldest.abort()
+        return oldest is not None
+
+    def remove(self, one: asyncio.Transport) -> None:
+        self._open.pop(one, None)
+
+
+class _Connection(asyncio.Protocol):
+    """One request and its answer."""
+
+    _transport: asyncio.Transport
+    _time: asyncio.TimerHandle
+
+    def __init__(self, connections: _Connections, answer: Callable[[str], tuple[int, str, bytes]]) -> None:
+        self._connections, self._answer = connections, answer
+        self._request = b""
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        assert isinstance(transport, asyncio.Transport)
+        self._transport = transport
+        self._limit_time()
+        self._connections.add(transport)
+
+    def data_received(self, data: bytes) -> None:
+        self._request += data
+        if END in self._request or len(self._request) > LONGEST:
+            self._time.cancel()
+            self._limit_time()
+            self._connections.add(self._transport)  # those that have not asked yet go first
+            self._transport.write(self._response())
+            self._transport.close()  # once it is written
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        self._time.cancel()
+        self._connections.remove(self._transport)
+
+    def _limit_time(self) -> None:
+        self._time = asyncio.get_running_loop().call_later(LIMIT, self._transport.abort)
+
+    def _response(self) -> bytes:
+        if len(self._request) > LONGEST:
+            return _encode(431, "text/plain", b"the request is too long\n")
+        asked = REQUEST.match(self._request)
+        if asked is None:
+            return _encode(400, "text/plain", b"what came is no HTTP request\n")
+        if asked[1] != b"GET":
+            return _encode(405, "text/plain", b"GET only\n")
+        return _encode(*self._answer(asked[2].decode("ascii")))
+
+
+def _encode(status: int, kind: str, body: bytes) -> bytes:
+    head = f"HTTP/1.0 {status} {HTTPStatus(status).phrase}\r\nContent-Type: {kind}\r\nContent-Length: {len(body)}"
+    return head.encode() + END + body
 
 
 def _answer(

@@ -9,7 +9,7 @@ import signal
 import sys
 import threading
 
-from tms_core import discovery, environment, log, metrics, store
+from tms_core import discovery, environment, log, metrics, state_folder, store
 from tms_core.config import Site, load_site, version
 from tms_core.errors import ConfigError
 from tms_core.last_resort import LEAVE_LIMIT, end_after
@@ -26,6 +26,7 @@ def main(name: str) -> int:
     """Run one process of the table until SIGTERM or SIGINT; 0 on a clean end."""
     try:
         _die_with_parent()
+        os.umask(state_folder.UMASK)
         site = load_site()
         row = find(site, name)
         if row.name == "store":

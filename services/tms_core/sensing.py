@@ -9,6 +9,7 @@ from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 from tms_core.config import CONFIGS, Site
 from tms_core.models import NAME, Settings
+from tms_core.names import Name, Text
 from tms_core.yaml_file import parse
 
 # Unit of a message -> factor to the unit that records use (m, rad, s, m/s, rad/s).
@@ -55,10 +56,10 @@ class Input(Settings):
     type: str = Field(pattern=r"^[a-z][a-z0-9_]*/msg/[A-Z][A-Za-z0-9]*$")
     reliability: Literal["reliable", "best_effort"] = "reliable"
     depth: int = Field(ge=1, le=1000, default=500)  # half a second at the highest rate: a busy PC loses nothing
-    model: str = "$model_name"  # "" = a record that all machines share
-    record: str = "$record_name"
+    model: Text = "$model_name"  # "" = a record that all machines share
+    record: Name = "$record_name"
     # Empty: every field of the message into the field of the record with that name, whatever its case, if there is one.
-    fields: dict[str, Annotated[FieldRule, BeforeValidator(_short)]] = Field(default_factory=dict)
+    fields: dict[Name, Annotated[FieldRule, BeforeValidator(_short)]] = Field(default_factory=dict)
     range: dict[str, Limits] = Field(
         default_factory=dict
     )  # field of the record (in lower case without `fields`) -> least, most

@@ -10,6 +10,9 @@ from tms_core.models import NAME, Backend, Settings
 from tms_core.pcs import Network, Pc, Role
 from tms_core.yaml_file import explain
 
+ServiceName = Annotated[str, Field(pattern=r"^(/[A-Za-z_][A-Za-z0-9_]*)+$", max_length=200)]
+ServiceType = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*/[A-Z][A-Za-z0-9]*$")]  # pkg/Type
+
 
 class Service(Settings):
     role: Role = "cps"
@@ -23,6 +26,9 @@ class Bridge(Service):
     bind: str = "127.0.0.1"  # whoever reaches it may publish sensor data: open it to the simulator's network only
     joint_cmd: Literal["plain", "control_type"] = "plain"  # layout of com3_msgs/JointCmd that the simulator knows
     message_limit: int = Field(ge=1024, le=64 * 1024 * 1024, default=4 * 1024 * 1024)  # bytes a message
+    clock: bool = False  # pass on the simulator's time as /clock
+    calls: dict[ServiceName, ServiceType] = Field(default_factory=dict)  # ROS services that a client may call
+    offers: dict[ServiceName, ServiceType] = Field(default_factory=dict)  # services that a client may offer
 
 
 class MachineUse(Settings):

@@ -5,6 +5,7 @@ import shutil
 import sys
 from pathlib import Path
 
+from tms_core import state_folder
 from tms_core.config import PROJECT, Site
 from tms_core.errors import ConfigError
 
@@ -22,7 +23,8 @@ def check(site: Site) -> Path:
     if not PROGRAM.exists():
         raise ConfigError(f"the embedded store is not installed ({PROGRAM} is missing): run `make setup`")
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        state_folder.make(site.state)
+        folder.mkdir(mode=0o700, exist_ok=True)
         free = shutil.disk_usage(folder).free
     except OSError as error:
         raise ConfigError(f"{folder}: the store cannot write there ({error.strerror}); set TMS_STATE") from error

@@ -7,6 +7,7 @@ from typing import Any
 
 from pymongo.errors import BulkWriteError, DuplicateKeyError
 
+from tms_core import names
 from tms_core.errors import DbError
 from tms_db.records import Value
 from tms_db.store import Db, errors
@@ -60,8 +61,7 @@ class History:
             DbError: BAD_JOURNAL, or the store is away; then the whole batch may be sent again.
         """
         for run in runs:
-            if not run.run_id:
-                raise DbError("a run has no run_id: give it one", "BAD_JOURNAL")
+            _check_id(run.run_id)
         for event in events:
             _check(event)
         self._write_runs(run for run in runs if run.ended_at is None)
@@ -126,10 +126,14 @@ class History:
 
 
 def _check(event: Event) -> None:
-    if not event.run_id or event.number < 1:
-        raise DbError(
-            f"event {event.number} of run {event.run_id!r}: needs a run_id and a number from 1", "BAD_JOURNAL"
-        )
+    _check_id(event.run_id)
+    if event.number < 1:
+        raise DbError(f"event {event.number} of run {event.run_id}: needs a number from 1", "BAD_JOURNAL")
+
+
+def _check_id(run_id: str) -> None:
+    if (why := names.flaw(run_id)) is not None:
+        raise DbError(f"run_id {run_id[:40]!r} {why}: give the run a plain id", "BAD_JOURNAL")
 
 
 def _document(event: Event) -> dict[str, Any]:

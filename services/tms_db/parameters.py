@@ -15,6 +15,7 @@ from tms_db.records import (
     bad,
     check_field,
     check_key,
+    check_line,
     check_max_age,
     check_type,
     check_values,
@@ -50,6 +51,8 @@ class Change:
                 raise bad(f"{where}: field {name} is to be set and removed: choose one")
         check_values(where, self.expected)
         check_max_age(where, self.max_age, self.type)
+        check_line(where, "description", self.description)
+        check_line(where, "source", self.source)
         if self.type:
             check_type(where, self.type)
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from tms_core import names
 from tms_core.errors import DbError
 from tms_core.yaml_file import read_yaml
 
@@ -19,7 +20,6 @@ RESERVED = frozenset(
     {"_id", "model_name", "record_name", "type", "description", "updated_at", "source", "max_age", "timestamps"}
 )
 TYPES = ("static", "dynamic")
-MAX_NAME = 200
 MAX_FILE = 5 * 2**20
 INT64 = 2**63
 EXPONENT = re.compile(r"[-+]?\d+[eE][-+]?\d+")
@@ -59,11 +59,8 @@ def check_key(model_name: str, record_name: str) -> None:
     if not record_name:
         raise bad("record_name is empty: give the record a name")
     for label, text in (("model_name", model_name), ("record_name", record_name)):
-        if text != text.strip() or not text.isprintable() or len(text) > MAX_NAME:
-            raise bad(
-                f"{label} {text[:40]!r} has outer blanks, control characters or more than {MAX_NAME} letters: "
-                "write a plain name"
-            )
+        if text and (why := names.flaw(text)) is not None:
+            raise bad(f"{label} {text[:40]!r} {why}: write a plain name")
 
 
 def check_type(where: str, type_: str) -> None:
@@ -86,6 +83,16 @@ def check_max_age(where: str, max_age: Any, type_: str = "") -> None:
         raise bad(f"{where}: max_age is {max_age!r}: write seconds, for example 2.0")
     if max_age > 0 and type_ == "static":
         raise bad(f"{where}: a static record cannot get too old: make it dynamic, or take max_age away")
+
+
+def check_line(where: str, label: str, text: str) -> None:
+    """Refuse a line for people that holds a control character.
+
+    Raises:
+        DbError: BAD_RECORD.
+    """
+    if (found := names.control(text)) is not None:
+        raise bad(f"{where}: {label} holds {found}: remove it")
 
 
 def check_values(where: str, values: Mapping[str, Any]) -> None:
@@ -113,8 +120,10 @@ def check_field(where: str, name: Any) -> None:
         raise bad(f"{where}: a field has no name or a name that is no text ({name!r}): write a name")
     if name in RESERVED:
         raise bad(f"{where}: field '{name}' is reserved: choose another name")
-    if name.startswith("$") or "." in name or not name.isprintable() or len(name) > MAX_NAME:
-        raise bad(f"{where}: field name {name[:40]!r} must not start with $ or hold dots or control characters")
+    if name.startswith("$") or "." in name:
+        raise bad(f"{where}: field name {name[:40]!r} must not start with $ or hold dots: choose another name")
+    if (why := names.flaw(name)) is not None:
+        raise bad(f"{where}: field name {name[:40]!r} {why}: write a plain name")
 
 
 def _check_scalar(where: str, value: Any) -> None:
@@ -178,6 +187,7 @@ def _from_file(where: str, entry: Any) -> Record:
         raise bad(f"{where}: {error}") from error
     where = f"{where} ({record.name})"
     check_type(where, record.type)
+    check_line(where, "description", record.description)
     check_values(where, record.values)
     for name, value in record.values.items():
         for part in value if isinstance(value, list) else [value]:

@@ -10,6 +10,7 @@ from typing import Any
 from pymongo.errors import BulkWriteError
 
 from tms_core.errors import DbError
+from tms_core.names import check_text
 from tms_db import task_text
 from tms_db.store import Db, errors
 from tms_db.task_numbers import TaskNumbers
@@ -73,6 +74,7 @@ class Tasks:
 
         Raises:
             TaskError: the text is no task.
+            TmsError: the description holds a control character.
             DbError: the store is away.
         """
         wish = _wish(text, description, models)
@@ -164,6 +166,7 @@ class Tasks:
 
 
 def _wish(text: str, description: str, models: Collection[str]) -> _Wish:
+    check_text("the task's description", description)
     essence = task_text.essence(text)
     document = {
         "type": "task",

@@ -10,10 +10,11 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tms_core import names
 from tms_core.errors import DbError
 from tms_db import terrain_files
 from tms_db.store import Db, errors, long_work
-from tms_db.terrain_files import IDS, IMAGES, MAX_NAME, Size, bad
+from tms_db.terrain_files import IDS, IMAGES, Size, bad
 
 if TYPE_CHECKING:
     import gridfs
@@ -69,8 +70,8 @@ class Terrain:
         Raises:
             DbError: the store is away.
         """
-        if not filename or len(filename) > MAX_NAME or not filename.isprintable():
-            raise bad(f"terrain name {filename[:40]!r}: write 1 to {MAX_NAME} printable characters")
+        if (why := names.flaw(filename)) is not None:
+            raise bad(f"terrain name {filename[:40]!r} {why}: write a plain name")
         id_, time = IDS[type_], datetime.now(timezone.utc).isoformat()
         with long_work(self._db):
             key = self._grid().put(data, filename=filename, type=type_, id=id_, time=time, **more)

@@ -14,7 +14,6 @@ IMAGES = ("heightmap", "texture")
 FIRST_BYTES = {"mesh": (b"ply\n", b"ply\r\n"), "dem": (b"\x93NUMPY",), "static": (b"# .PCD", b"VERSION", b"#")}
 MAX_FILE = 200 * 2**20
 MAX_SIDE = 4096  # pixels; a larger answer would stay in the memory of tms:db (measured: 33 MB cost it 100 MB)
-MAX_NAME = 200
 PNG = b"\x89PNG\r\n\x1a\n"
 COLOUR_TYPES = {0: "grey", 2: "colour", 3: "a palette", 4: "grey with transparency", 6: "colour with transparency"}
 

@@ -23,7 +23,7 @@ from supervisor.supervisord import go
 MODULE = "tms_core.run"  # programs that are forked; others (none today) are executed as usual
 LIBRARIES = (
     "rclpy", "rclpy.action", "rclpy.executors", "rclpy.event_handler", "rclpy.serialization",
-    "prometheus_client", "yaml", "http.server", "concurrent.futures", "logging.handlers", "difflib",
+    "prometheus_client", "yaml", "asyncio", "http.client", "concurrent.futures", "logging.handlers", "difflib",
 )  # fmt: skip
 INTERFACES = (
     "tms_msg_ts", "tms_msg_db", "tms_msg_rc", "tms_msg_rp", "tms_msg_host", "control_msgs", "nav2_msgs", "com3_msgs",

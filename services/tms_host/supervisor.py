@@ -15,6 +15,7 @@ from tms_core.config import PROJECT, Site
 from tms_core.environment import environment
 from tms_core.errors import ConfigError, TmsError
 from tms_core.processes import Process, here
+from tms_core.state_folder import UMASK
 
 START_SECONDS = 1  # a process that ends sooner counts as failed to start
 STOP_SECONDS = 3  # the runtime ends within 2
@@ -80,6 +81,7 @@ logfile_backups={LOG_FILES}
 pidfile={folder}/supervisord.pid
 childlogdir={folder}/log
 identifier=tms-{site.name}
+umask={UMASK:03o}
 directory={_escape(str(PROJECT))}
 environment={words}
 strip_ansi=true

@@ -6,17 +6,22 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
+from prometheus_client import Counter
+
 from tms_core.errors import RosError
 from tms_core.ros import Ros, pack, unpack
 from tms_if import joint_cmd
 from tms_if.commands import CommandError, Registration, command, full_name
 from tms_if.framing import encode
 from tms_if.interfaces import interface, short_name
-from tms_if.names import refusal
+from tms_if.names import Allowed
 
 ROS_LIMIT = 5.0  # s for the ROS thread to make or remove something
 ANSWER_LIMIT = 30.0  # s for a service to answer, on either side
 OPEN_CALLS = 100  # calls under way, on either side
+REFUSED = 1000  # topics of one client that are remembered
+
+LEFT_OUT = Counter("tms_if_left_out_total", "Messages on topics that a client may not publish")
 
 T = TypeVar("T")
 
@@ -33,18 +38,26 @@ class Asked:
 
 class Ends:
     """`send` takes a frame and whether it may be dropped; `say` takes a trouble that is no one's fault but worth a
-    line. Topics are keyed as the client writes them, since that is how they are echoed."""
+    line. What is echoed is keyed as the client writes it, what is published by its full name.
+
+    `speakers` tells which client publishes a topic; all clients share it. Each of its calls is one step.
+    """
 
     def __init__(
         self,
         ros: Ros,
         layout: joint_cmd.Layout,
-        commands: frozenset[str],
+        allowed: Allowed,
+        speakers: dict[str, str],
+        client: str,
         send: Callable[[bytes, bool], None],
         say: Callable[[str], None],
     ) -> None:
-        self._ros, self._layout, self._commands, self._send, self._say = ros, layout, commands, send, say
+        self._ros, self._layout, self._allowed, self._send, self._say = ros, layout, allowed, send, say
+        self._speakers, self._client = speakers, client
         self._published: dict[str, tuple[Any, Any]] = {}  # publisher, type
+        self._waiting: dict[str, Registration] = {}  # for another client that publishes the topic
+        self._refused: set[str] = set()
         self._heard: dict[str, Any] = {}
         self._called: dict[str, Any] = {}  # type
         self._offered: dict[str, tuple[Any, Any]] = {}  # service, type
@@ -56,15 +69,30 @@ class Ends:
     # registrations
 
     def publish(self, wanted: Registration) -> None:
-        kind = interface(wanted.message_name, "msg")
-        self._may_speak(wanted.topic)
-        self.remove_publisher(wanted.topic)
-        made = self._on_ros(
-            lambda: self._ros.publisher(kind, full_name(wanted.topic), wanted.queue_size, wanted.latch), wanted
-        )
-        self._published[wanted.topic] = made, kind
+        name, kind = full_name(wanted.topic), short_name(wanted.message_name)
+        if (why := self._allowed.publishing(name, kind)) is not None:
+            self.remove_publisher(name)
+            if len(self._refused) < REFUSED:
+                self._refused.add(name)
+            raise CommandError(why)
+        self._refused.discard(name)
+        made = interface(wanted.message_name, "msg")
+        if self._published.get(name, (None, None))[1] is made:
+            return  # the simulator may say it twice
+        self.remove_publisher(name)
+        speaker = self._speakers.setdefault(name, self._client)
+        if speaker != self._client:
+            self._waiting[name] = wanted
+            raise CommandError(f"{name} is published by {speaker}: the messages of a second client are left out")
+        try:
+            publisher = self._on_ros(lambda: self._ros.publisher(made, name, wanted.queue_size, wanted.latch), wanted)
+        except CommandError:
+            del self._speakers[name]
+            raise
+        self._published[name] = publisher, made
 
     def subscribe(self, wanted: Registration) -> None:
+        self._check(self._allowed.hearing, wanted)
         kind = interface(wanted.message_name, "msg")
         self.remove_subscriber(wanted.topic)
 
@@ -78,13 +106,13 @@ class Ends:
         self._heard[wanted.topic] = self._on_ros(lambda: self._ros.subscribe_raw(kind, name, heard), wanted)
 
     def ros_service(self, wanted: Registration) -> None:
+        self._check(self._allowed.calling, wanted)
         kind = interface(wanted.message_name, "srv")
-        self._may_speak(wanted.topic)
         self._called[wanted.topic] = kind
 
     def unity_service(self, wanted: Registration) -> None:
+        self._check(self._allowed.offering, wanted)
         kind = interface(wanted.message_name, "srv")
-        self._may_speak(wanted.topic)
         self.remove_unity_service(wanted.topic)
 
         def answer(request: Any, _response: Any) -> Any:
@@ -94,8 +122,11 @@ class Ends:
         self._offered[wanted.topic] = made, kind
 
     def remove_publisher(self, topic: str) -> None:
-        if (gone := self._published.pop(topic, None)) is not None:
+        name = full_name(topic)
+        self._waiting.pop(name, None)
+        if (gone := self._published.pop(name, None)) is not None:
             self._drop(lambda: self._ros.node.destroy_publisher(gone[0]))
+            del self._speakers[name]  # the next one's publisher is made after this one has gone
 
     def remove_subscriber(self, topic: str) -> None:
         if (gone := self._heard.pop(topic, None)) is not None:
@@ -124,14 +155,16 @@ class Ends:
 
     def message(self, topic: str, payload: bytes) -> None:
         """Publish what the client sent, byte for byte, once it is known to be what it should be."""
-        if topic not in self._published:
+        name = full_name(topic)
+        if name in self._waiting and name not in self._speakers:
+            self.publish(self._waiting[name])
+            self._say(f"{name}: the other client has left: the messages of this one are taken from now on")
+        if name in self._waiting or name in self._refused:
+            LEFT_OUT.inc()  # told once, at the registration
+            return
+        if name not in self._published:
             raise CommandError(f"Not registered to publish topic '{topic}'! Send __publish first")
-        publisher, kind = self._published[topic]
-        if self._foreign(kind):
-            try:
-                payload = joint_cmd.convert(payload, joint_cmd.OURS)
-            except joint_cmd.LayoutError as error:
-                raise CommandError(f"{topic}: {error}") from error
+        publisher, kind = self._published[name]
         _read(payload, kind, topic)
         publisher.publish(payload)
 
@@ -197,8 +230,8 @@ class Ends:
         """Whether the client writes messages of this type in another layout."""
         return self._layout != joint_cmd.OURS and f"{kind.__module__.split('.')[0]}/{kind.__name__}" == joint_cmd.TYPE
 
-    def _may_speak(self, topic: str) -> None:
-        if (why := refusal(full_name(topic), self._commands)) is not None:
+    def _check(self, refusal: Callable[[str, str], str | None], wanted: Registration) -> None:
+        if (why := refusal(full_name(wanted.topic), short_name(wanted.message_name))) is not None:
             raise CommandError(why)
 
     def _on_ros(self, step: Callable[[], T], wanted: Registration) -> T:

@@ -1,25 +1,121 @@
-"""Names that belong to this system: a client of the bridge may listen to them, but not speak under them."""
+"""What a client of the bridge may publish, hear, call and offer: what is listed here or in the site file, no more."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
 
 from tms_core.config import Site
+from tms_core.sensing import load_sensing
+from tms_if.interfaces import short_name
 
-OURS = ("/tms/", "/emergency_signal", "/parameter_events", "/rosout")
-PARTS = ("/_action/", "/rc/", "/permit/", "/rearm")
+Named = Mapping[str, frozenset[str]]  # full name -> types that it may have, as pkg/Type
+
+POSE = {"PoseStamped": "geometry_msgs/PoseStamped", "Odometry": "nav_msgs/Odometry"}
+CLOCK = "/clock"
+# What the simulators' machines publish beyond their borders; taken where a sensing input reads it.
+FURTHER = (
+    "gnss_compass/fix", "gnss_compass/heading", "g2_imu", "swing/g2_imu", "boom/g2_imu", "arm/g2_imu", "bucket/g2_imu",
+    "bucket/g2_imu_sim", "base_link/pose", "global_pose", "odom", "odom_pose", "soil_volume",
+)  # fmt: skip
+# What they hear beyond the commands of their borders.
+HEARD = {"track_cmd": "com3_msgs/JointCmd", "unity/drive_params": "std_msgs/Float64MultiArray"}
+HEARD_BY_ALL = {
+    "/tf": "tf2_msgs/TFMessage", "/move_group/fake_controller_joint_states": "sensor_msgs/JointState",
+}  # fmt: skip
 
 
-def reserved(site: Site) -> frozenset[str]:
-    """Topics that command the site's machines: only the gateways may publish on them."""
-    found = set()
+@dataclass(frozen=True)
+class Allowed:
+    """The lists of a site."""
+
+    published: Named
+    heard: Named
+    called: Named
+    offered: Named
+
+    def publishing(self, name: str, kind: str) -> str | None:
+        """Why a client may not publish this full name; None if it may."""
+        if name == CLOCK and name not in self.published:
+            return f"{name}: this site does not take the time of a simulator: its messages are left out"
+        return _refusal(
+            self.published, name, kind, "is no sensor topic of this site's machines: its messages are left out"
+        )
+
+    def hearing(self, name: str, kind: str) -> str | None:
+        """Why a client may not hear it."""
+        return _refusal(self.heard, name, kind, "is no command to this site's machines: a client may not listen there")
+
+    def calling(self, name: str, kind: str) -> str | None:
+        """Why a client may not call this service."""
+        return _refusal(self.called, name, kind, "is not among services.if.calls of the site file: it is not called")
+
+    def offering(self, name: str, kind: str) -> str | None:
+        """Why a client may not offer this service."""
+        return _refusal(self.offered, name, kind, "is not among services.if.offers of the site file: it is not offered")
+
+
+def allowed(site: Site) -> Allowed:
+    """The lists of a site, from its machines' borders, its sensing inputs and its settings of the bridge.
+
+    Raises:
+        ConfigError: the sensing inputs cannot be read.
+    """
+    settings = site.bridge
+    return Allowed(
+        published={
+            **_inputs(site),
+            **_sensors(site),
+            **({CLOCK: _one("rosgraph_msgs/Clock")} if settings.clock else {}),
+        },
+        heard={name: _one(kind) for name, kind in {**_commands(site), **HEARD_BY_ALL}.items()},
+        called={name: _one(kind) for name, kind in settings.calls.items()},
+        offered={name: _one(kind) for name, kind in settings.offers.items()},
+    )
+
+
+def _refusal(named: Named, name: str, kind: str, otherwise: str) -> str | None:
+    if name not in named:
+        return f"{name} {otherwise}"
+    if kind not in named[name]:
+        return f"{name} is {' or '.join(sorted(named[name]))} on this site, not {kind}: it is refused"
+    return None
+
+
+def _one(kind: str) -> frozenset[str]:
+    return frozenset({kind})
+
+
+def _sensors(site: Site) -> dict[str, frozenset[str]]:
+    """Topics that tell of the machines' motion."""
+    found: dict[str, frozenset[str]] = {}
     for machine in site.file.machines:
         border = site.border(machine)
-        topics = (border.cmd_vel, border.emg_stop, border.joint_cmd, *border.joint_angles.values())
-        found |= {f"/{machine}/{topic}" for topic in topics if topic}
-    return frozenset(found)
+        topics = {border.joint_states: "sensor_msgs/JointState", border.odom: "nav_msgs/Odometry"}
+        topics[border.imu] = "sensor_msgs/Imu"
+        if border.pose:
+            topics[border.pose] = POSE[border.sources["pose"].message]
+        found |= {f"/{machine}/{topic}": _one(kind) for topic, kind in topics.items() if topic}
+    return found
 
 
-def refusal(name: str, commands: frozenset[str]) -> str | None:
-    """Why a client may not publish, offer or call this full name; None if it may."""
-    if name in commands:
-        return f"{name} commands a machine: a simulator may only listen there"
-    if name.startswith(OURS) or any(part in f"{name}/" for part in PARTS):
-        return f"{name} belongs to the task management: a client may only listen"
-    return None
+def _inputs(site: Site) -> dict[str, frozenset[str]]:
+    """Further topics of simulated machines that sensing reads."""
+    there = {f"/{machine}/{topic}" for machine in site.file.machines for topic in FURTHER}
+    found: dict[str, frozenset[str]] = {}
+    for given in load_sensing(site).inputs.values():
+        name = f"/{given.topic.removeprefix('/')}"
+        if name in there:
+            found[name] = found.get(name, frozenset()) | {short_name(given.type)}
+    return found
+
+
+def _commands(site: Site) -> dict[str, str]:
+    """Topics that command the machines."""
+    found: dict[str, str] = {}
+    for machine in site.file.machines:
+        border = site.border(machine)
+        topics: dict[str | None, str] = {border.cmd_vel: "geometry_msgs/Twist", border.emg_stop: "std_msgs/Bool"}
+        topics[border.joint_cmd] = "com3_msgs/JointCmd"
+        topics |= dict.fromkeys(border.joint_angles.values(), "std_msgs/Float64")
+        topics.update(HEARD)
+        found |= {f"/{machine}/{topic}": kind for topic, kind in topics.items() if topic}
+    return found

@@ -7,7 +7,7 @@ from tms_core.app import App
 from tms_core.errors import ConfigError
 from tms_if.client import Client
 from tms_if.ends import Ends
-from tms_if.names import reserved
+from tms_if.names import allowed
 
 MOST = 16  # clients at a time
 PAUSE = 1.0  # s after the system could not accept a connection
@@ -31,11 +31,12 @@ def start(app: App) -> None:
 
 
 class Endpoint:
-    """Takes connections; each has ROS ends of its own, so that two simulators do not know of each other."""
+    """Takes connections; each has ROS ends of its own, and no two publish one topic."""
 
     def __init__(self, app: App, server: socket.socket) -> None:
         self._app, self._server = app, server
-        self._commands = reserved(app.site)
+        self._allowed = allowed(app.site)
+        self._speakers: dict[str, str] = {}  # topic -> the client that publishes it
         self._clients: set[Client] = set()
 
     def accept(self) -> None:
@@ -68,7 +69,9 @@ class Endpoint:
         settings = self._app.site.bridge
         client = Client(
             connection, name, self._app.log, settings.message_limit,
-            lambda send, say: Ends(self._app.ros, settings.joint_cmd, self._commands, send, say),
+            lambda send, say: Ends(
+                self._app.ros, settings.joint_cmd, self._allowed, self._speakers, name, send, say
+            ),
         )  # fmt: skip
         self._clients.add(client)
         try:

@@ -17,6 +17,7 @@ from pydantic import Field, model_validator
 
 from tms_core.errors import ConfigError, TmsError
 from tms_core.models import Settings
+from tms_core.names import Name
 from tms_core.yaml_file import parse
 
 Role = Literal["viewer", "operator", "admin"]
@@ -47,7 +48,7 @@ class User(Settings):
 class Users(Settings):
     """The file that `tms user` writes."""
 
-    users: dict[str, User] = Field(default_factory=dict)
+    users: dict[Name, User] = Field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -168,7 +168,7 @@ def _typed(field: FieldGiven) -> Any:
     if wrong or several != isinstance(field.value, list):
         raise TmsError(f"{field.name}: {field.value!r} is no {field.type}", "BAD_VALUE")
     if not all(_fits(kind, one) for one in values):
-        limits = {"int": "has 64 bits", "double": "is finite", "string": "is valid Unicode"}
+        limits = {"int": "has 64 bits", "double": "is finite", "string": "is valid Unicode without NUL"}
         raise TmsError(f"{field.name}: {field.value!r} cannot be stored: a {kind} {limits[kind]}", "BAD_VALUE")
     typed = [float(one) if kind == "double" else one for one in values]
     return typed if several else typed[0]
@@ -181,6 +181,7 @@ def _fits(kind: str, value: Any) -> bool:
             return math.isfinite(value)
         if kind == "string":
             value.encode()
+            return "\0" not in value  # ROS would cut it there
     except (OverflowError, UnicodeEncodeError):
         return False
     return kind != "int" or -(2**63) <= value < 2**63

@@ -5,6 +5,7 @@ from typing import Literal
 
 from pydantic import Field
 
+from tms_core.names import Name
 from tms_ur.models import Command, Model, Value
 
 
@@ -53,7 +54,7 @@ class Sensing(Model):
 class FieldGiven(Command):
     """A value with its type."""
 
-    name: str = Field(min_length=1, max_length=100)
+    name: Name
     type: Literal["bool", "int", "double", "string", "bool[]", "int[]", "double[]", "string[]"]
     value: Value
 
@@ -62,7 +63,7 @@ class RecordGiven(Command):
     """Fields to set, in one atomic step; the others stay."""
 
     model_name: str = Field(pattern=r"^[0-9A-Za-z_]{0,64}$")
-    record_name: str = Field(min_length=1, max_length=200)
+    record_name: Name
     fields: list[FieldGiven] = Field(max_length=200)
     create: bool = False
     type: Literal["", "static", "dynamic"] = Field(default="", description="of a new record; empty keeps it")

@@ -28,6 +28,7 @@ from tms_core.border import STOP_PROVEN
 from tms_core.config import Site
 from tms_core.errors import RosError, TmsError
 from tms_core.frames import Frames
+from tms_core.names import check_sent
 from tms_core.ros import Ros
 from tms_core.values import to_parameters
 from tms_ur import messages
@@ -245,7 +246,9 @@ class Gateway:
         return host
 
     def _ask(self, service_type: Any, name: str, **fields: Any) -> Any:
-        return _checked(self._ros.call(service_type, name, service_type.Request(**fields), CALL_LIMIT))
+        request = service_type.Request(**fields)
+        check_sent(name, request)
+        return _checked(self._ros.call(service_type, name, request, CALL_LIMIT))
 
 
 def _checked(answer: Any) -> Any:

@@ -5,6 +5,8 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from tms_core.names import Text
+
 Value = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
 MachineState = Literal["moving", "standing", "not_ready", "silent"]
 INT32 = 2**31 - 1
@@ -264,13 +266,13 @@ class Command(Model):
 
 
 class Login(Command):
-    name: str = Field(max_length=64)
+    name: Text = Field(max_length=64)
     password: str = Field(max_length=200)
 
 
 class TaskGiven(Command):
     xml: str = Field(max_length=5 * 2**20)
-    description: str = Field(default="", max_length=1000)
+    description: Text = Field(default="", max_length=1000)
 
 
 class Xml(Command):

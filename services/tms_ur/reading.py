@@ -10,6 +10,7 @@ from fastapi import FastAPI, Path, Query, Request, Response
 
 from tms_core.config import Site
 from tms_core.errors import TmsError
+from tms_core.names import Name
 from tms_ur import export
 from tms_ur.data_models import Change, Record, Sensing
 from tms_ur.models import (
@@ -133,7 +134,7 @@ def _data(app: FastAPI, gateway: "Gateway") -> None:
     @app.get("/api/parameters/history", summary="The last changes of a record, newest first",
              responses=problems(404, 503))  # fmt: skip
     def parameter_history(
-        record_name: Annotated[str, Query(min_length=1, max_length=200)],
+        record_name: Annotated[Name, Query()],
         model_name: Annotated[str, Query(pattern=r"^[0-9A-Za-z_]{0,64}$", description="empty: shared by all")] = "",
         limit: Annotated[int, Query(ge=1, le=200)] = 20,
     ) -> list[Change]:

@@ -17,7 +17,7 @@ from pymongo.collection import Collection
 from pymongo.errors import AutoReconnect
 
 from stores import Server
-from tms_core.errors import DbError, TaskError
+from tms_core.errors import DbError, TaskError, TmsError
 from tms_db import freshness, store
 from tms_db.batches import Batches, Update
 from tms_db.connection import Connection
@@ -43,6 +43,12 @@ def code_of(call: Callable[[], Any]) -> str:
 
 
 # tasks
+
+
+def test_a_description_of_a_task_holds_no_control_characters(db: store.Db) -> None:
+    with pytest.raises(TmsError, match=r"^the task's description holds the control character U\+001B: remove it$"):
+        Tasks(db).add(tree(), "dig\x1b[2J")
+    assert Tasks(db).all() == []
 
 
 def test_task_is_stored_as_the_paper_says(db: store.Db) -> None:
@@ -538,6 +544,8 @@ def test_bad_journal_is_refused_whole(db: store.Db) -> None:
     history = History(db)
     assert code_of(lambda: history.write([run("r1")], [event("r1", 1), event("r1", 0)])) == "BAD_JOURNAL"
     assert code_of(lambda: history.write([run("")], [])) == "BAD_JOURNAL"
+    with pytest.raises(DbError, match=r"^run_id 'r\\n1' holds the control character U\+000A: give the run a plain id$"):
+        history.write([run("r\n1")], [])
     assert history.runs() == []
 
 

@@ -172,7 +172,7 @@ def test_sizes_and_names_that_are_refused(shared_db: store.Db, yard: Path, monke
     assert "needs its width" in refusal(lambda: terrain.add(yard, "heightmap"))[1]
     assert "above 0 m" in refusal(lambda: terrain.add(yard, "heightmap", Size(0.0, 1.0, 1.0)))[1]
     assert "there is no such file" in refusal(lambda: terrain.add(yard.with_name("b.png"), "texture", SIZE))[1]
-    assert "printable characters" in refusal(lambda: terrain.put_dynamic("a\nb", b"", {}))[1]
+    assert "holds the control character U+000A" in refusal(lambda: terrain.put_dynamic("a\nb", b"", {}))[1]
     monkeypatch.setattr(terrain_files, "MAX_FILE", 100)
     assert "MB are allowed" in refusal(lambda: terrain.add(yard, "heightmap", SIZE))[1]
     assert "the image cannot be read" in refusal(lambda: terrain_messages.image("a", header(9, 9, 16, 0)))[1]

@@ -171,7 +171,7 @@ def test_the_cps_pc_is_restarted_while_nothing_runs(yard: Yard) -> None:
 
 @pytest.mark.skipif(not shutil.which("prometheus"), reason="prometheus is Debian's package of that name")
 def test_prometheus_sees_every_pc_and_tells_which_one_is_gone(yard: Yard, tmp_path: Path) -> None:
-    docker("cp", f"{yard.name('cps')}:/var/lib/tms/state/prometheus/.", str(tmp_path))
+    docker("cp", f"{yard.name('cps')}:/var/lib/tms/prometheus/.", str(tmp_path))
     wanted = {row.full for row in yard.rows if row.ours and row.autostart}
     with prometheus(tmp_path, 9199) as address:
         wait_until(lambda: processes_up(address) >= wanted, 60, f"scraped: all of {sorted(wanted)}")

@@ -8,6 +8,7 @@ import struct
 import subprocess
 import sys
 import time
+from array import array
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -15,9 +16,10 @@ from typing import Any
 import pytest
 from com3_msgs.msg import JointCmd
 from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
-from std_msgs.msg import Bool, String, UInt8MultiArray
+from std_msgs.msg import Bool, Float64, Float64MultiArray
 from std_srvs.srv import SetBool, Trigger
 
 from conftest import wait_until
@@ -38,7 +40,13 @@ name: iftest
 domain: {domain}
 backend: physx
 ports: {{metrics: {port}}}
-services: {{if: {{port: {tcp}, message_limit: 1000000}}}}
+services:
+  if:
+    port: {tcp}
+    message_limit: 1000000
+    clock: true
+    calls: {{/{machine}/switch: std_srvs/SetBool}}
+    offers: {{/{machine}/spawn: std_srvs/Trigger, /{machine}/odd: gazebo_msgs/Nothing}}
 machines: {{{machine}: {{model: zx200}}}}
 """
 
@@ -180,18 +188,6 @@ def test_joint_commands_in_the_layout_of_the_simulator(bridge: Bridge, unity: Un
     plain = b"\0\1\0\0" + names + struct.pack("<I2d", 2, -0.5, 1.0) + bytes(8)
     assert unity.got(topic)[0] == plain  # without control_type
 
-    heard = bridge.heard(JointCmd, f"/{MACHINE}/echo_cmd")
-    unity.command("__publish", topic=f"{MACHINE}/echo_cmd", message_name="com3_msgs/JointCmd", queue_size=1)
-
-    def told() -> bool:
-        unity.message(f"{MACHINE}/echo_cmd", plain)
-        return bool(heard)
-
-    bridge.until(told, "a JointCmd from the simulator")
-    assert heard[0].joint_name == ["boom_joint", "swing_joint"] and list(heard[0].position) == [-0.5, 1.0]
-    unity.message(f"{MACHINE}/echo_cmd", pack(heard[0])[:-3])
-    unity.until(unity.errors, "an error for half a message")
-
 
 def test_unity_calls_a_service(bridge: Bridge, unity: Unity) -> None:
     def switch(request: Any, response: Any) -> Any:
@@ -250,33 +246,69 @@ def _expect_no_answer(bridge: Bridge, service: str) -> None:
 
 
 def test_what_cannot_be_done_is_said_once_and_the_rest_goes_on(bridge: Bridge, unity: Unity) -> None:
-    unity.command("__publish", topic="a/b", message_name="gazebo_msgs/Nothing", queue_size=1)
+    odom, pose = f"{MACHINE}/odom", f"{MACHINE}/base_link/pose"
+    unity.command("__unity_service", topic=f"{MACHINE}/odd", message_name="gazebo_msgs/Nothing")
     unity.command("__subscribe", topic="a b", message_name="std_msgs/Bool")
+    unity.command("__subscribe", topic="tms/runs", message_name="std_msgs/Bool")
     unity.command("__publish", topic=f"{MACHINE}/tracks/cmd_vel", message_name="geometry_msgs/Twist", queue_size=1)
+    unity.command("__publish", topic=pose, message_name="nav_msgs/Odometry", queue_size=1)
     unity.command("__ros_service", topic=f"{MACHINE}/rearm", message_name="std_srvs/Trigger")
     unity.command("__dance")
     unity.raw(frame(text("__subscribe"), b"{broken\0"))
     for _ in range(3):
         unity.message("nobody/registered", b"\0\1\0\0\1")
-    unity.command("__publish", topic="ok", message_name="std_msgs/Bool", queue_size=1)
-    unity.message("ok", b"\0")
+        unity.message(f"{MACHINE}/tracks/cmd_vel", b"\0\1\0\0\1")
+    unity.command("__publish", topic=odom, message_name="nav_msgs/Odometry", queue_size=1)
+    unity.message(odom, b"\0")
     unity.command("__response", srv_id=5)
-    unity.message("ok", b"\0\1\0\0\1")
-    unity.until(lambda: len(unity.errors()) >= 9, "nine errors")
+    unity.message(odom, b"\0\1\0\0\1")
+    parts = (
+        "no gazebo_msgs/Nothing here", "__subscribe: topic: ", "a client may not listen there", "is no sensor topic",
+        "is geometry_msgs/PoseStamped on this site", "is not among services.if.calls", "there is no command __dance",
+        "__subscribe: Invalid JSON", "Not registered to publish topic 'nobody/registered'",
+        "odom: what came is no Odometry", "request 5, which nobody",
+    )  # fmt: skip
+    unity.until(lambda: len(unity.errors()) >= len(parts), "all errors")
     said = "\n".join(unity.errors())
-    for part in (
-        "no gazebo_msgs/Nothing here", "__subscribe: topic: ", "a simulator may only listen there",
-        "belongs to the task management", "there is no command __dance", "__subscribe: Invalid JSON",
-        "Not registered to publish topic 'nobody/registered'", "ok: what came is no Bool", "request 5, which nobody",
-    ):  # fmt: skip
+    for part in parts:
         assert said.count(part) == 1, f"{part} in\n{said}"
-    unity.command("__remove_publisher", topic="ok")
+    assert len(unity.errors()) == len(parts)  # the messages of a refused topic go without a word
+    unity.command("__remove_publisher", topic=odom)
     unity.command("__remove_subscriber", topic="never/there")
-    unity.command("__publish", topic=f"{MACHINE}/listed", message_name="std_msgs/Bool", queue_size=1)
+    unity.command("__publish", topic=f"{MACHINE}/joint_state", message_name="sensor_msgs/JointState", queue_size=1)
     unity.command("__topic_list")
     unity.until(lambda: unity.got("__topic_list"), "the topics")
     told = json.loads(unity.got("__topic_list")[0])
-    assert dict(zip(told["topics"], told["types"], strict=True))[f"/{MACHINE}/listed"] == "std_msgs/Bool"
+    types = dict(zip(told["topics"], told["types"], strict=True))
+    assert types[f"/{MACHINE}/joint_state"] == "sensor_msgs/JointState"
+
+
+def test_one_client_a_topic(bridge: Bridge) -> None:
+    topic = f"{MACHINE}/odom"
+    odometry = {"topic": topic, "message_name": "nav_msgs/Odometry", "queue_size": 10, "latch": False}
+    heard = bridge.heard(Odometry, f"/{topic}")
+    first, second = bridge.unity(), bridge.unity()
+    first.command("__publish", **odometry)
+    first.command("__publish", **odometry)  # as the simulator does on its first connect
+    bridge.until(lambda: bridge.ros.node.count_publishers(f"/{topic}") == 1, "one publisher")
+    second.command("__publish", **odometry)
+    second.until(second.errors, "a refusal")
+    host, port = first.socket.getsockname()
+    assert second.errors() == [f"/{topic} is published by {host}:{port}: the messages of a second client are left out"]
+
+    def told(client: Unity, frame_id: str) -> bool:
+        message = Odometry()
+        message.header.frame_id = frame_id
+        client.message(topic, pack(message))
+        return any(one.header.frame_id == frame_id for one in heard)
+
+    second.message(topic, pack(Odometry()))
+    bridge.until(lambda: told(first, "first"), "what the first tells")
+    first.close()
+    bridge.until(lambda: told(second, "second"), "what the second tells, once the first has left")
+    assert {one.header.frame_id for one in heard} == {"first", "second"}
+    assert first.errors() == []
+    second.close()
 
 
 @pytest.mark.parametrize(
@@ -304,19 +336,20 @@ def test_a_broken_client_ends_alone(bridge: Bridge, data: bytes, line: str) -> N
 def test_a_client_that_does_not_read_loses_messages_and_nothing_else(bridge: Bridge) -> None:
     lazy, good = Unity(bridge.port, reads=False), bridge.unity()
     bridge.clients.append(lazy)
+    topic = f"{MACHINE}/unity/drive_params"
     for client in (lazy, good):
-        client.command("__subscribe", topic="large", message_name="std_msgs/UInt8MultiArray")
-    publisher = bridge.ros.publisher(UInt8MultiArray, "/large")
+        client.command("__subscribe", topic=topic, message_name="std_msgs/Float64MultiArray")
+    publisher = bridge.ros.publisher(Float64MultiArray, f"/{topic}")
     bridge.until(lambda: publisher.get_subscription_count() == 2, "both hear")
     host, port = lazy.socket.getsockname()
-    message = UInt8MultiArray(data=bytes(500_000))
+    message = Float64MultiArray(data=array("d", bytes(500_000)))
 
     def slow() -> bool:
         publisher.publish(message)
         return f"event=client_slow client={host}:{port}" in bridge.log
 
     bridge.until(slow, "a line about the slow client")
-    good.until(lambda: good.got("large"), "messages at the other client")
+    good.until(lambda: good.got(topic), "messages at the other client")
     bridge.logged(f"event=client_gone client={host}:{port} .*did not read for 10 s")
     lazy.close()
     good.close()
@@ -344,13 +377,14 @@ def test_a_best_effort_publisher_is_heard(bridge: Bridge, unity: Unity) -> None:
     from rclpy.qos import QoSProfile, ReliabilityPolicy
 
     qos = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
-    publisher = bridge.ros.node.create_publisher(String, "/sensor", qos)
+    topic = f"{MACHINE}/swing/cmd"
+    publisher = bridge.ros.node.create_publisher(Float64, f"/{topic}", qos)
     wait_until(lambda: bool(publisher.topic_name), LIMIT, "publisher")
     deadline = time.monotonic() + LIMIT
-    while not unity.got("sensor"):  # whether the bridge knows the publisher yet, only its messages tell
+    while not unity.got(topic):  # whether the bridge knows the publisher yet, only its messages tell
         assert time.monotonic() < deadline
-        unity.command("__subscribe", topic="sensor", message_name="std_msgs/String")
+        unity.command("__subscribe", topic=topic, message_name="std_msgs/Float64")
         for _ in range(5):
-            publisher.publish(String(data="heard"))
+            publisher.publish(Float64(data=0.5))
             time.sleep(0.05)
-    assert unpack(unity.got("sensor")[0], String).data == "heard"
+    assert unpack(unity.got(topic)[0], Float64).data == 0.5

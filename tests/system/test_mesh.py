@@ -45,6 +45,15 @@ def test_a_task_runs_to_success_and_again_without_a_restart(mesh: Mesh) -> None:
     assert {name: after[name]["pid"] for name in before} == before
 
 
+def test_nobody_else_reads_the_state_folder(mesh: Mesh) -> None:
+    run(mesh, "1")
+    places = (mesh.state, *mesh.state.rglob("*"))
+    assert {"log", "store", "supervisord.conf", "prometheus", "ros", "tms.ts.log"} <= {path.name for path in places}
+    ours = f"python_{os.getpid()}_"  # the log of this test's own node
+    others = [path for path in places if path.exists() and not path.name.startswith(ours)]
+    assert [path for path in others if path.stat().st_mode & 0o077] == []
+
+
 def test_the_history_tells_every_leaf_in_order(mesh: Mesh) -> None:
     run_id = run(mesh, "1")["run_id"]
     rows = events(mesh, run_id)

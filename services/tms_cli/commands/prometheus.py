@@ -8,7 +8,13 @@ from tms_cli import monitoring, session
 
 
 @click.command()
-@click.option("-o", "--output", type=click.Path(path_type=Path), metavar="FOLDER", help="Default: in the state folder.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    metavar="FOLDER",
+    help="Default: TMS_PROMETHEUS, or in the state folder.",
+)
 @click.option("--alertmanager", metavar="HOST:PORT", envvar="TMS_ALERTS_TO", help="Where alerts go.")
 @session.json_option
 def command(output: Path | None, alertmanager: str | None, as_json: bool) -> None:
@@ -22,7 +28,7 @@ def command(output: Path | None, alertmanager: str | None, as_json: bool) -> Non
       tms prometheus -o /etc/prometheus/tms --alertmanager 127.0.0.1:9093
     """
     site = session.site()
-    folder = (output or site.state / "prometheus").resolve()
+    folder = output.resolve() if output else monitoring.folder(site)
     monitoring.render(site, folder, alertmanager)
     if as_json:
         session.show_json({"folder": str(folder), "targets": monitoring.targets(site)})

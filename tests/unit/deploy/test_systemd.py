@@ -59,7 +59,8 @@ def test_the_program_passes_words_and_the_sites_variables(tmp_path: Path) -> Non
     told = json.loads(done.stdout)
     assert told["words"] == words
     there = told["environment"]
-    assert {key: there[key] for key in ("TMS_SITE", "TMS_ALERTS_TO", "TMS_NOTE", "TMS_STATE", "XDG_RUNTIME_DIR")} == {
+    wanted = {
         "TMS_SITE": "genba", "TMS_ALERTS_TO": "127.0.0.1:9093", "TMS_NOTE": "two words",
-        "TMS_STATE": "/var/lib/tms/state", "XDG_RUNTIME_DIR": "/run/tms",
+        "TMS_STATE": "/var/lib/tms/state", "TMS_PROMETHEUS": "/var/lib/tms/prometheus", "XDG_RUNTIME_DIR": "/run/tms",
     }  # fmt: skip
+    assert {key: there[key] for key in wanted} == wanted

@@ -48,6 +48,38 @@ def test_alerts_go_where_the_environment_says(tmp_path: Path, monkeypatch: pytes
     assert written == ([{"targets": [to]}] if to else [])
 
 
+@pytest.mark.parametrize("left_open", [True, False])
+def test_the_state_of_an_older_release_is_closed_with_one_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], left_open: bool
+) -> None:
+    ours, folder = site(tmp_path, store={"kind": "mongodb", "uri": "mongodb://x/"}), tmp_path / "state"
+    monkeypatch.setattr(mesh.Supervisor, "alive", lambda _: True)  # it runs already, so nothing is started
+    if left_open:
+        (folder / "log").mkdir(parents=True)
+        (folder / "log" / "zx200.rc.log").touch()
+        for path, mode in ((folder, 0o755), (folder / "log", 0o755), (folder / "log" / "zx200.rc.log", 0o644)):
+            path.chmod(mode)
+    assert mesh.up(ours) is False
+    assert [path for path in (folder, *folder.rglob("*")) if path.stat().st_mode & 0o077] == []
+    told = f"{folder}: closed 3 files to other users\n" if left_open else ""
+    assert capsys.readouterr().err == told
+
+
+def test_prometheus_reads_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its own user may not look into the state folder."""
+    ours, folder = site(tmp_path, store={"kind": "mongodb", "uri": "mongodb://x/"}), tmp_path / "for" / "prometheus"
+    monkeypatch.setattr(mesh.Supervisor, "alive", lambda _: True)
+    monkeypatch.setenv("TMS_PROMETHEUS", str(folder))
+    mesh.up(ours)
+    modes = {path.name: path.stat().st_mode & 0o777 for path in (folder, *folder.iterdir())}
+    assert modes == {
+        "prometheus": 0o755, "prometheus.yml": 0o644, "rules.yml": 0o644, "targets.json": 0o644,
+        "alertmanagers.json": 0o644,
+    }  # fmt: skip
+    assert folder.parent.stat().st_mode & 0o005 == 0o005
+    assert not (tmp_path / "state" / "prometheus").exists()
+
+
 def test_a_console_without_its_certificate_is_told_before_anything_starts(tmp_path: Path, tms: Any) -> None:
     ours = site(tmp_path, console=TLS, store={"kind": "mongodb", "uri": "mongodb://x/"})
     with pytest.raises(ConfigError, match=rf"console\.tls\.certificate: {tmp_path}/cert.pem: cannot be read"):

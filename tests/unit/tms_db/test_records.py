@@ -8,6 +8,7 @@ import pytest
 from tms_core.config import CONFIGS
 from tms_core.errors import ConfigError, DbError
 from tms_db import records
+from tms_db.parameters import Change
 
 LOADING = {
     "initial_pose", "target_excavate_pose", "hold_soil_while_elevating_pose", "hold_soil_while_turning_pose",
@@ -29,7 +30,7 @@ def read(tmp_path: Path, text: str) -> list[records.Record]:
         ({"timestamps": 1}, "'timestamps' is reserved"),
         ({"$set": 1}, "must not start with [$]"),
         ({"a.b": 1}, "dots"),
-        ({"a\0": 1}, "control characters"),
+        ({"a\0": 1}, r"holds the control character U\+0000"),
         ({"x": float("nan")}, "field x: nan is not a finite number"),
         ({"x": [1.0, float("inf")]}, "field x: inf is not a finite number"),
         ({"x": 2**63}, "does not fit into 64 bits"),
@@ -55,10 +56,27 @@ def test_values_that_are_taken() -> None:
     )
 
 
-@pytest.mark.parametrize("key", [("zx200", ""), ("zx200", " "), (" zx200", "p"), ("zx200", "p\n"), ("z" * 201, "p")])
-def test_keys_that_are_refused(key: tuple[str, str]) -> None:
-    with pytest.raises(DbError):
+@pytest.mark.parametrize(
+    ("key", "says"),
+    [
+        (("zx200", ""), "record_name is empty"),
+        (("zx200", " "), "record_name ' ' is empty"),
+        ((" zx200", "p"), "model_name ' zx200' begins or ends with a blank"),
+        (("zx200", "p\n"), r"record_name 'p\\n' holds the control character U\+000A: write a plain name"),
+        (("zx200", "ev\0il"), r"record_name 'ev\\x00il' holds the control character U\+0000: write a plain name"),
+        (("z\x1b", "p"), r"model_name 'z\\x1b' holds the control character U\+001B"),
+        (("z" * 201, "p"), "model_name 'z+' has more than 200 letters"),
+    ],
+)
+def test_keys_that_are_refused(key: tuple[str, str], says: str) -> None:
+    with pytest.raises(DbError, match=says):
         records.check_key(*key)
+
+
+@pytest.mark.parametrize("key", ["description", "source"])
+def test_a_line_about_a_record_holds_no_control_characters(key: str) -> None:
+    with pytest.raises(DbError, match=rf"^record zx200/p: {key} holds the control character U\+000A: remove it$"):
+        Change({"a": 1}, **{key: "two\nlines"}).check("record zx200/p")
 
 
 @pytest.mark.parametrize(
@@ -71,6 +89,12 @@ def test_keys_that_are_refused(key: tuple[str, str]) -> None:
         ("- {record_name: p, type: fixed}", "type is 'fixed': write static or dynamic"),
         ("- {model_name: zx200, type: static}", "record 1: record_name is empty"),
         ("- {record_name: 3, type: static}", "record_name is 3, not text"),
+        ('- {record_name: "ev\\0il", type: static}', r"record 1: record_name 'ev\\x00il' holds the control character"),
+        (
+            '- {record_name: p, type: static, description: "a\\0b"}',
+            r"\(shared record p\): description holds the control",
+        ),
+        ('- {record_name: p, type: static, "a\\0b": 1}', r"field name 'a\\x00b' holds the control character U\+0000"),
         ("- {record_name: p, type: static, x: 1e3}", "write it with a dot"),
         ("- {record_name: p, type: static, x: 2024-01-01}", "a date cannot be stored"),
         ("- {record_name: p, type: static, x: .nan}", "field x: nan is not a finite number"),

@@ -4,10 +4,8 @@ import json
 
 import pytest
 
-from tms_core.config import load_site
 from tms_if.commands import CommandError, Registration, ServiceId, handshake, parse
 from tms_if.interfaces import interface
-from tms_if.names import refusal, reserved
 
 GOOD = b'{"topic":"zx200/odom","message_name":"nav_msgs/Odometry","queue_size":10,"latch":false}\0'
 
@@ -61,12 +59,3 @@ def test_a_type_that_is_not_there(name: str) -> None:
     with pytest.raises(CommandError, match=f"no {name} here"):
         interface(name, "msg")
     assert "antigravity" not in set(sys.modules) - known
-
-
-def test_nobody_speaks_in_the_name_of_the_gateway() -> None:
-    commands = reserved(load_site())
-    for name in ("/tms/stop", "/zx200/rearm", "/zx200/rc/stop", "/emergency_signal", "/zx200/cmd_vel",
-                 "/zx200/emg_stop", "/zx200/permit/ts", "/zx200/navigate_to_pose/_action/send_goal"):  # fmt: skip
-        assert refusal(name, commands), name
-    for name in ("/zx200/odom", "/clock", "/tf", "/zx200/joint_state", "/gazebo/spawn_urdf_model"):
-        assert refusal(name, commands) is None, name

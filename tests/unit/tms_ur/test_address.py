@@ -111,6 +111,7 @@ def test_the_users_file_is_beside_the_site_file(tmp_path: Path) -> None:
         ("users: {}\n", 0o644, r"everybody on this PC may read it: `chmod 600 "),
         ("users: {ken: {role: boss}}\n", 0o600, r"users\.yaml: users\.ken\.role: "),
         ("users: {ken: {role: viewer}}\n", 0o600, r"users\.ken: needs a password or a token: `tms user add`"),
+        ('users: {"k\\0n": {role: viewer, token: $argon2id$x}}\n', 0o600, "holds the control character U\\+0000"),
         ("users: [\n", 0o600, r"users\.yaml:2: "),
     ],
 )

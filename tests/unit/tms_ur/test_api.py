@@ -162,7 +162,7 @@ HUGE = str(10**400)
 @pytest.mark.parametrize(
     ("kind", "value"),
     [
-        ("string", '"\\ud800"'), ("string[]", '["a", "\\udfff"]'), ("int", str(2**63)),
+        ("string", '"\\ud800"'), ("string", '"a\\u0000b"'), ("string[]", '["a", "\\udfff"]'), ("int", str(2**63)),
         ("int[]", f"[1, {-(2**63) - 1}]"), ("double", HUGE), ("double", "1e400"), ("double", "NaN"),
         ("double[]", f"[1, -{HUGE}]"),
     ],
@@ -193,6 +193,27 @@ def test_names_are_unicode(client: Client, gateway: FakeGateway, key: str) -> No
     told = ", ".join(f'"{one}": "{text}"' for one, text in names.items())
     body = f'{{{told}, "fields": [{{"name": "{name}", "type": "int", "value": 1}}]}}'
     answer = client.post("/api/parameters", content=body, headers={"Content-Type": "application/json"})
+    assert (answer.status_code, answer.json()["code"]) == (422, "BAD_REQUEST")
+    assert gateway.calls == []
+
+
+@pytest.mark.parametrize(
+    ("path", "body"),
+    [
+        ("/api/parameters", {**RECORD, "record_name": "ev\0il"}),
+        ("/api/parameters", {**RECORD, "model_name": "zx\x01"}),
+        ("/api/parameters", {**RECORD, "fields": [{"name": "a\0b", "type": "int", "value": 1}]}),
+        ("/api/tasks", {"xml": XML, "description": "dig\0here"}),
+        ("/api/tasks", {"xml": XML, "description": "two\nlines"}),
+        ("/api/login", {"name": "min\0a", "password": "long enough"}),
+        ("/api/machines/zx200%00/rearm", {}), ("/api/questions/q%0A1", {"yes": True}), ("/api/runs/r%001/cancel", {}),
+        ("/api/processes/tms:ts%00/restart", {}), ("/api/stop", {"machine": "zx200\0"}),
+    ],
+)  # fmt: skip
+def test_no_name_holds_a_control_character(
+    client: Client, gateway: FakeGateway, path: str, body: dict[str, object]
+) -> None:
+    answer = client.post(path, json=body)
     assert (answer.status_code, answer.json()["code"]) == (422, "BAD_REQUEST")
     assert gateway.calls == []
 
@@ -298,7 +319,7 @@ def test_errors_of_modules(client: Client, gateway: FakeGateway, code: str, stat
     [
         "/api/tasks/0", "/api/tasks/x", "/api/tasks/2147483648", "/api/runs?limit=0", "/api/runs?limit=1001",
         "/api/runs/a%20b/events", "/api/runs/r/events?after=-1", "/api/runs/r/events?after=4294967296",
-        "/api/parameters?model_name=a/b",
+        "/api/parameters?model_name=a/b", "/api/parameters/history?record_name=ev%00il",
     ],
 )  # fmt: skip
 def test_bad_values(client: Client, gateway: FakeGateway, path: str) -> None:
