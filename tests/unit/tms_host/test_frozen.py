@@ -52,7 +52,7 @@ def app(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
 
 
 def test_a_process_is_asked_at_the_address_of_its_pc(app: Any) -> None:
-    watchdog = Watchdog(app, list)
+    watchdog = Watchdog(app, list, dict)
     assert not watchdog.answers("tms:db")
     health = Health("127.0.0.9", find(app.site, "tms:db").port, unready=lambda: None)
     try:
@@ -69,5 +69,5 @@ def test_what_somebody_has_stopped_meanwhile_stays_so(app: Any, state: str, pid:
     supervisor: Any = SimpleNamespace(
         process=lambda name: Running(name, state, pid, 5.0, ""), control=lambda _, name: restarted.append(name)
     )
-    Watchdog(app, list)._restart(supervisor, Running("tms:db", "RUNNING", 7, 5.0, ""))
+    Watchdog(app, list, dict)._restart(supervisor, Running("tms:db", "RUNNING", 7, 5.0, ""))
     assert restarted == did
