@@ -1,4 +1,4 @@
-"""Several processes of a run killed or frozen at once: as long as gateway or host agent is left, the machine is stopped."""
+"""Several processes of a run killed or frozen at once: while gateway or host agent is left, the machine is stopped."""
 
 import os
 import signal
@@ -12,8 +12,7 @@ import pytest
 import yaml
 from action_msgs.msg import GoalStatus, GoalStatusArray
 from std_msgs.msg import Bool
-from test_mesh import newest, processes, run, swinging
-from test_stop import rearm, state_of
+from test_mesh import processes, swinging
 
 from conftest import PROJECT, Mesh, claimed_domain, ports_of, running, site_data, wait_until
 from tms_core import environment
@@ -22,8 +21,8 @@ from tms_core.ros import Ros
 
 pytestmark = [pytest.mark.system, pytest.mark.timeout(300)]
 STATUS = "/zx200/upper_arm_controller/follow_joint_trajectory/_action/status"
+OPEN = (GoalStatus.STATUS_ACCEPTED, GoalStatus.STATUS_EXECUTING)
 STOPPED = (GoalStatus.STATUS_CANCELING, GoalStatus.STATUS_CANCELED)
-FROZEN = 5.0  # s; a swing takes as long
 
 
 @pytest.fixture(scope="module")
@@ -65,8 +64,8 @@ class Controller:
     def _emergency(self, message: Any) -> None:
         self.emergency = self.emergency or message.data
 
-    def executing(self) -> list[bytes]:
-        return [goal for goal, status in list(self.statuses.items()) if status == GoalStatus.STATUS_EXECUTING]
+    def open(self) -> list[bytes]:
+        return [goal for goal, status in list(self.statuses.items()) if status in OPEN]
 
     def close(self) -> None:
         for end in self._ends:
@@ -79,14 +78,13 @@ def struck(slow: tuple[Mesh, Ros], names: list[str], number: signal.Signals) -> 
     mesh, ros = slow
     in_order(slow)
     controller = Controller(ros)
-    found = processes(mesh)
     try:
         with swinging(mesh, ros, "1"):
             found = processes(mesh)
             pids = [row["pid"] for name, row in found.items() if row["pid"] and fits(name, names)]
             assert len(pids) >= len(names)
-            wait_until(lambda: bool(controller.executing()), 60, "the controller follows a trajectory")
-            goal = controller.executing()[-1]
+            wait_until(lambda: bool(controller.open()), 60, "the controller follows a trajectory")
+            goal = controller.open()[-1]
             for pid in pids:
                 os.kill(pid, number)
             yield controller, goal
@@ -116,7 +114,7 @@ def in_order(slow: tuple[Mesh, Ros]) -> None:
 def stopped_after(controller: Controller, goal: bytes, capsys: pytest.CaptureFixture[str]) -> None:
     """The goal is cancelled; it would last for some seconds more."""
     begun = time.monotonic()
-    wait_until(lambda: controller.statuses[goal] != GoalStatus.STATUS_EXECUTING, 60, "the goal ends", 0.005)
+    wait_until(lambda: controller.statuses[goal] not in OPEN, 60, "the goal ends", 0.005)
     assert controller.statuses[goal] in STOPPED
     with capsys.disabled():
         print(f"\nloss to stop: {time.monotonic() - begun:.2f} s")
