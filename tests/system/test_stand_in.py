@@ -51,6 +51,7 @@ class Controller:
     def __init__(self, ros: Ros) -> None:
         self.statuses: dict[bytes, int] = {}  # of goals, in the order of their begin
         self.emergency = False
+        self.pids: list[int] = []  # of the mesh
         self._ends = [
             ros.subscribe(GoalStatusArray, STATUS, self._status, depth=20),
             ros.subscribe(Bool, "/zx200/emg_stop", self._emergency, depth=20),
@@ -81,7 +82,9 @@ def struck(slow: tuple[Mesh, Ros], names: list[str], number: signal.Signals) -> 
     try:
         with swinging(mesh, ros, "1"):
             found = processes(mesh)
+            controller.pids = [row["pid"] for row in found.values() if row["pid"]]
             pids = [row["pid"] for name, row in found.items() if row["pid"] and fits(name, names)]
+            pids += [int((mesh.state / "supervisord.pid").read_text())] if "supervisord" in names else []
             assert len(pids) >= len(names)
             wait_until(lambda: bool(controller.open()), 60, "the controller follows a trajectory")
             goal = controller.open()[-1]
@@ -144,3 +147,14 @@ def test_a_machine_whose_processes_are_frozen_is_stopped(
         assert psutil.Process(gateway).status() == psutil.STATUS_STOPPED  # so it was not the gateway itself
         wait_until(lambda: controller.emergency, 30, "emg_stop")
         wait_until(lambda: processes(slow[0])["zx200:rc"]["pid"] not in (0, gateway), 60, "the gateway is replaced")
+
+
+@pytest.mark.parametrize("names", [["supervisord"], ["supervisord", "tms:ts"]], ids=lambda names: "+".join(names))
+def test_without_supervisord_the_gateway_stops_the_machine_before_it_ends(
+    slow: tuple[Mesh, Ros], names: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    mesh = slow[0]
+    with struck(slow, names, signal.SIGKILL) as (controller, goal):
+        stopped_after(controller, goal, capsys)
+    wait_until(lambda: not any(map(psutil.pid_exists, controller.pids)), 30, "the processes have ended")
+    mesh.tms("up")
