@@ -43,14 +43,17 @@ def motions(border: Border) -> list[Motion]:
 class Controls:
     """Direct access to a machine; only the gateway, and whoever stands in for a lost one, may have it."""
 
-    def __init__(self, ros: Ros, machine: str, border: Border) -> None:
+    def __init__(self, ros: Ros, machine: str, border: Border, keeps_emergency: bool = True) -> None:
+        """`keeps_emergency`: a machine that is switched on later still gets the last `emg_stop`. For the gateway only,
+        which also releases it: a machine would keep to the old `true` of anybody else.
+        """
         self._ros = ros
         self._cancels = [f"/{machine}/{getattr(border, m.field)}/_action/cancel_goal" for m in motions(border)]
         for service in self._cancels:
             ros.prepare(CancelGoal, service)
         self._cmd_vel = ros.publisher(Twist, f"/{machine}/{border.cmd_vel}", 1) if border.cmd_vel else None
         emg_stop = f"/{machine}/{border.emg_stop}"
-        self._emg_stop = ros.publisher(Bool, emg_stop, 1, latched=True) if border.emg_stop else None
+        self._emg_stop = ros.publisher(Bool, emg_stop, 1, latched=keeps_emergency) if border.emg_stop else None
 
     def cancel_everything(self) -> None:
         """A cancel request with zero id reaches the goals of all clients."""

@@ -58,6 +58,7 @@ class Link:
         self.process, self.goal, self.holder = process, NOBODY, ""
         self._ros, self._changed = ros, changed
         self.corpses = 0  # predecessors that discovery has not dropped yet, or the process itself while it is frozen
+        self.left = False  # the last one took leave, in order; a killed one leaves a corpse
         self._heard, self._alive, self._asserted = 0.0, False, 0
         ros.lease_subscribe(Message, topic(machine, process), LEASE, self._on_message, self._on_liveliness)
 
@@ -73,6 +74,8 @@ class Link:
         self._changed(self)
 
     def _on_liveliness(self, alive_count: int, not_alive_count: int) -> None:
+        if alive_count > 0 or self._asserted > 0:
+            self.left = alive_count == 0 and not_alive_count <= self.corpses
         self._asserted, self.corpses = alive_count, not_alive_count
         if alive_count > 0:
             self._alive = True

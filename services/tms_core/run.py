@@ -18,7 +18,7 @@ from tms_core.processes import Process, find
 
 EXIT_LIMIT = 2.0  # s from SIGTERM to the end, whatever hangs
 PR_SET_PDEATHSIG = 1
-FIRST = ("rc", "ts")  # on a busy PC these must not miss a beat of their permits
+FIRST = ("tms_rc.node", "tms_ts.node", "tms_host.node")  # on a busy PC these must not miss a beat, nor see one missed
 NICE = -10
 
 
@@ -59,7 +59,7 @@ def _serve(site: Site, row: Process) -> int:
     stop = threading.Event()
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda _number, _frame: stop.set())
-    if row.name in FIRST:
+    if row.module in FIRST:
         _come_first()
     ros = Ros(row.full.replace(":", "_"))
     app = App(site, row, ros, logger)

@@ -1,6 +1,7 @@
 """/diagnostics for the tools of ROS (rqt_robot_monitor, diagnostic_aggregator): one status a process of this PC."""
 
 import threading
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
@@ -19,8 +20,9 @@ OK, WARN, ERROR, STALE = 0, 1, 2, 3
 class Diagnostics:
     """Publishes in a thread of its own; `rows` and `restarts` are what supervisord said last."""
 
-    def __init__(self, app: App) -> None:
-        self._app = app
+    def __init__(self, app: App, silent: Callable[[], Mapping[str, float]]) -> None:
+        """`silent` gives the gateways without a pulse, and for how long [s]."""
+        self._app, self._silent = app, silent
         self._table = {row.full: row for row in table(app.site)}
         self._publisher = app.ros.publisher(DiagnosticArray, "/diagnostics")
         self._reasons: dict[str, str | None] = {}
@@ -53,7 +55,7 @@ class Diagnostics:
         return metrics.unready(process.address, process.port, ANSWER)
 
     def _status(self, row: Running) -> Any:
-        level, text = judge(row, self._table.get(row.name), self._reasons.get(row.name))
+        level, text = judge(row, self._table.get(row.name), self._reasons.get(row.name), self._silent().get(row.name))
         values = {"state": row.state, "pid": row.pid, "restarts": self._restarts.get(row.name, 0),
                   "uptime_seconds": round(row.uptime)}  # fmt: skip
         return DiagnosticStatus(
@@ -62,8 +64,13 @@ class Diagnostics:
         )  # fmt: skip
 
 
-def judge(row: Running, process: Process | None, reason: str | None) -> tuple[int, str]:
-    """Level and text of one process; a subtask that nobody has asked for yet is in order."""
+def judge(row: Running, process: Process | None, reason: str | None, silent: float | None = None) -> tuple[int, str]:
+    """Level and text of one process; a subtask that nobody has asked for yet is in order.
+
+    `silent`: for how long a gateway has given no pulse [s], None while it does.
+    """
+    if silent is not None:
+        return ERROR, f"no pulse for {silent:.0f} s: the host agent keeps the machine stopped"
     if row.state == "RUNNING":
         return (OK, "ready") if reason is None else (WARN, reason)
     if row.state == "STARTING":

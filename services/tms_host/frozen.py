@@ -2,13 +2,16 @@
 
 supervisord sees only processes that end. Each process tells on its health port whether it runs; one that has told so
 and then does not for some seconds is restarted. A process that has not been heard yet is still starting, for a minute:
-it may also have frozen while nobody watched.
+it may also have frozen while nobody watched. A gateway without a pulse is killed much sooner: its machine waits for it.
 """
 
+import contextlib
 import http.client
+import os
+import signal
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from tms_core.app import App
 from tms_core.errors import TmsError
@@ -17,6 +20,9 @@ from tms_host.supervisor import Running, Supervisor
 
 PERIOD = 2.0  # s between rounds; a question costs about a millisecond of both processes
 ANSWER_LIMIT = 2.0  # s
+PULSE_LIMIT = 3.0  # s without a pulse until a gateway is killed
+PULSE_PERIOD = 0.5  # s between looks
+OLDER = 2.0  # s; its pulse was given up 0.6 s after the last beat, and supervisord counts whole seconds
 STARTING = 60.0  # s more for a process that has not answered yet; forty at once take 15 s
 
 
@@ -42,13 +48,17 @@ class Answers:
 class Watchdog:
     """A thread that asks every running process of this PC, and restarts those that are frozen."""
 
-    def __init__(self, app: App, running: Callable[[], Sequence[Running]]) -> None:
-        """`running` gives the processes as supervisord saw them last."""
-        self._app, self._running = app, running
+    def __init__(
+        self, app: App, running: Callable[[], Sequence[Running]], silent: Callable[[], Mapping[str, float]]
+    ) -> None:
+        """`running`: processes as supervisord saw them last; `silent`: gateways without a pulse, since how long [s]."""
+        self._app, self._running, self._silent = app, running, silent
         self._asked = {row.full: row for row in here(app.site) if row.ours and row.full != app.process.full}
+        self._killed: dict[str, int] = {}  # pids by name; supervisord needs up to 1 s to notice
         self._times = Answers(app.site.file.on_loss.frozen)
         if app.site.file.on_loss.frozen:
             threading.Thread(target=self._watch, name="watchdog", daemon=True).start()
+            threading.Thread(target=self._watch_gateways, name="gateways", daemon=True).start()
 
     def _watch(self) -> None:
         supervisor = Supervisor(self._app.site)
@@ -80,3 +90,25 @@ class Watchdog:
             supervisor.control("restart", row.name)
         except TmsError as error:
             self._app.log.error("event=not_restarted target=%s reason=%r", row.name, str(error))
+
+    def _watch_gateways(self) -> None:
+        """In a thread of its own: the other one waits for answers of whatever else is frozen."""
+        supervisor = Supervisor(self._app.site)
+        while not self._app.stopping.wait(PULSE_PERIOD):
+            for name, seconds in self._silent().items():
+                if seconds >= PULSE_LIMIT:
+                    self._kill(supervisor, name, seconds)
+
+    def _kill(self, supervisor: Supervisor, name: str, seconds: float) -> None:
+        """End a gateway that was there before its pulse was lost; not its successor, which may take long to start."""
+        try:
+            row = supervisor.process(name)
+        except TmsError as error:
+            self._app.log.error("event=not_killed target=%s reason=%r", name, str(error))
+            return
+        older = row.state == "RUNNING" and row.uptime > seconds + OLDER
+        if older and row.pid != self._killed.get(name):
+            self._killed[name] = row.pid
+            self._app.log.error("event=frozen target=%s pid=%d action='killed'", name, row.pid)
+            with contextlib.suppress(ProcessLookupError):  # it has just ended
+                os.kill(row.pid, signal.SIGKILL)

@@ -5,6 +5,7 @@ import re
 import socket
 import threading
 import time
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from prometheus_client import REGISTRY
@@ -16,6 +17,7 @@ from tms_core.errors import TmsError
 from tms_host.diagnostics import Diagnostics
 from tms_host.facts import Facts
 from tms_host.frozen import Watchdog
+from tms_host.stand_in import StandIn
 from tms_host.supervisor import Running, Supervisor, SupervisorDown
 from tms_host.usage import Usage
 
@@ -27,11 +29,12 @@ CHANGING = ("STARTING", "STOPPING", "BACKOFF")  # states that end without a new 
 
 def start(app: App) -> None:
     """Publish /tms/host/processes and offer /tms/host/<host name>/control and /log."""
-    host = Host(app)
+    stand_in = StandIn(app)
+    host = Host(app, stand_in.silent)
     app.ros.offer_slow(ControlProcess, f"/tms/host/{host.name}/control", host.control)
     app.ros.offer_slow(ReadLog, f"/tms/host/{host.name}/log", host.log)
     app.on_stop(host.close)
-    Watchdog(app, lambda: host.rows)
+    Watchdog(app, lambda: host.rows, stand_in.silent)
     app.ready_when(lambda: None if host.seen else "supervisord does not answer")
 
 
@@ -61,7 +64,8 @@ class Children:
 class Host:
     """Looks at supervisord in a thread of its own and publishes what changed."""
 
-    def __init__(self, app: App) -> None:
+    def __init__(self, app: App, silent: Callable[[], Mapping[str, float]]) -> None:
+        """`silent` gives the gateways without a pulse, and for how long [s]."""
         self.name = ros_name(socket.gethostname())
         self.seen = False
         self.rows: list[Running] = []  # as supervisord told last
@@ -74,7 +78,7 @@ class Host:
         self._control = Supervisor(app.site)
         self._facts = Facts(app.site.state)
         REGISTRY.register(self._facts)
-        self._diagnostics = Diagnostics(app)
+        self._diagnostics = Diagnostics(app, silent)
         self._closing = threading.Event()
         threading.Thread(target=self._watch, name="supervisord", daemon=True).start()
 

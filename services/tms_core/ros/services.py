@@ -113,9 +113,9 @@ class Services(Topics):
         return bool(self._service(service_type, name).service_is_ready())
 
     def post(self, service_type: InterfaceType, name: str, request: Request) -> None:
-        """Send a service request without waiting for its answer."""
+        """Send a service request; nobody waits for its answer, which may never come."""
         client = self._service(service_type, name)
-        self.on_executor(lambda: client.call_async(request))
+        self.on_executor(lambda: client.remove_pending_request(client.call_async(request)))
 
     def request(
         self, service_type: InterfaceType, name: str, request: Request, answered: Callable[[Response], None]

@@ -64,6 +64,19 @@ def test_it_does_not_wait_for_ever(dds: Dds, link: tuple[Link, list[bool]]) -> N
     assert not link[0].alive and link[1][-1] is False
 
 
+@pytest.mark.parametrize("corpses", [0, 1])  # of predecessors
+def test_who_takes_leave_leaves_no_corpse(dds: Dds, link: tuple[Link, list[bool]], corpses: int) -> None:
+    dds.alive(1, corpses)
+    dds.alive(0, corpses)
+    assert not link[0].alive and link[0].left
+    dds.alive(1, corpses)
+    assert not link[0].left
+    dds.alive(0, corpses + 1)
+    assert not link[0].alive and not link[0].left
+    dds.alive(0, 0)  # discovery drops the corpse
+    assert not link[0].left
+
+
 class Server:
     """What a watcher needs of a Peer: keeps what it was told."""
 

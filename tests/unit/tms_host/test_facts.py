@@ -68,6 +68,10 @@ def test_what_diagnostics_say_of_a_process() -> None:
     service = Process("tms", "ts", "cps", "m", 1, "")
     assert judge(row("RUNNING"), service, None) == (OK, "ready")
     assert judge(row("RUNNING"), service, "tms:db is not there") == (WARN, "tms:db is not there")
+    assert judge(row("RUNNING"), service, None, 4.2) == (
+        ERROR,
+        "no pulse for 4 s: the host agent keeps the machine stopped",
+    )
     assert judge(row("STOPPED"), subtask, None)[0] == OK
     assert judge(row("STOPPED"), service, None)[0] == STALE
     assert judge(row("FATAL"), service, None) == (ERROR, "FATAL: exited too quickly")

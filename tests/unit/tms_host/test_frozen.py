@@ -52,7 +52,7 @@ def app(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
 
 
 def test_a_process_is_asked_at_the_address_of_its_pc(app: Any) -> None:
-    watchdog = Watchdog(app, list)
+    watchdog = Watchdog(app, list, dict)
     assert not watchdog.answers("tms:db")
     health = Health("127.0.0.9", find(app.site, "tms:db").port, unready=lambda: None)
     try:
@@ -69,5 +69,21 @@ def test_what_somebody_has_stopped_meanwhile_stays_so(app: Any, state: str, pid:
     supervisor: Any = SimpleNamespace(
         process=lambda name: Running(name, state, pid, 5.0, ""), control=lambda _, name: restarted.append(name)
     )
-    Watchdog(app, list)._restart(supervisor, Running("tms:db", "RUNNING", 7, 5.0, ""))
+    Watchdog(app, list, dict)._restart(supervisor, Running("tms:db", "RUNNING", 7, 5.0, ""))
     assert restarted == did
+
+
+@pytest.mark.parametrize(
+    ("state", "uptime", "killed"), [("RUNNING", 60.0, [7]), ("RUNNING", 4.0, []), ("STOPPING", 60.0, [])]
+)
+def test_only_a_gateway_that_once_gave_a_pulse_is_killed_without_one(
+    app: Any, state: str, uptime: float, killed: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Not its successor, which may take long to start; and once, though supervisord takes a while to notice."""
+    found: list[int] = []
+    monkeypatch.setattr("os.kill", lambda pid, number: found.append(pid))
+    supervisor: Any = SimpleNamespace(process=lambda name: Running(name, state, 7, uptime, ""))
+    watchdog = Watchdog(app, list, dict)
+    for _ in range(2):
+        watchdog._kill(supervisor, "zx200:rc", 3.0)
+    assert found == killed

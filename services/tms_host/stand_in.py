@@ -1,0 +1,183 @@
+"""Stops a machine in place of its gateway when that cannot: it was killed, is frozen, or has a thread that hangs.
+
+The gateway's pulse, the lease of its permit, tells; not that its process exists. A pulse that is lost means:
+
+- at once, and every 0.5 s until a gateway is back: cancel the goals of all clients, zero velocities;
+- `emg_stop`, where the machine has one: at once when the scheduler behind the machine's run is lost as well, since the
+  machine is latched then anyway; else after 1 s more, if the machine was last told to move, or a goal or a run has it.
+  Most gateways are back before that. An idle machine that stands is left at cancel and zero: a person may be at its
+  levers, and a crash of software that moves nothing must not take it from them;
+- a gateway that takes leave (`tms restart`, `tms down`) has stopped the machine: cancel and zero once more, no alarm.
+
+Only a gateway releases `emg_stop`. The commands leave from the pulse's thread, before anything is logged or counted.
+"""
+
+import time
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+from prometheus_client import Counter, Gauge
+from tms_msg_rc.msg import MachineState
+
+from tms_core.app import App
+from tms_core.border import Controls
+from tms_core.permit import NOBODY, Link
+from tms_core.processes import here
+
+PATIENCE = 0.09  # s more than the lease: a process frozen for 0.4 s may have asserted itself 0.1 s before
+AGAIN = 0.5  # s between repeated commands
+ESCALATE = 1.0  # s without a gateway until emg_stop
+TOGETHER = 1.0  # s between the losses of scheduler and gateway that count as one
+GATEWAY = "tms_rc.node"
+
+STOOD_IN = Counter("tms_host_stood_in", "Times that a machine was stopped in place of its lost gateway", ["machine"])
+LOST = Gauge("tms_host_gateway_lost", "1 while a machine's gateway gives no pulse", ["machine"])
+
+
+class Act(Enum):
+    """What is commanded in place of a gateway."""
+
+    STOP = "cancelled its goals"
+    EMERGENCY = "cancelled its goals, emg_stop"
+
+
+@dataclass(frozen=True)
+class Seen:
+    """One look at a gateway."""
+
+    alive: bool  # it gives its pulse
+    left: bool = False  # it gave none because it took leave
+    told: bool = False  # it has told its state since the last look
+    busy: bool = False  # the machine was last told to move, or a goal or a run has it
+    run_lost: bool = False  # the scheduler behind the machine's run is lost, too
+
+
+class Duty:
+    """When to stand in for one gateway, and how. Pure logic; times are monotonic [s]."""
+
+    def __init__(self) -> None:
+        self.lost_since: float | None = None
+        self._watched = False  # a gateway is there, or was a moment ago
+        self._silent_since: float | None = None
+        self._told = self._emergency = False
+        self._again = 0.0
+
+    def look(self, now: float, seen: Seen) -> Act | None:
+        """What must be commanded now."""
+        if self.lost_since is not None:
+            return self._stand_in(now, self.lost_since, seen)
+        if seen.alive:
+            self._watched, self._silent_since = True, None
+        elif self._watched:
+            return self._doubt(now, seen)
+        return None
+
+    def _doubt(self, now: float, seen: Seen) -> Act | None:
+        if seen.left:
+            self._watched, self._silent_since = False, None
+            return Act.STOP
+        if self._silent_since is None:
+            self._silent_since = now
+        if now - self._silent_since < PATIENCE:
+            return None
+        self.lost_since, self._silent_since, self._again = now, None, now
+        self._told = self._emergency = False
+        return self._stand_in(now, now, seen)
+
+    def _stand_in(self, now: float, since: float, seen: Seen) -> Act | None:
+        self._told = self._told or seen.told
+        if seen.alive and self._told:
+            self.lost_since = None
+            return None
+        if not self._emergency and (seen.run_lost or (seen.busy and now - since >= ESCALATE)):
+            self._emergency, self._again = True, now
+        if now < self._again:
+            return None
+        self._again = now + AGAIN
+        return Act.EMERGENCY if self._emergency else Act.STOP
+
+
+class Post:
+    """One machine, with everything that its stop needs prepared."""
+
+    def __init__(self, app: App, machine: str) -> None:
+        ros = app.ros
+        self.machine, self.duty = machine, Duty()
+        self._log = app.log
+        self._done: Act | None = None  # what was commanded since the gateway was lost, and told
+        self._controls = Controls(ros, machine, app.site.border(machine), keeps_emergency=False)
+        self._gateway = Link(ros, machine, "rc", _looked_at)
+        self._scheduler = Link(ros, machine, "ts", _looked_at)
+        self._news = ros.sample(MachineState, f"/{machine}/rc/state")
+        self._state: Any = None  # the last one of a gateway that is lost
+        self._held_at = float("-inf")  # when a run last had the machine
+        LOST.labels(machine).set(0)
+        STOOD_IN.labels(machine)
+
+    def look(self, now: float) -> None:
+        """At every beat of the pulse."""
+        act = self.duty.look(now, self._seen(now))
+        if act is not None:
+            self._command(act)
+        self._tell(act)
+
+    def _seen(self, now: float) -> Seen:
+        gateway, scheduler, is_lost = self._gateway, self._scheduler, self.duty.lost_since is not None
+        if scheduler.alive:
+            self._held_at = now
+        if gateway.alive and not is_lost:
+            return Seen(alive=True)
+        told = self._news()
+        if told and not is_lost:  # its last words; a successor knows nothing yet, and says that the machine moves
+            self._state = told[-1]
+        state = self._state
+        run_lost = scheduler.goal != NOBODY and not scheduler.alive and now - self._held_at < TOGETHER
+        busy = state is None or state.moving or bool(state.goal or state.owner)
+        return Seen(gateway.alive, gateway.left, bool(told), busy, run_lost)
+
+    def _command(self, act: Act) -> None:
+        self._controls.zero()  # messages leave sooner than requests
+        if act is Act.EMERGENCY:
+            self._controls.emergency(True)
+        self._controls.cancel_everything()
+
+    def _tell(self, act: Act | None) -> None:
+        lost = self.duty.lost_since is not None
+        if lost and act not in (None, self._done):
+            if self._done is None:
+                STOOD_IN.labels(self.machine).inc()
+                LOST.labels(self.machine).set(1)
+            self._done = act
+            self._log.error("event=gateway_lost machine=%s action=%r", self.machine, act and act.value)
+        elif not lost and self._done is not None:
+            self._done = None
+            LOST.labels(self.machine).set(0)
+            self._log.info("event=gateway_back machine=%s", self.machine)
+        elif not lost and act is not None:
+            self._log.info("event=gateway_left machine=%s", self.machine)
+
+
+class StandIn:
+    """All machines whose gateways run on this PC."""
+
+    def __init__(self, app: App) -> None:
+        rows = [row for row in here(app.site) if row.module == GATEWAY]
+        self._posts = {row.full: Post(app, str(row.machine)) for row in rows}
+        if self._posts:
+            app.ros.pulse.add(self._look)
+
+    def silent(self) -> dict[str, float]:
+        """Gateways that are lost, and for how long [s]; from any thread."""
+        now = time.monotonic()
+        since = {name: post.duty.lost_since for name, post in self._posts.items()}
+        return {name: now - at for name, at in since.items() if at is not None}
+
+    def _look(self) -> None:
+        now = time.monotonic()
+        for post in self._posts.values():
+            post.look(now)
+
+
+def _looked_at(link: Link) -> None:
+    """A link is looked at with every beat."""

@@ -1,0 +1,195 @@
+"""The host agent stops a machine in place of its gateway: no scheduler, database or console is there to do it."""
+
+import os
+import signal
+import threading
+import time
+from array import array
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
+from typing import Any
+
+import psutil
+import pytest
+import yaml
+from action_msgs.msg import GoalStatus, GoalStatusArray
+from builtin_interfaces.msg import Duration
+from control_msgs.action import FollowJointTrajectory
+from std_msgs.msg import Bool
+from tms_msg_rc.msg import MachineState
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+from conftest import Mesh, claimed_domain, ports_of, running, site_data, wait_until
+from tms_core import environment
+from tms_core.config import load_site
+from tms_core.ros import Outcome, Ros
+from tms_host.supervisor import Supervisor
+
+pytestmark = [pytest.mark.ros, pytest.mark.timeout(300)]
+JOINTS = ["swing_joint", "boom_joint", "arm_joint", "bucket_joint", "bucket_end_joint"]
+START = [0.0, -0.8029, 1.9897, 0.8029, 0.0]  # rad
+STOPPED = (GoalStatus.STATUS_CANCELING, GoalStatus.STATUS_CANCELED)
+SHORT, MOST = 0.4, 0.45  # s; a test that does not run itself freezes for longer than it wants
+
+
+class Small:
+    """A mesh of host agent, gateway and stand-in, and what is heard of the machine."""
+
+    def __init__(self, mesh: Mesh, supervisor: Supervisor, ros: Ros) -> None:
+        self.mesh, self._supervisor = mesh, supervisor
+        self.state: Any = None
+        self.statuses: dict[bytes, list[int]] = {}  # of goals at the machine's own controller, in order
+        self.emergencies = 0
+        self.changed = threading.Condition()
+        self.peer = ros.peer(FollowJointTrajectory, "/zx200/rc/follow_joint_trajectory")
+        status = "/zx200/upper_arm_controller/follow_joint_trajectory/_action/status"
+        ros.subscribe(GoalStatusArray, status, self._status, depth=20)
+        ros.subscribe(MachineState, "/zx200/rc/state", self._state, latched=True)
+        ros.subscribe(Bool, "/zx200/emg_stop", self._emergency, depth=20)
+        self.release = ros.publisher(Bool, "/zx200/emg_stop")
+
+    def _status(self, message: Any) -> None:
+        with self.changed:
+            for status in message.status_list:
+                seen = self.statuses.setdefault(bytes(status.goal_info.goal_id.uuid), [])
+                if status.status not in seen[-1:]:
+                    seen.append(status.status)
+            self.changed.notify_all()
+
+    def _state(self, message: Any) -> None:
+        with self.changed:
+            self.state = message
+            self.changed.notify_all()
+
+    def _emergency(self, message: Any) -> None:
+        with self.changed:
+            self.emergencies += message.data
+            self.changed.notify_all()
+
+    def wait(self, holds: Any, what: str) -> None:
+        with self.changed:
+            assert self.changed.wait_for(holds, 60), f"not within 60 s: {what}"
+
+    def pid(self) -> int:
+        return self._supervisor.process("zx200:rc").pid
+
+    def log(self) -> str:
+        return (self.mesh.state / "log" / "tms.host.log").read_text()
+
+    def told(self, event: str, begin: int) -> bool:
+        """Whether the host agent's log has an event behind `begin` characters."""
+        return f"event={event} machine=zx200" in self.log()[begin:]
+
+    def wait_armed(self) -> None:
+        """Ready for a goal, whatever the test before has left."""
+        self.wait(lambda: self.state is not None and self.state.ready, "it is ready")
+        self.wait(lambda: not self.state.moving and not self.state.goal, "it stands")
+        self.mesh.tms("rearm", "zx200", "--yes", expect=None)
+        self.release.publish(Bool(data=False))
+
+    @contextmanager
+    def moving(self, seconds: float) -> Iterator[tuple[Any, list[int]]]:
+        """A foreign client's goal to and fro; inside it moves: its call, and its statuses at the controller."""
+        self.wait_armed()
+        self.peer.wait_ready(30)
+        known = set(self.statuses)
+        points = [
+            JointTrajectoryPoint(positions=array("d", [swing, *START[1:]]), time_from_start=_duration(at))
+            for swing, at in ((0.5, seconds / 2), (0.0, seconds))
+        ]
+        call = self.peer.send(FollowJointTrajectory.Goal(trajectory=JointTrajectory(joint_names=JOINTS, points=points)))
+        self.wait(lambda: self.state.moving and self.state.goal and set(self.statuses) - known, "it moves")
+        yield call, self.statuses[(set(self.statuses) - known).pop()]
+
+
+def _duration(seconds: float) -> Duration:
+    return Duration(sec=int(seconds), nanosec=int(seconds % 1 * 1e9))
+
+
+@pytest.fixture(scope="module")
+def small(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Small]:
+    with claimed_domain() as domain, pytest.MonkeyPatch.context() as patch:
+        folder = tmp_path_factory.mktemp("small")
+        data = site_data(
+            domain, ports_of(domain), services={"host": {}}, sim={"speed": 1.0},
+            store={"kind": "mongodb", "uri": "mongodb://127.0.0.1:1"},
+        )  # fmt: skip
+        (folder / "site.yaml").write_text(yaml.safe_dump(data))
+        mesh = Mesh(folder / "site.yaml", folder / "state")
+        for key, value in mesh.env.items():
+            patch.setenv(key, value)
+        site = load_site()
+        for key, value in environment.environment(site).items():
+            patch.setenv(key, value)
+        with running(mesh):
+            ros, supervisor = Ros("tms_tests_stand_in"), Supervisor(site)
+            with closing(ros), closing(supervisor):
+                yield Small(mesh, supervisor, ros)
+
+
+def test_a_killed_gateway_is_stood_in_for(small: Small, capsys: pytest.CaptureFixture[str]) -> None:
+    with small.moving(20.0) as (_, statuses):
+        begin, pid = len(small.log()), small.pid()
+        at = time.monotonic()
+        os.kill(pid, signal.SIGKILL)
+        small.wait(lambda: statuses[-1] in STOPPED, "the controller is told to stop")
+        with capsys.disabled():
+            print(f"\nkill to stop: {time.monotonic() - at:.2f} s")
+    wait_until(lambda: small.told("gateway_lost", begin), 30, "the host agent tells of it")
+    wait_until(lambda: small.told("gateway_back", begin), 60, "its successor is there")
+
+
+def test_a_frozen_gateway_is_stood_in_for_and_replaced(small: Small, capsys: pytest.CaptureFixture[str]) -> None:
+    with small.moving(20.0) as (_, statuses):
+        wait_until(lambda: time.time() - psutil.Process(small.pid()).create_time() > 5.0, 30, "it is no new one")
+        begin, pid, before = len(small.log()), small.pid(), small.emergencies
+        at = time.monotonic()
+        os.kill(pid, signal.SIGSTOP)
+        small.wait(lambda: statuses[-1] in STOPPED, "the controller is told to stop")
+        assert psutil.Process(pid).status() == psutil.STATUS_STOPPED  # so nobody else has done it
+        with capsys.disabled():
+            print(f"\nfreeze to stop: {time.monotonic() - at:.2f} s")
+        small.wait(lambda: small.emergencies > before, "emg_stop")
+    wait_until(lambda: small.pid() not in (0, pid), 60, "the frozen gateway is replaced")
+    assert f"event=frozen target=zx200:rc pid={pid} action='killed'" in small.log()[begin:]
+    wait_until(lambda: small.told("gateway_back", begin), 60, "its successor is there")
+
+
+def test_a_freeze_of_less_than_half_a_second_stops_nothing(small: Small) -> None:
+    with small.moving(10.0) as (call, statuses):
+        begin, pid = len(small.log()), small.pid()
+        for i in range(6):
+            took = frozen_for_a_moment(pid)
+            if took > MOST:
+                pytest.skip(f"this PC is too busy: a freeze of {took:.2f} s instead of {SHORT} s")
+            threading.Event().wait(0.6 + 0.017 * i)  # at different times between two beats
+        assert call.wait_for(lambda: call.outcome is not None, 60) and call.outcome is Outcome.SUCCEEDED, call.result
+    assert statuses[-1] == GoalStatus.STATUS_SUCCEEDED
+    assert not small.told("gateway_lost", begin)
+
+
+def frozen_for_a_moment(pid: int) -> float:
+    """Freeze a process; how long it was [s]."""
+    os.kill(pid, signal.SIGSTOP)
+    begun = time.monotonic()
+    threading.Event().wait(SHORT)
+    os.kill(pid, signal.SIGCONT)
+    return time.monotonic() - begun
+
+
+def test_an_idle_machine_whose_gateway_is_frozen_gets_no_emg_stop(small: Small) -> None:
+    small.wait_armed()
+    begin, before = len(small.log()), small.emergencies
+    os.kill(small.pid(), signal.SIGSTOP)
+    wait_until(lambda: small.told("gateway_lost", begin), 30, "the host agent tells of it")
+    wait_until(lambda: small.told("gateway_back", begin), 60, "its successor is there")
+    assert small.emergencies == before
+
+
+def test_a_restart_by_hand_is_no_loss(small: Small) -> None:
+    small.wait_armed()
+    begin, old = len(small.log()), small.pid()
+    small.mesh.tms("restart", "zx200:rc")
+    wait_until(lambda: small.told("gateway_left", begin), 30, "the host agent has seen it leave")
+    wait_until(lambda: small.pid() not in (0, old), 60, "the gateway is there again")
+    assert not small.told("gateway_lost", begin)
