@@ -162,6 +162,26 @@ SAID = {
     ),
     "Replace all of database {name} ({there})?": "データベース {name}({there})をすべて置き換えますか?",
     "restored into {name}: {report}": "{name} に復元しました: {report}",
+    # audit
+    "no command was given": "操作の記録はありません",
+    "{count} entries are from before there was a chain: not checked": (
+        "{count} 件は連鎖の導入前の記録のため、点検していません"
+    ),
+    "the chain begins at entry {first}: earlier ones were deleted": (
+        "連鎖は記録 {first} から始まります。それより前は削除されています"
+    ),
+    "the console does not run on this PC: whether the last entries are missing is not seen here": (
+        "この PC ではコンソールが動いていないため、最後の記録が欠けていても分かりません"
+    ),
+    "and {count} more": "ほか {count} 件",
+    "intact: {count} entries, the last one is {last}": "異常なし: {count} 件、最後は記録 {last}",
+    "NOT intact: {count} faults among {entries} entries": "異常あり: 記録 {entries} 件のうち {count} か所",
+    "entries {first} to {last} are missing": "記録 {first} から {last} がありません",
+    "entry {number} was changed": "記録 {number} が書き換えられています",
+    "entry {number} does not follow the one before": "記録 {number} が前の記録につながっていません",
+    "entry {number} has no hash: it was not written by this console": (
+        "記録 {number} にハッシュがありません。このコンソールが書いたものではありません"
+    ),
 }
 
 # What to do about an error, by its code (docs: tms_core/errors.py).

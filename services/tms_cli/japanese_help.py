@@ -137,4 +137,8 @@ HELP = {
     "Write the newest terrain called NAME into FILE, which must not be there yet.": "NAME の最新の地形を FILE に書く。FILE がまだないときだけです。",
     "List terrain files, newest first.": "地形ファイルを新しい順に一覧する。",
     "Remove all terrain files of a name.": "その名前の地形ファイルをすべて削除する。",
+    "Show who commanded what from the console and its API, and check that nobody has changed it since.": "コンソールと API から誰が何を操作したかを表示し、記録が書き換えられていないことを点検する。",
+    "List the last commands, oldest first.": "最近の操作を古い順に一覧する。",
+    "Check the chain of the entries in the database; exit code 1 if one is missing, changed or out of order.": "データベースにある操作の記録の連鎖を点検する。欠け・書き換え・順序の違いがあれば終了コードが 1 になります。",
+    "Each entry carries the hash of the one before. On the PC of the console the end is compared, too, with what the console remembers; elsewhere nobody would see that the last entries are missing.": "各記録は前の記録のハッシュを持ちます。コンソールの PC では、コンソールが覚えている最後の記録とも比べます。ほかの PC では、最後の記録が欠けていても分かりません。",
 }

@@ -1,4 +1,4 @@
-"""Who may do what: users of a file, passwords and tokens as argon2 hashes, sessions, and a brake on guessing."""
+"""Who may do what: users of a file, passwords and tokens as argon2 hashes, and sessions."""
 
 import hashlib
 import secrets
@@ -19,16 +19,13 @@ from tms_core.errors import ConfigError, TmsError
 from tms_core.models import Settings
 from tms_core.names import Name
 from tms_core.yaml_file import parse
+from tms_ur.brake import Brake
 
 Role = Literal["viewer", "operator", "admin"]
 RANK: dict[Role, int] = {"viewer": 0, "operator": 1, "admin": 2}
 HASHER = PasswordHasher(time_cost=2, memory_cost=19_456, parallelism=1)  # OWASP's least: a site PC has other work
 SESSION_IDLE = 12 * 3600.0  # s: one shift
 MOST_SESSIONS = 500
-FREE_TRIES = 3  # wrong passwords without a wait, for one address and for one name
-LONGEST_WAIT = 60.0  # s
-FORGET = 900.0  # s after which wrong passwords count no more
-MOST_SOURCES = 1000
 
 
 class User(Settings):
@@ -60,42 +57,6 @@ class Person:
 
     def may(self, role: Role) -> bool:
         return RANK[self.role] >= RANK[role]
-
-
-class Throttled(TmsError):
-    """Too many wrong passwords; `seconds` until the next try."""
-
-    code = "THROTTLED"
-
-    def __init__(self, seconds: float) -> None:
-        super().__init__(f"too many wrong passwords: try again in {seconds:.0f} s")
-        self.seconds = seconds
-
-
-class Brake:
-    """Doubles the wait with every failure of one source."""
-
-    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
-        self._clock = clock
-        self._failures: OrderedDict[str, tuple[int, float]] = OrderedDict()
-
-    def wait(self, source: str) -> float:
-        """Seconds until this source may try again."""
-        count, last = self._failures.get(source, (0, 0.0))
-        if count <= FREE_TRIES:
-            return 0.0
-        return max(0.0, last + min(LONGEST_WAIT, 2.0 ** (count - FREE_TRIES)) - self._clock())
-
-    def failed(self, source: str) -> None:
-        count, last = self._failures.pop(source, (0, self._clock()))
-        if self._clock() - last > FORGET:
-            count = 0
-        self._failures[source] = (count + 1, self._clock())
-        while len(self._failures) > MOST_SOURCES:
-            self._failures.popitem(last=False)
-
-    def passed(self, source: str) -> None:
-        self._failures.pop(source, None)
 
 
 class Access:
@@ -166,17 +127,11 @@ class Access:
         return person
 
     def _verified(self, name: str, user: User | None, kept: str | None, secret: str, source: str) -> Person:
-        sources = (f"from {source}", f"as {name}")
-        with self._lock:
-            wait = max(map(self._brake.wait, sources))
-        if wait > 0:
-            raise Throttled(wait)
+        self._brake.attempt(name, source)
         right = _matches(kept or self._decoy, secret)  # a name that is not there takes as long as one that is
-        with self._lock:
-            for one in sources:
-                self._brake.passed(one) if right and user else self._brake.failed(one)
         if not right or user is None or kept is None:
             raise TmsError("the name or the password is wrong", "LOGIN")
+        self._brake.right(name, source)
         return Person(name, user.role)
 
 

@@ -1,5 +1,6 @@
 """The HTTP API and the console's files; `/openapi.json` describes it."""
 
+import json
 import logging
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -10,15 +11,17 @@ from typing import TYPE_CHECKING
 import anyio.to_thread
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
-from fastapi.responses import JSONResponse
+from fastapi.responses import JSONResponse, Response
 from fastapi.staticfiles import StaticFiles
 from starlette.exceptions import HTTPException
 
 from tms_core.config import Site
 from tms_core.errors import TmsError
 from tms_ur import commands, reading, sessions
-from tms_ur.access import Access, Throttled
+from tms_ur.access import Access
+from tms_ur.brake import Throttled
 from tms_ur.guard import SECURITY, Guard
+from tms_ur.hashing import Hashing
 from tms_ur.problems import problem, problems
 
 if TYPE_CHECKING:
@@ -35,7 +38,7 @@ STATUS = {
     **dict.fromkeys(("NO_SERVER", "NO_ANSWER", "STORE_DOWN", "STORE_FULL", "TOO_MANY"), HTTPStatus.SERVICE_UNAVAILABLE),
     "LOGIN": HTTPStatus.UNAUTHORIZED,
     "ROLE": HTTPStatus.FORBIDDEN,
-    "THROTTLED": HTTPStatus.TOO_MANY_REQUESTS,
+    **dict.fromkeys(("THROTTLED", "MANY_LOGINS"), HTTPStatus.TOO_MANY_REQUESTS),
 }  # fmt: skip
 log = logging.getLogger(__name__)
 
@@ -45,18 +48,23 @@ def create_app(gateway: "Gateway", audit: "Audit", site: Site, access: Access) -
     app = FastAPI(
         title="ROS2-TMS for Construction, task management", version="0.1.0", lifespan=_lifespan,
         docs_url=None, redoc_url=None,  # they load scripts from elsewhere, and a site may be offline
+        openapi_url=None,  # ours below
         # nothing leaves the site because of an environment variable
         telemetry={"tracing": False, "metrics": False, "logs": False, "auto_configure": False},
         responses=problems(400, 401, 422),
     )  # fmt: skip
-    reading.add(app, gateway, site)
+    hashing = Hashing()
+    reading.add(app, gateway, audit, site)
     commands.add(app, gateway, audit, site)
-    sessions.add(app, access, audit, secure=site.file.console.tls is not None)
+    sessions.add(app, access, hashing, audit, secure=site.file.console.tls is not None)
     app.add_exception_handler(TmsError, _tms_error)
     app.add_exception_handler(HTTPException, _http_error)
     app.add_exception_handler(RequestValidationError, _bad_request)
     app.add_exception_handler(500, _bug)
-    app.add_middleware(Guard, bind=site.file.bind, access=access, names=site.file.console.names)
+    app.add_middleware(
+        Guard, bind=site.file.bind, access=access, hashing=hashing, audit=audit, names=site.file.console.names
+    )
+    _describe(app)
     app.mount("/", StaticFiles(directory=STATIC, html=True), name="console")
     return app
 
@@ -65,6 +73,15 @@ def create_app(gateway: "Gateway", audit: "Audit", site: Site, access: Access) -
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     anyio.to_thread.current_default_thread_limiter().total_tokens = WORKERS
     yield
+
+
+def _describe(app: FastAPI) -> None:
+    """`/openapi.json`, written once: anybody may ask for it, as often as he likes."""
+    text = json.dumps(app.openapi(), ensure_ascii=False, separators=(",", ":"))
+
+    @app.get("/openapi.json", include_in_schema=False)
+    async def document() -> Response:
+        return Response(text, media_type="application/json")
 
 
 # errors

@@ -1,78 +1,216 @@
-"""Who did what, from where: every command goes to the log at once and to the `event` collection soon.
+"""Who did what, from where: every command goes to the log at once, to the disk of this PC, and to the database.
 
-The entries are the journal of a run called `audit`, numbered by the second in which they were made (one later if that
-number is taken), so that they go on after a restart and can be asked for by time. No command waits for the database.
+The entries are the journal of a run called `audit`: numbered one by one, each tied to the one before (audit_chain.py).
+One thread writes to the disk, another one sends from there to the database. Nothing here waits on the thread of a
+request; a stop is sent whether or not its entry is on the disk, any other command waits for that a moment.
 """
 
 import logging
 import queue
+import sqlite3
 import threading
 import time
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
 
+from builtin_interfaces.msg import Time
 from prometheus_client import Counter
 from tms_msg_db.msg import Event
-from tms_msg_db.srv import WriteJournal
+from tms_msg_db.srv import ListEvents, WriteJournal
 
-from tms_core.errors import RosError
+from tms_core.errors import TmsError
 from tms_core.ros import Ros
+from tms_core.values import from_parameters, to_parameters
+from tms_ur.audit_chain import RUN, Entry, Note, Place, entry, highest, tied
+from tms_ur.audit_ledger import Ledger, LedgerFull, opened
+from tms_ur.strangers import Strangers
 
-RUN = "audit"
-MOST_WAITING = 1000
+MOST_NEW = 1000  # notes that wait for the disk
+BATCH = 100  # notes in one request to the database, which a crash may leave half done
+LOOK = 1.0  # s between looks at what strangers did
 RETRY = 1.0  # s
-LOST = Counter(
-    "tms_ur_audit_lost_total", "Commands that are in the log only: the database was away too long, or could not take it"
-)
-# What a conversion to ROS raises: a text that is no Unicode (a ValueError), a number that does not fit, a wrong type.
-UNSENDABLE = (ValueError, OverflowError, TypeError, AssertionError)
+LONGEST = 600  # characters of a text
+LOST = Counter("tms_ur_audit_lost_total", "Commands that are in the log only: the disk failed or was full")
 log = logging.getLogger(__name__)
 
 
 class Audit:
-    """Writes in a thread of its own, in order."""
+    """Two threads: to the disk, and from there to the database."""
 
-    def __init__(self, ros: Ros) -> None:
-        self._ros = ros
-        self._last = 0
-        self._waiting: queue.Queue[Event] = queue.Queue(MOST_WAITING)
-        self._lock = threading.Lock()
-        self._closing = threading.Event()
-        self._thread = threading.Thread(target=self._write, name="audit", daemon=True)
-        self._thread.start()
+    def __init__(self, ros: Ros, file: Path) -> None:
+        self._ros, self._file = ros, file
+        self._strangers = Strangers()
+        self._new: queue.Queue[tuple[Note, threading.Event] | None] = queue.Queue(MOST_NEW)
+        self._ledger: Ledger | None = None
+        self._number = 0
+        self._news, self._closing = threading.Event(), threading.Event()
+        self._keeper = threading.Thread(target=self._keep, name="audit_disk", daemon=True)
+        self._sender = threading.Thread(target=self._send, name="audit", daemon=True)
+        self._keeper.start()
+        self._sender.start()
 
-    def put(self, who: str, source: str, what: str, target: str) -> None:
-        """Take a note; waits for nobody."""
-        log.info("event=command what=%s target=%s who=%s from=%s", what, target, who, source)
-        with self._lock:
-            self._last = max(self._last + 1, int(time.time()))
-            event = Event(run_id=RUN, number=self._last, stamp=self._ros.now(), kind=what, node=target,
-                          text=f"{who} from {source}")  # fmt: skip
-            try:
-                self._waiting.put_nowait(event)
-            except queue.Full:
-                LOST.inc()
+    def put(self, who: str, source: str, what: str, target: str, times: int = 1) -> threading.Event:
+        """Take a note; waits for nobody. The event is set once it is on the disk."""
+        log.info("event=command what=%s target=%s who=%s from=%s times=%d", what, target, who, source, times)
+        kept = threading.Event()
+        note = Note(time.time_ns() // 1_000_000, what, _clean(target), _clean(f"{who} from {source}"), times)
+        try:
+            self._new.put_nowait((note, kept))
+        except queue.Full:
+            LOST.inc()
+        return kept
+
+    def refused(self, who: str, source: str, what: str, why: str) -> None:
+        """Take a note of a stranger; a minute's are told together."""
+        if self._strangers.add(who, source, what, why):
+            self.put(who, source, what, why)
+
+    def number(self) -> int:
+        """Number of the last entry in the database; 0 until it is known."""
+        return self._number
 
     def close(self) -> None:
-        """Give the last entries a moment."""
+        """Get the last notes to the disk; what the database has not by then, it gets after the next start."""
+        for refused in self._strangers.due(everything=True):
+            self.put(refused.who, refused.source, refused.what, refused.why, refused.times)
         self._closing.set()
-        self._thread.join(0.5)
+        self._news.set()
+        with suppress(queue.Full):  # then it has something to wake up for
+            self._new.put_nowait(None)
+        self._keeper.join(0.5)
+        self._sender.join(0.2)
 
-    def _write(self) -> None:
-        while not (self._closing.is_set() and self._waiting.empty()):
-            try:
-                event = self._waiting.get(timeout=0.2)
-            except queue.Empty:
-                continue
-            try:
-                while not self._written(event):
-                    if self._closing.wait(RETRY):
-                        return
-            except UNSENDABLE as error:  # this one never goes; those behind it must
-                LOST.inc()
-                log.error("event=audit_lost what=%s number=%d reason=%r", event.kind, event.number, str(error))
+    # to the disk
 
-    def _written(self, event: Event) -> bool:
+    def _keep(self) -> None:
+        while self._ledger is None:
+            self._open()
+            if self._ledger is None and self._closing.wait(RETRY):
+                return
+        self._news.set()
+        while not (self._closing.is_set() and self._new.empty()):
+            for refused in self._strangers.due():
+                self.put(refused.who, refused.source, refused.what, refused.why, refused.times)
+            found = self._gather()
+            while found and not self._kept(self._ledger, found):
+                if self._closing.wait(RETRY):
+                    return
+
+    def _open(self) -> None:
         try:
-            answer = self._ros.call(WriteJournal, "/tms/db/write_journal", WriteJournal.Request(events=[event]))
-        except RosError:
+            self._ledger, new = opened(self._file)
+        except (sqlite3.Error, OSError) as error:
+            log.error("event=audit_disk_failed file=%s reason=%r", self._file, str(error))
+            return
+        if new:
+            log.error("event=audit_file_unreadable file=%s: entries that waited there are in the log only", self._file)
+
+    def _gather(self) -> list[tuple[Note, threading.Event]]:
+        found: list[tuple[Note, threading.Event]] = []
+        try:
+            while len(found) < MOST_NEW:
+                one = self._new.get(timeout=LOOK) if not found else self._new.get_nowait()
+                if one is None:
+                    break
+                found.append(one)
+        except queue.Empty:
+            pass
+        return found
+
+    def _kept(self, ledger: Ledger, found: list[tuple[Note, threading.Event]]) -> bool:
+        try:
+            ledger.append([note for note, _ in found])
+        except LedgerFull:
+            LOST.inc(len(found))
+            log.error("event=audit_lost entries=%d reason='too many wait for the database'", len(found))
+            return True
+        except (sqlite3.Error, OSError) as error:
+            log.error("event=audit_disk_failed file=%s reason=%r", self._file, str(error))
             return False
-        return not answer.error_code
+        for _, kept in found:
+            kept.set()
+        self._news.set()
+        return True
+
+    # to the database
+
+    def _send(self) -> None:
+        self._news.wait()
+        placed = False
+        while not self._closing.is_set():
+            try:
+                assert self._ledger is not None  # there is news of it
+                if not placed:
+                    self._take_place(self._ledger)
+                    placed = True
+                self._news.clear()
+                while self._sent(self._ledger) and not self._closing.is_set():
+                    pass
+                self._news.wait()
+            except TmsError:  # the database is away, which others tell
+                self._closing.wait(RETRY)
+            except (sqlite3.Error, OSError) as error:
+                log.error("event=audit_disk_failed file=%s reason=%r", self._file, str(error))
+                self._closing.wait(RETRY)
+
+    def _take_place(self, ledger: Ledger) -> None:
+        """Where the chain goes on: as the disk remembers, or behind what the database has beyond that."""
+        place = ledger.place()
+        if place is not None:
+            self._number = place.number
+            stored = self._stored(place.number, BATCH)
+            ours = tied(place, ledger.waiting(BATCH)[1])[: len(stored)]
+            if [one.hash for one in ours] == [one.hash for one in stored]:
+                return  # what the database has already, if anything, is sent once more and changes nothing
+            log.error("event=audit_place_lost number=%d: the database has others behind it", place.number)
+        number = highest(lambda after: bool(self._stored(after, 1)))
+        last = self._stored(number - 1, 1) if number else []
+        self._number = number
+        ledger.move(Place(number, last[0].hash if last else ""))
+
+    def _sent(self, ledger: Ledger) -> bool:
+        """Send the oldest notes; whether there were any."""
+        place = ledger.place()
+        assert place is not None
+        ids, notes = ledger.waiting(BATCH)
+        if not notes:
+            return False
+        entries = tied(place, notes)
+        self._ask(WriteJournal, "/tms/db/write_journal", events=list(map(_event, entries)))
+        self._number = entries[-1].number
+        ledger.move(Place(self._number, entries[-1].hash), ids[-1])
+        return True
+
+    def _stored(self, after: int, limit: int) -> list[Entry]:
+        try:
+            found = self._ask(ListEvents, "/tms/db/list_events", run_id=RUN, after=after, limit=limit)
+        except TmsError as error:
+            if error.code != "RUN_MISSING":
+                raise
+            return []
+        return list(map(of_event, found.events))
+
+    def _ask(self, service_type: Any, name: str, **fields: Any) -> Any:
+        answer = self._ros.call(service_type, name, service_type.Request(**fields))
+        if answer.error_code:
+            raise TmsError(answer.error_msg, answer.error_code)
+        return answer
+
+
+def _event(one: Entry) -> Event:
+    seconds, rest = divmod(one.note.at, 1000)
+    stamp = Time(sec=seconds, nanosec=rest * 1_000_000)
+    return Event(run_id=RUN, number=one.number, stamp=stamp, kind=one.note.kind, node=one.note.node,
+                 text=one.note.text, values=to_parameters(one.values()))  # fmt: skip
+
+
+def of_event(event: Any) -> Entry:
+    """An entry from its message (tms_msg_db/Event)."""
+    at = event.stamp.sec * 1000 + event.stamp.nanosec // 1_000_000
+    return entry(event.number, Note(at, event.kind, event.node, event.text), from_parameters(event.values))
+
+
+def _clean(text: str) -> str:
+    """What ROS and the database give back as they got it: valid Unicode without NUL, and not too long."""
+    return text.encode(errors="replace").decode().replace("\0", "�")[:LONGEST]

@@ -1,5 +1,6 @@
 """Endpoints that change something: each says who may, and each is audited."""
 
+import logging
 import math
 import threading
 from collections.abc import Iterator
@@ -37,8 +38,11 @@ if TYPE_CHECKING:
 
 ANSWERS = problems(403, 404, 409, 411, 413, 415, 503)
 STOPS = 40  # stops at the same time, each with a thread a machine: no worker that waits is in their way
+CANCELS = 10  # runs that are asked to stop at the same time
+KEPT_LIMIT = 1.0  # s that a command waits for its entry to be on the disk
 MachineName = Annotated[str, Path(pattern=r"^[a-z][a-z0-9_]{0,63}$")]
 QuestionId = Annotated[str, Path(pattern=r"^[0-9A-Za-z_-]{1,100}$")]
+log = logging.getLogger(__name__)
 
 
 def add(app: FastAPI, gateway: "Gateway", audit: "Audit", site: Site) -> None:
@@ -57,13 +61,22 @@ class _Note:
         self._audit = audit
 
     def __call__(self, request: Request, person: Person, what: str, target: object) -> str:
+        """Of a command: what is told as done is on the disk. Not on the event loop."""
         where = source(request.scope)
-        self._audit.put(person.name, where, what, str(target))
+        if not self._audit.put(person.name, where, what, str(target)).wait(KEPT_LIMIT):
+            log.warning("event=audit_late what=%s: the disk is slow; the command is in the log", what)
+        return f"{person.name} at {where}"
+
+    def of_stop(self, request: Request, person: Person, what: str, target: str) -> str:
+        """Of a stop, which waits for no disk."""
+        where = source(request.scope)
+        self._audit.put(person.name, where, what, target)
         return f"{person.name} at {where}"
 
 
 def _runs(app: FastAPI, gateway: "Gateway", note: _Note) -> None:
     starting = _Once()
+    cancels = anyio.CapacityLimiter(CANCELS)
 
     @app.post("/api/runs", status_code=202, summary="Run a task; answers when it has begun", responses=ANSWERS)
     def start_run(request: Request, wanted: StartRun, person: Operator) -> RunAsked:
@@ -72,9 +85,9 @@ def _runs(app: FastAPI, gateway: "Gateway", note: _Note) -> None:
             return RunAsked(run_id=gateway.start_run(wanted.task_id, wanted.ignore_warnings))
 
     @app.post("/api/runs/{run_id}/cancel", status_code=202, summary="Ask a run to stop", responses=ANSWERS)
-    def cancel_run(request: Request, run_id: RunId, _: Nothing, person: Operator) -> RunAsked:
-        note(request, person, "cancel_run", run_id)
-        gateway.cancel_run(run_id)
+    async def cancel_run(request: Request, run_id: RunId, _: Nothing, person: Operator) -> RunAsked:
+        note.of_stop(request, person, "cancel_run", run_id)
+        await anyio.to_thread.run_sync(gateway.cancel_run, run_id, limiter=cancels)
         return RunAsked(run_id=run_id)
 
     @app.post("/api/questions/{question_id}", summary="Answer a question of a run; the first answer counts",
@@ -113,7 +126,7 @@ def _machines(app: FastAPI, gateway: "Gateway", note: _Note, site: Site) -> None
               responses=problems(403, 404, 411, 413, 415))  # fmt: skip
     async def stop(request: Request, asked: StopAsked, person: Viewer) -> list[Receipt]:
         machines = [_known(asked.machine, names)] if asked.machine else names
-        who = note(request, person, "stop", asked.machine or "all machines")
+        who = note.of_stop(request, person, "stop", asked.machine or "all machines")
         return await anyio.to_thread.run_sync(_stop_all, gateway, machines, who, limiter=stops)
 
     @app.post("/api/machines/{name}/rearm", summary="Re-arm a stopped machine, in two steps", responses=ANSWERS)

@@ -7,15 +7,22 @@ own pages or from no page at all. Without users, commands are taken only where n
 
 import ipaddress
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
-import anyio.to_thread
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import JSONResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from tms_core.errors import TmsError
-from tms_ur.access import Access, Person, Throttled
+from tms_ur.access import Access, Person
+from tms_ur.brake import Throttled
+from tms_ur.callers import caller
+from tms_ur.hashing import Hashing
+from tms_ur.room import Room, is_stop
+
+if TYPE_CHECKING:
+    from tms_ur.audit import Audit
 
 LOCAL_NAMES = frozenset({"localhost", "127.0.0.1", "::1"})
 MOST_BODY = 16 * 1024  # bytes of a command ...
@@ -45,14 +52,23 @@ class Refusal:
     headers: dict[str, str] | None = None
 
 
+BUSY = Refusal(
+    503, "CROWDED", "too many requests are being answered: try again; a stop is answered always",
+    {"Connection": "close", "Retry-After": "2"},  # what waits behind it on the same connection goes, too
+)  # fmt: skip
+NOBODY = Refusal(401, "LOGIN", "log in first: POST /api/login, or send `Authorization: Bearer NAME:TOKEN`")
+
+
 class Guard:
     """ASGI middleware around the whole application."""
 
-    def __init__(self, app: ASGIApp, bind: str, access: Access, names: tuple[str, ...] = ()) -> None:
-        self._app, self._bind, self._access = app, bind, access
+    def __init__(
+        self, app: ASGIApp, bind: str, access: Access, hashing: Hashing, audit: "Audit", names: tuple[str, ...] = ()
+    ) -> None:
+        self._app, self._bind, self._access, self._hashing, self._audit = app, bind, access, hashing, audit
         self._names = LOCAL_NAMES | {bind.lower(), *(name.lower() for name in names)}
         self._loopback = is_loopback(bind)
-        self._hashing = anyio.CapacityLimiter(1)  # each takes 19 MB
+        self._room = Room()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] != "http":
@@ -66,12 +82,25 @@ class Guard:
                 headers["Cache-Control"] = "no-store" if scope["path"].startswith("/api/") else "no-cache"
             await send(message)
 
+        who = caller(source(scope))
+        if is_stop(scope):
+            await self._answer(scope, receive, secured)
+        elif self._room.enter(who):
+            try:
+                await self._answer(scope, receive, secured)
+            finally:
+                self._room.leave(who)
+        else:
+            await _refuse(BUSY, scope, receive, secured)
+
+    async def _answer(self, scope: Scope, receive: Receive, send: Send) -> None:
         refusal = self._refusal(scope) or await self._stranger(scope)
         if refusal is None:
-            await self._app(scope, receive, secured)
-        else:
-            body = {"code": refusal.code, "message": refusal.message}
-            await JSONResponse(body, refusal.status, refusal.headers)(scope, receive, secured)
+            await self._app(scope, receive, send)
+            return
+        if refusal is not NOBODY or scope["method"] == "POST":  # a page whose session is over asks on
+            self._audit.refused("-", source(scope), "refused", refusal.code)
+        await _refuse(refusal, scope, receive, send)
 
     def _refusal(self, scope: Scope) -> Refusal | None:
         headers = Headers(scope=scope)
@@ -87,23 +116,23 @@ class Guard:
     async def _stranger(self, scope: Scope) -> Refusal | None:
         """Find out who asks, for the endpoints; everything of the API but the login needs somebody."""
         try:
-            person = await self._person(Headers(scope=scope), source(scope))
+            person = await self._person(Headers(scope=scope), source(scope), is_stop(scope))
         except Throttled as error:
             return Refusal(429, error.code, str(error), {"Retry-After": str(round(error.seconds) + 1)})
         except TmsError as error:
-            return Refusal(401, error.code, str(error))
+            return Refusal(429 if error.code == "MANY_LOGINS" else 401, error.code, str(error))
         scope.setdefault("state", {})["person"] = person
         if person is None and scope["path"].startswith("/api/") and scope["path"] not in OPEN:
-            return Refusal(401, "LOGIN", "log in first: POST /api/login, or send `Authorization: Bearer NAME:TOKEN`")
+            return NOBODY
         return None
 
-    async def _person(self, headers: Headers, where: str) -> Person | None:
+    async def _person(self, headers: Headers, where: str, stop: bool) -> Person | None:
         if not self._access.asks:
             return LOCAL if self._loopback else GUEST
         kind, _, token = headers.get("authorization", "").partition(" ")
         if kind.lower() == "bearer":
             known = self._access.known_token(token)
-            return known or await anyio.to_thread.run_sync(self._access.token, token, where, limiter=self._hashing)
+            return known or await self._hashing.run(where, lambda: self._access.token(token, where), stop)
         key = session_key(headers)
         return self._access.session(key) if key else None
 
@@ -131,6 +160,11 @@ class Guard:
             return True
         # Bound to all addresses: by number, which no foreign name server can make up.
         return self._bind in ("0.0.0.0", "::") and name is not None and _is_address(name)
+
+
+async def _refuse(refusal: Refusal, scope: Scope, receive: Receive, send: Send) -> None:
+    body = {"code": refusal.code, "message": refusal.message}
+    await JSONResponse(body, refusal.status, refusal.headers)(scope, receive, send)
 
 
 def source(scope: Scope) -> str:

@@ -1,22 +1,19 @@
 """Process `tms:ur`: the HTTP API and the console, for people and programs."""
 
 import socket
-import threading
-
-import uvicorn
 
 from tms_core.app import App
 from tms_core.config import Site
 from tms_core.errors import ConfigError
-from tms_core.site_file import Files, SiteFile
+from tms_core.site_file import SiteFile
 from tms_ur import address
 from tms_ur.access import Access
 from tms_ur.api import create_app
 from tms_ur.audit import Audit
+from tms_ur.connections import SENT, Listener
 from tms_ur.gateway import Gateway
 from tms_ur.guard import is_loopback
-
-STOP_LIMIT = 0.8  # s for open requests to end; the runtime ends the process within 2
+from tms_ur.server import Server
 
 
 def start(app: App) -> None:
@@ -25,7 +22,7 @@ def start(app: App) -> None:
     tls = address.certificate(app.site)
     access = Access(address.users(app.site))
     listener = _listen(app.site)
-    gateway, audit = Gateway(app.ros, app.site), Audit(app.ros)
+    gateway, audit = Gateway(app.ros, app.site), Audit(app.ros, app.site.state / "audit.db")
     server = Server(create_app(gateway, audit, app.site, access), listener, tls)
     app.on_stop(audit.close)
     app.on_stop(server.stop)
@@ -43,38 +40,12 @@ def _told(file: SiteFile, access: Access) -> str:
     return "everybody at this PC" if is_loopback(file.bind) else "everybody may look, nobody may command: no users"
 
 
-class Server:
-    """uvicorn in a thread of its own; signals stay with the runtime."""
-
-    def __init__(self, application: object, listener: socket.socket, tls: Files | None) -> None:
-        config = uvicorn.Config(
-            application,  # type: ignore[arg-type]  # FastAPI's own types differ from uvicorn's
-            log_config=None, log_level="warning", access_log=False, http="h11", ws="none", loop="asyncio",
-            lifespan="on", server_header=False, proxy_headers=False, limit_concurrency=200, timeout_keep_alive=30,
-            ssl_certfile=tls.certificate if tls else None, ssl_keyfile=tls.key if tls else None,
-        )  # fmt: skip
-        self._server = uvicorn.Server(config)
-        self._thread = threading.Thread(target=self._server.run, args=([listener],), name="http", daemon=True)
-        self._thread.start()
-
-    def unready(self) -> str | None:
-        """Why nobody is answered."""
-        if not self._thread.is_alive():
-            return "the web server has ended: see `tms logs tms:ur`"
-        return None if self._server.started else "the web server is not up yet"
-
-    def stop(self) -> None:
-        """Let open requests end for a moment, then leave them."""
-        self._server.should_exit = True
-        self._thread.join(STOP_LIMIT)
-        self._server.force_exit = True
-        self._thread.join(0.2)
-
-
-def _listen(site: Site) -> socket.socket:
+def _listen(site: Site) -> Listener:
     bind, port = site.file.bind, site.file.ports.console
     try:
-        return socket.create_server((bind, port), family=socket.AF_INET6 if ":" in bind else socket.AF_INET)
+        made = socket.create_server((bind, port), family=socket.AF_INET6 if ":" in bind else socket.AF_INET)
+        made.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SENT)  # of the connections that it accepts
+        return Listener(fileno=made.detach())
     except OSError as error:
         raise ConfigError(
             f"{site.path}: cannot listen on port {port} of {bind} ({error.strerror}): stop the program "

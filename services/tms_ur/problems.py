@@ -14,7 +14,7 @@ TEXTS = {
     400: "the request cannot be read", 401: "log in first", 403: "you may not do this",
     404: "there is no such thing", 409: "refused; the message says why", 411: "no length",
     413: "too large", 415: "not JSON",
-    422: "a value is wrong", 429: "too many wrong passwords", 503: "a module of the site is away or does not answer",
+    422: "a value is wrong", 429: "too many passwords", 503: "a module of the site is away or does not answer",
 }  # fmt: skip
 
 

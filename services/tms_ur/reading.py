@@ -2,8 +2,7 @@
 
 import difflib
 import re
-import time
-from collections import deque
+from datetime import datetime, timedelta, timezone
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from fastapi import FastAPI, Path, Query, Request, Response
@@ -12,6 +11,7 @@ from tms_core.config import Site
 from tms_core.errors import TmsError
 from tms_core.names import Name
 from tms_ur import export
+from tms_ur.audit_chain import RUN as AUDIT
 from tms_ur.data_models import Change, Record, Sensing
 from tms_ur.models import (
     INT32,
@@ -35,23 +35,24 @@ from tms_ur.problems import Viewer, problems
 from tms_ur.stream import Stream, StreamResponse
 
 if TYPE_CHECKING:
+    from tms_ur.audit import Audit
     from tms_ur.gateway import Gateway
 
 UINT32 = 2**32 - 1
 PAGE = 1000  # events of one answer
 MOST_EVENTS = 200_000  # of an export
 BEGINNING = 50  # events among which the shape of the tree is
-AUDIT = "audit"
 
 RunId = Annotated[str, Path(pattern=r"^[0-9A-Za-z_-]{1,64}$", description="id of a run")]
 TaskId = Annotated[int, Path(ge=1, le=INT32)]
 ProcessName = Annotated[str, Path(pattern=r"^[0-9A-Za-z_]{1,64}:[0-9A-Za-z_]{1,64}$", description="group:name")]
 
 
-def add(app: FastAPI, gateway: "Gateway", site: Site) -> None:
+def add(app: FastAPI, gateway: "Gateway", audit: "Audit", site: Site) -> None:
     """Put them into the application."""
     _live(app, gateway, site)
     _stored(app, gateway)
+    _audit(app, gateway, audit)
     _data(app, gateway)
     _tasks(app, gateway)
 
@@ -117,17 +118,20 @@ def _stored(app: FastAPI, gateway: "Gateway") -> None:
         name = f'attachment; filename="{run_id}.{form}"'
         return Response(export.FORMS[form](run_id, found), 200, {"Content-Disposition": name}, export.TYPES[form])
 
-    @app.get("/api/audit", summary="The last of who did what, oldest first", responses=problems(503))
-    def audit(
-        hours: Annotated[float, Query(gt=0, le=24 * 366)] = 24, limit: Annotated[int, Query(ge=1, le=PAGE)] = PAGE
-    ) -> list[Event]:
-        return _newest_of_audit(gateway, max(0, int(time.time() - hours * 3600)), limit)
-
     @app.get("/api/parameters", summary="Parameter records", responses=problems(503))
     def parameters(
         model_name: Annotated[str, Query(pattern=r"^[0-9A-Za-z_]{0,64}$", description="empty: of all machines")] = "",
     ) -> list[Record]:
         return gateway.parameters(model_name)
+
+
+def _audit(app: FastAPI, gateway: "Gateway", audit: "Audit") -> None:
+    @app.get("/api/audit", summary="The last of who did what, oldest first", responses=problems(503))
+    def newest(
+        hours: Annotated[float, Query(gt=0, le=24 * 366)] = 24, limit: Annotated[int, Query(ge=1, le=PAGE)] = PAGE
+    ) -> list[Event]:
+        since = datetime.now(timezone.utc) - timedelta(hours=hours)
+        return _newest_of_audit(gateway, audit.number(), since, limit)
 
 
 def _data(app: FastAPI, gateway: "Gateway") -> None:
@@ -182,19 +186,31 @@ def _all_events(gateway: "Gateway", run_id: str) -> list[Event]:
     return found
 
 
-def _newest_of_audit(gateway: "Gateway", after: int, limit: int) -> list[Event]:
-    """The journal goes forwards only, so all of the time is read, and no more than the end of it kept."""
-    newest: deque[Event] = deque(maxlen=limit)
+def _newest_of_audit(gateway: "Gateway", last: int, since: datetime, limit: int) -> list[Event]:
+    """The end of the journal, looked for further and further back: old entries have gaps in their numbers."""
+    back = limit
+    while True:
+        after = max(0, last - back)
+        found = _audit_after(gateway, after)
+        young = [event for event in found if event.stamp is not None and event.stamp >= since]
+        if after == 0 or len(young) >= limit or len(young) < len(found):
+            return young[-limit:]
+        back *= 8
+
+
+def _audit_after(gateway: "Gateway", after: int) -> list[Event]:
+    """All entries behind a number, of which the last page and a half is kept."""
+    found: list[Event] = []
     while True:
         try:
             page = gateway.events(AUDIT, after, PAGE)
         except TmsError as error:
-            if error.code != "RUN_MISSING":  # nothing in that time, or nothing after a full page
+            if error.code != "RUN_MISSING":  # none, or none behind a full page
                 raise
             page = []
-        newest.extend(page)
+        found = [*found[-PAGE:], *page]
         if len(page) < PAGE:
-            return list(newest)
+            return found
         after = page[-1].number
 
 

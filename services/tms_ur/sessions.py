@@ -2,13 +2,12 @@
 
 from typing import TYPE_CHECKING
 
-import anyio
-import anyio.to_thread
 from fastapi import FastAPI, Request, Response
 
 from tms_core.errors import TmsError
 from tms_ur.access import Access, Person
 from tms_ur.guard import COOKIE, session_key, source
+from tms_ur.hashing import Hashing
 from tms_ur.models import Login, Nothing, Session
 from tms_ur.problems import problems
 
@@ -16,9 +15,8 @@ if TYPE_CHECKING:
     from tms_ur.audit import Audit
 
 
-def add(app: FastAPI, access: Access, audit: "Audit", secure: bool) -> None:
+def add(app: FastAPI, access: Access, hashing: Hashing, audit: "Audit", secure: bool) -> None:
     """Put them into the application; `secure`: cookies travel over TLS only."""
-    hashing = anyio.CapacityLimiter(1)  # each takes 19 MB
 
     @app.get("/api/session", summary="Who you are to the console")
     async def session(request: Request) -> Session:
@@ -34,11 +32,9 @@ def add(app: FastAPI, access: Access, audit: "Audit", secure: bool) -> None:
             raise TmsError("this site has no users: nobody needs to log in", "NO_USERS")
         where = source(request.scope)
         try:
-            key, person = await anyio.to_thread.run_sync(
-                access.login, wanted.name, wanted.password, where, limiter=hashing
-            )
+            key, person = await hashing.run(where, lambda: access.login(wanted.name, wanted.password, where))
         except TmsError as error:
-            audit.put(wanted.name, where, "login_refused", error.code)
+            audit.refused(wanted.name, where, "login_refused", error.code)
             raise
         audit.put(person.name, where, "login", "")
         response.set_cookie(COOKIE, key, httponly=True, samesite="strict", secure=secure, path="/")

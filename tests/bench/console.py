@@ -2,7 +2,8 @@
 
 From a node's change, by the scheduler's clock, to the picture: the page itself takes the time when the state of a node
 is in the document and painted. The floor is an answer of the same server to the same page. The cost of consoles is the
-processor time of `tms:ur` with twenty of them less that without; its floor is the latter.
+processor time of `tms:ur` with twenty of them less that without; its floor is the latter. A press of the stop beside
+connections that hang is compared with the same press without them.
 """
 
 from __future__ import annotations
@@ -25,11 +26,13 @@ import yaml
 
 from bench.runner import Figure
 from conftest import Mesh, claimed_domain, ports_of, site_data
+from hanging import hanging
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 RUNS, CONSOLES, SECONDS, ROUNDS = 5, 20, 10, 20
+HANGING, PRESSES = 1000, 5
 TREE = """<root main_tree_to_execute="M"><BehaviorTree ID="M"><KeepRunningUntilFailure><Sequence name="run {number}">
 <Delay delay_msec="500"><AlwaysSuccess name="a"/></Delay><Delay delay_msec="500"><AlwaysSuccess name="b"/></Delay>
 </Sequence></KeepRunningUntilFailure></BehaviorTree></root>"""
@@ -69,6 +72,7 @@ def measure() -> Iterable[Figure]:
         address = f"http://127.0.0.1:{port + 90}"
         yield from _pages(stack, mesh, address, runs[0])
         yield _consoles(mesh, port + 90)
+        yield _press(port + 90)
 
 
 def _start(mesh: Mesh, folder: Path, number: int) -> str:
@@ -147,6 +151,25 @@ def _consoles(mesh: Mesh, port: int) -> Figure:
     for thread in threads:
         thread.join(10)
     return Figure(f"{CONSOLES} consoles", "%", busy - floor, 10.0, floor)
+
+
+def _press(port: int) -> Figure:
+    """The longest of some presses of the stop, answered with the proof that the machine stands."""
+    floor = _most(port)
+    with hanging(port, HANGING):
+        return Figure(f"press beside {HANGING} hanging", "ms", _most(port), 1000.0, floor, usual_floor=50.0)
+
+
+def _most(port: int) -> float:
+    return max(_pressed(port) for _ in range(PRESSES))
+
+
+def _pressed(port: int) -> float:
+    request = urllib.request.Request(f"http://127.0.0.1:{port}/api/stop", b"{}", {"Content-Type": "application/json"})
+    begun = time.perf_counter()
+    with urllib.request.urlopen(request, timeout=30) as answer:
+        assert all(receipt["confirmed"] for receipt in json.load(answer))
+    return (time.perf_counter() - begun) * 1000
 
 
 def _load(process: psutil.Process) -> float:

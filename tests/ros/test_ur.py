@@ -1,17 +1,11 @@
 """The console process with real ROS peers: what is published is shown, commands arrive, and it ends when told."""
 
-import json
-import os
 import signal
 import socket
 import ssl
 import subprocess
-import sys
-import time
-import urllib.error
 import urllib.request
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -27,93 +21,30 @@ from tms_msg_ts.action import ExecuteTask
 from tms_msg_ts.msg import RunState, RunStates
 from tms_msg_ts.srv import CancelRun
 
-from conftest import ports_of
-from tms_core import environment
-from tms_core.config import Site, load_site
-from tms_core.processes import find
+from console_process import LIMIT, Console, running, site_of_a_console, spawn, until
+from tms_core.config import Site
 from tms_core.ros import Ended, Goal, Outcome, Ros
 
 pytestmark = pytest.mark.ros
-LIMIT = 60.0  # s for whatever must happen at all
-SITE = """
-name: urtest
-domain: {domain}
-ports: {{metrics: {metrics}, console: {console}}}
-services: {{ur: {{role: cps}}}}
-machines: {{zx200: {{model: zx200}}}}
-"""
-
-
-def until(holds: Callable[[], bool], what: str) -> None:
-    deadline = time.monotonic() + LIMIT
-    while not holds():
-        assert time.monotonic() < deadline, f"not within {LIMIT} s: {what}"
-        time.sleep(0.02)
-
-
-@dataclass
-class Console:
-    """The process and its address."""
-
-    site: Site
-    process: subprocess.Popen[bytes]
-    log: Path
-
-    def ask(self, path: str, body: Any = None, **headers: str) -> tuple[int, Any]:
-        data = None if body is None else json.dumps(body).encode()
-        url = f"http://127.0.0.1:{self.site.file.ports.console}{path}"
-        request = urllib.request.Request(url, data, {"Content-Type": "application/json", **headers})
-        try:
-            with urllib.request.urlopen(request, timeout=LIMIT) as answer:
-                return answer.status, json.loads(answer.read())
-        except urllib.error.HTTPError as error:
-            with error:
-                return error.code, json.loads(error.read())
-
-    def get(self, path: str) -> Any:
-        status, answer = self.ask(path)
-        assert status == 200, answer
-        return answer
-
-    def ready(self) -> bool:
-        assert self.process.poll() is None, self.log.read_text()
-        try:
-            with urllib.request.urlopen(f"http://127.0.0.1:{find(self.site, 'tms:ur').port}/readyz", timeout=5):
-                return True
-        except urllib.error.URLError:
-            return False
-
-
-def spawn(site: Site, log: Path) -> subprocess.Popen[bytes]:
-    words = [sys.executable, "-m", "tms_core.run", "tms:ur"]
-    with log.open("ab") as file:
-        return subprocess.Popen(words, env={**os.environ, **environment.environment(site)}, stdout=file, stderr=file)
 
 
 @pytest.fixture
 def site(tmp_path: Path, own_domain: int) -> Iterator[Site]:
-    """A site of our own, and its environment for the ROS node of the test."""
-    file = tmp_path / "site.yaml"
-    port = ports_of(own_domain)
-    file.write_text(SITE.format(domain=own_domain, metrics=port, console=port + 90))
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("ROS_DOMAIN_ID", str(own_domain))
-        patch.setenv("TMS_STATE", str(tmp_path / "state"))
-        site = load_site(str(file))
-        for key, value in environment.environment(site).items():
-            patch.setenv(key, value)
-        yield site
+    with site_of_a_console(tmp_path, own_domain) as made:
+        yield made
 
 
 @pytest.fixture
 def console(site: Site, tmp_path: Path) -> Iterator[Console]:
-    running = Console(site, spawn(site, tmp_path / "log.txt"), tmp_path / "log.txt")
-    try:
-        until(running.ready, "/readyz 200")
-        yield running
-    finally:
-        running.process.kill()
-        running.process.wait(10)
+    with running(site, tmp_path) as up:
+        yield up
+
+
+@pytest.fixture
+def ros(site: Site) -> Iterator[Ros]:
+    node = Ros("peers_of_ur")
+    yield node
+    node.close()
 
 
 def test_the_certificate_is_beside_the_site_file(site: Site, tmp_path: Path) -> None:
@@ -124,24 +55,12 @@ def test_the_certificate_is_beside_the_site_file(site: Site, tmp_path: Path) -> 
     )  # fmt: skip
     with site.path.open("a") as file:
         file.write("console: {tls: {certificate: cert.pem, key: key.pem}}\n")
-    running = Console(site, spawn(site, tmp_path / "log.txt"), tmp_path / "log.txt")
-    try:
-        until(running.ready, "/readyz 200")
+    with running(site, tmp_path) as console:
         ours = ssl.create_default_context(cafile=str(tmp_path / "cert.pem"))
         port = site.file.ports.console
         with urllib.request.urlopen(f"https://localhost:{port}/", timeout=LIMIT, context=ours) as page:
             assert page.status == 200
-        assert f"url=https://127.0.0.1:{port} " in running.log.read_text()
-    finally:
-        running.process.kill()
-        running.process.wait(10)
-
-
-@pytest.fixture
-def ros(site: Site) -> Iterator[Ros]:
-    node = Ros("peers_of_ur")
-    yield node
-    node.close()
+        assert f"url=https://127.0.0.1:{port} " in console.log.read_text()
 
 
 def test_the_way_of_a_stop_is_there_before_it_is_needed(console: Console, ros: Ros) -> None:

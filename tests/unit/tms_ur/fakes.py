@@ -1,6 +1,7 @@
 """A site without ROS: the gateway that the API's tests talk to, and a client without a network."""
 
 import asyncio
+import threading
 from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
@@ -115,13 +116,24 @@ class FakeGateway:
 
 
 class FakeAudit:
-    """Keeps what was audited."""
+    """Keeps what was audited, all on its disk at once; `last` is the number of the last entry."""
 
     def __init__(self) -> None:
         self.notes: list[tuple[str, str, str, str]] = []
+        self.refusals: list[tuple[str, str, str, str]] = []
+        self.kept = threading.Event()
+        self.kept.set()
+        self.last = 0
 
-    def put(self, who: str, source: str, what: str, target: str) -> None:
+    def put(self, who: str, source: str, what: str, target: str) -> threading.Event:
         self.notes.append((who, source, what, target))
+        return self.kept
+
+    def refused(self, who: str, source: str, what: str, why: str) -> None:
+        self.refusals.append((who, source, what, why))
+
+    def number(self) -> int:
+        return self.last
 
 
 def site(**changes: Any) -> Site:
@@ -141,12 +153,12 @@ def app(gateway: FakeGateway, bind: str = "127.0.0.1", users: Path | None = None
 class Client:
     """Sends requests straight into the application."""
 
-    def __init__(self, app: Any, base_url: str = HERE) -> None:
-        self._app, self._base_url = app, base_url
+    def __init__(self, app: Any, base_url: str = HERE, address: str = "127.0.0.1") -> None:
+        self.app, self._base_url, self._address = app, base_url, address
 
     def request(self, method: str, path: str, **options: Any) -> httpx.Response:
         async def ask() -> httpx.Response:
-            transport = httpx.ASGITransport(self._app, raise_app_exceptions=False)
+            transport = httpx.ASGITransport(self.app, raise_app_exceptions=False, client=(self._address, 123))
             async with httpx.AsyncClient(transport=transport, base_url=self._base_url) as client:
                 return await client.request(method, path, **options)
 

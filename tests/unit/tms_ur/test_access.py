@@ -125,13 +125,31 @@ def test_guessing_is_braked(site: Site, name: str) -> None:
     assert [answer.status_code for answer in tries] == [401, 401, 401, 401, 429, 429]
     assert int(tries[-1].headers["Retry-After"]) >= 1
     assert "try again in" in tries[-1].json()["message"]
+    site.now += 3
+    answer = site.client.post("/api/login", json={"name": name, "password": "guess"})
+    assert answer.status_code == 401  # and the wait is longer now
+    refused = [refusal for refusal in site.audit.refusals if refusal[2] == "login_refused"]
+    assert [why for *_, why in refused] == ["LOGIN"] * 4 + ["THROTTLED"] * 2 + ["LOGIN"]
+    assert not any("guess" in part or "pass" in part for refusal in refused for part in refusal)
+
+
+def test_the_right_password_waits_only_where_others_were_wrong(site: Site) -> None:
     right = {"name": "ken", "password": "ken-pass"}
-    assert site.client.post("/api/login", json=right).status_code == 429  # also the right one has to wait
+    for _ in range(4):
+        site.client.post("/api/login", json={"name": "ken", "password": "guess"})
+    assert site.client.post("/api/login", json=right).status_code == 429
+    other = Client(site.client.app, address="192.0.2.7")
+    assert other.post("/api/login", json=right).status_code == 200
     site.now += 3
     assert site.client.post("/api/login", json=right).status_code == 200
-    refused = [note for note in site.audit.notes if note[2] == "login_refused"]
-    assert len(refused) == 7
-    assert not any("guess" in part or "pass" in part for note in site.audit.notes for part in note)
+
+
+def test_strangers_are_audited_where_they_command_or_guess(site: Site) -> None:
+    site.client.get("/api/state")  # what a page does whose session is over
+    assert site.audit.refusals == []
+    site.client.post("/api/stop", json={})
+    site.client.get("/api/state", headers={"Authorization": "Bearer root:wrong"})
+    assert [why for *_, why in site.audit.refusals] == ["LOGIN", "LOGIN"]
 
 
 def test_without_users_the_login_says_so() -> None:

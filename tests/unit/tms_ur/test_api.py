@@ -1,8 +1,8 @@
 """Every endpoint, every error, and what stands before them, with a site that is a fake."""
 
 import inspect
-import time
 from collections.abc import AsyncIterator
+from datetime import datetime, timedelta, timezone
 
 import pytest
 
@@ -263,25 +263,69 @@ def test_every_command_is_audited(gateway: FakeGateway) -> None:
     assert {(who, where) for who, where, _, _ in audit.notes} == {("local", "127.0.0.1")}
 
 
-def test_the_audit_shows_the_newest(client: Client, gateway: FakeGateway, monkeypatch: pytest.MonkeyPatch) -> None:
-    """One entry a second for 2500 s, the last of them in the second before now."""
-    now = int(time.time())
+def journal(monkeypatch: pytest.MonkeyPatch, gateway: FakeGateway, rows: dict[int, datetime]) -> Client:
+    """The audit's entries by number, with their time."""
+    audit = FakeAudit()
+    audit.last = max(rows, default=0)
 
     def events(run_id: str, after: int, limit: int) -> list[Event]:
         assert run_id == "audit"
-        numbers = range(max(after + 1, now - 2500), now)[:limit]
+        numbers = [number for number in sorted(rows) if number > after][:limit]
         if not numbers:
             raise TmsError("there is no run 'audit'", "RUN_MISSING")
-        return [Event(number=number, stamp=None, kind="stop", node="", text="") for number in numbers]
+        return [Event(number=number, stamp=rows[number], kind="stop", node="", text="") for number in numbers]
 
     monkeypatch.setattr(gateway, "events", events)
-    shown = [row["number"] for row in client.get("/api/audit").json()]
-    assert shown == list(range(now - 1000, now))
-    assert [row["number"] for row in client.get("/api/audit?limit=2").json()] == [now - 2, now - 1]
-    now -= 500  # the last page is a full one
-    assert len(client.get("/api/audit?limit=700").json()) == 700
-    now -= 10**6
-    assert client.get("/api/audit").json() == []
+    return Client(app(gateway, audit=audit))
+
+
+def shown(client: Client, query: str = "") -> list[int]:
+    return [row["number"] for row in client.get(f"/api/audit{query}").json()]
+
+
+def test_the_audit_shows_the_newest(gateway: FakeGateway, monkeypatch: pytest.MonkeyPatch) -> None:
+    """An entry every half minute."""
+    now = datetime.now(timezone.utc)
+    client = journal(monkeypatch, gateway, {n: now - timedelta(seconds=30 * (2500 - n)) for n in range(1, 2500)})
+    assert shown(client) == list(range(1500, 2500))
+    assert shown(client, "?limit=2") == [2498, 2499]
+    assert shown(client, "?hours=0.05") == list(range(2495, 2500))
+    assert shown(journal(monkeypatch, gateway, {})) == []
+
+
+def test_the_audit_shows_entries_from_before_that_were_numbered_by_the_clock(
+    gateway: FakeGateway, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now = datetime.now(timezone.utc)
+    old = {1_790_000_000 - 3000 * n: now - timedelta(seconds=3000 * n) for n in range(1, 40)}
+    client = journal(monkeypatch, gateway, {**old, 1_790_000_001: now})
+    assert len(shown(client)) == 29  # of the last 24 h
+    assert shown(client, "?limit=3") == [1_790_000_000 - 6000, 1_790_000_000 - 3000, 1_790_000_001]
+
+
+def test_a_stop_waits_for_no_audit_and_other_commands_for_a_moment(
+    gateway: FakeGateway, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    audit = FakeAudit()
+    audit.kept.clear()  # its disk hangs
+    client = Client(app(gateway, audit=audit))
+    monkeypatch.setattr("tms_ur.commands.KEPT_LIMIT", 300.0)  # whoever waits for it fails by the test's own limit
+    assert client.post("/api/stop", json={}).status_code == 200
+    assert client.post("/api/runs/r-1/cancel", json={}).status_code == 202
+    monkeypatch.setattr("tms_ur.commands.KEPT_LIMIT", 0.01)
+    assert "event=audit_late" not in caplog.text
+    assert client.post("/api/runs", json={"task_id": 4}).status_code == 202
+    assert "event=audit_late what=start_run" in caplog.text
+
+
+def test_refused_strangers_are_audited(gateway: FakeGateway) -> None:
+    audit = FakeAudit()
+    client = Client(app(gateway, audit=audit))
+    client.post("/api/stop", json={}, headers={"Origin": "http://evil.example"})
+    client.get("/api/state", headers={"Host": "evil.example"})
+    where = ("-", "127.0.0.1", "refused")
+    assert audit.refusals == [(*where, "FOREIGN_ORIGIN"), (*where, "FOREIGN_HOST")]
+    assert audit.notes == []
 
 
 def test_the_site_is_described(client: Client) -> None:

@@ -1,35 +1,52 @@
-"""Notes reach the database in order, also behind one that cannot be sent."""
+"""Notes reach the disk, then the database: each once, in order, tied to the one before, whatever ends in between."""
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
-from builtin_interfaces.msg import Time
-from rclpy.serialization import serialize_message
-from tms_msg_db.srv import WriteJournal
+from rclpy.serialization import deserialize_message, serialize_message
+from tms_msg_db.msg import Event
+from tms_msg_db.srv import ListEvents, WriteJournal
 
 from tms_core.errors import RosError
 from tms_ur import audit
+from tms_ur.audit_chain import Note, Place, Verdict, tied
+from tms_ur.audit_ledger import Ledger, told
 
 
 class FakeRos:
-    """Takes what ROS itself can take; `away` is how often the database does not answer first."""
+    """A database behind ROS: a number that is there already is left as it is; `away` is how often nobody answers."""
 
     def __init__(self) -> None:
-        self.stored: list[str] = []
+        self.stored: dict[int, Event] = {}
         self.away = 0
+        self.forgets_to_answer = False
 
-    def now(self) -> Time:
-        return Time()
-
-    def call(self, service_type: Any, name: str, request: WriteJournal.Request) -> WriteJournal.Response:
+    def call(self, service_type: Any, name: str, request: Any) -> Any:
         if self.away:
             self.away -= 1
             raise RosError("nobody answers")
-        serialize_message(request)
-        self.stored += [event.node for event in request.events]
+        if service_type is ListEvents:
+            found = [self.stored[number] for number in sorted(self.stored) if number > request.after]
+            return ListEvents.Response(events=found[: request.limit], error_code="" if found else "RUN_MISSING")
+        assert name == "/tms/db/write_journal"
+        for event in deserialize_message(serialize_message(request), WriteJournal.Request).events:
+            self.stored.setdefault(event.number, event)
+        if self.forgets_to_answer:
+            self.away = 10**6
+            raise RosError("nobody answers")
         return WriteJournal.Response()
+
+    def targets(self) -> list[str]:
+        return [self.stored[number].node for number in sorted(self.stored)]
+
+    def verdict(self) -> Verdict:
+        verdict = Verdict()
+        for number in sorted(self.stored):
+            verdict.add(audit.of_event(self.stored[number]))
+        return verdict
 
 
 @pytest.fixture
@@ -39,33 +56,160 @@ def ros(monkeypatch: pytest.MonkeyPatch) -> FakeRos:
 
 
 @pytest.fixture
-def notes(ros: FakeRos) -> Iterator[audit.Audit]:
-    made = audit.Audit(ros)  # type: ignore[arg-type]
-    yield made
-    made.close()
+def start(ros: FakeRos, tmp_path: Path) -> Iterator[Callable[[], audit.Audit]]:
+    """Start the console's audit, as often as a test wants to."""
+    made: list[audit.Audit] = []
+
+    def again() -> audit.Audit:
+        made.append(audit.Audit(ros, tmp_path / "audit.db"))  # type: ignore[arg-type]
+        return made[-1]
+
+    yield again
+    for one in made:
+        one.close()
 
 
-def wait_for(ros: FakeRos, count: int) -> None:
+def until(holds: Callable[[], bool]) -> None:
     deadline = time.monotonic() + 10
-    while len(ros.stored) < count and time.monotonic() < deadline:
+    while not holds():
+        assert time.monotonic() < deadline
         time.sleep(0.005)
 
 
-def test_notes_wait_for_the_database(ros: FakeRos, notes: audit.Audit) -> None:
+def put(notes: audit.Audit, *targets: str) -> None:
+    for target in targets:
+        assert notes.put("mina", "192.0.2.1", "restart", target).wait(10)
+
+
+def test_notes_wait_for_the_database(ros: FakeRos, start: Callable[[], audit.Audit]) -> None:
     ros.away = 3
-    for target in ("a", "b"):
-        notes.put("mina", "192.0.2.1", "stop", target)
-    wait_for(ros, 2)
-    assert ros.stored == ["a", "b"]
+    put(start(), "a", "b")
+    until(lambda: len(ros.stored) == 2)
+    assert (ros.targets(), sorted(ros.stored)) == (["a", "b"], [1, 2])
+    assert ros.verdict().intact
 
 
-def test_one_that_cannot_be_sent_is_counted_and_keeps_none_back(
-    ros: FakeRos, notes: audit.Audit, caplog: pytest.LogCaptureFixture
+def test_what_waits_survives_a_restart(ros: FakeRos, start: Callable[[], audit.Audit]) -> None:
+    ros.away = 10**9
+    first = start()
+    put(first, "a", "b")
+    first.close()
+    assert ros.stored == {}
+    ros.away = 0
+    put(start(), "c")
+    until(lambda: len(ros.stored) == 3)
+    assert ros.targets() == ["a", "b", "c"]
+
+
+def test_an_answer_that_got_lost_before_a_restart_stores_nothing_twice(
+    ros: FakeRos, start: Callable[[], audit.Audit]
 ) -> None:
+    first = start()
+    put(first, "a")
+    until(lambda: first.number() == 1)
+    ros.forgets_to_answer = True
+    put(first, "b")
+    until(lambda: len(ros.stored) == 2)
+    first.close()
+    ros.forgets_to_answer, ros.away = False, 0
+    put(start(), "c")
+    until(lambda: len(ros.stored) == 3)
+    assert ros.targets() == ["a", "b", "c"]
+    assert ros.verdict().intact
+
+
+@pytest.mark.parametrize("damage", [Path.unlink, lambda file: file.write_bytes(b"no database" * 1000)])
+def test_a_lost_file_goes_on_behind_the_database(
+    ros: FakeRos, start: Callable[[], audit.Audit], tmp_path: Path, damage: Callable[[Path], object]
+) -> None:
+    first = start()
+    put(first, "a", "b")
+    until(lambda: first.number() == 2)
+    first.close()
+    damage(tmp_path / "audit.db")
+    put(start(), "c")
+    until(lambda: len(ros.stored) == 3)
+    assert (sorted(ros.stored), ros.targets()) == ([1, 2, 3], ["a", "b", "c"])
+    assert ros.verdict().intact
+
+
+def test_a_file_from_a_backup_takes_no_entry_for_a_duplicate(
+    ros: FakeRos, start: Callable[[], audit.Audit], tmp_path: Path
+) -> None:
+    file = tmp_path / "audit.db"
+    first = start()
+    put(first, "a")
+    until(lambda: first.number() == 1)
+    first.close()
+    old = file.read_bytes()
+    second = start()
+    put(second, "b", "c")
+    until(lambda: second.number() == 3)
+    second.close()
+    file.write_bytes(old)
+    put(start(), "d")
+    until(lambda: len(ros.stored) == 4)
+    assert ros.targets() == ["a", "b", "c", "d"]
+    assert ros.verdict().intact
+
+
+def test_entries_from_before_are_the_beginning(ros: FakeRos, start: Callable[[], audit.Audit]) -> None:
+    now = int(time.time()) + 631  # they were numbered by the clock, or ahead of it
+    ros.stored = {number: Event(run_id="audit", number=number, kind="stop", node="old") for number in (now - 9, now)}
+    put(start(), "a", "b")
+    until(lambda: len(ros.stored) == 4)
+    assert sorted(ros.stored)[2:] == [now + 1, now + 2]
+    verdict = ros.verdict()
+    assert (verdict.older, verdict.chained, verdict.first, verdict.intact) == (2, 2, now + 1, True)
+
+
+@pytest.mark.parametrize("target", ["half a character: \ud800", "a NUL\0behind it", "x" * 10**6])
+def test_any_text_can_be_sent_and_stays_as_it_is(ros: FakeRos, start: Callable[[], audit.Audit], target: str) -> None:
+    put(start(), target, "b")
+    until(lambda: len(ros.stored) == 2)
+    assert ros.verdict().intact
+    assert len(ros.targets()[0]) <= audit.LONGEST
+
+
+def test_put_waits_neither_for_disk_nor_database(
+    ros: FakeRos, start: Callable[[], audit.Audit], tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """A folder in the place of the file is a disk that fails; the log has every command."""
+    (tmp_path / "audit.db").mkdir()
+    notes = start()
     before = audit.LOST._value.get()
-    for target in ("a", "half a character: \ud800", "b"):
-        notes.put("mina", "192.0.2.1", "set_parameter", target)
-    wait_for(ros, 2)
-    assert ros.stored == ["a", "b"]
-    assert audit.LOST._value.get() == before + 1
-    assert "event=audit_lost what=set_parameter" in caplog.text
+    kept = [notes.put("mina", "192.0.2.1", "stop", f"stop {number}") for number in range(audit.MOST_NEW + 50)]
+    assert not any(one.is_set() for one in kept)
+    assert audit.LOST._value.get() > before
+    until(lambda: "event=audit_disk_failed" in caplog.text)
+
+
+def test_strangers_are_summed_up(ros: FakeRos, start: Callable[[], audit.Audit]) -> None:
+    notes = start()
+    for number in range(654):
+        notes.refused(f"guess {number}", "192.0.2.9", "login_refused", "LOGIN")
+    notes.refused("-", "192.0.2.9", "refused", "FOREIGN_ORIGIN")
+    until(lambda: len(ros.stored) == 2)
+    notes.close()
+    again = start()  # what was counted meanwhile is on the disk
+    until(lambda: again.number() == 3)
+    rows = [(event.kind, event.node, event.text, audit.of_event(event).note.times) for event in ros.stored.values()]
+    assert rows == [
+        ("login_refused", "LOGIN", "guess 0 from 192.0.2.9", 1),
+        ("refused", "FOREIGN_ORIGIN", "- from 192.0.2.9", 1),
+        ("login_refused", "LOGIN", "guess 653 from 192.0.2.9", 653),
+    ]
+
+
+def test_the_disk_remembers_the_last_entry(tmp_path: Path) -> None:
+    file = tmp_path / "audit.db"
+    assert told(file) is None
+    ledger = Ledger(file)
+    assert ledger.place() is None
+    ledger.append([Note(1, "stop", "a", "mina"), Note(2, "stop", "b", "mina")])
+    ids, notes = ledger.waiting(10)
+    ledger.move(Place(7, tied(Place(6, ""), notes[:1])[0].hash), ids[0])
+    ledger.close()
+    assert told(file) == Place(7, tied(Place(6, ""), notes[:1])[0].hash)
+    assert Ledger(file).waiting(10)[1] == notes[1:]
+    assert file.stat().st_mode & 0o777 == 0o600

@@ -30,7 +30,8 @@ export async function load() {
   keep(at("list_audit"), audit, (event) => event.number, () => make("tr", {}, ...parts("td", ["time", "who", "what", "target"])), (row, event) => {
     setText(part(row, "time"), when(event.stamp));
     setText(part(row, "who"), event.text);
-    setText(part(row, "what"), t(`did_${event.kind}`));
+    const times = event.values.times > 1 ? ` ×${event.values.times}` : ""; // refusals of a minute are one entry
+    setText(part(row, "what"), t(`did_${event.kind}`) + times);
     setText(part(row, "target"), event.node);
   });
 }

@@ -1,0 +1,194 @@
+"""`tms audit`: who did what, and whether anybody has touched the record of it."""
+
+import sqlite3
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from tms_cli import live, session
+from tms_cli.words import Group, say
+from tms_core.errors import TmsError
+
+if TYPE_CHECKING:
+    from tms_core.ros import Ros
+    from tms_ur.audit_chain import Entry, Fault, Place, Verdict
+
+PAGE = 1000
+MOST = 10_000
+
+
+@click.group(cls=Group)
+def command() -> None:
+    """Show who commanded what from the console and its API, and check that nobody has changed it since.
+
+    \b
+    Examples:
+      tms audit list
+      tms audit verify
+    """
+
+
+@command.command("list")
+@click.option("--limit", default=50, show_default=True, type=click.IntRange(1, MOST), help="How many.")
+@session.json_option
+def list_(limit: int, as_json: bool) -> None:
+    """List the last commands, oldest first.
+
+    \b
+    Examples:
+      tms audit list
+      tms audit list --limit 500 --json
+    """
+    with session.ros() as node:
+        found = _newest(node, limit)
+    if as_json:
+        session.show_json([_as_dict(event) for event in found])
+        return
+    for event in found:
+        click.echo(_line(event))
+    if not found:
+        click.echo(say("no command was given"), err=True)
+
+
+@command.command()
+@session.json_option
+def verify(as_json: bool) -> None:
+    """Check the chain of the entries in the database; exit code 1 if one is missing, changed or out of order.
+
+    Each entry carries the hash of the one before. On the PC of the console the end is compared, too, with what the
+    console remembers; elsewhere nobody would see that the last entries are missing.
+
+    \b
+    Examples:
+      tms audit verify
+      tms audit verify --json
+    """
+    remembered = _remembered()
+    with session.ros() as node:
+        verdict = _verdict(node, remembered)
+    if as_json:
+        session.show_json(_report(verdict, remembered is not None))
+    else:
+        _tell(verdict, remembered is not None)
+    if not verdict.intact:
+        click.get_current_context().exit(1)
+
+
+def _remembered() -> "Place | None":
+    """What the console of this PC knows to be stored. Asked before the entries, which may become more meanwhile."""
+    from tms_ur.audit_ledger import told
+
+    file = session.site().state / "audit.db"
+    try:
+        return told(file)
+    except sqlite3.Error as error:
+        raise TmsError(f"{file}: cannot be read ({error}): run this as the user of the console") from error
+
+
+def _verdict(node: "Ros", remembered: "Place | None") -> "Verdict":
+    from tms_ur.audit_chain import Verdict
+
+    verdict, waiting = Verdict(), remembered
+    for event in _entries(node, 0):
+        verdict.add(_entry(event))
+        if waiting is not None and event.number >= waiting.number:
+            verdict.end(waiting)
+            waiting = None
+    if waiting is not None:
+        verdict.end(waiting)
+    return verdict
+
+
+def _entry(event: Any) -> "Entry":
+    from tms_core.values import from_parameters
+    from tms_ur.audit_chain import Note, entry
+
+    at = event.stamp.sec * 1000 + event.stamp.nanosec // 1_000_000
+    return entry(event.number, Note(at, event.kind, event.node, event.text), from_parameters(event.values))
+
+
+def _page(node: "Ros", after: int, limit: int) -> list[Any]:
+    from tms_msg_db.srv import ListEvents
+
+    try:
+        asked = {"run_id": "audit", "after": after, "limit": limit}
+        return list(session.call(node, ListEvents, "/tms/db/list_events", **asked).events)
+    except TmsError as error:
+        if error.code != "RUN_MISSING":  # there is none
+            raise
+        return []
+
+
+def _entries(node: "Ros", after: int) -> Iterator[Any]:
+    while True:
+        page = _page(node, after, PAGE)
+        yield from page
+        if len(page) < PAGE:
+            return
+        after = page[-1].number
+
+
+def _newest(node: "Ros", limit: int) -> list[Any]:
+    """The last ones; entries from before there was a chain have gaps in their numbers, so it looks further back."""
+    from tms_ur.audit_chain import highest
+
+    last, back = highest(lambda after: bool(_page(node, after, 1))), limit
+    while True:
+        after = max(0, last - back)
+        found = list(_entries(node, after))
+        if after == 0 or len(found) >= limit:
+            return found[-limit:]
+        back *= 8
+
+
+def _as_dict(event: Any) -> dict[str, Any]:
+    one = _entry(event)
+    return {
+        "number": one.number, "stamp": live.iso(event.stamp), "what": event.kind, "target": event.node,
+        "who": event.text, "times": one.note.times, "previous": one.previous, "hash": one.hash,
+    }  # fmt: skip
+
+
+def _line(event: Any) -> str:
+    times = _entry(event).note.times
+    often = f"  ×{times}" if times > 1 else ""
+    return f"{event.number:>10}  {live.clock_time(event.stamp)}  {event.kind:<14}  {event.node}  {event.text}{often}"
+
+
+def _report(verdict: "Verdict", compared: bool) -> dict[str, Any]:
+    return {
+        "intact": verdict.intact, "entries": verdict.chained, "first": verdict.first, "last": verdict.last.number,
+        "earlier_deleted": verdict.cut, "without_chain": verdict.older, "end_compared": compared,
+        "faults": [vars(one) for one in verdict.faults], "faults_found": verdict.found,
+    }  # fmt: skip
+
+
+def _tell(verdict: "Verdict", compared: bool) -> None:
+    if verdict.older:
+        click.echo(say("{count} entries are from before there was a chain: not checked", count=verdict.older))
+    if verdict.cut:
+        click.echo(say("the chain begins at entry {first}: earlier ones were deleted", first=verdict.first))
+    if not compared:
+        click.echo(say("the console does not run on this PC: whether the last entries are missing is not seen here"))
+    for fault in verdict.faults:
+        click.echo(_fault(fault), err=True)
+    if verdict.found > len(verdict.faults):
+        click.echo(say("and {count} more", count=verdict.found - len(verdict.faults)), err=True)
+    count, last = verdict.chained, verdict.last.number
+    if verdict.intact:
+        click.echo(say("intact: {count} entries, the last one is {last}", count=count, last=last))
+    else:
+        text = say("NOT intact: {count} faults among {entries} entries", count=verdict.found, entries=count)
+        click.echo(text, err=True)
+
+
+def _fault(fault: "Fault") -> str:
+    if fault.what == "missing":
+        return say("entries {first} to {last} are missing", first=fault.number, last=fault.until)
+    told = {
+        "changed": say("entry {number} was changed", number=fault.number),
+        "out_of_order": say("entry {number} does not follow the one before", number=fault.number),
+        "no_hash": say("entry {number} has no hash: it was not written by this console", number=fault.number),
+    }
+    return told[fault.what]

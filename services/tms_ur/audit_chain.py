@@ -1,0 +1,149 @@
+"""The chain of the audit's entries: each carries the hash of the one before and its own. Pure logic.
+
+It shows whoever looks (`tms audit verify`) that an entry was changed, taken out or put in afterwards, as long as it was
+not the whole rest of the chain that somebody made anew.
+"""
+
+import hashlib
+import json
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from typing import Literal
+
+RUN = "audit"  # the entries are the journal of this run
+MOST_FAULTS = 20  # that a report names
+LARGEST = 2**32 - 1  # number of an entry
+
+Value = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
+
+
+@dataclass(frozen=True)
+class Note:
+    """What is audited, before it has a place in the chain."""
+
+    at: int  # ms since 1970
+    kind: str
+    node: str  # what it was done to
+    text: str  # who, from where
+    times: int = 1
+
+
+@dataclass(frozen=True)
+class Place:
+    """Number and hash of an entry; of the last one, to which the next one is tied."""
+
+    number: int
+    hash: str  # empty: an entry from before there was a chain, or none
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A note with its place."""
+
+    number: int
+    note: Note
+    previous: str
+    hash: str  # as it is stored; empty in entries from before there was a chain
+
+    def right_hash(self) -> str:
+        """The hash that its content has."""
+        note = self.note
+        content = [self.number, note.at, note.kind, note.node, note.text, note.times, self.previous]
+        return hashlib.sha256(json.dumps(content, separators=(",", ":")).encode()).hexdigest()
+
+    def values(self) -> dict[str, Value]:
+        """What is stored beside the fields that every event has."""
+        return {"times": self.note.times, "previous": self.previous, "hash": self.hash}
+
+
+def entry(number: int, note: Note, values: dict[str, Value]) -> Entry:
+    """An entry as the database has it."""
+    times = values.get("times", 1)
+    return Entry(
+        number, Note(note.at, note.kind, note.node, note.text, times if isinstance(times, int) else 0),
+        str(values.get("previous", "")), str(values.get("hash", "")),
+    )  # fmt: skip
+
+
+def tied(last: Place, notes: Iterable[Note]) -> list[Entry]:
+    """Entries behind `last`; the same ones whenever it is asked again."""
+    made: list[Entry] = []
+    for note in notes:
+        bare = Entry(last.number + 1, note, last.hash, "")
+        made.append(Entry(bare.number, note, bare.previous, bare.right_hash()))
+        last = Place(made[-1].number, made[-1].hash)
+    return made
+
+
+def highest(is_any_after: Callable[[int], bool]) -> int:
+    """The highest number that is stored, 0 if there is none; asks some 32 times."""
+    low, high = 0, LARGEST  # there is none above `high`
+    while low < high:
+        middle = (low + high) // 2
+        if is_any_after(middle):
+            low = middle + 1
+        else:
+            high = middle
+    return low
+
+
+@dataclass(frozen=True)
+class Fault:
+    """What is wrong at an entry."""
+
+    number: int
+    what: Literal["missing", "changed", "out_of_order", "no_hash"]
+    until: int  # the last one that is missing; else the same number
+
+
+@dataclass
+class Verdict:
+    """Goes along the entries in the order of their numbers."""
+
+    older: int = 0  # from before there was a chain
+    chained: int = 0
+    first: int = 0  # of the chain
+    cut: bool = False  # whether entries before the first one have been deleted
+    faults: list[Fault] = field(default_factory=list)
+    found: int = 0  # faults, of which `faults` has the first ones
+    last: Place = field(default_factory=lambda: Place(0, ""))
+
+    @property
+    def intact(self) -> bool:
+        return self.found == 0
+
+    def add(self, one: Entry) -> None:
+        """The next entry."""
+        if not one.hash and not self.chained:
+            self.older += 1
+        elif not self.chained:
+            self.first, self.cut = one.number, bool(one.previous)
+            self._compare(one)
+        else:
+            if one.number > self.last.number + 1:
+                self._fault(self.last.number + 1, "missing", one.number - 1)
+            elif one.hash and one.previous != self.last.hash:
+                self._fault(one.number, "out_of_order")
+            self._compare(one)
+        self.last = Place(one.number, one.hash)
+
+    def end(self, told: Place) -> None:
+        """What the console remembers of its last entry that was stored."""
+        if told.number > self.last.number:
+            self._fault(self.last.number + 1, "missing", told.number)
+        elif told.number == self.last.number and told.hash != self.last.hash:
+            self._fault(told.number, "changed")
+
+    def _compare(self, one: Entry) -> None:
+        self.chained += 1
+        if not one.hash:
+            self._fault(one.number, "no_hash")
+        elif one.hash != one.right_hash():
+            self._fault(one.number, "changed")
+
+    def _fault(
+        self, number: int, what: Literal["missing", "changed", "out_of_order", "no_hash"], until: int = 0
+    ) -> None:
+        self.found += 1
+        if len(self.faults) < MOST_FAULTS:
+            self.faults.append(Fault(number, what, until or number))

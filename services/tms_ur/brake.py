@@ -1,0 +1,120 @@
+"""The brake on guessing passwords: by account and address together, and more gently by each of them alone.
+
+The pair stops somebody who guesses at one account. The limit of an address stops one who tries a few passwords on many
+accounts, that of an account one who has many addresses. A pair that has logged in before is free of these two, so that
+nobody behind the same router, and nobody elsewhere, can lock a person out of the place where he works.
+"""
+
+import hashlib
+import threading
+import time
+from collections import OrderedDict
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from tms_core.errors import TmsError
+from tms_ur.callers import caller
+
+FORGET = 900.0  # s after which wrong passwords count no more
+MOST_KEYS = 2000  # of each kind; the longest unused one goes
+
+
+class Throttled(TmsError):
+    """Too many wrong passwords; `seconds` until the next try."""
+
+    code = "THROTTLED"
+
+    def __init__(self, seconds: float) -> None:
+        super().__init__(f"too many wrong passwords: try again in {seconds:.0f} s")
+        self.seconds = seconds
+
+
+@dataclass(frozen=True)
+class Limit:
+    """The wait doubles with every wrong password beyond the free ones."""
+
+    free: int
+    longest: float  # s
+
+
+PAIR = Limit(free=3, longest=60.0)
+ADDRESS = Limit(free=20, longest=30.0)  # many people may be behind one
+ACCOUNT = Limit(free=30, longest=5.0)  # short: a right password from a new address has to wait for it, too
+
+
+class Failures:
+    """Wrong passwords by key, of which there is a bounded number."""
+
+    def __init__(self, limit: Limit, clock: Callable[[], float]) -> None:
+        self._limit, self._clock = limit, clock
+        self._counts: OrderedDict[str, tuple[int, float]] = OrderedDict()
+
+    def wait(self, key: str) -> float:
+        """Seconds until the next try."""
+        count, last = self._counts.get(key, (0, 0.0))
+        beyond = count - self._limit.free
+        if beyond <= 0:
+            return 0.0
+        return max(0.0, last + min(self._limit.longest, 2.0 ** min(beyond, 10)) - self._clock())
+
+    def add(self, key: str) -> None:
+        count, last = self._counts.pop(key, (0, self._clock()))
+        self._counts[key] = (1 if self._clock() - last > FORGET else count + 1, self._clock())
+        if len(self._counts) > MOST_KEYS:
+            self._counts.popitem(last=False)
+
+    def clear(self, key: str) -> None:
+        self._counts.pop(key, None)
+
+    def take_back(self, key: str) -> None:
+        """The last one was none."""
+        count, last = self._counts.get(key, (0, 0.0))
+        if count > 1:
+            self._counts[key] = (count - 1, last)
+        else:
+            self.clear(key)
+
+
+class Brake:
+    """Every try counts as wrong until it was right, so that tries at the same time are not free; thread safe."""
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._pairs, self._addresses, self._accounts = (Failures(one, clock) for one in (PAIR, ADDRESS, ACCOUNT))
+        self._familiar: OrderedDict[str, None] = OrderedDict()  # pairs that have logged in
+        self._lock = threading.Lock()
+
+    def attempt(self, account: str, address: str) -> None:
+        """Count a try.
+
+        Raises:
+            Throttled: it comes too soon, and was not counted.
+        """
+        pair, address, account = _keys(account, address)
+        with self._lock:
+            familiar = pair in self._familiar
+            wider = 0.0 if familiar else max(self._addresses.wait(address), self._accounts.wait(account))
+            wait = max(self._pairs.wait(pair), wider)
+            if wait > 0:
+                raise Throttled(wait)
+            self._pairs.add(pair)
+            if not familiar:
+                self._addresses.add(address)
+                self._accounts.add(account)
+
+    def right(self, account: str, address: str) -> None:
+        """The try was right; it clears nothing of what others have tried."""
+        pair, address, account = _keys(account, address)
+        with self._lock:
+            self._pairs.clear(pair)
+            if self._familiar.pop(pair, False) is False:
+                self._addresses.take_back(address)
+                self._accounts.take_back(account)
+            self._familiar[pair] = None
+            if len(self._familiar) > MOST_KEYS:
+                self._familiar.popitem(last=False)
+
+
+def _keys(account: str, address: str) -> tuple[str, str, str]:
+    """Keys of the pair, the address and the account; of a fixed length, however long a name somebody sends."""
+    name = hashlib.sha256(account.encode(errors="replace")).hexdigest()
+    return f"{name} {caller(address)}", caller(address), name

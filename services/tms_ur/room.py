@@ -1,0 +1,34 @@
+"""How many requests are answered at a time. Stops are not counted: there is always room for one."""
+
+import re
+from collections import Counter
+
+from starlette.types import Scope
+
+MOST = 250  # requests that are answered at a time, streams among them
+MOST_OF_ONE = 100  # of them from one address; more than it may have that hang (connections.py)
+STOPS = re.compile(r"/api/(stop|runs/[^/]+/cancel)")
+
+
+def is_stop(scope: Scope) -> bool:
+    """Whether a request asks for machines to stop."""
+    return scope["method"] == "POST" and STOPS.fullmatch(scope["path"]) is not None
+
+
+class Room:
+    """Counts by caller; used on the event loop only."""
+
+    def __init__(self) -> None:
+        self._open: Counter[str] = Counter()
+
+    def enter(self, who: str) -> bool:
+        """Whether one more may be answered; then it must be said when it has left."""
+        if self._open.total() >= MOST or self._open[who] >= MOST_OF_ONE:
+            return False
+        self._open[who] += 1
+        return True
+
+    def leave(self, who: str) -> None:
+        self._open[who] -= 1
+        if not self._open[who]:
+            del self._open[who]

@@ -1,0 +1,123 @@
+"""uvicorn behind the gate of connections.py, in a thread of its own; signals stay with the runtime."""
+
+import functools
+import socket
+import threading
+import time
+from typing import Any
+
+import h11
+import uvicorn
+from uvicorn.protocols.http.h11_impl import H11Protocol
+
+from tms_core.site_file import Files
+from tms_ur.connections import BODY, HEADERS, SILENCE, Connection, Gate, Listener
+
+STOP_LIMIT = 0.8  # s for open requests to end; the runtime ends the process within 2
+KEEP_ALIVE = 15  # s for the next request of a connection
+EVERY = 2  # ticks of uvicorn (0.1 s) between looks at the connections
+
+
+class Server:
+    """The web server of this process."""
+
+    def __init__(self, application: object, listener: Listener, tls: Files | None) -> None:
+        listener.gate = gate = Gate()
+        config = uvicorn.Config(
+            application,  # type: ignore[arg-type]  # FastAPI's own types differ from uvicorn's
+            http=functools.partial(Watched, gate),  # type: ignore[arg-type]  # it is only called
+            log_config=None, log_level="warning", access_log=False, ws="none", loop="asyncio",
+            lifespan="on", server_header=False, proxy_headers=False, timeout_keep_alive=KEEP_ALIVE,
+            ssl_certfile=tls.certificate if tls else None, ssl_keyfile=tls.key if tls else None,
+        )  # fmt: skip
+        self._server = _Looking(config, gate)
+        self._thread = threading.Thread(target=self._server.run, args=([listener],), name="http", daemon=True)
+        self._thread.start()
+
+    def unready(self) -> str | None:
+        """Why nobody is answered."""
+        if not self._thread.is_alive():
+            return "the web server has ended: see `tms logs tms:ur`"
+        return None if self._server.started else "the web server is not up yet"
+
+    def stop(self) -> None:
+        """Let open requests end for a moment, then leave them."""
+        self._server.should_exit = True
+        self._thread.join(STOP_LIMIT)
+        self._server.force_exit = True
+        self._thread.join(0.2)
+
+
+class _Looking(uvicorn.Server):
+    """Looks at the connections whenever uvicorn looks at itself."""
+
+    def __init__(self, config: uvicorn.Config, gate: Gate) -> None:
+        super().__init__(config)
+        self._gate = gate
+
+    async def on_tick(self, counter: int) -> bool:
+        if counter % EVERY == 0:
+            self._gate.look()
+        return await super().on_tick(counter)
+
+
+class Watched(H11Protocol):
+    """A connection of uvicorn that knows what it waits for, and since when."""
+
+    def __init__(self, gate: Gate, **of_uvicorn: Any) -> None:
+        super().__init__(**of_uvicorn)
+        self._gate = gate
+        self._connection: Connection | None = None
+        self._begun = time.monotonic()  # the present request, or the wait for it
+        self._heard = self._begun  # the last piece of it
+        self._idle = False  # answered, and nothing of a next request was heard
+        self._unread, self._read = 0, self._begun  # bytes of the answer that wait, and when it was seen to go on
+
+    def connection_made(self, transport: Any) -> None:
+        super().connection_made(transport)
+        sock: socket.socket | None = transport.get_extra_info("socket")
+        self._connection = None if sock is None else self._gate.serve(sock.fileno(), self)
+        if self._connection is None:  # it was cut during the handshake
+            transport.abort()
+
+    def data_received(self, data: bytes) -> None:
+        self._heard = time.monotonic()
+        if self._idle:
+            self._idle, self._begun = False, self._heard
+        super().data_received(data)
+
+    def on_response_complete(self) -> None:
+        self._idle, self._begun = True, time.monotonic()
+        if self._connection is not None:
+            self._connection.since = self._begun
+        super().on_response_complete()
+
+    def hanging(self) -> bool:
+        """Whether a whole request is awaited."""
+        return self._answered() or self.conn.their_state is h11.SEND_BODY
+
+    def overdue(self, now: float) -> str:
+        """Why it must go by itself, empty if it need not."""
+        if self._unread_for(now) > SILENCE:
+            return "slow_reader"
+        if self._answered():  # an idle one is uvicorn's to close
+            return "headers" if not self._idle and now - self._begun > HEADERS else ""
+        if self.conn.their_state is h11.SEND_BODY and (now - self._heard > SILENCE or now - self._begun > BODY):
+            return "body"
+        return ""
+
+    def abort(self) -> None:
+        """Close at once, whatever was not sent yet."""
+        self.transport.abort()
+
+    def _answered(self) -> bool:
+        """Whether no request is being worked on."""
+        return self.cycle is None or self.cycle.response_complete
+
+    def _unread_for(self, now: float) -> float:
+        """Seconds for which the other side has taken nothing of what waits for it."""
+        unread = self.transport.get_write_buffer_size()
+        if unread < self._unread or not unread:
+            self._read = now
+        self._unread = unread
+        return now - self._read

@@ -1,0 +1,58 @@
+"""Sums up the refusals of strangers: at most one entry a minute for each address and kind. Pure logic."""
+
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from tms_ur.callers import caller
+
+PERIOD = 60.0  # s
+MOST = 200  # addresses with kinds; those beyond are counted together
+MANY = "many addresses"
+
+
+@dataclass
+class Refused:
+    """Refusals that are told together."""
+
+    who: str  # the last name that was given
+    source: str
+    what: str
+    why: str
+    since: float
+    times: int = 0
+
+
+class Strangers:
+    """Thread safe; the memory that it needs does not grow with the number of refusals."""
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
+        self._open: dict[tuple[str, str, str], Refused] = {}
+        self._lock = threading.Lock()
+
+    def add(self, who: str, source: str, what: str, why: str) -> bool:
+        """Count one; True if it is the first of its kind, to be told at once."""
+        with self._lock:
+            key = (caller(source), what, why)
+            if key not in self._open and len(self._open) >= MOST:
+                source, key = MANY, (MANY, what, why)
+            found = self._open.get(key)
+            if found is None:
+                self._open[key] = Refused(who, source, what, why, self._clock())
+                return True
+            found.who, found.times = who, found.times + 1
+            return False
+
+    def due(self, everything: bool = False) -> list[Refused]:
+        """What was counted since the last entry of its kind, if that is a minute ago."""
+        with self._lock:
+            now = self._clock()
+            over = {key: one for key, one in self._open.items() if everything or now - one.since >= PERIOD}
+            for key, one in over.items():
+                if one.times:
+                    self._open[key] = Refused(one.who, one.source, one.what, one.why, now)
+                else:
+                    del self._open[key]
+        return [one for one in over.values() if one.times]

@@ -1,0 +1,103 @@
+"""The console process of a site of its own, and a ROS node beside it."""
+
+import json
+import os
+import subprocess
+import sys
+import time
+import urllib.error
+import urllib.request
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from conftest import ports_of
+from tms_core import environment
+from tms_core.config import Site, load_site
+from tms_core.processes import find
+
+LIMIT = 60.0  # s for whatever must happen at all
+SITE = """
+name: urtest
+domain: {domain}
+ports: {{metrics: {metrics}, console: {console}}}
+services: {{ur: {{role: cps}}}}
+machines: {{zx200: {{model: zx200}}}}
+"""
+
+
+def until(holds: Callable[[], bool], what: str) -> None:
+    deadline = time.monotonic() + LIMIT
+    while not holds():
+        assert time.monotonic() < deadline, f"not within {LIMIT} s: {what}"
+        time.sleep(0.02)
+
+
+@dataclass
+class Console:
+    """The process and its address."""
+
+    site: Site
+    process: subprocess.Popen[bytes]
+    log: Path
+
+    def ask(self, path: str, body: Any = None, **headers: str) -> tuple[int, Any]:
+        data = None if body is None else json.dumps(body).encode()
+        url = f"http://127.0.0.1:{self.site.file.ports.console}{path}"
+        request = urllib.request.Request(url, data, {"Content-Type": "application/json", **headers})
+        try:
+            with urllib.request.urlopen(request, timeout=LIMIT) as answer:
+                return answer.status, json.loads(answer.read())
+        except urllib.error.HTTPError as error:
+            with error:
+                return error.code, json.loads(error.read())
+
+    def get(self, path: str) -> Any:
+        status, answer = self.ask(path)
+        assert status == 200, answer
+        return answer
+
+    def ready(self) -> bool:
+        assert self.process.poll() is None, self.log.read_text()
+        try:
+            with urllib.request.urlopen(f"http://127.0.0.1:{find(self.site, 'tms:ur').port}/readyz", timeout=5):
+                return True
+        except urllib.error.URLError:
+            return False
+
+
+def spawn(site: Site, log: Path) -> subprocess.Popen[bytes]:
+    words = [sys.executable, "-m", "tms_core.run", "tms:ur"]
+    with log.open("ab") as file:
+        return subprocess.Popen(words, env={**os.environ, **environment.environment(site)}, stdout=file, stderr=file)
+
+
+@contextmanager
+def site_of_a_console(tmp_path: Path, domain: int) -> Iterator[Site]:
+    """A site of our own, and its environment for the ROS node of the test."""
+    file = tmp_path / "site.yaml"
+    port = ports_of(domain)
+    file.write_text(SITE.format(domain=domain, metrics=port, console=port + 90))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ROS_DOMAIN_ID", str(domain))
+        patch.setenv("TMS_STATE", str(tmp_path / "state"))
+        site = load_site(str(file))
+        for key, value in environment.environment(site).items():
+            patch.setenv(key, value)
+        yield site
+
+
+@contextmanager
+def running(site: Site, tmp_path: Path) -> Iterator[Console]:
+    """The console's process, up; it is killed afterwards."""
+    console = Console(site, spawn(site, tmp_path / "log.txt"), tmp_path / "log.txt")
+    try:
+        until(console.ready, "/readyz 200")
+        yield console
+    finally:
+        console.process.kill()
+        console.process.wait(10)

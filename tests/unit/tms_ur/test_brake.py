@@ -1,0 +1,159 @@
+"""Guesses cost time by account and address, and lock nobody else out; hashing has a short queue."""
+
+import threading
+
+import anyio
+import pytest
+
+from tms_core.errors import TmsError
+from tms_ur.brake import ACCOUNT, ADDRESS, MOST_KEYS, PAIR, Brake, Throttled
+from tms_ur.callers import caller
+from tms_ur.hashing import MOST_OF_ONE, MOST_WAITING, Hashing
+
+
+class Clock:
+    now = 0.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+@pytest.fixture
+def clock() -> Clock:
+    return Clock()
+
+
+@pytest.fixture
+def brake(clock: Clock) -> Brake:
+    return Brake(clock)
+
+
+def guesses(brake: Brake, clock: Clock, seconds: int, *pairs: tuple[str, str]) -> int:
+    """How many guesses come through if each pair tries again and again."""
+    through = 0
+    for _ in range(seconds):
+        clock.now += 1.0
+        for account, address in pairs:
+            try:
+                brake.attempt(account, address)
+                through += 1
+            except Throttled:
+                continue
+    return through
+
+
+def test_one_pair(brake: Brake, clock: Clock) -> None:
+    assert guesses(brake, clock, 3600, ("ken", "192.0.2.1")) < PAIR.free + 70
+    with pytest.raises(Throttled, match="try again in"):
+        brake.attempt("ken", "192.0.2.1")
+
+
+def test_the_wait_is_bounded_and_forgotten(brake: Brake, clock: Clock) -> None:
+    guesses(brake, clock, 3600, ("ken", "192.0.2.1"))
+    clock.now += PAIR.longest
+    brake.attempt("ken", "192.0.2.1")
+    clock.now += 1000
+    assert guesses(brake, clock, 3, ("ken", "192.0.2.1")) == 3
+
+
+def test_many_accounts_from_one_address(brake: Brake, clock: Clock) -> None:
+    pairs = [(f"user{number}", "192.0.2.1") for number in range(500)]
+    assert guesses(brake, clock, 600, *pairs) < ADDRESS.free + 600 / ADDRESS.longest + 10
+
+
+def test_one_account_from_many_addresses(brake: Brake, clock: Clock) -> None:
+    pairs = [("ken", f"192.0.{number // 250}.{number % 250}") for number in range(500)]
+    assert guesses(brake, clock, 600, *pairs) < ACCOUNT.free + 600 / ACCOUNT.longest + 10
+
+
+def test_somebody_elses_guesses_keep_nobody_out_for_long(brake: Brake, clock: Clock) -> None:
+    pairs = [("ken", f"192.0.2.{number}") for number in range(1, 200)]
+    brake.attempt("ken", "198.51.100.1")
+    brake.right("ken", "198.51.100.1")
+    guesses(brake, clock, 600, *pairs)
+    brake.attempt("ken", "198.51.100.1")  # where he has logged in before: at once
+    clock.now += ACCOUNT.longest
+    brake.attempt("ken", "203.0.113.1")  # from a new place after some seconds
+
+
+def test_a_guesser_behind_the_same_address_keeps_out_nobody_who_was_in(brake: Brake, clock: Clock) -> None:
+    brake.attempt("mina", "192.0.2.1")
+    brake.right("mina", "192.0.2.1")
+    guesses(brake, clock, 600, *[(f"user{number}", "192.0.2.1") for number in range(100)])
+    brake.attempt("mina", "192.0.2.1")
+
+
+def test_right_passwords_clear_nothing_of_others(brake: Brake, clock: Clock) -> None:
+    """Whoever has an account must not get free guesses at others by logging in between."""
+    through = 0
+    for number in range(200):
+        clock.now += 1.0
+        brake.attempt("mina", "192.0.2.1")
+        brake.right("mina", "192.0.2.1")
+        through += _try(brake, f"user{number}", "192.0.2.1")
+    assert through < ADDRESS.free + 20
+
+
+def _try(brake: Brake, account: str, address: str) -> int:
+    try:
+        brake.attempt(account, address)
+    except Throttled:
+        return 0
+    return 1
+
+
+def test_tries_at_the_same_time_are_not_free(brake: Brake) -> None:
+    through = sum(_try(brake, "ken", "192.0.2.1") for _ in range(100))  # none of them is known to be wrong yet
+    assert through == PAIR.free + 1
+
+
+def test_memory_is_bounded(brake: Brake) -> None:
+    for number in range(3 * MOST_KEYS):
+        _try(brake, "x" * 10_000 + str(number), f"2001:db8:{number:x}::1")
+    for counts in (brake._pairs, brake._addresses, brake._accounts):
+        assert len(counts._counts) <= MOST_KEYS
+        assert max(map(len, counts._counts)) < 200
+
+
+@pytest.mark.parametrize(
+    ("address", "counted"),
+    [("192.0.2.1", "192.0.2.1"), ("::ffff:192.0.2.1", "192.0.2.1"), ("2001:db8:1:2:3::4", "2001:db8:1:2::/64"),
+     ("-", "-")],
+)  # fmt: skip
+def test_callers(address: str, counted: str) -> None:
+    assert caller(address) == counted
+
+
+def test_hashing_has_a_short_queue_with_room_for_everybody() -> None:
+    async def story() -> None:
+        hashing, release, done = Hashing(), threading.Event(), []
+
+        async def verify(address: str, stop: bool = False) -> None:
+            done.append(await hashing.run(address, lambda: release.wait(30) and address, stop))
+
+        async with anyio.create_task_group() as group:
+            for number in range(MOST_WAITING // MOST_OF_ONE):
+                for _ in range(MOST_OF_ONE):
+                    group.start_soon(verify, f"192.0.2.{number}")
+                await anyio.wait_all_tasks_blocked()
+                if number == 0:
+                    with pytest.raises(TmsError, match="being checked") as one_too_many:
+                        await verify("192.0.2.0")
+                    assert one_too_many.value.code == "MANY_LOGINS"
+            with pytest.raises(TmsError, match="being checked"):
+                await verify("198.51.100.1")
+            stop = anyio.Event()
+
+            async def press() -> None:
+                await hashing.run("198.51.100.1", lambda: None, stop=True)  # while all others hang
+                stop.set()
+
+            group.start_soon(press)
+            with anyio.fail_after(30):
+                await stop.wait()
+            assert done == []
+            release.set()
+        assert len(done) == MOST_WAITING
+        await verify("192.0.2.0")
+
+    anyio.run(story)
