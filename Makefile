@@ -99,8 +99,8 @@ lint: setup ## ruff, mypy, import-linter
 conformance: setup ## replay behaviour-tree cases (CASES=path LEVEL=required|strict)
 	@$(PY) tests/conformance/replay.py "$(or $(CASES),tests/conformance/cases.jsonl)" --level "$(or $(LEVEL),required)"
 
-drill: setup ## kill every process of a simulated site while it moves (QUICK=1, ROUNDS=4, REPORT=file.md)
-	@$(TMS) drill $(if $(QUICK),--quick) $(if $(ROUNDS),--rounds $(ROUNDS)) $(if $(REPORT),--report $(REPORT))
+drill: setup ## stop six simulated machines in every way; receipts against the truth (QUICK=1, ROUNDS=4, SEED=7, REPORT=file.md)
+	@$(VENV)/bin/tms --site $(or $(SITE),drill) drill $(if $(QUICK),--quick) $(if $(ROUNDS),--rounds $(ROUNDS)) $(if $(SEED),--seed $(SEED)) $(if $(REPORT),--report $(REPORT))
 
 bench: setup ## benchmarks with ratios to a floor of the same run (ONLY=group)
 	@sh deploy/system-packages.sh chromium

@@ -73,15 +73,16 @@ def check(site: Site) -> tuple[Process, ...]:
     return rows
 
 
-def up(site: Site, foreground: bool = False) -> bool:
+def up(site: Site, foreground: bool = False, without: str = "") -> bool:
     """Start supervisord for this site; False when it already runs. Does not wait for the processes.
 
-    In the foreground this process becomes supervisord, as containers and systemd want it.
+    In the foreground this process becomes supervisord, as containers and systemd want it. `without`: a group of the
+    process table that the caller runs itself.
 
     Raises:
         ConfigError, TmsError: a port or the ROS domain is taken, or supervisord does not start.
     """
-    rows = check(site)
+    rows = tuple(row for row in check(site) if row.group != without)
     if closed := state_folder.tighten(site.state):
         told = say("{folder}: closed {count} files to other users", folder=site.state, count=closed)
         print(told, file=sys.stderr)

@@ -1,1 +1,1 @@
-"""The drill: kills processes while a simulated machine moves, and measures what happens."""
+"""The stop drill: every kind of stop and fault, each compared with the true motion of a simulated machine."""

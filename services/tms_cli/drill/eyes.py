@@ -1,111 +1,107 @@
-"""Watches a machine without any process of ours in between: its controller's goals, its joint states, its receipts."""
+"""Watches one machine: its true motion, what reaches its own servers, and what its gateway says."""
 
 import threading
 import time
+from collections.abc import Callable
 from typing import Any
 
 from action_msgs.msg import GoalStatusArray
+from geometry_msgs.msg import Twist
 from sensor_msgs.msg import JointState
-from tms_msg_rc.msg import StopReceipt
+from std_msgs.msg import Bool
+from tms_msg_rc.msg import MachineState, StopReceipt
 
+from tms_cli.drill.record import Goal, Receipt, Recording, State, sample_of, time_of
+from tms_core.border import motions
 from tms_core.config import Site
 from tms_core.ros import Ros
 
-TOLD = (3, 5, 6)  # action_msgs/GoalStatus: CANCELING, CANCELED, ABORTED
-SUCCEEDED = 4
-FRESH = (0.3, 0.9)  # s after the begin of a motion, when it is on its way and will last for some time
+CANCELING, SUCCEEDED, CANCELED, ABORTED = 3, 4, 5, 6  # action_msgs/GoalStatus
+KEPT = 120.0  # s, longer than any trial
+ROUND = 10.0  # s between looks at what is too old
 
 
 class Eyes:
-    """Of one machine with a joint trajectory controller."""
+    """Callbacks run on the executor thread; `changed` guards the record."""
 
     def __init__(self, node: Ros, site: Site, machine: str) -> None:
         border, self._still = site.border(machine), site.model_of(machine).still
-        self._changed = threading.Condition()
-        self._begun: dict[bytes, float] = {}  # goals that were seen open, and since when
-        self._over: set[bytes] = set()
-        self._told_at: float | None = None
-        self._slow_since: float | None = None
-        self._positions: dict[str, float] = {}
-        self._mark: dict[str, float] = {}
-        self._marked = 0.0  # s since 1970
-        self._receipts: list[Any] = []  # since the mark
-        self.arrived = False  # a motion ended by itself since the mark
-        self.travel = 0.0
-        node.subscribe(GoalStatusArray, f"/{machine}/{border.trajectory}/_action/status", self._status, latched=True)
-        node.subscribe(JointState, f"/{machine}/{border.joint_states}", self._joints, depth=10)
-        node.subscribe(StopReceipt, f"/{machine}/rc/receipts", self._receipt, depth=20, latched=True)
+        self.changed = threading.Condition()
+        self._record = Recording()
+        self._forgotten = time.time()
+        node.subscribe(JointState, f"/{machine}/sim/truth", self._on_truth, depth=50)
+        node.subscribe(StopReceipt, f"/{machine}/rc/receipts", self._on_receipt, depth=20, latched=True)
+        node.subscribe(MachineState, f"/{machine}/rc/state", self._on_state, depth=10, latched=True)
+        for motion in motions(border):
+            topic = f"/{machine}/{getattr(border, motion.field)}/_action/status"
+            node.subscribe(GoalStatusArray, topic, self._on_status, depth=10, latched=True)
+        if border.cmd_vel:
+            node.subscribe(Twist, f"/{machine}/{border.cmd_vel}", self._on_velocity, depth=10)
+        if border.emg_stop:
+            node.subscribe(Bool, f"/{machine}/{border.emg_stop}", self._on_emergency, depth=10)
 
-    def mark(self) -> None:
-        """Watch for a stop from now on."""
-        with self._changed:
-            self._told_at, self._mark, self.travel, self.arrived = None, dict(self._positions), 0.0, False
-            self._marked, self._receipts = time.time(), []
+    def _on_truth(self, message: Any) -> None:
+        sample = sample_of(message, self._still)
+        with self.changed:
+            self._record.truth.append(sample)
+            if sample.at - self._forgotten > ROUND:
+                self._forgotten = sample.at
+                self._record = self._record.since(sample.at - KEPT)
+            self.changed.notify_all()
 
-    def _status(self, message: Any) -> None:
-        now = time.monotonic()
-        with self._changed:
-            for status in message.status_list:
-                goal = bytes(status.goal_info.goal_id.uuid)
-                self._begun.setdefault(goal, now)
-                if goal in self._over:
+    def _on_receipt(self, message: Any) -> None:
+        now = time.time()
+        receipt = Receipt(
+            time_of(message.stamp), message.seconds, message.confirmed, message.cause, message.detail, now
+        )
+        with self.changed:
+            same = any(one.begun == receipt.begun for one in self._record.receipts)  # told again after a restart
+            if not same and receipt.at > now - KEPT:
+                self._record.receipts.append(receipt)
+            self.changed.notify_all()
+
+    def _on_state(self, message: Any) -> None:
+        with self.changed:
+            self._record.states.append(State(time.time(), message.latch, message.hold))
+            self.changed.notify_all()
+
+    def _on_velocity(self, message: Any) -> None:
+        if message.linear.x == 0.0 and message.angular.z == 0.0:
+            self._commanded()
+
+    def _on_emergency(self, message: Any) -> None:
+        if message.data:
+            self._commanded()
+
+    def _commanded(self) -> None:
+        with self.changed:
+            self._record.commands.append(time.time())
+
+    def _on_status(self, message: Any) -> None:
+        now = time.time()
+        with self.changed:
+            for one in message.status_list:
+                key, began = bytes(one.goal_info.goal_id.uuid), time_of(one.goal_info.stamp)
+                if began < now - KEPT:
                     continue
-                if status.status in TOLD and self._told_at is None:
-                    self._told_at = now
-                self.arrived = self.arrived or status.status == SUCCEEDED
-                if status.status in (*TOLD, SUCCEEDED):
-                    self._over.add(goal)
-            self._changed.notify_all()
+                goal = self._record.goals.setdefault(key, Goal(began))
+                if goal.ended is None and one.status in (CANCELING, CANCELED):
+                    self._record.commands.append(now)
+                if goal.ended is None and one.status in (SUCCEEDED, CANCELED, ABORTED):
+                    goal.ended, goal.arrived = now, one.status == SUCCEEDED
+            self.changed.notify_all()
 
-    def _joints(self, message: Any) -> None:
-        now = time.monotonic()
-        slow = all(abs(velocity) < self._still.velocity for velocity in message.velocity)
-        with self._changed:
-            self._positions = dict(zip(message.name, message.position, strict=False))
-            if self._told_at is None or self._slow_since is None:
-                apart = [abs(at - self._mark.get(name, at)) for name, at in self._positions.items()]
-                self.travel = max([self.travel, *apart])
-            self._slow_since = (self._slow_since or now) if slow else None
-            self._changed.notify_all()
+    def since(self, at: float) -> Recording:
+        """A copy of what was seen since a moment (s since 1970)."""
+        with self.changed:
+            return self._record.since(at)
 
-    def _receipt(self, receipt: Any) -> None:
-        with self._changed:
-            if receipt.stamp.sec + receipt.stamp.nanosec * 1e-9 >= self._marked:
-                self._receipts.append(receipt)
-            self._changed.notify_all()
+    def wait(self, holds: Callable[[Recording], bool], since: float, seconds: float) -> bool:
+        """Until what was seen since a moment is enough; False when it is not in time."""
+        with self.changed:
+            return bool(self.changed.wait_for(lambda: holds(self._record.since(since)), seconds))
 
-    def moving(self) -> bool:
-        """Whether the last joint state showed a motion."""
-        return bool(self._positions) and self._slow_since is None
-
-    def fresh(self) -> bool:
-        """Whether a motion has begun a moment ago."""
-        with self._changed:
-            ages = [time.monotonic() - at for goal, at in self._begun.items() if goal not in self._over]
-        return self.moving() and any(FRESH[0] < age < FRESH[1] for age in ages)
-
-    def wait_told(self, seconds: float) -> float | None:
-        """Monotonic time at which the controller was told to stop since the mark; None at once if it had arrived."""
-        with self._changed:
-            self._changed.wait_for(lambda: self._told_at is not None or self.arrived, seconds)
-            return self._told_at
-
-    def unharmed(self, seconds: float) -> bool:
-        """Whether nobody told the controller to stop for that long."""
-        with self._changed:
-            return not self._changed.wait_for(lambda: self._told_at is not None, seconds)
-
-    def wait_standing(self, seconds: float) -> float | None:
-        """Monotonic time at which it began to stand, once it has stood for long enough."""
-        with self._changed:
-            self._changed.wait_for(self._standing, seconds)
-            return self._slow_since if self._standing() else None
-
-    def _standing(self) -> bool:
-        return self._slow_since is not None and time.monotonic() - self._slow_since >= self._still.seconds
-
-    def wait_receipts(self, seconds: float) -> list[Any]:
-        """The gateway's receipts (tms_msg_rc/StopReceipt) of stops since the mark; empty if none came."""
-        with self._changed:
-            self._changed.wait_for(lambda: bool(self._receipts), seconds)
-            return list(self._receipts)
+    def open_since(self) -> float | None:
+        """When the goal that is under way now began."""
+        with self.changed:
+            return max((one.began for one in self._record.goals.values() if one.ended is None), default=None)

@@ -1,52 +1,93 @@
-"""The drill's one-page report, in Markdown, Japanese and English."""
+"""What the drill prints, and its page in Markdown, Japanese and English."""
 
 from collections.abc import Sequence
 from typing import Any
 
-from tms_cli.drill.rows import Row
+from tms_cli.drill.verdict import Row
 
-HEAD = "| process | node | how | told to stop [s] | stood after [s] | travel [rad] | confirmed | back [s] | outcome |"
-RULE = "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"
+FACTS = (
+    ("trials", "Trials", "試行回数"),
+    ("kills", "of them with SIGKILL", "うち強制終了"),
+    ("false_receipts", "Confirmed, and truly moving", "停止確認と実際の動きの不一致"),
+    ("ran_on", "Moved for longer than it may", "許容時間を超えて動いた回数"),
+    ("unconfirmed", "Stops not confirmed", "停止を確認できなかった回数"),
+    ("unconfirmed_in_order", "of them with machine and reports in order, one process lost", "うち機械が正常な場合"),
+    ("unlatched", "Not confirmed, and not latched", "未確認かつラッチなし"),
+    ("disturbed", "Stopped without need", "不要な停止"),
+    ("hung", "Runs left hanging", "終わらなかった実行"),
+    ("not_back", "Processes that did not come back", "復帰しなかったプロセス"),
+    ("left_out", "Trials left out", "未実施"),
+    ("kill_to_stop_p50_s", "Stop command after a loss, p50 [s]", "停止指令まで 中央値"),
+    ("kill_to_stop_p99_s", "Stop command after a loss, p99 [s]", "停止指令まで 99 %"),
+    ("kill_to_stop_max_s", "Stop command after a loss, max [s]", "停止指令まで 最大"),
+    ("stop_p50_s", "True stand-still, p50 [s]", "実際の停止まで 中央値"),
+    ("stop_p99_s", "True stand-still, p99 [s]", "実際の停止まで 99 %"),
+    ("back_max_s", "Process back after, max [s]", "復帰まで 最大"),
+    ("seed", "Seed", "乱数の種"),
+)
+STOPS = ("machine", "stop", "trials", "stood_p50_s", "stood_max_s", "joint", "travel_max_rad", "travel_max_m")
 
 
 def line(row: Row) -> str:
-    """One trial as a row of the table."""
-    parts = [
-        row.process, row.node, row.how, _number(row.kill_to_stop_s), _number(row.stop_s), f"{row.travel:.3f}",
-        "yes" if row.confirmed else "NO", _number(row.back_s), row.outcome,
-    ]  # fmt: skip
-    return f"| {' | '.join(parts)} |"
+    """One trial, for its progress."""
+    verdicts = [name for name in ("unconfirmed", "unlatched", "ran_on", "disturbed") if getattr(row, name)]
+    if row.false_receipt:
+        verdicts.append(f"FALSE RECEIPT: {row.false_receipt}")
+    seen = "confirmed" if row.confirmed else ", ".join(verdicts) or "nothing was due"
+    what = ", ".join(dict.fromkeys([seen, *verdicts]))
+    return (
+        f"{row.machine}: {row.stop}, {row.fault}: {what}; stood after {_text(row.stood_s)} s, "
+        f"{row.travel_rad:.3f} rad, {row.travel_m:.2f} m; {row.outcome}"
+    )
+
+
+def text(figures: dict[str, Any]) -> str:
+    """For a terminal."""
+    facts = [f"{figures_name(name)}: {_text(figures[name])}" for name, _, _ in FACTS]
+    rows = [STOPS, *([_text(one[name]) for name in STOPS] for one in figures["stops"])]
+    widths = [max(len(row[column]) for row in rows) for column in range(len(STOPS))]
+    table = ["  ".join(word.ljust(width) for word, width in zip(row, widths, strict=True)).rstrip() for row in rows]
+    return "\n".join([*table, "", *facts])
+
+
+def figures_name(key: str) -> str:
+    """A figure in English."""
+    return next(english for name, english, _ in FACTS if name == key)
 
 
 def markdown(rows: Sequence[Row], figures: dict[str, Any], site: str) -> str:
     """The page."""
-    hung, unseen = figures["hung"], figures["unconfirmed"]
-    facts = [
-        ("Kills (SIGKILL) / 強制終了の回数", figures["kills"]),
-        ("Trials / 試行回数", figures["trials"]),
-        ("Stops not confirmed / 停止を確認できなかった回数", unseen),
-        ("Runs left hanging / 終わらなかった実行", hung),
-        ("Processes that did not come back / 復帰しなかったプロセス", figures["not_back"]),
-        ("Cases left out / 未実施", figures["left_out"]),
-        ("Told to stop after, p50 [s] / 停止指令まで 中央値", _number(figures["kill_to_stop_p50_s"])),
-        ("Told to stop after, p99 [s] / 停止指令まで 99 %", _number(figures["kill_to_stop_p99_s"])),
-        ("Told to stop after, max [s] / 停止指令まで 最大", _number(figures["kill_to_stop_max_s"])),
-        ("Stood after the command, p50 [s] / 停止まで 中央値", _number(figures["stop_p50_s"])),
-        ("Stood after the command, p99 [s] / 停止まで 99 %", _number(figures["stop_p99_s"])),
-        ("Process back after, p50 [s] / 復帰まで 中央値", _number(figures["back_p50_s"])),
-        ("Process back after, max [s] / 復帰まで 最大", _number(figures["back_max_s"])),
-    ]
-    table = "\n".join(f"| {name} | {value} |" for name, value in facts)
-    body = "\n".join(line(row) for row in rows)
+    facts = _table(["figure / 項目", "value / 値"], [[f"{e} / {j}", _text(figures[n])] for n, e, j in FACTS])
+    stops = _table(list(STOPS), [[_text(one[name]) for name in STOPS] for one in figures["stops"]])
+    head = ["machine", "stop", "fault", "told [s]", "stood [s]", "rad", "m", "back [s]", "outcome", "receipts", "wrong"]
+    body = _table(head, [_cells(row) for row in rows])
     return (
         f"# Stop drill / 停止訓練: {site}\n\n"
-        "Processes were hit while a simulated machine moved. A process that stands behind the motion must stop the "
-        "machine; any other one must not.\n\n"
-        "シミュレーションの機械が動いている間に各プロセスを停止させた。動作を担うプロセスでは機械が停止し、"
-        "それ以外では動作が続くことを確認する。\n\n"
-        f"| figure / 項目 | value / 値 |\n| --- | --- |\n{table}\n\n{HEAD}\n{RULE}\n{body}\n"
+        "Simulated machines were stopped in every way, or what stands behind their motion was lost, while they did or "
+        "told the wrong thing. Each receipt was compared with the true motion.\n\n"
+        "シミュレーションの機械をあらゆる方法で停止させ、またはその動作を担うプロセスを失わせた。機械には故障や誤った報告も"
+        "与え、各停止記録を実際の動きと比較した。\n\n"
+        f"{facts}\n\nTime and travel to stand-still, machines in order / 停止までの時間と移動量(機械が正常な場合)\n\n"
+        f"{stops}\n\n{body}\n"
     )
 
 
-def _number(value: float | None) -> str:
-    return "-" if value is None else f"{value:.3f}"
+def _cells(row: Row) -> list[str]:
+    wrong = [name for name in ("unlatched", "ran_on", "disturbed") if getattr(row, name)]
+    wrong += ["unconfirmed"] if row.unconfirmed else []
+    return [
+        row.machine, row.stop, row.fault, _text(row.told_s), _text(row.stood_s), _text(row.travel_rad),
+        _text(row.travel_m), _text(row.back_s), row.outcome, "; ".join(row.receipts).replace("|", "/"),
+        ", ".join([*wrong, *filter(None, [row.false_receipt])]),
+    ]  # fmt: skip
+
+
+def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join(f"| {' | '.join(row)} |" for row in lines)
+
+
+def _text(value: Any) -> str:
+    if value is None:
+        return "-"
+    return f"{value:.3f}" if isinstance(value, float) else str(value)

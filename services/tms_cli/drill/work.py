@@ -1,100 +1,137 @@
-"""The run that the drill disturbs: begun, followed, resumed when its scheduler was lost, and ended."""
+"""The run that moves one machine: begun and ended for each trial, and the machine re-armed as a person does it."""
 
+import json
 import time
-from collections.abc import Sequence
 from typing import Any
 
+from std_msgs.msg import String
+from tms_msg_db.srv import AddTask
 from tms_msg_ts.action import ExecuteTask
 from tms_msg_ts.srv import CancelRun
 
-from tms_cli import mesh, session
+from tms_cli import session, stored_records
 from tms_cli.commands import rearm
+from tms_cli.commands.runs import has_ended, recent
+from tms_cli.drill import tasks
+from tms_cli.drill.plan import fault_of
 from tms_core.config import Site
 from tms_core.errors import TmsError
 from tms_core.ros import Call, Ros
 
-ARM_LIMIT = 15.0  # s for the machine to be armed again
+ARM_LIMIT = 30.0  # s for the machine to be armed again
 SERVER_LIMIT = 20.0  # s for the scheduler to be there
 END_LIMIT = 20.0  # s for a cancelled run to end
-LOOK = 0.1  # s
+ANSWER_LIMIT = 12.0  # s for the gateway to re-arm
+LOOK = 0.2  # s
 
 
 class Work:
-    """One run after another of one task; `leaf` is the number of the leaf that is RUNNING, -1 before the first."""
+    """Of one machine."""
 
-    def __init__(self, node: Ros, site: Site, machine: str, task_id: int, paths: Sequence[str]) -> None:
-        self._node, self._site, self._machine, self._task, self._paths = node, site, machine, task_id, paths
+    def __init__(self, node: Ros, site: Site, machine: str) -> None:
+        from tms_ts import bt
+
+        self._node, self._site, self.machine = node, site, machine
+        tree, records = tasks.task(site, machine)
+        self._subtasks = {goal.path: f"{machine}:{goal.subtask}" for goal in bt.load(tree).leaf_goals()}
+        for name, values in records.items():
+            stored_records.write(node, (machine, name), values, create=True, type="static", description="stop drill")
+        stored = session.call(node, AddTask, "/tms/db/add_task", task_sequence=tree, description=f"drill {machine}")
+        self._task = stored.task_id
         self._peer = node.peer(ExecuteTask, "/tms/execute_task")
+        self._fault = node.publisher(String, f"/{machine}/sim/fault")
         self._call: Call | None = None
-        self._run_id = ""
-        self.leaf = -1
-        self.losses = 0  # of processes during the goal of the present leaf
-        self.lost = False  # its scheduler was lost: whether it waits to be resumed tells the history
+        self._run = ""
+        self._lost = False  # its scheduler was lost: only the history tells how it ended
+        self.subtask = next(iter(self._subtasks.values()))  # the process behind the present leaf
+
+    def be(self, fault: str) -> None:
+        """Switch a fault of the stand-in on; `none` is a machine in order."""
+        joints = list(self._site.model_of(self.machine).joints)
+        self._fault.publish(String(data=json.dumps(fault_of(fault, joints))))
+
+    def begin(self) -> None:
+        """Start the task with the machine armed.
+
+        Raises:
+            TmsError: it cannot be armed, or the run does not begin.
+        """
+        self.arm()
+        self._peer.wait_ready(SERVER_LIMIT)
+        self._run, self._lost = "", False
+        goal = ExecuteTask.Goal(task_id=self._task, ignore_warnings=True)
+        self._call = self._peer.send(goal, on_feedback=self._heard)
+
+    def cancel(self) -> None:
+        """Ask for the end of the run; returns at once."""
+        if self._call is not None:
+            self._peer.cancel(self._call)
+
+    def scheduler_lost(self) -> None:
+        """The client's side of it: nothing more will be heard of this goal."""
+        self._lost = True
+        self._peer.lost()
 
     def outcome(self) -> str | None:
-        """How the run ended, as its client is told; None while it goes on."""
-        call = self._call
-        if call is None or call.outcome is None or self.lost:
+        """How the run ended; None while it goes on."""
+        if self._lost:
+            return "interrupted" if self._interrupted() else None
+        if self._call is None or self._call.outcome is None:
             return None
-        return str(getattr(call.result, "outcome", "refused"))
+        result = self._call.result
+        return str(getattr(result, "outcome", "refused"))
 
-    def idle(self) -> bool:
-        """Whether nothing runs, and nothing waits to be resumed."""
-        return not self.lost and (self._call is None or self._call.outcome is not None)
+    def reason(self) -> str:
+        """Why the run ended as it did."""
+        return str(getattr(self._call.result, "error_msg", "")) if self._call is not None else ""
 
-    def interrupted(self) -> bool:
-        """Whether the run waits for somebody to resume it."""
-        from tms_cli.commands.runs import has_ended, recent
+    def end(self) -> None:
+        """Leave no run behind, whatever became of it.
 
+        Raises:
+            TmsError: it does not end.
+        """
+        self.be("none")
+        deadline = time.monotonic() + END_LIMIT
+        self.cancel()
+        while self._call is not None and self.outcome() is None:
+            if time.monotonic() > deadline:
+                raise TmsError(f"run {self._run} does not end")
+            time.sleep(LOOK)
+        if self._interrupted():
+            session.call(self._node, CancelRun, "/tms/abandon_run", run_id=self._run)
+        self._call = None
+
+    def _interrupted(self) -> bool:
+        if not self._run:
+            return self._lost
         try:
-            run = recent(self._node, self._run_id)
+            run = recent(self._node, self._run)
         except TmsError:
             return False  # the database may be what was hit
         return run is not None and has_ended(run) and run.state == "interrupted"
 
-    def begin(self, resume: bool = False) -> None:
-        """Start the task, or let its interrupted run go on.
+    def _heard(self, feedback: Any) -> None:
+        self._run = feedback.run_id or self._run
+        self.subtask = self._subtasks.get(feedback.running_leaf, self.subtask)
+
+    def arm(self) -> None:
+        """Both steps of a person, again until the machine stands.
 
         Raises:
-            TmsError: the mesh does not get ready, the machine cannot be armed, or the run does not begin.
+            TmsError: it cannot be armed.
         """
-        mesh.wait_ready(self._site, lambda text: None)
-        self._arm()
-        self._peer.wait_ready(SERVER_LIMIT)
-        goal = ExecuteTask.Goal(resume=self._run_id) if resume else ExecuteTask.Goal(task_id=self._task)
-        self.leaf, self.losses, self.lost = -1, 0, False
-        self._call = self._peer.send(goal, on_feedback=self._heard)
-
-    def end(self) -> None:
-        """Cancel the run, or give it up when its scheduler was lost."""
-        call = self._call
-        if call is None:
-            return
-        self._peer.cancel(call)
-        call.wait_for(lambda: call.outcome is not None, END_LIMIT)
-        if self.lost and self.interrupted():
-            session.call(self._node, CancelRun, "/tms/abandon_run", run_id=self._run_id)
-
-    def scheduler_lost(self) -> None:
-        """The client's side of it: nothing more will be heard of this goal."""
-        self.lost = True
-        self._peer.lost()
-
-    def _heard(self, feedback: Any) -> None:
-        self._run_id = feedback.run_id or self._run_id
-        if feedback.running_leaf in self._paths:
-            leaf = self._paths.index(feedback.running_leaf)
-            self.leaf, self.losses = leaf, self.losses if leaf == self.leaf else 0
-
-    def _arm(self) -> None:
         deadline = time.monotonic() + ARM_LIMIT
         while True:
             try:
-                rearm.ask(self._node, self._machine, rearm.ask(self._node, self._machine).token)
+                self._arm_once()
                 return
             except TmsError as error:
-                if error.code == "NOT_STOPPED":
+                if error.code == rearm.ARMED:
                     return
                 if time.monotonic() > deadline:
                     raise
             time.sleep(LOOK)
+
+    def _arm_once(self) -> None:
+        rearm.ask(self._node, self.machine, rearm.ask(self._node, self.machine).token)

@@ -1,0 +1,99 @@
+"""Kills, freezes and restarts what a stop names, and tells when it is back."""
+
+import os
+import signal
+import threading
+import time
+from collections.abc import Mapping, Sequence
+
+import psutil
+
+from tms_cli import mesh
+from tms_cli.drill.plan import RC, RP, SUBTASK, How, Stop
+from tms_cli.drill.stand_ins import GROUP
+from tms_core.config import Site
+from tms_core.errors import TmsError
+from tms_core.processes import find, table
+from tms_host.supervisor import Supervisor
+
+FROZEN = 2.0  # s
+BACK_LIMIT = 40.0  # s
+LOOK = 0.1  # s
+
+
+class Hits:
+    """One thread at a time uses one object: supervisord's client is not safe for more."""
+
+    def __init__(self, site: Site) -> None:
+        self._site = site
+        self._there = {row.full for row in table(site)}
+
+    def names(self, stop: Stop, subtasks: Mapping[str, str]) -> list[str]:
+        """The processes that a stop hits. `subtasks`: the one behind the present leaf of each machine that is hit."""
+        found = [process for process in stop.processes if process not in (RC, RP, SUBTASK)]
+        for machine, subtask in subtasks.items():
+            found += [f"{machine}:{name}" for name in (RC, RP) if name in stop.processes]
+            found += [subtask] if SUBTASK in stop.processes else []
+        return [name for name in found if name in self._there]
+
+    def pids(self, names: Sequence[str]) -> dict[str, int]:
+        """Asked before the hit, so that the signals leave together.
+
+        Raises:
+            TmsError: one does not run.
+        """
+        running = {row.name: row.pid for row in Supervisor(self._site).processes()}
+        missing = [name for name in names if not running.get(name)]
+        if missing:
+            raise TmsError(f"{', '.join(missing)} does not run: see `tms ps`")
+        return {name: running[name] for name in names}
+
+    def everything(self) -> list[int]:
+        """All that a power cut ends, supervisord first."""
+        top = psutil.Process(Supervisor(self._site).pid())
+        return [top.pid, *(child.pid for child in top.children(recursive=True))]
+
+    def hit(self, how: How, pids: Sequence[int]) -> float:
+        """Send the signals; when the first one left (s since 1970)."""
+        at = time.time()
+        _signal(signal.SIGSTOP if how is How.FREEZE else signal.SIGKILL, pids)
+        if how is How.FREEZE:
+            threading.Timer(FROZEN, _signal, (signal.SIGCONT, pids)).start()
+        return at
+
+    def back(self, how: How, pids: Mapping[str, int], hit: float) -> float | None:
+        """Seconds from the hit until everything works again; None: not in time."""
+        waiting = dict(pids)
+        if how is How.FREEZE:
+            time.sleep(max(0.0, hit + FROZEN - time.time()))
+        while time.time() - hit < BACK_LIMIT:
+            running = {row.name: row.pid for row in Supervisor(self._site).processes()}
+            for name, pid in list(waiting.items()):
+                if self._works(name, running.get(name, 0), pid, how):
+                    del waiting[name]
+            if not waiting:
+                return time.time() - hit
+            time.sleep(LOOK)
+        return None
+
+    def _works(self, name: str, pid: int, before: int, how: How) -> bool:
+        row = find(self._site, name)
+        new = bool(pid) and (how is How.FREEZE or pid != before)
+        return new and (not row.ours or mesh.unready(row) is None)
+
+    def power_on(self, hit: float) -> float | None:
+        """Start everything again after a power cut."""
+        mesh.up(self._site, without=GROUP)
+        try:
+            mesh.wait_ready(self._site, lambda _: None)
+        except TmsError:
+            return None
+        return time.time() - hit
+
+
+def _signal(number: signal.Signals, pids: Sequence[int]) -> None:
+    for pid in pids:
+        try:
+            os.kill(pid, number)
+        except ProcessLookupError:
+            continue  # it had ended, or was replaced, in the meantime

@@ -1,0 +1,158 @@
+"""What is tried: kinds of stop x faults of the machine, dealt to the machines by a seed. Pure logic."""
+
+import random
+from collections import deque
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+RC, RP, SUBTASK = "rc", "rp", "subtask"  # of the machine that is hit
+TS = "tms:ts"
+BYSTANDERS = ("tms:db", "tms:sp", "tms:ur", "tms:host", "tms:store")  # stand behind no motion
+WAVES, QUICK_WAVES = 16, 2  # of stops that concern one machine, a round
+DELAY = (0.05, 1.6)  # s after its goal began at which a machine is hit
+AROUND = (-0.6, 0.5)  # s from the hit to the moment at which a fault is switched on
+
+
+class How(Enum):
+    """What is done."""
+
+    CANCEL = "cancel"  # its run
+    SOFTWARE = "software stop"
+    KILL = "kill"
+    FREEZE = "freeze"
+    POWER = "power cut"
+
+
+@dataclass(frozen=True)
+class Stop:
+    """One kind of stop."""
+
+    how: How
+    processes: tuple[str, ...] = ()
+    shared: bool = False  # hits all machines at once
+    moves: bool = True  # what is hit stands behind the motion; else the run is cancelled a moment later
+    covered: bool = True  # a gateway or the host agent is left to stop the machine
+    latches: bool = False  # nothing may move afterwards until a person has re-armed
+
+    @property
+    def name(self) -> str:
+        """For people."""
+        return " ".join([self.how.value, *(["+".join(self.processes)] if self.processes else [])])
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One stop of one machine."""
+
+    machine: str
+    stop: Stop
+    fault: str
+    fault_at: float  # s from the hit
+    delay: float  # s from the begin of a motion to the hit; where all are hit at once, the first trial's counts
+
+
+BOTH = (How.KILL, How.FREEZE)
+SINGLE = (
+    Stop(How.CANCEL),
+    Stop(How.SOFTWARE, latches=True),
+    *(Stop(how, (process,)) for how in BOTH for process in (SUBTASK, RP, RC)),
+)
+BESIDE = tuple(tuple(Stop(how, (process,), moves=False) for process in BYSTANDERS) for how in BOTH)
+SHARED = (
+    *(Stop(how, (TS,), shared=True, latches=True) for how in BOTH),
+    *(Stop(how, (RC, TS), shared=True, latches=True) for how in BOTH),
+    *(Stop(how, (RC, TS, RP, SUBTASK), shared=True, latches=True) for how in BOTH),
+    Stop(How.KILL, (RC, "tms:host"), shared=True, covered=False),
+    Stop(How.POWER, shared=True, covered=False, latches=True),
+)
+NONE = "none"
+LIES: Mapping[str, Mapping[str, Any]] = {  # of what the machine tells; it moves as it should
+    "zero_velocity": {"zero_velocity": True},
+    "frozen_stamp": {"frozen_stamp": True},
+    "replay": {"replay": True},
+    "mute": {"mute": True},  # a joint of the machine: see `fault_of`
+    "second_publisher": {"second_publisher": True},
+    "jump": {"jump": 0.5},  # rad, m
+    "nan": {"nan": True},
+    "back_in_time": {"back_in_time": 5.0},  # s
+}
+COAST = 3.0  # s
+UNKIND: Mapping[str, Mapping[str, Any]] = {  # of how it moves
+    "coast": {"coast": COAST},
+    "dead_time": {"dead_time": 0.6},  # s
+    "creep": {"creep": 0.05},  # rad/s, m/s
+    "ignore_cancel": {"ignore_cancel": True},
+    "ignore_emg_stop": {"ignore_emg_stop": True},
+    "drift": {"drift": 0.05},  # rad/s, m/s
+    "stall": {"stall": 1.0},  # s
+    "late": {"late": 0.5},  # s
+}
+COASTING: Mapping[str, Mapping[str, Any]] = {  # they have fooled receipts
+    f"coast+{name}": {"coast": COAST, **lie} for name, lie in LIES.items()
+}
+    f"coast+{name}": {"coast": COAST, **lie} for name, lie in LIES.items()
+}  # they have fooled receipts
+FAULTS: Mapping[str, Mapping[str, Any]] = {NONE: {}, **LIES, **UNKIND, **COASTING}
+IN_ORDER = (NONE, *LIES)  # the machine does what it is told
+OFTEN = 3  # times that each stop is tried without a fault for once with each
+
+
+def fault_of(name: str, joints: Sequence[str]) -> dict[str, Any]:
+    """What to tell a stand-in (tms_core.site_file.Fault)."""
+    fault = dict(FAULTS[name])
+    return {**fault, "mute": [joints[0]]} if "mute" in fault else fault
+
+
+def plan(seed: int, planners: Mapping[str, bool], rounds: int, quick: bool) -> list[list[Trial]]:
+    """Waves of one trial a machine. `planners`: each machine and whether it has a planner (rp) of its own."""
+    dealer = _Dealer(seed, planners)
+    waves = []
+    for _ in range(rounds):
+        round_ = [dealer.mixed([stop] * len(planners)) for stop in SHARED]
+        # A bystander each; a machine that is left over is cancelled.
+        round_ += [dealer.mixed([*stops, *[SINGLE[0]] * len(planners)]) for stops in BESIDE]
+        round_ += [dealer.single() for _ in range(QUICK_WAVES if quick else WAVES)]
+        dealer.dice.shuffle(round_)
+        waves += round_
+    return waves
+
+
+class _Dealer:
+    """Two decks, each gone through before it begins again."""
+
+    def __init__(self, seed: int, planners: Mapping[str, bool]) -> None:
+        self.dice, self._planners = random.Random(seed), planners
+        pairs = [(stop, fault) for stop in SINGLE for fault in [*FAULTS, *[NONE] * (OFTEN - 1)]]
+        self.dice.shuffle(pairs)
+        first = {stop: (stop, fault) for stop, fault in pairs}  # each stop early, for a short drill
+        self._pairs = deque([*first.values(), *(pair for pair in pairs if pair not in first.values())])
+        faults = [name for name in FAULTS if name != NONE]
+        self.dice.shuffle(faults)
+        self._faults = deque(faults)
+
+    def single(self) -> list[Trial]:
+        """For each machine the next pair that it can do."""
+        return [self._trial(name, *self._next(planner)) for name, planner in self._planners.items()]
+
+    def mixed(self, stops: Sequence[Stop]) -> list[Trial]:
+        """Given stops; every second machine is in order, since figures are measured there."""
+        first = self.dice.randrange(2)
+        return [
+            self._trial(machine, stops[number], NONE if number % 2 == first else self._fault())
+            for number, machine in enumerate(self._planners)
+        ]
+
+    def _next(self, planner: bool) -> tuple[Stop, str]:
+        pair = next(pair for pair in self._pairs if planner or RP not in pair[0].processes)
+        self._pairs.remove(pair)
+        self._pairs.append(pair)
+        return pair
+
+    def _fault(self) -> str:
+        self._faults.rotate(-1)
+        return self._faults[-1]
+
+    def _trial(self, machine: str, stop: Stop, fault: str) -> Trial:
+        return Trial(machine, stop, fault, self.dice.uniform(*AROUND), self.dice.uniform(*DELAY))

@@ -1,0 +1,94 @@
+"""What was seen of one machine during one trial: the truth, and what we said of it. All times are s since 1970."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from tms_core.models import Still
+
+
+@dataclass(frozen=True)
+class Sample:
+    """The true motion at one moment."""
+
+    at: float
+    share: float  # of the limit below which it counts as standing, of the part that is nearest to it or beyond
+    joints: Mapping[str, float]  # rad
+    place: tuple[float, float]  # m
+
+
+@dataclass(frozen=True)
+class Receipt:
+    """tms_msg_rc/StopReceipt, and when it came."""
+
+    begun: float
+    seconds: float
+    confirmed: bool
+    cause: str
+    detail: str
+    came: float
+
+    @property
+    def at(self) -> float:
+        """When the machine was said to stand."""
+        return self.begun + self.seconds
+
+
+@dataclass
+class Goal:
+    """At one of the machine's own action servers."""
+
+    began: float
+    ended: float | None = None
+    arrived: bool = False  # it ended by itself
+
+
+@dataclass(frozen=True)
+class State:
+    """tms_msg_rc/MachineState, as much as counts."""
+
+    at: float
+    latch: str
+    hold: str
+
+
+@dataclass
+class Recording:
+    """Filled from the executor thread; the verdict looks at a copy."""
+
+    truth: list[Sample] = field(default_factory=list)
+    receipts: list[Receipt] = field(default_factory=list)
+    goals: dict[bytes, Goal] = field(default_factory=dict)
+    states: list[State] = field(default_factory=list)
+    commands: list[float] = field(default_factory=list)  # to stop, as they reach the machine
+
+    def since(self, at: float) -> "Recording":
+        """What came after a moment, the goals that were open then, and the last state before it."""
+        return Recording(
+            [one for one in self.truth if one.at >= at],
+            [one for one in self.receipts if one.begun >= at],
+            {key: one for key, one in self.goals.items() if one.ended is None or one.ended >= at},
+            [*[one for one in self.states if one.at < at][-1:], *[one for one in self.states if one.at >= at]],
+            [one for one in self.commands if one >= at],
+        )
+
+    def goal_after(self, at: float) -> float:
+        """When the first goal after a moment began; infinite if none did."""
+        return min((goal.began for goal in self.goals.values() if goal.began > at), default=math.inf)
+
+
+def sample_of(message: Any, still: Still) -> Sample:
+    """Of the stand-in's sensor_msgs/JointState: joints, then x, y and yaw of the tracks."""
+    places = dict(zip(message.name, message.position, strict=True))
+    speeds = dict(zip(message.name, message.velocity, strict=True))
+    x, y, yaw = (places.pop(name, 0.0) for name in ("x", "y", "yaw"))
+    way = math.hypot(speeds.pop("x", 0.0), speeds.pop("y", 0.0)) / still.linear
+    turn = abs(speeds.pop("yaw", 0.0)) / still.angular
+    joints = max((abs(speed) for speed in speeds.values()), default=0.0) / still.velocity
+    return Sample(time_of(message.header.stamp), max(joints, way, turn), {**places, "heading": yaw}, (x, y))
+
+
+def time_of(stamp: Any) -> float:
+    """s since 1970."""
+    return float(stamp.sec + stamp.nanosec * 1e-9)

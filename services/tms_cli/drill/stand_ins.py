@@ -1,0 +1,43 @@
+"""The machines' stand-ins as children of the drill: they stand for machines, which no power cut of our PC stops."""
+
+import os
+import subprocess
+import sys
+from types import TracebackType
+
+from tms_core.config import Site
+from tms_core.environment import environment
+
+GROUP = "sim"  # of the process table
+END_LIMIT = 5.0  # s
+
+
+class StandIns:
+    """Started from the main thread: they end when it ends, whatever ends it."""
+
+    def __init__(self, site: Site) -> None:
+        self._children = [self._start(site, machine) for machine in site.file.machines]
+
+    def _start(self, site: Site, machine: str) -> "subprocess.Popen[bytes]":
+        with (site.state / "log" / f"{GROUP}.{machine}.log").open("ab") as log:
+            words = [sys.executable, "-m", "tms_core.run", f"{GROUP}:{machine}"]
+            env = {**os.environ, **environment(site)}
+            return subprocess.Popen(words, env=env, stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT)
+
+    def dead(self) -> list[str]:
+        """Stand-ins that have ended: the drill has no machine then."""
+        return [str(child.args[-1]) for child in self._children if child.poll() is not None]  # type: ignore[index]
+
+    def __enter__(self) -> "StandIns":
+        return self
+
+    def __exit__(self, _type: type[BaseException] | None, _error: BaseException | None,
+                 _trace: TracebackType | None) -> None:  # fmt: skip
+        for child in self._children:
+            child.terminate()
+        for child in self._children:
+            try:
+                child.wait(END_LIMIT)
+            except subprocess.TimeoutExpired:
+                child.kill()
+                child.wait()

@@ -1,0 +1,161 @@
+"""One trial: a machine that moves is hit at its moment, with its fault, and watched until all is said."""
+
+import time
+from concurrent.futures import Future
+from dataclasses import dataclass, field
+
+from tms_msg_rc.srv import StopMachine
+
+from tms_cli.drill.eyes import Eyes
+from tms_cli.drill.hits import BACK_LIMIT, Hits
+from tms_cli.drill.plan import NONE, TS, How, Stop, Trial
+from tms_cli.drill.record import Recording
+from tms_cli.drill.verdict import AFTER, BY_ITSELF, GOES_ON, HUNG, INTERRUPTED, TOLD, Row, Seen, judge
+from tms_cli.drill.work import Work
+from tms_core.config import Site
+from tms_core.ros import Ros
+from tms_rc.standstill import StandStill
+
+MOVES_LIMIT = 40.0  # s for a run to move its machine
+LEAD = 0.8  # s from the choice of the moment to the hit: a fault may come before it
+BESIDE = 1.0  # s for which a motion must go on when a process beside it is lost
+RECEIPT_LIMIT = 25.0  # s
+RUN_LIMIT = 40.0  # s from the hit for the run to go on, end, or be interrupted
+LATCH_LIMIT = 5.0  # s for a latch to be told after everything is back
+CREEP_STARTS = 3.0  # s of stand-still after which the fault `creep` moves
+LOOK = 0.5  # s
+CAUSE = "software stop by an operator"
+
+
+@dataclass
+class Struck:
+    """A hit that several machines may wait for."""
+
+    hit: "Future[float]" = field(default_factory=Future)  # s since 1970
+    back: "Future[float | None]" = field(default_factory=Future)  # s from the hit
+
+
+class Hand:
+    """All that one machine's trials need."""
+
+    def __init__(self, node: Ros, site: Site, machine: str) -> None:
+        self.machine, self.model = machine, site.file.machines[machine].model
+        self.eyes, self.work, self._node = Eyes(node, site, machine), Work(node, site, machine), node
+        watch = StandStill(site.model_of(machine), site.border(machine), site.file.sim.speed)
+        self._ends = watch.dead_time + watch.braking
+        self._hits = Hits(site)
+        node.prepare(StopMachine, f"/{machine}/rc/stop")
+
+    def begin(self) -> float | None:
+        """Have the machine moved; when its goal began, None when it does not move."""
+        self.work.begin()
+        begun = time.time()
+        self.eyes.wait(lambda record: bool(self._open(record)), begun, MOVES_LIMIT)
+        return self.eyes.open_since()
+
+    def moment(self, trial: Trial) -> float:
+        """When to hit: at the trial's delay after the begin of a motion."""
+        deadline = time.time() + MOVES_LIMIT
+        while time.time() < deadline:
+            began = self.eyes.open_since()
+            if began is not None and began + trial.delay > time.time() - LEAD:
+                break
+            time.sleep(LOOK / 10)
+        return max(time.time(), (began or 0.0) + trial.delay)
+
+    def strike(self, stop: Stop, at: float, hands: "list[Hand]", struck: Struck) -> None:
+        """Hit these machines at a moment, and tell when what was lost is back. In a thread of its own."""
+        try:
+            self._strike(stop, at, hands, struck)
+        except Exception as error:  # whoever waits for it must hear of it
+            for future in (struck.hit, struck.back):
+                if not future.done():
+                    future.set_exception(error)
+
+    def _strike(self, stop: Stop, at: float, hands: "list[Hand]", struck: Struck) -> None:
+        if stop.how in (How.CANCEL, How.SOFTWARE):
+            until(at)
+            struck.hit.set_result(time.time())
+            self.work.cancel() if stop.how is How.CANCEL else self._press()
+            struck.back.set_result(0.0)
+        elif stop.how is How.POWER:
+            pids = self._hits.everything()
+            until(at)
+            struck.hit.set_result(self._hits.hit(How.KILL, pids))
+            struck.back.set_result(self._hits.power_on(struck.hit.result()))
+        else:
+            found = self._hits.pids(self._hits.names(stop, {hand.machine: hand.work.subtask for hand in hands}))
+            until(at)
+            struck.hit.set_result(self._hits.hit(stop.how, list(found.values())))
+            struck.back.set_result(self._hits.back(stop.how, found, struck.hit.result()))
+
+    def _press(self) -> None:
+        self._node.post(StopMachine, f"/{self.machine}/rc/stop", StopMachine.Request(cause=CAUSE))
+
+    def watch(self, trial: Trial, at: float, struck: Struck) -> Row:
+        """The verdict of a trial that is hit at a moment."""
+        stop, begun = trial.stop, at
+        if trial.fault != NONE:
+            until(at + trial.fault_at)
+            begun = time.time()
+            self.work.be(trial.fault)
+        hit = struck.hit.result(MOVES_LIMIT)
+        begun, stopped = min(begun, hit), hit
+        if stop.how is How.POWER or (stop.how is How.KILL and TS in stop.processes):
+            self.work.scheduler_lost()
+        if not stop.moves:
+            until(hit + BESIDE)
+            stopped = time.time()
+            self.work.cancel()
+        self.eyes.wait(lambda record: self._over(record, begun, stopped), begun, RECEIPT_LIMIT)
+        self._look_on(trial, begun)
+        outcome = self._outcome(trial, stopped)
+        back = struck.back.result(2 * BACK_LIMIT)
+        record = self._last_words(trial, begun)
+        return judge(Seen(trial, self.model, record, begun, hit, stopped, self._ends, back, outcome))
+
+    def _open(self, record: Recording) -> bool:
+        return any(goal.ended is None for goal in record.goals.values())
+
+    def _over(self, record: Recording, begun: float, stopped: float) -> bool:
+        """A receipt, or a motion that was over before anybody could stop it."""
+        before = [goal for goal in record.goals.values() if goal.began <= begun]
+        arrived = all(goal.arrived and (goal.ended or 0.0) < stopped + BY_ITSELF for goal in before)
+        return bool(record.receipts) or (arrived and time.time() > stopped + BY_ITSELF)
+
+    def _look_on(self, trial: Trial, begun: float) -> None:
+        """For as long as a receipt promises that the machine stands."""
+        extra = CREEP_STARTS + TOLD + AFTER if "creep" in trial.fault else 0.0
+
+        def enough(record: Recording) -> bool:
+            at = max((one.at for one in record.receipts if one.confirmed), default=0.0) + AFTER + extra
+            return record.goal_after(at - AFTER - extra) < at or (bool(record.truth) and record.truth[-1].at > at + 0.1)
+
+        self.eyes.wait(enough, begun, 2 * AFTER + 2 * extra)
+
+    def _outcome(self, trial: Trial, stopped: float) -> str:
+        """The run goes on, has ended, or waits to be resumed."""
+        deadline = stopped + RUN_LIMIT
+        while time.time() < deadline:
+            if (ended := self.work.outcome()) is not None:
+                return INTERRUPTED if ended == "interrupted" else ended
+            record = self.eyes.since(stopped)
+            if trial.stop.moves and record.goal_after(stopped) < time.time():
+                return GOES_ON
+            time.sleep(LOOK)
+        return HUNG
+
+    def _last_words(self, trial: Trial, begun: float) -> Recording:
+        """A gateway that is back tells its latch a moment later."""
+
+        def told(record: Recording) -> bool:
+            wanted = trial.stop.latches or not all(one.confirmed for one in record.receipts)
+            return not wanted or (bool(record.states) and bool(record.states[-1].latch))
+
+        self.eyes.wait(told, begun, LATCH_LIMIT)
+        return self.eyes.since(begun)
+
+
+def until(at: float) -> None:
+    """Sleep until a moment (s since 1970)."""
+    time.sleep(max(0.0, at - time.time()))

@@ -1,0 +1,166 @@
+"""Compares what was told of a stop with the true motion. Pure logic; all times are s since 1970."""
+
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+from tms_cli.drill.plan import IN_ORDER, NONE, How, Trial
+from tms_cli.drill.record import Receipt, Recording, Sample
+
+TOLERANCE = 1.1  # of the limit of standing: the truth is sampled, and rounded by nobody
+FRAME = 0.02  # s between samples of the truth
+CLAIMED = 0.2  # s of standing that a receipt claims
+AFTER = 1.0  # s after it for which nothing may move either
+TOLD = 3.0  # s in which a motion that comes later must be told
+EXTRA = 3.0  # s beyond dead time and braking that a machine in order may move
+BY_ITSELF = 1.5  # s after the hit within which a motion that arrives was not stopped by anybody
+GOES_ON, INTERRUPTED, HUNG = "goes on", "interrupted", "hung"
+LEFT_OUT = "left out"
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What a trial has to be judged by."""
+
+    trial: Trial
+    model: str
+    record: Recording  # since `begun`
+    begun: float  # the fault or the hit, whichever came first
+    hit: float  # the signal or the command
+    stop: float  # the same; of a bystander when the run was cancelled
+    ends: float  # s, dead time and braking of the machine
+    back_s: float | None
+    outcome: str
+
+
+@dataclass
+class Row:
+    """One trial as --json tells it; times in s from the hit."""
+
+    machine: str
+    model: str
+    stop: str
+    how: str
+    fault: str
+    fault_at: float
+    in_order: bool = False
+    covered: bool = True
+    at: float = 0.0
+    due: bool = False  # a goal was open, and did not end by itself
+    told_s: float | None = None  # until the first stop command was at the machine
+    stood_s: float | None = None  # until it truly stood
+    travel_joint: str = ""
+    travel_rad: float = 0.0
+    travel_m: float = 0.0
+    back_s: float | None = None
+    outcome: str = LEFT_OUT
+    confirmed: bool = False
+    latched: bool = False
+    disturbed: bool = False  # stopped, although nothing behind its motion was lost
+    unconfirmed: bool = False
+    unlatched: bool = False
+    ran_on: bool = False
+    false_receipt: str = ""  # why it is one
+    receipts: list[str] = field(default_factory=list)
+
+    def as_dict(self) -> dict[str, Any]:
+        """For --json."""
+        return {name: round(value, 3) if isinstance(value, float) else value for name, value in asdict(self).items()}
+
+
+def empty(trial: Trial, model: str) -> Row:
+    """A trial that was not made."""
+    stop = trial.stop
+    return Row(trial.machine, model, stop.name, stop.how.value, trial.fault, trial.fault_at,
+               trial.fault in IN_ORDER, stop.covered)  # fmt: skip
+
+
+def judge(seen: Seen) -> Row:
+    """The whole verdict."""
+    row, record, stop = empty(seen.trial, seen.model), seen.record, seen.trial.stop
+    row.at, row.back_s, row.outcome, row.due = seen.hit, seen.back_s, seen.outcome, due(seen)
+    row.receipts = [text_of(one, seen.hit) for one in record.receipts]
+    row.false_receipt = next(filter(None, (lie(one, record) for one in record.receipts)), "")
+    row.latched = bool(record.states and record.states[-1].latch)
+    if not row.due:
+        return row
+    row.confirmed = bool(record.receipts) and all(one.confirmed for one in record.receipts)
+    row.unconfirmed = not row.confirmed
+    row.unlatched = (row.unconfirmed or stop.latches) and not row.latched
+    row.disturbed = not stop.moves and seen.trial.fault == NONE and any(r.begun < seen.stop for r in record.receipts)
+    row.told_s = told(seen)
+    _measure(row, seen)
+    late = row.stood_s is None or row.stood_s > seen.ends + EXTRA
+    row.ran_on = late and row.in_order and stop.covered
+    return row
+
+
+def due(seen: Seen) -> bool:
+    """Whether somebody had to stop the machine: it had a goal, which did not end by itself in the same moment."""
+    if seen.record.receipts:
+        return True
+    return any(
+        goal.began <= seen.begun and not (goal.arrived and (goal.ended or 0.0) < seen.stop + BY_ITSELF)
+        for goal in seen.record.goals.values()
+    )
+
+
+def moves(sample: Sample) -> bool:
+    """Whether the machine truly moved."""
+    return sample.share > TOLERANCE
+
+
+def lie(receipt: Receipt, record: Recording) -> str:
+    """Why a receipt is false; empty for an honest one."""
+    if not receipt.confirmed:
+        return ""
+    fresh = record.goal_after(receipt.at - FRAME)
+    moving = [one for one in record.truth if receipt.at - CLAIMED + FRAME < one.at < fresh and moves(one)]
+    before = [one for one in moving if one.at <= receipt.at]
+    if before:
+        return f"moved {receipt.at - before[-1].at:.2f} s before it was said to stand: {before[-1].share:.1f} x limit"
+    if not moving or _tells(moving[0].at, record, receipt):
+        return ""
+    late = moving[0].at - receipt.at
+    if late <= AFTER:
+        return f"moved {late:.2f} s after it was said to stand: {moving[0].share:.1f} x limit"
+    over = min(fresh, record.truth[-1].at) - moving[0].at > TOLD
+    return f"left stand-still {late:.2f} s after the receipt, and nobody told it" if over else ""
+
+
+def _tells(moved: float, record: Recording, receipt: Receipt) -> bool:
+    """Whether a later receipt takes it back in time."""
+    return any(
+        not one.confirmed and receipt.begun < one.begun < moved + TOLD and one.came > receipt.came
+        for one in record.receipts
+    )
+
+
+def told(seen: Seen) -> float | None:
+    """From a signal to the first stop command; None where nobody had to give one, or it was there before."""
+    stop, commands = seen.trial.stop, seen.record.commands
+    if stop.how not in (How.KILL, How.FREEZE) or not (stop.moves and stop.covered):
+        return None
+    return commands[0] - seen.hit if commands and commands[0] >= seen.hit else None
+
+
+def _measure(row: Row, seen: Seen) -> None:
+    """Time and travel to the true stand-still."""
+    truth = [one for one in seen.record.truth if seen.stop <= one.at < seen.record.goal_after(seen.stop)]
+    if not truth:
+        return
+    last = next((number for number in reversed(range(len(truth))) if moves(truth[number])), None)
+    if last == len(truth) - 1:
+        return  # it never stood
+    end = truth[0] if last is None else truth[last + 1]
+    row.stood_s = 0.0 if last is None else end.at - seen.stop
+    ways = {name: abs(angle - truth[0].joints[name]) for name, angle in end.joints.items()}
+    row.travel_joint = max(ways, key=lambda name: ways[name], default="")
+    row.travel_rad = ways.get(row.travel_joint, 0.0)
+    (x, y), (x0, y0) = end.place, truth[0].place
+    row.travel_m = ((x - x0) ** 2 + (y - y0) ** 2) ** 0.5
+
+
+def text_of(receipt: Receipt, hit: float) -> str:
+    """One receipt in words."""
+    what = "confirmed" if receipt.confirmed else f"UNCONFIRMED: {receipt.detail}"
+    return f"{receipt.begun - hit:+.2f} s, after {receipt.seconds:.2f} s {what} ({receipt.cause})"

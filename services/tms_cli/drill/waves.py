@@ -1,0 +1,103 @@
+"""Waves of trials: all machines are set to work, each is hit, and all are brought to rest again."""
+
+import time
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from typing import TypeVar
+
+import click
+
+from tms_cli import mesh
+from tms_cli.drill.plan import Trial
+from tms_cli.drill.report import line
+from tms_cli.drill.stand_ins import StandIns
+from tms_cli.drill.trials import LEAD, Hand, Struck
+from tms_cli.drill.verdict import Row, empty
+from tms_core.config import Site
+from tms_core.errors import TmsError
+from tms_core.ros import Ros
+
+AGAIN = 3  # waves of trials whose motion was over by itself before the stop
+T = TypeVar("T")
+
+
+class Waves:
+    """Goes through a plan; keeps what was seen."""
+
+    def __init__(self, node: Ros, site: Site, stand_ins: StandIns) -> None:
+        self._site, self._stand_ins = site, stand_ins
+        self._hands = {machine: Hand(node, site, machine) for machine in site.file.machines}
+        # Twice: a strike waits beside the trial that it is for.
+        self._pool = ThreadPoolExecutor(2 * len(self._hands) + 1, "drill")
+        self._total = 0
+        self.rows: list[Row] = []
+
+    def go(self, plan: Sequence[list[Trial]], seconds: float) -> list[Row]:
+        """As much of the plan as the time allows; the rest is left out.
+
+        Raises:
+            TmsError: a stand-in has ended: there is no machine any more.
+        """
+        todo, deadline = list(plan), time.monotonic() + seconds
+        self._total, again = sum(map(len, plan)), 0
+        while todo and time.monotonic() < deadline:
+            missed = self._wave(todo.pop(0))
+            if missed and again < AGAIN * len(plan):
+                todo, again = [*todo, missed], again + 1
+            if dead := self._stand_ins.dead():
+                raise TmsError(f"{', '.join(dead)} has ended: see {self._site.state}/log")
+        left = [trial for wave in todo for trial in wave]
+        return [*self.rows, *(self._empty(trial) for trial in left)]
+
+    def _wave(self, wave: list[Trial]) -> list[Trial]:
+        """Returns trials that have to be tried again: their motion was over by itself."""
+        mesh.wait_ready(self._site, lambda _: None)
+        began = self._each(wave, lambda trial: self._hands[trial.machine].begin())
+        ready = [trial for trial, at in zip(wave, began, strict=True) if at is not None]
+        shared = any(trial.stop.shared for trial in ready)
+        rows = self._shared(ready) if shared else self._each(ready, self._single)
+        self._each(wave, lambda trial: self._hands[trial.machine].work.end())
+        return self._note(wave, dict(zip([trial.machine for trial in ready], rows, strict=True)), shared)
+
+    def _note(self, wave: list[Trial], rows: dict[str, Row | None], shared: bool) -> list[Trial]:
+        missed = []
+        for trial in wave:
+            row = rows.get(trial.machine)
+            if row is not None and not row.due and not row.false_receipt:
+                missed += [] if shared else [trial]
+                continue
+            self.rows.append(row or self._empty(trial))
+            click.echo(f"{len(self.rows)}/{self._total} {line(self.rows[-1])}", err=True)
+        return missed
+
+    def _single(self, trial: Trial) -> Row:
+        hand, struck = self._hands[trial.machine], Struck()
+        at = hand.moment(trial)
+        self._pool.submit(hand.strike, trial.stop, at, [hand], struck)
+        return hand.watch(trial, at, struck)
+
+    def _shared(self, wave: list[Trial]) -> list[Row | None]:
+        """One hit for all, at the moment of the first trial."""
+        hands, struck = [self._hands[trial.machine] for trial in wave], Struck()
+        at = time.time() + LEAD + wave[0].delay
+        self._pool.submit(hands[0].strike, wave[0].stop, at, hands, struck)
+        return self._each(wave, lambda trial: self._hands[trial.machine].watch(trial, at, struck))
+
+    def _each(self, wave: Sequence[Trial], step: Callable[[Trial], T]) -> list[T | None]:
+        """The same for all at the same time; None where it failed, which is told."""
+
+        def tried(trial: Trial) -> T | None:
+            try:
+                return step(trial)
+            except (TmsError, TimeoutError) as error:
+                click.echo(f"{trial.machine}, {trial.stop.name}: {error or 'took too long'}", err=True)
+                return None
+
+        return list(self._pool.map(tried, wave))
+
+    def _empty(self, trial: Trial) -> Row:
+        return empty(trial, self._site.file.machines[trial.machine].model)
+
+    def close(self) -> None:
+        """Free the threads."""
+        self._pool.shutdown(cancel_futures=True)
