@@ -92,8 +92,6 @@ UNKIND: Mapping[str, Mapping[str, Any]] = {  # of how it moves
 COASTING: Mapping[str, Mapping[str, Any]] = {  # they have fooled receipts
     f"coast+{name}": {"coast": COAST, **lie} for name, lie in LIES.items()
 }
-    f"coast+{name}": {"coast": COAST, **lie} for name, lie in LIES.items()
-}  # they have fooled receipts
 FAULTS: Mapping[str, Mapping[str, Any]] = {NONE: {}, **LIES, **UNKIND, **COASTING}
 IN_ORDER = (NONE, *LIES)  # the machine does what it is told
 OFTEN = 3  # times that each stop is tried without a fault for once with each
