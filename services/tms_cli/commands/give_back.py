@@ -27,7 +27,7 @@ def command(ctx: click.Context, machine: str, who: str, as_json: bool) -> None:
 
     session.machines((machine,), False)
     with session.ros() as node:
-        answer = session.call(node, TakeMachine, f"/{machine}/take", PROOF_LIMIT, who=who, back=True)
+        answer = session.call(node, TakeMachine, f"/{machine}/take", seconds=PROOF_LIMIT, who=who, back=True)
     receipt = answer.receipt
     if as_json:
         session.show_json(stop.as_dict(receipt))
