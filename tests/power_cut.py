@@ -38,7 +38,7 @@ class Disk:
         _, alive = psutil.wait_procs(victims, GONE)
         assert not alive, f"killed, but not gone: {alive}"
         self._control(EXT4_IOC_SHUTDOWN, NO_LOG_FLUSH)
-        self.unmount()
+        _do("umount", str(self.folder))
         self._mount()
 
     @contextmanager
@@ -49,10 +49,6 @@ class Disk:
             yield
         finally:
             self._control(FITHAW)
-
-    def unmount(self) -> None:
-        """Nothing may use it any more."""
-        _do("umount", str(self.folder))
 
     def _mount(self) -> None:
         _do("mount", "-o", "loop", str(self._image), str(self.folder))
@@ -77,7 +73,7 @@ def own_disk(folder: Path, size: int = 2**30) -> Iterator[Disk]:
     try:
         yield disk
     finally:
-        disk.unmount()
+        _do("umount", "--lazy", str(disk.folder))  # also when a failed test has left files open there
         image.unlink()
 
 

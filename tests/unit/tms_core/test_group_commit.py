@@ -1,4 +1,4 @@
-"""Who puts waits for nobody, and what is stored is on the disk: with a disk that stalls, is full, or loses its power."""
+"""Who puts waits for nobody, and what is stored is on the disk: one that stalls, is full, or loses its power."""
 
 import errno
 import logging

@@ -84,7 +84,7 @@ def test_a_run_is_refused_when_its_number_cannot_be_stored(
     numbers = Numbers(tmp_path, disk)
     with monkeypatch.context() as patch:
         patch.setattr(module.durable, "replace", full)
-        with pytest.raises(TaskError, match="does not take .* No space left .*: free some space") as refused:
+        with pytest.raises(TaskError, match=r"does not take .* No space left .*: free some space") as refused:
             numbers.next()
         assert refused.value.code == "NO_DISK"
     assert disk.wait(10)

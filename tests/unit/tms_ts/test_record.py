@@ -159,7 +159,9 @@ def test_the_time_of_a_machine_s_last_goal_is_known(records: Records) -> None:
     assert 0 < past.sent_at["zx200"] <= past.last_time and "ic120" not in past.sent_at
 
 
-@pytest.mark.parametrize("left", [b"", b"\0" * 4096, b'\n{"run": {"run_id": "x"}}\n', b'\n{"n": 3}', b"\xff\xfe\n[]\n7"])
+@pytest.mark.parametrize(
+    "left", [b"", b"\0" * 4096, b'\n{"run": {"run_id": "x"}}\n', b'\n{"n": 3}', b"\xff\xfe\n[]\n7"]
+)
 def test_a_record_without_its_run_is_told_kept_aside_and_keeps_nobody_from_starting(
     tmp_path: Path, records: Records, left: bytes, caplog: pytest.LogCaptureFixture
 ) -> None:
