@@ -55,6 +55,9 @@ SAID = {
     "run {run} was cancelled and its machines were seen to stand still": (
         "実行 {run} を中止し、機械の停止を確認しました"
     ),
+    "the end of {run} is not stored yet: the disk of the scheduler's PC is slow or full": (
+        "実行 {run} の結果はまだ保存されていません: スケジューラーの PC のディスクが遅いか、空きがありません"
+    ),
     "{outcome} after {seconds:.1f} s, run {run}": "{outcome}({seconds:.1f} 秒)、実行 {run}",
     "history: tms events {run}": "記録: tms events {run}",
     "cancelling; waiting until the machines stand still (Ctrl-C again leaves)": (

@@ -16,7 +16,7 @@ from tms_msg_ts.srv import AnswerQuestion, CancelRun, CheckTask, ResumePlan
 
 from tms_core import log
 from tms_core.app import App
-from tms_core.errors import TaskError, TmsError
+from tms_core.errors import NOT_STORED, TaskError, TmsError
 from tms_core.group_commit import GroupCommit
 from tms_core.ros import Ended, Goal, Outcome
 from tms_ts import bt
@@ -42,7 +42,6 @@ DB_LIMIT = 5.0  # s
 BEGIN_STORED = 5.0  # s for what is known of a run to be on the disk before it moves anything
 END_STORED = 5.0  # s for its end, before it is told without
 DISK_END = 0.2  # s for the last entries when the process ends
-NOT_STORED = "(not stored yet: the disk of the scheduler's PC is slow or full)"
 SERVERS_LIMIT = 15.0  # s for the subtasks' servers to be there after their start ...
 SERVER_START = 3.0  # s, ... and this for each of them: many starting at once share the cores
 STATES = ("preparing", "running", "stopping")

@@ -42,7 +42,12 @@ def mesh(disk: Disk) -> Iterator[Mesh]:
     with claimed_domain() as domain:
         site = disk.folder.parent / "site.yaml"
         site.write_text(yaml.safe_dump(site_data(domain, ports_of(domain))))
-        with running(Mesh(site, disk.folder / "state")) as made:
+        state, logs = disk.folder / "state", disk.folder.parent / "ros"
+        for folder in (state, logs):
+            folder.mkdir()
+        (state / "ros").symlink_to(logs)  # rclpy's logs, also of those who outlive the power cut
+        os.sync()
+        with running(Mesh(site, state)) as made:
             made.tms("param", "load", "configs/parameters/zx200.yaml")
             made.tms("task", "add", "configs/tasks/one_loading_cycle.xml")
             made.tms("param", "load", str(PROJECT / "tests" / "data" / "swings.yaml"))
