@@ -10,7 +10,7 @@ from tms_core.ros import Call, Outcome
 from tms_ts import machines
 from tms_ts.gateways import Gateways
 from tms_ts.machines import ASK_AGAIN, Identity, Machines
-from tms_ts.record import Replay
+from tms_ts.replay import Replay
 from tms_ts.sent_goal import ACCEPT_LIMIT, RECOVERY, SentGoal
 from tms_ts.world import GoalState
 
