@@ -39,10 +39,11 @@ class Record:
         self._file: AppendFile | None = None  # opened with the first line, by the writing thread
         self._ended = False
 
-    def _line(self, data: dict[str, Any]) -> None:
+    def _line(self, data: dict[str, Any], urgent: bool = False) -> None:
+        """`urgent`: what a resume relies on is written at once; a killed process loses what still gathers."""
         if self._ended:
             return  # news of a run that is over
-        if not self._disk.put(self, b"\n" + json.dumps({**data, "t": time.time()}).encode(), vital=True):
+        if not self._disk.put(self, b"\n" + json.dumps({**data, "t": time.time()}).encode(), vital=True, urgent=urgent):
             LOST.inc()
             log.error("event=record_lost file=%s line=%r", self.path.name, next(iter(data)))
 
@@ -53,10 +54,10 @@ class Record:
         self._line({"n": number})
 
     def sent(self, key: Key) -> None:
-        self._line({"sent": key})
+        self._line({"sent": key}, urgent=True)
 
     def done(self, key: Key, succeeded: bool) -> None:
-        self._line({"done": key, "ok": succeeded})
+        self._line({"done": key, "ok": succeeded}, urgent=True)
 
     def gone(self, key: Key, left: int) -> None:
         """The last `left` ends of that leaf goal belong to the past: they are not skipped by a later resume."""

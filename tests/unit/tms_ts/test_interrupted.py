@@ -136,7 +136,7 @@ def test_the_history_claims_no_stop_that_nobody_saw(
     ]
     journal = closed(records, receipts, monkeypatch)
     assert [(row.kind, row.text) for row in journal[:-2]] == [
-        ("stop", "zx200 stood after 0.50 s and 0.000 rad (no scheduler)"),
+        ("stop", "zx200 stood after 0.50 s, 0 rad and 0.00 m (no scheduler)"),
         ("stop", "ic120: STOP UNCONFIRMED: silent (no scheduler)"),
         ("alarm", "ic120: STOP UNCONFIRMED: silent (no scheduler)"),
         ("alarm", "zx120: not seen to stand: no receipt of a stop came within 0 s"),

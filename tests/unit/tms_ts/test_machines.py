@@ -137,7 +137,7 @@ def test_a_receipt_is_told_once(site: Site) -> None:
     site.machines.receipt(receipt)
     site.machines.receipt(receipt)
     assert [text for text in site.told if text.startswith("stop")] == [
-        "stop: zx200 stood after 0.50 s and 0.000 rad (x)"
+        "stop: zx200 stood after 0.50 s, 0 rad and 0.00 m (x)"
     ]
 
 
