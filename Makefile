@@ -21,7 +21,7 @@ TMS := $(VENV)/bin/tms $(if $(SITE),--site $(SITE))
 # A sourced ROS installation would mix its libraries into the venv's.
 unexport PYTHONPATH LD_LIBRARY_PATH AMENT_PREFIX_PATH CMAKE_PREFIX_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE
 .DEFAULT_GOAL := help
-.PHONY: help setup interfaces demo test up down status logs restart lint conformance bench soak drill test-docker system clean
+.PHONY: help setup interfaces demo test up down status logs restart lint conformance bench soak drill nightly test-docker system clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -101,6 +101,10 @@ conformance: setup ## replay behaviour-tree cases (CASES=path LEVEL=required|str
 
 drill: setup ## stop six simulated machines in every way; receipts against the truth (QUICK=1, ROUNDS=4, SEED=7, REPORT=file.md)
 	@$(VENV)/bin/tms --site $(or $(SITE),drill) drill $(if $(QUICK),--quick) $(if $(ROUNDS),--rounds $(ROUNDS)) $(if $(SEED),--seed $(SEED)) $(if $(REPORT),--report $(REPORT))
+
+nightly: setup ## what takes hours: 30 power cuts while a machine moves (as root), and the drill with four rounds
+	TMS_POWER_CUTS=30 $(PY) -m pytest tests/system/test_power_cut.py
+	@$(MAKE) drill ROUNDS=4
 
 bench: setup ## benchmarks with ratios to a floor of the same run (ONLY=group)
 	@sh deploy/system-packages.sh chromium

@@ -175,6 +175,13 @@ def order(request: pytest.FixtureRequest) -> None:
 @pytest.fixture(scope="session")
 def node(mesh: Mesh) -> Iterator["Ros"]:
     """A ROS node of the test run in the domain of the mesh."""
+    with node_in(mesh) as inside:
+        yield inside
+
+
+@contextmanager
+def node_in(mesh: Mesh) -> Iterator["Ros"]:
+    """A ROS node in the domain of a mesh."""
     from tms_core import environment
     from tms_core.config import load_site
     from tms_core.ros import Ros

@@ -56,6 +56,9 @@ SAID = {
     "run {run} was cancelled and its machines were seen to stand still": (
         "実行 {run} を中止し、機械の停止を確認しました"
     ),
+    "the end of {run} is not stored yet: the disk of the scheduler's PC is slow or full": (
+        "実行 {run} の結果はまだ保存されていません: スケジューラーの PC のディスクが遅いか、空きがありません"
+    ),
     "{outcome} after {seconds:.1f} s, run {run}": "{outcome}({seconds:.1f} 秒)、実行 {run}",
     "history: tms events {run}": "記録: tms events {run}",
     "cancelling; waiting until the machines stand still (Ctrl-C again leaves)": (
@@ -217,6 +220,7 @@ NEXT = {
     "NO_ACCESS": "示されたファイルを読み書きできる利用者で実行するか、別の場所を指定してください",
     "NO_ANSWER": "応答がありません。`tms status` でメッシュが動いているか確認してください",
     "NO_SERVER": "応答がありません。`tms status` でメッシュが動いているか確認してください",
+    "NO_DISK": "スケジューラーの PC のディスクの空き容量を増やしてから、もう一度実行してください",
     "NO_PROCESS": "`tms ps` でプロセス名を確認してください",
     "NO_BROWSER": "示されたアドレスを別のブラウザーで開いてください",
     "NO_QUESTION": "`tms answer` で確認待ちを表示できます",

@@ -60,7 +60,7 @@ def machines(names: tuple[str, ...], every: bool) -> list[str]:
     return list(names)
 
 
-def call(node: "Ros", service_type: Any, name: str, seconds: float = CALL_LIMIT, **fields: Any) -> Any:
+def call(node: "Ros", service_type: Any, name: str, *, seconds: float = CALL_LIMIT, **fields: Any) -> Any:
     """Call a service of ours and raise what it reports.
 
     Raises:

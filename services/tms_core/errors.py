@@ -8,6 +8,9 @@ TmsError                 code and one line: what is wrong, where, what to do nex
 └── SubtaskFailed        the machine cannot, or must not, do what was asked
 """
 
+# Ends the reason of a run whose end the disk has not taken yet; who shows the result looks for it.
+NOT_STORED = "(not stored yet: the disk of the scheduler's PC is slow or full)"
+
 
 class TmsError(Exception):
     """An error that a person reads: `code` for programs, the message for people."""

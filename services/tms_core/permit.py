@@ -17,8 +17,6 @@ BEATS = 2  # of the pulse from one assertion to the next: each wakes every proce
 LEASE = 0.5  # s without an assertion until a process counts as lost
 GRACE = 0.1  # s more when the PC of the watcher itself did not run for a moment
 NOBODY = bytes(16)
-# Cause of the latch of a machine that was never armed on its PC.
-NO_NOTE = "no note on this PC says how the machine was left: look at it, then re-arm it"
 
 
 def topic(machine: str, process: str) -> str:

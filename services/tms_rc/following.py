@@ -75,6 +75,12 @@ class Follower:
         return any(max(map(abs, (high - way.angles[0], low - way.angles[0]))) > SMALLEST
                    for way in self._ways.values() for low, high in [way.hull(0.0, passed)])  # fmt: skip
 
+    def on_its_way(self, now: float, dead_time: float) -> dict[str, float]:
+        """How far each joint's reference went within the dead time: what has been commanded, and cannot be seen yet."""
+        passed = (now - self._begun) * self._scale
+        hulls = {name: way.hull(passed - dead_time * self._scale, passed) for name, way in self._ways.items()}
+        return {name: high - low for name, (low, high) in hulls.items()}
+
     def moves(self, now: float) -> bool:
         """Whether a goal should be changing what is heard now: it is not over yet."""
         last = max((way.times[-1] for way in self._ways.values()), default=0.0)

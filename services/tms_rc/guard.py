@@ -23,7 +23,7 @@ from tms_rc.following import Follower
 from tms_rc.latch import Latch
 from tms_rc.notes import Notes
 from tms_rc.permits import Permits
-from tms_rc.standstill import StandStill
+from tms_rc.standstill import NOTHING, Expected, StandStill
 from tms_rc.stopper import Stop, Stopper
 from tms_rc.vigil import Vigil
 
@@ -31,6 +31,7 @@ PERMIT_LIMIT = 3.0  # s that a goal may come before the permits behind it: a new
 PRESSED = 1.0  # s that a software stop counts as pressed after its last message
 FRESH = 1.0  # s, older news of the machine make it not ready
 FOREIGN = "a foreign client"
+RECOVERS = "after its start the gateway still proves that the machine stands"
 
 
 class Kind(Enum):
@@ -56,10 +57,14 @@ class Active:
     stop: Stop | None = None
     changed: threading.Condition = field(default_factory=threading.Condition)
 
-    def since(self, now: float) -> float | None:
-        """When the motion began that must have been seen by now; None where nothing had to move."""
-        moves = self.begun and (self.follower is None or self.follower.should_have_moved(now))
-        return self.begun if moves else None
+    def expected(self, now: float, dead_time: float) -> Expected:
+        """The motion that must be seen if it is stopped now."""
+        if not self.begun:
+            return NOTHING
+        if self.follower is None:
+            return Expected(self.begun)
+        since = self.begun if self.follower.should_have_moved(now) else None
+        return Expected(since, self.follower.on_its_way(now, dead_time))
 
     def ended(self) -> bool:
         """Whether nothing of it can move the machine any more."""
@@ -84,6 +89,7 @@ class Guard:
         self.run_told: Callable[[int], None] = lambda run: None  # called with each run that takes the machine
         self.pressed = 0.0  # monotonic time of the last software stop message
         self.by_hand = ""  # who drives it by hand
+        self.recovering = False  # what the last gateway may have left moving is being stopped
         self.active: Active | None = None
         self.told: Callable[[], None] = lambda: None  # called when the latch has changed, to tell it at once
         self.permits = Permits(app, self._permit_changed)
@@ -102,14 +108,16 @@ class Guard:
         with self._taking:
             if self.active is not None:
                 return f"{self._app.machine} is still moved by another goal"
-            wrong = self._driven() or self.latch.refusal(active.owner) or self._noted(active.owner)
+            wrong = self._kept() or self.latch.refusal(active.owner) or self._noted(active.owner)
             if wrong is None:
                 active.chain = members(active.owner, self.permits.held())
                 self.active = active
                 self.vigil.end()
         return wrong
 
-    def _driven(self) -> str | None:
+    def _kept(self) -> str | None:
+        if self.recovering:
+            return f"not ready: {RECOVERS}"
         return f"{self.by_hand} drives {self._app.machine} by hand: `tms give-back` first" if self.by_hand else None
 
     def _noted(self, owner: Owner | None) -> str | None:
@@ -182,10 +190,10 @@ class Guard:
 
     # stop
 
-    def stop_now(self, cause: str, kind: Kind, run: int = 0, since: float | None = None, broken: str = "") -> Stop:
+    def stop_now(self, cause: str, kind: Kind, run: int = 0, expected: Expected = NOTHING, broken: str = "") -> Stop:
         """Stop whoever moves the machine. On the executor thread only; returns at once.
 
-        `since`, `broken`: see `Stopper.begin`; of a goal under way it is known here since when it moves.
+        `expected`, `broken`: see `Stopper.begin`; of a goal under way it is known here what it must move.
         """
         active, now = self.active, time.monotonic()
         if kind is Kind.LATCH:
@@ -194,8 +202,10 @@ class Guard:
             self.latch.keep(cause, active.owner)
         ended = active.ended if active is not None else lambda: True
         run = run or (active.owner.run if active is not None and active.owner is not None else self.run or 0)
-        since = active.since(now) if active is not None and since is None else since
-        stop = self.stopper.begin(cause, latched=kind is Kind.LATCH, run=run, ended=ended, since=since, broken=broken)
+        if active is not None and active.stop is None:
+            expected = active.expected(now, self.watch.dead_time)
+        latched = kind is Kind.LATCH
+        stop = self.stopper.begin(cause, latched=latched, run=run, ended=ended, expected=expected, broken=broken)
         if active is not None and active.call is not None:
             active.peer.cancel(active.call)  # also one that the machine has not answered yet
         if active is not None:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tms_core.permit import NO_NOTE
+from tms_core.fence import NO_NOTE
 
 UNREADABLE = "the note of how the machine was left cannot be read: look at it, then re-arm it"
 

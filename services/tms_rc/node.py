@@ -16,7 +16,7 @@ from tms_core.ros import Peer
 from tms_rc.arming import Arming
 from tms_rc.claim import Claim
 from tms_rc.gateway import Gateway, speed_of
-from tms_rc.guard import FRESH, Guard
+from tms_rc.guard import FRESH, RECOVERS, Guard
 from tms_rc.latch import Latch
 from tms_rc.memory import Memory
 from tms_rc.notes import Notes
@@ -118,8 +118,8 @@ class Told:
         """Why the machine cannot be moved now, apart from a stop."""
         now, watch = time.monotonic(), self._guard.watch
         silent, trouble = watch.silent(now, FRESH), watch.trouble(now)
-        if self._claim.rival:
-            return self._claim.rival
+        if self._claim.rival or self._guard.recovering:
+            return self._claim.rival or RECOVERS
         if silent is not None:
             return self._view.strange_type() or silent
         if trouble is not None:

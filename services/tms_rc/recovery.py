@@ -3,12 +3,12 @@
 import time
 
 from tms_core.app import App
-from tms_core.border import STOP_PROVEN
 from tms_core.fence import Owner
 from tms_core.ros import LOST_TEXT
 from tms_rc.guard import Guard, Kind
 from tms_rc.latch import ANY_LEAF, UNKNOWN_RUN
 from tms_rc.memory import Left
+from tms_rc.standstill import Expected
 from tms_rc.stopper import Stop
 
 REACHED = 5.0  # s for the machine's servers to be there
@@ -26,6 +26,7 @@ class Recovery:
         self._stop: Stop | None = None
         self._begun = time.monotonic()
         guard.run_told = self.claimed
+        guard.recovering = bool(left.holder)
         guard.by_hand = left.taken
         if left.latched:
             guard.vigil.begin()
@@ -54,13 +55,12 @@ class Recovery:
                 app.ros.on_executor(lambda: self._take_over(UNKNOWN_RUN))
         app.ros.on_executor(self._close)
         self._release()
+        guard.recovering = False
 
     def _release(self) -> None:
         """Whoever stood in for the lost gateway may have pressed the machine's own stop: a held machine goes on."""
         stop, guard = self._stop, self._guard
-        if stop is None or not stop.over.wait(STOP_PROVEN + 1.0) or stop.receipt is None:
-            return
-        if stop.receipt.confirmed and not guard.latch.cause:
+        if stop is not None and stop.wait(self._app.machine).confirmed and not guard.latch.cause:
             guard.controls.emergency(False)
 
     def _command(self) -> None:
@@ -84,16 +84,17 @@ class Recovery:
 
     def _take_over(self, run: int) -> None:
         if self._open and self._guard.active is None:
+            self._guard.recovering = True
             self._guard.latch.keep(self._cause, Owner(run, ANY_LEAF))
             self._begin(run)
 
     def _begin(self, run: int) -> None:
         number = 0 if run == UNKNOWN_RUN else run
         # What was commanded is not known: unless a motion is seen, the proof waits until every motion must be over.
-        self._stop = self._guard.stop_now(self._cause, Kind.PLAIN, run=number, since=self._begun)
+        self._stop = self._guard.stop_now(self._cause, Kind.PLAIN, run=number, expected=Expected(self._begun))
 
     def _close(self) -> None:
         """Whose motion was stopped is known by now, or it was nobody's."""
         if self._open and self._stop is not None and self._guard.active is None:
-            self._guard.stop_now(f"{self._cause}, and no run told of it", Kind.LATCH, since=self._begun)
+            self._guard.stop_now(f"{self._cause}, and no run told of it", Kind.LATCH, expected=Expected(self._begun))
         self._open = False

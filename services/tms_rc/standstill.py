@@ -6,7 +6,8 @@ the hydraulics may move it. Nothing that was not heard counts as standing.
 """
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 from tms_core.models import DRIVE, Border, MachineModel
 from tms_rc.channel import WORST, Limits, Place
@@ -16,6 +17,7 @@ JOINTS, ODOM, POSE, IMU = "joint_states", "odom", "pose", "imu"
 PLACE, HEADING, TURNING = "place", "heading", "turning"
 HARD = 0.2  # rad beyond its limit at which a joint cannot be: its sensor, or its name, is wrong
 INFINITE = float("inf")
+SEEN, SHARE = 0.02, 0.2  # rad that were commanded must be seen, and this share of them after the stop
 
 
 @dataclass(frozen=True)
@@ -28,12 +30,23 @@ class Travel:
 
 
 @dataclass(frozen=True)
+class Expected:
+    """The motion that must be seen, or must have been, for what is heard to be believed."""
+
+    since: float | None = None  # s, monotonic, when it began; None: nothing was to move
+    to_come: Mapping[str, float] = field(default_factory=dict)  # joint -> rad that were commanded and not seen yet
+
+
+NOTHING = Expected()
+
+
+@dataclass(frozen=True)
 class Proof:
     """What has to be seen after one stop."""
 
     start: float  # s, monotonic: only what is measured later counts ...
-    unseen: float  # s, ... and later than this, where the motion of `since` was never seen
-    since: float | None  # s, when the motion began that must have been seen; None: nothing was to move
+    unseen: float  # s, ... and later than this, where the expected motion was never seen
+    expected: "Expected"
     seconds: float  # s of standing
 
 
@@ -181,17 +194,19 @@ class StandStill:
         """A goal of ours moves the machine now."""
         self._quiet_since = now
 
-    def proof(self, begun: float, strongest: bool, since: float | None = None) -> Proof:
+    def proof(self, begun: float, strongest: bool, expected: Expected = NOTHING) -> Proof:
         """What must be seen after a stop that was commanded at `begun`.
 
         A strongest stop that acts at once (`emg_stop_at_once`) needs no dead time if it can be seen to act: the machine
         moves, or nothing is on its way. Else one that ignores it would be believed to stand.
-        A motion that began at `since` and was never seen makes what is heard doubtful: then nothing counts before
-        every motion must have ended.
+        An expected motion that was never seen makes what is heard doubtful, as a replayed record is: then nothing
+        counts before every motion must have ended.
         """
         visible = self._motion_at > begun - WORST or begun - self._quiet_since > self.dead_time
-        wait = 0.0 if strongest and self._at_once and visible else self.dead_time
-        return Proof(begun + wait, begun + self.dead_time + self.braking, since, self._model.still.seconds)
+        at_once = strongest and self._at_once and visible
+        wait, coming = (0.0, {}) if at_once else (self.dead_time, expected.to_come)
+        expected = Expected(expected.since, {name: way for name, way in coming.items() if way > SEEN})
+        return Proof(begun + wait, begun + self.dead_time + self.braking, expected, self._model.still.seconds)
 
     def proven(self, proof: Proof, now: float) -> bool:
         """Whether it was seen."""
@@ -200,7 +215,9 @@ class StandStill:
         return self._stands(max(self._start(proof), self._surprised() + self.dead_time + self.braking), now)
 
     def _start(self, proof: Proof) -> float:
-        seen = proof.since is None or self._motion_at > proof.since
+        since, angles = proof.expected.since, self._angles
+        seen = since is None or self._motion_at > since
+        seen = seen and all(angles.get(name, 0.0) >= SHARE * way for name, way in proof.expected.to_come.items())
         return proof.start if seen else proof.unseen
 
     def _surprised(self) -> float:

@@ -18,7 +18,7 @@ from tms_core.app import App
 from tms_core.border import STOP_PROVEN, Controls
 from tms_core.ros import pack, unpack
 from tms_rc.receipts import Receipts
-from tms_rc.standstill import Proof, StandStill
+from tms_rc.standstill import NOTHING, Expected, Proof, StandStill
 
 AGAIN = 0.5  # s between repeated commands while it is not proven
 LOOK = 0.01  # s
@@ -77,12 +77,12 @@ class Stopper:
 
     def begin(
         self, cause: str, *, latched: bool, run: int = 0, ended: Callable[[], bool] = lambda: True,
-        since: float | None = None, broken: str = "",
+        expected: Expected = NOTHING, broken: str = "",
     ) -> Stop:  # fmt: skip
-        """Command the stop now and have it watched; returns at once. `since`: see `StandStill.proof`."""
+        """Command the stop now and have it watched; returns at once. `expected`: see `StandStill.proof`."""
         begun = time.monotonic()
         self._command(latched)
-        proof = self._watch.proof(begun, latched, since)
+        proof = self._watch.proof(begun, latched, expected)
         stop = Stop(cause, latched, run, ended, begun, self._app.ros.now(), proof, broken)
         if not self._under_way:
             self._watch.mark()

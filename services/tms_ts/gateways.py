@@ -81,7 +81,7 @@ class Gateways:
         if not link.alive:
             return f"process {machine}:rc is not there, see `tms logs {machine}:rc`"
         if state.latch:
-            return f"{machine} is stopped ({state.latch})"
+            return f"{machine} is latched ({state.latch})"
         if state.by_hand:
             return f"{state.by_hand} drives {machine} by hand"
         return "" if state.ready else f"{machine} is not ready: {state.reason}"
@@ -109,7 +109,7 @@ class Gateways:
         return lambda: link.alive != alive
 
     def latch(self, machine: str) -> str:
-        """Why the machine is stopped until it is re-armed; empty if it is not."""
+        """Why the machine is latched until it is re-armed; empty if it is not."""
         state = self._states.get(machine)
         return str(state.latch) if state is not None else ""
 

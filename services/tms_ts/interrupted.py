@@ -14,7 +14,9 @@ from tms_core.border import STOP_PROVEN
 from tms_core.errors import TaskError
 from tms_ts.journal import Journal
 from tms_ts.machines import receipt_text
-from tms_ts.record import Header, Key, Past, Records
+from tms_ts.past import Header, Key, Over, Past
+from tms_ts.record import Records
+from tms_ts.run import ALARMS
 
 STOP_LIMIT = STOP_PROVEN + 3.0  # s for the gateways to tell how they stopped the machines
 LOOK = 0.05  # s
@@ -41,6 +43,10 @@ class Interrupted:
 
     def _close_all(self) -> None:
         left = [past for past in self._records.past() if not past.closed]
+        for past in left:
+            if past.header is not None and past.over is not None:
+                self._complete(past, past.header, past.over)
+        left = [past for past in left if past.over is None]
         deadline = time.monotonic() + STOP_LIMIT
         while not all(map(self._all_told, left)) and time.monotonic() < deadline:
             if self._app.stopping.wait(LOOK):
@@ -53,15 +59,17 @@ class Interrupted:
         return past.header is None or set(past.header.machines) <= {r.machine for r in self._stops(past, past.header)}
 
     def _stops(self, past: Past, header: Header) -> list[Any]:
-        """What the gateways have told of the end of this run; a latched receipt may come twice."""
+        """What the gateways have told of the end of this run, in order; a latched receipt may come twice."""
         with self._lock:
-            seen = {(r.machine, r.stamp.sec, r.stamp.nanosec): r for r in self._receipts if r.run == header.number}
-        return [receipt for receipt in seen.values() if _seconds(receipt.stamp) > past.last_time - 1.0]
+            seen = {(_seconds(r.stamp), r.machine): r for r in self._receipts if r.run == header.number}
+        begin = {machine: max(past.last_time - 1.0, past.sent_at.get(machine, 0.0)) for machine in header.machines}
+        return [r for (at, machine), r in sorted(seen.items()) if machine in begin and at > begin[machine]]
 
     def _close(self, past: Past, header: Header) -> None:
-        record, number = self._records.open(header.run_id), past.last_event
-        texts = [("stop", receipt_text(receipt)) for receipt in self._stops(past, header)]
-        reason = "the scheduler was lost; the gateways stopped the machines: `tms resume` or `tms abandon` it"
+        record, number, stops = self._records.open(header.run_id), past.last_event, self._stops(past, header)
+        reason, unseen = _what_was_seen(header.machines, stops)
+        texts = [("stop", receipt_text(receipt)) for receipt in stops] + [("alarm", text) for text in unseen]
+        ALARMS.inc(len(unseen))
         for kind, text in [*texts, ("run", f"interrupted: {reason}")]:
             number += 1
             record.event(number)
@@ -71,6 +79,14 @@ class Interrupted:
         record.interrupted()
         record.close()
         self._app.log.warning("event=interrupted run=%s", header.run_id)
+
+    def _complete(self, past: Past, header: Header, over: Over) -> None:
+        """The run had ended, but perhaps nobody was told before the power went: tell it, maybe once more."""
+        stamp = Time(sec=int(past.last_time), nanosec=int(past.last_time % 1 * 1e9))
+        text = f"{over.outcome}: {over.reason}" if over.reason else over.outcome
+        self._journal.put(Event(run_id=header.run_id, number=over.event, stamp=stamp, kind="run", text=text))
+        self._journal.put(_row(header, over.outcome, over.reason, stamp))
+        self._records.open(header.run_id).remove()
 
     # what a person does about it
 
@@ -125,6 +141,19 @@ class Interrupted:
         return past, past.header
 
 
+def _what_was_seen(machines: list[str], stops: list[Any]) -> tuple[str, list[str]]:
+    """Why the run is interrupted, with each machine's last receipt or the lack of one; and what to alarm of."""
+    last = {receipt.machine: receipt for receipt in stops}
+    stood = [machine for machine in machines if machine in last and last[machine].confirmed]
+    unseen = [machine for machine in machines if machine not in stood]
+    parts = ["the scheduler was lost"]
+    parts += [f"seen to stand: {', '.join(stood)}"] if stood else []
+    parts += [f"not seen to stand: {', '.join(unseen)}"] if unseen else []
+    no_receipt = f"not seen to stand: no receipt of a stop came within {STOP_LIMIT:.0f} s"
+    alarms = [receipt_text(last[name]) if name in last else f"{name}: {no_receipt}" for name in unseen]
+    return "; ".join(parts) + ": `tms resume` or `tms abandon` it", alarms
+
+
 def _words(key: Key) -> str:
     node, machine, subtask, record = key
     return f"{node}: /{machine}/{subtask}, record {record}"
@@ -137,5 +166,6 @@ def _seconds(stamp: Any) -> float:
 def _row(header: Header, state: str, reason: str, ended: Any) -> Run:
     return Run(
         run_id=header.run_id, task_id=header.task_id, description=header.description, state=state, reason=reason,
-        machines=header.machines, started_at=Time(sec=header.started[0], nanosec=header.started[1]), ended_at=ended,
+        machines=header.machines, records=header.records, ended_at=ended,
+        started_at=Time(sec=header.started[0], nanosec=header.started[1]),
     )  # fmt: skip

@@ -1,8 +1,9 @@
-"""The history of runs: kept in a file of this PC first, then written through TMS_DB by a thread of its own.
+"""The history of runs: stored on the disk of this PC first, then written through TMS_DB by a thread of its own.
 
-A tick never waits for the database, and nothing is lost while the database is away or when this process is killed:
-what was not delivered is delivered in order later, if need be by the next process. Writing an entry twice changes
-nothing in the database. An entry that the database will never take is dropped, so that the others do not wait for it.
+A tick waits for neither, and nothing is lost while the database is away: what was not delivered is delivered in order
+later, if need be by the next process. The database, and so everybody who asks for the history, gets an entry only when
+it is on this disk: what was told once is there after a power cut, too. Writing an entry twice changes nothing in the
+database. An entry that the database will never take is dropped, so that the others do not wait for it.
 """
 
 import base64
@@ -16,13 +17,15 @@ from tms_msg_db.msg import Event, Run
 from tms_msg_db.srv import WriteJournal
 
 from tms_core.errors import DbError, RosError
+from tms_core.group_commit import GroupCommit
 from tms_core.ros import Ros, pack, unpack
-from tms_ts.spool import Spool
+from tms_core.spool import Spool
 
 BATCH = 200
 RETRY = 0.5  # s
 GATHER = 0.1  # s from the first entry to its writing: ten calls beside a hand-over make it half as long again
 KINDS = {b"R": Run, b"E": Event}
+VITAL = {"run", "tree", "stop", "alarm", "warning"}  # kinds of events that a flood of others must not push out
 LARGEST = 16 * 2**20  # bytes of an entry: the store takes no larger document, and ROS carries none in good time
 # What is wrong with the store, not with an entry: it passes, or a person mends it.
 MAY_PASS = {"STORE_DOWN", "STORE_FULL", "STORE_REFUSED", "STORE_NEWER", "STORE_CONFLICT", "DB_FAILED", "BUSY"}
@@ -34,12 +37,15 @@ LOST = Counter("tms_ts_journal_lost_total", "Journal entries that could not be k
 class Journal:
     """Keeps the order; repeats a batch until the database has it."""
 
-    def __init__(self, ros: Ros, log: logging.Logger, state: Path) -> None:
-        self._ros, self._log = ros, log
-        self._spool = Spool(state / "ts" / "journal")
+    def __init__(self, ros: Ros, log: logging.Logger, disk: GroupCommit, state: Path) -> None:
+        self._ros, self._log, self._disk = ros, log, disk
         self._news, self._urgent = threading.Event(), threading.Event()
+        self._spool = Spool(state / "ts" / "journal", self._news.set)
         self._closing = threading.Event()
         self._away = False  # the database; told
+        self._trouble = ""  # of the disk; told
+        self._losing = threading.Lock()  # over the next
+        self._untold: dict[str, tuple[int, int, int]] = {}  # run -> entries lost, and the first and last number
         self._thread = threading.Thread(target=self._write, name="journal", daemon=True)
         self._thread.start()
 
@@ -48,18 +54,30 @@ class Journal:
         kind = b"R" if isinstance(entry, Run) else b"E"
         data = pack(entry)
         if len(data) > LARGEST:
-            self._lost(entry.run_id, f"an entry of {len(data)} bytes, allowed are {LARGEST}")
+            self._lost(entry, f"an entry of {len(data)} bytes, allowed are {LARGEST}")
             return
-        try:
-            self._spool.put(kind + base64.b64encode(data))
-        except OSError as error:
-            self._lost(entry.run_id, str(error))
-        if isinstance(entry, Run) or entry.kind == "tree":  # somebody looks at a run that begins or ends
-            self._urgent.set()
-        self._news.set()
+        urgent = isinstance(entry, Run) or entry.kind == "tree"  # somebody looks at a run that begins or ends
+        vital = urgent or entry.kind in VITAL
+        if self._spool.full():
+            self._lost(entry, f"{self._spool.waiting()} bytes wait already for the database")
+        elif not self._disk.put(self._spool, kind + base64.b64encode(data), vital=vital, urgent=urgent):
+            self._lost(entry, self._disk.trouble() or "too much waits for the disk")
+        elif urgent:
+            self._disk.after(self._urgent.set)
+
+    def alarms(self) -> list[str]:
+        """What went wrong with the history since the last call."""
+        trouble = self._disk.trouble()
+        told, self._trouble = self._trouble, trouble
+        texts = [f"the history is kept in memory only: {trouble}"] if trouble and not told else []
+        with self._losing:
+            lost, self._untold = self._untold, {}
+        for run, (count, first, last) in lost.items():
+            texts.append(f"the history of run {run} has lost {count} entries, events {first} to {last}")
+        return texts
 
     def close(self) -> None:
-        """Give the last entries a moment to be written; the rest waits on disk."""
+        """Give the last entries a moment to be delivered; the rest waits on disk, which takes nothing more before."""
         deadline = time.monotonic() + 0.5
         while self._spool.waiting() and time.monotonic() < deadline:
             time.sleep(0.01)
@@ -80,11 +98,11 @@ class Journal:
                 continue
             if not self._passes(problem):
                 if len(lines) == 1:
-                    entry = self._entry(lines[0])
-                    self._lost(entry.run_id if entry else "", str(problem))
+                    self._lost(self._entry(lines[0]), str(problem))
                     self._spool.done(end)
                 most = max(1, len(lines) // 2)  # one of them is refused for good: which one?
             self._closing.wait(RETRY)  # also then: a database that is just ending may refuse anything
+        self._spool.close()
 
     def _gather(self) -> None:
         """Wait for news, and a moment longer for what comes right after."""
@@ -101,9 +119,13 @@ class Journal:
         self._away = passes
         return passes
 
-    def _lost(self, run_id: str, reason: str) -> None:
+    def _lost(self, entry: Run | Event | None, reason: str) -> None:
         LOST.inc()
-        self._log.error("event=journal_lost run=%s reason=%r", run_id, reason)
+        run, number = (entry.run_id, getattr(entry, "number", 0)) if entry is not None else ("", 0)
+        self._log.error("event=journal_lost run=%s number=%d reason=%r", run, number, reason)
+        with self._losing:
+            count, first, _ = self._untold.get(run, (0, number, number))
+            self._untold[run] = (count + 1, first, number)
 
     def _deliver(self, lines: list[bytes]) -> DbError | RosError | None:
         """Write a batch; returns why it could not be written."""

@@ -17,7 +17,9 @@ from tms_core.fence import LEAVES, Owner
 from tms_core.ros import LOST_TEXT, Call, Outcome, Peer, Ros
 from tms_ts.gateways import Gateways
 from tms_ts.hosts import Hosts
-from tms_ts.record import Key, Record, Replay
+from tms_ts.past import Key
+from tms_ts.record import Record
+from tms_ts.replay import Replay
 from tms_ts.sent_goal import ACCEPT_LIMIT, SentGoal
 from tms_ts.world import GoalState
 
@@ -186,7 +188,7 @@ class Machines:
         """A process that supervisord has given up, or a machine that only a person can arm again."""
         latch = self._gateways.latch(goal.machine)
         if latch:
-            return f"{goal.machine} is stopped ({latch}): re-arm it with `tms rearm {goal.machine}`"
+            return f"{goal.machine} is latched ({latch}): re-arm it with `tms rearm {goal.machine}`"
         fatal = next(filter(None, (self._hosts.fatal(goal.machine, p) for p in ("rc", "rp", goal.subtask))), "")
         if fatal and fatal not in self._given_up:
             self._given_up.add(fatal)

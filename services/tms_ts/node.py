@@ -16,7 +16,8 @@ from tms_msg_ts.srv import AnswerQuestion, CancelRun, CheckTask, ResumePlan
 
 from tms_core import log
 from tms_core.app import App
-from tms_core.errors import TaskError, TmsError
+from tms_core.errors import NOT_STORED, TaskError, TmsError
+from tms_core.group_commit import GroupCommit
 from tms_core.ros import Ended, Goal, Outcome
 from tms_ts import bt
 from tms_ts.flags import Flags
@@ -26,16 +27,21 @@ from tms_ts.hosts import Hosts
 from tms_ts.interrupted import Interrupted
 from tms_ts.journal import Journal
 from tms_ts.machines import Identity, Machines
-from tms_ts.numbers import Numbers
+from tms_ts.numbers import Numbers, no_disk
+from tms_ts.past import Header, Past
 from tms_ts.preflight import Findings, machines_of, preflight, processes_of, records_of
 from tms_ts.questions import Clicks, Questions
-from tms_ts.record import Header, Past, Records, Replay
+from tms_ts.record import Records
+from tms_ts.replay import Replay
 from tms_ts.run import Facts, Run
 from tms_ts.shared_records import SharedRecords
 from tms_ts.surroundings import Around, Sensing
 from tms_ts.world import World
 
 DB_LIMIT = 5.0  # s
+BEGIN_STORED = 5.0  # s for what is known of a run to be on the disk before it moves anything
+END_STORED = 5.0  # s for its end, before it is told without
+DISK_END = 0.2  # s for the last entries when the process ends
 SERVERS_LIMIT = 15.0  # s for the subtasks' servers to be there after their start ...
 SERVER_START = 3.0  # s, ... and this for each of them: many starting at once share the cores
 STATES = ("preparing", "running", "stopping")
@@ -66,12 +72,14 @@ class Scheduler:
     def __init__(self, app: App) -> None:
         self._app, self._ros = app, app.ros
         self._hosts = Hosts(app.ros)
-        self._journal = Journal(app.ros, app.log, app.site.state)
-        self._records = Records(app.site.state)
+        self._disk = GroupCommit(app.log)
+        self._journal = Journal(app.ros, app.log, self._disk, app.site.state)
+        self._records = Records(app.site.state, self._disk)
+        self._records.check()
         self.interrupted = Interrupted(app, self._journal, self._records)
         self._gateways = Gateways(app, self.interrupted.receipt)
         self._monitors = Monitors(app.log, app.site.file.groot.bind, app.site.file.ports.groot)
-        self._numbers = Numbers(app.site.state)
+        self._numbers = Numbers(app.site.state, self._disk)
         self._shared = SharedRecords(app.ros)
         self._sensing = Sensing(app)
         self._runs: dict[str, Run] = {}
@@ -108,9 +116,13 @@ class Scheduler:
         return response
 
     def measure(self) -> None:
-        """The metrics of the active runs."""
+        """The metrics of the active runs, and whether their history is in danger."""
         with self._lock:
             runs = list(self._runs.values())
+        for text in self._journal.alarms():
+            self._app.log.error("event=alarm reason=%r", text)
+            for run in runs:
+                run.tell("alarm", "", text)
         for state in STATES:
             ACTIVE.labels(state).set(sum(run.facts.state == state for run in runs))
         counted = Counter(state for run in runs for state in run.states)
@@ -127,6 +139,7 @@ class Scheduler:
         for run in runs:
             run.ended.wait(max(0.0, deadline - time.monotonic()))
         self._closing.set()
+        self._disk.close(DISK_END)
         self._journal.close()
 
     def cancel(self, request: CancelRun.Request, response: CancelRun.Response) -> CancelRun.Response:
@@ -159,7 +172,13 @@ class Scheduler:
     # a run
 
     def execute(self, goal: Goal) -> Ended:
-        """One ExecuteTask goal, from the database to the machines' stand-still."""
+        """One ExecuteTask goal, from the database to the machines' stand-still; its end is stored, then told."""
+        how, result = self._execute_any(goal)
+        if not self._disk.wait(END_STORED):
+            result.error_msg = f"{result.error_msg} {NOT_STORED}".strip()
+        return how, result
+
+    def _execute_any(self, goal: Goal) -> Ended:
         if not goal.request.resume:
             return self._run(goal, None)
         try:
@@ -172,7 +191,10 @@ class Scheduler:
             self.interrupted.over(header.run_id)
 
     def _run(self, goal: Goal, past: Past | None) -> Ended:
-        facts = self._facts(goal, past)
+        try:
+            facts = self._facts(goal, past)
+        except TaskError as error:
+            return _refused(goal.request.resume, error.code, str(error))
         log.bind(run=facts.run_id)
         run = Run(
             self._ros, self._journal, self._app.log, goal, facts, self._records.open(facts.run_id), self._news.set
@@ -231,14 +253,15 @@ class Scheduler:
         facts.machines, facts.records = machines_of(tree), records_of(tree)
         facts.writes = {(value.record, value.field) for value in tree.shared_values() if value.writes}
         started = (facts.started.sec, facts.started.nanosec)
-        run.record.begin(
-            Header(facts.run_id, facts.number, facts.task_id, facts.description, facts.machines, xml, started)
-        )
+        known = (facts.run_id, facts.number, facts.task_id, facts.description, facts.machines, xml, started)
+        run.record.begin(Header(*known, facts.records))
         run.enter("preparing", "resumed" if past is not None else "")
         run.tell_tree(tree)
         self._refuse_errors(run, self._preflight(tree), goal.request.ignore_warnings)
         self._hold(run)
         self._prepare(run, processes_of(tree, self._app.site), machines)
+        if not self._disk.wait(BEGIN_STORED):
+            raise no_disk(self._disk)
         # Not before: while many processes start on a busy PC a permit may lapse, though nothing moves yet.
         holder = Holder(run.stopped, machines.receipt, run.alive)
         self._gateways.hold(facts.machines, facts.number, facts.run_id, holder)
@@ -269,7 +292,7 @@ class Scheduler:
         for machine in machines:
             latch = self._gateways.latch(machine)
             if latch:
-                raise TaskError(f"{machine} is stopped ({latch}): re-arm it with `tms rearm {machine}`", "NOT_ARMED")
+                raise TaskError(f"{machine} is latched ({latch}): re-arm it with `tms rearm {machine}`", "NOT_ARMED")
             if who := self._gateways.by_hand(machine):
                 raise TaskError(f"{who} drives {machine} by hand: `tms give-back {machine}` first", "TAKEN")
 

@@ -1,30 +1,68 @@
-"""Fencing numbers of runs: always growing, also over restarts and when the clock goes back."""
+"""Fencing numbers of runs: always growing, also over restarts, power cuts, and when the clock goes back."""
 
+import logging
 import threading
 import time
 from pathlib import Path
+
+from tms_core import durable
+from tms_core.errors import TaskError
+from tms_core.group_commit import GroupCommit
+
+LIMIT = 5.0  # s for a number to be on the disk
+log = logging.getLogger(__name__)
 
 
 class Numbers:
     """Milliseconds since 1970, or one more than the last number kept in `<state>/ts/number`."""
 
-    def __init__(self, folder: Path) -> None:
-        self._path = folder / "ts" / "number"
+    order = 0
+
+    def __init__(self, folder: Path, disk: GroupCommit) -> None:
+        self._path, self._disk = folder / "ts" / "number", disk
         self._giving = threading.Lock()  # two runs that start at once must not get one number
+        self._last = self._read()
+        self._text = b""
 
     def next(self) -> int:
-        """A number for a new run; fits into 48 bits until the year 10889. From any thread."""
-        with self._giving:
-            return self._next()
+        """A number for a new run, on the disk; fits into 48 bits until the year 10889. Waits; from any thread.
 
-    def _next(self) -> int:
-        try:
-            last = int(self._path.read_text(encoding="ascii"))
-        except (FileNotFoundError, ValueError):
-            last = 0
-        number = max(last + 1, time.time_ns() // 1_000_000)
-        self._path.parent.mkdir(parents=True, exist_ok=True)
-        part = self._path.with_suffix(".part")
-        part.write_text(str(number), encoding="ascii")
-        part.replace(self._path)
+        A number that a power cut takes back would be given again, and late goals of the one run would pass for the
+        other's.
+
+        Raises:
+            TaskError: NO_DISK.
+        """
+        with self._giving:
+            self._last = number = max(self._last + 1, time.time_ns() // 1_000_000)
+            taken = self._disk.put(self, str(number).encode(), vital=True)
+        if not taken or not self._disk.wait(LIMIT):
+            raise no_disk(self._disk)
         return number
+
+    def write(self, entries: list[bytes]) -> None:
+        """For group commit: the last number is the largest."""
+        self._text = entries[-1]
+
+    def sync(self) -> None:
+        """For group commit."""
+        durable.replace(self._path, self._text)
+
+    def keep(self) -> None:
+        """For group commit."""
+
+    def _read(self) -> int:
+        try:
+            return int(self._path.read_text(encoding="ascii"))
+        except FileNotFoundError:
+            return 0
+        except (OSError, ValueError) as error:
+            aside = durable.set_aside(self._path)
+            log.error("event=number_unreadable kept=%s reason=%r action='the clock gives the next'", aside, str(error))
+            return 0
+
+
+def no_disk(disk: GroupCommit) -> TaskError:
+    """Why no run may begin."""
+    why = disk.trouble() or "it is too slow"
+    return TaskError(f"this PC's disk does not take what must be kept of a run ({why}): free some space", "NO_DISK")

@@ -1,68 +1,51 @@
 """What this PC keeps of a run until it has ended: enough to close it after a crash, and to resume it. Pure logic.
 
 One file a run, one JSON object a line: first the run, then every event's number and every leaf goal that was sent
-or has ended. A run that ended in order leaves no file.
+or has ended. A run that ended in order leaves no file. Lines are written by group commit: whoever adds one waits for
+nothing. In each group the records are on the disk before the journal: no event is told whose number is not known here.
 """
 
-import errno
 import json
 import logging
-import os
-import threading
 import time
-from collections import defaultdict, deque
-from collections.abc import Callable, Iterator
-from dataclasses import asdict, dataclass
+from contextlib import suppress
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from prometheus_client import Counter
 
+from tms_core.append_file import AppendFile
+from tms_core.durable import set_aside
+from tms_core.group_commit import GroupCommit
+from tms_ts.past import Header, Key, Past
+
+READ_LIMIT = 2.0  # s for lines on their way to the disk before it is read
+
 log = logging.getLogger(__name__)
-LOST = Counter("tms_ts_record_lost_total", "Lines of a run's record that could not be written; it cannot be resumed")
-
-Key = tuple[str, str, str, str]  # node path, machine, subtask, record
-
-
-@dataclass(frozen=True)
-class Header:
-    """The run, as far as it is known before its first tick."""
-
-    run_id: str
-    number: int  # fencing number
-    task_id: int
-    description: str
-    machines: list[str]
-    xml: str
-    started: tuple[int, int]  # s, ns
+LOST = Counter("tms_ts_record_lost_total", "Lines of a run's record that could not be kept; it cannot be resumed")
 
 
 class Record:
-    """Written by the run; each line is one write, so a crash cuts off the last line at most.
+    """Written by the run.
 
-    A line begins with its line break: what a crash or a full disk has cut off before it spoils no other line.
+    A line begins with its line break: what a crash has cut off before it spoils no other line.
     """
 
-    def __init__(self, path: Path) -> None:
-        self.path = path
-        path.parent.mkdir(parents=True, exist_ok=True)
-        self._file = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
-        self._using = threading.Lock()  # over the file: its number may be another file's once it is closed
+    order = 0
 
-    def _line(self, data: dict[str, Any]) -> None:
-        with self._using:
-            if self._file < 0:
-                return  # news of a run that is over
-            try:
-                self._write(b"\n" + json.dumps({**data, "t": time.time()}).encode())
-            except OSError as error:  # a full disk must not keep a run from stopping its machines
-                LOST.inc()
-                log.error("event=record_lost file=%s reason=%r", self.path.name, str(error))
+    def __init__(self, path: Path, disk: GroupCommit) -> None:
+        self.path, self._disk = path, disk
+        self._file: AppendFile | None = None  # opened with the first line, by the writing thread
+        self._ended = False
 
-    def _write(self, line: bytes) -> None:
-        written = os.write(self._file, line)
-        if written < len(line):
-            raise OSError(errno.ENOSPC, f"only {written} of {len(line)} bytes could be written")
+    def _line(self, data: dict[str, Any], urgent: bool = False) -> None:
+        """`urgent`: what a resume relies on is written at once; a killed process loses what still gathers."""
+        if self._ended:
+            return  # news of a run that is over
+        if not self._disk.put(self, b"\n" + json.dumps({**data, "t": time.time()}).encode(), vital=True, urgent=urgent):
+            LOST.inc()
+            log.error("event=record_lost file=%s line=%r", self.path.name, next(iter(data)))
 
     def begin(self, header: Header) -> None:
         self._line({"run": asdict(header)})
@@ -71,14 +54,18 @@ class Record:
         self._line({"n": number})
 
     def sent(self, key: Key) -> None:
-        self._line({"sent": key})
+        self._line({"sent": key}, urgent=True)
 
     def done(self, key: Key, succeeded: bool) -> None:
-        self._line({"done": key, "ok": succeeded})
+        self._line({"done": key, "ok": succeeded}, urgent=True)
 
     def gone(self, key: Key, left: int) -> None:
         """The last `left` ends of that leaf goal belong to the past: they are not skipped by a later resume."""
         self._line({"gone": key, "left": left})
+
+    def over(self, outcome: str, reason: str) -> None:
+        """The run ends, as the next event tells."""
+        self._line({"over": outcome, "reason": reason})
 
     def interrupted(self) -> None:
         """The history says now that the run was interrupted."""
@@ -86,116 +73,68 @@ class Record:
 
     def close(self) -> None:
         """Nothing more is written; the file stays."""
-        with self._using:
-            if self._file >= 0:
-                os.close(self._file)
-                self._file = -1
+        self._ended = True
+        self._disk.after(self._close)
 
     def remove(self) -> None:
-        """The run has ended in order."""
-        self.close()
+        """The run has ended in order, and that is stored before the file is gone."""
+        self._ended = True
+        self._disk.after(self._remove)
+
+    # for group commit
+
+    def write(self, entries: list[bytes]) -> None:
+        self._file = self._file or AppendFile(self.path)
+        self._file.write(b"".join(entries))
+
+    def sync(self) -> None:
+        if self._file is not None:
+            self._file.sync()
+
+    def keep(self) -> None:
+        if self._file is not None:
+            self._file.keep()
+
+    def _close(self) -> None:
+        if self._file is not None:
+            self._file.close()
+            self._file = None
+
+    def _remove(self) -> None:
+        self._close()
         self.path.unlink(missing_ok=True)
-
-
-class Replay:
-    """Leaf goals that have ended before: asked for again, in the same order, they are not repeated.
-
-    Flags are read anew, so the tree may go another way than before the interruption. What it has not asked for when
-    a goal is really done belongs to the past, and is done again should the tree come there later.
-    """
-
-    def __init__(self, ended: list[tuple[Key, bool]]) -> None:
-        self.beside: Callable[[str, str], bool] = lambda node, other: False  # whether neither waits for the other
-        self._ended: dict[Key, deque[bool]] = defaultdict(deque)
-        for key, succeeded in ended:
-            self._ended[key].append(succeeded)
-
-    def take(self, key: Key) -> bool | None:
-        """How that leaf goal ended, once; None if it has to be done now."""
-        found = self._ended.get(key)
-        return found.popleft() if found else None
-
-    def moved_on(self, node: str) -> list[tuple[Key, int]]:
-        """A goal of that node was really done: only nodes beside it may still have something to skip.
-
-        Returns what is dropped: how often each leaf goal had ended and was not asked for again.
-        """
-        past = [key for key in list(self._ended) if not self.beside(key[0], node)]
-        dropped = [(key, len(self._ended.pop(key, ()))) for key in past]
-        return [(key, left) for key, left in dropped if left]
-
-
-class Past:
-    """A record as it is read after a crash."""
-
-    def __init__(self, path: Path) -> None:
-        self.path = path
-        self.header: Header | None = None
-        self.last_event = 0
-        self.last_time = 0.0  # s since 1970
-        self.closed = False
-        self.ended: list[tuple[Key, bool]] = []
-        self.open: list[Key] = []  # sent, but not ended
-        for line in _lines(path):
-            self._take(line)
-
-    def _take(self, line: dict[str, Any]) -> None:
-        self.last_time = line.get("t", self.last_time)
-        if "run" in line:
-            self.header = Header(**{**line["run"], "started": tuple(line["run"]["started"])})
-            self.closed = False
-        elif "n" in line:
-            self.last_event = max(self.last_event, line["n"])
-        elif "sent" in line:
-            key = _key(line["sent"])
-            self.open += [key] if key not in self.open else []
-        elif "done" in line:
-            key = _key(line["done"])
-            self.ended.append((key, line["ok"]))
-            if key in self.open:
-                self.open.remove(key)
-        elif "gone" in line:
-            self._forget(_key(line["gone"]), line["left"])
-        self.closed = self.closed or "interrupted" in line
-
-    def _forget(self, key: Key, left: int) -> None:
-        places = [place for place, (ended, _) in enumerate(self.ended) if ended == key]
-        for place in places[::-1][:left]:
-            del self.ended[place]
-
-
-def _key(words: list[str]) -> Key:
-    node, machine, subtask, record = words
-    return node, machine, subtask, record
-
-
-def _lines(path: Path) -> Iterator[dict[str, Any]]:
-    try:
-        data = path.read_bytes()
-    except FileNotFoundError:
-        return  # its run has ended in order just now
-    for text in data.split(b"\n"):
-        try:
-            line = json.loads(text)
-        except ValueError:
-            continue  # the last line, cut short by the crash
-        if isinstance(line, dict):
-            yield line
 
 
 class Records:
     """All records of this PC, in `<state>/ts/runs/`."""
 
-    def __init__(self, state: Path) -> None:
-        self._folder = state / "ts" / "runs"
+    def __init__(self, state: Path, disk: GroupCommit) -> None:
+        self._folder, self._disk = state / "ts" / "runs", disk
 
     def open(self, run_id: str) -> Record:
         """The record of a run, new or continued."""
-        return Record(self._folder / f"{run_id}.jsonl")
+        return Record(self._folder / f"{run_id}.jsonl", self._disk)
+
+    def check(self) -> None:
+        """Before the first run: put aside what cannot be read, tell it, and go on with the others."""
+        for path in sorted(self._folder.glob("*.jsonl")):
+            try:
+                past = Past(path)
+                problem = "" if past.header is not None else "it does not say which run it is of"
+            except OSError as error:
+                problem = str(error)
+            if problem:
+                log.error("event=record_unreadable kept=%s reason=%r", set_aside(path), problem)
+            elif past.damaged:
+                log.error("event=record_damaged file=%s lines=%d", path, past.damaged)
 
     def past(self) -> list[Past]:
-        """Runs that did not end in order, oldest first."""
-        found = [Past(path) for path in sorted(self._folder.glob("*.jsonl"))]
+        """Runs that did not end in order, oldest first. Waits a moment for what is on its way to the disk."""
+        self._disk.wait(READ_LIMIT)
+        found = []
+        for path in sorted(self._folder.glob("*.jsonl")):
+            with suppress(OSError):  # told at the start
+                found.append(Past(path))
         return [past for past in found if past.header is not None]
 
     def find(self, run_id: str) -> Past | None:

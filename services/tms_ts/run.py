@@ -94,8 +94,8 @@ class Run:
         self.wake.set()
 
     def stopped(self, machine: str, cause: str) -> None:
-        """A machine was stopped from outside, and stays so until somebody re-arms it."""
-        self.cancel("cancelled" if SOFTWARE_STOP in cause else "failure", f"{machine} was stopped: {cause}")
+        """A machine was told to stop from outside, and moves no more until somebody re-arms it."""
+        self.cancel("cancelled" if SOFTWARE_STOP in cause else "failure", f"{machine} was told to stop: {cause}")
 
     def alive(self) -> bool:
         """Whether the loop that decides about motions still runs."""
@@ -232,6 +232,8 @@ class Run:
     def _end(self, outcome: str, reason: str) -> str:
         self.over = True
         self._tell_flood(last=True)
+        if outcome != "interrupted":
+            self.record.over(outcome, reason)
         self.enter(outcome, reason, ended=True)
         self.close_record(outcome)
         RUNS.labels(outcome).inc()
@@ -241,6 +243,7 @@ class Run:
         """Only an interrupted run can be resumed."""
         if outcome == "interrupted":
             self.record.interrupted()
+            self.record.close()
         else:
             self.record.remove()
 
@@ -252,6 +255,7 @@ class Run:
             self.record.interrupted()
             self.record.close()
             return
+        self.record.over("refused", f"{code}: {reason}")
         self.enter("refused", f"{code}: {reason}", ended=True)
         self.record.remove()
         RUNS.labels("refused").inc()

@@ -3,7 +3,7 @@
 import time
 
 from tms_core.ros import Call, Peer
-from tms_ts.record import Key
+from tms_ts.past import Key
 from tms_ts.world import GoalState
 
 ACCEPT_LIMIT = 5.0  # s for a subtask to take or refuse a goal

@@ -9,6 +9,7 @@ from tms_msg_db.msg import Event
 from tms_msg_db.srv import ListEvents
 
 from few_processes import Mesh, bare
+from tms_core.group_commit import GroupCommit
 from tms_core.values import to_parameters
 from tms_ts.journal import LOST, Journal
 
@@ -37,11 +38,13 @@ def test_large_entries_arrive_and_one_that_no_store_takes_keeps_nobody_waiting(m
         return [(event.number, len(event.values[0].value.string_array_value)) for event in events]
 
     before = LOST._value.get()
-    journal = Journal(mesh.ros, logging.getLogger("journal"), tmp_path / "state")
+    disk = GroupCommit(logging.getLogger("disk"))
+    journal = Journal(mesh.ros, logging.getLogger("journal"), disk, tmp_path / "state")
     journal.put(tree(1, 6000, 50))
     journal.put(tree(2, 20_000, 130))  # the most nodes that a tree may have
     journal.put(tree(3, 20_000, 158))  # small enough for ROS, larger than 16 MB as a document
     journal.put(tree(4, 10, 10))
     mesh.until(lambda: stored() == [(1, 6000), (2, 20_000), (4, 10)], "what can be stored")
     assert LOST._value.get() == before + 1
+    disk.close(10)
     journal.close()

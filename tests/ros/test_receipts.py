@@ -190,7 +190,7 @@ def test_a_stop_in_the_dead_time_is_proven_after_it(machine: Machine) -> None:
 
 def test_a_software_stop_in_the_dead_time_that_is_ignored(machine: Machine) -> None:
     machine.be(ignore_emg_stop=True, ignore_cancel=True)
-    call = machine.swing()
+    call = machine.swing(seconds=25.0)
     machine.until(lambda: bool(machine.state.goal) or call.outcome is not None, "the goal is under way")
     assert call.outcome is None, call.result
     machine.button.publish(Bool(data=True))

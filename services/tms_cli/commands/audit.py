@@ -112,7 +112,7 @@ def _page(node: "Ros", after: int, limit: int) -> list[Any]:
     from tms_msg_db.srv import ListEvents
 
     try:
-        asked = {"run_id": "audit", "after": after, "limit": limit}
+        asked: dict[str, Any] = {"run_id": "audit", "after": after, "limit": limit}
         return list(session.call(node, ListEvents, "/tms/db/list_events", **asked).events)
     except TmsError as error:
         if error.code != "RUN_MISSING":  # there is none

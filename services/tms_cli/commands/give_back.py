@@ -13,7 +13,7 @@ PROOF_LIMIT = 20.0  # s for the gateway to have seen that it stands
 
 @click.command()
 @click.argument("machine")
-@click.option("--by", "who", default=getpass.getuser, show_default="your user name", help="Who gives it back.")
+@click.option("--by", "who", default=getpass.getuser, help="Who gives it back (default: your user name).")
 @session.json_option
 @click.pass_context
 def command(ctx: click.Context, machine: str, who: str, as_json: bool) -> None:
@@ -27,7 +27,7 @@ def command(ctx: click.Context, machine: str, who: str, as_json: bool) -> None:
 
     session.machines((machine,), False)
     with session.ros() as node:
-        answer = session.call(node, TakeMachine, f"/{machine}/take", PROOF_LIMIT, who=who, back=True)
+        answer = session.call(node, TakeMachine, f"/{machine}/take", seconds=PROOF_LIMIT, who=who, back=True)
     receipt = answer.receipt
     if as_json:
         session.show_json(stop.as_dict(receipt))

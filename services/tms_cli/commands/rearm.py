@@ -7,7 +7,7 @@ import click
 from tms_cli import session
 from tms_cli.words import say
 from tms_core.errors import TmsError
-from tms_core.permit import NO_NOTE
+from tms_core.fence import NO_NOTE
 
 if TYPE_CHECKING:
     from tms_core.ros import Ros

@@ -11,7 +11,7 @@ import click
 from tms_cli import live, session
 from tms_cli.commands.runs import has_ended, recent
 from tms_cli.words import say, state, what_next
-from tms_core.errors import TmsError
+from tms_core.errors import NOT_STORED, TmsError
 
 if TYPE_CHECKING:
     from tms_core.ros import Ros
@@ -206,6 +206,9 @@ def report(end: End, as_json: bool) -> None:
         )
         if end.run_id:
             click.echo(say("history: tms events {run}", run=end.run_id))
+    if end.outcome in ("success", "cancelled") and end.error_msg.endswith(NOT_STORED):  # others show their reason
+        note = say("the end of {run} is not stored yet: the disk of the scheduler's PC is slow or full", run=end.run_id)
+        click.echo(f"tms: {note}", err=True)
     if end.exit_code:
         click.echo(f"tms: {_why(end)}", err=True)
 

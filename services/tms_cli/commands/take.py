@@ -10,7 +10,7 @@ from tms_cli.words import say
 
 @click.command()
 @click.argument("machine")
-@click.option("--by", "who", default=getpass.getuser, show_default="your user name", help="Who drives.")
+@click.option("--by", "who", default=getpass.getuser, help="Who drives (default: your user name).")
 @session.json_option
 def command(machine: str, who: str, as_json: bool) -> None:
     """Take a machine to drive it by hand, with its levers or a remote control.

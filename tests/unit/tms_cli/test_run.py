@@ -13,7 +13,7 @@ from tms_msg_ts.msg import NodeStatus, RunState, RunStates
 from tms_msg_ts.srv import CancelRun
 
 from tms_cli.commands import run
-from tms_core.errors import DbError, RosError
+from tms_core.errors import NOT_STORED, DbError, RosError
 from tms_core.ros import Outcome
 
 XML = '<root><BehaviorTree ID="T"><AlwaysSuccess/></BehaviorTree></root>'
@@ -84,6 +84,14 @@ def test_other_outcomes_are_exit_code_1_with_one_line(task, tms, outcome: str) -
     (line,) = end.stderr.splitlines()
     assert line.startswith("tms: ")
     assert "because" in line or outcome == "cancelled"
+
+
+@pytest.mark.parametrize(("outcome", "said"), [("success", 1), ("cancelled", 1), ("failure", 0)])
+def test_a_result_that_is_not_stored_yet_says_so(task, tms, outcome: str, said: int) -> None:
+    task.action = FakeScheduler(feedback(), outcome=Outcome.ABORTED, result=result(outcome, "", f"why {NOT_STORED}"))
+    end = tms(run.command, "1", "--wait")
+    assert end.stderr.count("tms: the end of r1 is not stored yet") == said
+    assert "not stored yet" in end.stderr
 
 
 def test_json_is_one_document_and_progress_goes_to_stderr(task, tms) -> None:

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from tms_core.permit import NO_NOTE
+from tms_core.fence import NO_NOTE
 from tms_rc.memory import UNREADABLE, Left, Memory
 
 

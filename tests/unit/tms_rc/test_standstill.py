@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from tms_core.models import Border, MachineModel
 from tms_rc.source import Sample
-from tms_rc.standstill import HEADING, JOINTS, ODOM, PLACE, StandStill, Travel
+from tms_rc.standstill import HEADING, JOINTS, NOTHING, ODOM, PLACE, Expected, StandStill, Travel
 
 LIMIT, PERIOD, DEAD = 0.01, 0.04, 0.6  # rad/s, s, s
 SOURCE = {"period": PERIOD, "stamps": "utc", "frozen_after": 2.0, "origin": "a test"}
@@ -65,10 +65,10 @@ def stood_after(
     begun: float,
     limit: float = 8.0,
     strongest: bool = False,
-    since: float | None = None,
+    expected: Expected = NOTHING,
 ) -> float:
     """Seconds from the stop until it is proven; infinite when it is not."""
-    wanted = reporter.watch.proof(begun, strongest, since)
+    wanted = reporter.watch.proof(begun, strongest, expected)
     while reporter.now - begun < limit:
         if reporter.watch.proven(wanted, reporter.now):
             return reporter.now - begun
@@ -274,8 +274,32 @@ def test_a_motion_that_was_never_seen_makes_the_proof_wait() -> None:
     reporter = Reporter(watch())
     since = reporter.now
     reporter.run(1.0, 0.0)
-    waited = stood_after(reporter, standing(reporter), reporter.now, since=since)
+    waited = stood_after(reporter, standing(reporter), reporter.now, expected=Expected(since))
     assert waited > reporter.watch.dead_time + reporter.watch.braking
+
+
+def test_what_was_commanded_before_the_stop_must_be_seen_after_it() -> None:
+    """A record that is replayed from the first moment of a motion on shows a motion, and then stands."""
+    reporter = Reporter(watch())
+    since = reporter.now
+    reporter.run(0.2, 0.02)
+    begun, expected = reporter.now, Expected(since, {"boom": 0.2})
+    reporter.watch.mark()
+    waited = stood_after(reporter, standing(reporter), begun, expected=expected)
+    assert waited > reporter.watch.dead_time + reporter.watch.braking
+
+
+def test_what_was_commanded_before_the_stop_and_seen_after_it_is_believed() -> None:
+    reporter = Reporter(watch())
+    since = reporter.now
+    reporter.run(0.4, 0.3)
+    begun, expected = reporter.now, Expected(since, {"boom": 0.2})
+    reporter.watch.mark()
+
+    def moves() -> None:
+        reporter.run(PERIOD, 0.3 if reporter.now - begun < DEAD else 0.0)
+
+    assert stood_after(reporter, moves, begun, expected=expected) < DEAD + 0.7
 
 
 def test_a_replayed_record_is_never_proven() -> None:
@@ -352,7 +376,7 @@ def test_what_is_confirmed_stood(motion: list[tuple[int, float]], stop: int, lie
             reporter.tell(moved, told, stamp, arm=not (lies and lie == "muted"))
         if i == stop:
             since = next((100.0 + PERIOD * k for k, one in enumerate(speeds[:i]) if one), None)
-            proof = reporter.watch.proof(reporter.now, False, since)
+            proof = reporter.watch.proof(reporter.now, False, Expected(since))
             stopped = i
         if proof is not None and reporter.watch.proven(proof, reporter.now):
             window = speeds[i - round(0.2 / PERIOD) + 1 : i + 1]

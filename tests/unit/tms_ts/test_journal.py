@@ -1,9 +1,11 @@
 """The journal against a database that refuses: what waits, what is dropped, and that nobody else pays for it."""
 
 import logging
+import os
 import threading
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +13,9 @@ import pytest
 from tms_msg_db.msg import Event, Run
 from tms_msg_db.srv import WriteJournal
 
+from slow_disk import slow_disk
 from tms_core.errors import RosError
+from tms_core.group_commit import SPARE, GroupCommit
 from tms_ts import journal
 from tms_ts.journal import LOST, Journal
 
@@ -51,10 +55,24 @@ def db(monkeypatch: pytest.MonkeyPatch) -> FakeDb:
 
 
 @pytest.fixture
-def kept(db: FakeDb, tmp_path: Path) -> Iterator[Journal]:
-    made = Journal(db, logging.getLogger("journal"), tmp_path)  # type: ignore[arg-type]
+def disk() -> Iterator[GroupCommit]:
+    made = GroupCommit(logging.getLogger("disk"))
+    yield made
+    made.close(10)
+
+
+@pytest.fixture
+def kept(db: FakeDb, disk: GroupCommit, tmp_path: Path) -> Iterator[Journal]:
+    with keeping(db, disk, tmp_path) as made:
+        yield made
+
+
+@contextmanager
+def keeping(db: FakeDb, disk: GroupCommit, folder: Path) -> Iterator[Journal]:
+    made = Journal(db, logging.getLogger("journal"), disk, folder)  # type: ignore[arg-type]
     yield made
     db.bad, db.trouble = {}, ""
+    assert disk.wait(10)
     made.close()
     made._thread.join(10)
 
@@ -110,3 +128,46 @@ def test_an_entry_that_no_store_could_take_is_not_even_kept(db: FakeDb, kept: Jo
     kept.put(Run(run_id="r"))
     put(kept, range(2, 3))
     db.wait(2)
+
+
+def test_the_database_gets_an_entry_when_it_is_on_the_disk_and_who_puts_it_does_not_wait(
+    db: FakeDb, disk: GroupCommit, tmp_path: Path
+) -> None:
+    with slow_disk(tmp_path) as slow, keeping(db, disk, slow.folder) as journal:
+        put(journal, range(1, 2))
+        db.wait(1)
+        with slow.stalled():
+            put(journal, range(2, 50))
+            assert not disk.wait(0.3)
+            assert db.stored == [1]
+        db.wait(*range(1, 50))
+
+
+def test_what_memory_cannot_hold_while_the_disk_is_full_is_counted_and_named(
+    db: FakeDb, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    full = threading.Event()
+    full.set()
+    write = os.write
+
+    def refuses(file: int, data: bytes) -> int:
+        if full.is_set():
+            raise OSError(28, "No space left on device")
+        return write(file, data)
+
+    monkeypatch.setattr("tms_core.durable.os.write", refuses)
+    disk, before = GroupCommit(logging.getLogger("disk"), SPARE + 10_000), lost()
+    with keeping(db, disk, tmp_path) as journal:
+        put(journal, range(1, 9), "x" * 1500)  # more than the room, but for what is vital
+        journal.put(Event(run_id="r", number=9, kind="stop", text="zx200 stood"))
+        while not disk.trouble():
+            assert not disk.wait(0.01)
+        alarms = journal.alarms()
+        assert "memory only: [Errno 28] No space left on device" in alarms[0]
+        assert alarms[1] == "the history of run r has lost 4 entries, events 5 to 8"
+        assert lost() == before + 4 and db.stored == []
+        assert journal.alarms() == []  # told
+        full.clear()
+        db.wait(1, 2, 3, 4, 9)
+        assert disk.wait(10) and journal.alarms() == []
+    disk.close(10)

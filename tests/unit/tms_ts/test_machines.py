@@ -10,7 +10,7 @@ from tms_core.ros import Call, Outcome
 from tms_ts import machines
 from tms_ts.gateways import Gateways
 from tms_ts.machines import ASK_AGAIN, Identity, Machines
-from tms_ts.record import Replay
+from tms_ts.replay import Replay
 from tms_ts.sent_goal import ACCEPT_LIMIT, RECOVERY, SentGoal
 from tms_ts.world import GoalState
 
@@ -137,7 +137,7 @@ def test_a_receipt_is_told_once(site: Site) -> None:
     site.machines.receipt(receipt)
     site.machines.receipt(receipt)
     assert [text for text in site.told if text.startswith("stop")] == [
-        "stop: zx200 stood after 0.50 s and 0.000 rad (x)"
+        "stop: zx200 stood after 0.50 s, 0 rad and 0.00 m (x)"
     ]
 
 

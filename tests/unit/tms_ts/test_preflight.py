@@ -113,7 +113,7 @@ def test_what_only_the_run_decides_is_a_warning(site: Site) -> None:
         (Around({GOOD[:2]: Stored(POSE, "dynamic", 12.0, 5.0)}), "line 2: record zx200/pose is 12 s old, allowed"),
         (Around({GOOD[:2]: Stored(POSE, "dynamic", None, 5.0)}), "line 2: record zx200/pose is of unknown age"),
         (Around(silent_input="digger"), "line 2: sensing input digger should write record zx200/pose and is silent"),
-        (Around(problems={"zx200": "zx200 is stopped (software stop)"}), "zx200 is stopped (software stop)"),
+        (Around(problems={"zx200": "zx200 is latched (software stop)"}), "zx200 is latched (software stop)"),
     ],
 )  # fmt: skip
 def test_what_may_be_right_when_the_leaf_starts_is_a_warning(site: Site, around: Around, said: str) -> None:

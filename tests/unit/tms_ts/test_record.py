@@ -1,62 +1,79 @@
 """What a crash leaves of a run is enough to close it and to go on with it."""
 
-import os
+import logging
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from tms_ts.record import LOST, Header, Key, Past, Records, Replay
+from tms_core.group_commit import GroupCommit
+from tms_ts.past import Header, Key, Over, Past
+from tms_ts.record import LOST, Records
+from tms_ts.replay import Replay
 
 HEADER = Header("run-1", 7, 3, "dig", ["zx200"], "<root/>", (1, 2))
 FIRST: Key = ("0.0", "zx200", "dig", "here")
 SECOND: Key = ("0.1", "zx200", "dig", "there")
 
 
-def test_a_crash_leaves_ended_and_open_leaves(tmp_path: Path) -> None:
-    record = Records(tmp_path).open("run-1")
+@pytest.fixture
+def disk() -> Iterator[GroupCommit]:
+    made = GroupCommit(logging.getLogger("disk"))
+    yield made
+    made.close(10)
+
+
+@pytest.fixture
+def records(tmp_path: Path, disk: GroupCommit) -> Records:
+    return Records(tmp_path, disk)
+
+
+def test_a_crash_leaves_ended_and_open_leaves(records: Records) -> None:
+    record = records.open("run-1")
     record.begin(HEADER)
     record.event(1)
     record.sent(FIRST)
     record.done(FIRST, True)
     record.sent(SECOND)
     record.event(2)
+    records.past()
     with record.path.open("ab") as file:
         file.write(b'\n{"done": ["0.1", "zx2')  # cut short
-    (past,) = Records(tmp_path).past()
+    (past,) = records.past()
     assert past.header == HEADER and past.last_event == 2 and not past.closed
     assert past.ended == [(FIRST, True)] and past.open == [SECOND]
 
 
-def test_a_run_that_ended_in_order_leaves_nothing(tmp_path: Path) -> None:
-    record = Records(tmp_path).open("run-1")
+def test_a_run_that_ended_in_order_leaves_nothing(records: Records) -> None:
+    record = records.open("run-1")
     record.begin(HEADER)
     record.remove()
     record.event(9)  # late news
-    assert Records(tmp_path).past() == []
+    assert records.past() == []
 
 
-def test_resumed_and_interrupted_again_it_keeps_what_had_ended(tmp_path: Path) -> None:
-    record = Records(tmp_path).open("run-1")
+def test_resumed_and_interrupted_again_it_keeps_what_had_ended(records: Records) -> None:
+    record = records.open("run-1")
     record.begin(HEADER)
     record.sent(FIRST)
     record.done(FIRST, True)
     record.interrupted()
-    assert Records(tmp_path).past()[0].closed
-    record = Records(tmp_path).open("run-1")
+    assert records.past()[0].closed
+    record = records.open("run-1")
     record.begin(HEADER)
     record.sent(SECOND)
-    (past,) = Records(tmp_path).past()
+    (past,) = records.past()
     assert not past.closed and past.ended == [(FIRST, True)] and past.open == [SECOND]
 
 
-def test_what_a_resumed_run_did_not_ask_for_again_is_not_skipped_by_the_next_resume(tmp_path: Path) -> None:
+def test_what_a_resumed_run_did_not_ask_for_again_is_not_skipped_by_the_next_resume(records: Records) -> None:
     """Two rounds were done; resumed, it went another way after the first leaf, and was interrupted in its round."""
     other: Key = ("0.2", "zx200", "dig", "elsewhere")
-    record = Records(tmp_path).open("run-1")
+    record = records.open("run-1")
     record.begin(HEADER)
     for key, succeeded in ((FIRST, True), (SECOND, True), (FIRST, False)):
         record.done(key, succeeded)
-    replay = Replay(Past(record.path).ended)
+    replay = Replay(records.past()[0].ended)
     record.begin(HEADER)
     assert replay.take(FIRST) is True
     for key, left in replay.moved_on(other[0]):
@@ -64,13 +81,13 @@ def test_what_a_resumed_run_did_not_ask_for_again_is_not_skipped_by_the_next_res
     record.done(other, True)
     assert replay.moved_on(other[0]) == []
     record.sent(FIRST)
-    assert Past(record.path).ended == [(FIRST, True), (other, True)]
+    assert records.past()[0].ended == [(FIRST, True), (other, True)]
 
 
-def test_a_run_is_found_by_the_beginning_of_its_id(tmp_path: Path) -> None:
-    Records(tmp_path).open("run-1").begin(HEADER)
-    assert Records(tmp_path).find("run") is not None
-    assert Records(tmp_path).find("") is None and Records(tmp_path).find("other") is None
+def test_a_run_is_found_by_the_beginning_of_its_id(records: Records) -> None:
+    records.open("run-1").begin(HEADER)
+    assert records.find("run") is not None
+    assert records.find("") is None and records.find("other") is None
 
 
 def test_ended_leaves_are_replayed_once_each_and_in_order() -> None:
@@ -93,37 +110,89 @@ def test_what_the_tree_did_not_ask_for_again_is_done_again() -> None:
     assert replay.take(drive) is True
 
 
-def test_a_full_disk_keeps_nobody_from_going_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    made = Records(tmp_path).open("r")
-
-    def full(*_: object) -> int:
-        raise OSError(28, "No space left on device")
-
-    with monkeypatch.context() as patch:
-        patch.setattr("tms_ts.record.os.write", full)
-        made.event(1)
-    made.event(2)
-    assert Past(made.path).last_event == 2
-
-
-def test_a_line_cut_short_by_a_full_disk_does_not_spoil_the_next(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+def test_lines_that_no_memory_is_left_for_are_counted_and_told(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
-    made, write, lost = Records(tmp_path).open("r"), os.write, LOST._value.get()
-    made.done(FIRST, True)
-    with monkeypatch.context() as patch:
-        patch.setattr("tms_ts.record.os.write", lambda file, data: write(file, data[: len(data) // 2]))
-        made.done(SECOND, True)
-    made.done(SECOND, False)
-    assert Past(made.path).ended == [(FIRST, True), (SECOND, False)]
+    disk, lost = GroupCommit(logging.getLogger("disk"), 0), LOST._value.get()
+    Records(tmp_path, disk).open("r").event(1)
     assert LOST._value.get() == lost + 1
-    assert "event=record_lost" in caplog.text
+    assert "event=record_lost file=r.jsonl line='n'" in caplog.text
+    disk.close(10)
 
 
-def test_a_record_that_is_closed_stays(tmp_path: Path) -> None:
-    made = Records(tmp_path).open("r")
+def test_a_record_that_is_closed_stays(records: Records) -> None:
+    made = records.open("r")
     made.event(1)
     made.close()
     made.close()
     made.event(2)  # late news
+    records.past()
     assert Past(made.path).last_event == 1
+
+
+def test_a_record_is_there_until_the_end_of_its_run_is_stored(records: Records, disk: GroupCommit) -> None:
+    record, seen = records.open("run-1"), list[bool]()
+    record.begin(HEADER)
+    record.event(4)
+    record.over("failure", "it rains")
+    record.event(5)
+    disk.after(lambda: seen.append(Past(record.path).over == Over("failure", "it rains", 5)))
+    record.remove()
+    assert disk.wait(10)
+    assert seen == [True] and not record.path.exists()
+
+
+def test_a_run_that_is_resumed_is_not_over(records: Records) -> None:
+    record = records.open("run-1")
+    record.begin(HEADER)
+    record.over("failure", "")
+    record.begin(HEADER)
+    (past,) = records.past()
+    assert past.over is None
+
+
+def test_the_time_of_a_machine_s_last_goal_is_known(records: Records) -> None:
+    record = records.open("run-1")
+    record.begin(HEADER)
+    record.sent(FIRST)
+    (past,) = records.past()
+    assert 0 < past.sent_at["zx200"] <= past.last_time and "ic120" not in past.sent_at
+
+
+@pytest.mark.parametrize(
+    "left", [b"", b"\0" * 4096, b'\n{"run": {"run_id": "x"}}\n', b'\n{"n": 3}', b"\xff\xfe\n[]\n7"]
+)
+def test_a_record_without_its_run_is_told_kept_aside_and_keeps_nobody_from_starting(
+    tmp_path: Path, records: Records, left: bytes, caplog: pytest.LogCaptureFixture
+) -> None:
+    records.open("good").begin(HEADER)
+    assert len(records.past()) == 1
+    folder = tmp_path / "ts" / "runs"
+    (folder / "bad.jsonl").write_bytes(left)
+    (folder / "empty.jsonl").mkdir()
+    records.check()
+    assert caplog.text.count("event=record_unreadable") == 2
+    assert (folder / "bad.jsonl.unreadable").read_bytes() == left
+    assert [past.path.name for past in records.past()] == ["good.jsonl"]
+
+
+def test_damaged_lines_are_told_and_the_others_count(
+    tmp_path: Path, records: Records, caplog: pytest.LogCaptureFixture
+) -> None:
+    record = records.open("run-1")
+    record.begin(HEADER)
+    records.past()
+    with record.path.open("ab") as file:
+        file.write(b'\n\0\0\0\n{"sent": 7}\n{"done": ["0.0", "zx200", "dig", "here"], "ok": true}\n{"n": "x"}\n{"n": 1')
+    records.check()
+    assert "event=record_damaged" in caplog.text and "lines=3" in caplog.text
+    (past,) = records.past()
+    assert past.ended == [(FIRST, True)] and past.header == HEADER
+
+
+def test_a_record_of_an_earlier_version_is_read(tmp_path: Path, records: Records) -> None:
+    folder = tmp_path / "ts" / "runs"
+    folder.mkdir(parents=True)
+    line = '{"run": {"run_id": "run-1", "number": 7, "task_id": 3, "description": "dig", "machines": ["zx200"], '
+    (folder / "run-1.jsonl").write_text("\n" + line + '"xml": "<root/>", "started": [1, 2]}, "t": 5.0}')
+    assert [past.header for past in records.past()] == [HEADER]

@@ -9,12 +9,16 @@ from typing import Any
 import pytest
 from builtin_interfaces.msg import Time
 from tms_msg_rc.msg import StopReceipt
+from tms_msg_ts.action import ExecuteTask
 
+from tms_core.group_commit import GroupCommit
+from tms_core.ros import Outcome
 from tms_ts import run as module
 from tms_ts.bt import Status
 from tms_ts.budget import AT_ONCE
-from tms_ts.node import Scheduler
-from tms_ts.record import Past, Records
+from tms_ts.node import END_STORED, Scheduler
+from tms_ts.past import Past
+from tms_ts.record import Records
 from tms_ts.run import PERIOD, Facts, Run
 
 
@@ -52,7 +56,7 @@ def rows() -> list[Any]:
 
 @pytest.fixture
 def a_run(rows: list[Any]) -> Run:
-    record = SimpleNamespace(event=lambda _: None, remove=lambda: None)
+    record = SimpleNamespace(event=lambda _: None, over=lambda *_: None, remove=lambda: None)
     return Run(
         SimpleNamespace(now=Time),  # type: ignore[arg-type]
         SimpleNamespace(put=rows.append),  # type: ignore[arg-type]
@@ -129,6 +133,7 @@ def test_a_run_that_meets_a_bug_is_closed_in_the_history(a_run: Run, rows: list[
     goal = SimpleNamespace(
         request=SimpleNamespace(resume=""), publish=lambda _: None, cancelled=SimpleNamespace(is_set=lambda: False)
     )
+    scheduler._disk = SimpleNamespace(wait=lambda _: True)
     with pytest.raises(RuntimeError, match="a bug"):
         scheduler.execute(goal)
     told = [row for row in rows if hasattr(row, "state")]
@@ -137,13 +142,15 @@ def test_a_run_that_meets_a_bug_is_closed_in_the_history(a_run: Run, rows: list[
 
 
 def test_a_resume_that_is_refused_leaves_its_record_and_no_open_file(a_run: Run, tmp_path: Path) -> None:
+    disk = GroupCommit(logging.getLogger("disk"))
+
     def files() -> int:
         return len(list(Path("/proc/self/fd").iterdir()))
 
     before = files()
-    a_run._resumed, a_run.record = True, Records(tmp_path).open("run")
-    assert files() == before + 1
-    a_run.refuse("NOT_ARMED", "zx200 is stopped")
+    a_run._resumed, a_run.record = True, Records(tmp_path, disk).open("run")
+    a_run.refuse("NOT_ARMED", "zx200 is latched")
+    disk.close(10)
     assert files() == before
     assert Past(a_run.record.path).closed
 
@@ -163,3 +170,15 @@ def test_a_loop_that_waits_is_told_to_whoever_looks_and_in_part_to_the_history(a
     a_run._end("success", "")
     told_at_end = [row.text for row in rows if hasattr(row, "kind") and row.kind == "node" and not row.node][1:]
     assert len(told_at_end) == 1 and int(told_at_end[0].split()[0]) > 280
+
+
+@pytest.mark.parametrize(("stored", "told"), [(True, "it rains"), (False, "it rains (not stored yet: the disk")])
+def test_a_result_is_told_when_its_run_s_end_is_stored_or_with_a_note(stored: bool, told: str) -> None:
+    scheduler: Any = Scheduler.__new__(Scheduler)
+    asked: list[float] = []
+    ended = (Outcome.ABORTED, ExecuteTask.Result(run_id="run", outcome="failure", error_msg="it rains"))
+    scheduler._run = lambda goal, past: ended
+    scheduler._disk = SimpleNamespace(wait=lambda seconds: asked.append(seconds) or stored)
+    how, result = scheduler.execute(SimpleNamespace(request=SimpleNamespace(resume="")))
+    assert (how, asked) == (Outcome.ABORTED, [END_STORED])
+    assert result.error_msg.startswith(told) and stored == (result.error_msg == told)

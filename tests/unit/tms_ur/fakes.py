@@ -89,7 +89,10 @@ class FakeGateway:
 
     def stop(self, machine: str, cause: str) -> Receipt:
         self._called("stop", machine, cause)
-        return Receipt(machine=machine, confirmed=True, seconds=0.4, travel=0.01, cause=cause, detail="", latched=True)
+        return Receipt(
+            machine=machine, confirmed=True, seconds=0.4, travel_joint="swing_joint", travel_rad=0.01, travel_m=0.0,
+            cause=cause, detail="", evidence="", latched=True,
+        )  # fmt: skip
 
     def rearm(self, machine: str, token: str) -> Rearmed:
         self._called("rearm", machine, token)

@@ -1,0 +1,99 @@
+"""A run's record as it is read after a crash or a power cut; what is damaged in it is counted. Pure logic."""
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+Key = tuple[str, str, str, str]  # node path, machine, subtask, record
+
+
+@dataclass(frozen=True)
+class Header:
+    """The run, as far as it is known before its first tick."""
+
+    run_id: str
+    number: int  # fencing number
+    task_id: int
+    description: str
+    machines: list[str]
+    xml: str
+    started: tuple[int, int]  # s, ns
+    records: list[str] = field(default_factory=list)  # that the tree names; none in records of earlier versions
+
+
+@dataclass(frozen=True)
+class Over:
+    """How a run ended; its record is there still, since the power went before it was removed."""
+
+    outcome: str
+    reason: str
+    event: int  # number of the event that tells
+
+
+class Past:
+    """A record. Without a header nothing can be done with it."""
+
+    def __init__(self, path: Path) -> None:
+        """Raises OSError: the file cannot be read."""
+        self.path = path
+        self.header: Header | None = None
+        self.last_event = 0
+        self.last_time = 0.0  # s since 1970
+        self.closed = False
+        self.over: Over | None = None
+        self.ended: list[tuple[Key, bool]] = []
+        self.open: list[Key] = []  # sent, but not ended
+        self.sent_at: dict[str, float] = {}  # machine -> s since 1970 of its last goal
+        self.damaged = 0  # lines that say nothing, but for the last one, which any crash cuts short
+        for line in self._lines():
+            try:
+                self._take(line)
+            except (KeyError, TypeError, ValueError, AttributeError):
+                self.damaged += 1
+
+    def _lines(self) -> Iterator[dict[str, Any]]:
+        try:
+            texts = self.path.read_bytes().split(b"\n")
+        except FileNotFoundError:
+            return  # its run has ended in order just now
+        for place, text in enumerate(texts, 1):
+            try:
+                line = json.loads(text) if text else {}
+            except ValueError:
+                self.damaged += place < len(texts)
+                continue
+            yield line
+
+    def _take(self, line: dict[str, Any]) -> None:
+        self.last_time = float(line.get("t", self.last_time))
+        if "run" in line:
+            self.header = Header(**{**line["run"], "started": tuple(line["run"]["started"])})
+            self.closed, self.over = False, None
+        elif "n" in line:
+            self.last_event = max(self.last_event, int(line["n"]))
+        elif "sent" in line:
+            key = _key(line["sent"])
+            self.open += [key] if key not in self.open else []
+            self.sent_at[key[1]] = self.last_time
+        elif "done" in line:
+            key = _key(line["done"])
+            self.ended.append((key, bool(line["ok"])))
+            if key in self.open:
+                self.open.remove(key)
+        elif "gone" in line:
+            self._forget(_key(line["gone"]), int(line["left"]))
+        elif "over" in line:
+            self.over = Over(str(line["over"]), str(line["reason"]), self.last_event + 1)
+        self.closed = self.closed or "interrupted" in line
+
+    def _forget(self, key: Key, left: int) -> None:
+        places = [place for place, (ended, _) in enumerate(self.ended) if ended == key]
+        for place in places[::-1][:left]:
+            del self.ended[place]
+
+
+def _key(words: list[str]) -> Key:
+    node, machine, subtask, record = words
+    return node, machine, subtask, record
