@@ -66,6 +66,7 @@ def drill(site: Site, waves: list[list[Trial]], seconds: float) -> list[Row]:
             with session.ros() as node:
                 trials = Waves(node, site, stand_ins)
                 try:
+                    trials.warm_up()
                     return trials.go(waves, seconds)
                 finally:
                     trials.close()

@@ -19,14 +19,15 @@ from tms_core.ros import Ros
 CANCELING, SUCCEEDED, CANCELED, ABORTED = 3, 4, 5, 6  # action_msgs/GoalStatus
 KEPT = 120.0  # s, longer than any trial
 ROUND = 10.0  # s between looks at what is too old
+LOOK = 0.1  # s
 
 
 class Eyes:
-    """Callbacks run on the executor thread; `changed` guards the record."""
+    """Callbacks run on the executor thread, everything else in those of the trials."""
 
     def __init__(self, node: Ros, site: Site, machine: str) -> None:
         border, self._still = site.border(machine), site.model_of(machine).still
-        self.changed = threading.Condition()
+        self._lock = threading.Lock()
         self._record = Recording()
         self._forgotten = time.time()
         node.subscribe(JointState, f"/{machine}/sim/truth", self._on_truth, depth=50)
@@ -42,28 +43,25 @@ class Eyes:
 
     def _on_truth(self, message: Any) -> None:
         sample = sample_of(message, self._still)
-        with self.changed:
+        with self._lock:
             self._record.truth.append(sample)
             if sample.at - self._forgotten > ROUND:
                 self._forgotten = sample.at
                 self._record = self._record.since(sample.at - KEPT)
-            self.changed.notify_all()
 
     def _on_receipt(self, message: Any) -> None:
         now = time.time()
         receipt = Receipt(
             time_of(message.stamp), message.seconds, message.confirmed, message.cause, message.detail, now
         )
-        with self.changed:
+        with self._lock:
             same = any(one.begun == receipt.begun for one in self._record.receipts)  # told again after a restart
             if not same and receipt.at > now - KEPT:
                 self._record.receipts.append(receipt)
-            self.changed.notify_all()
 
     def _on_state(self, message: Any) -> None:
-        with self.changed:
+        with self._lock:
             self._record.states.append(State(time.time(), message.latch, message.hold))
-            self.changed.notify_all()
 
     def _on_velocity(self, message: Any) -> None:
         if message.linear.x == 0.0 and message.angular.z == 0.0:
@@ -74,12 +72,12 @@ class Eyes:
             self._commanded()
 
     def _commanded(self) -> None:
-        with self.changed:
+        with self._lock:
             self._record.commands.append(time.time())
 
     def _on_status(self, message: Any) -> None:
         now = time.time()
-        with self.changed:
+        with self._lock:
             for one in message.status_list:
                 key, began = bytes(one.goal_info.goal_id.uuid), time_of(one.goal_info.stamp)
                 if began < now - KEPT:
@@ -89,19 +87,22 @@ class Eyes:
                     self._record.commands.append(now)
                 if goal.ended is None and one.status in (SUCCEEDED, CANCELED, ABORTED):
                     goal.ended, goal.arrived = now, one.status == SUCCEEDED
-            self.changed.notify_all()
 
     def since(self, at: float) -> Recording:
         """A copy of what was seen since a moment (s since 1970)."""
-        with self.changed:
+        with self._lock:
             return self._record.since(at)
 
     def wait(self, holds: Callable[[Recording], bool], since: float, seconds: float) -> bool:
         """Until what was seen since a moment is enough; False when it is not in time."""
-        with self.changed:
-            return bool(self.changed.wait_for(lambda: holds(self._record.since(since)), seconds))
+        deadline = time.monotonic() + seconds
+        while not holds(self.since(since)):
+            if time.monotonic() > deadline:
+                return False
+            time.sleep(LOOK)
+        return True
 
     def open_since(self) -> float | None:
         """When the goal that is under way now began."""
-        with self.changed:
+        with self._lock:
             return max((one.began for one in self._record.goals.values() if one.ended is None), default=None)

@@ -1,6 +1,7 @@
 """What was seen of one machine during one trial: the truth, and what we said of it. All times are s since 1970."""
 
 import math
+from bisect import bisect_left
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -66,7 +67,7 @@ class Recording:
     def since(self, at: float) -> "Recording":
         """What came after a moment, the goals that were open then, and the last state before it."""
         return Recording(
-            [one for one in self.truth if one.at >= at],
+            self.truth[bisect_left(self.truth, at, key=lambda one: one.at) :],
             [one for one in self.receipts if one.begun >= at],
             {key: one for key, one in self.goals.items() if one.ended is None or one.ended >= at},
             [*[one for one in self.states if one.at < at][-1:], *[one for one in self.states if one.at >= at]],

@@ -13,6 +13,7 @@ from tms_cli.drill.record import Recording
 from tms_cli.drill.verdict import AFTER, BY_ITSELF, GOES_ON, HUNG, INTERRUPTED, TOLD, Row, Seen, judge
 from tms_cli.drill.work import Work
 from tms_core.config import Site
+from tms_core.errors import TmsError
 from tms_core.ros import Ros
 from tms_rc.standstill import StandStill
 
@@ -24,6 +25,7 @@ RUN_LIMIT = 40.0  # s from the hit for the run to go on, end, or be interrupted
 LATCH_LIMIT = 5.0  # s for a latch to be told after everything is back
 CREEP_STARTS = 3.0  # s of stand-still after which the fault `creep` moves
 LOOK = 0.5  # s
+PRESSED = 1.0  # s for a stop by hand to begin
 CAUSE = "software stop by an operator"
 
 
@@ -46,12 +48,25 @@ class Hand:
         self._hits = Hits(site)
         node.prepare(StopMachine, f"/{machine}/rc/stop")
 
-    def begin(self) -> float | None:
-        """Have the machine moved; when its goal began, None when it does not move."""
-        self.work.begin()
-        begun = time.time()
-        self.eyes.wait(lambda record: bool(self._open(record)), begun, MOVES_LIMIT)
-        return self.eyes.open_since()
+    def begin(self) -> float:
+        """Have the machine moved; when its goal began.
+
+        Raises:
+            TmsError: it does not move, even after a stop and a re-arm by hand.
+        """
+        for last in (False, True):
+            self.work.begin()
+            begun = time.time()
+            self.eyes.wait(lambda _: self.eyes.open_since() is not None or self.work.ended(), begun, MOVES_LIMIT)
+            began = self.eyes.open_since()
+            if began is not None:
+                return began
+            if last:
+                break
+            self.work.end()
+            self._press()
+            time.sleep(PRESSED)
+        raise TmsError(f"its run does not move it: {self.work.reason() or 'nobody says why'}")
 
     def moment(self, trial: Trial) -> float:
         """When to hit: at the trial's delay after the begin of a motion."""
@@ -113,9 +128,6 @@ class Hand:
         back = struck.back.result(2 * BACK_LIMIT)
         record = self._last_words(trial, begun)
         return judge(Seen(trial, self.model, record, begun, hit, stopped, self._ends, back, outcome))
-
-    def _open(self, record: Recording) -> bool:
-        return any(goal.ended is None for goal in record.goals.values())
 
     def _over(self, record: Recording, begun: float, stopped: float) -> bool:
         """A receipt, or a motion that was over before anybody could stop it."""

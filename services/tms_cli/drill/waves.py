@@ -32,6 +32,16 @@ class Waves:
         self._total = 0
         self.rows: list[Row] = []
 
+    def warm_up(self) -> None:
+        """Each machine moves once, one after another: all their subtasks starting at once is no site's day.
+
+        Raises:
+            TmsError: one does not move.
+        """
+        for hand in self._hands.values():
+            hand.begin()
+            hand.work.end()
+
     def go(self, plan: Sequence[list[Trial]], seconds: float) -> list[Row]:
         """As much of the plan as the time allows; the rest is left out.
 

@@ -81,6 +81,10 @@ class Work:
         result = self._call.result
         return str(getattr(result, "outcome", "refused"))
 
+    def ended(self) -> bool:
+        """Whether its client was told the end of the run."""
+        return self._call is not None and self._call.outcome is not None
+
     def reason(self) -> str:
         """Why the run ended as it did."""
         return str(getattr(self._call.result, "error_msg", "")) if self._call is not None else ""

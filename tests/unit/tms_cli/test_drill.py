@@ -1,26 +1,77 @@
-"""What the drill tries and how it counts."""
+"""What the drill tries, with what, and how it counts."""
 
+import json
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
 from tms_cli.commands import drill
-from tms_cli.drill.patrol import Patrol
-from tms_cli.drill.report import markdown
-from tms_cli.drill.rows import KILL, LEFT_OUT, RESTART, Case, Row, cases, choose, percentile, summary
-from tms_core.errors import TmsError
+from tms_cli.drill import tasks
+from tms_cli.drill.figures import percentile, summary
+from tms_cli.drill.plan import BESIDE, FAULTS, NONE, RP, SHARED, SINGLE, fault_of, plan
+from tms_cli.drill.report import line, markdown, text
+from tms_cli.drill.verdict import HUNG, LEFT_OUT, Row
+from tms_core.config import CONFIGS, load_site
+from tms_core.site_file import Fault
+from tms_ts import bt
 
-MOVERS, OTHERS = ["tms:ts", "zx200:rc", "zx200:rp"], ["tms:db", "tms:host", "tms:store"]
-SUBTASKS = ["zx200:dig", "zx200:turn", "zx200:dig", "zx200:drop"]
+MACHINES = {"zx200": True, "zx120": True, "ic120_1": False, "mst2200_1": False, "mst110cr_2": False, "d37": False}
+SITE = str(CONFIGS / "sites" / "drill.yaml")
+EVERY_STOP = {*SINGLE, *SHARED, *(stop for stops in BESIDE for stop in stops)}
 
 
-def test_quick_has_twenty_kills_and_full_has_every_pair() -> None:
-    quick = cases(MOVERS, SUBTASKS, OTHERS, quick=True)
-    assert sum(case.how == KILL for case in quick) >= 20
-    full = {(case.process, case.leaf) for case in cases(MOVERS, SUBTASKS, OTHERS, quick=False) if case.how == KILL}
-    assert len(full) == 7 * 4
+@pytest.mark.parametrize("seed", range(20))
+def test_a_quick_drill_has_every_stop_and_every_fault(seed: int) -> None:
+    waves = plan(seed, MACHINES, 1, quick=True)
+    trials = [trial for wave in waves for trial in wave]
+    assert {trial.stop for trial in trials} == EVERY_STOP
+    assert {trial.fault for trial in trials} == set(FAULTS)
+    assert len(waves) == 12
+
+
+def test_four_rounds_have_every_stop_with_every_fault() -> None:
+    waves = plan(7, MACHINES, 4, quick=False)
+    trials = [trial for wave in waves for trial in wave]
+    assert len(trials) >= 600
+    tried = {(trial.stop, trial.fault) for trial in trials}
+    assert {(stop, fault) for stop in SINGLE for fault in FAULTS if RP not in stop.processes} <= tried
+
+
+def test_a_plan_can_be_repeated() -> None:
+    assert plan(3, MACHINES, 2, quick=False) == plan(3, MACHINES, 2, quick=False)
+    assert plan(3, MACHINES, 2, quick=False) != plan(4, MACHINES, 2, quick=False)
+
+
+@pytest.mark.parametrize("quick", [True, False])
+def test_a_wave_has_one_trial_a_machine_and_hits_all_at_once_or_none(quick: bool) -> None:
+    for wave in plan(1, MACHINES, 1, quick):
+        assert [trial.machine for trial in wave] == list(MACHINES)
+        assert len({trial.stop for trial in wave if trial.stop.shared}) in (0, 1)
+        assert len({trial.stop.shared for trial in wave}) == 1
+        assert all(MACHINES[t.machine] for t in wave if not t.stop.shared and RP in t.stop.processes)
+
+
+def test_the_plan_fits_a_site_of_one_machine() -> None:
+    assert all(len(wave) == 1 for wave in plan(1, {"ic120": False}, 1, quick=True))
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_a_stand_in_takes_each_fault(name: str) -> None:
+    fault = Fault.model_validate_json(json.dumps(fault_of(name, ["swing_joint", "boom_joint"])))
+    assert (fault == Fault()) == (name == NONE)
+    assert fault.mute == (("swing_joint",) if "mute" in name else ())
+
+
+@pytest.mark.parametrize("machine", load_site(SITE).file.machines)
+def test_each_machine_has_an_endless_task_of_its_own(machine: str) -> None:
+    site = load_site(SITE)
+    tree, records = tasks.task(site, machine)
+    goals = bt.load(tree).leaf_goals()
+    assert {goal.machine for goal in goals} == {machine} and len(goals) >= 2
+    assert {goal.record for goal in goals} == set(records)
+    assert {goal.subtask for goal in goals} <= set(site.model_of(machine).subtasks)
+    assert 'num_cycles="-1"' in tree
 
 
 def test_percentiles() -> None:
@@ -29,96 +80,94 @@ def test_percentiles() -> None:
     assert percentile([float(n) for n in range(1, 101)], 0.99) == 99.0
 
 
+def row(**changes: Any) -> Row:
+    values: dict[str, Any] = {
+        "machine": "zx200", "model": "zx200", "stop": "kill rc", "how": "kill", "fault": NONE, "fault_at": 0.1,
+        "in_order": True, "due": True, "told_s": 0.5, "stood_s": 2.0, "travel_joint": "swing_joint",
+        "travel_rad": 0.25, "back_s": 3.0, "outcome": "goes on", "confirmed": True,
+    }  # fmt: skip
+    return Row(**{**values, **changes})
+
+
 def test_the_summary_counts_what_matters() -> None:
-    good = Row("zx200:rc", "0.0", KILL, "zx200", True, 0.5, 1.2, 0.1, True, 2.0, "goes on")
-    slow = Row("zx200:rp", "0.0", RESTART, "zx200", True, 0.9, 1.0, 0.1, True, 2.0, "goes on")
-    bad = Row("tms:db", "0.1", KILL, "zx200", False)
-    late = Row("tms:db", "0.2", KILL, "zx200", False, outcome=LEFT_OUT)
-    found = summary([good, slow, bad, late])
-    assert (found["kills"], found["unconfirmed"], found["hung"]) == (2, 1, 1)
-    assert found["kill_to_stop_max_s"] == 0.5  # an orderly restart is no kill
-    assert found["left_out"] == 1
-    assert [row["ok"] for row in found["rows"]] == [True, True, False, False]
-    page = markdown([good, bad], found, "demo")
-    assert "停止" in page and "| zx200:rc | 0.0 | SIGKILL | 0.500 |" in page
+    rows = [
+        row(), row(told_s=0.9, stood_s=4.0, travel_rad=0.75),
+        row(fault="coast", in_order=False, stood_s=8.0, told_s=None, unconfirmed=True, confirmed=False),
+        row(stop="kill rc+tms:ts", unconfirmed=True, unlatched=True), row(unconfirmed=True, ran_on=True, stood_s=None),
+        row(how="cancel", stop="cancel", told_s=None, false_receipt="moved"), row(outcome=HUNG, disturbed=True),
+        row(back_s=None), row(outcome=LEFT_OUT, back_s=None),
+    ]  # fmt: skip
+    found = summary(rows, 7)
+    counted = {name: found[name] for name in drill.drill_figures.BAD}
+    assert counted == {
+        "false_receipts": 1, "hung": 1, "ran_on": 1, "unlatched": 1, "disturbed": 1, "not_back": 1, "left_out": 1,
+    }  # fmt: skip
+    assert (found["seed"], found["trials"], found["kills"]) == (7, 8, 7)
+    assert (found["unconfirmed"], found["unconfirmed_in_order"]) == (3, 1)
+    assert (found["kill_to_stop_max_s"], found["stop_p50_s"], found["stop_p99_s"]) == (0.9, 2.0, 4.0)
+    kill = next(one for one in found["stops"] if one["stop"] == "kill")
+    assert (kill["stood_max_s"], kill["joint"], kill["travel_max_rad"]) == (4.0, "swing_joint", 0.75)
+    json.dumps(found, allow_nan=False)
 
 
-def test_a_case_is_chosen_for_the_leaf_that_runs_and_movers_only_when_the_motion_is_fresh() -> None:
-    mover, other = Case("zx200:rc", 1, KILL, True), Case("tms:db", 1, KILL, False)
-    todo = [other, mover, Case("zx200:rp", 2, KILL, True)]
-    assert choose(todo, 1, fresh=True) == mover
-    assert choose(todo, 1, fresh=False) == other
-    assert choose(todo, 2, fresh=False) is None
-    assert choose(todo, -1, fresh=True) is None
+def test_what_is_told_of_it() -> None:
+    rows = [row(receipts=["+0.50 s, after 2.00 s confirmed (a|b)"]), row(false_receipt="moved 0.10 s after")]
+    found = summary(rows, 7)
+    page = markdown(rows, found, "drill")
+    assert "停止訓練" in page and "| zx200 | kill rc | none | 0.500 | 2.000 |" in page and "(a/b)" in page
+    assert "Confirmed, and truly moving: 1" in text(found)
+    assert "FALSE RECEIPT: moved 0.10 s after" in line(rows[1])
 
 
-def test_a_process_that_never_came_back_counts() -> None:
-    lost = Row("tms:db", "0.1", KILL, "zx200", False, confirmed=True, outcome="goes on")
-    found = summary([lost])
-    assert (found["unconfirmed"], found["hung"], found["not_back"]) == (0, 0, 1)
-    assert "復帰しなかったプロセス | 1 |" in markdown([lost], found, "demo")
+@pytest.fixture
+def ready(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
+    """A site of which nothing runs, with a state folder of its own."""
+    monkeypatch.setenv("TMS_STATE", str(tmp_path / "state"))
+    return tmp_path
 
 
 @pytest.mark.parametrize(("back", "code"), [(2.0, 0), (None, 1)])
 def test_the_exit_code_tells_of_it(
-    mesh: Any, tms: Any, monkeypatch: pytest.MonkeyPatch, back: float | None, code: int
+    ready: Path, tms: Any, monkeypatch: pytest.MonkeyPatch, back: float | None, code: int
 ) -> None:
-    row = Row("tms:db", "0.1", KILL, "zx200", False, None, None, 0.0, True, back, "goes on")
-    monkeypatch.setattr(drill.mesh, "up", lambda _: False)
-    monkeypatch.setattr(drill.mesh, "wait_ready", lambda *_: None)
-    monkeypatch.setattr(drill, "drill", lambda *_: [row])
-    end = tms(drill.command)
+    monkeypatch.setattr(drill, "drill", lambda *_: [row(back_s=back)])
+    end = tms(drill.command, "--seed", 7, "--report", ready / "drill.md")
     assert end.exit_code == code
-    assert f"{code} processes not back" in end.stdout
+    assert f"Processes that did not come back: {code}" in end.stdout and "Seed: 7" in end.stdout
+    assert "停止訓練" in (ready / "drill.md").read_text(encoding="utf-8")
+
+
+def test_it_has_a_state_folder_of_its_own_that_is_new(ready: Path, tms: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    old = ready / "state" / "drill" / "rc" / "zx200.armed"
+    old.parent.mkdir(parents=True)
+    old.touch()
+    found: list[Path] = []
+    monkeypatch.setattr(drill, "drill", lambda site, *_: found.append(site.state) or [row()])
+    assert tms(drill.command, "--json").exit_code == 0
+    assert found == [ready / "state" / "drill"] and not old.exists()
 
 
 def test_a_report_that_cannot_be_written_is_told_before_anything_is_killed(
-    tmp_path: Path, tms: Any, monkeypatch: pytest.MonkeyPatch
+    ready: Path, tms: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(drill.mesh, "up", lambda _: pytest.fail("it began"))
-    end = tms(drill.command, "--report", tmp_path / "out" / "drill.md")
+    monkeypatch.setattr(drill, "drill", lambda *_: pytest.fail("it began"))
+    end = tms(drill.command, "--report", ready / "out" / "drill.md")
     assert "its folder is not there" in str(end.exception)
 
 
-class Broken:
-    """A run that begins once, and a mesh that does not get ready again."""
-
-    leaf, losses, lost = 0, 0, False
-
-    def __init__(self) -> None:
-        self.begun = 0
-
-    def idle(self) -> bool:
-        return True
-
-    def begin(self, resume: bool = False) -> None:
-        self.begun += 1
-        if self.begun > 1:
-            raise TmsError("tms:db is not ready after 60 s")
-
-    def end(self) -> None:
-        raise TmsError("nobody answers", "NO_ANSWER")
-
-
-def test_what_was_seen_outlives_a_mesh_that_does_not_get_ready_again(capsys: pytest.CaptureFixture[str]) -> None:
-    first, second = Case("zx200:rc", 0, KILL, True), Case("zx200:rp", 0, KILL, True)
-    eyes = SimpleNamespace(moving=lambda: True, fresh=lambda: True)
-    seen = Row("zx200:rc", "0.0", KILL, "zx200", True, 0.5, 1.2, 0.1, True, 2.0, "goes on")
-    patrol = Patrol("zx200", ["0.0"], 2, eyes, Broken(), SimpleNamespace(run=lambda *_: seen))  # type: ignore[arg-type]
-    rows = patrol.walk([first, second], 60.0)
-    assert [(row.process, row.outcome) for row in rows] == [("zx200:rc", "goes on"), ("zx200:rp", LEFT_OUT)]
-    told = capsys.readouterr().err
-    assert "tms:db is not ready after 60 s" in told and "nobody answers" in told
-
-
-def test_a_process_that_is_gone_before_it_is_hit_is_no_end_of_the_drill() -> None:
-    def gone(*_: Any) -> Row:
-        raise ProcessLookupError(3, "No such process")
-
-    eyes, work = (
-        SimpleNamespace(moving=lambda: True, fresh=lambda: True),
-        SimpleNamespace(leaf=0, losses=0, lost=False, idle=lambda: False, end=lambda: None),
-    )
-    patrol = Patrol("zx200", ["0.0"], 2, eyes, work, SimpleNamespace(run=gone))  # type: ignore[arg-type]
-    (row,) = patrol.walk([Case("zx200:rc", 0, KILL, True)], 60.0)
-    assert not row.ok
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ("backend: opera", "only for backend 'sim'"),
+        ("pcs: {cps: {address: 127.0.0.1}}", "take a site without pcs:"),
+        ("machines: {}", "needs at least one machine"),
+    ],
+)
+def test_a_site_that_must_not_be_drilled(
+    ready: Path, tms: Any, monkeypatch: pytest.MonkeyPatch, change: str, told: str
+) -> None:
+    path = ready / "site.yaml"
+    path.write_text(f"name: t\ndomain: 1\nservices: {{db: {{}}}}\n{change}\n")
+    monkeypatch.setattr(drill.session, "site", lambda: load_site(str(path)))
+    end = tms(drill.command)
+    assert told in str(end.exception) and not (ready / "state" / "drill").exists()

@@ -1,0 +1,150 @@
+"""How a receipt is compared with the true motion."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from tms_cli.drill.plan import NONE, RC, TS, How, Stop, Trial
+from tms_cli.drill.record import Goal, Receipt, Recording, Sample, State, sample_of
+from tms_cli.drill.verdict import GOES_ON, Row, Seen, judge
+from tms_core.models import Still
+
+HIT = 1000.0  # s since 1970
+KILL = Stop(How.KILL, (RC,))
+STILL = Still(velocity=0.01, linear=0.02, angular=0.01, seconds=0.2, origin="test")
+
+
+def truth(*moving: tuple[float, float], until: float = 12.0) -> list[Sample]:
+    """60 Hz from the hit on; moving between these moments, at ten times the limit and 0.1 rad/s."""
+    found, angle = [], 0.0
+    for number in range(int(until * 60)):
+        at = number / 60
+        moves = any(begin <= at < end for begin, end in moving)
+        angle += 0.1 / 60 * moves
+        found.append(Sample(HIT + at, 10.0 if moves else 0.0, {"swing_joint": angle, "boom_joint": 0.0}, (angle, 0.0)))
+    return found
+
+
+def receipt(begun: float = 0.5, seconds: float = 2.0, confirmed: bool = True) -> Receipt:
+    detail = "" if confirmed else "still moving"
+    return Receipt(HIT + begun, seconds, confirmed, "test", detail, HIT + begun + seconds)
+
+
+def seen(motion: list[Sample], *receipts: Receipt, latch: str = "", **changes: Any) -> Seen:
+    record = Recording(motion, list(receipts), {b"1": Goal(HIT - 1.0)}, [State(HIT + 3.0, latch, "")], [HIT + 0.6])
+    trial = Trial("zx200", changes.pop("stop_kind", KILL), changes.pop("fault", NONE), 0.1, 0.5)
+    found = Seen(trial, "zx200", record, HIT, HIT, HIT, 4.0, 3.0, GOES_ON)
+    return replace(found, **changes)
+
+
+def wrong(row: Row) -> set[str]:
+    names = ("unconfirmed", "unlatched", "ran_on", "disturbed", "false_receipt")
+    return {name for name in names if getattr(row, name)}
+
+
+def test_an_honest_stop_is_measured() -> None:
+    row = judge(seen(truth((0.0, 2.0)), receipt()))
+    assert wrong(row) == set() and row.confirmed and row.due
+    assert row.told_s == pytest.approx(0.6)
+    assert row.stood_s == pytest.approx(2.0, abs=0.03)
+    assert (row.travel_joint, row.travel_rad) == ("swing_joint", pytest.approx(0.2, abs=0.01))
+    assert row.travel_m == pytest.approx(0.2, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("motion", "text"),
+    [
+        ([(0.0, 2.45)], "s before it was said to stand"),
+        ([(0.0, 2.0), (2.9, 3.0)], "s after it was said to stand"),
+        ([(0.0, 9.0)], "s before it was said to stand"),
+        ([(0.0, 2.0), (5.0, 12.0)], "left stand-still 2.50 s after the receipt"),
+    ],
+)
+def test_a_confirmed_receipt_of_a_moving_machine_is_false(motion: list[tuple[float, float]], text: str) -> None:
+    row = judge(seen(truth(*motion), receipt()))
+    assert text in row.false_receipt
+
+
+@pytest.mark.parametrize("motion", [[(0.0, 2.29)], [(0.0, 2.0), (9.5, 12.0)]])
+def test_a_motion_outside_of_what_a_receipt_claims_is_not_its_lie(motion: list[tuple[float, float]]) -> None:
+    assert judge(seen(truth(*motion), receipt())).false_receipt == ""
+
+
+def test_a_new_goal_may_move_it_again() -> None:
+    found = seen(truth((0.0, 2.0), (2.6, 12.0)), receipt())
+    assert judge(found).false_receipt
+    found.record.goals[b"2"] = Goal(HIT + 2.55)
+    row = judge(found)
+    assert wrong(row) == set() and row.stood_s == pytest.approx(2.0, abs=0.03)
+
+
+def test_a_goal_does_not_excuse_what_moved_before_it() -> None:
+    found = seen(truth((0.0, 3.0)), receipt())
+    found.record.goals[b"2"] = Goal(HIT + 2.6)
+    assert "before" in judge(found).false_receipt
+
+
+def test_a_motion_that_is_told_by_a_second_receipt_is_no_lie() -> None:
+    creeps = truth((0.0, 2.0), (5.0, 12.0))
+    told = judge(seen(creeps, receipt(), receipt(5.5, 10.0, confirmed=False), latch="left stand-still"))
+    assert wrong(told) == {"unconfirmed", "ran_on"}  # `ran_on` only where the machine should obey
+    assert judge(seen(creeps, receipt(), receipt(8.5, 10.0, confirmed=False), latch="x")).false_receipt  # too late
+
+
+def test_a_machine_that_moves_on_is_not_in_order_where_it_coasts() -> None:
+    motion, no = truth((0.0, 9.0)), receipt(seconds=10.0, confirmed=False)
+    assert wrong(judge(seen(motion, no, latch="x"))) == {"unconfirmed", "ran_on"}
+    assert wrong(judge(seen(motion, no, latch="x", fault="nan"))) == {"unconfirmed", "ran_on"}  # a mere lie
+    assert wrong(judge(seen(motion, no, latch="x", fault="coast"))) == {"unconfirmed"}
+    uncovered = Stop(How.POWER, covered=False, latches=True)
+    assert wrong(judge(seen(motion, no, latch="x", stop_kind=uncovered))) == {"unconfirmed"}
+
+
+def test_what_is_not_confirmed_must_be_latched() -> None:
+    motion = truth((0.0, 2.0))
+    assert wrong(judge(seen(motion, receipt(confirmed=False)))) == {"unconfirmed", "unlatched"}
+    assert wrong(judge(seen(motion))) == {"unconfirmed", "unlatched"}  # no receipt at all
+    latching = Stop(How.KILL, (TS,), shared=True, latches=True)
+    assert wrong(judge(seen(motion, receipt(), stop_kind=latching))) == {"unlatched"}
+    assert wrong(judge(seen(motion, receipt(), stop_kind=latching, latch="tms:ts was lost"))) == set()
+
+
+def test_nothing_is_due_when_the_motion_had_ended_by_itself() -> None:
+    found = seen(truth((0.0, 0.4)))
+    found.record.goals[b"1"] = Goal(HIT - 5.0, HIT + 0.5, arrived=True)
+    assert not judge(found).due and wrong(judge(found)) == set()
+    found.record.goals[b"1"] = Goal(HIT - 5.0, HIT + 4.0, arrived=True)  # nobody stopped it
+    assert judge(found).due and wrong(judge(found)) == {"unconfirmed", "unlatched"}
+
+
+def test_a_lost_process_beside_the_motion_stops_nothing() -> None:
+    beside = Stop(How.KILL, ("tms:db",), moves=False)
+    found = seen(truth((0.0, 3.0)), receipt(1.2), stop_kind=beside, stop=HIT + 1.0)
+    row = judge(found)
+    assert wrong(row) == set() and row.told_s is None and row.stood_s == pytest.approx(2.0, abs=0.03)
+    assert wrong(judge(replace(found, record=seen(truth((0.0, 2.0)), receipt(0.7)).record))) == {"disturbed"}
+
+
+def test_the_truth_is_measured_against_the_limits_of_standing() -> None:
+    message = SimpleNamespace(
+        header=SimpleNamespace(stamp=SimpleNamespace(sec=1000, nanosec=500_000_000)),
+        name=["swing_joint", "x", "y", "yaw"], position=[0.1, 1.0, 2.0, 0.3], velocity=[0.005, 0.03, 0.04, 0.0],
+    )  # fmt: skip
+    sample = sample_of(message, STILL)
+    assert sample.at == 1000.5 and sample.place == (1.0, 2.0)
+    assert sample.share == pytest.approx(2.5)  # the tracks, 0.05 m/s
+    assert sample.joints == {"swing_joint": 0.1, "heading": 0.3}
+
+
+def test_a_record_keeps_what_was_open() -> None:
+    record = Recording(
+        truth((0.0, 1.0)), [receipt(-5.0), receipt()],
+        {b"old": Goal(HIT - 9.0, HIT - 5.0), b"open": Goal(HIT - 9.0), b"new": Goal(HIT + 1.0)},
+        [State(HIT - 9.0, "a", ""), State(HIT - 5.0, "b", ""), State(HIT + 1.0, "c", "")], [HIT - 1.0, HIT + 1.0],
+    )  # fmt: skip
+    found = record.since(HIT)
+    assert [one.begun for one in found.receipts] == [HIT + 0.5] and set(found.goals) == {b"open", b"new"}
+    assert [one.latch for one in found.states] == ["b", "c"] and found.commands == [HIT + 1.0]
+    assert len(record.since(HIT + 6.0).truth) == pytest.approx(360, abs=1)
