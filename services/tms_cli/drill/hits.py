@@ -81,8 +81,10 @@ class Hits:
         new = bool(pid) and (how is How.FREEZE or pid != before)
         return new and (not row.ours or mesh.unready(row) is None)
 
-    def power_on(self, hit: float) -> float | None:
-        """Start everything again after a power cut."""
+    def power_on(self, pids: Sequence[int], hit: float) -> float | None:
+        """Start everything again after a power cut, once everything is gone."""
+        while any(map(psutil.pid_exists, pids)) and time.time() - hit < BACK_LIMIT:
+            time.sleep(LOOK)
         mesh.up(self._site, without=GROUP)
         try:
             mesh.wait_ready(self._site, lambda _: None)

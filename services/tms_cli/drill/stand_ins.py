@@ -5,6 +5,7 @@ import subprocess
 import sys
 from types import TracebackType
 
+from tms_core import state_folder
 from tms_core.config import Site
 from tms_core.environment import environment
 
@@ -19,7 +20,7 @@ class StandIns:
         self._children = [self._start(site, machine) for machine in site.file.machines]
 
     def _start(self, site: Site, machine: str) -> "subprocess.Popen[bytes]":
-        with (site.state / "log" / f"{GROUP}.{machine}.log").open("ab") as log:
+        with state_folder.private(), (site.state / "log" / f"{GROUP}.{machine}.log").open("ab") as log:
             words = [sys.executable, "-m", "tms_core.run", f"{GROUP}:{machine}"]
             env = {**os.environ, **environment(site)}
             return subprocess.Popen(words, env=env, stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT)

@@ -97,7 +97,7 @@ class Hand:
             pids = self._hits.everything()
             until(at)
             struck.hit.set_result(self._hits.hit(How.KILL, pids))
-            struck.back.set_result(self._hits.power_on(struck.hit.result()))
+            struck.back.set_result(self._hits.power_on(pids, struck.hit.result()))
         else:
             found = self._hits.pids(self._hits.names(stop, {hand.machine: hand.work.subtask for hand in hands}))
             until(at)

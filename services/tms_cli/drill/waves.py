@@ -51,6 +51,11 @@ class Waves:
         todo, deadline = list(plan), time.monotonic() + seconds
         self._total, again = sum(map(len, plan)), 0
         while todo and time.monotonic() < deadline:
+            try:
+                mesh.wait_ready(self._site, lambda _: None)
+            except TmsError as error:
+                click.echo(f"the mesh does not come back, the rest is left out: {error}", err=True)
+                break
             missed = self._wave(todo.pop(0))
             if missed and again < AGAIN * len(plan):
                 todo, again = [*todo, missed], again + 1
@@ -61,7 +66,6 @@ class Waves:
 
     def _wave(self, wave: list[Trial]) -> list[Trial]:
         """Returns trials that have to be tried again: their motion was over by itself."""
-        mesh.wait_ready(self._site, lambda _: None)
         began = self._each(wave, lambda trial: self._hands[trial.machine].begin())
         ready = [trial for trial, at in zip(wave, began, strict=True) if at is not None]
         shared = any(trial.stop.shared for trial in ready)
