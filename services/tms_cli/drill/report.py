@@ -1,6 +1,7 @@
 """What the drill prints, and its page in Markdown, Japanese and English."""
 
 from collections.abc import Sequence
+from datetime import datetime, timezone
 from typing import Any
 
 from tms_cli.drill.verdict import Row
@@ -35,9 +36,14 @@ def line(row: Row) -> str:
         verdicts.append(f"FALSE RECEIPT: {row.false_receipt}")
     seen = "confirmed" if row.confirmed else ", ".join(verdicts) or "nothing was due"
     what = ", ".join(dict.fromkeys([seen, *verdicts]))
+    told = (
+        f"; hit at {datetime.fromtimestamp(row.at, timezone.utc):%H:%M:%S.%f}: {'; '.join(row.receipts)}"
+        if verdicts
+        else ""
+    )
     return (
         f"{row.machine}: {row.stop}, {row.fault}: {what}; stood after {_text(row.stood_s)} s, "
-        f"{row.travel_rad:.3f} rad, {row.travel_m:.2f} m; {row.outcome}"
+        f"{row.travel_rad:.3f} rad, {row.travel_m:.2f} m; {row.outcome}{told}"
     )
 
 

@@ -1,8 +1,10 @@
 """One trial: a machine that moves is hit at its moment, with its fault, and watched until all is said."""
 
+import csv
 import time
 from concurrent.futures import Future
 from dataclasses import dataclass, field
+from datetime import datetime, timezone
 
 from tms_msg_rc.srv import StopMachine
 
@@ -46,6 +48,8 @@ class Hand:
         watch = StandStill(site.model_of(machine), site.border(machine), site.file.sim.speed)
         self._ends = watch.dead_time + watch.braking
         self._hits = Hits(site)
+        self._folder = site.state / "truth"
+        self._folder.mkdir(mode=0o700, exist_ok=True)
         node.prepare(StopMachine, f"/{machine}/rc/stop")
 
     def begin(self) -> float:
@@ -127,7 +131,20 @@ class Hand:
         outcome = self._outcome(trial, stopped)
         back = struck.back.result(2 * BACK_LIMIT)
         record = self._last_words(trial, begun)
-        return judge(Seen(trial, self.model, record, begun, hit, stopped, self._ends, back, outcome))
+        row = judge(Seen(trial, self.model, record, begun, hit, stopped, self._ends, back, outcome))
+        if row.false_receipt or (row.unconfirmed and row.in_order) or row.ran_on:
+            self._keep(record, hit)
+        return row
+
+    def _keep(self, record: Recording, hit: float) -> None:
+        """The true motion of a trial that somebody will want to look at."""
+        path = self._folder / f"{self.machine}-{datetime.fromtimestamp(hit, timezone.utc):%H%M%S.%f}.csv"
+        with path.open("w", newline="", encoding="utf-8") as file:
+            table = csv.writer(file)
+            table.writerow(["s from the hit", "share of the limit of standing", *record.truth[0].joints, "x", "y"])
+            for one in record.truth:
+                numbers = [one.at - hit, one.share, *one.joints.values(), *one.place]
+                table.writerow([f"{number:.4f}" for number in numbers])
 
     def _over(self, record: Recording, begun: float, stopped: float) -> bool:
         """A receipt, or a motion that was over before anybody could stop it."""
