@@ -31,6 +31,7 @@ PERMIT_LIMIT = 3.0  # s that a goal may come before the permits behind it: a new
 PRESSED = 1.0  # s that a software stop counts as pressed after its last message
 FRESH = 1.0  # s, older news of the machine make it not ready
 FOREIGN = "a foreign client"
+PROVES = "its last stop is still being proven"
 RECOVERS = "after its start the gateway still proves that the machine stands"
 
 
@@ -105,6 +106,7 @@ class Guard:
         wrong = self._wait_for_permit(active.owner)
         if wrong is not None:
             return wrong
+        self.stopper.wait_idle(PERMIT_LIMIT)
         with self._taking:
             if self.active is not None:
                 return f"{self._app.machine} is still moved by another goal"
@@ -116,8 +118,8 @@ class Guard:
         return wrong
 
     def _kept(self) -> str | None:
-        if self.recovering:
-            return f"not ready: {RECOVERS}"
+        if self.recovering or self.stopper.busy:
+            return f"not ready: {RECOVERS if self.recovering else PROVES}"
         return f"{self.by_hand} drives {self._app.machine} by hand: `tms give-back` first" if self.by_hand else None
 
     def _noted(self, owner: Owner | None) -> str | None:
