@@ -44,6 +44,7 @@ class Arming:
             return "NOT_KEPT", unkept
         guard.watch.accept_clocks()
         guard.controls.emergency(False)
+        guard.stood_in = False
         guard.vigil.end(time.monotonic())
         self._app.log.info("event=armed")
         guard.told()

@@ -90,6 +90,7 @@ class Guard:
         self.run_told: Callable[[int], None] = lambda run: None  # called with each run that takes the machine
         self.pressed = 0.0  # monotonic time of the last software stop message
         self.by_hand = ""  # who drives it by hand
+        self.stood_in = False  # the host agent has pressed `emg_stop` in place of this gateway
         self.recovering = False  # what the last gateway may have left moving is being stopped
         self.active: Active | None = None
         self.told: Callable[[], None] = lambda: None  # called when the latch has changed, to tell it at once
@@ -268,4 +269,7 @@ class Guard:
             self.latch.close(f"{stop.cause}: not seen to stand ({stop.receipt.detail})")
             self.controls.emergency(True)
             self.told()
+        elif stop.receipt is not None and self.stood_in and not self.latch.cause:
+            self.stood_in = False
+            self.controls.emergency(False)
         self.notes.keep()

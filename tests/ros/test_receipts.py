@@ -216,9 +216,17 @@ def test_a_goal_behind_the_gateways_back_is_stopped(machine: Machine) -> None:
     machine.until(lambda: bool(machine.state.latch), "latched")
     machine.wait_receipt()
     machine.button.publish(Bool(data=False))
-    machine.emergency.publish(Bool(data=False))  # somebody else releases it
     del machine.receipts[:]
-    call = machine.swing(machine.own)
+
+    def accepted() -> bool:
+        machine.emergency.publish(Bool(data=False))  # somebody else releases it
+        calls.append(machine.swing(machine.own))
+        machine.until(lambda: calls[-1].accepted or calls[-1].outcome is not None, "an answer")
+        return calls[-1].accepted
+
+    calls: list[Call] = []
+    wait_until(accepted, LIMIT, "the machine takes the goal", every=0.2)
+    call = calls[-1]
     machine.until(lambda: call.outcome is not None, "the end of the goal")
     receipt = machine.wait_receipt()
     assert not receipt.confirmed and receipt.detail == "it left stand-still without a goal of its own"
