@@ -40,6 +40,11 @@ def motions(border: Border) -> list[Motion]:
     return [motion for motion in MOTIONS if getattr(border, motion.field)]
 
 
+def stood_in(machine: str) -> str:
+    """Topic on which a host agent tells, with each press, that it presses `emg_stop` in place of a lost gateway."""
+    return f"/{machine}/rc/stood_in"
+
+
 class Controls:
     """Direct access to a machine; only the gateway, and whoever stands in for a lost one, may have it."""
 

@@ -44,6 +44,7 @@ class Arming:
             return "NOT_KEPT", unkept
         guard.watch.accept_clocks()
         guard.controls.emergency(False)
+        guard.stood_in = False
         guard.vigil.end(time.monotonic())
         self._app.log.info("event=armed")
         guard.told()
@@ -64,6 +65,8 @@ class Arming:
             return "CAUSE_PERSISTS", f"nobody sees whether {machine} stands: {silent}; is the machine on?"
         if trouble is not None and not trouble.passes:
             return "CAUSE_PERSISTS", f"what {machine} tells cannot be believed: {trouble.text}"
+        if guard.stopper.busy:
+            return "CAUSE_PERSISTS", f"a stop of {machine} is still being proven"
         if not guard.watch.standing(now, passing=True):
             return "CAUSE_PERSISTS", f"{machine} does not stand still yet"
         return "", ""

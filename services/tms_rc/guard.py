@@ -31,6 +31,7 @@ PERMIT_LIMIT = 3.0  # s that a goal may come before the permits behind it: a new
 PRESSED = 1.0  # s that a software stop counts as pressed after its last message
 FRESH = 1.0  # s, older news of the machine make it not ready
 FOREIGN = "a foreign client"
+PROVES = "its last stop is still being proven"
 RECOVERS = "after its start the gateway still proves that the machine stands"
 
 
@@ -89,6 +90,7 @@ class Guard:
         self.run_told: Callable[[int], None] = lambda run: None  # called with each run that takes the machine
         self.pressed = 0.0  # monotonic time of the last software stop message
         self.by_hand = ""  # who drives it by hand
+        self.stood_in = False  # the host agent has pressed `emg_stop` in place of this gateway
         self.recovering = False  # what the last gateway may have left moving is being stopped
         self.active: Active | None = None
         self.told: Callable[[], None] = lambda: None  # called when the latch has changed, to tell it at once
@@ -105,6 +107,7 @@ class Guard:
         wrong = self._wait_for_permit(active.owner)
         if wrong is not None:
             return wrong
+        self.stopper.wait_idle(PERMIT_LIMIT)
         with self._taking:
             if self.active is not None:
                 return f"{self._app.machine} is still moved by another goal"
@@ -116,8 +119,8 @@ class Guard:
         return wrong
 
     def _kept(self) -> str | None:
-        if self.recovering:
-            return f"not ready: {RECOVERS}"
+        if self.recovering or self.stopper.busy:
+            return f"not ready: {RECOVERS if self.recovering else PROVES}"
         return f"{self.by_hand} drives {self._app.machine} by hand: `tms give-back` first" if self.by_hand else None
 
     def _noted(self, owner: Owner | None) -> str | None:
@@ -266,4 +269,7 @@ class Guard:
             self.latch.close(f"{stop.cause}: not seen to stand ({stop.receipt.detail})")
             self.controls.emergency(True)
             self.told()
+        elif stop.receipt is not None and self.stood_in and not self.latch.cause:
+            self.stood_in = False
+            self.controls.emergency(False)
         self.notes.keep()

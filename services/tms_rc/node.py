@@ -20,6 +20,7 @@ from tms_rc.guard import FRESH, RECOVERS, Guard
 from tms_rc.latch import Latch
 from tms_rc.memory import Memory
 from tms_rc.notes import Notes
+from tms_rc.presses import Presses
 from tms_rc.recovery import Recovery
 from tms_rc.standstill import StandStill
 from tms_rc.view import View
@@ -75,6 +76,8 @@ def _offer(app: App, guard: Guard, gateway: Gateway, told: "Told") -> None:
         told.peers.append(peer)
         gateway.serve(motion, peer)
     ros.subscribe(Bool, "/emergency_signal", guard.signal, depth=SIGNALS)
+    if border.emg_stop:
+        Presses(app, guard, f"/{machine}/{border.emg_stop}")
     if border.manual:
         ros.subscribe(Bool, f"/{machine}/{border.manual}", arming.manual, depth=SIGNALS)
     ros.offer_slow(StopMachine, f"/{machine}/rc/stop", guard.stop_service)

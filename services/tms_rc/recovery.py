@@ -54,14 +54,9 @@ class Recovery:
                 deadline = time.monotonic() + RUN_TOLD
                 app.ros.on_executor(lambda: self._take_over(UNKNOWN_RUN))
         app.ros.on_executor(self._close)
-        self._release()
+        if self._stop is not None:
+            self._stop.wait(app.machine)
         guard.recovering = False
-
-    def _release(self) -> None:
-        """Whoever stood in for the lost gateway may have pressed the machine's own stop: a held machine goes on."""
-        stop, guard = self._stop, self._guard
-        if stop is not None and stop.wait(self._app.machine).confirmed and not guard.latch.cause:
-            guard.controls.emergency(False)
 
     def _command(self) -> None:
         controls = self._guard.controls

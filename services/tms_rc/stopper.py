@@ -72,8 +72,15 @@ class Stopper:
 
     @property
     def busy(self) -> bool:
-        """Whether a stop is under way."""
+        """Whether a stop is under way: its commands would end any motion that begins now."""
         return bool(self._under_way)
+
+    def wait_idle(self, seconds: float) -> bool:
+        """Wait until no stop is under way; False when the time is over."""
+        deadline = time.monotonic() + seconds
+        for stop in list(self._under_way):
+            stop.over.wait(max(0.0, deadline - time.monotonic()))
+        return not self.busy
 
     def begin(
         self, cause: str, *, latched: bool, run: int = 0, ended: Callable[[], bool] = lambda: True,
