@@ -29,6 +29,9 @@ END = b"\r\n\r\n"
 REQUEST = re.compile(rb"([A-Z]{1,20}) (/[!-~]*) HTTP/1\.[0-9]\r\n")
 
 
+SILENT = "it does not answer on its health port"
+
+
 def unready(address: str, port: int, seconds: float = 2.0) -> str | None:
     """Why a process cannot work now, as it says itself on its port; None when it can."""
     asked = http.client.HTTPConnection(address, port, timeout=seconds)
@@ -37,7 +40,7 @@ def unready(address: str, port: int, seconds: float = 2.0) -> str | None:
         answer = asked.getresponse()
         text = answer.read().decode("utf-8", "replace").strip()
     except (OSError, http.client.HTTPException):  # also one that ends while it answers
-        return "it does not answer on its health port"
+        return SILENT
     finally:
         asked.close()
     return None if answer.status == http.HTTPStatus.OK else text

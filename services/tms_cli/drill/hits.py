@@ -11,6 +11,7 @@ import psutil
 from tms_cli import mesh
 from tms_cli.drill.plan import RC, RP, SUBTASK, How, Stop
 from tms_cli.drill.stand_ins import GROUP
+from tms_core import metrics
 from tms_core.config import Site
 from tms_core.errors import TmsError
 from tms_core.processes import find, table
@@ -19,6 +20,7 @@ from tms_host.supervisor import Supervisor
 FROZEN = 2.0  # s
 BACK_LIMIT = 40.0  # s
 LOOK = 0.1  # s
+STARTING = "starting"  # what a process says of itself until it has begun
 
 
 class Hits:
@@ -42,7 +44,7 @@ class Hits:
         Raises:
             TmsError: one does not run.
         """
-        running = {row.name: row.pid for row in Supervisor(self._site).processes()}
+        running = self._running()
         missing = [name for name in names if not running.get(name)]
         if missing:
             raise TmsError(f"{', '.join(missing)} does not run: see `tms ps`")
@@ -67,30 +69,32 @@ class Hits:
         if how is How.FREEZE:
             time.sleep(max(0.0, hit + FROZEN - time.time()))
         while time.time() - hit < BACK_LIMIT:
-            running = {row.name: row.pid for row in Supervisor(self._site).processes()}
-            for name, pid in list(waiting.items()):
-                if self._works(name, running.get(name, 0), pid, how):
+            running = self._running()
+            for name, before in list(waiting.items()):
+                pid = running.get(name, 0)
+                if pid and (how is How.FREEZE or pid != before) and self._works(name):
                     del waiting[name]
             if not waiting:
                 return time.time() - hit
             time.sleep(LOOK)
         return None
 
-    def _works(self, name: str, pid: int, before: int, how: How) -> bool:
-        row = find(self._site, name)
-        new = bool(pid) and (how is How.FREEZE or pid != before)
-        return new and (not row.ours or mesh.unready(row) is None)
-
     def power_on(self, pids: Sequence[int], hit: float) -> float | None:
         """Start everything again after a power cut, once everything is gone."""
         while any(map(psutil.pid_exists, pids)) and time.time() - hit < BACK_LIMIT:
             time.sleep(LOOK)
         mesh.up(self._site, without=GROUP)
-        try:
-            mesh.wait_ready(self._site, lambda _: None)
-        except TmsError:
-            return None
-        return time.time() - hit
+        names = [row.full for row in table(self._site) if row.autostart and row.group != GROUP]
+        return self.back(How.POWER, dict.fromkeys(names, 0), hit)
+
+    def _running(self) -> dict[str, int]:
+        return {row.name: row.pid for row in Supervisor(self._site).processes()}
+
+    def _works(self, name: str) -> bool:
+        """A machine's process works when it says anything: not the process may be what keeps the machine from it."""
+        row = find(self._site, name)
+        reason = mesh.unready(row) if row.ours else None
+        return reason is None or (row.machine is not None and reason not in (metrics.SILENT, STARTING))
 
 
 def _signal(number: signal.Signals, pids: Sequence[int]) -> None:

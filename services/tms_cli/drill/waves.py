@@ -66,11 +66,15 @@ class Waves:
 
     def _wave(self, wave: list[Trial]) -> list[Trial]:
         """Returns trials that have to be tried again: their motion was over by itself."""
+        t0 = time.time()
         began = self._each(wave, lambda trial: self._hands[trial.machine].begin())
         ready = [trial for trial, at in zip(wave, began, strict=True) if at is not None]
         shared = any(trial.stop.shared for trial in ready)
+        t1 = time.time()
         rows = self._shared(ready) if shared else self._each(ready, self._single)
+        t2 = time.time()
         self._each(wave, lambda trial: self._hands[trial.machine].work.end())
+        click.echo(f"TIMES begin {t1 - t0:.1f} trial {t2 - t1:.1f} end {time.time() - t2:.1f}", err=True)
         return self._note(wave, dict(zip([trial.machine for trial in ready], rows, strict=True)), shared)
 
     def _note(self, wave: list[Trial], rows: dict[str, Row | None], shared: bool) -> list[Trial]:
