@@ -18,7 +18,8 @@ def percentile(values: Sequence[float], share: float) -> float | None:
 
 def summary(rows: Sequence[Row], seed: int) -> dict[str, Any]:
     """The document of --json."""
-    tried = [row for row in rows if row.outcome != LEFT_OUT]
+    tried = [row for row in rows if row.outcome != LEFT_OUT and not row.void]
+    left_out = [row for row in rows if row.outcome == LEFT_OUT]
     told = [row.told_s for row in tried if row.told_s is not None]
     stood = [row.stood_s for row in tried if row.stood_s is not None and measured(row)]
     backs = [row.back_s for row in tried if row.back_s is not None]
@@ -26,7 +27,8 @@ def summary(rows: Sequence[Row], seed: int) -> dict[str, Any]:
         "seed": seed,
         "trials": len(tried),
         "kills": sum(row.how in (How.KILL.value, How.POWER.value) for row in tried),
-        "left_out": len(rows) - len(tried),
+        "left_out": len(left_out),
+        "void": sum(bool(row.void) for row in rows),
         "false_receipts": sum(bool(row.false_receipt) for row in tried),
         "unconfirmed": sum(row.unconfirmed for row in tried),
         "unconfirmed_in_order": sum(row.unconfirmed and row.fault == NONE and _single(row) for row in tried),
@@ -48,7 +50,7 @@ def summary(rows: Sequence[Row], seed: int) -> dict[str, Any]:
 
 def measured(row: Row) -> bool:
     """Whether its time to stand-still is ours and the machine's, and not that of a fault."""
-    return row.due and row.in_order and row.covered
+    return row.in_order and row.covered
 
 
 def _single(row: Row) -> bool:
@@ -60,7 +62,7 @@ def stops(tried: Sequence[Row]) -> list[dict[str, Any]]:
     """Time and travel to stand-still of machines in order, by machine and kind of stop."""
     found: dict[tuple[str, str, str], list[Row]] = {}
     for row in tried:
-        if row.due and row.in_order and row.stood_s is not None:
+        if row.in_order and row.stood_s is not None:
             found.setdefault((row.machine, row.model, row.how), []).append(row)
     return [_line(*key, group) for key, group in sorted(found.items())]
 

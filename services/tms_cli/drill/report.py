@@ -18,6 +18,7 @@ FACTS = (
     ("hung", "Runs left hanging", "終わらなかった実行"),
     ("not_back", "Processes that did not come back", "復帰しなかったプロセス"),
     ("left_out", "Trials left out", "未実施"),
+    ("void", "Trials that proved nothing, and were made again", "無効(再試行)"),
     ("kill_to_stop_p50_s", "Stop command after a loss, p50 [s]", "停止指令まで 中央値"),
     ("kill_to_stop_p99_s", "Stop command after a loss, p99 [s]", "停止指令まで 99 %"),
     ("kill_to_stop_max_s", "Stop command after a loss, max [s]", "停止指令まで 最大"),
@@ -34,8 +35,10 @@ def line(row: Row) -> str:
     verdicts = [name for name in ("unconfirmed", "unlatched", "ran_on", "disturbed") if getattr(row, name)]
     if row.false_receipt:
         verdicts.append(f"FALSE RECEIPT: {row.false_receipt}")
-    seen = "confirmed" if row.confirmed else ", ".join(verdicts) or "nothing was due"
-    what = ", ".join(dict.fromkeys([seen, *verdicts]))
+    if row.void:
+        return f"{row.machine}: {row.stop}, {row.fault}: proves nothing: {row.void}"
+    seen = "confirmed" if row.confirmed else ", ".join(verdicts)
+    what = ", ".join(dict.fromkeys([*filter(None, [seen]), *verdicts])) or row.outcome
     told = (
         f"; hit at {datetime.fromtimestamp(row.at, timezone.utc):%H:%M:%S.%f}: {'; '.join(row.receipts)}"
         if verdicts
@@ -81,6 +84,7 @@ def markdown(rows: Sequence[Row], figures: dict[str, Any], site: str) -> str:
 def _cells(row: Row) -> list[str]:
     wrong = [name for name in ("unlatched", "ran_on", "disturbed") if getattr(row, name)]
     wrong += ["unconfirmed"] if row.unconfirmed else []
+    wrong += [f"void: {row.void}"] if row.void else []
     return [
         row.machine, row.stop, row.fault, _text(row.told_s), _text(row.stood_s), _text(row.travel_rad),
         _text(row.travel_m), _text(row.back_s), row.outcome, "; ".join(row.receipts).replace("|", "/"),

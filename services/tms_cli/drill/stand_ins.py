@@ -1,5 +1,6 @@
 """The machines' stand-ins as children of the drill: they stand for machines, which no power cut of our PC stops."""
 
+import contextlib
 import os
 import subprocess
 import sys
@@ -11,6 +12,7 @@ from tms_core.environment import environment
 
 GROUP = "sim"  # of the process table
 END_LIMIT = 5.0  # s
+NICE = -10  # as the gateways
 
 
 class StandIns:
@@ -23,7 +25,10 @@ class StandIns:
         with state_folder.private(), (site.state / "log" / f"{GROUP}.{machine}.log").open("ab") as log:
             words = [sys.executable, "-m", "tms_core.run", f"{GROUP}:{machine}"]
             env = {**os.environ, **environment(site)}
-            return subprocess.Popen(words, env=env, stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT)
+            child = subprocess.Popen(words, env=env, stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT)
+        with contextlib.suppress(PermissionError):  # needs CAP_SYS_NICE; a machine does not wait for a busy PC
+            os.setpriority(os.PRIO_PROCESS, child.pid, NICE)
+        return child
 
     def dead(self) -> list[str]:
         """Stand-ins that have ended: the drill has no machine then."""

@@ -1,6 +1,7 @@
 """One trial: a machine that moves is hit at its moment, with its fault, and watched until all is said."""
 
 import csv
+import math
 import time
 from concurrent.futures import Future
 from dataclasses import dataclass, field
@@ -12,7 +13,7 @@ from tms_cli.drill.eyes import Eyes
 from tms_cli.drill.hits import BACK_LIMIT, Hits
 from tms_cli.drill.plan import NONE, TS, How, Stop, Trial
 from tms_cli.drill.record import Recording
-from tms_cli.drill.verdict import AFTER, BY_ITSELF, GOES_ON, HUNG, INTERRUPTED, TOLD, Row, Seen, judge
+from tms_cli.drill.verdict import AFTER, BY_ITSELF, GOES_ON, HUNG, INTERRUPTED, UNPROVEN, Row, Seen, judge
 from tms_cli.drill.work import Work
 from tms_core.config import Site
 from tms_core.errors import TmsError
@@ -128,7 +129,7 @@ class Hand:
             self.work.cancel()
         self.eyes.wait(lambda record: self._over(record, begun, stopped), begun, RECEIPT_LIMIT)
         self._look_on(trial, begun)
-        outcome = self._outcome(trial, stopped)
+        outcome = self._outcome(trial, begun, stopped)
         back = struck.back.result(2 * BACK_LIMIT)
         record = self._last_words(trial, begun)
         row = judge(Seen(trial, self.model, record, begun, hit, stopped, self._ends, back, outcome))
@@ -153,23 +154,28 @@ class Hand:
         return bool(record.receipts) or (arrived and time.time() > stopped + BY_ITSELF)
 
     def _look_on(self, trial: Trial, begun: float) -> None:
-        """For as long as a receipt promises that the machine stands."""
-        extra = CREEP_STARTS + TOLD + AFTER if "creep" in trial.fault else 0.0
+        """For as long as a receipt promises that the machine stands; for one that creeps, until that is told."""
+        creeps = "creep" in trial.fault
+        longer = CREEP_STARTS + UNPROVEN if creeps else 0.0
 
         def enough(record: Recording) -> bool:
-            at = max((one.at for one in record.receipts if one.confirmed), default=0.0) + AFTER + extra
-            return record.goal_after(at - AFTER - extra) < at or (bool(record.truth) and record.truth[-1].at > at + 0.1)
+            if creeps and not all(one.confirmed for one in record.receipts):
+                return True
+            at = max((one.at for one in record.receipts if one.confirmed), default=0.0)
+            end = record.truth[-1].at if record.truth else 0.0
+            return record.goal_after(at) < at + AFTER + longer or end > at + AFTER + longer
 
-        self.eyes.wait(enough, begun, 2 * AFTER + 2 * extra)
+        self.eyes.wait(enough, begun, 2 * AFTER + longer)
 
-    def _outcome(self, trial: Trial, stopped: float) -> str:
+    def _outcome(self, trial: Trial, begun: float, stopped: float) -> str:
         """The run goes on, has ended, or waits to be resumed."""
         deadline = stopped + RUN_LIMIT
         while time.time() < deadline:
             if (ended := self.work.outcome()) is not None:
                 return INTERRUPTED if ended == "interrupted" else ended
-            record = self.eyes.since(stopped)
-            if trial.stop.moves and record.goal_after(stopped) < time.time():
+            record = self.eyes.since(begun)
+            proven = max((one.at for one in record.receipts), default=stopped)
+            if trial.stop.moves and record.goal_after(proven) < math.inf:
                 return GOES_ON
             time.sleep(LOOK)
         return HUNG

@@ -1,6 +1,8 @@
 """Compares what was told of a stop with the true motion. Pure logic; all times are s since 1970."""
 
+import math
 from dataclasses import asdict, dataclass, field
+from itertools import pairwise
 from typing import Any
 
 from tms_cli.drill.plan import IN_ORDER, NONE, How, Trial
@@ -9,8 +11,10 @@ from tms_cli.drill.record import Receipt, Recording, Sample
 TOLERANCE = 1.1  # of the limit of standing: the truth is sampled, and rounded by nobody
 FRAME = 0.02  # s between samples of the truth
 CLAIMED = 0.2  # s of standing that a receipt claims
+BLIND = 0.5  # s without the truth; a stand-in that did not run for longer loses time (tms_sim/telemetry.py)
 AFTER = 1.0  # s after it for which nothing may move either
-TOLD = 3.0  # s in which a motion that comes later must be told
+TOLD = 3.0  # s in which a motion that comes later must be countered ...
+UNPROVEN = 12.0  # s ... and until the receipt of that, which waits for a stand-still
 EXTRA = 3.0  # s beyond dead time and braking that a machine in order may move
 BY_ITSELF = 1.5  # s after the hit within which a motion that arrives was not stopped by anybody
 GOES_ON, INTERRUPTED, HUNG = "goes on", "interrupted", "hung"
@@ -45,7 +49,7 @@ class Row:
     in_order: bool = False
     covered: bool = True
     at: float = 0.0
-    due: bool = False  # a goal was open, and did not end by itself
+    void: str = ""  # why it proves nothing; it is tried again
     told_s: float | None = None  # until the first stop command was at the machine
     stood_s: float | None = None  # until it truly stood
     travel_joint: str = ""
@@ -77,11 +81,11 @@ def empty(trial: Trial, model: str) -> Row:
 def judge(seen: Seen) -> Row:
     """The whole verdict."""
     row, record, stop = empty(seen.trial, seen.model), seen.record, seen.trial.stop
-    row.at, row.back_s, row.outcome, row.due = seen.hit, seen.back_s, seen.outcome, due(seen)
+    row.at, row.back_s, row.outcome, row.void = seen.hit, seen.back_s, seen.outcome, void(seen)
     row.receipts = [text_of(one, seen.hit) for one in record.receipts]
     row.false_receipt = next(filter(None, (lie(one, record) for one in record.receipts)), "")
     row.latched = bool(record.states and record.states[-1].latch)
-    if not row.due:
+    if row.void:
         return row
     row.confirmed = bool(record.receipts) and all(one.confirmed for one in record.receipts)
     row.unconfirmed = not row.confirmed
@@ -94,14 +98,21 @@ def judge(seen: Seen) -> Row:
     return row
 
 
-def due(seen: Seen) -> bool:
-    """Whether somebody had to stop the machine: it had a goal, which did not end by itself in the same moment."""
-    if seen.record.receipts:
-        return True
-    return any(
+def void(seen: Seen) -> str:
+    """Why nobody had to stop the machine then, or nobody could see it; empty for a good trial."""
+    record = seen.record
+    before = [state for state in record.states if state.at < seen.begun][-1:]
+    if any(state.latch or state.hold for state in before):
+        return f"it was stopped before: {before[0].latch or before[0].hold}"
+    moments = [seen.begun, *(one.at for one in record.truth if one.at <= seen.stop + seen.ends + EXTRA)]
+    gap = max((late - early for early, late in pairwise(moments)), default=math.inf)
+    if gap > BLIND:
+        return f"its true motion was not heard for {gap:.1f} s"
+    due = any(
         goal.began <= seen.begun and not (goal.arrived and (goal.ended or 0.0) < seen.stop + BY_ITSELF)
-        for goal in seen.record.goals.values()
+        for goal in record.goals.values()
     )
+    return "" if due or record.receipts else "its motion ended by itself"
 
 
 def moves(sample: Sample) -> bool:
@@ -123,7 +134,7 @@ def lie(receipt: Receipt, record: Recording) -> str:
     late = moving[0].at - receipt.at
     if late <= AFTER:
         return f"moved {late:.2f} s after it was said to stand: {moving[0].share:.1f} x limit"
-    over = min(fresh, record.truth[-1].at) - moving[0].at > TOLD
+    over = min(fresh, record.truth[-1].at) - moving[0].at > UNPROVEN
     return f"left stand-still {late:.2f} s after the receipt, and nobody told it" if over else ""
 
 
@@ -145,7 +156,9 @@ def told(seen: Seen) -> float | None:
 
 def _measure(row: Row, seen: Seen) -> None:
     """Time and travel to the true stand-still."""
-    truth = [one for one in seen.record.truth if seen.stop <= one.at < seen.record.goal_after(seen.stop)]
+    proven = min((one.at for one in seen.record.receipts), default=math.inf)
+    fresh = seen.record.goal_after(proven)  # one that came before was stopped, too
+    truth = [one for one in seen.record.truth if seen.stop <= one.at < fresh]
     if not truth:
         return
     last = next((number for number in reversed(range(len(truth))) if moves(truth[number])), None)

@@ -29,7 +29,7 @@ class Waves:
         self._hands = {machine: Hand(node, site, machine) for machine in site.file.machines}
         # Twice: a strike waits beside the trial that it is for.
         self._pool = ThreadPoolExecutor(2 * len(self._hands) + 1, "drill")
-        self._total = 0
+        self._total = self._made = 0
         self.rows: list[Row] = []
 
     def warm_up(self) -> None:
@@ -66,26 +66,24 @@ class Waves:
 
     def _wave(self, wave: list[Trial]) -> list[Trial]:
         """Returns trials that have to be tried again: their motion was over by itself."""
-        t0 = time.time()
         began = self._each(wave, lambda trial: self._hands[trial.machine].begin())
         ready = [trial for trial, at in zip(wave, began, strict=True) if at is not None]
         shared = any(trial.stop.shared for trial in ready)
-        t1 = time.time()
         rows = self._shared(ready) if shared else self._each(ready, self._single)
-        t2 = time.time()
         self._each(wave, lambda trial: self._hands[trial.machine].work.end())
-        click.echo(f"TIMES begin {t1 - t0:.1f} trial {t2 - t1:.1f} end {time.time() - t2:.1f}", err=True)
         return self._note(wave, dict(zip([trial.machine for trial in ready], rows, strict=True)), shared)
 
     def _note(self, wave: list[Trial], rows: dict[str, Row | None], shared: bool) -> list[Trial]:
         missed = []
         for trial in wave:
-            row = rows.get(trial.machine)
-            if row is not None and not row.due and not row.false_receipt:
-                missed += [] if shared else [trial]
-                continue
-            self.rows.append(row or self._empty(trial))
-            click.echo(f"{len(self.rows)}/{self._total} {line(self.rows[-1])}", err=True)
+            row = rows.get(trial.machine) or self._empty(trial)
+            self.rows.append(row)
+            self._made += not row.void
+            click.echo(f"{self._made}/{self._total} {line(row)}", err=True)
+            if row.void and not shared:
+                missed.append(trial)
+            elif row.void:
+                self._total -= 1  # others of this wave were hit in the same way
         return missed
 
     def _single(self, trial: Trial) -> Row:

@@ -83,7 +83,7 @@ def test_percentiles() -> None:
 def row(**changes: Any) -> Row:
     values: dict[str, Any] = {
         "machine": "zx200", "model": "zx200", "stop": "kill rc", "how": "kill", "fault": NONE, "fault_at": 0.1,
-        "in_order": True, "due": True, "told_s": 0.5, "stood_s": 2.0, "travel_joint": "swing_joint",
+        "in_order": True, "told_s": 0.5, "stood_s": 2.0, "travel_joint": "swing_joint",
         "travel_rad": 0.25, "back_s": 3.0, "outcome": "goes on", "confirmed": True,
     }  # fmt: skip
     return Row(**{**values, **changes})
@@ -96,13 +96,14 @@ def test_the_summary_counts_what_matters() -> None:
         row(stop="kill rc+tms:ts", unconfirmed=True, unlatched=True), row(unconfirmed=True, ran_on=True, stood_s=None),
         row(how="cancel", stop="cancel", told_s=None, false_receipt="moved"), row(outcome=HUNG, disturbed=True),
         row(back_s=None), row(outcome=LEFT_OUT, back_s=None),
+        row(void="its motion ended by itself", unconfirmed=True, back_s=None),
     ]  # fmt: skip
     found = summary(rows, 7)
     counted = {name: found[name] for name in drill.drill_figures.BAD}
     assert counted == {
         "false_receipts": 1, "hung": 1, "ran_on": 1, "unlatched": 1, "disturbed": 1, "not_back": 1, "left_out": 1,
     }  # fmt: skip
-    assert (found["seed"], found["trials"], found["kills"]) == (7, 8, 7)
+    assert (found["seed"], found["trials"], found["kills"], found["void"]) == (7, 8, 7, 1)
     assert (found["unconfirmed"], found["unconfirmed_in_order"]) == (3, 1)
     assert (found["kill_to_stop_max_s"], found["stop_p50_s"], found["stop_p99_s"]) == (0.9, 2.0, 4.0)
     kill = next(one for one in found["stops"] if one["stop"] == "kill")
