@@ -20,7 +20,7 @@ class Arming:
         self._app, self._guard = app, guard
 
     def rearm(self, request: Rearm.Request, response: Rearm.Response) -> Rearm.Response:
-        """Two steps: without a token the cause and a token, with it the machine is armed. May wait for a proof and the disk."""
+        """Two steps: without a token the cause and a token, with it the machine is armed. It may wait for the disk."""
         guard = self._guard
         guard.stopper.wait_idle(PROOF_LIMIT)
         now = time.monotonic()

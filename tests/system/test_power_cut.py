@@ -126,7 +126,7 @@ def test_after_a_power_cut_everything_that_was_told_is_there_and_nothing_is_clai
         mesh.tms("up")
         mesh.wait_ready()
         closed_as_told(mesh, before, told, run_id)
-        wait_until(lambda: f"restarted while {run_id} held it" in latch(mesh), 30, "the machine is latched")
+        wait_latched(mesh, run_id)
         mesh.tms("abandon", run_id)
         rearm(mesh)
         assert run(mesh, "1")["outcome"] == "success"
@@ -162,6 +162,10 @@ def claims_what_receipts_say(reason: str, new: list[dict[str, Any]]) -> None:
     else:
         assert "; not seen to stand: zx200" in reason
         assert any(row["kind"] == "alarm" and row["text"].startswith("zx200: not seen to stand") for row in new)
+
+
+def wait_latched(mesh: Mesh, run_id: str) -> None:
+    wait_until(lambda: f"restarted while {run_id} held it" in latch(mesh), 30, "the machine is latched")
 
 
 def latch(mesh: Mesh) -> str:
