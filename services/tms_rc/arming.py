@@ -9,6 +9,7 @@ from tms_msg_rc.srv import Rearm, TakeMachine
 from tms_core.app import App
 from tms_rc.guard import PRESSED, Guard, Kind
 
+PROOF_LIMIT = 3.0  # s that a person waits for a stop that is still being proven
 MANUAL = "the machine's own manual mode"
 
 
@@ -19,8 +20,10 @@ class Arming:
         self._app, self._guard = app, guard
 
     def rearm(self, request: Rearm.Request, response: Rearm.Response) -> Rearm.Response:
-        """Two steps: without a token the cause and a token, with it the machine is armed. May wait for the disk."""
-        guard, now = self._guard, time.monotonic()
+        """Two steps: without a token the cause and a token, with it the machine is armed. It may wait for the disk."""
+        guard = self._guard
+        guard.stopper.wait_idle(PROOF_LIMIT)
+        now = time.monotonic()
         response.cause = guard.latch.cause or guard.latch.hold
         code, text = self._keeps_from_arming(response.cause)
         if not code and request.token:

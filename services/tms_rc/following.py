@@ -81,10 +81,9 @@ class Follower:
         hulls = {name: way.hull(passed - dead_time * self._scale, passed) for name, way in self._ways.items()}
         return {name: high - low for name, (low, high) in hulls.items()}
 
-    def moves(self, now: float) -> bool:
-        """Whether a goal should be changing what is heard now: it is not over yet."""
-        last = max((way.times[-1] for way in self._ways.values()), default=0.0)
-        return (now - self._begun) * self._scale < last
+    def moved(self, now: float, seconds: float) -> bool:
+        """Whether the reference has moved within the last seconds, so that what is heard must have changed."""
+        return max(self.on_its_way(now, seconds).values(), default=0.0) > BEHIND
 
     def look(self, now: float, angles: Mapping[str, float]) -> str | None:
         """What is wrong with where the joints are [rad], None if nothing."""

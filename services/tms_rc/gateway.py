@@ -181,10 +181,10 @@ class Gateway:
     def _frozen(self, active: Active, follower: Follower, now: float) -> str | None:
         """Values that are bit for bit the same while the goal should change them."""
         source = self._watch.sources.get(JOINTS)
-        if source is None or not follower.moves(now):
+        if source is None:
             return None
         same = now - max(source.changed, active.begun + self._watch.reached / self._speed)
-        if same <= source.source.frozen_after:
+        if same <= source.source.frozen_after or not follower.moved(now, same):
             return None
         return f"FROZEN: {source.label} are the same to the last bit for {same:.1f} s while the machine should move"
 

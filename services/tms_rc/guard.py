@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any
 
+from tms_msg_rc.msg import StopReceipt
 from tms_msg_rc.srv import StopMachine
 
 from tms_core.app import App
@@ -201,6 +202,7 @@ class Guard:
         active, now = self.active, time.monotonic()
         if kind is Kind.LATCH:
             self.latch.close(cause)
+            self.notes.soon()
         elif kind is Kind.HOLD and active is not None and active.owner is not None:
             self.latch.keep(cause, active.owner)
         ended = active.ended if active is not None else lambda: True
@@ -263,13 +265,15 @@ class Guard:
         response.receipt = stop.wait(self._app.machine)
         return response
 
-    def _note(self, stop: Stop) -> None:
-        """Called in the stop's own thread: after its commands, and with its receipt before that is told."""
-        if stop.receipt is not None and not stop.receipt.confirmed:
-            self.latch.close(f"{stop.cause}: not seen to stand ({stop.receipt.detail})")
+    def _note(self, receipt: StopReceipt) -> None:
+        """What a stop has shown, kept before it is told."""
+        if not receipt.confirmed:
+            self.latch.close(f"{receipt.cause}: not seen to stand ({receipt.detail})")
             self.controls.emergency(True)
             self.told()
-        elif stop.receipt is not None and self.stood_in and not self.latch.cause:
+        elif self.stood_in and not self.latch.cause:
             self.stood_in = False
             self.controls.emergency(False)
+        if receipt.confirmed and self.run is None:  # it stands, and nobody's goal moves it
+            self.notes.holder, self.notes.run = "", 0
         self.notes.keep()

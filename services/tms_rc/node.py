@@ -39,7 +39,17 @@ GATEWAY = bytes([255]) * 16  # what the gateway's own permit stands behind: the 
 
 def start(app: App) -> None:
     """Offer guarded motion, stop and re-arm of one machine, and tell its state; not where another gateway does."""
-    threading.Thread(target=_serve, args=(app, Claim(app)), name="claim", daemon=True).start()
+    threading.Thread(target=_begin, args=(app, Claim(app)), name="claim", daemon=True).start()
+
+
+def _begin(app: App, claim: Claim) -> None:
+    over = False
+    try:
+        _serve(app, claim)
+        over = True
+    finally:
+        if not over and not app.ros.closing:  # a bug: half a gateway is none
+            app.ros.failed.set()
 
 
 def _serve(app: App, claim: Claim) -> None:
@@ -63,8 +73,7 @@ def _serve(app: App, claim: Claim) -> None:
         app.ros.pulse.add(step)
     permit = Permit(app.ros, machine, "rc")
     # Not before the lease of a predecessor that was killed has run out: nobody would notice its loss.
-    app.stopping.wait(LEASE)
-    app.ros.on_executor(lambda: permit.hold(GATEWAY))
+    app.ros.on_executor(lambda: app.ros.after(LEASE, lambda: permit.hold(GATEWAY)))
     app.ready_when(told.unready)
     recovery.run()
 

@@ -59,8 +59,8 @@ class Stop:
 class Stopper:
     """Of one machine; several stops may be under way."""
 
-    def __init__(self, app: App, controls: Controls, watch: StandStill, note: Callable[[Stop], None]) -> None:
-        """`note` is called in the stop's own thread: after its commands, and again with the receipt."""
+    def __init__(self, app: App, controls: Controls, watch: StandStill, note: Callable[[StopReceipt], None]) -> None:
+        """`note` is called in the stop's own thread with the receipt, before that is told; it may wait for the disk."""
         self._note = note
         self._app, self._controls, self._watch = app, controls, watch
         self._under_way: list[Stop] = []
@@ -112,7 +112,6 @@ class Stopper:
 
     def _watch_over(self, stop: Stop) -> None:
         """Watch until the stop is proven, repeating the commands; then tell."""
-        self._note(stop)
         now, again = stop.begun, stop.begun + AGAIN
         while not self._seen(stop, now) and now - stop.begun < STOP_PROVEN:
             time.sleep(LOOK)
@@ -123,7 +122,7 @@ class Stopper:
                 again = now + AGAIN
                 self._command(stop.latched)
         stop.receipt = self._receipt(stop, now)
-        self._note(stop)
+        self._note(stop.receipt)
         self._tell(stop.receipt)
         self._under_way.remove(stop)
         stop.over.set()

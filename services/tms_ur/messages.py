@@ -34,7 +34,7 @@ def machine(message: Any) -> Machine:
         name=message.machine, state=state, reason=message.reason, goal=message.goal, owner=message.owner,
         joints=[Joint(name=name, position=round(p, 4), velocity=round(v, 4)) for name, p, v in joints],
         joint_age=message.age if message.age < NEVER else None,
-        armed=message.armed, latch=message.latch, hold=message.hold,
+        armed=message.armed, latch=message.latch, hold=message.hold, by_hand=message.by_hand,
     )  # fmt: skip
 
 

@@ -52,6 +52,7 @@ class Machine(Model):
     armed: bool = Field(default=False, description="motions are accepted")
     latch: str = Field(default="", description="why it is stopped until somebody re-arms it, empty if it is armed")
     hold: str = Field(default="", description="why it is held until its run goes on")
+    by_hand: str = Field(default="", description="who drives it by hand, empty if nobody does")
     place: Place | None = Field(default=None, description="null: /tf has not told")
     place_age: float | None = Field(default=None, description="s since /tf told the place, null: never")
     joints: list[Joint] = []

@@ -14,7 +14,7 @@ from tms_msg_ts.srv import ResumePlan
 from conftest import wait_until
 from tms_core.ros import Outcome, Peer, Ros
 from tms_ts.machines import Identity, Machines
-from tms_ts.record import Replay
+from tms_ts.replay import Replay
 
 pytestmark = pytest.mark.ros
 LIMIT = 20.0  # s for whatever must happen at all

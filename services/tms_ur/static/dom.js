@@ -6,7 +6,7 @@ const MARKS = { moving: "▶", running: "▶", RUNNING: "▶", standing: "■", 
   preparing: "…", STARTING: "…", STOPPING: "…", armed: "✔", held: "…",
   alive: "✔", waiting: "…" };
 const GOOD = new Set(["moving", "standing", "running", "success", "RUNNING", "armed", "alive"]);
-const CALM = new Set(["STOPPED", "EXITED", "cancelled", "preparing", "stopping", "STARTING", "STOPPING", "held", "waiting"]);
+const CALM = new Set(["STOPPED", "EXITED", "cancelled", "preparing", "stopping", "STARTING", "STOPPING", "held", "by_hand", "waiting"]);
 const SVG = "http://www.w3.org/2000/svg";
 
 export const at = (id) => document.getElementById(id);

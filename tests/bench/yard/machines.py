@@ -32,7 +32,7 @@ from tms_core.ros import Call, Ended, Goal, Outcome, Ros
 
 COUNT = 20
 MODEL = "zx200"
-NEWS = 0.2  # s between joint states
+NEWS = 0.1  # s between joint states
 LIMIT = 60.0  # s for anything to happen; only bounds a hang
 ANSWER_LIMIT = 3.0  # s for one answer
 BURN = "import os; os.setpriority(os.PRIO_PROCESS, 0, 0)\nwhile True: pass"
@@ -103,9 +103,11 @@ class Yard:
     def _news(self) -> None:
         zeros = array("d", [0.0] * len(self._model.joints))
         at = motion(self._model).trajectory.points[0].positions
+        states, place = JointState(name=list(self._model.joints), position=at, velocity=zeros), Odometry()
+        states.header.stamp = place.header.stamp = self.ros.now()
         for joints, odometry in self._publishers:
-            joints.publish(JointState(name=list(self._model.joints), position=at, velocity=zeros))
-            odometry.publish(Odometry())
+            joints.publish(states)
+            odometry.publish(place)
 
     def _run(self, name: str, goal: Goal) -> Ended:
         self._note(lambda: self.running.add(name))

@@ -67,4 +67,14 @@ def test_a_motion_is_to_be_seen_once_its_reference_has_moved() -> None:
     follower = Follower(ways(NAMES, POINTS, START), DEAD + LAG, 100.0)
     assert not follower.should_have_moved(100.0)
     assert follower.should_have_moved(100.1)
-    assert follower.moves(103.0) and not follower.moves(105.0)
+
+
+def test_what_is_heard_must_change_while_the_reference_moves() -> None:
+    follower = Follower(ways(NAMES, POINTS, START), DEAD + LAG, 100.0)
+    assert follower.moved(103.0, 1.0) and not follower.moved(106.0, 1.0)
+
+
+def test_a_goal_that_asks_for_no_motion_changes_nothing() -> None:
+    follower = Follower(ways(NAMES, [(60.0, (0.0, 0.5))], START), DEAD + LAG, 100.0)
+    assert not follower.moved(130.0, 20.0)
+    assert follower.look(130.0, START) is None

@@ -114,7 +114,7 @@ function buildMachine(machine) {
   const again = button("rearm", "go", rearm, ["rearm_machine", { name }]);
   again.dataset.part = "rearm";
   return make("article", { className: "card", data: { machine: name } }, ...parts("h3", ["name"]), ...parts("span", ["state", "armed"]),
-    ...parts("p", ["latch", "reason", "hold", "goal", "age"]),
+    ...parts("p", ["by_hand", "latch", "reason", "hold", "goal", "age"]),
     make("div", { className: "bar" }, again, button("stop_one", "stop", () => stop(name), ["stop_machine", { name }])),
     make("table", {}, make("thead", {}, head), make("tbody", { data: { part: "joints" } })));
 }
@@ -122,8 +122,9 @@ function buildMachine(machine) {
 function fillMachine(card, machine) {
   setText(part(card, "name"), machine.name);
   setBadge(part(card, "state"), machine.state);
-  setBadge(part(card, "armed"), machine.latch ? "latched" : machine.hold ? "held" : "armed");
+  setBadge(part(card, "armed"), machine.by_hand ? "by_hand" : machine.latch ? "latched" : machine.hold ? "held" : "armed");
   part(card, "armed").hidden = machine.state === "silent";
+  setText(part(card, "by_hand"), machine.by_hand ? t("who_drives", { name: machine.by_hand }) : "");
   setText(part(card, "latch"), machine.latch ? t("why_latched", { cause: told(machine.latch) }) : "");
   setText(part(card, "hold"), told(machine.hold));
   setText(part(card, "reason"), told(machine.reason));
