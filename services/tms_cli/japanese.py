@@ -215,6 +215,7 @@ NEXT = {
     "STATIC_RECORD": "静的レコードです。実行が終わってから `tms param set` で変更してください",
     "STALE_RECORD": "値が古すぎます。センシングが動いているか `tms sensing` で確認してください",
     "RECORD_MISSING": "`tms param list` で確認し、`tms param set --create` で作成してください",
+    "DRILL_RUNS": "終わるまで待ってください",
     "MESH_DOWN": "`tms up` でメッシュを起動してください",
     "SUPERVISOR": "`tms status` を確認し、必要なら `tms up` で起動してください",
     "NO_ACCESS": "示されたファイルを読み書きできる利用者で実行するか、別の場所を指定してください",

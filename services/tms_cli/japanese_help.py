@@ -19,7 +19,7 @@ HELP = {
     "The mesh is left running; exit code 0 only if the task succeeded. May be repeated.": "メッシュは動いたまま残ります。タスクが成功したときだけ終了コードが 0 になります。繰り返しても構いません。",
     "Stop every process of the mesh on this PC and supervisord itself.": "この PC のプロセスと supervisord をすべて終える。",
     "What systemd or Docker started they bring back: end that with `systemctl stop tms@cps` (its PC after the @), or with `make down` and the words of its `make up`.": "systemd や Docker が起動したものは、終えてもまた起動されます。`systemctl stop tms@cps`(@ の後は PC の名前)、または `make up` と同じ指定の `make down` で終えてください。",
-    "Kill every process while every leaf of the sample task moves the simulated zx200, and measure the stops.": "動作中に各プロセスを落として停止を試す。シミュレーションの zx200 で停止を計測します。",
+    "Stop every simulated machine in every way, with every fault, and compare each receipt with the true motion.": "シミュレーションの機械をあらゆる方法と故障で停止させ、停止記録を実際の動きと比べる。",
     "One endless run is disturbed again and again and must go on each time. Starts the mesh if it does not run, and ends it then. Exit code 0 only without an unconfirmed stop, a run left hanging, a process that did not come back, or a case left out.": "終わりのない 1 つの実行を何度も妨げ、毎回続けられることを確かめます。メッシュが動いていなければ起動し、最後に終えます。停止未確認、止まったままの実行、復帰しなかったプロセス、試せなかった場合がなければ終了コードが 0 になります。",
     "At least 20 kills in at most 10 minutes.": "10 分以内に 20 回以上",
     "Times that each case is tried.": "各場合を試す回数",

@@ -12,6 +12,7 @@ from tms_sim.machine import StandIn
 from tms_sim.sources import time_of
 
 PERIOD = 1 / 60  # s
+KEPT = 180  # messages for a reader that is held up for a moment: the truth has no gaps
 TRACKS = ["x", "y", "yaw"]  # m, m, rad in `map`
 
 
@@ -21,7 +22,7 @@ class Truth:
     def __init__(self, ros: Ros, name: str, machine: StandIn, advance: Callable[[], None]) -> None:
         """`advance` lets the machine's time catch up."""
         self._ros, self._machine, self._advance = ros, machine, advance
-        self._publisher = ros.publisher(JointState, f"/{name}/sim/truth")
+        self._publisher = ros.publisher(JointState, f"/{name}/sim/truth", KEPT)
         self._message = JointState(name=[*machine.arm.joints, *(TRACKS if machine.base else [])])
         self._timer: Any = None
 

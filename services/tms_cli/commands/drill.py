@@ -45,7 +45,7 @@ def own_state(site: Site) -> None:
     """
     folder = site.state / FOLDER
     if Supervisor(replace(site, state=folder)).alive():
-        raise TmsError(f"{site.name}: a drill runs already: wait for its end", "MESH_UP")
+        raise TmsError(f"{site.name}: a drill runs already: wait for its end", "DRILL_RUNS")
     shutil.rmtree(folder, ignore_errors=True)
     os.environ["TMS_STATE"] = str(folder)
 

@@ -20,6 +20,7 @@ CANCELING, SUCCEEDED, CANCELED, ABORTED = 3, 4, 5, 6  # action_msgs/GoalStatus
 KEPT = 120.0  # s, longer than any trial
 ROUND = 10.0  # s between looks at what is too old
 LOOK = 0.1  # s
+WAITING = 180  # samples of the truth, three seconds
 
 
 class Eyes:
@@ -30,7 +31,7 @@ class Eyes:
         self._lock = threading.Lock()
         self._record = Recording()
         self._forgotten = time.time()
-        node.subscribe(JointState, f"/{machine}/sim/truth", self._on_truth, depth=50)
+        node.subscribe(JointState, f"/{machine}/sim/truth", self._on_truth, depth=WAITING)
         node.subscribe(StopReceipt, f"/{machine}/rc/receipts", self._on_receipt, depth=20, latched=True)
         node.subscribe(MachineState, f"/{machine}/rc/state", self._on_state, depth=10, latched=True)
         for motion in motions(border):
