@@ -11,7 +11,7 @@ from tms_cli.drill.record import Receipt, Recording, Sample
 TOLERANCE = 1.1  # of the limit of standing: the truth is sampled, and rounded by nobody
 FRAME = 0.02  # s between samples of the truth
 CLAIMED = 0.2  # s of standing that a receipt claims
-BLIND = 0.5  # s without the truth; a stand-in that did not run for longer loses time (tms_sim/telemetry.py)
+BLIND = 1.0  # s without the truth: from 0.5 s on a stand-in that does not run loses time (tms_sim/telemetry.py)
 AFTER = 1.0  # s after it for which nothing may move either
 TOLD = 3.0  # s in which a motion that comes later must be countered ...
 UNPROVEN = 12.0  # s ... and until the receipt of that, which waits for a stand-still

@@ -128,8 +128,8 @@ def test_a_machine_that_was_stopped_before_proves_nothing() -> None:
 
 
 def test_a_truth_with_a_gap_proves_nothing_but_a_lie() -> None:
-    found = seen([one for one in truth((0.0, 9.0)) if not 3.0 < one.at - HIT < 4.0])
-    assert judge(found).void == "its true motion was not heard for 1.0 s" and not judge(found).ran_on
+    found = seen([one for one in truth((0.0, 9.0)) if not 3.0 < one.at - HIT < 5.0])
+    assert judge(found).void == "its true motion was not heard for 2.0 s" and not judge(found).ran_on
     found.record.receipts.append(receipt())
     assert judge(found).false_receipt
 
