@@ -7,6 +7,7 @@ from concurrent.futures import Future
 from dataclasses import dataclass, field
 from datetime import datetime, timezone
 
+import psutil
 from tms_msg_rc.srv import StopMachine
 
 from tms_cli.drill.eyes import Eyes
@@ -87,7 +88,7 @@ class Hand:
         """Hit these machines at a moment, and tell when what was lost is back. In a thread of its own."""
         try:
             self._strike(stop, at, hands, struck)
-        except Exception as error:  # whoever waits for it must hear of it
+        except (TmsError, OSError, psutil.Error) as error:  # whoever waits for it must hear of it
             for future in (struck.hit, struck.back):
                 if not future.done():
                     future.set_exception(error)

@@ -1,6 +1,7 @@
 """What `tms up` and `tms check` do before anything starts."""
 
 import json
+import os
 from pathlib import Path
 from typing import Any
 
@@ -115,3 +116,12 @@ def test_a_pc_without_the_console_needs_none(tmp_path: Path, monkeypatch: pytest
         assert tms(check.command, "--site", site(tmp_path, **facts).path).exit_code == 0
     monkeypatch.setenv("TMS_PC", "sensing")
     mesh.check(site(tmp_path, **facts))
+
+
+def test_a_group_that_the_caller_runs_itself_is_left_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    ours, started = site(tmp_path, store={"kind": "mongodb", "uri": "mongodb://x/"}), []
+    monkeypatch.setattr(mesh.Supervisor, "alive", lambda _: bool(started))
+    monkeypatch.setattr(mesh.Supervisor, "pid", lambda _: os.getpid())
+    monkeypatch.setattr(mesh, "_start", lambda _, conf: started.append(conf.read_text()))
+    assert mesh.up(ours, without="sim") is True
+    assert "tms_core.run zx200:rc\n" in started[0] and "tms_core.run sim:" not in started[0]
