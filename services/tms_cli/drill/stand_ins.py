@@ -12,7 +12,7 @@ from tms_core.environment import environment
 
 GROUP = "sim"  # of the process table
 END_LIMIT = 5.0  # s
-NICE = -10  # as the gateways
+NICE = -15  # before the gateways: a machine does not wait for them
 
 
 class StandIns:
@@ -26,7 +26,7 @@ class StandIns:
             words = [sys.executable, "-m", "tms_core.run", f"{GROUP}:{machine}"]
             env = {**os.environ, **environment(site)}
             child = subprocess.Popen(words, env=env, stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT)
-        with contextlib.suppress(PermissionError):  # needs CAP_SYS_NICE; a machine does not wait for a busy PC
+        with contextlib.suppress(PermissionError):  # needs CAP_SYS_NICE
             os.setpriority(os.PRIO_PROCESS, child.pid, NICE)
         return child
 

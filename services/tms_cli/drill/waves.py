@@ -20,7 +20,6 @@ from tms_core.config import Site
 from tms_core.errors import TmsError
 from tms_core.ros import Ros
 
-AGAIN = 3  # waves of trials whose motion was over by itself before the stop
 T = TypeVar("T")
 
 
@@ -52,8 +51,8 @@ class Waves:
         Raises:
             TmsError: a stand-in has ended: there is no machine any more.
         """
-        todo, deadline = list(plan), time.monotonic() + seconds
-        self._total, again = sum(map(len, plan)), 0
+        todo, deadline, again = list(plan), time.monotonic() + seconds, len(plan)
+        self._total = sum(map(len, plan))
         while todo and time.monotonic() < deadline:
             try:
                 mesh.wait_ready(self._site, lambda _: None)
@@ -61,33 +60,36 @@ class Waves:
                 click.echo(f"the mesh does not come back, the rest is left out: {error}", err=True)
                 break
             missed = self._wave(todo.pop(0))
-            if missed and again < AGAIN * len(plan):
-                todo, again = [*todo, missed], again + 1
+            if missed:
+                todo.append(missed)
+                again -= 1
+            if not again:
+                click.echo("too many trials prove nothing, the rest is left out: is this PC busy?", err=True)
+                break
             if dead := self._stand_ins.dead():
                 raise TmsError(f"{', '.join(dead)} has ended: see {self._site.state}/log")
         left = [trial for wave in todo for trial in wave]
         return [*self.rows, *(self._empty(trial) for trial in left)]
 
     def _wave(self, wave: list[Trial]) -> list[Trial]:
-        """Returns trials that have to be tried again: their motion was over by itself."""
+        """Returns trials that have to be made again: they proved nothing, or failed."""
         began = self._each(wave, lambda trial: self._hands[trial.machine].begin())
         ready = [trial for trial, at in zip(wave, began, strict=True) if at is not None]
         shared = any(trial.stop.shared for trial in ready)
         rows = self._shared(ready) if shared else self._each(ready, self._single)
         self._each(wave, lambda trial: self._hands[trial.machine].work.end())
-        return self._note(wave, dict(zip([trial.machine for trial in ready], rows, strict=True)), shared)
+        return self._note(wave, dict(zip([trial.machine for trial in ready], rows, strict=True)))
 
-    def _note(self, wave: list[Trial], rows: dict[str, Row | None], shared: bool) -> list[Trial]:
+    def _note(self, wave: list[Trial], rows: dict[str, Row | None]) -> list[Trial]:
         missed = []
         for trial in wave:
-            row = rows.get(trial.machine) or self._empty(trial)
-            self.rows.append(row)
-            self._made += not row.void
-            click.echo(f"{self._made}/{self._total} {line(row)}", err=True)
-            if row.void and not shared:
+            row = rows.get(trial.machine)
+            if row is None or row.void:
                 missed.append(trial)
-            elif row.void:
-                self._total -= 1  # others of this wave were hit in the same way
+            if row is not None:
+                self.rows.append(row)
+                self._made += not row.void
+                click.echo(f"{self._made}/{self._total} {line(row)}", err=True)
         return missed
 
     def _single(self, trial: Trial) -> Row:
