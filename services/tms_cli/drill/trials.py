@@ -30,6 +30,7 @@ LATCH_LIMIT = 5.0  # s for a latch to be told after everything is back
 CREEP_STARTS = 3.0  # s of stand-still after which the fault `creep` moves
 LOOK = 0.5  # s
 PRESSED = 1.0  # s for a stop by hand to begin
+LEAVE = ("creep", "drift")  # faults that move a machine which stood
 CAUSE = "software stop by an operator"
 
 
@@ -155,8 +156,8 @@ class Hand:
         return bool(record.receipts) or (arrived and time.time() > stopped + BY_ITSELF)
 
     def _look_on(self, trial: Trial, begun: float) -> None:
-        """For as long as a receipt promises that the machine stands; for one that creeps, until that is told."""
-        creeps = "creep" in trial.fault
+        """For as long as a receipt promises that the machine stands; for one that leaves it, until that is told."""
+        creeps = trial.fault in LEAVE
         longer = CREEP_STARTS + UNPROVEN if creeps else 0.0
 
         def enough(record: Recording) -> bool:

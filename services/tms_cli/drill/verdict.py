@@ -11,6 +11,7 @@ from tms_cli.drill.record import Receipt, Recording, Sample
 TOLERANCE = 1.1  # of the limit of standing: the truth is sampled, and rounded by nobody
 FRAME = 0.02  # s between samples of the truth
 CLAIMED = 0.2  # s of standing that a receipt claims
+LATENCY = 0.1  # s before it in which a new motion is not told yet: two periods of the sources and a beat
 BLIND = 1.0  # s without the truth: from 0.5 s on a stand-in that does not run loses time (tms_sim/telemetry.py)
 AFTER = 1.0  # s after it for which nothing may move either
 TOLD = 3.0  # s in which a motion that comes later must be countered ...
@@ -81,9 +82,10 @@ def empty(trial: Trial, model: str) -> Row:
 def judge(seen: Seen) -> Row:
     """The whole verdict."""
     row, record, stop = empty(seen.trial, seen.model), seen.record, seen.trial.stop
-    row.at, row.back_s, row.outcome, row.void = seen.hit, seen.back_s, seen.outcome, void(seen)
+    row.at, row.back_s, row.outcome = seen.hit, seen.back_s, seen.outcome
     row.receipts = [text_of(one, seen.hit) for one in record.receipts]
     row.false_receipt = next(filter(None, (lie(one, record) for one in record.receipts)), "")
+    row.void = "" if row.false_receipt else void(seen)
     row.latched = bool(record.states and record.states[-1].latch)
     if row.void:
         return row
@@ -126,14 +128,14 @@ def lie(receipt: Receipt, record: Recording) -> str:
         return ""
     fresh = record.goal_after(receipt.at - FRAME)
     moving = [one for one in record.truth if receipt.at - CLAIMED + FRAME < one.at < fresh and moves(one)]
-    before = [one for one in moving if one.at <= receipt.at]
+    before = [one for one in moving if one.at <= receipt.at - LATENCY]
     if before:
         return f"moved {receipt.at - before[-1].at:.2f} s before it was said to stand: {before[-1].share:.1f} x limit"
     if not moving or _tells(moving[0].at, record, receipt):
         return ""
     late = moving[0].at - receipt.at
     if late <= AFTER:
-        return f"moved {late:.2f} s after it was said to stand: {moving[0].share:.1f} x limit"
+        return f"moved {late:+.2f} s after it was said to stand: {moving[0].share:.1f} x limit"
     over = min(fresh, record.truth[-1].at) - moving[0].at > UNPROVEN
     return f"left stand-still {late:.2f} s after the receipt, and nobody told it" if over else ""
 
