@@ -14,6 +14,7 @@ QUIET = 0.8  # s for which a joint that is behind must not have moved at all
 QUIET_ANGLE = 0.005  # rad that count as no motion
 BEHIND = 0.05  # rad
 OFF_PATH = 0.2  # rad outside of everything the reference has been through
+AHEAD = 1.0  # s that a controller may have begun before its acceptance was heard here
 SMALLEST = 0.003  # rad of a reference that must show as motion
 
 
@@ -101,7 +102,7 @@ class Follower:
         while len(seen) > 1 and now - seen[1][0] >= QUIET:
             seen.popleft()
         passed, past = (now - self._begun) * self._scale, [at for _, at in seen]
-        low, high = way.hull(passed - self._reached, passed)  # some controllers run behind, some do not
+        low, high = way.hull(passed - self._reached, passed + AHEAD * self._scale)  # some run behind, some do not
         there = low - BEHIND <= angle <= high + BEHIND
         if there or now - seen[0][0] < QUIET or max(past) - min(past) > QUIET_ANGLE:
             return None
@@ -109,7 +110,7 @@ class Follower:
         return f"STALLED: {name} stands at {angle:.3f} rad, it should have passed {due:.3f} rad"
 
     def _off(self, name: str, way: Way, now: float, angle: float) -> str | None:
-        low, high = way.hull(0.0, (now - self._begun) * self._scale)
+        low, high = way.hull(0.0, (now - self._begun + AHEAD) * self._scale)
         if low - OFF_PATH <= angle <= high + OFF_PATH:
             return None
         return f"OFF_PATH: {name} is at {angle:.3f} rad, its way has been between {low:.3f} and {high:.3f} rad"

@@ -25,6 +25,7 @@ class Left:
     holder: str = ""  # the run, or the foreign goal, that may have left it moving
     run: int = 0  # fencing number of that run
     taken: str = ""  # who drives it by hand
+    unproven: bool = False  # it was latched, and the receipt of that stop never came to the disk
 
 
 class Memory:
@@ -41,11 +42,18 @@ class Memory:
         taken = str((_load(self._taken) or {}).get("taken", ""))
         note = _load(self._armed)
         if note is None or note.get("armed") is not True:
-            return Left(self._cause() if note is None and not self._armed.exists() else UNREADABLE, taken=taken)
+            cause = self._cause() if note is None and not self._armed.exists() else UNREADABLE
+            return Left(cause, taken=taken, unproven=self._unproven())
         holder, run = note.get("holder"), note.get("run")
         if not isinstance(holder, str) or not isinstance(run, int):
             return Left(UNREADABLE, taken=taken)
         return Left("", holder, run, taken)
+
+    def _unproven(self) -> bool:
+        receipts = self._latched.with_suffix(".receipts")
+        if not self._latched.exists():
+            return False
+        return not receipts.exists() or receipts.stat().st_mtime_ns < self._latched.stat().st_mtime_ns
 
     def _cause(self) -> str:
         cause = (_load(self._latched) or {}).get("cause")

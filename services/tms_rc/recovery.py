@@ -34,6 +34,7 @@ class Recovery:
     @property
     def _cause(self) -> str:
         held = f" while {self._left.holder} held it" if self._left.holder else ""
+        held = " before a stop of its machine was proven" if self._left.unproven else held
         return f"{LOST_TEXT}: {self._app.machine}:rc was restarted{held}"
 
     def run(self) -> None:
@@ -44,7 +45,7 @@ class Recovery:
         while not guard.controls.reachable() and time.monotonic() < deadline and not app.stopping.wait(LOOK):
             pass
         self._command()
-        if self._left.holder:
+        if self._left.holder or self._left.unproven:
             app.ros.on_executor(lambda: self._take_over(self._left.run or UNKNOWN_RUN))
         deadline = time.monotonic() + (RUN_TOLD if self._left.holder else LEFT_MOVING)
         while self._open and guard.active is None and time.monotonic() < deadline:
@@ -90,6 +91,7 @@ class Recovery:
 
     def _close(self) -> None:
         """Whose motion was stopped is known by now, or it was nobody's."""
-        if self._open and self._stop is not None and self._guard.active is None:
+        known = self._guard.latch.cause or self._guard.active is not None
+        if self._open and self._stop is not None and not known:
             self._guard.stop_now(f"{self._cause}, and no run told of it", Kind.LATCH, expected=Expected(self._begun))
         self._open = False

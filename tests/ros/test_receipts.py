@@ -289,3 +289,16 @@ def test_a_second_gateway_does_not_serve(machine: Machine, tmp_path_factory: pyt
         second.terminate()
         second.wait(30)
     machine.until(lambda: machine.state.ready, "ready again")
+
+
+def test_a_source_that_returns_under_another_type_is_named(machine: Machine) -> None:
+    machine.mesh.tms("stop-process", "sim:zx200")
+    machine.until(lambda: not machine.state.ready, "it is silent")
+    stranger = machine.ros.publisher(String, "/zx200/joint_states")
+    try:
+        text = "/zx200/joint_states as std_msgs/msg/String, which is no sensor_msgs/msg/JointState"
+        machine.until(lambda: text in machine.state.reason, "the type is named")
+    finally:
+        machine.ros.node.destroy_publisher(stranger)
+        machine.mesh.tms("start", "sim:zx200")
+    machine.until(lambda: machine.state.ready, "ready again")

@@ -8,6 +8,7 @@ import pytest
 
 from tms_core.fence import NO_NOTE
 from tms_rc.memory import UNREADABLE, Left, Memory
+from tms_rc.receipts import Receipts
 
 
 def test_a_machine_without_a_note_is_latched(tmp_path: Path) -> None:
@@ -29,9 +30,17 @@ def test_a_latch_and_its_cause_are_kept(tmp_path: Path) -> None:
     memory = Memory(tmp_path, "zx200")
     memory.arm("20261122-1", 7)
     memory.latch("software stop")
-    assert Memory(tmp_path, "zx200").read() == Left("software stop")
+    assert Memory(tmp_path, "zx200").read() == Left("software stop", unproven=True)
     memory.arm()
     assert Memory(tmp_path, "zx200").read() == Left("")
+
+
+def test_a_latch_whose_receipt_never_came_is_unproven(tmp_path: Path) -> None:
+    memory = Memory(tmp_path, "zx200")
+    memory.latch("software stop")
+    assert memory.read().unproven
+    Receipts(tmp_path, "zx200").keep(b"receipt")
+    assert not memory.read().unproven
 
 
 def test_who_drives_by_hand_is_kept(tmp_path: Path) -> None:
@@ -83,11 +92,11 @@ def test_a_full_disk_arms_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     with pytest.raises(OSError, match="No space left"):
         memory.arm()
     monkeypatch.undo()
-    assert Memory(tmp_path, "zx200").read() == Left("software stop")
+    assert Memory(tmp_path, "zx200").read() == Left("software stop", unproven=True)
 
 
 def test_a_crash_while_it_is_written_leaves_the_old_note(tmp_path: Path) -> None:
     memory = Memory(tmp_path, "zx200")
     memory.latch("software stop")
     (tmp_path / "rc" / "zx200.armed.part").write_text(json.dumps({"armed": True, "holder": "", "run": 0}))
-    assert memory.read() == Left("software stop")
+    assert memory.read() == Left("software stop", unproven=True)
