@@ -23,6 +23,7 @@ from tms_rc.standstill import StandStill
 
 MOVES_LIMIT = 40.0  # s for a run to move its machine
 LEAD = 0.8  # s from the choice of the moment to the hit: a fault may come before it
+FRESH = 2.0  # s from the begin of a motion for which it surely lasts long enough to be hit
 BESIDE = 1.0  # s for which a motion must go on when a process beside it is lost
 RECEIPT_LIMIT = 25.0  # s
 RUN_LIMIT = 40.0  # s from the hit for the run to go on, end, or be interrupted
@@ -80,7 +81,7 @@ class Hand:
         deadline = time.time() + MOVES_LIMIT
         while time.time() < deadline:
             began = self.eyes.open_since()
-            if began is not None and began + trial.delay > time.time() - LEAD:
+            if began is not None and time.time() - began < FRESH:
                 break
             time.sleep(LOOK / 10)
         return max(time.time(), (began or 0.0) + trial.delay)
