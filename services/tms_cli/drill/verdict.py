@@ -131,7 +131,7 @@ def lie(receipt: Receipt, record: Recording) -> str:
     before = [one for one in moving if one.at <= receipt.at - LATENCY]
     if before:
         return f"moved {receipt.at - before[-1].at:.2f} s before it was said to stand: {before[-1].share:.1f} x limit"
-    if not moving or _tells(moving[0].at, record, receipt):
+    if not moving or _tells(moving[0].at, record):
         return ""
     late = moving[0].at - receipt.at
     if late <= AFTER:
@@ -140,12 +140,9 @@ def lie(receipt: Receipt, record: Recording) -> str:
     return f"left stand-still {late:.2f} s after the receipt, and nobody told it" if over else ""
 
 
-def _tells(moved: float, record: Recording, receipt: Receipt) -> bool:
-    """Whether a later receipt takes it back in time."""
-    return any(
-        not one.confirmed and receipt.begun < one.begun < moved + TOLD and one.came > receipt.came
-        for one in record.receipts
-    )
+def _tells(moved: float, record: Recording) -> bool:
+    """Whether a stop that was under way then, or began in time, ended unconfirmed."""
+    return any(not one.confirmed and one.begun < moved + TOLD and one.at > moved for one in record.receipts)
 
 
 def told(seen: Seen) -> float | None:

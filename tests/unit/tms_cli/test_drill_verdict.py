@@ -91,6 +91,10 @@ def test_a_motion_that_is_told_by_a_second_receipt_is_no_lie() -> None:
     creeps = truth((0.0, 2.0), (5.0, 20.0))
     told = judge(seen(creeps, receipt(), receipt(5.5, 10.0, confirmed=False), latch="left stand-still"))
     assert wrong(told) == {"unconfirmed", "ran_on"}  # `ran_on` only where the machine should obey
+    under_way = receipt(0.2, 10.0, confirmed=False)
+    assert judge(seen(creeps, receipt(), under_way, latch="x")).false_receipt == ""
+    over = receipt(0.2, 1.0, confirmed=False)
+    assert judge(seen(creeps, receipt(), over, latch="x")).false_receipt
     assert judge(seen(creeps, receipt(), receipt(8.5, 10.0, confirmed=False), latch="x")).false_receipt  # too late
 
 
