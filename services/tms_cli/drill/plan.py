@@ -62,8 +62,8 @@ SINGLE = (
 BESIDE = tuple(tuple(Stop(how, (process,), moves=False) for process in BYSTANDERS) for how in BOTH)
 SHARED = (
     *(Stop(how, (TS,), shared=True, latches=True) for how in BOTH),
-    *(Stop(how, (RC, TS), shared=True, latches=True) for how in BOTH),
-    *(Stop(how, (RC, TS, RP, SUBTASK), shared=True, latches=True) for how in BOTH),
+    *(Stop(how, (RC, TS), shared=True, latches=how is How.KILL) for how in BOTH),
+    *(Stop(how, (RC, TS, RP, SUBTASK), shared=True, latches=how is How.KILL) for how in BOTH),
     Stop(How.KILL, (RC, "tms:host"), shared=True, covered=False),
     Stop(How.POWER, shared=True, covered=False, latches=True),
 )
