@@ -157,7 +157,7 @@ def test_late_commands_come_late_and_the_receipt_tells_how_late(machine: Guarded
     )
     receipt = machine.stop(call)
     assert receipt.confirmed and receipt.seconds > 0.9
-    assert receipt.travel > 0.5
+    assert receipt.travel_m > 0.5
     assert machine.end(call) is Outcome.CANCELED
     assert not machine.latched()
 
