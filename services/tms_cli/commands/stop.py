@@ -12,7 +12,7 @@ from tms_core.errors import ConfigError, RosError
 if TYPE_CHECKING:
     from tms_core.ros import Ros
 
-ANSWER_LIMIT = 8.0  # s; a gateway gives itself 5 s to see the machine stand
+ANSWER_LIMIT = 13.0  # s; a gateway gives itself 10 s to see the machine stand
 CAUSE = "software stop by an operator"
 
 

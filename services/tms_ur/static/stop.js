@@ -5,8 +5,8 @@ import { t } from "./strings.js";
 
 const AGAIN = 1000; // ms between attempts while the server cannot be reached
 const LONGEST = 60_000; // ms of attempts: nobody expects a stop later than that
-const ANSWER = 12_000; // ms; a gateway says after 8 s at the latest what it saw
-const SLOW = 3000; // ms; most machines stand by then
+const ANSWER = 18_000; // ms; the server says after 13 s at the latest what the gateways saw
+const SLOW = 5000; // ms; most machines were seen to stand by then
 const OPEN = "tms.stop"; // kept until machines have answered: a session that ends meanwhile loads the page anew
 
 export async function stop(machine = "") {
