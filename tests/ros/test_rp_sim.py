@@ -21,6 +21,7 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from tms_core import environment
 from tms_core.config import load_site
 from tms_core.ros import Call, Outcome, Ros
+from tms_rc.memory import Memory
 
 pytestmark = [
     pytest.mark.ros,
@@ -125,6 +126,7 @@ def rig(tmp_path_factory: pytest.TempPathFactory, domain: int, first_port: int) 
         for key, value in environment.environment(load_site(str(file))).items():
             patch.setenv(key, value)
         made = Rig(folder, file)
+        Memory(load_site(str(file)).state, MACHINE).arm()  # as a person has left it
         made.start(f"sim:{MACHINE}", f"{MACHINE}:rc", f"{MACHINE}:rp", f"{MUTE}:rp")
         try:
             made.until(lambda: bool(made.states) and bool(made.frames), "joint states and frames")
