@@ -29,7 +29,7 @@ def replace(path: Path, data: bytes) -> None:
         OSError: the disk is full or fails.
     """
     make_folder(path.parent)
-    part = path.with_suffix(".part")
+    part = path.with_name(path.name + ".part")  # files that differ in their suffix alone are written side by side
     file = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
     try:
         write_all(file, data)

@@ -40,8 +40,7 @@ class Arming:
     def _arm(self, cause: str) -> tuple[str, str]:
         """The note first: a machine counts as armed when the disk says so."""
         guard = self._guard
-        guard.notes.holder, guard.notes.run = "", 0
-        unkept = guard.notes.keep()
+        unkept = guard.notes.hold("", 0)
         if unkept is not None:
             guard.latch.close(cause)
             return "NOT_KEPT", unkept

@@ -275,5 +275,6 @@ class Guard:
             self.stood_in = False
             self.controls.emergency(False)
         if receipt.confirmed and self.run is None:  # it stands, and nobody's goal moves it
-            self.notes.holder, self.notes.run = "", 0
-        self.notes.keep()
+            self.notes.hold("", 0)
+        else:
+            self.notes.keep()

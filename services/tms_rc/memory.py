@@ -6,12 +6,12 @@ a full disk. Nothing here is called on the executor thread.
 """
 
 import json
-import os
 import threading
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from tms_core import durable
 from tms_core.fence import NO_NOTE
 
 UNREADABLE = "the note of how the machine was left cannot be read: look at it, then re-arm it"
@@ -77,7 +77,7 @@ class Memory:
         with self._writing:
             self._armed.unlink(missing_ok=True)
             if self._folder.exists():
-                _sync(self._folder)
+                durable.sync_folder(self._folder)
             try:
                 _write(self._latched, {"cause": cause})
             except OSError:
@@ -104,20 +104,4 @@ def _load(path: Path) -> dict[str, Any] | None:
 
 def _write(path: Path, note: dict[str, Any]) -> None:
     """The whole note or the old one, whatever happens, and on the disk before this returns."""
-    path.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
-    part = path.with_suffix(path.suffix + ".part")
-    with os.fdopen(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "w", encoding="utf-8") as file:
-        json.dump(note, file)
-        file.flush()
-        os.fsync(file.fileno())
-    part.replace(path)
-    _sync(path.parent)
-
-
-def _sync(folder: Path) -> None:
-    """Have the names in a folder on the disk."""
-    number = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(number)
-    finally:
-        os.close(number)
+    durable.replace(path, json.dumps(note).encode())

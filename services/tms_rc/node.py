@@ -128,10 +128,10 @@ class Told:
 
     def unready(self) -> str | None:
         """Why the machine cannot be moved now, apart from a stop."""
-        now, watch = time.monotonic(), self._guard.watch
-        silent, trouble = watch.silent(now, FRESH), watch.trouble(now)
         if self._claim.rival or self._guard.recovering:
             return self._claim.rival or RECOVERS
+        now, watch = time.monotonic(), self._guard.watch
+        silent, trouble = watch.silent(now, FRESH), watch.trouble(now)
         if silent is not None:
             return self._view.strange_type() or silent
         if trouble is not None:

@@ -15,19 +15,19 @@ class Notes:
         self._app, self._memory, self._latch = app, memory, latch
         self._writing = threading.Lock()
         self._kept: tuple[str, str, int] | None = None  # what the disk says
-        self.holder, self.run = "", 0  # who may move the machine now
+        self._holder, self._run = "", 0  # who may move the machine now
 
     def keep(self) -> str | None:
         """Have what is so now on the disk; why it is not there."""
         with self._writing:
-            now = (self._latch.cause, self.holder, self.run)
+            now = (self._latch.cause, self._holder, self._run)
             if now == self._kept:
                 return None
             try:
                 if self._latch.cause:
                     self._memory.latch(self._latch.cause)
                 else:
-                    self._memory.arm(self.holder, self.run)
+                    self._memory.arm(self._holder, self._run)
             except OSError as error:
                 self._kept = None
                 UNKEPT.inc()
@@ -41,13 +41,13 @@ class Notes:
         threading.Thread(target=self.keep, name="note", daemon=True).start()
 
     def hold(self, holder: str, run: int) -> str | None:
-        """Before a goal leaves: whose it is has to be on the disk; why it is not there."""
-        self.holder, self.run = holder, run
+        """Who may move the machine from now on, empty for nobody, has to be on the disk; why it is not there."""
+        self._holder, self._run = holder, run
         return self.keep()
 
     def release(self) -> None:
         """Nobody's goal moves the machine any more."""
-        self.holder, self.run = "", 0
+        self._holder, self._run = "", 0
         self.soon()
 
     def take(self, who: str) -> str | None:

@@ -5,6 +5,8 @@ import os
 from collections import deque
 from pathlib import Path
 
+from tms_core import durable
+
 KEPT = 20  # as many as the topic keeps for late comers
 ROOM = 200  # lines after which the file is written anew
 
@@ -28,31 +30,18 @@ class Receipts:
             OSError: it is not there.
         """
         self._last.append(data)
-        self._path.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
-        if self._lines >= ROOM:
-            self._renew()
-            return
         lines, self._lines = self._lines, ROOM  # where this fails, the next one does not go on behind a cut line
-        self._write(self._path, os.O_APPEND, [data])
-        self._lines = lines + 1
-
-    def _renew(self) -> None:
-        part = self._path.with_suffix(".part")
-        self._write(part, os.O_TRUNC, list(self._last))
-        part.replace(self._path)
-        folder = os.open(self._path.parent, os.O_RDONLY)
+        if lines >= ROOM:
+            durable.replace(self._path, b"".join(map(_line, self._last)))
+            self._lines = len(self._last)
+            return
+        number = os.open(self._path, os.O_WRONLY | os.O_APPEND)
         try:
-            os.fsync(folder)
+            durable.write_all(number, _line(data))
+            os.fsync(number)
         finally:
-            os.close(folder)
-        self._lines = len(self._last)
-
-    def _write(self, path: Path, mode: int, data: list[bytes]) -> None:
-        number = os.open(path, os.O_WRONLY | os.O_CREAT | mode, 0o600)
-        with os.fdopen(number, "wb") as file:
-            file.write(b"".join(base64.b64encode(one) + b"\n" for one in data))
-            file.flush()
-            os.fsync(file.fileno())
+            os.close(number)
+        self._lines = lines + 1
 
     def _read(self) -> list[bytes]:
         try:
@@ -66,3 +55,7 @@ class Receipts:
             except ValueError:
                 continue  # cut by a crash, with a whole one behind it
         return found
+
+
+def _line(data: bytes) -> bytes:
+    return base64.b64encode(data) + b"\n"

@@ -46,7 +46,7 @@ class Proof:
 
     start: float  # s, monotonic: only what is measured later counts ...
     unseen: float  # s, ... and later than this, where the expected motion was never seen
-    expected: "Expected"
+    expected: Expected
     seconds: float  # s of standing
 
 
@@ -150,11 +150,6 @@ class StandStill:
                     f"{LABELS[JOINTS]}: {name} is told at {angle:.3f} rad, where it cannot be (limit {bound:.3f} rad)"
                 )
         return None
-
-    def changed(self, name: str) -> float:
-        """When the values of a source were last not the same bit for bit; infinitely long ago before the first."""
-        source = self.sources.get(name)
-        return source.changed if source is not None else -INFINITE
 
     # motion
 

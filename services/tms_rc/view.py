@@ -57,9 +57,8 @@ class View:
 
     def strange_type(self) -> str | None:
         """A source that is published under another type than the border has: nothing of it can be heard."""
-        for name, news, _ in self._news:
-            del news
-            source, topic = self._watch.sources[name], self._topics[name]
+        for name, topic in self._topics.items():
+            source = self._watch.sources[name]
             if source.age(time.monotonic()) <= source.longest:
                 continue
             wanted = _full_name(_type(name, self._app.site.border(self._app.machine)))

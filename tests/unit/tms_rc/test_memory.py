@@ -72,7 +72,7 @@ def full_disk(monkeypatch: pytest.MonkeyPatch) -> None:
     def fails(*_: Any) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("tms_rc.memory.json.dump", fails)
+    monkeypatch.setattr("tms_core.durable.write_all", fails)
 
 
 def test_a_full_disk_latches_all_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
