@@ -88,6 +88,12 @@ def site_data(domain: int, port: int, /, **changes: object) -> dict[str, object]
     return {**data, **changes}
 
 
+GATEWAYS_ONLY: dict[str, object] = {  # changes of a site: machines without scheduler, database and console
+    "services": {"host": {}},
+    "store": {"kind": "mongodb", "uri": "mongodb://127.0.0.1:1"},
+}
+
+
 @dataclass
 class Mesh:
     """A mesh under supervisord and its command line."""
@@ -132,6 +138,23 @@ def running(mesh: Mesh, armed: bool = True) -> Iterator[Mesh]:
         yield mesh
     finally:
         mesh.tms("down")
+
+
+@contextmanager
+def mesh_apart(folder: Path, **changes: object) -> Iterator[Mesh]:
+    """A mesh in a domain of its own, not up yet, whose site and environment are those of this process meanwhile."""
+    from tms_core import environment
+    from tms_core.config import load_site
+
+    with claimed_domain() as domain, pytest.MonkeyPatch.context() as patch:
+        site = folder / "site.yaml"
+        site.write_text(yaml.safe_dump(site_data(domain, ports_of(domain), **changes)))
+        made = Mesh(site, folder / "state")
+        for key, value in made.env.items():
+            patch.setenv(key, value)
+        for key, value in environment.environment(load_site()).items():
+            patch.setenv(key, value)
+        yield made
 
 
 @pytest.fixture(scope="session")

@@ -19,8 +19,7 @@ from tms_msg_rc.msg import MachineState, StopReceipt
 from tms_msg_rc.srv import Rearm
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from conftest import Mesh, claimed_domain, ports_of, site_data, wait_until
-from tms_core import environment
+from conftest import GATEWAYS_ONLY, Mesh, mesh_apart, wait_until
 from tms_core.config import load_site
 from tms_core.ros import Call, Ros
 
@@ -129,18 +128,7 @@ class Machine:
 @pytest.fixture(scope="module")
 def machine(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Machine]:
     """A zx200 with its gateway; no scheduler, database or console."""
-    with claimed_domain() as domain, pytest.MonkeyPatch.context() as patch:
-        folder = tmp_path_factory.mktemp("receipts")
-        data = site_data(
-            domain, ports_of(domain), services={"host": {}}, sim={"speed": 1.0},
-            store={"kind": "mongodb", "uri": "mongodb://127.0.0.1:1"},
-        )  # fmt: skip
-        (folder / "site.yaml").write_text(yaml.safe_dump(data))
-        mesh = Mesh(folder / "site.yaml", folder / "state")
-        for key, value in mesh.env.items():
-            patch.setenv(key, value)
-        for key, value in environment.environment(load_site()).items():
-            patch.setenv(key, value)
+    with mesh_apart(tmp_path_factory.mktemp("receipts"), **GATEWAYS_ONLY, sim={"speed": 1.0}) as mesh:
         mesh.tms("up")
         try:
             ros = Ros("tms_tests_receipts")

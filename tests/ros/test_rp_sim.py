@@ -14,6 +14,7 @@ from geometry_msgs.msg import Point
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool
 from tf2_msgs.msg import TFMessage
+from tms_msg_rc.srv import Rearm
 from tms_msg_rp.action import TmsRpZx200ChangePose, TmsRpZx200ExcavateSimple, TmsRpZx200ReleaseSimple
 from tms_msg_rp.msg import TmsRpErrorCodes, TmsRpZx200PositionWithAngle
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
@@ -106,6 +107,12 @@ class Rig:
         self.until(lambda: call.outcome is not None, "end of the goal")
         assert call.outcome is not None
         return call.outcome
+
+    def rearm(self) -> None:
+        def ask(token: str = "") -> Any:
+            return self.ros.call(Rearm, f"/{MACHINE}/rearm", Rearm.Request(token=token), 30)
+
+        self.until(lambda: bool(ask(ask().token).armed), "armed machine")
 
     def moving(self) -> bool:
         return bool(self.states) and any(abs(v) > 0.05 for v in self.states[-1].velocity)
@@ -231,7 +238,10 @@ def test_emergency_stop_ends_a_motion_until_it_is_released(machine: Rig) -> None
     assert not machine.moving()
     assert machine.end(machine.change_pose(*START)) is Outcome.ABORTED
     machine.stop.publish(Bool(data=False))
-    machine.until(lambda: machine.end(machine.change_pose(*START)) is Outcome.SUCCEEDED, "motion after the release")
+    assert machine.end(machine.change_pose(*START)) is Outcome.ABORTED
+    assert "emg_stop was pressed by somebody else" in machine.reason()  # a person looks before it moves again
+    machine.rearm()
+    machine.until(lambda: machine.end(machine.change_pose(*START)) is Outcome.SUCCEEDED, "motion after the re-arm")
 
 
 def test_a_planner_that_ends_takes_its_motion_with_it(machine: Rig) -> None:

@@ -11,7 +11,6 @@ from typing import Any
 
 import psutil
 import pytest
-import yaml
 from action_msgs.msg import GoalStatus, GoalStatusArray
 from builtin_interfaces.msg import Duration
 from control_msgs.action import FollowJointTrajectory
@@ -19,8 +18,7 @@ from std_msgs.msg import Bool
 from tms_msg_rc.msg import MachineState
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from conftest import Mesh, claimed_domain, ports_of, running, site_data, wait_until
-from tms_core import environment
+from conftest import GATEWAYS_ONLY, Mesh, mesh_apart, running, wait_until
 from tms_core.config import load_site
 from tms_core.ros import Outcome, Ros
 from tms_host.supervisor import Supervisor
@@ -108,19 +106,8 @@ def _duration(seconds: float) -> Duration:
 
 @pytest.fixture(scope="module")
 def small(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Small]:
-    with claimed_domain() as domain, pytest.MonkeyPatch.context() as patch:
-        folder = tmp_path_factory.mktemp("small")
-        data = site_data(
-            domain, ports_of(domain), services={"host": {}}, sim={"speed": 1.0},
-            store={"kind": "mongodb", "uri": "mongodb://127.0.0.1:1"},
-        )  # fmt: skip
-        (folder / "site.yaml").write_text(yaml.safe_dump(data))
-        mesh = Mesh(folder / "site.yaml", folder / "state")
-        for key, value in mesh.env.items():
-            patch.setenv(key, value)
+    with mesh_apart(tmp_path_factory.mktemp("small"), **GATEWAYS_ONLY, sim={"speed": 1.0}) as mesh:
         site = load_site()
-        for key, value in environment.environment(site).items():
-            patch.setenv(key, value)
         with running(mesh):
             ros, supervisor = Ros("tms_tests_stand_in"), Supervisor(site)
             with closing(ros), closing(supervisor):

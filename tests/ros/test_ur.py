@@ -5,7 +5,6 @@ import socket
 import ssl
 import subprocess
 import urllib.request
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -21,30 +20,11 @@ from tms_msg_ts.action import ExecuteTask
 from tms_msg_ts.msg import RunState, RunStates
 from tms_msg_ts.srv import CancelRun
 
-from console_process import LIMIT, Console, running, site_of_a_console, spawn, until
+from console_process import LIMIT, Console, running, spawn, until
 from tms_core.config import Site
 from tms_core.ros import Ended, Goal, Outcome, Ros
 
 pytestmark = pytest.mark.ros
-
-
-@pytest.fixture
-def site(tmp_path: Path, own_domain: int) -> Iterator[Site]:
-    with site_of_a_console(tmp_path, own_domain) as made:
-        yield made
-
-
-@pytest.fixture
-def console(site: Site, tmp_path: Path) -> Iterator[Console]:
-    with running(site, tmp_path) as up:
-        yield up
-
-
-@pytest.fixture
-def ros(site: Site) -> Iterator[Ros]:
-    node = Ros("peers_of_ur")
-    yield node
-    node.close()
 
 
 def test_the_certificate_is_beside_the_site_file(site: Site, tmp_path: Path) -> None:

@@ -6,7 +6,6 @@ import subprocess
 import threading
 import time
 import urllib.request
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +14,7 @@ import pytest
 from tms_msg_rc.msg import StopReceipt
 from tms_msg_rc.srv import StopMachine
 
-from console_process import LIMIT, Console, running, site_of_a_console, until
+from console_process import LIMIT, Console, running, until
 from hanging import hanging, still_open
 from tms_core.config import Site, load_site
 from tms_core.processes import find
@@ -24,25 +23,6 @@ from tms_core.ros import Ros
 pytestmark = pytest.mark.ros
 MANY = 1000
 SOON = 5.0  # s for a stop; 1 s is wanted, and measured by `make bench ONLY=console`
-
-
-@pytest.fixture
-def site(tmp_path: Path, own_domain: int) -> Iterator[Site]:
-    with site_of_a_console(tmp_path, own_domain) as made:
-        yield made
-
-
-@pytest.fixture
-def console(site: Site, tmp_path: Path) -> Iterator[Console]:
-    with running(site, tmp_path) as up:
-        yield up
-
-
-@pytest.fixture
-def ros(site: Site) -> Iterator[Ros]:
-    node = Ros("peers_of_ur")
-    yield node
-    node.close()
 
 
 @pytest.fixture

@@ -9,14 +9,11 @@ from typing import Any
 
 import psutil
 import pytest
-import yaml
 from action_msgs.msg import GoalStatus, GoalStatusArray
 from std_msgs.msg import Bool
 from test_mesh import processes, swinging
 
-from conftest import PROJECT, Mesh, claimed_domain, ports_of, running, site_data, wait_until
-from tms_core import environment
-from tms_core.config import load_site
+from conftest import PROJECT, Mesh, mesh_apart, running, wait_until
 from tms_core.ros import Ros
 
 pytestmark = [pytest.mark.system, pytest.mark.timeout(300)]
@@ -28,15 +25,7 @@ STOPPED = (GoalStatus.STATUS_CANCELING, GoalStatus.STATUS_CANCELED)
 @pytest.fixture(scope="module")
 def slow(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Mesh, Ros]]:
     """A mesh at the machine's own speed, so that a swing outlasts every loss."""
-    with claimed_domain() as domain, pytest.MonkeyPatch.context() as patch:
-        folder = tmp_path_factory.mktemp("slow")
-        data = site_data(domain, ports_of(domain), sim={"speed": 1.0})
-        (folder / "site.yaml").write_text(yaml.safe_dump(data))
-        mesh = Mesh(folder / "site.yaml", folder / "state")
-        for key, value in mesh.env.items():
-            patch.setenv(key, value)
-        for key, value in environment.environment(load_site()).items():
-            patch.setenv(key, value)
+    with mesh_apart(tmp_path_factory.mktemp("slow"), sim={"speed": 1.0}) as mesh:
         with running(mesh):
             mesh.tms("param", "load", str(PROJECT / "tests" / "data" / "swings.yaml"))
             mesh.tms("task", "add", str(PROJECT / "tests" / "data" / "swings.xml"))

@@ -2,7 +2,6 @@
 
 import logging
 import threading
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -36,13 +35,6 @@ class Slow(Records):
         except threading.BrokenBarrierError:
             pass  # nobody else was let in
         return found
-
-
-@pytest.fixture
-def disk() -> Iterator[GroupCommit]:
-    made = GroupCommit(logging.getLogger("disk"))
-    yield made
-    made.close(10)
 
 
 def interrupted(records: Records, journal: list[Any]) -> Interrupted:

@@ -55,13 +55,6 @@ def db(monkeypatch: pytest.MonkeyPatch) -> FakeDb:
 
 
 @pytest.fixture
-def disk() -> Iterator[GroupCommit]:
-    made = GroupCommit(logging.getLogger("disk"))
-    yield made
-    made.close(10)
-
-
-@pytest.fixture
 def kept(db: FakeDb, disk: GroupCommit, tmp_path: Path) -> Iterator[Journal]:
     with keeping(db, disk, tmp_path) as made:
         yield made

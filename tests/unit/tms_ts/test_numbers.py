@@ -1,9 +1,7 @@
 """Fencing numbers only grow, and are on the disk before they are used."""
 
-import logging
 import threading
 import time
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -15,13 +13,6 @@ from tms_core.errors import TaskError
 from tms_core.group_commit import GroupCommit
 from tms_ts import numbers as module
 from tms_ts.numbers import Numbers
-
-
-@pytest.fixture
-def disk() -> Iterator[GroupCommit]:
-    made = GroupCommit(logging.getLogger("disk"))
-    yield made
-    made.close(10)
 
 
 def test_they_grow_over_restarts_and_when_the_clock_goes_back(tmp_path: Path, disk: GroupCommit) -> None:

@@ -1,7 +1,6 @@
 """What a crash leaves of a run is enough to close it and to go on with it."""
 
 import logging
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -14,13 +13,6 @@ from tms_ts.replay import Replay
 HEADER = Header("run-1", 7, 3, "dig", ["zx200"], "<root/>", (1, 2))
 FIRST: Key = ("0.0", "zx200", "dig", "here")
 SECOND: Key = ("0.1", "zx200", "dig", "there")
-
-
-@pytest.fixture
-def disk() -> Iterator[GroupCommit]:
-    made = GroupCommit(logging.getLogger("disk"))
-    yield made
-    made.close(10)
 
 
 @pytest.fixture
