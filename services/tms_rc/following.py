@@ -15,7 +15,7 @@ QUIET_ANGLE = 0.005  # rad that count as no motion
 BEHIND = 0.05  # rad
 OFF_PATH = 0.2  # rad outside of everything the reference has been through
 AHEAD = 1.0  # s that a controller may have begun before its acceptance was heard here
-SMALLEST = 0.003  # rad of a reference that must show as motion
+SMALLEST = 0.0005  # rad of a reference that must show as motion: from stand-still it is faster than the limit by then
 
 
 @dataclass(frozen=True)
@@ -70,21 +70,33 @@ class Follower:
         self._ways, self._reached, self._begun, self._scale = dict(found), reached, begun, scale
         self._seen: dict[str, deque[tuple[float, float]]] = {name: deque() for name in found}
 
-    def should_have_moved(self, now: float) -> bool:
-        """Whether the reference has moved by now."""
-        passed = (now - self._begun) * self._scale
+    def should_have_moved(self, seconds: float) -> bool:
+        """Whether the reference has moved within the first `seconds`."""
+        passed = seconds * self._scale
         return any(max(map(abs, (high - way.angles[0], low - way.angles[0]))) > SMALLEST
                    for way in self._ways.values() for low, high in [way.hull(0.0, passed)])  # fmt: skip
 
-    def on_its_way(self, now: float, dead_time: float) -> dict[str, float]:
-        """How far each joint's reference went within the dead time: what has been commanded, and cannot be seen yet."""
-        passed = (now - self._begun) * self._scale
-        hulls = {name: way.hull(passed - dead_time * self._scale, passed) for name, way in self._ways.items()}
-        return {name: high - low for name, (low, high) in hulls.items()}
+    def on_its_way(self, now: float, dead_times: Mapping[str, float]) -> dict[str, float]:
+        """How far each joint [rad] must go after a stop: what it was commanded within its dead time [s].
+
+        Some controllers command every joint at the time of its reference, some so that all joints follow together.
+        """
+        longest = max(dead_times.values(), default=0.0)
+        found = {}
+        for name, way in self._ways.items():
+            own = dead_times[name]
+            found[name] = min(self._went(way, now, own), self._went(way, now - longest + own, own))
+        return found
 
     def moved(self, now: float, seconds: float) -> bool:
         """Whether the reference has moved within the last seconds, so that what is heard must have changed."""
-        return max(self.on_its_way(now, seconds).values(), default=0.0) > BEHIND
+        return any(self._went(way, now, seconds) > BEHIND for way in self._ways.values())
+
+    def _went(self, way: Way, now: float, seconds: float) -> float:
+        """How far a reference went within the last seconds [rad]."""
+        passed = (now - self._begun) * self._scale
+        low, high = way.hull(passed - seconds * self._scale, passed)
+        return high - low
 
     def look(self, now: float, angles: Mapping[str, float]) -> str | None:
         """What is wrong with where the joints are [rad], None if nothing."""

@@ -108,6 +108,7 @@ class Gateway:
         if active.goal.cancelled.is_set():
             self._cancel(active)
         if active.stop is None:
+            active.sent = time.monotonic()
             active.call = active.peer.send(
                 active.goal.request, on_change=lambda _call: active.wake(), on_feedback=active.goal.publish
             )

@@ -6,7 +6,7 @@ it, or does not leave any more.
 
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any
@@ -53,20 +53,24 @@ class Active:
     peer: Peer
     chain: dict[str, Owner]
     start: dict[str, float]  # rad, joints when it began
-    begun: float = 0.0  # s, monotonic: when it was accepted; 0 before
+    sent: float = 0.0  # s, monotonic: when it left for the machine; 0 before
+    begun: float = 0.0  # s, monotonic: when it was heard that it was accepted; 0 before
     follower: Follower | None = None  # of a trajectory, once it was accepted
     call: Call | None = None
     stop: Stop | None = None
     changed: threading.Condition = field(default_factory=threading.Condition)
 
-    def expected(self, now: float, dead_time: float) -> Expected:
-        """The motion that must be seen if it is stopped now."""
-        if not self.begun:
+    def expected(self, now: float, dead_times: Mapping[str, float]) -> Expected:
+        """The motion that must be seen if it is stopped now.
+
+        A machine may have begun as soon as the goal was sent: its answer comes later, or never.
+        """
+        if not self.sent:
             return NOTHING
         if self.follower is None:
-            return Expected(self.begun)
-        since = self.begun if self.follower.should_have_moved(now) else None
-        return Expected(since, self.follower.on_its_way(now, dead_time))
+            return Expected(self.sent)
+        since = self.sent if self.follower.should_have_moved(now - self.sent) else None
+        return Expected(since, self.follower.on_its_way(now, dead_times))
 
     def ended(self) -> bool:
         """Whether nothing of it can move the machine any more."""
@@ -208,7 +212,7 @@ class Guard:
         ended = active.ended if active is not None else lambda: True
         run = run or (active.owner.run if active is not None and active.owner is not None else self.run or 0)
         if active is not None and active.stop is None:
-            expected = active.expected(now, self.watch.dead_time)
+            expected = active.expected(now, self.watch.dead_times)
         latched = kind is Kind.LATCH
         stop = self.stopper.begin(cause, latched=latched, run=run, ended=ended, expected=expected, broken=broken)
         if active is not None and active.call is not None:

@@ -17,7 +17,7 @@ JOINTS, ODOM, POSE, IMU = "joint_states", "odom", "pose", "imu"
 PLACE, HEADING, TURNING = "place", "heading", "turning"
 HARD = 0.2  # rad beyond its limit at which a joint cannot be: its sensor, or its name, is wrong
 INFINITE = float("inf")
-SEEN, SHARE = 0.02, 0.2  # rad that were commanded must be seen, and this share of them after the stop
+SEEN, SHARE = 0.003, 0.5  # rad that were commanded must be seen, and this share of them after the stop
 
 
 @dataclass(frozen=True)
@@ -48,6 +48,19 @@ class Proof:
     unseen: float  # s, ... and later than this, where the expected motion was never seen
     expected: Expected
     seconds: float  # s of standing
+    at_once: bool = False  # the stop takes back what is on its way
+
+    def after(self, other: "Proof") -> "Proof":
+        """What must be seen if another stop was commanded before: what that one waits for may still come."""
+        if self.at_once:
+            return self
+        since = [one for one in (self.expected.since, other.expected.since) if one is not None]
+        mine, others = self.expected.to_come, other.expected.to_come
+        to_come = {name: max(mine.get(name, 0.0), others.get(name, 0.0)) for name in {*mine, *others}}
+        return Proof(
+            max(self.start, other.start), max(self.unseen, other.unseen),
+            Expected(max(since, default=None), to_come), max(self.seconds, other.seconds),
+        )  # fmt: skip
 
 
 class StandStill:
@@ -66,6 +79,15 @@ class StandStill:
         self._way = 0.0
         self._quiet_since = -INFINITE  # when the last goal of ours ended: what it commanded may still be on its way
         self._motion_at = -INFINITE  # when a motion was seen last
+
+    @property
+    def dead_times(self) -> dict[str, float]:
+        """Seconds for which a command of each joint may still be on its way."""
+        return {name: self._dead_time(name) for name in self._model.joints}
+
+    def _dead_time(self, joint: str) -> float:
+        response = self._model.response.get(joint)  # a passive joint has none
+        return response.dead_time / self._scale if response else 0.0
 
     @property
     def dead_time(self) -> float:
@@ -201,7 +223,7 @@ class StandStill:
         at_once = strongest and self._at_once and visible
         wait, coming = (0.0, {}) if at_once else (self.dead_time, expected.to_come)
         expected = Expected(expected.since, {name: way for name, way in coming.items() if way > SEEN})
-        return Proof(begun + wait, begun + self.dead_time + self.braking, expected, self._model.still.seconds)
+        return Proof(begun + wait, begun + self.dead_time + self.braking, expected, self._model.still.seconds, at_once)
 
     def proven(self, proof: Proof, now: float) -> bool:
         """Whether it was seen."""

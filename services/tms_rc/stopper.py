@@ -90,6 +90,8 @@ class Stopper:
         begun = time.monotonic()
         self._command(latched)
         proof = self._watch.proof(begun, latched, expected)
+        for earlier in self._under_way:
+            proof = proof.after(earlier.proof)
         stop = Stop(cause, latched, run, ended, begun, self._app.ros.now(), proof, broken)
         if not self._under_way:
             self._watch.mark()

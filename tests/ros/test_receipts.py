@@ -32,6 +32,11 @@ WINDOW = 0.2  # s of standing that a receipt claims
 AFTER = 1.0  # s after it in which nothing may move either
 
 
+def seconds(stamp: Any) -> float:
+    """A ROS time in s since 1970."""
+    return float(stamp.sec + stamp.nanosec * 1e-9)
+
+
 class Machine:
     """The stand-in as it truly is, and what its gateway says."""
 
@@ -39,9 +44,12 @@ class Machine:
         self.mesh, self.ros = mesh, ros
         self.changed = threading.Condition()
         self.truth: list[tuple[float, float]] = []  # s since 1970, fastest joint rad/s
+        self.reported = 0.0  # s since 1970, stamp of the last joint states
         self.state: Any = None
+        self.told = 0  # states so far
         self.receipts: list[Any] = []
         ros.subscribe(JointState, "/zx200/sim/truth", self._on_truth, depth=50)
+        ros.subscribe(JointState, "/zx200/joint_states", self._on_report, depth=5)
         ros.subscribe(MachineState, "/zx200/rc/state", self._on_state, latched=True)
         ros.subscribe(StopReceipt, "/zx200/rc/receipts", self._on_receipt, depth=20, latched=True)
         self._fault = ros.publisher(String, "/zx200/sim/fault")
@@ -54,12 +62,17 @@ class Machine:
     def _on_truth(self, message: Any) -> None:
         speeds = [abs(speed) for name, speed in zip(message.name, message.velocity, strict=True) if "joint" in name]
         with self.changed:
-            self.truth.append((message.header.stamp.sec + message.header.stamp.nanosec * 1e-9, max(speeds)))
+            self.truth.append((seconds(message.header.stamp), max(speeds)))
+            self.changed.notify_all()
+
+    def _on_report(self, message: Any) -> None:
+        with self.changed:
+            self.reported = seconds(message.header.stamp)
             self.changed.notify_all()
 
     def _on_state(self, state: Any) -> None:
         with self.changed:
-            self.state = state
+            self.state, self.told = state, self.told + 1
             self.changed.notify_all()
 
     def _on_receipt(self, receipt: Any) -> None:
@@ -78,6 +91,9 @@ class Machine:
         """In order again, standing and armed."""
         self.button.publish(Bool(data=False))
         self.be()
+        self.until(lambda: abs(self.truth[-1][0] - self.reported) < 1.0, "reports by the clock of the truth")
+        told = self.told + 2
+        self.until(lambda: self.told >= told, "what the gateway makes of them")
 
         def armed() -> bool:
             first = self.ros.call(Rearm, "/zx200/rearm", Rearm.Request(), 30)
@@ -89,16 +105,14 @@ class Machine:
         self.until(lambda: self.state.armed and self.state.ready, "ready")
         del self.receipts[:]
 
-    def swing(self, peer: Any = None, seconds: float = 5.0) -> Call:
+    def swing(self, peer: Any = None, duration: int = 5) -> Call:
         """A long swing to the other side, by the gateway if nothing else is said."""
         peer = peer or self.gateway
         peer.wait_ready(LIMIT)
         joints = dict(zip(self.state.joint_names, self.state.positions, strict=True))
         goal = JointTrajectory(joint_names=list(joints))
         joints["swing_joint"] += SWING if joints["swing_joint"] < 0.5 else -SWING
-        goal.points = [
-            JointTrajectoryPoint(positions=list(joints.values()), time_from_start=Duration(sec=int(seconds)))
-        ]
+        goal.points = [JointTrajectoryPoint(positions=list(joints.values()), time_from_start=Duration(sec=duration))]
         call: Call = peer.send(FollowJointTrajectory.Goal(trajectory=goal))
         return call
 
@@ -112,7 +126,7 @@ class Machine:
 
     def moved(self, receipt: Any) -> float:
         """Fastest true motion [rad/s] in the window that a confirmed receipt claims, and shortly after it."""
-        end = receipt.stamp.sec + receipt.stamp.nanosec * 1e-9 + receipt.seconds
+        end = seconds(receipt.stamp) + receipt.seconds
         self.until(lambda: self.truth[-1][0] > end + AFTER, "more of the true motion")
         return max(speed for at, speed in self.truth if end - WINDOW < at < end + AFTER)
 
@@ -179,7 +193,7 @@ def test_a_stop_in_the_dead_time_is_proven_after_it(machine: Machine) -> None:
 
 def test_a_software_stop_in_the_dead_time_that_is_ignored(machine: Machine) -> None:
     machine.be(ignore_emg_stop=True, ignore_cancel=True)
-    call = machine.swing(seconds=25.0)
+    call = machine.swing(duration=25)
     machine.until(lambda: bool(machine.state.goal) or call.outcome is not None, "the goal is under way")
     assert call.outcome is None, call.result
     machine.button.publish(Bool(data=True))
@@ -235,7 +249,7 @@ def test_a_person_may_drive_a_machine_that_was_taken(machine: Machine) -> None:
     call = machine.swing()
     machine.until(lambda: call.outcome is not None, "refused")
     assert "mina drives zx200 by hand" in call.result.error_string
-    call = machine.swing(machine.own, seconds=4.0)
+    call = machine.swing(machine.own, duration=4)
     machine.until(lambda: call.outcome is not None, "its end")
     assert call.outcome is not None and call.outcome.name == "SUCCEEDED"
     given = json.loads(machine.mesh.tms("give-back", "zx200", "--json").stdout)
@@ -245,7 +259,7 @@ def test_a_person_may_drive_a_machine_that_was_taken(machine: Machine) -> None:
 def test_a_stall_is_told_at_once(machine: Machine) -> None:
     machine.be(stall=1.5)
     begun = time.monotonic()
-    call = machine.swing(seconds=20.0)
+    call = machine.swing(duration=20)
     machine.until(lambda: call.outcome is not None, "its end")
     assert "STALLED: swing_joint stands at" in call.result.error_string
     assert time.monotonic() - begun < 20.0
@@ -282,11 +296,12 @@ def test_a_second_gateway_does_not_serve(machine: Machine, tmp_path_factory: pyt
 def test_a_source_that_returns_under_another_type_is_named(machine: Machine) -> None:
     machine.mesh.tms("stop-process", "sim:zx200")
     machine.until(lambda: not machine.state.ready, "it is silent")
-    stranger = machine.ros.publisher(String, "/zx200/joint_states")
+    stranger = Ros("stranger")
+    stranger.publisher(String, "/zx200/joint_states")
     try:
         text = "/zx200/joint_states as std_msgs/msg/String, which is no sensor_msgs/msg/JointState"
         machine.until(lambda: text in machine.state.reason, "the type is named")
     finally:
-        machine.ros.node.destroy_publisher(stranger)
+        stranger.close()
         machine.mesh.tms("start", "sim:zx200")
     machine.until(lambda: machine.state.ready, "ready again")

@@ -65,8 +65,18 @@ def test_a_joint_that_turns_may_be_told_a_turn_away() -> None:
 
 def test_a_motion_is_to_be_seen_once_its_reference_has_moved() -> None:
     follower = Follower(ways(NAMES, POINTS, START), DEAD + LAG, 100.0)
-    assert not follower.should_have_moved(100.0)
-    assert follower.should_have_moved(100.1)
+    assert not follower.should_have_moved(0.0)
+    assert follower.should_have_moved(0.1)
+
+
+def test_what_is_on_its_way_is_a_joint_s_own_dead_time_by_either_kind_of_controller() -> None:
+    follower = Follower(ways(NAMES, POINTS, START), DEAD + LAG, 100.0)
+    on_its_way = follower.on_its_way(103.0, {"swing": 0.9, "boom": 0.3})
+    assert on_its_way["swing"] == pytest.approx(0.0)  # it has arrived 1 s ago
+    assert on_its_way["boom"] == pytest.approx(0.09)  # 0.3 rad/s
+    begins = follower.on_its_way(102.5, {"swing": 0.9, "boom": 0.3})
+    assert begins["swing"] == pytest.approx(0.16)
+    assert begins["boom"] == pytest.approx(0.0)  # led 0.6 s later, it has not been commanded yet
 
 
 def test_what_is_heard_must_change_while_the_reference_moves() -> None:

@@ -289,6 +289,30 @@ def test_what_was_commanded_before_the_stop_must_be_seen_after_it() -> None:
     assert waited > reporter.watch.dead_time + reporter.watch.braking
 
 
+def test_a_part_of_a_small_motion_does_not_stand_for_the_whole() -> None:
+    """A dead time that grows while a goal begins: a first part of it comes, then a pause, then the rest."""
+    reporter = Reporter(watch())
+    since = reporter.now
+    reporter.run(0.2, 0.02)
+    begun, expected = reporter.now, Expected(since, {"boom": 0.008})
+    reporter.watch.mark()
+    reporter.run(0.2, 0.012)
+    waited = stood_after(reporter, standing(reporter), begun, expected=expected)
+    assert waited > reporter.watch.dead_time + reporter.watch.braking
+
+
+def test_a_second_stop_waits_for_what_the_first_one_waits_for() -> None:
+    made = watch()
+    first = made.proof(100.0, strongest=False, expected=Expected(99.0, {"boom": 0.2}))
+    second = made.proof(100.5, strongest=False)
+    both = second.after(first)
+    assert (both.start, both.unseen) == (second.start, second.unseen)
+    assert both.expected == Expected(99.0, {"boom": 0.2})
+    cuts = watch(at_once=True)
+    pressed = cuts.proof(100.5, strongest=True)
+    assert pressed.after(first) is pressed  # nothing that was on its way comes any more
+
+
 def test_what_was_commanded_before_the_stop_and_seen_after_it_is_believed() -> None:
     reporter = Reporter(watch())
     since = reporter.now
