@@ -19,6 +19,11 @@ class DeadTime(Generic[T]):
     def __len__(self) -> int:
         return len(self._under_way)
 
+    @property
+    def under_way(self) -> Iterator[T]:
+        """What was sent and is not due yet."""
+        return (command for _, command in self._under_way)
+
     def put(self, now: float, command: T, more: float = 0.0) -> None:
         """Send a command; `more` [s] is added to the dead time."""
         self._under_way.append((now + self._seconds + more, command))

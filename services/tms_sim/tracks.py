@@ -28,7 +28,7 @@ class Tracks:
     @property
     def still(self) -> bool:
         """Whether nothing moves or will move, as far as it is told to."""
-        return self.v == 0.0 and self.w == 0.0 and not self._commands and self._brakes()
+        return self.v == 0.0 and self.w == 0.0 and all(map(_brakes, (self._command, *self._commands.under_way)))
 
     def send(self, v: float, w: float) -> None:
         """Velocities [m/s, rad/s] that hold until the next command."""
@@ -67,12 +67,14 @@ class Tracks:
     def _answer(self, now: float, wanted: float, acceleration: float, h: float) -> float:
         if self._lag is None:
             return now + cut(wanted - now, acceleration * h)
-        lag, wanted = (BRAKE, 0.0) if self._brakes() else (self._lag, wanted)
+        brakes = _brakes(self._command)
+        lag, wanted = (BRAKE, 0.0) if brakes else (self._lag, wanted)
         found = wanted - (wanted - now) * math.exp(-h / lag)
-        return 0.0 if wanted == 0.0 and abs(found) < SLOW and self._brakes() else found
+        return 0.0 if wanted == 0.0 and abs(found) < SLOW and brakes else found
 
-    def _brakes(self) -> bool:
-        return max(map(abs, self._command)) < ZERO
+
+def _brakes(command: tuple[float, float]) -> bool:
+    return max(map(abs, command)) < ZERO
 
 
 def cut(value: float, most: float) -> float:

@@ -42,6 +42,17 @@ def test_with_dead_time_it_comes_later_and_goes_later() -> None:
     assert made.still
 
 
+def test_a_stop_that_is_repeated_all_the_time_lets_it_come_to_rest() -> None:
+    """A gateway repeats zero every half a second until it has seen the machine stand."""
+    made = base(dead_time=0.6)
+    made.command(1.0, 0.0)
+    run(made, 2.0)
+    for _ in range(4):
+        made.command(0.0, 0.0)
+        run(made, 0.5)
+    assert made.still
+
+
 def test_zero_brakes_and_a_small_speed_does_not() -> None:
     braked, slowed = base(), base()
     for made, speed in ((braked, 0.0), (slowed, 0.01)):
