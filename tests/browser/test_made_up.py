@@ -17,6 +17,7 @@ from tms_core.config import load_site
 from tms_ur.access import Access
 from tms_ur.api import create_app
 from tms_ur.board import Board
+from tms_ur.connections import Listener
 from tms_ur.data_models import Record
 from tms_ur.models import ActiveRun, Event, Host, Machine, Place, Process, Question, Rearmed, Run
 from tms_ur.node import Server
@@ -75,7 +76,7 @@ def address(yard: Yard, tmp_path: Path) -> Iterator[str]:
     """Where the console of the yard is."""
     file = tmp_path / "site.yaml"
     file.write_text(yaml.safe_dump(site_data(42, 20000, machines={name: {"model": name} for name in MACHINES})))
-    listener = socket.create_server(("127.0.0.1", 0))
+    listener = Listener(fileno=socket.create_server(("127.0.0.1", 0)).detach())
     application = create_app(yard, FakeAudit(), load_site(str(file)), Access(None))  # type: ignore[arg-type]
     server = Server(application, listener, None)
     yield f"http://127.0.0.1:{listener.getsockname()[1]}"

@@ -27,7 +27,7 @@ from power_cut import Disk, family, own_disk
 from tms_core.ros import Ros
 
 pytestmark = pytest.mark.system
-CUTS = int(os.environ.get("TMS_POWER_CUTS", "2"))
+CUTS = int(os.environ.get("TMS_POWER_CUTS", "3"))
 STALL = 2.0  # s
 STANDING = 1.5  # s; between two swings it stands for a moment only
 
