@@ -53,6 +53,7 @@ def main() -> int:
     minutes = parser.parse_args().minutes
     with rig(machines=MACHINES, sim={"speed": SPEED}) as own:
         own.mesh.tms("up")
+        own.mesh.arm()
         for name in RECORDS:
             own.mesh.tms("param", "load", f"configs/parameters/{name}.yaml")
         own.mesh.tms("task", "add", TASK)

@@ -80,6 +80,8 @@ class Yard:
             self._start(pc)
         for pc in self.address:
             self.wait_ready(pc)
+        if "zx200" in {row.machine for row in self.rows}:
+            self.tms("cps", "rearm", "zx200", "--yes")
         self.tms("cps", "param", "load", "configs/parameters/zx200.yaml")
         self.tms("cps", "param", "load", "/data/swings.yaml")
         self.tms("cps", "task", "add", "configs/tasks/one_loading_cycle.xml")

@@ -41,6 +41,7 @@ def test_the_trial_of_the_guide_runs_a_task(trial: None) -> None:
     for pc in PCS:
         wait_until(lambda pc=pc: tms(pc, "status").returncode == 0, 120, f"{pc} is ready", 2.0)  # type: ignore[misc]
     for words in (
+        ("rearm", "zx200", "--yes"),
         ("param", "load", "configs/parameters/zx200.yaml"),
         ("task", "add", "configs/tasks/one_loading_cycle.xml"),
     ):
