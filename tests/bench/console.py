@@ -68,6 +68,7 @@ def measure() -> Iterable[Figure]:
         mesh = Mesh(site, folder / "state")
         stack.callback(mesh.tms, "down")
         mesh.tms("up")
+        mesh.arm()
         runs = [_start(mesh, folder, number) for number in range(RUNS)]
         address = f"http://127.0.0.1:{port + 90}"
         yield from _pages(stack, mesh, address, runs[0])

@@ -54,6 +54,7 @@ class Watch:
 def measure() -> Iterable[Figure]:
     with rig(sim={"speed": 20.0}) as own:
         own.mesh.tms("up")
+        own.mesh.arm()
         _prepare(own)
         with own.beside("serve"):
             floor = own.bare("act", "300")
