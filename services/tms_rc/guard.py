@@ -206,17 +206,19 @@ class Guard:
         active, now = self.active, time.monotonic()
         if kind is Kind.LATCH:
             self.latch.close(cause)
-            self.notes.soon()
         elif kind is Kind.HOLD and active is not None and active.owner is not None:
             self.latch.keep(cause, active.owner)
         ended = active.ended if active is not None else lambda: True
         run = run or (active.owner.run if active is not None and active.owner is not None else self.run or 0)
-        if active is not None and active.stop is None:
-            expected = active.expected(now, self.watch.dead_times)
         latched = kind is Kind.LATCH
-        stop = self.stopper.begin(cause, latched=latched, run=run, ended=ended, expected=expected, broken=broken)
+        self.stopper.command(latched)  # before anything that takes time
         if active is not None and active.call is not None:
             active.peer.cancel(active.call)  # also one that the machine has not answered yet
+        if active is not None and active.stop is None:
+            expected = active.expected(now, self.watch.dead_times)
+        stop = self.stopper.begin(cause, now, latched=latched, run=run, ended=ended, expected=expected, broken=broken)
+        if latched:
+            self.notes.soon()
         if active is not None:
             active.stop = active.stop or stop
             active.wake()

@@ -83,12 +83,10 @@ class Stopper:
         return not self.busy
 
     def begin(
-        self, cause: str, *, latched: bool, run: int = 0, ended: Callable[[], bool] = lambda: True,
+        self, cause: str, begun: float, *, latched: bool, run: int = 0, ended: Callable[[], bool] = lambda: True,
         expected: Expected = NOTHING, broken: str = "",
     ) -> Stop:  # fmt: skip
-        """Command the stop now and have it watched; returns at once. `expected`: see `StandStill.proof`."""
-        begun = time.monotonic()
-        self._command(latched)
+        """Have a stop watched that was commanded at `begun` [s, monotonic]. `expected`: see `StandStill.proof`."""
         proof = self._watch.proof(begun, latched, expected)
         for earlier in self._under_way:
             proof = proof.after(earlier.proof)
@@ -99,7 +97,8 @@ class Stopper:
         threading.Thread(target=self._prove, args=(stop,), name="stop", daemon=True).start()
         return stop
 
-    def _command(self, latched: bool) -> None:
+    def command(self, latched: bool) -> None:
+        """Command a stop now; waits for nothing."""
         self._controls.zero()  # messages leave sooner than requests
         if latched:
             self._controls.emergency(True)
@@ -122,7 +121,7 @@ class Stopper:
                 return  # the successor stops the machine again and writes the receipt
             if now > again:
                 again = now + AGAIN
-                self._command(stop.latched)
+                self.command(stop.latched)
         stop.receipt = self._receipt(stop, now)
         self._note(stop.receipt)
         self._tell(stop.receipt)
