@@ -203,7 +203,7 @@ class Guard:
 
         `expected`, `broken`: see `Stopper.begin`; of a goal under way it is known here what it must move.
         """
-        active, now = self.active, time.monotonic()
+        active, now, stamp = self.active, time.monotonic(), self._app.ros.now()
         if kind is Kind.LATCH:
             self.latch.close(cause)
         elif kind is Kind.HOLD and active is not None and active.owner is not None:
@@ -216,7 +216,9 @@ class Guard:
             active.peer.cancel(active.call)  # also one that the machine has not answered yet
         if active is not None and active.stop is None:
             expected = active.expected(now, self.watch.dead_times)
-        stop = self.stopper.begin(cause, now, latched=latched, run=run, ended=ended, expected=expected, broken=broken)
+        stop = self.stopper.begin(
+            cause, now, stamp, latched=latched, run=run, ended=ended, expected=expected, broken=broken
+        )
         if latched:
             self.notes.soon()
         if active is not None:

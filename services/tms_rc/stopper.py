@@ -40,7 +40,7 @@ class Stop:
     latched: bool
     run: int
     ended: Callable[[], bool]  # whether the goal that was stopped is terminal
-    begun: float
+    begun: float  # s, monotonic, and on the wall clock:
     stamp: Any
     proof: Proof
     broken: str = ""  # why it cannot be confirmed whatever is seen: it had moved without a goal
@@ -83,14 +83,17 @@ class Stopper:
         return not self.busy
 
     def begin(
-        self, cause: str, begun: float, *, latched: bool, run: int = 0, ended: Callable[[], bool] = lambda: True,
-        expected: Expected = NOTHING, broken: str = "",
+        self, cause: str, begun: float, stamp: Any, *, latched: bool, run: int = 0,
+        ended: Callable[[], bool] = lambda: True, expected: Expected = NOTHING, broken: str = "",
     ) -> Stop:  # fmt: skip
-        """Have a stop watched that was commanded at `begun` [s, monotonic]. `expected`: see `StandStill.proof`."""
-        proof = self._watch.proof(begun, latched, expected)
+        """Have a stop watched that was wanted at `begun` [s, monotonic], `stamp`, and has been commanded by now.
+
+        `expected`: see `StandStill.proof`.
+        """
+        proof = self._watch.proof(time.monotonic(), latched, expected)
         for earlier in self._under_way:
             proof = proof.after(earlier.proof)
-        stop = Stop(cause, latched, run, ended, begun, self._app.ros.now(), proof, broken)
+        stop = Stop(cause, latched, run, ended, begun, stamp, proof, broken)
         if not self._under_way:
             self._watch.mark()
         self._under_way.append(stop)
