@@ -221,6 +221,14 @@ def node_in(mesh: Mesh) -> Iterator["Ros"]:
     inside.close()
 
 
+def rearm(ros: "Ros", machine: str) -> bool:
+    """Both steps of a re-arm, as one person takes them; whether the machine is armed then."""
+    from tms_msg_rc.srv import Rearm
+
+    token = ros.call(Rearm, f"/{machine}/rearm", Rearm.Request(), 30).token
+    return bool(ros.call(Rearm, f"/{machine}/rearm", Rearm.Request(token=token), 30).armed)
+
+
 def wait_until(holds: Callable[[], bool], seconds: float, what: str, every: float = 0.02) -> None:
     """Poll until something holds; fails the test with `what` when it does not."""
     deadline = time.monotonic() + seconds

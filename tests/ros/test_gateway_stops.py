@@ -12,9 +12,8 @@ import pytest
 from geometry_msgs.msg import PoseStamped, Twist
 from std_msgs.msg import Bool
 from tms_msg_rc.msg import MachineState, StopReceipt
-from tms_msg_rc.srv import Rearm
 
-from conftest import GATEWAYS_ONLY, Mesh, mesh_apart, wait_until
+from conftest import GATEWAYS_ONLY, Mesh, mesh_apart, rearm, wait_until
 from tms_core.border import MOTIONS, Motion
 from tms_core.ros import Outcome, Ros
 
@@ -88,18 +87,11 @@ def far_away(motion: Motion, number: int) -> Any:
     return goal
 
 
-def arm(ros: Ros) -> None:
-    def ask(token: str = "") -> Any:
-        return ros.call(Rearm, f"/{MACHINE}/rearm", Rearm.Request(token=token), 30)
-
-    wait_until(lambda: bool(ask(ask().token).armed), 60, f"{MACHINE} is armed")
-
-
 @pytest.fixture(autouse=True)
 def armed(small: tuple[Mesh, Ros], watch: Watch) -> None:
     """A latched machine would refuse the goal that a test wants to stop."""
     watch.wait(lambda: watch.state is not None and watch.state.ready, "the machine is ready")
-    arm(small[1])
+    wait_until(lambda: rearm(small[1], MACHINE), 60, f"{MACHINE} is armed")
 
 
 @pytest.mark.parametrize("motion", [m for m in MOTIONS if m.field != "trajectory"], ids=lambda motion: motion.field)

@@ -14,11 +14,11 @@ from geometry_msgs.msg import Point
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool
 from tf2_msgs.msg import TFMessage
-from tms_msg_rc.srv import Rearm
 from tms_msg_rp.action import TmsRpZx200ChangePose, TmsRpZx200ExcavateSimple, TmsRpZx200ReleaseSimple
 from tms_msg_rp.msg import TmsRpErrorCodes, TmsRpZx200PositionWithAngle
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
+from conftest import rearm
 from tms_core import environment
 from tms_core.config import load_site
 from tms_core.ros import Call, Outcome, Ros
@@ -107,12 +107,6 @@ class Rig:
         self.until(lambda: call.outcome is not None, "end of the goal")
         assert call.outcome is not None
         return call.outcome
-
-    def rearm(self) -> None:
-        def ask(token: str = "") -> Any:
-            return self.ros.call(Rearm, f"/{MACHINE}/rearm", Rearm.Request(token=token), 30)
-
-        self.until(lambda: bool(ask(ask().token).armed), "armed machine")
 
     def moving(self) -> bool:
         return bool(self.states) and any(abs(v) > 0.05 for v in self.states[-1].velocity)
@@ -240,7 +234,7 @@ def test_emergency_stop_ends_a_motion_until_it_is_released(machine: Rig) -> None
     machine.stop.publish(Bool(data=False))
     assert machine.end(machine.change_pose(*START)) is Outcome.ABORTED
     assert "emg_stop was pressed by somebody else" in machine.reason()  # a person looks before it moves again
-    machine.rearm()
+    machine.until(lambda: rearm(machine.ros, MACHINE), "armed machine")
     machine.until(lambda: machine.end(machine.change_pose(*START)) is Outcome.SUCCEEDED, "motion after the re-arm")
 
 
