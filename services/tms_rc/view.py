@@ -29,7 +29,7 @@ class View:
         self._app, self._watch = app, watch
         border = app.site.border(app.machine)
         self._names = {border.joints.get(name, name): name for name in app.site.model_of(app.machine).joints}
-        self._topics = {name: f"/{app.machine}/{getattr(border, name)}" for name in border.sources}
+        self._topics: dict[str, str] = {name: f"/{app.machine}/{getattr(border, name)}" for name in border.sources}
         self._news = [
             (name, app.ros.sample_arrivals(_type(name, border), topic, DEPTH), self._reader(name, border))
             for name, topic in self._topics.items()
@@ -38,17 +38,21 @@ class View:
 
     def look(self) -> None:
         """Take what waits."""
+        now = time.monotonic()
         for name, news, read in self._news:
-            for arrival in news():
+            source, arrivals = self._watch.sources[name], news()
+            if arrivals and source.age(now) > source.longest:
+                self._count(name)  # before its word counts: whoever speaks now may not be the only one
+            for arrival in arrivals:
                 self._watch.take(name, _sample(arrival, *read(arrival.message)))
-        if time.monotonic() - self._counted >= VOICES:
-            self._counted = time.monotonic()
-            for name, topic in self._topics.items():
-                self._count(name, topic)
+        if now - self._counted >= VOICES:
+            self._counted = now
+            for name in self._topics:
+                self._count(name)
 
-    def _count(self, name: str, topic: str) -> None:
+    def _count(self, name: str) -> None:
         """Whether somebody else speaks for the machine. Its own publisher, killed, counts until discovery drops it."""
-        source = self._watch.sources[name]
+        source, topic = self._watch.sources[name], self._topics[name]
         count = self._app.ros.publisher_count(topic)
         if count < 2:
             source.publishers = ()

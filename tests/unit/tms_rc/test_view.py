@@ -1,13 +1,23 @@
 """What a gateway takes from the machine's messages."""
 
+import time
+from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
+import pytest
 from geometry_msgs.msg import Quaternion
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu, JointState
 
+from tms_core.models import MachineModel, Source
+from tms_core.ros.topics import Arrival
+from tms_core.yaml_file import parse
 from tms_rc import view
-from tms_rc.standstill import HEADING, PLACE, TURNING
+from tms_rc.standstill import HEADING, JOINTS, PLACE, TURNING, StandStill
+
+CONFIGS = Path(__file__).resolve().parents[3] / "configs"
+SOURCE = Source(period=0.05, stamps="none", frozen_after=2.0, origin="a test")
 
 
 def joints(message: Any) -> Any:
@@ -60,3 +70,48 @@ def test_an_imu_tells_how_it_turns() -> None:
     message.angular_velocity.x, message.angular_velocity.z = 0.3, 0.4
     places, speeds = view._imu(message)
     assert places == {TURNING: ()} and abs(speeds[TURNING] - 0.5) < 1e-12
+
+
+class Ros:
+    """As much of the node as a view uses, with one source of joint states."""
+
+    def __init__(self) -> None:
+        self.waiting: list[Any] = []
+        self.voices = ["/driver"]
+
+    def sample_arrivals(self, _kind: Any, _topic: str, _depth: int) -> Any:
+        return lambda: [self.waiting.pop(0) for _ in list(self.waiting)]
+
+    def publisher_count(self, _topic: str) -> int:
+        return len(self.voices)
+
+    def publishers(self, _topic: str) -> list[tuple[str, str]]:
+        return [(node, "sensor_msgs/msg/JointState") for node in self.voices]
+
+
+def test_a_source_that_speaks_again_is_not_believed_before_its_publishers_were_counted(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    now = [100.0]
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    ros, model = Ros(), parse(CONFIGS / "machines" / "zx200.yaml", MachineModel)
+    border = next(iter(model.borders.values())).model_copy(update={"sources": {JOINTS: SOURCE}})
+    site: Any = SimpleNamespace(border=lambda _: border, model_of=lambda _: model)
+    app: Any = SimpleNamespace(machine="m", site=site, ros=ros)
+    watch = StandStill(model, border)
+    seen = view.View(app, watch)
+
+    def speak() -> None:
+        message = JointState(name=list(model.initial), position=list(model.initial.values()))
+        ros.waiting.append(Arrival(message, now[0], 1))
+        seen.look()
+
+    speak()
+    assert watch.trouble(now[0]) is None
+    now[0] += 5.0
+    seen.look()  # the regular count, while the first publisher, killed, is still the only one
+    now[0] += 0.01
+    ros.voices = ["/driver", "/driver"]
+    speak()
+    trouble = watch.trouble(now[0])
+    assert trouble is not None and "come from 2 publishers" in trouble.text
