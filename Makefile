@@ -99,8 +99,8 @@ lint: setup ## ruff, mypy, import-linter
 conformance: setup ## replay behaviour-tree cases (CASES=path LEVEL=required|strict)
 	@$(PY) tests/conformance/replay.py "$(or $(CASES),tests/conformance/cases.jsonl)" --level "$(or $(LEVEL),required)"
 
-drill: setup ## stop six simulated machines in every way; receipts against the truth (QUICK=1, ROUNDS=4, SEED=7, REPORT=file.md)
-	@$(VENV)/bin/tms --site $(or $(SITE),drill) drill $(if $(QUICK),--quick) $(if $(ROUNDS),--rounds $(ROUNDS)) $(if $(SEED),--seed $(SEED)) $(if $(REPORT),--report $(REPORT))
+drill: setup ## stop six simulated machines in every way; receipts against the truth (QUICK=1, ROUNDS=4, SEED=7, REPORT=file.md, ONLY="kill rc+tms:ts")
+	@$(VENV)/bin/tms --site $(or $(SITE),drill) drill $(if $(QUICK),--quick) $(if $(ROUNDS),--rounds $(ROUNDS)) $(if $(SEED),--seed $(SEED)) $(if $(ONLY),--only "$(ONLY)") $(if $(REPORT),--report $(REPORT))
 
 nightly: setup ## what takes hours: 30 power cuts while a machine moves (as root), and the drill with four rounds
 	TMS_POWER_CUTS=30 $(PY) -m pytest tests/system/test_power_cut.py

@@ -23,6 +23,7 @@ HELP = {
     "Runs are cancelled, machines stopped, processes killed and frozen, and the power is cut, while machines lie, coast or disobey. Starts a mesh of its own and ends it. Exit code 0 only without a false receipt, a motion that went on for too long, a stop that is neither confirmed nor latched, a run left hanging, a process that did not come back, and a trial left out.": "実行の取り消し、機械の停止、プロセスの強制終了と凍結、電源断を、機械が誤った報告をし、惰走し、指令に従わない間に試します。専用のメッシュを起動し、最後に終えます。誤った停止確認、長すぎる動き、未確認でラッチもない停止、終わらない実行、復帰しないプロセス、未実施の試行がなければ終了コードが 0 になります。",
     "Every kind of stop and every fault at least once, in at most 6 minutes.": "すべての停止方法と故障を 1 回以上、6 分以内",
     "About 160 trials each.": "1 回あたり約 160 試行",
+    "One kind of stop: a round is one trial a machine.": "停止方法を 1 種類に限る(1 回で機械 1 台につき 1 試行)",
     "Repeat the plan of an earlier drill; it is printed with the figures.": "以前の訓練と同じ計画を繰り返す(種は結果とともに表示)",
     "Write a page (Markdown).": "報告を書く(Markdown)",
     "Show what happened in a run, in order.": "実行の記録を順に表示する。",

@@ -97,14 +97,17 @@ class Watchdog:
         while not self._app.stopping.wait(PULSE_PERIOD):
             for name, seconds in self._silent().items():
                 if seconds >= PULSE_LIMIT:
-                    self._kill(supervisor, name, seconds)
+                    self._kill(supervisor, name)
 
-    def _kill(self, supervisor: Supervisor, name: str, seconds: float) -> None:
+    def _kill(self, supervisor: Supervisor, name: str) -> None:
         """End a gateway that was there before its pulse was lost; not its successor, which may take long to start."""
         try:
             row = supervisor.process(name)
         except TmsError as error:
             self._app.log.error("event=not_killed target=%s reason=%r", name, str(error))
+            return
+        seconds = self._silent().get(name)  # now: the answer may have taken seconds, and it may be back
+        if seconds is None:
             return
         older = row.state == "RUNNING" and row.uptime > seconds + OLDER
         if older and row.pid != self._killed.get(name):

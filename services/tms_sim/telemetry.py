@@ -42,21 +42,18 @@ class Telemetry:
         self._topics = made()
         self._report = Report(round(REPLAYED / (PERIOD * self._speed)))
         self._impostor = Impostor(ros, made)
-        self._truth = Truth(ros, name, machine, self.advance)
+        self._truth = Truth(ros, name, machine)
         self._tf = ros.publisher(TFMessage, "/tf")
         self._frames: TFMessage = None
         self._told: Any = None  # place and joints of the frames
         self._stepped, self._ticks = time.monotonic(), 0
 
-    def advance(self) -> None:
-        """Let the machine's time catch up with ours."""
+    def tick(self) -> None:
+        """One timer call: let the machine's time catch up with ours, and tell."""
         now = time.monotonic()
         self._machine.step(min(now - self._stepped, LAG) * self._speed)
         self._stepped = now
-
-    def tick(self) -> None:
-        """One timer call."""
-        self.advance()
+        self._truth.tell()
         self._ticks += 1
         reading = self._look()
         told = self._report.tell(reading, self._machine.fault)
@@ -64,7 +61,6 @@ class Telemetry:
             if topic.due(self._ticks, PERIOD):
                 topic.tell(told)
         self._impostor.look(told, self._machine.fault.second_publisher)
-        self._truth.look()
         if self._ticks % TF_EVERY == 0:
             self._tell_frames(reading)
 

@@ -1,8 +1,10 @@
-"""The true motion of a stand-in on a way of its own, /<machine>/sim/truth, which no fault changes. For drills."""
+"""The true motion of a stand-in on a way of its own, /<machine>/sim/truth, which no fault changes. For drills.
+
+Its time passes in the steps of its telemetry, so nothing happens between two messages.
+"""
 
 import math
 import time
-from collections.abc import Callable
 from typing import Any
 
 from sensor_msgs.msg import JointState
@@ -11,32 +13,22 @@ from tms_core.ros import Ros
 from tms_sim.machine import StandIn
 from tms_sim.sources import time_of
 
-PERIOD = 1 / 60  # s
-KEPT = 180  # messages for a reader that is held up for a moment: the truth has no gaps
+KEPT = 250  # messages, 10 s, for a reader that is held up for a moment: the truth has no gaps
 TRACKS = ["x", "y", "yaw"]  # m, m, rad in `map`
 
 
 class Truth:
     """Positions and velocities in the machine's time. Costs nothing while nobody listens."""
 
-    def __init__(self, ros: Ros, name: str, machine: StandIn, advance: Callable[[], None]) -> None:
-        """`advance` lets the machine's time catch up."""
-        self._ros, self._machine, self._advance = ros, machine, advance
+    def __init__(self, ros: Ros, name: str, machine: StandIn) -> None:
+        self._machine = machine
         self._publisher = ros.publisher(JointState, f"/{name}/sim/truth", KEPT)
-        self._message = JointState(name=[*machine.arm.joints, *(TRACKS if machine.base else [])])
-        self._timer: Any = None
+        self._message: Any = JointState(name=[*machine.arm.joints, *(TRACKS if machine.base else [])])
 
-    def look(self) -> None:
-        """Begin or end to tell, on the executor thread."""
-        heard = self._publisher.get_subscription_count() > 0
-        if heard and self._timer is None:
-            self._timer = self._ros.every(PERIOD, self._tell)
-        elif not heard and self._timer is not None:
-            self._ros.node.destroy_timer(self._timer)
-            self._timer = None
-
-    def _tell(self) -> None:
-        self._advance()
+    def tell(self) -> None:
+        """After every step."""
+        if not self._publisher.get_subscription_count():
+            return
         arm, base, message = self._machine.arm, self._machine.base, self._message
         positions, velocities = arm.positions, arm.velocities
         if base is not None:

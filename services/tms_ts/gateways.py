@@ -23,16 +23,24 @@ SOFTWARE_STOP = "software stop"
 class Holder:
     """A run as the gateways' news reach it; all are called on the executor thread and must be quick."""
 
+    number: int  # fencing number
+    started: tuple[int, int]  # s and ns of the wall clock
     stopped: Callable[[str, str], None]  # machine, cause: it was stopped from outside and stays so
     receipt: Callable[[Any], None]
     alive: Callable[[], bool]
+
+    def concerns(self, receipt: Any) -> bool:
+        """Whether a stop belongs to this run: a gateway that starts tells those of earlier runs and days once more."""
+        if receipt.run == 0:  # the gateway had not heard of any run
+            return (receipt.stamp.sec, receipt.stamp.nanosec) >= self.started
+        return bool(receipt.run == self.number)
 
 
 class Gateways:
     """All machines of the site."""
 
     def __init__(self, app: App, late_receipt: Callable[[Any], None]) -> None:
-        """`late_receipt` is called with stops of machines that no run holds; kept ones come at once."""
+        """`late_receipt` is called with stops that belong to no present run; kept ones come at once."""
         self._app, self._late_receipt = app, late_receipt
         self._states: dict[str, Any] = {}
         self._links: dict[str, Link] = {}
@@ -126,7 +134,7 @@ class Gateways:
 
     def _receipt(self, receipt: Any) -> None:
         holder = self._holders.get(receipt.machine)
-        if holder is not None:
+        if holder is not None and holder.concerns(receipt):
             holder.receipt(receipt)
         else:
             self._late_receipt(receipt)

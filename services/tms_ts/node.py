@@ -263,7 +263,7 @@ class Scheduler:
         if not self._disk.wait(BEGIN_STORED):
             raise no_disk(self._disk)
         # Not before: while many processes start on a busy PC a permit may lapse, though nothing moves yet.
-        holder = Holder(run.stopped, machines.receipt, run.alive)
+        holder = Holder(facts.number, started, run.stopped, machines.receipt, run.alive)
         self._gateways.hold(facts.machines, facts.number, facts.run_id, holder)
         if not run.cancelled.is_set():
             self._refuse_latched(facts.machines)  # stopped meanwhile

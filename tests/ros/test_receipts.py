@@ -27,7 +27,7 @@ pytestmark = [pytest.mark.ros, pytest.mark.timeout(300)]
 LIMIT = 60.0  # s for whatever must happen at all
 SWING = 1.2  # rad
 MOVES = 0.05  # rad/s: clearly on its way
-STANDS = 0.011  # rad/s, the limit of the model and what 50 Hz of the truth add to it
+STANDS = 0.011  # rad/s, the limit of the model and what 25 Hz of the truth add to it
 WINDOW = 0.2  # s of standing that a receipt claims
 AFTER = 1.0  # s after it in which nothing may move either
 

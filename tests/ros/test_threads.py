@@ -66,17 +66,40 @@ def test_what_is_asked_of_the_executor_runs_in_its_order(two_nodes: tuple[Ros, R
         assert [name for name in ran if name.startswith(kind)] == [f"{kind} {number}" for number in range(4)]
 
 
-def test_the_thread_that_makes_a_node_gives_way_after_all_that_it_has_started(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Otherwise theirs are the processors until they have read all answers, and permits of other processes lapse."""
-    changes: list[tuple[int, int]] = []
-    monkeypatch.setattr(os, "sched_setscheduler", lambda number, policy, _: changes.append((number, policy)))
+def test_only_the_thread_that_makes_a_node_comes_before_all_others() -> None:
+    """Else what it starts keeps the processors until it has read all answers, and permits of other processes lapse."""
     go = threading.Event()
     started = threading.Thread(target=go.wait)
+    nice = os.getpriority(os.PRIO_PROCESS, 0)
     with _undisturbed():
+        if os.sched_getscheduler(0) & ~os.SCHED_RESET_ON_FORK != os.SCHED_FIFO:
+            pytest.skip("needs CAP_SYS_NICE or an RTPRIO limit")
         started.start()
+        assert os.sched_getscheduler(_native(started)) == os.SCHED_OTHER
+    assert os.sched_getscheduler(0) == os.SCHED_OTHER
+    assert os.getpriority(os.PRIO_PROCESS, 0) == nice
+    assert os.getpriority(os.PRIO_PROCESS, _native(started)) == nice
     go.set()
     started.join()
-    assert changes[0] == (0, os.SCHED_FIFO)
-    assert {policy for _, policy in changes[1:]} == {os.SCHED_OTHER}
-    assert started.native_id in [number for number, _ in changes[1:-1]]
-    assert changes[-1][0] == threading.get_native_id()
+
+
+def test_threads_keep_the_share_of_their_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    changed: dict[int, int] = {}
+    monkeypatch.setattr(os, "sched_setscheduler", lambda *_: None)
+    monkeypatch.setattr(os, "getpriority", lambda *_: -10)
+    monkeypatch.setattr(os, "setpriority", lambda _, number, nice: changed.update({number: nice}))
+    go = threading.Event()
+    before, started = threading.Thread(target=go.wait), threading.Thread(target=go.wait)
+    before.start()
+    with _undisturbed():
+        started.start()
+    assert changed[_native(started)] == -10
+    assert _native(before) not in changed
+    go.set()
+    for thread in (before, started):
+        thread.join()
+
+
+def _native(thread: threading.Thread) -> int:
+    assert thread.native_id is not None
+    return thread.native_id

@@ -11,7 +11,7 @@ import click
 
 from tms_cli import mesh, session
 from tms_cli.drill import figures as drill_figures
-from tms_cli.drill.plan import Trial, plan
+from tms_cli.drill.plan import STOPS, Trial, plan, plan_only
 from tms_cli.drill.report import markdown, text
 from tms_cli.drill.stand_ins import GROUP, StandIns
 from tms_cli.drill.verdict import Row
@@ -50,9 +50,10 @@ def own_state(site: Site) -> None:
     os.environ["TMS_STATE"] = str(folder)
 
 
-def planned(site: Site, seed: int, rounds: int, quick: bool) -> list[list[Trial]]:
+def planned(site: Site, seed: int, rounds: int, quick: bool, only: str | None = None) -> list[list[Trial]]:
     """What is tried on this site."""
-    return plan(seed, {name: site.model_of(name).kind == "backhoe" for name in site.file.machines}, rounds, quick)
+    planners = {name: site.model_of(name).kind == "backhoe" for name in site.file.machines}
+    return plan(seed, planners, rounds, quick) if only is None else plan_only(seed, planners, only, rounds)
 
 
 def drill(site: Site, waves: list[list[Trial]], seconds: float) -> list[Row]:
@@ -77,11 +78,16 @@ def drill(site: Site, waves: list[list[Trial]], seconds: float) -> list[Row]:
 @click.command()
 @click.option("--quick", is_flag=True, help="Every kind of stop and every fault at least once, in at most 6 minutes.")
 @click.option("--rounds", default=1, show_default=True, type=click.IntRange(1, 50), help="About 160 trials each.")
+@click.option(
+    "--only", metavar="STOP", type=click.Choice(sorted(STOPS)), help="One kind of stop: a round is one trial a machine."
+)
 @click.option("--seed", type=int, help="Repeat the plan of an earlier drill; it is printed with the figures.")
 @click.option("--report", type=click.Path(dir_okay=False, path_type=Path), help="Write a page (Markdown).")
 @session.json_option
 @click.pass_context
-def command(ctx: click.Context, quick: bool, rounds: int, seed: int | None, report: Path | None, as_json: bool) -> None:
+def command(
+    ctx: click.Context, quick: bool, rounds: int, only: str | None, seed: int | None, report: Path | None, as_json: bool
+) -> None:
     """Stop every simulated machine in every way, with every fault, and compare each receipt with the true motion.
 
     Runs are cancelled, machines stopped, processes killed and frozen, and the power is cut, while machines lie, coast
@@ -94,14 +100,17 @@ def command(ctx: click.Context, quick: bool, rounds: int, seed: int | None, repo
       tms --site drill drill --quick
       tms --site drill drill --json --report drill.md
       tms --site drill drill --rounds 4 --seed 7
+      tms --site drill drill --only "kill rc+tms:ts+rp+subtask" --rounds 9
     """
     if report is not None and not os.access(report.absolute().parent, os.W_OK):  # and not after an hour of work
         raise TmsError(f"{report}: its folder is not there or cannot be written: choose another place", "NO_FILE")
+    if quick and only:
+        raise click.UsageError("--quick and --only exclude each other: --quick tries every kind of stop")
     check(session.site())
     own_state(session.site())
     site = session.site()  # with the state folder of the drill
     chosen = random.SystemRandom().randrange(10**6) if seed is None else seed
-    waves = planned(site, chosen, rounds, quick)
+    waves = planned(site, chosen, rounds, quick, only)
     click.echo(f"seed {chosen}, {sum(map(len, waves))} trials, logs in {site.state}/log", err=True)
     rows = drill(site, waves, QUICK_LIMIT if quick else LIMIT * rounds)
     figures = drill_figures.summary(rows, chosen)

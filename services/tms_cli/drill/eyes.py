@@ -20,7 +20,7 @@ CANCELING, SUCCEEDED, CANCELED, ABORTED = 3, 4, 5, 6  # action_msgs/GoalStatus
 KEPT = 120.0  # s, longer than any trial
 ROUND = 10.0  # s between looks at what is too old
 LOOK = 0.1  # s
-WAITING = 180  # samples of the truth, three seconds
+WAITING = 250  # samples of the truth, ten seconds
 
 
 class Eyes:

@@ -67,6 +67,7 @@ SHARED = (
     Stop(How.KILL, (RC, "tms:host"), shared=True, covered=False),
     Stop(How.POWER, shared=True, covered=False, latches=True),
 )
+STOPS = {stop.name: stop for stop in (*SINGLE, *(stop for stops in BESIDE for stop in stops), *SHARED)}
 NONE = "none"
 LIES: Mapping[str, Mapping[str, Any]] = {  # of what the machine tells; it moves as it should
     "zero_velocity": {"zero_velocity": True},
@@ -115,6 +116,13 @@ def plan(seed: int, planners: Mapping[str, bool], rounds: int, quick: bool) -> l
         dealer.dice.shuffle(round_)
         waves += round_
     return waves
+
+
+def plan_only(seed: int, planners: Mapping[str, bool], name: str, waves: int) -> list[list[Trial]]:
+    """Waves of one kind of stop; a machine without a planner of its own is cancelled where that is hit alone."""
+    dealer, stop = _Dealer(seed, planners), STOPS[name]
+    stops = [SINGLE[0] if stop.processes == (RP,) and not planner else stop for planner in planners.values()]
+    return [dealer.mixed(stops) for _ in range(waves)]
 
 
 class _Dealer:

@@ -4,6 +4,7 @@ import contextlib
 import os
 import subprocess
 import sys
+from pathlib import Path
 from types import TracebackType
 
 from tms_core import state_folder
@@ -13,6 +14,7 @@ from tms_core.environment import environment
 GROUP = "sim"  # of the process table
 END_LIMIT = 5.0  # s
 NICE = -15  # before the gateways: a machine does not wait for them
+AUTOGROUP = "/proc/{}/autogroup"  # of its session, where the kernel weighs sessions before it weighs processes
 
 
 class StandIns:
@@ -25,9 +27,13 @@ class StandIns:
         with state_folder.private(), (site.state / "log" / f"{GROUP}.{machine}.log").open("ab") as log:
             words = [sys.executable, "-m", "tms_core.run", f"{GROUP}:{machine}"]
             env = {**os.environ, **environment(site)}
-            child = subprocess.Popen(words, env=env, stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT)
+            child = subprocess.Popen(
+                words, env=env, stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT, start_new_session=True
+            )
         with contextlib.suppress(PermissionError):  # needs CAP_SYS_NICE
             os.setpriority(os.PRIO_PROCESS, child.pid, NICE)
+        with contextlib.suppress(OSError):  # the same; or no such thing here
+            Path(AUTOGROUP.format(child.pid)).write_text(str(NICE), encoding="ascii")
         return child
 
     def dead(self) -> list[str]:

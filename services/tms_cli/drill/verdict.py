@@ -9,7 +9,7 @@ from tms_cli.drill.plan import IN_ORDER, NONE, How, Trial
 from tms_cli.drill.record import Receipt, Recording, Sample
 
 TOLERANCE = 1.1  # of the limit of standing: the truth is sampled, and rounded by nobody
-FRAME = 0.02  # s between samples of the truth
+FRAME = 0.02  # s, half of the time between samples of the truth
 CLAIMED = 0.2  # s of standing that a receipt claims
 LATENCY = 0.1  # s before it in which a new motion is not told yet: two periods of the sources and a beat
 BLIND = 1.0  # s without the truth: from 0.5 s on a stand-in that does not run loses time (tms_sim/telemetry.py)

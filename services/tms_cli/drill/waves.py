@@ -6,6 +6,7 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from typing import TypeVar
 
 import click
@@ -29,7 +30,7 @@ class Waves:
     def __init__(self, node: Ros, site: Site, stand_ins: StandIns) -> None:
         self._site, self._stand_ins = site, stand_ins
         self._hands = {machine: Hand(node, site, machine) for machine in site.file.machines}
-        node.on_executor(_come_first)
+        _come_first()
         # Twice: a strike waits beside the trial that it is for.
         self._pool = ThreadPoolExecutor(2 * len(self._hands) + 1, "drill")
         self._total = self._made = 0
@@ -126,6 +127,9 @@ class Waves:
 
 
 def _come_first() -> None:
-    """On the executor thread alone, not for what this process starts: what is seen late is not seen as it was."""
-    with contextlib.suppress(PermissionError):  # needs CAP_SYS_NICE
-        os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), NICE)
+    """ROS's threads, but not those that start processes: what is heard late may be lost, and is not the truth."""
+    own = threading.get_native_id()
+    for thread in Path("/proc/self/task").iterdir():
+        if int(thread.name) != own:
+            with contextlib.suppress(PermissionError, ProcessLookupError):  # needs CAP_SYS_NICE; or it has ended
+                os.setpriority(os.PRIO_PROCESS, int(thread.name), NICE)

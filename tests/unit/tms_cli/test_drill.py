@@ -9,7 +9,7 @@ import pytest
 from tms_cli.commands import drill
 from tms_cli.drill import tasks
 from tms_cli.drill.figures import percentile, summary
-from tms_cli.drill.plan import BESIDE, FAULTS, NONE, RP, SHARED, SINGLE, fault_of, plan
+from tms_cli.drill.plan import FAULTS, NONE, RP, SINGLE, STOPS, fault_of, plan, plan_only
 from tms_cli.drill.report import line, markdown, text
 from tms_cli.drill.verdict import HUNG, LEFT_OUT, Row
 from tms_core.config import CONFIGS, load_site
@@ -18,7 +18,7 @@ from tms_ts import bt
 
 MACHINES = {"zx200": True, "zx120": True, "ic120_1": False, "mst2200_1": False, "mst110cr_2": False, "d37": False}
 SITE = str(CONFIGS / "sites" / "drill.yaml")
-EVERY_STOP = {*SINGLE, *SHARED, *(stop for stops in BESIDE for stop in stops)}
+EVERY_STOP = set(STOPS.values())
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -54,6 +54,15 @@ def test_a_wave_has_one_trial_a_machine_and_hits_all_at_once_or_none(quick: bool
 
 def test_the_plan_fits_a_site_of_one_machine() -> None:
     assert all(len(wave) == 1 for wave in plan(1, {"ic120": False}, 1, quick=True))
+
+
+@pytest.mark.parametrize("name", STOPS)
+def test_a_drill_of_one_stop_hits_every_machine_with_it(name: str) -> None:
+    waves = plan_only(2, MACHINES, name, 9)
+    assert [[trial.machine for trial in wave] for wave in waves] == [list(MACHINES)] * 9
+    for trial in (trial for wave in waves for trial in wave):
+        lacks_it = STOPS[name].processes == (RP,) and not MACHINES[trial.machine]
+        assert trial.stop == (SINGLE[0] if lacks_it else STOPS[name])
 
 
 @pytest.mark.parametrize("name", FAULTS)

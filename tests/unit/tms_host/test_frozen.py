@@ -74,16 +74,23 @@ def test_what_somebody_has_stopped_meanwhile_stays_so(app: Any, state: str, pid:
 
 
 @pytest.mark.parametrize(
-    ("state", "uptime", "killed"), [("RUNNING", 60.0, [7]), ("RUNNING", 4.0, []), ("STOPPING", 60.0, [])]
+    ("state", "uptime", "silent", "killed"),
+    [
+        ("RUNNING", 60.0, 3.0, [7]),
+        ("RUNNING", 4.0, 3.0, []),  # its successor, which may take long to start
+        ("RUNNING", 6.0, 5.0, []),  # the same, but supervisord took 2 s to answer
+        ("RUNNING", 60.0, None, []),  # it is back meanwhile
+        ("STOPPING", 60.0, 3.0, []),
+    ],
 )
 def test_only_a_gateway_that_once_gave_a_pulse_is_killed_without_one(
-    app: Any, state: str, uptime: float, killed: list[int], monkeypatch: pytest.MonkeyPatch
+    app: Any, state: str, uptime: float, silent: float | None, killed: list[int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Not its successor, which may take long to start; and once, though supervisord takes a while to notice."""
+    """And once, though supervisord takes a while to notice."""
     found: list[int] = []
     monkeypatch.setattr("os.kill", lambda pid, number: found.append(pid))
     supervisor: Any = SimpleNamespace(process=lambda name: Running(name, state, 7, uptime, ""))
-    watchdog = Watchdog(app, list, dict)
+    watchdog = Watchdog(app, list, lambda: {} if silent is None else {"zx200:rc": silent})
     for _ in range(2):
-        watchdog._kill(supervisor, "zx200:rc", 3.0)
+        watchdog._kill(supervisor, "zx200:rc")
     assert found == killed
