@@ -136,10 +136,9 @@ def test_sources_as_the_border_declares_them(said: Said) -> None:
 
 
 def test_the_truth_is_told_with_every_step(said: Said) -> None:
-    """Between two steps the machine does not move: joint states tell of the same steps."""
-    told, joints = stamps(said.more("truth", 100)), stamps(said.more("joint_states", 5))
-    assert len(told) / (told[-1] - told[0]) > 20.0  # on a busy machine
-    assert all(min(abs(one - stamp) for one in stamps(said.heard["truth"])) < 0.02 for stamp in joints[:-1])
+    """25 a second; between two steps the machine does not move."""
+    seen = stamps(said.more("truth", 100))
+    assert len(seen) / (seen[-1] - seen[0]) > 20.0  # on a busy machine
 
 
 def fault_seen(said: Said, key: str, shown: Callable[[list[Any]], bool], **fault: object) -> None:
