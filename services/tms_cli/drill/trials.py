@@ -130,7 +130,7 @@ class Hand:
             until(hit + BESIDE)
             stopped = time.time()
             self.work.cancel()
-        self.eyes.wait(lambda record: self._over(record, begun, stopped), begun, RECEIPT_LIMIT)
+        self.eyes.wait(lambda record: self._over(record, stopped), begun, RECEIPT_LIMIT)
         self._look_on(trial, begun)
         outcome = self._outcome(trial, begun, stopped)
         back = struck.back.result(2 * BACK_LIMIT)
@@ -150,11 +150,12 @@ class Hand:
                 numbers = [one.at - hit, one.share, *one.joints.values(), *one.place]
                 table.writerow([f"{number:.4f}" for number in numbers])
 
-    def _over(self, record: Recording, begun: float, stopped: float) -> bool:
+    def _over(self, record: Recording, stopped: float) -> bool:
         """A receipt, or a motion that was over before anybody could stop it."""
-        before = [goal for goal in record.goals.values() if goal.began <= begun]
-        arrived = all(goal.arrived and (goal.ended or 0.0) < stopped + BY_ITSELF for goal in before)
-        return bool(record.receipts) or (arrived and time.time() > stopped + BY_ITSELF)
+        over = stopped + BY_ITSELF
+        begun_by_then = [goal for goal in record.goals.values() if goal.began <= over]
+        arrived = all(goal.arrived and (goal.ended or 0.0) < over for goal in begun_by_then)
+        return bool(record.receipts) or (arrived and time.time() > over)
 
     def _look_on(self, trial: Trial, begun: float) -> None:
         """For as long as a receipt promises that the machine stands; for one that leaves it, until that is told."""
@@ -178,7 +179,7 @@ class Hand:
                 return INTERRUPTED if ended == "interrupted" else ended
             record = self.eyes.since(begun)
             proven = max((one.at for one in record.receipts), default=stopped)
-            if trial.stop.moves and record.goal_after(proven) < math.inf:
+            if trial.stop.moves and not self.work.lost and record.goal_after(proven) < math.inf:
                 return GOES_ON
             time.sleep(LOOK)
         return HUNG

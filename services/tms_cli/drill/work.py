@@ -42,7 +42,7 @@ class Work:
         self._fault = node.publisher(String, f"/{machine}/sim/fault")
         self._call: Call | None = None
         self._run = ""
-        self._lost = False  # its scheduler was lost: only the history tells how it ended
+        self.lost = False  # its scheduler was lost: only the history tells how it ended
         self.subtask = next(iter(self._subtasks.values()))  # the process behind the present leaf
 
     def be(self, fault: str) -> None:
@@ -58,7 +58,7 @@ class Work:
         """
         self.arm()
         self._peer.wait_ready(SERVER_LIMIT)
-        self._run, self._lost = "", False
+        self._run, self.lost = "", False
         goal = ExecuteTask.Goal(task_id=self._task, ignore_warnings=True)
         self._call = self._peer.send(goal, on_feedback=self._heard)
 
@@ -69,12 +69,12 @@ class Work:
 
     def scheduler_lost(self) -> None:
         """The client's side of it: nothing more will be heard of this goal."""
-        self._lost = True
+        self.lost = True
         self._peer.lost()
 
     def outcome(self) -> str | None:
         """How the run ended; None while it goes on."""
-        if self._lost:
+        if self.lost:
             return "interrupted" if self._interrupted() else None
         if self._call is None or self._call.outcome is None:
             return None
@@ -108,7 +108,7 @@ class Work:
 
     def _interrupted(self) -> bool:
         if not self._run:
-            return self._lost
+            return self.lost
         try:
             run = recent(self._node, self._run)
         except TmsError:
