@@ -1,6 +1,5 @@
 """`python -m tms_core.run <group:name>`: the one entry of every process."""
 
-import contextlib
 import ctypes
 import importlib
 import os
@@ -14,12 +13,15 @@ from tms_core.config import Site, load_site, version
 from tms_core.errors import ConfigError
 from tms_core.last_resort import LEAVE_LIMIT, end_after
 from tms_core.metrics import Health
+from tms_core.priority import come_first, threads
 from tms_core.processes import Process, find
 
 EXIT_LIMIT = 2.0  # s from SIGTERM to the end, whatever hangs
 PR_SET_PDEATHSIG = 1
-FIRST = ("tms_rc.node", "tms_ts.node", "tms_host.node")  # on a busy PC these must not miss a beat, nor see one missed
-NICE = -10
+# Nice of processes that must not miss a beat on a busy PC, nor see one missed, once they have started: none that starts
+# keeps one that works from its beats.
+FIRST = {"tms_ts.node": -15, "tms_rc.node": -12, "tms_host.node": -12}
+OF_A_MACHINE = -5  # planner and subtasks; those above, too, while they start
 
 
 def main(name: str) -> int:
@@ -60,12 +62,14 @@ def _serve(site: Site, row: Process) -> int:
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda _number, _frame: stop.set())
     if row.module in FIRST:
-        _come_first()
+        come_first(OF_A_MACHINE, threads())
     ros = Ros(row.full.replace(":", "_"))
     app = App(site, row, ros, logger)
     importlib.import_module(row.module).start(app)
     app_box.append(app)
     Graph(ros, logger)
+    if row.module in FIRST or row.group == row.machine:
+        come_first(FIRST.get(row.module, OF_A_MACHINE), threads())
     logger.info("event=started pid=%d", os.getpid())
     while not stop.wait(0.5) and not ros.failed.is_set():
         pass
@@ -79,13 +83,6 @@ def _serve(site: Site, row: Process) -> int:
     end_after(LEAVE_LIMIT, code)
     ros.leave()
     return code
-
-
-def _come_first() -> None:
-    with contextlib.suppress(
-        PermissionError
-    ):  # needs CAP_SYS_NICE; without it a busy PC may stop a machine for nothing
-        os.setpriority(os.PRIO_PROCESS, 0, NICE)
 
 
 def _die_with_parent() -> None:

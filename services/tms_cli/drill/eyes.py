@@ -24,14 +24,16 @@ WAITING = 250  # samples of the truth, ten seconds
 
 
 class Eyes:
-    """Callbacks run on the executor thread, everything else in those of the trials."""
+    """Callbacks run on the executor thread, looks in that of the pulse, everything else in those of the trials."""
 
     def __init__(self, node: Ros, site: Site, machine: str) -> None:
         border, self._still = site.border(machine), site.model_of(machine).still
         self._lock = threading.Lock()
         self._record = Recording()
         self._forgotten = time.time()
-        node.subscribe(JointState, f"/{machine}/sim/truth", self._on_truth, depth=WAITING)
+        # Not by callbacks: a hundred and fifty a second would take a busy PC a tenth of a processor.
+        self._truth = node.sample_arrivals(JointState, f"/{machine}/sim/truth", WAITING, best_effort=False)
+        node.pulse.add(self._look)
         node.subscribe(StopReceipt, f"/{machine}/rc/receipts", self._on_receipt, depth=20, latched=True)
         node.subscribe(MachineState, f"/{machine}/rc/state", self._on_state, depth=10, latched=True)
         for motion in motions(border):
@@ -42,13 +44,13 @@ class Eyes:
         if border.emg_stop:
             node.subscribe(Bool, f"/{machine}/{border.emg_stop}", self._on_emergency, depth=10)
 
-    def _on_truth(self, message: Any) -> None:
-        sample = sample_of(message, self._still)
+    def _look(self) -> None:
+        samples = [sample_of(arrival.message, self._still) for arrival in self._truth()]
         with self._lock:
-            self._record.truth.append(sample)
-            if sample.at - self._forgotten > ROUND:
-                self._forgotten = sample.at
-                self._record = self._record.since(sample.at - KEPT)
+            self._record.truth += samples
+            if samples and samples[-1].at - self._forgotten > ROUND:
+                self._forgotten = samples[-1].at
+                self._record = self._record.since(self._forgotten - KEPT)
 
     def _on_receipt(self, message: Any) -> None:
         now = time.time()

@@ -1,12 +1,8 @@
 """Waves of trials: all machines are set to work, each is hit, and all are brought to rest again."""
 
-import contextlib
-import os
-import threading
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 from typing import TypeVar
 
 import click
@@ -19,6 +15,7 @@ from tms_cli.drill.trials import LEAD, Hand, Struck
 from tms_cli.drill.verdict import Row, empty
 from tms_core.config import Site
 from tms_core.errors import TmsError
+from tms_core.priority import come_first, others
 from tms_core.ros import Ros
 
 T = TypeVar("T")
@@ -30,7 +27,8 @@ class Waves:
     def __init__(self, node: Ros, site: Site, stand_ins: StandIns) -> None:
         self._site, self._stand_ins = site, stand_ins
         self._hands = {machine: Hand(node, site, machine) for machine in site.file.machines}
-        _come_first()
+        # ROS's threads, but not those that start processes: what is heard late may be lost, and is not the truth.
+        come_first(NICE, others())
         # Twice: a strike waits beside the trial that it is for.
         self._pool = ThreadPoolExecutor(2 * len(self._hands) + 1, "drill")
         self._total = self._made = 0
@@ -124,12 +122,3 @@ class Waves:
     def close(self) -> None:
         """Free the threads."""
         self._pool.shutdown(cancel_futures=True)
-
-
-def _come_first() -> None:
-    """ROS's threads, but not those that start processes: what is heard late may be lost, and is not the truth."""
-    own = threading.get_native_id()
-    for thread in Path("/proc/self/task").iterdir():
-        if int(thread.name) != own:
-            with contextlib.suppress(PermissionError, ProcessLookupError):  # needs CAP_SYS_NICE; or it has ended
-                os.setpriority(os.PRIO_PROCESS, int(thread.name), NICE)

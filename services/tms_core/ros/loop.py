@@ -11,8 +11,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Awaitable, Callable, Iterator
-from contextlib import contextmanager, suppress
-from pathlib import Path
+from contextlib import contextmanager
 from typing import Any, TypeVar
 
 import rclpy
@@ -27,6 +26,7 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Future
 
 from tms_core.errors import RosError
+from tms_core.priority import come_first, threads
 from tms_core.pulse import Pulse
 from tms_core.ros.goals import Message
 
@@ -204,7 +204,7 @@ def _undisturbed() -> Iterator[None]:
     Threads that are started meanwhile do not come first: theirs are some hundred milliseconds of answers to read, and
     seven processes that started at once kept everything else on the PC from its two processors for up to 2.8 s.
     """
-    before = _threads()
+    before = threads()
     try:
         os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(1))
     except OSError:  # not allowed, or not known here
@@ -214,14 +214,7 @@ def _undisturbed() -> Iterator[None]:
         yield
     finally:
         os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
-        nice = os.getpriority(os.PRIO_PROCESS, 0)
-        for number in _threads() - before:  # their share of the processors was reset as well
-            with suppress(ProcessLookupError, PermissionError):  # it has ended; or only the first step is allowed
-                os.setpriority(os.PRIO_PROCESS, number, nice)
-
-
-def _threads() -> set[int]:
-    return {int(thread.name) for thread in Path("/proc/self/task").iterdir()}
+        come_first(os.getpriority(os.PRIO_PROCESS, 0), threads() - before)  # their share was reset as well
 
 
 class _Executor(SingleThreadedExecutor):  # type: ignore[misc]

@@ -104,10 +104,12 @@ class Topics(Loop):
         arrivals = self.sample_arrivals(message_type, topic, depth)
         return lambda: [arrival.message for arrival in arrivals()]
 
-    def sample_arrivals(self, message_type: InterfaceType, topic: str, depth: int = 1) -> Callable[[], list[Arrival]]:
-        """As `sample`, with when each message came and its number."""
+    def sample_arrivals(
+        self, message_type: InterfaceType, topic: str, depth: int = 1, best_effort: bool = True
+    ) -> Callable[[], list[Arrival]]:
+        """As `sample`, with when each message came and its number; `best_effort`: lost ones are not asked for again."""
         subscription = self._subscribed(
-            message_type, topic, _unheard, quality.topic(depth, False, best_effort=True), _Asleep()
+            message_type, topic, _unheard, quality.topic(depth, False, best_effort=best_effort), _Asleep()
         )
 
         def news() -> list[Arrival]:
