@@ -18,6 +18,7 @@ PLACE, HEADING, TURNING = "place", "heading", "turning"
 HARD = 0.2  # rad beyond its limit at which a joint cannot be: its sensor, or its name, is wrong
 INFINITE = float("inf")
 SEEN, SHARE = 0.003, 0.5  # rad that were commanded must be seen, and this share of them after the stop
+OBEYS = 3.5  # s for which a machine may go on after an order to stop, where nothing has shown that it obeys
 
 
 @dataclass(frozen=True)
@@ -217,13 +218,14 @@ class StandStill:
         A strongest stop that acts at once (`emg_stop_at_once`) needs no dead time if it can be seen to act: the machine
         moves, or nothing is on its way. Else one that ignores it would be believed to stand.
         An expected motion that was never seen makes what is heard doubtful, as a replayed record is: then nothing
-        counts before every motion must have ended.
+        counts before every motion must have ended, also that of a machine which goes on for a while.
         """
         visible = self._motion_at > begun - WORST or begun - self._quiet_since > self.dead_time
         at_once = strongest and self._at_once and visible
         wait, coming = (0.0, {}) if at_once else (self.dead_time, expected.to_come)
         expected = Expected(expected.since, {name: way for name, way in coming.items() if way > SEEN})
-        return Proof(begun + wait, begun + self.dead_time + self.braking, expected, self._model.still.seconds, at_once)
+        unseen = begun + self.dead_time + self.braking + OBEYS
+        return Proof(begun + wait, unseen, expected, self._model.still.seconds, at_once)
 
     def proven(self, proof: Proof, now: float) -> bool:
         """Whether it was seen."""

@@ -42,7 +42,7 @@ class Waves:
         """
         for hand in self._hands.values():
             hand.begin()
-            hand.work.end()
+        list(self._pool.map(lambda hand: hand.work.end(), self._hands.values()))
 
     def go(self, plan: Sequence[list[Trial]], seconds: float) -> list[Row]:
         """As much of the plan as the time allows; the rest is left out.
