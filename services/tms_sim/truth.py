@@ -1,6 +1,6 @@
 """The true motion of a stand-in on a way of its own, /<machine>/sim/truth, which no fault changes. For drills.
 
-Its time passes in the steps of its telemetry, so nothing happens between two messages.
+Its time passes in the steps of its telemetry, 0.04 s unless the process was held up, and each is told.
 """
 
 import math

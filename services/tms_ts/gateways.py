@@ -21,7 +21,7 @@ SOFTWARE_STOP = "software stop"
 
 @dataclass(frozen=True)
 class Holder:
-    """A run as the gateways' news reach it; all are called on the executor thread and must be quick."""
+    """A run as the gateways' news reach it; what is called is called on the executor thread and must be quick."""
 
     number: int  # fencing number
     started: tuple[int, int]  # s and ns of the wall clock
@@ -62,12 +62,12 @@ class Gateways:
 
     # permits
 
-    def hold(self, machines: list[str], number: int, run_id: str, holder: Holder) -> None:
+    def hold(self, machines: list[str], run_id: str, holder: Holder) -> None:
         """Stand behind a run that moves these machines."""
         for machine in machines:
             if machine in self._permits:
                 self._holders[machine] = holder
-                self._permits[machine].hold(Owner(number).goal_id(), run_id)
+                self._permits[machine].hold(Owner(holder.number).goal_id(), run_id)
 
     def drop(self, machines: list[str]) -> None:
         """The run is over and its machines were stopped."""

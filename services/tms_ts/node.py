@@ -264,7 +264,7 @@ class Scheduler:
             raise no_disk(self._disk)
         # Not before: while many processes start on a busy PC a permit may lapse, though nothing moves yet.
         holder = Holder(facts.number, started, run.stopped, machines.receipt, run.alive)
-        self._gateways.hold(facts.machines, facts.number, facts.run_id, holder)
+        self._gateways.hold(facts.machines, facts.run_id, holder)
         if not run.cancelled.is_set():
             self._refuse_latched(facts.machines)  # stopped meanwhile
         with self._monitors.watch(facts.run_id, tree):

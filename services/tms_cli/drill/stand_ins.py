@@ -10,6 +10,7 @@ from types import TracebackType
 from tms_core import state_folder
 from tms_core.config import Site
 from tms_core.environment import environment
+from tms_core.priority import come_first
 
 GROUP = "sim"  # of the process table
 END_LIMIT = 5.0  # s
@@ -30,9 +31,8 @@ class StandIns:
             child = subprocess.Popen(
                 words, env=env, stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT, start_new_session=True
             )
-        with contextlib.suppress(PermissionError):  # needs CAP_SYS_NICE
-            os.setpriority(os.PRIO_PROCESS, child.pid, NICE)
-        with contextlib.suppress(OSError):  # the same; or no such thing here
+        come_first(NICE, {child.pid})
+        with contextlib.suppress(OSError):  # without the right to; or no such thing here
             Path(AUTOGROUP.format(child.pid)).write_text(str(NICE), encoding="ascii")
         return child
 

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from click.testing import CliRunner
 
 from tms_cli.commands import drill
 from tms_cli.drill import tasks
@@ -63,6 +64,12 @@ def test_a_drill_of_one_stop_hits_every_machine_with_it(name: str) -> None:
     for trial in (trial for wave in waves for trial in wave):
         lacks_it = STOPS[name].processes == (RP,) and not MACHINES[trial.machine]
         assert trial.stop == (SINGLE[0] if lacks_it else STOPS[name])
+
+
+def test_a_quick_drill_of_one_stop_is_refused() -> None:
+    refused = CliRunner().invoke(drill.command, ["--quick", "--only", "cancel"])
+    assert refused.exit_code == 2
+    assert "--quick and --only exclude each other" in refused.output
 
 
 @pytest.mark.parametrize("name", FAULTS)
