@@ -112,7 +112,7 @@ class Guard:
         wrong = self._wait_for_permit(active.owner)
         if wrong is not None:
             return wrong
-        self.stopper.wait_idle(PERMIT_LIMIT)
+        self.stopper.wait_idle(STOP_PROVEN)
         with self._taking:
             if self.active is not None:
                 return f"{self._app.machine} is still moved by another goal"

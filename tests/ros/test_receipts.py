@@ -16,7 +16,7 @@ from control_msgs.action import FollowJointTrajectory
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, String
 from tms_msg_rc.msg import MachineState, StopReceipt
-from tms_msg_rc.srv import Rearm
+from tms_msg_rc.srv import Rearm, StopMachine
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from conftest import GATEWAYS_ONLY, Mesh, mesh_apart, wait_until
@@ -200,6 +200,28 @@ def test_a_software_stop_in_the_dead_time_that_is_ignored(machine: Machine) -> N
     receipt = machine.wait_receipt()
     machine.honest(receipt)
     assert not receipt.confirmed
+
+
+def test_a_goal_waits_for_a_long_proof(machine: Machine) -> None:
+    """Nothing shows that a stuck machine obeys, so its stops take long to prove: the next goal comes meanwhile."""
+
+    def stop(after: float) -> threading.Thread:
+        machine.until(lambda: machine.truth[-1][0] > after, "time to pass")
+        request = StopMachine.Request(cause="a test", orderly=True)
+        thread = threading.Thread(target=machine.ros.call, args=(StopMachine, "/zx200/rc/stop", request, LIMIT))
+        thread.start()
+        return thread
+
+    machine.be(stall=0.0)
+    call, begun = machine.swing(duration=5), machine.truth[-1][0]
+    first = stop(begun + 2.0)
+    second = stop(begun + 6.0)
+    machine.until(lambda: call.outcome is not None, "the first goal is over")
+    machine.be()
+    assert second.is_alive()
+    machine.wait_moving(machine.swing())
+    first.join(LIMIT)
+    second.join(LIMIT)
 
 
 def test_a_joint_that_is_not_heard_after_a_restart_is_unknown(machine: Machine) -> None:
