@@ -7,6 +7,8 @@ import platform
 import signal
 import sys
 import threading
+import time
+from logging import Logger
 
 from tms_core import discovery, environment, log, metrics, state_folder, store
 from tms_core.config import Site, load_site, version
@@ -16,6 +18,8 @@ from tms_core.metrics import Health
 from tms_core.priority import come_first, threads
 from tms_core.processes import Process, find
 
+LOOK = 0.5  # s
+FORGOTTEN = 7.0  # s; with the 2 s between announcements less than the lease of discovery (10 s)
 EXIT_LIMIT = 2.0  # s from SIGTERM to the end, whatever hangs
 PR_SET_PDEATHSIG = 1
 # Nice of processes that must not miss a beat on a busy PC, nor see one missed, once they have started: none that starts
@@ -71,8 +75,7 @@ def _serve(site: Site, row: Process) -> int:
     if row.module in FIRST or row.group == row.machine:
         come_first(FIRST.get(row.module, OF_A_MACHINE), threads())
     logger.info("event=started pid=%d", os.getpid())
-    while not stop.wait(0.5) and not ros.failed.is_set():
-        pass
+    _wait_for_end(stop, ros.failed, logger)
     end_after(EXIT_LIMIT, 1)
     app.stop()
     ros.stop()
@@ -83,6 +86,20 @@ def _serve(site: Site, row: Process) -> int:
     end_after(LEAVE_LIMIT, code)
     ros.leave()
     return code
+
+
+def _wait_for_end(stop: threading.Event, failed: threading.Event, logger: Logger) -> None:
+    """Until the process is asked to end, or has failed.
+
+    One that stood still for long has failed: others may have forgotten it, and two of which one has forgotten the other
+    may stay deaf to each other for ever. Its successor is found by all.
+    """
+    before = time.monotonic()
+    while not stop.wait(LOOK) and not failed.is_set():
+        before, stood = time.monotonic(), time.monotonic() - before - LOOK
+        if stood > FORGOTTEN:
+            logger.error("event=forgotten seconds=%.1f action='restarted'", stood)
+            failed.set()
 
 
 def _die_with_parent() -> None:

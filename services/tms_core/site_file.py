@@ -141,8 +141,7 @@ class OnLoss(Settings):
     """What happens when a process is lost."""
 
     retries: int = Field(ge=0, le=10, default=2)  # times that a leaf sends its goal again
-    # s without an answer after which tms:host restarts a process; 0: never. Less than the lease of discovery (10 s).
-    frozen: float = Field(ge=0, default=7.0)
+    frozen: float = Field(ge=0, default=20.0)  # s without an answer after which tms:host restarts a process; 0: never
 
 
 class Log(Settings):
