@@ -110,11 +110,20 @@ def void(seen: Seen) -> str:
     gap = max((late - early for early, late in pairwise(moments)), default=math.inf)
     if gap > BLIND:
         return f"its true motion was not heard for {gap:.1f} s"
+    if _stood(seen) and (seen.trial.fault == NONE or not record.receipts):  # the fault itself may have stopped it
+        return "it was stopped before the hit"
     due = any(
         goal.began <= seen.begun and not (goal.arrived and (goal.ended or 0.0) < seen.stop + BY_ITSELF)
         for goal in record.goals.values()
     )
     return "" if due or record.receipts else "its motion ended by itself"
+
+
+def _stood(seen: Seen) -> bool:
+    """Whether every goal had ended before the hit, and the machine stood from then on."""
+    record, fresh = seen.record, seen.record.goal_after(seen.hit)
+    at_work = any(one.began <= seen.hit and (one.ended or math.inf) > seen.hit for one in record.goals.values())
+    return not at_work and not any(seen.hit <= one.at < fresh and moves(one) for one in record.truth)
 
 
 def moves(sample: Sample) -> bool:

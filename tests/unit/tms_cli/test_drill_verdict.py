@@ -137,6 +137,19 @@ def test_a_machine_that_was_stopped_before_proves_nothing() -> None:
     assert judge(found).void == ""
 
 
+def test_a_machine_that_stood_at_the_hit_proves_nothing() -> None:
+    """On a busy PC a run may lose a process that nobody hit, and the hit may come late."""
+    for fault, receipts in ((NONE, [receipt(-5.0)]), ("nan", [])):
+        found = seen(truth(), *receipts, fault=fault)
+        found.record.goals[b"1"] = Goal(HIT - 6.0, HIT - 4.0)
+        assert judge(found).void == "it was stopped before the hit"
+        found.record.truth[:] = truth((0.5, 0.6))
+        assert judge(found).void == ""  # it moved without a goal
+    found = seen(truth(), receipt(-0.4), fault="nan")  # which has stopped it
+    found.record.goals[b"1"] = Goal(HIT - 6.0, HIT - 0.1)
+    assert judge(found).void == ""
+
+
 def test_a_truth_with_a_gap_proves_nothing_but_a_lie() -> None:
     found = seen([one for one in truth((0.0, 9.0)) if not 3.0 < one.at - HIT < 5.0])
     assert judge(found).void == "its true motion was not heard for 2.0 s" and not judge(found).ran_on
