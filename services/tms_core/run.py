@@ -19,7 +19,7 @@ from tms_core.priority import come_first, threads
 from tms_core.processes import Process, find
 
 LOOK = 0.5  # s
-FORGOTTEN = 7.0  # s; with the 2 s between announcements less than the lease of discovery (10 s)
+FORGOTTEN = 4.5  # s; less than the lease of discovery (5 s)
 EXIT_LIMIT = 2.0  # s from SIGTERM to the end, whatever hangs
 PR_SET_PDEATHSIG = 1
 # Nice of processes that must not miss a beat on a busy PC, nor see one missed, once they have started: none that starts

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from tms_core.ros.node import Ros
 
 UNKNOWN_GOAL = 2  # action_msgs/CancelGoal: the server does not know the goal, so it was restarted
-DISCOVERY_LEASE = 11.0  # s after which discovery itself has dropped a dead process (10 s in our DDS profile)
+DISCOVERY_LEASE = 6.0  # s after which discovery itself has dropped a dead process (5 s in our DDS profile)
 
 
 class Call:
