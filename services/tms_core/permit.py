@@ -15,7 +15,6 @@ from tms_core.ros import Peer, Ros
 
 BEATS = 2  # of the pulse from one assertion to the next: each wakes every process of the machine
 LEASE = 0.5  # s without an assertion until a process counts as lost
-MISSED = 5.0  # s for which a process may be heard elsewhere but not here, until its topic is subscribed to anew
 GRACE = 0.1  # s more when the PC of the watcher itself did not run for a moment
 NOBODY = bytes(16)
 
@@ -56,33 +55,10 @@ class Link:
     def __init__(self, ros: Ros, machine: str, process: str, changed: Callable[["Link"], None]) -> None:
         self.process, self.goal, self.holder = process, NOBODY, ""
         self._ros, self._changed = ros, changed
-        self._topic = topic(machine, process)
-        self._missed: float | None = None  # monotonic time since which it is heard elsewhere, but not here
         self.corpses = 0  # predecessors that discovery has not dropped yet, or the process itself while it is frozen
         self.left = False  # the last one took leave, in order; a killed one leaves a corpse
         self._heard, self._alive, self._asserted = 0.0, False, 0
-        self._subscription = self._subscribed()
-
-    def _subscribed(self) -> Any:
-        return self._ros.lease_subscribe(Message, self._topic, LEASE, self._on_message, self._on_liveliness)
-
-    def heard_elsewhere(self) -> str:
-        """The process was heard on another topic: if that goes on while it counts as lost here, subscribe anew.
-
-        On a busy PC a process that starts may stay without the assertions of another one for ever, whatever else it
-        hears of that. On the executor thread; returns what was known here, empty if nothing was done.
-        """
-        now = time.monotonic()
-        if self.alive or self._missed is None:
-            self._missed = None if self.alive else now
-            return ""
-        if now - self._missed < MISSED:
-            return ""
-        self._missed = now
-        known = f"goal={self.goal != NOBODY} asserted={self._asserted} not_asserted={self.corpses}"
-        self._ros.unsubscribe(self._subscription)
-        self._subscription = self._subscribed()
-        return f"{known} publishers={self._ros.publisher_count(self._topic)}"
+        ros.lease_subscribe(Message, topic(machine, process), LEASE, self._on_message, self._on_liveliness)
 
     @property
     def alive(self) -> bool:

@@ -128,8 +128,6 @@ class Gateways:
 
     def _state(self, machine: str, state: Any) -> None:
         self._states[machine] = state
-        if known := self._links[machine].heard_elsewhere():
-            self._app.log.warning("event=gateway_not_found machine=%s action='listens anew' %s", machine, known)
         holder = self._holders.get(machine)
         if holder is not None and state.latch:
             holder.stopped(machine, state.latch)

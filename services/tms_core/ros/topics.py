@@ -156,10 +156,6 @@ class Topics(Loop):
 
         return self._subscribed(message_type, topic, heard, quality.lease(seconds), liveliness=told)
 
-    def unsubscribe(self, subscription: Any) -> None:
-        """Nothing more is heard of it. On the executor thread."""
-        self.node.destroy_subscription(subscription)
-
     def ends(self) -> tuple[int, int, int]:
         """Remote readers of our publishers, remote writers of our subscriptions, nodes; on the executor thread."""
         readers = sum(end.get_subscription_count() for end in list(self.node.publishers))
