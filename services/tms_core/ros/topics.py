@@ -20,6 +20,7 @@ from tms_core.ros import quality
 from tms_core.ros.goals import InterfaceType, Message
 from tms_core.ros.loop import Loop
 
+TOLD = 0.1  # s in which the news that a publisher is asserted follows its message, twice
 RCLPYS_OWN = "/parameter_events"
 UNKNOWN = "_NODE_NAME_UNKNOWN_"  # of an end that discovery has found a moment before its node
 
@@ -151,10 +152,15 @@ class Topics(Loop):
         A publisher that was killed counts as not asserted until discovery has dropped it.
         """
 
-        def told(event: Any) -> None:
-            alive(event.alive_count, event.not_alive_count)
+        count = _Count(alive)
 
-        return self._subscribed(message_type, topic, heard, quality.lease(seconds), liveliness=told)
+        def heard_first(message: Message) -> None:
+            if not count.known:
+                # In two steps: what was told meanwhile is handled before the second one.
+                self.after(TOLD, lambda: self.after(TOLD, count.made_up))
+            heard(message)
+
+        return self._subscribed(message_type, topic, heard_first, quality.lease(seconds), liveliness=count.told)
 
     def ends(self) -> tuple[int, int, int]:
         """Remote readers of our publishers, remote writers of our subscriptions, nodes; on the executor thread."""
@@ -187,6 +193,33 @@ def _mismatch(writer: Any, reader: Any) -> str:
         return f"{writer.topic_type} is not {reader.topic_type}"
     found, reason = qos_check_compatible(writer.qos_profile, reader.qos_profile)
     return str(reason).removeprefix("ERROR: ").rstrip("; ") if found == QoSCompatibility.ERROR else ""
+
+
+class _Count:
+    """Publishers that are, and are not, asserted, as one subscription knows them.
+
+    Fast DDS tells a reader of changes only, and not of those from before it is registered: of a publisher that was
+    asserted a moment too early, or that another reader of this process knows already, it counts from 0 down to -1.
+    Such a one has sent its message all the same, and that counts as an assertion.
+    """
+
+    def __init__(self, alive: Callable[[int, int], None]) -> None:
+        self._alive, self._missed = alive, 0
+        self.known = False  # whether anything was told
+
+    def told(self, event: Any) -> None:
+        """By DDS."""
+        self.known = True
+        self._missed = max(self._missed, -event.alive_count)
+        if event.not_alive_count < 0:  # the one that was missed has ended since, and that was missed, too
+            self._missed = 0
+        self._alive(max(0, event.alive_count + self._missed), max(0, event.not_alive_count))
+
+    def made_up(self) -> None:
+        """A message came, and nothing was told."""
+        if not self.known:
+            self.known, self._missed = True, 1
+            self._alive(1, 0)
 
 
 class _Asleep(CallbackGroup):  # type: ignore[misc]
