@@ -41,7 +41,7 @@ def motions(border: Border) -> list[Motion]:
 
 
 def stood_in(machine: str) -> str:
-    """Topic on which a host agent tells, with each press, that it presses `emg_stop` in place of a lost gateway."""
+    """Topic on which a host agent keeps when it last pressed `emg_stop` in place of a lost gateway."""
     return f"/{machine}/rc/stood_in"
 
 

@@ -17,8 +17,8 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
+from builtin_interfaces.msg import Time
 from prometheus_client import Counter, Gauge
-from std_msgs.msg import Bool
 from tms_msg_rc.msg import MachineState
 
 from tms_core.app import App
@@ -108,7 +108,7 @@ class Post:
         self._log = app.log
         self._done: Act | None = None  # what was commanded since the gateway was lost, and told
         self._controls = Controls(ros, machine, app.site.border(machine), keeps_emergency=False)
-        self._stood_in = ros.publisher(Bool, stood_in(machine))
+        self._now, self._stood_in = ros.now, ros.publisher(Time, stood_in(machine), 1, latched=True)
         self._gateway = Link(ros, machine, "rc", _looked_at)
         self._scheduler = Link(ros, machine, "ts", _looked_at)
         self._news = ros.sample(MachineState, f"/{machine}/rc/state")
@@ -142,7 +142,7 @@ class Post:
         self._controls.zero()  # messages leave sooner than requests
         if act is Act.EMERGENCY:
             self._controls.emergency(True)
-            self._stood_in.publish(Bool(data=True))
+            self._stood_in.publish(self._now())
         self._controls.cancel_everything()
 
     def _tell(self, act: Act | None) -> None:

@@ -4,8 +4,10 @@ What the host agent has pressed while this gateway was frozen or away is release
 what somebody else has pressed latches, since only a person's re-arm may release it.
 """
 
+import time
 from typing import Any
 
+from builtin_interfaces.msg import Time
 from std_msgs.msg import Bool
 
 from tms_core.app import App
@@ -14,6 +16,9 @@ from tms_rc.guard import Guard, Kind
 
 DEPTH = 10  # presses that may wait
 DOUBT = 0.3  # s for the host agent's word to come, if it was its press
+YOUNG = 10.0  # s in which a new gateway finds the host agent's two publishers one by one, on a busy PC
+YOUNG_DOUBT = 1.5  # s
+OLD = 3.0  # s; an older word of the host agent, which it keeps for whoever comes later, is about another press
 
 
 class Presses:
@@ -21,16 +26,21 @@ class Presses:
 
     def __init__(self, app: App, guard: Guard, topic: str) -> None:
         self._app, self._guard = app, guard
-        app.ros.subscribe(Bool, stood_in(app.machine), self._on_stood_in, depth=DEPTH)
+        self._begun = time.monotonic()
+        self._told_at = float("-inf")  # s, monotonic: when the host agent last said that it presses
+        app.ros.subscribe(Time, stood_in(app.machine), self._on_stood_in, latched=True)
         app.ros.subscribe(Bool, topic, self._on_press, depth=DEPTH)
 
-    def _on_stood_in(self, _message: Any) -> None:
-        self._guard.stood_in = True
+    def _on_stood_in(self, told: Any) -> None:
+        if abs(self._app.ros.now().sec - told.sec) <= OLD:  # of the same PC's clock
+            self._told_at, self._guard.stood_in = time.monotonic(), True
 
     def _on_press(self, message: Any) -> None:
         if message.data and not self._guard.latch.cause:  # latched, this gateway presses it itself
-            self._app.ros.after(DOUBT, self._judge)
+            now = time.monotonic()
+            doubt = YOUNG_DOUBT if now - self._begun < YOUNG else DOUBT
+            self._app.ros.after(doubt, lambda: self._judge(now - doubt))
 
-    def _judge(self) -> None:
-        if not self._guard.stood_in and not self._guard.latch.cause:
+    def _judge(self, since: float) -> None:
+        if self._told_at < since and not self._guard.latch.cause:
             self._guard.stop_now("emg_stop was pressed by somebody else", Kind.LATCH)

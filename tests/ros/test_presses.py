@@ -1,0 +1,74 @@
+"""Whose press of a machine's own stop it was, on real topics."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from builtin_interfaces.msg import Time
+from std_msgs.msg import Bool
+
+from conftest import wait_until
+from tms_core.border import stood_in
+from tms_core.ros import Ros
+from tms_rc import presses
+from tms_rc.guard import Kind
+from tms_rc.presses import Presses
+
+pytestmark = pytest.mark.ros
+TOPIC = "/zx200/emg_stop"
+
+
+class Gateway:
+    """What `Presses` needs of a gateway; a stop that it does not want latches, as the real one does."""
+
+    def __init__(self, ros: Ros) -> None:
+        self.stops: list[Kind] = []
+        self.stood_in = False
+        self.latch = SimpleNamespace(cause="")
+        self.heard = self.judged = 0
+        app: Any = SimpleNamespace(ros=ros, machine="zx200")
+        guard: Any = self
+        self._presses = Presses(app, guard, TOPIC)
+        ros.subscribe(Bool, TOPIC, self._press, depth=10)
+        self._ros = ros
+
+    def _press(self, _: Any) -> None:
+        self.heard += 1
+        self._ros.after(presses.YOUNG_DOUBT + 0.2, self._told)
+
+    def _told(self) -> None:
+        self.judged += 1
+
+    def stop_now(self, cause: str, kind: Kind) -> None:
+        self.stops.append(kind)
+        self.latch.cause = cause
+
+
+@pytest.mark.parametrize(("age", "expected"), [(1, []), (60, [Kind.LATCH])], ids=["its word", "an old word"])
+def test_the_host_agents_word_before_a_gateway_was_there_counts(
+    two_nodes: tuple[Ros, Ros], age: int, expected: list[Kind]
+) -> None:
+    host, ros = two_nodes
+    word, press = host.publisher(Time, stood_in("zx200"), 1, latched=True), host.publisher(Bool, TOPIC)
+    word.publish(Time(sec=host.now().sec - age))
+    gateway = Gateway(ros)
+
+    def judged() -> bool:
+        if not gateway.heard:
+            press.publish(Bool(data=True))
+        return gateway.judged > 0
+
+    wait_until(judged, 30, "a press is judged")
+    assert gateway.stops == expected
+    assert gateway.stood_in is (not expected)
+    host.node.destroy_publisher(word)
+
+
+def test_a_press_without_a_word_latches_and_a_release_does_not(two_nodes: tuple[Ros, Ros]) -> None:
+    host, ros = two_nodes
+    press, gateway = host.publisher(Bool, TOPIC), Gateway(ros)
+    wait_until(lambda: gateway.heard > 0 or press.publish(Bool(data=False)), 30, "the topic is heard")
+    assert not gateway.stops
+    press.publish(Bool(data=True))
+    wait_until(lambda: bool(gateway.stops), 30, "the press is judged")
+    assert gateway.stops == [Kind.LATCH]
