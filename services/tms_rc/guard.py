@@ -96,6 +96,8 @@ class Guard:
         self.pressed = 0.0  # monotonic time of the last software stop message
         self.by_hand = ""  # who drives it by hand
         self.stood_in = False  # the host agent has pressed `emg_stop` in place of this gateway
+        self.press_known = threading.Event()  # cleared while it is not known whose press of `emg_stop` it was
+        self.press_known.set()
         self.recovering = False  # what the last gateway may have left moving is being stopped
         self.active: Active | None = None
         self.told: Callable[[], None] = lambda: None  # called when the latch has changed, to tell it at once
@@ -112,6 +114,7 @@ class Guard:
         wrong = self._wait_for_permit(active.owner)
         if wrong is not None:
             return wrong
+        self.press_known.wait(STOP_PROVEN)
         self.stopper.wait_idle(STOP_PROVEN)
         with self._taking:
             if self.active is not None:

@@ -27,6 +27,7 @@ class Presses:
     def __init__(self, app: App, guard: Guard, topic: str) -> None:
         self._app, self._guard = app, guard
         self._begun = time.monotonic()
+        self._doubted = 0  # presses that were not judged yet
         self._told_at = float("-inf")  # s, monotonic: when the host agent last said that it presses
         app.ros.subscribe(Time, stood_in(app.machine), self._on_stood_in, latched=True)
         app.ros.subscribe(Bool, topic, self._on_press, depth=DEPTH)
@@ -39,8 +40,13 @@ class Presses:
         if message.data and not self._guard.latch.cause:  # latched, this gateway presses it itself
             now = time.monotonic()
             doubt = YOUNG_DOUBT if now - self._begun < YOUNG else DOUBT
+            self._doubted += 1
+            self._guard.press_known.clear()
             self._app.ros.after(doubt, lambda: self._judge(now - doubt))
 
     def _judge(self, since: float) -> None:
+        self._doubted -= 1
         if self._told_at < since and not self._guard.latch.cause:
             self._guard.stop_now("emg_stop was pressed by somebody else", Kind.LATCH)
+        if not self._doubted:
+            self._guard.press_known.set()

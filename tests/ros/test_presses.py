@@ -1,5 +1,6 @@
 """Whose press of a machine's own stop it was, on real topics."""
 
+import threading
 from types import SimpleNamespace
 from typing import Any
 
@@ -24,6 +25,7 @@ class Gateway:
     def __init__(self, ros: Ros) -> None:
         self.stops: list[Kind] = []
         self.stood_in = False
+        self.press_known = threading.Event()
         self.latch = SimpleNamespace(cause="")
         self.heard = self.judged = 0
         app: Any = SimpleNamespace(ros=ros, machine="zx200")
@@ -61,6 +63,7 @@ def test_the_host_agents_word_before_a_gateway_was_there_counts(
     wait_until(judged, 30, "a press is judged")
     assert gateway.stops == expected
     assert gateway.stood_in is (not expected)
+    assert gateway.press_known.is_set()
     host.node.destroy_publisher(word)
 
 
@@ -69,6 +72,11 @@ def test_a_press_without_a_word_latches_and_a_release_does_not(two_nodes: tuple[
     press, gateway = host.publisher(Bool, TOPIC), Gateway(ros)
     wait_until(lambda: gateway.heard > 0 or press.publish(Bool(data=False)), 30, "the topic is heard")
     assert not gateway.stops
+    gateway.press_known.set()
     press.publish(Bool(data=True))
+    wait_until(lambda: not gateway.press_known.is_set(), 30, "no goal leaves while it is in doubt")
+    assert not gateway.stops
+    press.publish(Bool(data=False))
     wait_until(lambda: bool(gateway.stops), 30, "the press is judged")
     assert gateway.stops == [Kind.LATCH]
+    assert gateway.press_known.is_set()
