@@ -65,10 +65,10 @@ class Recording:
     commands: list[float] = field(default_factory=list)  # to stop, as they reach the machine
 
     def since(self, at: float) -> "Recording":
-        """What came after a moment, the goals that were open then, and the last state before it."""
+        """What came after a moment, the stops and goals that were under way then, and the last state before it."""
         return Recording(
             self.truth[bisect_left(self.truth, at, key=lambda one: one.at) :],
-            [one for one in self.receipts if one.begun >= at],
+            [one for one in self.receipts if one.at >= at],
             {key: one for key, one in self.goals.items() if one.ended is None or one.ended >= at},
             [*[one for one in self.states if one.at < at][-1:], *[one for one in self.states if one.at >= at]],
             [one for one in self.commands if one >= at],

@@ -1,6 +1,7 @@
 """Compares what was told of a stop with the true motion. Pure logic; all times are s since 1970."""
 
 import math
+from bisect import bisect_right
 from dataclasses import asdict, dataclass, field
 from itertools import pairwise
 from typing import Any
@@ -106,7 +107,10 @@ def void(seen: Seen) -> str:
     before = [state for state in record.states if state.at < seen.begun][-1:]
     if any(state.latch or state.hold for state in before):
         return f"it was stopped before: {before[0].latch or before[0].hold}"
-    moments = [seen.begun, *(one.at for one in record.truth if one.at <= seen.stop + seen.ends + EXTRA)]
+    if any(one.begun < seen.begun for one in record.receipts):
+        return "it was being stopped before"
+    told = [one.at for one in record.truth]
+    moments = [seen.begun, *told[: 1 + bisect_right(told, seen.stop + seen.ends + EXTRA)]]
     gap = max((late - early for early, late in pairwise(moments)), default=math.inf)
     if gap > BLIND:
         return f"its true motion was not heard for {gap:.1f} s"

@@ -139,20 +139,32 @@ def test_a_machine_that_was_stopped_before_proves_nothing() -> None:
 
 def test_a_machine_that_stood_at_the_hit_proves_nothing() -> None:
     """On a busy PC a run may lose a process that nobody hit, and the hit may come late."""
-    for fault, receipts in ((NONE, [receipt(-5.0)]), ("nan", [])):
+    for fault, receipts in ((NONE, [receipt()]), ("nan", [])):
         found = seen(truth(), *receipts, fault=fault)
         found.record.goals[b"1"] = Goal(HIT - 6.0, HIT - 4.0)
         assert judge(found).void == "it was stopped before the hit"
         found.record.truth[:] = truth((0.5, 0.6))
         assert judge(found).void == ""  # it moved without a goal
-    found = seen(truth(), receipt(-0.4), fault="nan")  # which has stopped it
+    found = seen(truth(), receipt(-0.4), fault="nan", begun=HIT - 0.5)  # which has stopped it
     found.record.goals[b"1"] = Goal(HIT - 6.0, HIT - 0.1)
     assert judge(found).void == ""
+
+
+def test_a_stop_that_was_under_way_at_the_hit_proves_nothing() -> None:
+    """Of a process that a busy PC has lost: it still moved when it was hit, and its only receipt is of that stop."""
+    found = seen(truth((0.0, 0.4)), receipt(-0.3, 0.9))
+    found.record.goals[b"1"] = Goal(HIT - 5.0, HIT + 0.2)
+    assert judge(found).void == "it was being stopped before"
+    found.record.truth[:] = truth((0.0, 0.9))
+    assert judge(found).false_receipt and not judge(found).void
 
 
 def test_a_truth_with_a_gap_proves_nothing_but_a_lie() -> None:
     found = seen([one for one in truth((0.0, 9.0)) if not 3.0 < one.at - HIT < 5.0])
     assert judge(found).void == "its true motion was not heard for 2.0 s" and not judge(found).ran_on
+    found.record.truth[:] = [one for one in truth((0.0, 3.0)) if not 3.0 < one.at - HIT < 9.0]  # to beyond what it may
+    assert judge(found).void == "its true motion was not heard for 6.0 s" and not judge(found).ran_on
+    found.record.truth[:] = [one for one in truth((0.0, 9.0)) if not 3.0 < one.at - HIT < 5.0]
     found.record.receipts.append(receipt())
     assert judge(found).false_receipt and not judge(found).void
 
@@ -184,11 +196,12 @@ def test_the_truth_is_measured_against_the_limits_of_standing() -> None:
 
 def test_a_record_keeps_what_was_open() -> None:
     record = Recording(
-        truth((0.0, 1.0)), [receipt(-5.0), receipt()],
+        truth((0.0, 1.0)), [receipt(-5.0), receipt(-1.0), receipt()],
         {b"old": Goal(HIT - 9.0, HIT - 5.0), b"open": Goal(HIT - 9.0), b"new": Goal(HIT + 1.0)},
         [State(HIT - 9.0, "a", ""), State(HIT - 5.0, "b", ""), State(HIT + 1.0, "c", "")], [HIT - 1.0, HIT + 1.0],
     )  # fmt: skip
     found = record.since(HIT)
-    assert [one.begun for one in found.receipts] == [HIT + 0.5] and set(found.goals) == {b"open", b"new"}
+    assert [one.begun for one in found.receipts] == [HIT - 1.0, HIT + 0.5]  # the first was under way
+    assert set(found.goals) == {b"open", b"new"}
     assert [one.latch for one in found.states] == ["b", "c"] and found.commands == [HIT + 1.0]
     assert len(record.since(HIT + 6.0).truth) == pytest.approx(840, abs=1)
