@@ -12,7 +12,7 @@ import threading
 from collections.abc import Callable
 from http import HTTPStatus
 
-from prometheus_client import CONTENT_TYPE_LATEST, REGISTRY, CollectorRegistry, Gauge, Info, generate_latest
+from prometheus_client import CONTENT_TYPE_LATEST, REGISTRY, CollectorRegistry, Counter, Gauge, Info, generate_latest
 
 from tms_core.errors import ConfigError
 
@@ -20,6 +20,7 @@ READY = Gauge("tms_process_ready", "1 when the process can do its job")
 BUILD = Info("tms_build", "Version that runs")
 ENDPOINTS = Gauge("tms_ros_matched_endpoints", "Remote ends that this process is connected to", ["kind"])
 NODES = Gauge("tms_ros_nodes", "Nodes that this process sees in its domain")
+STOOD_STILL = Counter("tms_stood_still_seconds", "Time in which this PC did not run the process, or it was frozen")
 
 MOST = 64  # connections; the oldest that has asked nothing yet gives way
 BACKLOG = 512  # connections that wait to be taken; beyond it the system keeps them waiting for a second and more

@@ -12,6 +12,7 @@ from collections.abc import Callable
 
 BEAT = 0.05  # s
 LATE = 0.1  # s that a beat may come late before it tells of a PC that is too busy
+STOOD_STILL = 0.3  # s without a beat that are told: with the lease of 0.5 s, others are about to take it for lost
 REMEMBERED = 1.0  # s for which a late beat is remembered
 ASK = 1.0  # s between questions to the executor whether it runs: each wakes it
 STUCK = 0.18  # s in one callback, or without an answer, after which nothing is asserted; with the lease below 0.7 s
@@ -27,22 +28,23 @@ class Lateness:
         self._last: float | None = None
         self._late_at = float("-inf")
 
-    def beat(self, now: float) -> None:
-        """Note a beat."""
-        if self._overdue(now):
+    def beat(self, now: float) -> float:
+        """Note a beat; how late it was [s]."""
+        last, self._last = self._last, now
+        if self._overdue(now, last):
             self._late_at = now
-        self._last = now
+        return 0.0 if last is None else now - last - BEAT
 
     def late(self, now: float) -> bool:
         """Whether a beat came late a moment ago, or one is overdue now."""
-        return self._overdue(now) or now - self._late_at < REMEMBERED
+        return self._overdue(now, self._last) or now - self._late_at < REMEMBERED
 
     def pause(self) -> None:
         """Nothing beats for a while, on purpose."""
         self._last = None
 
-    def _overdue(self, now: float) -> bool:
-        last = self._last  # read once: another thread may reset it
+    @staticmethod
+    def _overdue(now: float, last: float | None) -> bool:
         return last is not None and now - last > BEAT + LATE
 
 
@@ -59,6 +61,7 @@ class Pulse:
         self._wanted, self._closed = threading.Event(), threading.Event()
         self._asked = self._answered = 0.0
         self._lateness = Lateness()
+        self.stood_still: Callable[[float], None] = lambda seconds: None  # called with each long time without a beat
         self._thread = begin(self._run, "pulse")
 
     def add(self, step: Step) -> None:
@@ -98,10 +101,12 @@ class Pulse:
                 self._lateness.pause()
                 self._wanted.wait()
             now = time.monotonic()
-            self._lateness.beat(now)
+            stood = self._lateness.beat(now)
             self._ask(now)
             for step in self._steps:
                 step()
+            if stood > STOOD_STILL:
+                self.stood_still(stood)
             self._closed.wait(BEAT)
 
     def _ask(self, now: float) -> None:

@@ -68,6 +68,7 @@ def _serve(site: Site, row: Process) -> int:
     if row.module in FIRST:
         come_first(OF_A_MACHINE, threads())
     ros = Ros(row.full.replace(":", "_"))
+    ros.pulse.stood_still = lambda seconds: _stood_still(logger, seconds)
     app = App(site, row, ros, logger)
     importlib.import_module(row.module).start(app)
     app_box.append(app)
@@ -86,6 +87,12 @@ def _serve(site: Site, row: Process) -> int:
     end_after(LEAVE_LIMIT, code)
     ros.leave()
     return code
+
+
+def _stood_still(logger: Logger, seconds: float) -> None:
+    """Why others took this process for lost: whoever debugs at night looks into its log."""
+    metrics.STOOD_STILL.inc(seconds)
+    logger.warning("event=stood_still seconds=%.2f reason='its PC was too busy, or it was frozen'", seconds)
 
 
 def _wait_for_end(stop: threading.Event, failed: threading.Event, logger: Logger) -> None:

@@ -96,7 +96,7 @@ supervisor.rpcinterface_factory=supervisor.rpcinterface:make_main_rpcinterface
 
 
 def _program(site: Site, row: Process) -> str:
-    log = _escape(str(_log_file(site, row.full)))
+    log = _escape(str(log_file(site, row.full)))
     return f"""[program:{_section(row)}]
 process_name={row.name}
 command="{_escape(sys.executable)}" -m tms_core.run {row.full}
@@ -115,7 +115,8 @@ redirect_stderr=true
 """
 
 
-def _log_file(site: Site, name: str) -> Path:
+def log_file(site: Site, name: str) -> Path:
+    """Where a process's output goes."""
     group, _, process = name.partition(":")
     return site.state / "log" / f"{group}.{process}.log"
 
@@ -223,7 +224,7 @@ class Supervisor:
         Raises:
             TmsError: there is no such process, or it has no log yet.
         """
-        path = _log_file(self._site, self.process(name).name)
+        path = log_file(self._site, self.process(name).name)
         try:
             with path.open("rb") as file:
                 begin = max(0, file.seek(0, os.SEEK_END) - size)

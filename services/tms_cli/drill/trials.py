@@ -10,6 +10,7 @@ from datetime import datetime, timezone
 import psutil
 from tms_msg_rc.srv import StopMachine
 
+from tms_cli.drill.busy import stood_still
 from tms_cli.drill.eyes import Eyes
 from tms_cli.drill.hits import BACK_LIMIT, Hits
 from tms_cli.drill.plan import NONE, TS, How, Stop, Trial
@@ -47,7 +48,8 @@ class Hand:
     """All that one machine's trials need."""
 
     def __init__(self, node: Ros, site: Site, machine: str) -> None:
-        self.machine, self.model = machine, site.file.machines[machine].model
+        self._site, self.machine = site, machine
+        self.model = site.file.machines[machine].model
         self.eyes, self.work, self._node = Eyes(node, site, machine), Work(node, site, machine), node
         watch = StandStill(site.model_of(machine), site.border(machine), site.file.sim.speed)
         self._ends = watch.dead_time + watch.braking
@@ -135,7 +137,9 @@ class Hand:
         outcome = self._outcome(trial, begun, stopped)
         back = struck.back.result(2 * BACK_LIMIT)
         record = self._last_words(trial, begun)
-        row = judge(Seen(trial, self.model, record, begun, hit, stopped, self._ends, back, outcome))
+        stops = [one.begun for one in record.receipts]
+        busy = "" if stop.moves else stood_still(self._site, self.machine, stops)
+        row = judge(Seen(trial, self.model, record, begun, hit, stopped, self._ends, back, outcome, busy))
         if row.false_receipt or (row.unconfirmed and row.in_order) or row.ran_on:
             self._keep(record, hit)
         return row

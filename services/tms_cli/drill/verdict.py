@@ -36,6 +36,7 @@ class Seen:
     ends: float  # s, dead time and braking of the machine
     back_s: float | None
     outcome: str
+    busy: str = ""  # why this PC itself may have stopped the machine
 
 
 @dataclass
@@ -94,6 +95,9 @@ def judge(seen: Seen) -> Row:
     row.unconfirmed = not row.confirmed
     row.unlatched = (row.unconfirmed or stop.latches) and not row.latched
     row.disturbed = not stop.moves and seen.trial.fault == NONE and any(r.begun < seen.stop for r in record.receipts)
+    if row.disturbed and seen.busy:
+        row.void, row.disturbed = seen.busy, False
+        return row
     row.told_s = told(seen)
     _measure(row, seen)
     late = row.stood_s is None or row.stood_s > seen.ends + EXTRA

@@ -181,6 +181,9 @@ def test_a_lost_process_beside_the_motion_stops_nothing() -> None:
     row = judge(found)
     assert wrong(row) == set() and row.told_s is None and row.stood_s == pytest.approx(2.0, abs=0.03)
     assert wrong(judge(replace(found, record=seen(truth((0.0, 2.0)), receipt(0.7)).record))) == {"disturbed"}
+    excused = judge(replace(found, record=seen(truth((0.0, 2.0)), receipt(0.7)).record, busy="this PC did not run it"))
+    assert wrong(excused) == set() and excused.void == "this PC did not run it"
+    assert judge(replace(found, busy="this PC did not run it")).void == ""
 
 
 def test_the_truth_is_measured_against_the_limits_of_standing() -> None:

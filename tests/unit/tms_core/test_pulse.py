@@ -6,7 +6,7 @@ import time
 import pytest
 
 from conftest import wait_until
-from tms_core.pulse import BEAT, LATE, REMEMBERED, STUCK, Lateness, Pulse, Step
+from tms_core.pulse import BEAT, LATE, REMEMBERED, STOOD_STILL, STUCK, Lateness, Pulse, Step
 
 
 def test_a_late_beat_is_remembered_for_a_while() -> None:
@@ -28,6 +28,15 @@ def test_an_overdue_beat_is_late_and_a_pause_is_not() -> None:
     one.pause()
     one.beat(99.0)
     assert not one.late(99.0)
+
+
+def test_it_says_how_late_a_beat_was() -> None:
+    one = Lateness()
+    assert one.beat(10.0) == 0.0
+    assert one.beat(10.0 + BEAT) == pytest.approx(0.0, abs=1e-6)
+    assert one.beat(11.0) == pytest.approx(1.0 - 2 * BEAT)
+    one.pause()
+    assert one.beat(99.0) == 0.0
 
 
 def begin(work: Step, name: str) -> threading.Thread:
@@ -65,5 +74,17 @@ def test_an_executor_in_a_long_callback_does_not_work() -> None:
         assert not pulse.works()
         since[0] = time.monotonic() + 60.0  # in a short one, however slow this PC is
         assert pulse.works()
+    finally:
+        pulse.close()
+
+
+def test_a_step_that_stood_still_is_told() -> None:
+    pulse, told = Pulse(lambda step: None, lambda: None, begin), [0.0]
+    pulse.stood_still = told.append
+    once = iter([STOOD_STILL + 0.2])
+    pulse.add(lambda: threading.Event().wait(next(once, 0.0)) and None)
+    try:
+        wait_until(lambda: len(told) > 1, 30, "it is told")
+        assert told[1] > STOOD_STILL
     finally:
         pulse.close()

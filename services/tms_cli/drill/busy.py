@@ -1,0 +1,34 @@
+"""Whether this PC did not run a machine's processes for a moment: they write that into their logs."""
+
+import re
+from collections.abc import Iterable
+from datetime import datetime
+
+from tms_core.config import Site
+from tms_core.processes import table
+from tms_host.supervisor import log_file
+
+BEFORE, AFTER = 1.5, 1.0  # s around the begin of a stop: a lease, and a line that is written late
+LINE = re.compile(r"^(\S+) \w+ process=(\S+) .*event=stood_still seconds=(\S+)")
+
+
+def stood_still(site: Site, machine: str, stops: Iterable[float]) -> str:
+    """Which process stood still about when a stop began (s since 1970); empty if none did."""
+    names = [row.full for row in table(site) if row.group == machine or row.full == "tms:ts"]
+    lines = [line for name in names for line in _lines(site, name)]
+    return next((told for at in stops for line in lines if (told := _near(line, at))), "")
+
+
+def _lines(site: Site, name: str) -> list[str]:
+    path = log_file(site, name)
+    return path.read_text(encoding="utf-8", errors="replace").splitlines() if path.exists() else []
+
+
+def _near(line: str, at: float) -> str:
+    found = LINE.match(line)
+    if found is None:
+        return ""
+    written, process, seconds = found.groups()
+    ended = datetime.fromisoformat(written).timestamp()
+    near = -BEFORE < ended - at < AFTER
+    return f"this PC did not run {process} for {float(seconds):.1f} s" if near else ""
