@@ -148,7 +148,8 @@ def lie(receipt: Receipt, record: Recording) -> str:
     before = [one for one in moving if one.at <= receipt.at - LATENCY]
     if before:
         return f"moved {receipt.at - before[-1].at:.2f} s before it was said to stand: {before[-1].share:.1f} x limit"
-    if not moving or _tells(moving[0].at, record):
+    overtaken = bool(moving) and fresh - moving[0].at < LATENCY  # by a goal, before it could be told
+    if not moving or overtaken or _tells(moving[0].at, record):
         return ""
     late = moving[0].at - receipt.at
     if late <= AFTER:

@@ -103,6 +103,13 @@ def test_a_motion_that_begins_with_the_receipt_must_be_told() -> None:
     assert judge(seen(drifts, receipt(), receipt(2.8, 10.0, confirmed=False), latch="x")).false_receipt == ""
 
 
+def test_a_motion_that_a_new_goal_overtakes_at_once_cannot_be_told() -> None:
+    found = seen(truth((0.0, 1.5), (2.49, 5.0)), receipt())
+    for later, lies in ((0.05, False), (0.2, True)):
+        found.record.goals[b"2"] = Goal(HIT + 2.5 + later)
+        assert bool(judge(found).false_receipt) is lies
+
+
 def test_a_machine_that_moves_on_is_not_in_order_where_it_coasts() -> None:
     motion, no = truth((0.0, 9.0)), receipt(seconds=10.0, confirmed=False)
     assert wrong(judge(seen(motion, no, latch="x"))) == {"unconfirmed", "ran_on"}
