@@ -22,6 +22,7 @@ from tms_core import metrics, pcs, state_folder, store
 from tms_core.config import Site
 from tms_core.environment import environment
 from tms_core.errors import ConfigError, TmsError
+from tms_core.priority import session_first
 from tms_core.processes import Process, here
 from tms_host.supervisor import Supervisor, render, runtime_folder
 from tms_ur.address import certificate, users
@@ -30,6 +31,7 @@ NEEDED_BYTES = 100 * 2**20  # for logs
 READY_LIMIT = 60.0  # s for all processes to be able to work
 START_LIMIT = 10.0  # s for supervisord to answer
 STOP_LIMIT = 20.0  # s for everything to end
+NICE = -10  # of all processes together, against the other sessions of this PC: one command there could take half of it
 
 
 @dataclass(frozen=True)
@@ -108,6 +110,7 @@ def _up(site: Site, rows: tuple[Process, ...], foreground: bool) -> bool:
         _start(site, conf)
         _wait(supervisor.alive, START_LIMIT, f"supervisord did not start: see {site.state}/log/supervisord.log")
         pid = supervisor.pid()
+        session_first(pid, NICE)
         _write(lock, Owner(pid, psutil.Process(pid).create_time(), str(site.state)))
     return True
 

@@ -10,9 +10,11 @@ import threading
 import time
 from collections.abc import Callable
 
+from tms_core.priority import waited
+
 BEAT = 0.05  # s
 LATE = 0.1  # s that a beat may come late before it tells of a PC that is too busy
-STOOD_STILL = 0.3  # s without a beat that are told: with the lease of 0.5 s, others are about to take it for lost
+STOOD_STILL = 0.3  # s without an assertion that are told: with the lease of 0.5 s, others are about to take it for lost
 REMEMBERED = 1.0  # s for which a late beat is remembered
 ASK = 1.0  # s between questions to the executor whether it runs: each wakes it
 STUCK = 0.18  # s in one callback, or without an answer, after which nothing is asserted; with the lease below 0.7 s
@@ -52,16 +54,19 @@ class Pulse:
     """One a process. Without steps its thread sleeps, so an idle process costs nothing."""
 
     def __init__(
-        self, on_executor: Callable[[Step], None], busy_since: Callable[[], float | None], begin: Begin
-    ) -> None:
+        self, executor: threading.Thread, on_executor: Callable[[Step], None], busy_since: Callable[[], float | None],
+        begin: Begin,
+    ) -> None:  # fmt: skip
         """`on_executor` has a step run on the executor thread, soon; `busy_since`: when its present callback began."""
-        self._on_executor, self._busy_since = on_executor, busy_since
+        self._executor, self._on_executor, self._busy_since = executor, on_executor, busy_since
         self._steps: tuple[Step, ...] = ()
         self._changing = threading.Lock()
         self._wanted, self._closed = threading.Event(), threading.Event()
         self._asked = self._answered = 0.0
         self._lateness = Lateness()
-        self.stood_still: Callable[[float], None] = lambda seconds: None  # called with each long time without a beat
+        self._worked: float | None = None  # when this process was last seen to work
+        self._waited = 0.0  # s for which its threads had waited for a processor by the last question
+        self.stood_still: Callable[[float, float], None] = lambda silent, waited: None  # see `_tell`
         self._thread = begin(self._run, "pulse")
 
     def add(self, step: Step) -> None:
@@ -99,20 +104,33 @@ class Pulse:
         while not self._closed.is_set():
             if not self._wanted.is_set():
                 self._lateness.pause()
+                self._worked = None
                 self._wanted.wait()
             now = time.monotonic()
-            stood = self._lateness.beat(now)
+            self._lateness.beat(now)
+            if self.works():
+                self._tell(now)
             self._ask(now)
             for step in self._steps:
                 step()
-            if stood > STOOD_STILL:
-                self.stood_still(stood)
             self._closed.wait(BEAT)
 
     def _ask(self, now: float) -> None:
         if self._answered >= self._asked and now - self._asked >= ASK:
-            self._asked = now
+            self._asked, self._waited = now, self._waits()
             self._on_executor(self._answer)
+
+    def _tell(self, now: float) -> None:
+        """Of a long time in which nothing was asserted [s], and for how much of it a processor was waited for [s]."""
+        silent = now - (self._worked or now) - BEAT
+        self._worked = now
+        if silent > STOOD_STILL:
+            waits = self._waits()
+            self.stood_still(silent, min(silent, waits - self._waited))
+            self._waited = waits
+
+    def _waits(self) -> float:
+        return waited({number for number in (self._executor.native_id, threading.get_native_id()) if number})
 
     def _answer(self) -> None:
         self._answered = time.monotonic()

@@ -19,7 +19,7 @@ from tms_core.priority import come_first, threads
 from tms_core.processes import Process, find
 
 LOOK = 0.5  # s
-FORGOTTEN = 4.5  # s; less than the lease of discovery (5 s)
+FORGOTTEN = 3.0  # s; lease of discovery (5 s) less the time since the last announcement (1.5 s at most), 0.5 s to spare
 EXIT_LIMIT = 2.0  # s from SIGTERM to the end, whatever hangs
 PR_SET_PDEATHSIG = 1
 # Nice of processes that must not miss a beat on a busy PC, nor see one missed, once they have started: none that starts
@@ -68,7 +68,7 @@ def _serve(site: Site, row: Process) -> int:
     if row.module in FIRST:
         come_first(OF_A_MACHINE, threads())
     ros = Ros(row.full.replace(":", "_"))
-    ros.pulse.stood_still = lambda seconds: _stood_still(logger, seconds)
+    ros.pulse.stood_still = lambda silent, waited: _stood_still(logger, silent, waited)
     app = App(site, row, ros, logger)
     importlib.import_module(row.module).start(app)
     app_box.append(app)
@@ -89,10 +89,11 @@ def _serve(site: Site, row: Process) -> int:
     return code
 
 
-def _stood_still(logger: Logger, seconds: float) -> None:
+def _stood_still(logger: Logger, silent: float, waited: float) -> None:
     """Why others took this process for lost: whoever debugs at night looks into its log."""
-    metrics.STOOD_STILL.inc(seconds)
-    logger.warning("event=stood_still seconds=%.2f reason='its PC was too busy, or it was frozen'", seconds)
+    metrics.STOOD_STILL.inc(silent)
+    reason = "its PC was too busy" if waited > silent / 2 else "a long callback, or it was frozen"
+    logger.warning("event=stood_still seconds=%.2f waited=%.2f reason='%s'", silent, waited, reason)
 
 
 def _wait_for_end(stop: threading.Event, failed: threading.Event, logger: Logger) -> None:
@@ -103,9 +104,9 @@ def _wait_for_end(stop: threading.Event, failed: threading.Event, logger: Logger
     """
     before = time.monotonic()
     while not stop.wait(LOOK) and not failed.is_set():
-        before, stood = time.monotonic(), time.monotonic() - before - LOOK
-        if stood > FORGOTTEN:
-            logger.error("event=forgotten seconds=%.1f action='restarted'", stood)
+        before, gap = time.monotonic(), time.monotonic() - before
+        if gap > FORGOTTEN:  # it may have begun just after a look, or just before the next
+            logger.error("event=forgotten seconds=%.1f action='restarted'", gap)
             failed.set()
 
 

@@ -8,7 +8,7 @@ from tms_core.ros import LOST_TEXT
 from tms_rc.guard import Guard, Kind
 from tms_rc.latch import ANY_LEAF, UNKNOWN_RUN
 from tms_rc.memory import Left
-from tms_rc.standstill import Expected
+from tms_rc.standstill import UNKNOWN
 from tms_rc.stopper import Stop
 
 REACHED = 5.0  # s for the machine's servers to be there
@@ -86,12 +86,11 @@ class Recovery:
 
     def _begin(self, run: int) -> None:
         number = 0 if run == UNKNOWN_RUN else run
-        # What was commanded is not known: unless a motion is seen, the proof waits until every motion must be over.
-        self._stop = self._guard.stop_now(self._cause, Kind.PLAIN, run=number, expected=Expected(self._begun))
+        self._stop = self._guard.stop_now(self._cause, Kind.PLAIN, run=number, expected=UNKNOWN)
 
     def _close(self) -> None:
         """Whose motion was stopped is known by now, or it was nobody's."""
         known = self._guard.latch.cause or self._guard.active is not None
         if self._open and self._stop is not None and not known:
-            self._guard.stop_now(f"{self._cause}, and no run told of it", Kind.LATCH, expected=Expected(self._begun))
+            self._guard.stop_now(f"{self._cause}, and no run told of it", Kind.LATCH, expected=UNKNOWN)
         self._open = False

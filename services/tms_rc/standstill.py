@@ -39,6 +39,9 @@ class Expected:
 
 
 NOTHING = Expected()
+# Of a gateway that was started anew: no motion that it sees was all that had been commanded. A machine that coasts and
+# replays a record of its last seconds, in which the motion had just begun, would be believed to stand.
+UNKNOWN = Expected(INFINITE)
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,8 @@
 import os
 import random
 import shutil
+import signal
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -60,6 +62,7 @@ def drill(site: Site, waves: list[list[Trial]], seconds: float) -> list[Row]:
     """Start everything, make the trials, and leave nothing behind."""
     from tms_cli.drill.waves import Waves
 
+    signal.signal(signal.SIGTERM, lambda _number, _frame: sys.exit(128 + signal.SIGTERM))
     mesh.up(site, without=GROUP)
     try:
         with StandIns(site) as stand_ins:

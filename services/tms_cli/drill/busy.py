@@ -1,4 +1,7 @@
-"""Whether this PC did not run a machine's processes for a moment: they write that into their logs."""
+"""Whether this PC did not run a machine's processes for a moment: they write that into their logs.
+
+Only what the kernel counts as waiting for a processor is evidence: a long callback of ours is no fault of the PC.
+"""
 
 import re
 from collections.abc import Iterable
@@ -8,8 +11,8 @@ from tms_core.config import Site
 from tms_core.processes import table
 from tms_host.supervisor import log_file
 
-BEFORE, AFTER = 1.5, 1.0  # s around the begin of a stop: a lease, and a line that is written late
-LINE = re.compile(r"^(\S+) \w+ process=(\S+) .*event=stood_still seconds=(\S+)")
+BEFORE, AFTER = 1.5, 2.0  # s around the begin of a stop: a lease, and a line that is written late
+LINE = re.compile(r"^(\S+) \w+ process=(\S+) .*event=stood_still seconds=(\S+) waited=(\S+)")
 
 
 def stood_still(site: Site, machine: str, stops: Iterable[float]) -> str:
@@ -28,7 +31,7 @@ def _near(line: str, at: float) -> str:
     found = LINE.match(line)
     if found is None:
         return ""
-    written, process, seconds = found.groups()
-    ended = datetime.fromisoformat(written).timestamp()
-    near = -BEFORE < ended - at < AFTER
-    return f"this PC did not run {process} for {float(seconds):.1f} s" if near else ""
+    written, process, *numbers = found.groups()
+    ended, (silent, waited) = datetime.fromisoformat(written).timestamp(), map(float, numbers)
+    near = -BEFORE < ended - at < AFTER and waited > silent / 2
+    return f"this PC did not run {process} for {waited:.1f} of {silent:.1f} s" if near else ""

@@ -2,7 +2,8 @@
 
 import os
 import signal
-import threading
+import subprocess
+import sys
 import time
 from collections.abc import Mapping, Sequence
 
@@ -10,10 +11,11 @@ import psutil
 
 from tms_cli import mesh
 from tms_cli.drill.plan import RC, RP, SUBTASK, How, Stop
-from tms_cli.drill.stand_ins import GROUP
+from tms_cli.drill.stand_ins import GROUP, NICE
 from tms_core import metrics
 from tms_core.config import Site
 from tms_core.errors import TmsError
+from tms_core.priority import come_first
 from tms_core.processes import find, table
 from tms_host.supervisor import Supervisor
 
@@ -29,6 +31,7 @@ class Hits:
     def __init__(self, site: Site) -> None:
         self._site = site
         self._there = {row.full for row in table(site)}
+        self._thaw: subprocess.Popen[bytes] | None = None
 
     def names(self, stop: Stop, subtasks: Mapping[str, str]) -> list[str]:
         """The processes that a stop hits. `subtasks`: the one behind the present leaf of each machine that is hit."""
@@ -60,14 +63,18 @@ class Hits:
         at = time.time()
         _signal(signal.SIGSTOP if how is How.FREEZE else signal.SIGKILL, pids)
         if how is How.FREEZE:
-            threading.Timer(FROZEN, _signal, (signal.SIGCONT, pids)).start()
+            self._thaw = subprocess.Popen(
+                [sys.executable, "-m", "tms_cli.drill.thaw", str(at + FROZEN), *map(str, pids)]
+            )
+            come_first(NICE, {self._thaw.pid})
         return at
 
     def back(self, how: How, pids: Mapping[str, int], hit: float) -> float | None:
         """Seconds from the hit until everything works again; None: not in time."""
         waiting = dict(pids)
-        if how is How.FREEZE:
-            time.sleep(max(0.0, hit + FROZEN - time.time()))
+        if self._thaw is not None:
+            self._thaw.wait()
+            self._thaw = None
         while time.time() - hit < BACK_LIMIT:
             running = self._running()
             for name, before in list(waiting.items()):

@@ -1,21 +1,18 @@
 """The machines' stand-ins as children of the drill: they stand for machines, which no power cut of our PC stops."""
 
-import contextlib
 import os
 import subprocess
 import sys
-from pathlib import Path
 from types import TracebackType
 
 from tms_core import state_folder
 from tms_core.config import Site
 from tms_core.environment import environment
-from tms_core.priority import come_first
+from tms_core.priority import come_first, session_first
 
 GROUP = "sim"  # of the process table
 END_LIMIT = 5.0  # s
 NICE = -15  # before the gateways: a machine does not wait for them
-AUTOGROUP = "/proc/{}/autogroup"  # of its session, where the kernel weighs sessions before it weighs processes
 
 
 class StandIns:
@@ -32,8 +29,7 @@ class StandIns:
                 words, env=env, stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT, start_new_session=True
             )
         come_first(NICE, {child.pid})
-        with contextlib.suppress(OSError):  # without the right to; or no such thing here
-            Path(AUTOGROUP.format(child.pid)).write_text(str(NICE), encoding="ascii")
+        session_first(child.pid, NICE)
         return child
 
     def dead(self) -> list[str]:

@@ -15,7 +15,7 @@ from tms_cli.drill.eyes import Eyes
 from tms_cli.drill.hits import BACK_LIMIT, Hits
 from tms_cli.drill.plan import NONE, TS, How, Stop, Trial
 from tms_cli.drill.record import Recording
-from tms_cli.drill.verdict import AFTER, BY_ITSELF, GOES_ON, HUNG, INTERRUPTED, UNPROVEN, Row, Seen, judge
+from tms_cli.drill.verdict import AFTER, BY_ITSELF, GOES_ON, HUNG, UNPROVEN, Row, Seen, judge
 from tms_cli.drill.work import Work
 from tms_core.config import Site
 from tms_core.errors import TmsError
@@ -135,6 +135,7 @@ class Hand:
         self.eyes.wait(lambda record: self._over(record, stopped), begun, RECEIPT_LIMIT)
         self._look_on(trial, begun)
         outcome = self._outcome(trial, begun, stopped)
+        self._look_on(trial, begun)  # another stop may have ended meanwhile
         back = struck.back.result(2 * BACK_LIMIT)
         record = self._last_words(trial, begun)
         stops = [one.begun for one in record.receipts]
@@ -180,7 +181,7 @@ class Hand:
         deadline = stopped + RUN_LIMIT
         while time.time() < deadline:
             if (ended := self.work.outcome()) is not None:
-                return INTERRUPTED if ended == "interrupted" else ended
+                return ended
             record = self.eyes.since(begun)
             proven = max((one.at for one in record.receipts), default=stopped)
             if trial.stop.moves and not self.work.lost and record.goal_after(proven) < math.inf:

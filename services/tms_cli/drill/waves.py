@@ -1,5 +1,6 @@
 """Waves of trials: all machines are set to work, each is hit, and all are brought to rest again."""
 
+import os
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -15,7 +16,7 @@ from tms_cli.drill.trials import LEAD, Hand, Struck
 from tms_cli.drill.verdict import Row, empty
 from tms_core.config import Site
 from tms_core.errors import TmsError
-from tms_core.priority import come_first, others
+from tms_core.priority import come_first, others, session_first
 from tms_core.ros import Ros
 
 T = TypeVar("T")
@@ -29,6 +30,7 @@ class Waves:
         self._hands = {machine: Hand(node, site, machine) for machine in site.file.machines}
         # ROS's threads, but not those that start processes: what is heard late may be lost, and is not the truth.
         come_first(NICE, others())
+        session_first(os.getpid(), NICE)
         # Twice: a strike waits beside the trial that it is for.
         self._pool = ThreadPoolExecutor(2 * len(self._hands) + 1, "drill")
         self._total = self._made = 0
@@ -45,7 +47,7 @@ class Waves:
         list(self._pool.map(lambda hand: hand.work.end(), self._hands.values()))
 
     def go(self, plan: Sequence[list[Trial]], seconds: float) -> list[Row]:
-        """As much of the plan as the time allows; the rest is left out.
+        """As much of the plan as the time allows; the rest is left out. What proved nothing is tried again at the end.
 
         Raises:
             TmsError: a stand-in has ended: there is no machine any more.
@@ -68,7 +70,9 @@ class Waves:
             if dead := self._stand_ins.dead():
                 raise TmsError(f"{', '.join(dead)} has ended: see {self._site.state}/log")
         left = [trial for wave in todo for trial in wave]
-        return [*self.rows, *(self._empty(trial) for trial in left)]
+        proved_nothing = [(row.machine, row.stop, row.fault) for row in self.rows if row.void]
+        untried = [trial for trial in left if (trial.machine, trial.stop.name, trial.fault) not in proved_nothing]
+        return [*self.rows, *(self._empty(trial) for trial in untried)]
 
     def _wave(self, wave: list[Trial]) -> list[Trial]:
         """Returns trials that have to be made again: they proved nothing, or failed."""
@@ -76,7 +80,7 @@ class Waves:
         ready = [trial for trial, at in zip(wave, began, strict=True) if at is not None]
         shared = any(trial.stop.shared for trial in ready)
         rows = self._shared(ready) if shared else self._each(ready, self._single)
-        self._each(wave, lambda trial: self._hands[trial.machine].work.end())
+        self._each([trial for trial in wave if trial not in ready], self._end)
         return self._note(wave, dict(zip([trial.machine for trial in ready], rows, strict=True)))
 
     def _note(self, wave: list[Trial], rows: dict[str, Row | None]) -> list[Trial]:
@@ -95,14 +99,28 @@ class Waves:
         hand, struck = self._hands[trial.machine], Struck()
         at = hand.moment(trial)
         self._pool.submit(hand.strike, trial.stop, at, [hand], struck)
-        return hand.watch(trial, at, struck)
+        return self._watch(trial, at, struck)
 
     def _shared(self, wave: list[Trial]) -> list[Row | None]:
         """One hit for all, at the moment of the first trial."""
         hands, struck = [self._hands[trial.machine] for trial in wave], Struck()
         at = time.time() + LEAD + wave[0].delay
         self._pool.submit(hands[0].strike, wave[0].stop, at, hands, struck)
-        return self._each(wave, lambda trial: self._hands[trial.machine].watch(trial, at, struck))
+        return self._each(wave, lambda trial: self._watch(trial, at, struck))
+
+    def _watch(self, trial: Trial, at: float, struck: Struck) -> Row:
+        """Each machine is brought to rest as soon as its own trial is over: the slowest ones make a wave long."""
+        try:
+            return self._hands[trial.machine].watch(trial, at, struck)
+        finally:
+            self._end(trial)
+
+    def _end(self, trial: Trial) -> None:
+        """That a run does not end is told, and the next wave will see it."""
+        try:
+            self._hands[trial.machine].work.end()
+        except TmsError as error:
+            click.echo(f"{trial.machine}, {trial.stop.name}: {error}", err=True)
 
     def _each(self, wave: Sequence[Trial], step: Callable[[Trial], T]) -> list[T | None]:
         """The same for all at the same time; None where it failed, which is told."""

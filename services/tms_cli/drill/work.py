@@ -14,6 +14,7 @@ from tms_cli.commands import rearm
 from tms_cli.commands.runs import has_ended, recent
 from tms_cli.drill import tasks
 from tms_cli.drill.plan import fault_of
+from tms_cli.drill.verdict import INTERRUPTED
 from tms_core.config import Site
 from tms_core.errors import TmsError
 from tms_core.ros import Call, Ros
@@ -75,7 +76,7 @@ class Work:
     def outcome(self) -> str | None:
         """How the run ended; None while it goes on."""
         if self.lost:
-            return "interrupted" if self._interrupted() else None
+            return self._recorded() or None
         if self._call is None or self._call.outcome is None:
             return None
         result = self._call.result
@@ -102,18 +103,19 @@ class Work:
             if time.monotonic() > deadline:
                 raise TmsError(f"run {self._run} does not end")
             time.sleep(LOOK)
-        if self._interrupted():
+        if self._recorded() == INTERRUPTED:
             session.call(self._node, CancelRun, "/tms/abandon_run", run_id=self._run)
         self._call = None
 
-    def _interrupted(self) -> bool:
+    def _recorded(self) -> str:
+        """How the run ended by the history, maybe before its scheduler was lost; empty: it has not, or nobody knows."""
         if not self._run:
-            return self.lost
+            return INTERRUPTED if self.lost else ""
         try:
             run = recent(self._node, self._run)
         except TmsError:
-            return False  # the database may be what was hit
-        return run is not None and has_ended(run) and run.state == "interrupted"
+            return ""  # the database may be what was hit
+        return str(run.state) if run is not None and has_ended(run) else ""
 
     def _heard(self, feedback: Any) -> None:
         self._run = feedback.run_id or self._run

@@ -55,7 +55,7 @@ class Loop:
         self.failed = threading.Event()  # a thread of this node died of an exception: the process ends, not half of it
         self.closing = False  # nothing can be sent any more
         self._thread = self._begin(self._spin, "ros")
-        self.pulse = Pulse(self.on_executor, lambda: self._executor.busy_since, self._begin)
+        self.pulse = Pulse(self._thread, self.on_executor, lambda: self._executor.busy_since, self._begin)
 
     def _begin(self, work: Callable[[], None], name: str) -> threading.Thread:
         def run() -> None:

@@ -51,7 +51,7 @@ def executor() -> list[Step]:
 
 
 def test_it_beats_while_there_are_steps_and_asks_the_executor_once_at_a_time(executor: list[Step]) -> None:
-    pulse, beaten = Pulse(executor.append, lambda: None, begin), threading.Semaphore(0)
+    pulse, beaten = Pulse(threading.current_thread(), executor.append, lambda: None, begin), threading.Semaphore(0)
     pulse.add(beaten.release)
     try:
         assert all(beaten.acquire(timeout=30) for _ in range(6))
@@ -67,7 +67,7 @@ def test_it_beats_while_there_are_steps_and_asks_the_executor_once_at_a_time(exe
 
 def test_an_executor_in_a_long_callback_does_not_work() -> None:
     since: list[float | None] = [None]
-    pulse = Pulse(lambda step: step(), lambda: since[0], begin)
+    pulse = Pulse(threading.current_thread(), lambda step: step(), lambda: since[0], begin)
     try:
         assert pulse.works()
         since[0] = time.monotonic() - 2 * STUCK
@@ -79,11 +79,29 @@ def test_an_executor_in_a_long_callback_does_not_work() -> None:
 
 
 def test_a_step_that_stood_still_is_told() -> None:
-    pulse, told = Pulse(lambda step: None, lambda: None, begin), [0.0]
-    pulse.stood_still = told.append
+    pulse, told = Pulse(threading.current_thread(), lambda step: step(), lambda: None, begin), [(0.0, 0.0)]
+    pulse.stood_still = lambda silent, waited: told.append((silent, waited))
     once = iter([STOOD_STILL + 0.2])
     pulse.add(lambda: threading.Event().wait(next(once, 0.0)) and None)
     try:
+        wait_until(lambda: len(told) > 1, 30, "it is told")
+        silent, for_a_processor = told[1]
+        assert silent > STOOD_STILL and 0.0 <= for_a_processor <= silent
+    finally:
+        pulse.close()
+
+
+def test_an_executor_that_did_not_answer_for_long_is_told(executor: list[Step]) -> None:
+    pulse, told = Pulse(threading.current_thread(), executor.append, lambda: None, begin), [0.0]
+    pulse.stood_still = lambda silent, waited: told.append(silent)
+    silent_since = [0.0]
+    pulse.add(lambda: None)
+    try:
+        wait_until(lambda: not pulse.works(), 30, "it is asked, and does not answer")
+        silent_since.append(time.monotonic())
+        wait_until(lambda: time.monotonic() - silent_since[1] > STOOD_STILL, 30, "nothing was asserted for long")
+        assert len(told) == 1
+        executor.pop()()
         wait_until(lambda: len(told) > 1, 30, "it is told")
         assert told[1] > STOOD_STILL
     finally:

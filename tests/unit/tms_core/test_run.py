@@ -24,13 +24,13 @@ class Stop(threading.Event):
 
 
 def test_a_process_that_stood_still_for_long_ends(monkeypatch: pytest.MonkeyPatch) -> None:
-    stop, failed = Stop(monkeypatch, [run.LOOK, run.LOOK + run.FORGOTTEN + 0.1, run.LOOK]), threading.Event()
+    stop, failed = Stop(monkeypatch, [run.LOOK, run.FORGOTTEN + 0.1, run.LOOK]), threading.Event()
     run._wait_for_end(stop, failed, logging.getLogger("test"))
     assert failed.is_set()
 
 
 def test_one_that_stood_still_for_a_moment_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
-    stop, failed = Stop(monkeypatch, [run.LOOK, run.LOOK + 4.0, run.LOOK + 4.0, run.LOOK]), threading.Event()
+    stop, failed = Stop(monkeypatch, [run.LOOK, run.LOOK + 2.2, run.LOOK + 2.2, run.LOOK]), threading.Event()
     run._wait_for_end(stop, failed, logging.getLogger("test"))
     assert not failed.is_set() and not stop.takes
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from tms_core.models import Border, MachineModel
 from tms_rc.source import Sample
-from tms_rc.standstill import HEADING, JOINTS, NOTHING, ODOM, PLACE, Expected, StandStill, Travel
+from tms_rc.standstill import HEADING, JOINTS, NOTHING, ODOM, PLACE, UNKNOWN, Expected, StandStill, Travel
 
 LIMIT, PERIOD, DEAD = 0.01, 0.04, 0.6  # rad/s, s, s
 COASTS = 3.0  # s that machines of the drill go on after an order to stop
@@ -278,6 +278,26 @@ def test_a_motion_that_was_never_seen_makes_the_proof_wait() -> None:
     reporter.run(1.0, 0.0)
     waited = stood_after(reporter, standing(reporter), reporter.now, expected=Expected(since))
     assert waited > COASTS + reporter.watch.dead_time + reporter.watch.braking
+
+
+def test_a_gateway_that_was_started_anew_waits_for_every_motion_whatever_it_sees() -> None:
+    """A record of the last 2 s in which a motion had just begun, again and again, of a machine that coasts."""
+    reporter = Reporter(watch())
+    record = [0.0] * 34 + [0.0001 * i * i for i in range(1, 7)]
+    begun, i = reporter.now, 0
+
+    def replay() -> None:
+        nonlocal i
+        i += 1
+        reporter.now += PERIOD
+        place, before = record[i % len(record)], record[(i - 1) % len(record)]
+        reporter.tell(place, max(0.0, (place - before) / PERIOD), reporter.now)
+
+    assert stood_after(reporter, replay, begun, expected=UNKNOWN) > COASTS + reporter.watch.dead_time
+    reporter, i = Reporter(watch()), 0
+    begun = reporter.now
+    seen = Expected(begun)
+    assert stood_after(reporter, replay, begun, expected=seen) < COASTS, "this record would have been believed"
 
 
 @pytest.mark.parametrize(("commanded", "comes"), [(0.2, 0.0), (0.008, 0.2)], ids=["nothing comes", "a part comes"])
