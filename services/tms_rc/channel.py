@@ -2,10 +2,12 @@
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 WORST = 0.3  # s; the worst speed within this time counts, not the last message
 KEPT = 1.2  # s of samples
 SPAN = 0.8  # share of WORST that samples must span before positions and velocities are compared
+HIDES = 0.25  # s of the machine between two samples in which a whole motion may be hidden: it begins and ends at rest
 CLEARLY = 2.0  # times the limit: slower motions may be told either way
 FASTER = 1.5  # times its top speed: nothing goes further from one sample to the next
 BETWEEN = 0.004  # rad or m that a motion may differ from what the velocities at both its ends allow ...
@@ -97,7 +99,7 @@ class Channel:
             return ""
         first, last, limit = recent[0], recent[-1], self._limits.speed
         seconds = last.stamped - first.stamped
-        if seconds <= 0:
+        if seconds <= 0 or self._hidden(recent):
             return ""
         away = max(0.0, self._distance(first.place, last.place) - self._limits.resolution)
         mean = away / (seconds * self._limits.scale)
@@ -106,6 +108,11 @@ class Channel:
         if min(told) > CLEARLY * limit and mean < limit:
             return "velocities say that it moves, positions stand"
         return ""
+
+    def _hidden(self, samples: list[Seen]) -> bool:
+        """Whether messages are missing between samples, or a stand-in is too fast for its period."""
+        gaps = (after.stamped - before.stamped for before, after in pairwise(samples))
+        return any(gap * self._limits.scale > HIDES for gap in gaps)
 
     def _recent(self) -> list[Seen]:
         seen = self._seen

@@ -93,7 +93,9 @@ def swinging(mesh: Mesh, node: Ros, task: str = "3") -> Iterator["subprocess.Pop
         command, env=mesh.env, cwd=PROJECT, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
     ) as client:
         try:
-            assert moving.wait(60), "the machine does not move"
+            if not moving.wait(60):
+                client.kill()
+                pytest.fail(f"the machine does not move: {client.communicate()[0] or 'no answer from the run'}")
             yield client
         finally:
             client.kill()

@@ -98,9 +98,14 @@ def in_order(slow: tuple[Mesh, Ros]) -> None:
     mesh, ros = slow
     mesh.wait_ready()
     ros.publisher(Bool, "/zx200/emg_stop").publish(Bool(data=False))
+    wait_until(lambda: armed(mesh), 60, "zx200 can be re-armed", 0.5)
+
+
+def armed(mesh: Mesh) -> bool:
+    """Whether it could be re-armed: a run that just ends, or a gateway that just began, refuses for a while."""
     mesh.tms("cancel", "last", expect=None)
     mesh.tms("abandon", "last", expect=None)
-    mesh.tms("rearm", "zx200", "--yes", expect=None)
+    return mesh.tms("rearm", "--all", "--yes", expect=None).returncode == 0
 
 
 def stopped_after(controller: Controller, goal: bytes, capsys: pytest.CaptureFixture[str]) -> None:

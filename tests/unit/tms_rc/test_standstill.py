@@ -116,6 +116,20 @@ def test_a_velocity_field_of_zeros_proves_nothing() -> None:
     assert stood_after(reporter, lambda: reporter.run(PERIOD, 0.3, told=0.0), reporter.now) == float("inf")
 
 
+def test_a_motion_that_lost_messages_hide_is_no_lie() -> None:
+    """The receiver was held up: it hears of the rest before the motion, then of the rest after it."""
+    reporter = Reporter(watch())
+    reporter.run(1.0, 0.0)
+    measured = reporter.now
+    reporter.now += 1.5
+    for late in (PERIOD, *(1.5 + PERIOD * number for number in range(6))):
+        reporter.now += PERIOD
+        reporter.angle += 0.5 * (late == 1.5)
+        reporter.tell(reporter.angle, 0.0, stamp=measured + late)
+    assert reporter.watch.trouble(reporter.now) is None
+    assert reporter.watch.moving()
+
+
 def test_velocities_that_go_on_while_positions_stand_are_implausible() -> None:
     reporter = Reporter(watch())
     reporter.run(1.0, 0.0, told=0.3)
