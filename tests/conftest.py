@@ -13,14 +13,24 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+import structlog
 import yaml
 
 if TYPE_CHECKING:
-    from tms_core.ros import Ros
+    from tms_ros.node import Ros
 
 PROJECT = Path(__file__).resolve().parents[1]
 SPOILED = pytest.StashKey[bool]()
 DOMAINS = range(43, 101)  # 42 is the demo's
+
+
+def pytest_configure() -> None:
+    """Log lines as `event=name key=value`, through the standard library, where pytest hears them."""
+    structlog.configure(
+        processors=[structlog.contextvars.merge_contextvars, structlog.processors.LogfmtRenderer(key_order=["event"])],
+        logger_factory=structlog.stdlib.LoggerFactory(),
+        wrapper_class=structlog.stdlib.BoundLogger,
+    )
 
 
 @contextmanager
@@ -54,7 +64,7 @@ def own_domain() -> Iterator[int]:
 @pytest.fixture
 def two_nodes(own_domain: int) -> Iterator["tuple[Ros, Ros]"]:
     """Two nodes of this process, each with a context of its own, so that they meet by discovery."""
-    from tms_core.ros import Ros
+    from tms_ros.node import Ros
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setitem(os.environ, "ROS_DOMAIN_ID", str(own_domain))
@@ -143,8 +153,8 @@ def running(mesh: Mesh, armed: bool = True) -> Iterator[Mesh]:
 @contextmanager
 def mesh_apart(folder: Path, **changes: object) -> Iterator[Mesh]:
     """A mesh in a domain of its own, not up yet, whose site and environment are those of this process meanwhile."""
-    from tms_core import environment
-    from tms_core.config import load_site
+    from tms_config import environment
+    from tms_config.config import load_site
 
     with claimed_domain() as domain, pytest.MonkeyPatch.context() as patch:
         site = folder / "site.yaml"
@@ -205,9 +215,9 @@ def node(mesh: Mesh) -> Iterator["Ros"]:
 @contextmanager
 def node_in(mesh: Mesh) -> Iterator["Ros"]:
     """A ROS node in the domain of a mesh."""
-    from tms_core import environment
-    from tms_core.config import load_site
-    from tms_core.ros import Ros
+    from tms_config import environment
+    from tms_config.config import load_site
+    from tms_ros.node import Ros
 
     old = dict(os.environ)
     os.environ.update(mesh.env)

@@ -14,11 +14,11 @@ import pytest
 from tms_msg_db.srv import ListTasks
 
 from conftest import ports_of
-from tms_core import environment
-from tms_core.config import PROJECT, Site, load_site
-from tms_core.errors import RosError
-from tms_core.processes import find
-from tms_core.ros import Ros
+from tms_config import environment
+from tms_config.config import PROJECT, Site, load_site
+from tms_config.processes import find
+from tms_reason.errors import RosError
+from tms_ros.node import Ros
 
 M = TypeVar("M", bound="Mesh")
 LIMIT = 60.0  # s for whatever must happen at all
@@ -48,7 +48,7 @@ class Mesh:
 
     def start(self, name: str) -> None:
         with self.log.open("ab") as log:
-            words = [sys.executable, "-m", "tms_core.run", name]
+            words = [sys.executable, "-m", "tms_runtime.run", name]
             self._running[name] = subprocess.Popen(words, env=self.environment, stdout=log, stderr=log)
 
     def kill(self, name: str) -> None:

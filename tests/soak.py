@@ -23,7 +23,7 @@ import psutil  # noqa: E402
 from prometheus_client.parser import text_string_to_metric_families  # noqa: E402
 
 from bench.rig.mesh import Rig, rig  # noqa: E402
-from tms_core.processes import find  # noqa: E402
+from tms_config.processes import find  # noqa: E402
 from tms_host.supervisor import Supervisor  # noqa: E402
 
 TASK = "configs/tasks/zx200_and_ic120_load_and_haul.xml"

@@ -14,7 +14,7 @@ from tms_msg_ts.srv import CheckTask
 from tms_cli import session
 from tms_cli.commands.task import read
 from tms_cli.words import say
-from tms_core.errors import RosError, TaskError, TmsError
+from tms_reason.errors import RosError, TaskError, TmsError
 from tms_ts import bt
 from tms_ts.bt.source import parse
 

@@ -4,7 +4,7 @@ import click
 
 from tms_cli import mesh, session
 from tms_cli.words import say
-from tms_core.processes import find
+from tms_config.processes import find
 from tms_host.supervisor import Supervisor
 
 

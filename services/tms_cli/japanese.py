@@ -187,7 +187,7 @@ SAID = {
     ),
 }
 
-# What to do about an error, by its code (docs: tms_core/errors.py).
+# What to do about an error, by its code (docs: tms_reason/errors.py).
 NEXT = {
     "USAGE": "書き方は、コマンドに --help を付けると表示されます",
     "FAILED": "`tms status` と `tms logs` で原因を確認してください",

@@ -11,8 +11,8 @@ from typing import NoReturn
 import click
 
 from tms_cli import commands, session, words
-from tms_core.errors import TmsError
-from tms_core.last_resort import LEAVE_LIMIT, end_after
+from tms_reason.errors import TmsError
+from tms_runtime.last_resort import LEAVE_LIMIT, end_after
 
 INTERRUPTED = 130
 click.Context.formatter_class = words.Formatter  # of every verb's help page

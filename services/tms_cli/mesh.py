@@ -18,13 +18,14 @@ import psutil
 
 from tms_cli import monitoring
 from tms_cli.words import say
-from tms_core import metrics, pcs, state_folder, store
-from tms_core.config import Site
-from tms_core.environment import environment
-from tms_core.errors import ConfigError, TmsError
-from tms_core.priority import session_first
-from tms_core.processes import Process, here
+from tms_config import pcs, state_folder, store
+from tms_config.config import Site
+from tms_config.environment import environment
+from tms_config.processes import Process, here
 from tms_host.supervisor import Supervisor, render, runtime_folder
+from tms_reason.errors import ConfigError, TmsError
+from tms_ros.priority import session_first
+from tms_runtime import metrics
 from tms_ur.address import certificate, users
 
 NEEDED_BYTES = 100 * 2**20  # for logs

@@ -5,10 +5,10 @@ import os
 import re
 from pathlib import Path
 
-from tms_core import state_folder
-from tms_core.config import PROJECT, Site
-from tms_core.errors import ConfigError
-from tms_core.processes import table
+from tms_config import state_folder
+from tms_config.config import PROJECT, Site
+from tms_config.processes import table
+from tms_reason.errors import ConfigError
 
 SOURCE = PROJECT / "deploy" / "prometheus"
 COPIED = ("prometheus.yml", "rules.yml")

@@ -7,7 +7,7 @@ from typing import Any
 import click
 import yaml
 
-from tms_core.errors import TmsError
+from tms_reason.errors import TmsError
 
 NOT_FINITE = re.compile(r"[-+]?\.?(nan|inf|infinity)", re.IGNORECASE)
 

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from tms_core import environment, state_folder
-from tms_core.config import Site, load_site
-from tms_core.errors import ConfigError, TmsError
-from tms_core.names import check_sent
+from tms_config import environment, state_folder
+from tms_config.config import Site, load_site
+from tms_config.names import check_sent
+from tms_reason.errors import ConfigError, TmsError
 
 if TYPE_CHECKING:
-    from tms_core.ros import Ros
+    from tms_ros.node import Ros
 
 CALL_LIMIT = 5.0  # s
 LATCHED_LIMIT = 5.0  # s for a module to tell its state
@@ -32,7 +32,7 @@ def site() -> Site:
 def ros() -> Iterator["Ros"]:
     """A node for the length of one command; rclpy is imported only by verbs that need it."""
     environment.enter(site())
-    from tms_core.ros import Ros
+    from tms_ros.node import Ros
 
     with state_folder.private():  # it writes a log of its own
         node = Ros(f"tms_cli_{os.getpid()}")

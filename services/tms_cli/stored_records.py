@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 from tms_cli import live, session
 from tms_cli.words import say
-from tms_core.errors import TmsError
+from tms_reason.errors import TmsError
 
 if TYPE_CHECKING:
-    from tms_core.ros import Ros
     from tms_db.records import Record
+    from tms_ros.node import Ros
 
 
 def source() -> str:
@@ -33,7 +33,7 @@ def write(
     """Set fields of a record, if others hold what is expected; tells whether the record was made."""
     from tms_msg_db.srv import SetParameter
 
-    from tms_core.values import to_parameters
+    from tms_machine.values import to_parameters
 
     model, record = key
     answer = session.call(
@@ -70,7 +70,7 @@ def load_file(node: "Ros", file: Path) -> dict[str, list[str]]:
 
 def _says(stored: Any, wanted: "Record") -> bool:
     """Whether a stored record has all that a file says, types included."""
-    from tms_core.values import to_parameters
+    from tms_machine.values import to_parameters
 
     there = {value.name: value.value for value in stored.values}
     return (
@@ -93,7 +93,7 @@ def title(record: Any) -> str:
 
 def as_dict(record: Any) -> dict[str, Any]:
     """A record for --json."""
-    from tms_core.values import from_parameters
+    from tms_machine.values import from_parameters
 
     updated = live.moment(record.updated_at)
     return {

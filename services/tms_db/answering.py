@@ -6,9 +6,9 @@ from typing import Any
 
 from prometheus_client import Counter, Histogram
 
-from tms_core.app import App
-from tms_core.errors import TmsError
 from tms_db.connection import Connection
+from tms_reason.errors import TmsError
+from tms_runtime.app import App
 
 REQUESTS = Counter("tms_db_requests", "Requests answered", ["service", "code"])
 SECONDS = Histogram("tms_db_request_seconds", "Time from request to answer", ["service"])
@@ -61,7 +61,7 @@ class Answering:
 
     def _refused(self, name: str, response: Any, error: TmsError) -> None:
         response.error_code, response.error_msg = error.code, str(error)
-        self._app.log.info("event=refused service=%s code=%s %s", name, error.code, error)
+        self._app.log.info("refused", service=name, code=error.code, reason=error)
 
     @staticmethod
     def _count(name: str, response: Any, begin: float) -> None:

@@ -18,8 +18,8 @@ from bson import json_util
 from bson.errors import BSONError
 from bson.int64 import Int64
 
-from tms_core.errors import DbError
 from tms_db.crc64 import Crc64
+from tms_reason.errors import DbError
 
 MAGIC = bytes.fromhex("6de29981")
 GZIP = b"\x1f\x8b"

@@ -18,11 +18,11 @@ from bson.raw_bson import RawBSONDocument
 from pymongo.collection import Collection
 from pymongo.errors import BulkWriteError
 
-from tms_core.config import version
-from tms_core.errors import DbError, TmsError
+from tms_config.config import version
 from tms_db import archive, schema, store
 from tms_db.archive import Name
 from tms_db.store import Db, errors
+from tms_reason.errors import DbError, TmsError
 
 STAGED = "restoring."  # before the names of collections that are not complete yet
 BATCH = 500  # documents

@@ -4,7 +4,6 @@ The store takes about a millisecond for each update however they are sent, so wh
 moment becomes one update. Callers wait for the writer's next round; what failed they send again.
 """
 
-import logging
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -15,11 +14,12 @@ from prometheus_client import Counter, Gauge, Histogram
 from pymongo import UpdateOne
 from pymongo.errors import BulkWriteError
 
-from tms_core.errors import DbError
 from tms_db.connection import Connection
 from tms_db.heads import Key
 from tms_db.records import Document, Value
 from tms_db.store import Db, errors
+from tms_reason.errors import DbError
+from tms_runtime.log import Logger
 
 LINGER = 0.25  # s that updates of sensing wait for company
 WAITING = 10_000  # records whose updates may wait at the same time
@@ -56,7 +56,7 @@ class Update:
 class Batches:
     """Updates that are not stored yet, and the thread that stores them."""
 
-    def __init__(self, db: Db, connection: Connection, log: logging.Logger) -> None:
+    def __init__(self, db: Db, connection: Connection, log: Logger) -> None:
         self._records, self._connection, self._log = db["parameter"], connection, log
         self._changed = threading.Condition()
         self._waiting: dict[Key, Update] = {}
@@ -148,5 +148,5 @@ class Batches:
             return error
         if found < len(updates):
             self.gone.set()
-            self._log.warning("event=record_gone %d of %d updated records were removed", len(updates) - found, found)
+            self._log.warning("records_gone", removed=len(updates) - found, updated=len(updates))
         return None

@@ -1,6 +1,5 @@
 """Keeps the store's connection: knows whether it is up, and brings it back in the background."""
 
-import logging
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -8,8 +7,9 @@ from contextlib import contextmanager
 from prometheus_client import Gauge
 from pymongo.errors import PyMongoError
 
-from tms_core.errors import DbError
 from tms_db import schema, store
+from tms_reason.errors import DbError
+from tms_runtime.log import Logger
 
 FIRST_WAIT = 0.2  # s after a failed attempt; doubles up to LAST_WAIT
 LAST_WAIT = 2.0
@@ -20,7 +20,7 @@ LOOK = 2.0  # s between looks at a store that nobody asks
 class Connection:
     """One store. While it is away every use fails at once instead of waiting for a time-out each."""
 
-    def __init__(self, db: store.Db, address: str, log: logging.Logger) -> None:
+    def __init__(self, db: store.Db, address: str, log: Logger) -> None:
         self._db, self._address, self._log = db, address, log
         self._trouble: DbError | None = store.down()  # until the first attempt says otherwise
         self._told = ""  # code of the trouble that the log has told, so that it tells it once
@@ -86,7 +86,7 @@ class Connection:
                     self._db.command("ping")
             else:
                 for done in schema.bring_up(self._db):
-                    self._log.info("event=migrated database=%s %s", self._db.name, done)
+                    self._log.info("migrated", database=self._db.name, reason=done)
         except DbError as error:
             return error
         except (PyMongoError, RuntimeError):  # the client was closed meanwhile
@@ -98,8 +98,8 @@ class Connection:
         if self._stopping.is_set():
             return
         if trouble is None and self._trouble is not None:
-            self._log.info("event=store_up address=%s", self._address)
+            self._log.info("store_up", address=self._address)
             self._told = ""
         elif trouble is not None and trouble.code != self._told:
-            self._log.warning("event=store_away code=%s address=%s %s", trouble.code, self._address, trouble)
+            self._log.warning("store_away", code=trouble.code, address=self._address, reason=trouble)
             self._told = trouble.code

@@ -6,13 +6,13 @@ from typing import Any
 from tms_msg_db.msg import Tmsdb
 from tms_msg_db.srv import TmsdbGetData, TmsdbGetTask
 
-from tms_core.app import App
-from tms_core.errors import TmsError
 from tms_db import store
 from tms_db.connection import Connection
 from tms_db.parameters import Parameters
 from tms_db.records import Document
 from tms_db.tasks import Tasks
+from tms_reason.errors import TmsError
+from tms_runtime.app import App
 
 POSE = ("x", "y", "z", "qx", "qy", "qz", "qw", "Release_Count")
 NOT_FLAGS = {"_id", "type", "record_name", "updated_at", "source"}
@@ -35,7 +35,7 @@ class CppServices:
             with self._connection.use():
                 response.task = self._tasks.get(request.task_id).task_sequence
         except TmsError as error:
-            self._app.log.warning("event=refused service=tms_db_reader_task code=%s %s", error.code, error)
+            self._app.log.warning("refused", service="tms_db_reader_task", code=error.code, reason=error)
         return response
 
     def get_data(self, request: Any, response: Any) -> Any:
@@ -45,13 +45,15 @@ class CppServices:
                 for name in [request.name] if request.name else request.recordnames:
                     response.tmsdbs += self._found(name, request.flgorparam)
         except TmsError as error:
-            self._app.log.warning("event=refused service=tms_db_param_reader code=%s %s", error.code, error)
+            self._app.log.warning("refused", service="tms_db_param_reader", code=error.code, reason=error)
         return response
 
     def _found(self, name: str, what: str) -> list[Any]:
         documents = self._parameters.named(name)
         if not documents:
-            self._app.log.warning("event=refused service=tms_db_param_reader there is no record %s", name)
+            self._app.log.warning(
+                "refused", service="tms_db_param_reader", reason="there is no such record", record=name
+            )
             return []
         first = documents[0]  # the C++ reader knows no model_name either
         text = json.dumps(content(first, what), ensure_ascii=False, default=str)

@@ -2,9 +2,9 @@
 
 from datetime import datetime, timezone
 
-from tms_core.errors import DbError
-from tms_core.record_lock import locked_since
 from tms_db.records import Document, title
+from tms_machine.record_lock import locked_since
+from tms_reason.errors import DbError
 
 
 def check(document: Document, max_age: float, now: datetime | None = None) -> None:

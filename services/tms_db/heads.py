@@ -10,10 +10,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from tms_core.errors import DbError
-from tms_core.ros import Ros
 from tms_db.parameters import Parameters
 from tms_db.records import RESERVED, Document, Value, bad, title
+from tms_reason.errors import DbError
+from tms_ros.node import Ros
 
 KEPT = 2.0  # s: others may write to the same database
 FOR_EVER = float("inf")

@@ -7,10 +7,10 @@ from typing import Any
 
 from pymongo.errors import BulkWriteError, DuplicateKeyError
 
-from tms_core import names
-from tms_core.errors import DbError
+from tms_config import names
 from tms_db.records import Value
 from tms_db.store import Db, errors
+from tms_reason.errors import DbError
 
 RUNS = 50
 EVENTS = 1000

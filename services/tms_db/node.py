@@ -13,7 +13,6 @@ from tms_msg_db.srv import (
     WriteMachineStates,
 )
 
-from tms_core.app import App
 from tms_db import messages, store
 from tms_db.answering import Answering
 from tms_db.connection import Connection
@@ -25,6 +24,7 @@ from tms_db.retention import Retention
 from tms_db.task_text import MODELS
 from tms_db.tasks import Tasks
 from tms_db.terrain_services import TerrainServices
+from tms_runtime.app import App
 
 
 class Services:
@@ -51,7 +51,7 @@ class Services:
         added = self._tasks.add(request.task_sequence, request.description, self._models)
         response.task_id, response.model_name = added.task_id, added.model_name
         response.already_stored = added.already_stored
-        self._app.log.info("event=task_added task=%d stored_before=%s", added.task_id, added.already_stored)
+        self._app.log.info("task_added", task=added.task_id, stored_before=added.already_stored)
 
     def get_task(self, request: Any, response: Any) -> None:
         response.task = messages.task(self._tasks.get(request.task_id))
@@ -61,7 +61,7 @@ class Services:
 
     def remove_task(self, request: Any, _: Any) -> None:
         self._tasks.remove(request.task_id)
-        self._app.log.info("event=task_removed task=%d", request.task_id)
+        self._app.log.info("task_removed", task=request.task_id)
 
     def write_journal(self, request: Any, _: Any) -> None:
         runs = [messages.stored_run(run) for run in request.runs]

@@ -19,9 +19,6 @@ from tms_msg_db.srv import (
     UpdateParameters,
 )
 
-from tms_core.app import App
-from tms_core.errors import DbError
-from tms_core.record_lock import FIELDS, holder
 from tms_db import freshness, messages
 from tms_db.answering import Answering
 from tms_db.batches import Batches, Update
@@ -33,6 +30,9 @@ from tms_db.records import Document, check_values, title
 from tms_db.store import Db
 from tms_db.values import from_parameters
 from tms_db.watching import Watching
+from tms_machine.record_lock import FIELDS, holder
+from tms_reason.errors import DbError
+from tms_runtime.app import App
 
 CHANGES_KEPT = 100  # messages for a reader that is slow
 OLDEST = 10 * 365 * 86400.0  # s; whatever is older than that, or of an age that is no number, counts as that old
@@ -115,7 +115,7 @@ class ParameterServices:
         self._parameters.remove(*key)
         self._heads.forget()
         self._tell([key])
-        self._app.log.info("event=removed %s", title(*key))
+        self._app.log.info("removed", reason=title(*key))
 
     def history(self, request: Any, response: Any) -> None:
         key = (request.model_name, request.record_name)
@@ -187,7 +187,7 @@ class ParameterServices:
         message, left_out = messages.record(document)
         if left_out:
             where = title(message.model_name, message.record_name)
-            self._app.log.warning("event=left_out %s: no ROS type for %s", where, ", ".join(left_out))
+            self._app.log.warning("left_out", record=where, fields=left_out, reason="no ROS type for them")
         return message
 
 

@@ -7,7 +7,6 @@ from typing import Any
 
 from pymongo.errors import DuplicateKeyError
 
-from tms_core.errors import DbError
 from tms_db.records import (
     Document,
     Record,
@@ -22,6 +21,7 @@ from tms_db.records import (
     title,
 )
 from tms_db.store import Db, errors
+from tms_reason.errors import DbError
 
 ATTEMPTS = 20  # somebody creates and removes the record between our steps: does not go on for long
 

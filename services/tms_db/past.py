@@ -3,7 +3,6 @@
 Kept in memory and stored now and then, so that it costs a fast record next to nothing; a crash may lose the last ones.
 """
 
-import logging
 import threading
 from collections.abc import Mapping
 from datetime import datetime
@@ -12,11 +11,12 @@ from typing import Any
 import bson
 from pymongo import UpdateOne
 
-from tms_core.errors import DbError
 from tms_db.connection import Connection
 from tms_db.heads import Key
 from tms_db.records import Value
 from tms_db.store import Db, errors
+from tms_reason.errors import DbError
+from tms_runtime.log import Logger
 
 KEPT = 50  # changes a record
 ROOM = 3 * 2**20  # bytes; the store takes documents of 16 MB, see `_room`
@@ -28,7 +28,7 @@ Change = dict[str, Any]  # stamp, source, values
 class Past:
     """The `parameter_history` collection: one document a record."""
 
-    def __init__(self, db: Db, connection: Connection, log: logging.Logger) -> None:
+    def __init__(self, db: Db, connection: Connection, log: Logger) -> None:
         self._stored, self._connection, self._log = db["parameter_history"], connection, log
         self._lock = threading.Lock()
         self._storing = threading.Lock()  # while changes are on their way from memory to the store
@@ -89,7 +89,7 @@ class Past:
                     self._save(self._missing(new) if self._unclear else new)
                 self._unclear = False
         except DbError as error:  # kept in memory until the store is back
-            self._log.info("event=history_waits %s", error)
+            self._log.info("history_waits", reason=error)
             self._unclear = True
             with self._lock:
                 for key, later in self._new.items():

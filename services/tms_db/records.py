@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tms_core import names
-from tms_core.errors import DbError
-from tms_core.yaml_file import read_yaml
+from tms_config import names
+from tms_config.yaml_file import read_yaml
+from tms_reason.errors import DbError
 
 Scalar = bool | int | float | str
 Value = Scalar | Sequence[Scalar]

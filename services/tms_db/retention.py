@@ -5,18 +5,18 @@ do all tasks and records. Ages count back from the newest run as well as from th
 or a site that slept for years, loses nothing.
 """
 
-import logging
 import threading
 from datetime import datetime, timedelta, timezone
 
 from prometheus_client import Counter
 
-from tms_core.errors import DbError
-from tms_core.site_file import Store
+from tms_config.site_file import Store
 from tms_db import store
 from tms_db.connection import Connection
 from tms_db.machine_states import COLLECTIONS
 from tms_db.store import Db, errors
+from tms_reason.errors import DbError
+from tms_runtime.log import Logger
 
 FIRST = 1.0  # s from the start to the first look: the store is there by then, as a rule
 PERIOD = 24 * 3600.0  # s between looks
@@ -91,7 +91,7 @@ def _date(text: str) -> datetime:
 class Retention:
     """Looks when the store is there first, and then once a day."""
 
-    def __init__(self, db: Db, connection: Connection, settings: Store, log: logging.Logger) -> None:
+    def __init__(self, db: Db, connection: Connection, settings: Store, log: Logger) -> None:
         self._db, self._connection, self._settings, self._log = db, connection, settings, log
         self._stopping = threading.Event()
         self._thread = threading.Thread(target=self._run, name="retention", daemon=True)
@@ -111,7 +111,7 @@ class Retention:
                     self._look(datetime.now(timezone.utc))
             except DbError as error:
                 if error.code != "STORE_DOWN":  # which the connection tells
-                    self._log.warning("event=retention_waits code=%s %s", error.code, error)
+                    self._log.warning("retention_waits", code=error.code, reason=error)
                 wait = AGAIN
 
     def _look(self, now: datetime) -> None:
@@ -121,4 +121,4 @@ class Retention:
         if self._settings.machine_state_days is not None:
             gone["machine_states"] = delete_states(self._db, self._settings.machine_state_days, now)
         if any(gone.values()):
-            self._log.info("event=retention %s", " ".join(f"{what}={number}" for what, number in gone.items()))
+            self._log.info("retention", reason=" ".join(f"{what}={number}" for what, number in gone.items()))

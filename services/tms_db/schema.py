@@ -8,10 +8,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime, timezone
 
-from tms_core.config import version
-from tms_core.errors import DbError
+from tms_config.config import version
 from tms_db import store
 from tms_db.store import Db, errors
+from tms_reason.errors import DbError
 
 COLLECTION = "schema"
 KEY = {"_id": "tms"}  # its one document

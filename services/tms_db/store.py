@@ -21,7 +21,7 @@ from pymongo.errors import (
 )
 from pymongo.uri_parser import parse_uri
 
-from tms_core.errors import ConfigError, DbError
+from tms_reason.errors import ConfigError, DbError
 
 Db = Database[dict[str, Any]]
 

@@ -7,14 +7,14 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tms_core import environment
-from tms_core.config import CONFIGS, load_site
-from tms_core.errors import DbError, TaskError, TmsError
-from tms_core.last_resort import LEAVE_LIMIT, end_after
+from tms_config import environment
+from tms_config.config import CONFIGS, load_site
 from tms_db import task_text
+from tms_reason.errors import DbError, TaskError, TmsError
+from tms_runtime.last_resort import LEAVE_LIMIT, end_after
 
 if TYPE_CHECKING:
-    from tms_core.ros import Ros
+    from tms_ros.node import Ros
 
 TASKS = CONFIGS / "tasks"
 ANSWER = 10.0  # s
@@ -41,7 +41,7 @@ def main() -> int:
     except TmsError as error:
         sys.stderr.write(f"{error}\n")
         return 1
-    from tms_core.ros import Ros  # after the environment is set, which rclpy reads
+    from tms_ros.node import Ros  # after the environment is set, which rclpy reads
 
     ros = Ros("task_generator")
     code = _say(ros)

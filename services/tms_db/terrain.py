@@ -10,11 +10,11 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tms_core import names
-from tms_core.errors import DbError
+from tms_config import names
 from tms_db import terrain_files
 from tms_db.store import Db, errors, long_work
 from tms_db.terrain_files import IDS, IMAGES, Size, bad
+from tms_reason.errors import DbError
 
 if TYPE_CHECKING:
     import gridfs

@@ -5,7 +5,7 @@ import zlib
 from dataclasses import dataclass
 from pathlib import Path
 
-from tms_core.errors import DbError
+from tms_reason.errors import DbError
 
 # What the C++ system calls them, with its ids and file endings. Dynamic clouds come over ROS, not as files.
 IDS = {"static": 3030, "mesh": 3030, "dem": 3030, "dynamic": 3031, "heightmap": 4031, "texture": 4031}

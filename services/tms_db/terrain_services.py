@@ -10,12 +10,12 @@ from prometheus_client import Counter
 from tms_msg_db.msg import TmsdbGridFS
 from tms_msg_db.srv import TerrainStaticSrv, TmsdbTerrainImageSrv
 
-from tms_core.app import App
-from tms_core.errors import TmsError
 from tms_db import store, terrain_messages
 from tms_db.connection import Connection
 from tms_db.terrain import Stored, Terrain, missing
 from tms_db.terrain_files import IMAGES, bad
+from tms_reason.errors import TmsError
+from tms_runtime.app import App
 
 CLOUDS = Counter("tms_db_clouds", "Dynamic terrain that came over ROS", ["what"])
 TOPIC = "tms_db_gridfs_data"
@@ -113,4 +113,4 @@ class TerrainServices:
         return found
 
     def _refused(self, service: str, error: TmsError) -> None:
-        self._app.log.warning("event=refused service=%s code=%s %s", service, error.code, error)
+        self._app.log.warning("refused", service=service, code=error.code, reason=error)

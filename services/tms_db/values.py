@@ -6,8 +6,8 @@ from typing import Any
 
 from builtin_interfaces.msg import Time
 
-from tms_core import values
 from tms_db.records import RESERVED, Value, bad
+from tms_machine import values
 
 LAST_SECOND = 2**31 - 1  # of builtin_interfaces/Time
 

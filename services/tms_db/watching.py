@@ -4,7 +4,6 @@ A change stream tells of everybody's writes, also of another system's in the sam
 embedded store does without); where there is none, records are read from the store each time.
 """
 
-import logging
 import threading
 import time
 from collections.abc import Callable
@@ -14,6 +13,7 @@ from pymongo.errors import OperationFailure, PyMongoError
 
 from tms_db.connection import Connection
 from tms_db.store import Db
+from tms_runtime.log import Logger
 
 AWAIT_MS = 500  # that the store waits for a change before it says that there is none
 SURE = 2.0  # s since its last word for which the stream counts as there
@@ -25,7 +25,7 @@ WANTED = [{"$project": {"documentKey": 1, "operationType": 1}}]
 class Watching:
     """A thread with the change stream of the records."""
 
-    def __init__(self, db: Db, connection: Connection, log: logging.Logger, changed: Callable[[Any], None]) -> None:
+    def __init__(self, db: Db, connection: Connection, log: Logger, changed: Callable[[Any], None]) -> None:
         """`changed` is called in that thread with the _id of a record, or with None: any of them."""
         self._records, self._connection, self._log, self._changed = db["parameter"], connection, log, changed
         self._heard = float("-inf")  # monotonic; read in other threads
@@ -52,11 +52,11 @@ class Watching:
             try:
                 self._listen()
             except OperationFailure as error:
-                self._log.info("event=no_change_stream reason=%r", str(error).splitlines()[0])
+                self._log.info("no_change_stream", reason=str(error).splitlines()[0])
                 wait = RETRY_REFUSED
             except (PyMongoError, RuntimeError) as error:  # RuntimeError: the client was closed meanwhile
                 if not self._stopping.is_set():
-                    self._log.warning("event=change_stream_broken reason=%r", str(error).splitlines()[0])
+                    self._log.warning("change_stream_broken", reason=str(error).splitlines()[0])
 
     def _listen(self) -> None:
         with self._records.watch(WANTED, max_await_time_ms=AWAIT_MS) as stream:

@@ -6,10 +6,10 @@ from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
-from tms_core import metrics
-from tms_core.app import App
-from tms_core.processes import Process, table
+from tms_config.processes import Process, table
 from tms_host.supervisor import Running
+from tms_runtime import metrics
+from tms_runtime.app import App
 
 PERIOD = 1.0  # s between messages
 LOOK = 5.0  # s between questions to a process whether it is ready: each costs a few milliseconds

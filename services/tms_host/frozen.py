@@ -13,10 +13,10 @@ import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 
-from tms_core.app import App
-from tms_core.errors import TmsError
-from tms_core.processes import here
+from tms_config.processes import here
 from tms_host.supervisor import Running, Supervisor
+from tms_reason.errors import TmsError
+from tms_runtime.app import App
 
 PERIOD = 2.0  # s between rounds; a question costs about a millisecond of both processes
 ANSWER_LIMIT = 2.0  # s
@@ -86,10 +86,10 @@ class Watchdog:
             now = supervisor.process(row.name)
             if (now.state, now.pid) != ("RUNNING", row.pid):  # somebody has stopped it while it was asked
                 return
-            self._app.log.error("event=frozen target=%s pid=%d action='restarted'", row.name, row.pid)
+            self._app.log.error("frozen", target=row.name, pid=row.pid, action="restarted")
             supervisor.control("restart", row.name)
         except TmsError as error:
-            self._app.log.error("event=not_restarted target=%s reason=%r", row.name, str(error))
+            self._app.log.error("not_restarted", target=row.name, reason=str(error))
 
     def _watch_gateways(self) -> None:
         """In a thread of its own: the other one waits for answers of whatever else is frozen."""
@@ -104,7 +104,7 @@ class Watchdog:
         try:
             row = supervisor.process(name)
         except TmsError as error:
-            self._app.log.error("event=not_killed target=%s reason=%r", name, str(error))
+            self._app.log.error("not_killed", target=name, reason=str(error))
             return
         seconds = self._silent().get(name)  # now: the answer may have taken seconds, and it may be back
         if seconds is None:
@@ -112,6 +112,6 @@ class Watchdog:
         older = row.state == "RUNNING" and row.uptime > seconds + OLDER
         if older and row.pid != self._killed.get(name):
             self._killed[name] = row.pid
-            self._app.log.error("event=frozen target=%s pid=%d action='killed'", name, row.pid)
+            self._app.log.error("frozen", target=name, pid=row.pid, action="killed")
             with contextlib.suppress(ProcessLookupError):  # it has just ended
                 os.kill(row.pid, signal.SIGKILL)

@@ -12,14 +12,14 @@ from prometheus_client import REGISTRY
 from tms_msg_host.msg import Process, Processes
 from tms_msg_host.srv import ControlProcess, ReadLog
 
-from tms_core.app import App
-from tms_core.errors import TmsError
 from tms_host.diagnostics import Diagnostics
 from tms_host.facts import Facts
 from tms_host.frozen import Watchdog
 from tms_host.stand_in import StandIn
 from tms_host.supervisor import Running, Supervisor, SupervisorDown
 from tms_host.usage import Usage
+from tms_reason.errors import TmsError
+from tms_runtime.app import App
 
 HEARTBEAT = 2.0  # s between messages when nothing changes, so that a dead PC can be told from a quiet one
 LOG_BYTES, MOST_LOG_BYTES = 16_384, 262_144
@@ -94,7 +94,7 @@ class Host:
         try:
             with self._calls:
                 self._control.control(request.command, request.name)
-            self._app.log.info("event=%s target=%s", request.command, request.name)
+            self._app.log.info(request.command, target=request.name)
         except TmsError as error:
             response.error_code, response.error_msg = error.code, str(error)
         return response

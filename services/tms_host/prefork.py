@@ -20,10 +20,11 @@ import setproctitle
 from supervisor.options import ServerOptions
 from supervisor.supervisord import go
 
-MODULE = "tms_core.run"  # programs that are forked; others (none today) are executed as usual
+MODULE = "tms_runtime.run"  # programs that are forked; others (none today) are executed as usual
 LIBRARIES = (
     "rclpy", "rclpy.action", "rclpy.executors", "rclpy.event_handler", "rclpy.serialization",
-    "prometheus_client", "yaml", "asyncio", "http.client", "concurrent.futures", "logging.handlers", "difflib",
+    "prometheus_client", "structlog.stdlib", "yaml", "asyncio", "http.client", "concurrent.futures", "logging.handlers",
+    "difflib",
 )  # fmt: skip
 INTERFACES = (
     "tms_msg_ts", "tms_msg_db", "tms_msg_rc", "tms_msg_rp", "tms_msg_host", "control_msgs", "nav2_msgs", "com3_msgs",
@@ -51,7 +52,7 @@ class Options(ServerOptions):  # type: ignore[misc]
 
 
 def become(argv: list[str], env: dict[str, str], parent: int) -> NoReturn:
-    """Run `python -m tms_core.run NAME` in this fork, and end with its exit code."""
+    """Run `python -m tms_runtime.run NAME` in this fork, and end with its exit code."""
     gc.freeze()  # what supervisord held is never collected here: its file numbers belong to others now
     for number in HANDLED:
         signal.signal(number, signal.SIG_DFL)

@@ -21,10 +21,10 @@ from builtin_interfaces.msg import Time
 from prometheus_client import Counter, Gauge
 from tms_msg_rc.msg import MachineState
 
-from tms_core.app import App
-from tms_core.border import Controls, stood_in
-from tms_core.permit import NOBODY, Link
-from tms_core.processes import here
+from tms_config.processes import here
+from tms_machine.border import Controls, stood_in
+from tms_machine.permit import NOBODY, Link
+from tms_runtime.app import App
 
 PATIENCE = 0.09  # s more than the lease: a process frozen for 0.4 s may have asserted itself 0.1 s before
 AGAIN = 0.5  # s between repeated commands
@@ -109,8 +109,8 @@ class Post:
         self._done: Act | None = None  # what was commanded since the gateway was lost, and told
         self._controls = Controls(ros, machine, app.site.border(machine), keeps_emergency=False)
         self._now, self._stood_in = ros.now, ros.publisher(Time, stood_in(machine), 1, latched=True)
-        self._gateway = Link(ros, machine, "rc", _looked_at)
-        self._scheduler = Link(ros, machine, "ts", _looked_at)
+        self._gateway = Link(ros, app.pulse, machine, "rc", _looked_at)
+        self._scheduler = Link(ros, app.pulse, machine, "ts", _looked_at)
         self._news = ros.sample(MachineState, f"/{machine}/rc/state")
         self._state: Any = None  # the last one of a gateway that is lost
         self._held_at = float("-inf")  # when a run last had the machine
@@ -152,13 +152,13 @@ class Post:
                 STOOD_IN.labels(self.machine).inc()
                 LOST.labels(self.machine).set(1)
             self._done = act
-            self._log.error("event=gateway_lost machine=%s action=%r", self.machine, act and act.value)
+            self._log.error("gateway_lost", machine=self.machine, action=act and act.value)
         elif not lost and self._done is not None:
             self._done = None
             LOST.labels(self.machine).set(0)
-            self._log.info("event=gateway_back machine=%s", self.machine)
+            self._log.info("gateway_back", machine=self.machine)
         elif not lost and act is not None:
-            self._log.info("event=gateway_left machine=%s", self.machine)
+            self._log.info("gateway_left", machine=self.machine)
 
 
 class StandIn:
@@ -168,7 +168,7 @@ class StandIn:
         rows = [row for row in here(app.site) if row.module == GATEWAY]
         self._posts = {row.full: Post(app, str(row.machine)) for row in rows}
         if self._posts:
-            app.ros.pulse.add(self._look)
+            app.pulse.add(self._look)
 
     def silent(self) -> dict[str, float]:
         """Gateways that are lost, and for how long [s]; from any thread."""

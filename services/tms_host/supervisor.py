@@ -11,11 +11,11 @@ from pathlib import Path
 
 from supervisor.xmlrpc import SupervisorTransport
 
-from tms_core.config import PROJECT, Site
-from tms_core.environment import environment
-from tms_core.errors import ConfigError, TmsError
-from tms_core.processes import Process, here
-from tms_core.state_folder import UMASK
+from tms_config.config import PROJECT, Site
+from tms_config.environment import environment
+from tms_config.processes import Process, here
+from tms_config.state_folder import UMASK
+from tms_reason.errors import ConfigError, TmsError
 
 START_SECONDS = 1  # a process that ends sooner counts as failed to start
 STOP_SECONDS = 3  # the runtime ends within 2
@@ -99,7 +99,7 @@ def _program(site: Site, row: Process) -> str:
     log = _escape(str(log_file(site, row.full)))
     return f"""[program:{_section(row)}]
 process_name={row.name}
-command="{_escape(sys.executable)}" -m tms_core.run {row.full}
+command="{_escape(sys.executable)}" -m tms_runtime.run {row.full}
 autostart={str(row.autostart).lower()}
 autorestart=true
 startsecs={START_SECONDS}

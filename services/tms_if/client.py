@@ -1,6 +1,5 @@
 """One connection to the bridge, from handshake to its end. Whatever a client does, only its own connection suffers."""
 
-import logging
 import socket
 import threading
 from collections.abc import Callable
@@ -11,6 +10,7 @@ from tms_if.commands import CommandError, Registration, Removal, ServiceId, comm
 from tms_if.ends import Ends
 from tms_if.framing import Frame, FrameError, Splitter
 from tms_if.outbox import Outbox
+from tms_runtime.log import Logger
 
 SILENCE = 10.0  # s; the simulator sends a keep-alive every second
 PIECE = 65536  # bytes
@@ -42,7 +42,7 @@ class Client:
         self,
         connection: socket.socket,
         name: str,
-        log: logging.Logger,
+        log: Logger,
         message_limit: int,
         ends: Callable[[Callable[[bytes, bool], None], Callable[[str], None]], Ends],
     ) -> None:
@@ -55,7 +55,7 @@ class Client:
 
     def run(self) -> None:
         """Serve until the client leaves, breaks the protocol, or `close`."""
-        self._log.info("event=client_connected client=%s", self._name)
+        self._log.info("client_connected", client=self._name)
         CLIENTS.inc()
         self._socket.settimeout(SILENCE)
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
@@ -70,12 +70,7 @@ class Client:
             self._ends.close()
             CLIENTS.dec()
             DROPPED.inc(self._outbox.dropped)
-            self._log.info(
-                "event=client_gone client=%s dropped=%d reason=%r",
-                self._name,
-                self._outbox.dropped,
-                self._why or reason,
-            )
+            self._log.info("client_gone", client=self._name, dropped=self._outbox.dropped, reason=self._why or reason)
 
     def close(self, why: str) -> None:
         """End the connection from any thread; `why` is for the log."""
@@ -143,7 +138,7 @@ class Client:
         if text in self._told or len(self._told) >= TROUBLES:
             return
         self._told.add(text)
-        self._log.warning("event=client_trouble client=%s reason=%r", self._name, text)
+        self._log.warning("client_trouble", client=self._name, reason=text)
         self._send(command("__error", text=text), False)
 
     def _send(self, frame: bytes, droppable: bool) -> None:
@@ -152,7 +147,7 @@ class Client:
         if not self._outbox.put(frame, droppable):
             self.close("it does not read: even answers find no room any more")
         elif before == 0 and self._outbox.dropped:
-            self._log.warning("event=client_slow client=%s reason='it reads too slowly: messages get lost'", self._name)
+            self._log.warning("client_slow", client=self._name, reason="it reads too slowly: messages get lost")
 
     def _send_all(self) -> None:
         try:

@@ -5,7 +5,7 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
-from tms_core.yaml_file import explain
+from tms_config.yaml_file import explain
 from tms_if.framing import encode
 
 VERSION = "v0.7.0"  # the simulator wants v0.7; of its protocol, not of this project

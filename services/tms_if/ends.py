@@ -8,13 +8,14 @@ from typing import Any, TypeVar
 
 from prometheus_client import Counter
 
-from tms_core.errors import RosError
-from tms_core.ros import Ros, pack, unpack
 from tms_if import joint_cmd
 from tms_if.commands import CommandError, Registration, command, full_name
 from tms_if.framing import encode
 from tms_if.interfaces import interface, short_name
 from tms_if.names import Allowed
+from tms_reason.errors import RosError
+from tms_ros.node import Ros
+from tms_ros.packing import pack, unpack
 
 ROS_LIMIT = 5.0  # s for the ROS thread to make or remove something
 ANSWER_LIMIT = 30.0  # s for a service to answer, on either side

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from tms_core.config import Site
-from tms_core.sensing import load_sensing
+from tms_config.config import Site
+from tms_config.sensing import load_sensing
 from tms_if.interfaces import short_name
 
 Named = Mapping[str, frozenset[str]]  # full name -> types that it may have, as pkg/Type

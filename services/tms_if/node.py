@@ -3,11 +3,11 @@
 import socket
 import threading
 
-from tms_core.app import App
-from tms_core.errors import ConfigError
 from tms_if.client import Client
 from tms_if.ends import Ends
 from tms_if.names import allowed
+from tms_reason.errors import ConfigError
+from tms_runtime.app import App
 
 MOST = 16  # clients at a time
 PAUSE = 1.0  # s after the system could not accept a connection
@@ -27,7 +27,7 @@ def start(app: App) -> None:
     threading.Thread(target=bridge.accept, name="accept", daemon=True).start()
     app.on_stop(bridge.close)
     app.ready_when(lambda: None)
-    app.log.info("event=listening address=%s:%d joint_cmd=%s", settings.bind, settings.port, settings.joint_cmd)
+    app.log.info("listening", address=f"{settings.bind}:{settings.port}", joint_cmd=settings.joint_cmd)
 
 
 class Endpoint:
@@ -46,13 +46,11 @@ class Endpoint:
                 connection, (host, port, *_) = self._server.accept()
             except OSError as error:
                 if not self._app.stopping.is_set():
-                    self._app.log.error("event=not_accepted reason=%r", error.strerror)
+                    self._app.log.error("not_accepted", reason=error.strerror)
                     self._app.stopping.wait(PAUSE)
                 continue
             if len(self._clients) >= MOST:
-                self._app.log.warning(
-                    "event=client_refused client=%s:%d reason='%d others are there'", host, port, MOST
-                )
+                self._app.log.warning("client_refused", client=f"{host}:{port}", reason="too many others", others=MOST)
                 connection.close()
                 continue
             threading.Thread(

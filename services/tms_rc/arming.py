@@ -6,8 +6,8 @@ from typing import Any
 from tms_msg_rc.msg import StopReceipt
 from tms_msg_rc.srv import Rearm, TakeMachine
 
-from tms_core.app import App
 from tms_rc.guard import PRESSED, Guard, Kind
+from tms_runtime.app import App
 
 PROOF_LIMIT = 3.0  # s that a person waits for a stop that is still being proven
 MANUAL = "the machine's own manual mode"
@@ -48,7 +48,7 @@ class Arming:
         guard.controls.emergency(False)
         guard.stood_in = False
         guard.vigil.end(time.monotonic())
-        self._app.log.info("event=armed")
+        self._app.log.info("armed")
         guard.told()
         return "", ""
 
@@ -88,7 +88,7 @@ class Arming:
             response.receipt = self._give_back(request.who)
         elif not code:
             self._guard.by_hand = request.who
-            self._app.log.warning("event=taken who=%r", request.who)
+            self._app.log.warning("taken", who=request.who)
             self._guard.told()
         response.error_code, response.error_msg = code, text
         return response

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from tms_core.fence import Owner
+from tms_ros.fence import Owner
 
 SCHEDULER = "ts"
 

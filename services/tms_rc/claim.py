@@ -8,8 +8,8 @@ import time
 from prometheus_client import Gauge
 from tms_msg_rc.msg import GatewayClaim
 
-from tms_core.app import App
-from tms_core.permit import BEATS, LEASE
+from tms_machine.permit import BEATS, LEASE
+from tms_runtime.app import App
 
 SETTLE = 0.4  # s for gateways to find each other; one that is found later is told then
 LOOK = 0.1  # s
@@ -31,7 +31,7 @@ class Claim:
             lambda: app.ros.lease_subscribe(GatewayClaim, topic, LEASE, self._on_claim, self._on_liveliness)
         )
         self._tell()
-        app.ros.pulse.add(self._beat)
+        app.pulse.add(self._beat)
 
     @property
     def rival(self) -> str:
@@ -48,7 +48,7 @@ class Claim:
             if other is None or not (other.serving or other.id < self._id):
                 break
             if not told:
-                self._app.log.error("event=second_gateway other=%r action='does not serve'", other.where)
+                self._app.log.error("second_gateway", other=other.where, action="does not serve")
                 told = True
             time.sleep(LOOK)
         if self._app.stopping.is_set():
@@ -89,5 +89,5 @@ class Claim:
         if other is None or not self._serving or not other.serving:
             return
         if other.id < self._id:  # both were at work before they found each other: one of them ends, and comes back
-            self._app.log.error("event=second_gateway other=%r action='ends'", other.where)
+            self._app.log.error("second_gateway", other=other.where, action="ends")
             self._app.ros.failed.set()

@@ -4,15 +4,17 @@ import time
 from collections.abc import Sequence
 from typing import Any
 
-from tms_core.app import App
-from tms_core.border import Motion
-from tms_core.errors import RosError
-from tms_core.fence import parse
-from tms_core.ros import LOST_TEXT, Call, Ended, Goal, Outcome, Peer
+from tms_machine.border import Motion
 from tms_rc import limits
 from tms_rc.following import Follower, ways
 from tms_rc.guard import Active, Guard, Kind
 from tms_rc.standstill import JOINTS, StandStill
+from tms_reason.errors import RosError
+from tms_ros.client import Call, Peer
+from tms_ros.fence import parse
+from tms_ros.goals import LOST_TEXT, Ended, Outcome
+from tms_ros.server import Goal
+from tms_runtime.app import App
 
 SERVER_LIMIT = 3.0  # s for the machine's server to be there, and for news of the machine to be heard
 ACCEPT_LIMIT = 3.0  # s for it to answer a goal
@@ -40,7 +42,7 @@ class Gateway:
         active = Active(goal, parse(goal.uuid), peer, {}, self._watch.positions)
         wrong = self._limits(motion, goal.request) or self._guard.take(active)
         if wrong is not None:
-            self._app.log.warning("event=refused goal=%s reason=%r", goal.id, wrong)
+            self._app.log.warning("refused", goal=goal.id, reason=wrong)
             return aborted(motion, wrong)
         try:
             return self._pass_on(motion, active)

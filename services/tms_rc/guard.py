@@ -14,11 +14,8 @@ from typing import Any
 from tms_msg_rc.msg import StopReceipt
 from tms_msg_rc.srv import StopMachine
 
-from tms_core.app import App
-from tms_core.border import STOP_PROVEN, Controls
-from tms_core.fence import Owner
-from tms_core.permit import NOBODY, Link
-from tms_core.ros import LOST_TEXT, Call, Goal, Peer
+from tms_machine.border import STOP_PROVEN, Controls
+from tms_machine.permit import NOBODY, Link
 from tms_rc.chain import SCHEDULER, gap, members
 from tms_rc.following import Follower
 from tms_rc.latch import Latch
@@ -27,6 +24,11 @@ from tms_rc.permits import Permits
 from tms_rc.standstill import NOTHING, Expected, StandStill
 from tms_rc.stopper import Stop, Stopper
 from tms_rc.vigil import Vigil
+from tms_ros.client import Call, Peer
+from tms_ros.fence import Owner
+from tms_ros.goals import LOST_TEXT
+from tms_ros.server import Goal
+from tms_runtime.app import App
 
 PERMIT_LIMIT = 3.0  # s that a goal may come before the permits behind it: a new process is discovered late on a busy PC
 PRESSED = 1.0  # s that a software stop counts as pressed after its last message

@@ -9,7 +9,7 @@ import secrets
 import threading
 from dataclasses import dataclass
 
-from tms_core.fence import Owner
+from tms_ros.fence import Owner
 
 TOKEN_SECONDS = 60.0  # s that a person has between the two steps
 ANY_LEAF = -1  # no leaf has this number: any leaf of the run may leave the hold

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from tms_core.models import MachineModel
+from tms_config.models import MachineModel
 
 UNIT = 0.01  # how far the length of a quaternion may be from 1
 FASTER = 1.1  # times the limit of speed that a trajectory may ask for

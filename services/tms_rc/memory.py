@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tms_core import durable
-from tms_core.fence import NO_NOTE
+from tms_ros.fence import NO_NOTE
+from tms_runtime import durable
 
 UNREADABLE = "the note of how the machine was left cannot be read: look at it, then re-arm it"
 

@@ -9,10 +9,8 @@ from std_msgs.msg import Bool
 from tms_msg_rc.msg import MachineState
 from tms_msg_rc.srv import Rearm, StopMachine, TakeMachine
 
-from tms_core.app import App
-from tms_core.border import Controls, motions
-from tms_core.permit import LEASE, Permit
-from tms_core.ros import Peer
+from tms_machine.border import Controls, motions
+from tms_machine.permit import LEASE, Permit
 from tms_rc.arming import Arming
 from tms_rc.claim import Claim
 from tms_rc.gateway import Gateway, speed_of
@@ -24,6 +22,8 @@ from tms_rc.presses import Presses
 from tms_rc.recovery import Recovery
 from tms_rc.standstill import StandStill
 from tms_rc.view import View
+from tms_ros.client import Peer
+from tms_runtime.app import App
 
 TOLD_MOVING, TOLD_STILL = 0.2, 0.5  # s between messages about the machine; a change is told at once
 SIGNALS = 100  # of all buttons that may wait: no `false` may push out the `true` of another one
@@ -70,8 +70,8 @@ def _serve(app: App, claim: Claim) -> None:
     teller = Teller(guard, watch, lambda: publisher.publish(told.state()))
     guard.told = teller.tell
     for step in (view.look, guard.look, teller.look):
-        app.ros.pulse.add(step)
-    permit = Permit(app.ros, machine, "rc")
+        app.pulse.add(step)
+    permit = Permit(app.ros, app.pulse, machine, "rc")
     # Not before the lease of a predecessor that was killed has run out: nobody would notice its loss.
     app.ros.on_executor(lambda: app.ros.after(LEASE, lambda: permit.hold(GATEWAY)))
     app.ready_when(told.unready)

@@ -2,10 +2,10 @@
 
 import threading
 
-from tms_core.app import App
 from tms_rc.latch import Latch
 from tms_rc.memory import Memory
 from tms_rc.stopper import UNKEPT
+from tms_runtime.app import App
 
 
 class Notes:
@@ -31,7 +31,7 @@ class Notes:
             except OSError as error:
                 self._kept = None
                 UNKEPT.inc()
-                self._app.log.error("event=note_not_kept reason=%r", str(error))
+                self._app.log.error("note_not_kept", reason=str(error))
                 return f"the note of its state cannot be written ({error.strerror}): make room on the disk of this PC"
             self._kept = now
         return None

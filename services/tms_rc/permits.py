@@ -2,10 +2,10 @@
 
 from collections.abc import Callable
 
-from tms_core.app import App
-from tms_core.fence import Owner, parse
-from tms_core.permit import Link
+from tms_machine.permit import Link
 from tms_rc.chain import SCHEDULER
+from tms_ros.fence import Owner, parse
+from tms_runtime.app import App
 
 
 class Permits:
@@ -17,7 +17,7 @@ class Permits:
         self._links: list[Link] = []
 
         def listen() -> None:
-            self._links = [Link(app.ros, app.machine, name, changed) for name in names]
+            self._links = [Link(app.ros, app.pulse, app.machine, name, changed) for name in names]
 
         app.ros.on_executor(listen)  # where no news can come before all links, and their owner, are there
 

@@ -10,9 +10,9 @@ from typing import Any
 from builtin_interfaces.msg import Time
 from std_msgs.msg import Bool
 
-from tms_core.app import App
-from tms_core.border import stood_in
+from tms_machine.border import stood_in
 from tms_rc.guard import Guard, Kind
+from tms_runtime.app import App
 
 DEPTH = 10  # presses that may wait
 DOUBT = 0.3  # s for the host agent's word to come, if it was its press

@@ -5,7 +5,7 @@ import os
 from collections import deque
 from pathlib import Path
 
-from tms_core import durable
+from tms_runtime import durable
 
 KEPT = 20  # as many as the topic keeps for late comers
 ROOM = 200  # lines after which the file is written anew

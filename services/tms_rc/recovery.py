@@ -2,14 +2,14 @@
 
 import time
 
-from tms_core.app import App
-from tms_core.fence import Owner
-from tms_core.ros import LOST_TEXT
 from tms_rc.guard import Guard, Kind
 from tms_rc.latch import ANY_LEAF, UNKNOWN_RUN
 from tms_rc.memory import Left
 from tms_rc.standstill import UNKNOWN
 from tms_rc.stopper import Stop
+from tms_ros.fence import Owner
+from tms_ros.goals import LOST_TEXT
+from tms_runtime.app import App
 
 REACHED = 5.0  # s for the machine's servers to be there
 LEFT_MOVING = 2.0  # s that a machine that was left armed and idle is watched for a motion

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from tms_core.models import Source
+from tms_config.models import Source
 from tms_rc.channel import Channel, Limits, Place, distance
 from tms_rc.stamps import StampClock, Verdict
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from enum import Enum
 
-from tms_core.models import Stamps
+from tms_config.models import Stamps
 
 AHEAD = 1.0  # s that a stamp may be ahead of its estimated offset
 BACK = 0.5  # s that a stamp may be before the last one without a new clock behind it

@@ -9,7 +9,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from tms_core.models import DRIVE, Border, MachineModel
+from tms_config.models import DRIVE, Border, MachineModel
 from tms_rc.channel import WORST, Limits, Place
 from tms_rc.source import LABELS, Sample, SourceWatch, Trouble
 

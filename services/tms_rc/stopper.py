@@ -14,11 +14,11 @@ from typing import Any
 from prometheus_client import Counter, Histogram
 from tms_msg_rc.msg import StopReceipt
 
-from tms_core.app import App
-from tms_core.border import STOP_PROVEN, Controls
-from tms_core.ros import pack, unpack
+from tms_machine.border import STOP_PROVEN, Controls
 from tms_rc.receipts import Receipts
 from tms_rc.standstill import NOTHING, Expected, Proof, StandStill
+from tms_ros.packing import pack, unpack
+from tms_runtime.app import App
 
 AGAIN = 0.5  # s between repeated commands while it is not proven
 LOOK = 0.01  # s
@@ -156,7 +156,13 @@ class Stopper:
             receipt.evidence = "; ".join(filter(None, (receipt.evidence, f"not on the disk: {error.strerror}")))
         self._receipts.publish(receipt)
         self._app.log.info(
-            "event=stop cause=%r confirmed=%s latched=%s seconds=%.3f joint=%s rad=%.3f m=%.3f detail=%r",
-            receipt.cause, receipt.confirmed, receipt.latched, receipt.seconds, receipt.travel_joint,
-            receipt.travel_rad, receipt.travel_m, receipt.detail,
-        )  # fmt: skip
+            "stop",
+            cause=receipt.cause,
+            confirmed=receipt.confirmed,
+            latched=receipt.latched,
+            seconds=round(receipt.seconds, 3),
+            joint=receipt.travel_joint,
+            rad=round(receipt.travel_rad, 3),
+            m=round(receipt.travel_m, 3),
+            detail=receipt.detail,
+        )

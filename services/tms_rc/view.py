@@ -9,12 +9,12 @@ from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu, JointState
 
-from tms_core.app import App
-from tms_core.models import Border
-from tms_core.ros.topics import Arrival
+from tms_config.models import Border
 from tms_rc.channel import Place
 from tms_rc.source import LABELS, Sample
 from tms_rc.standstill import HEADING, IMU, JOINTS, ODOM, PLACE, POSE, TURNING, StandStill, yaw_of
+from tms_ros.topics import Arrival
+from tms_runtime.app import App
 
 DEPTH = 10  # messages of a source that may come between two looks
 VOICES = 0.25  # s between looks at who publishes

@@ -15,8 +15,8 @@ import fcl
 import numpy as np
 from numpy.typing import NDArray
 
-from tms_core.errors import SubtaskFailed
-from tms_core.models import Box, MachineModel, Origin
+from tms_config.models import Box, MachineModel, Origin
+from tms_reason.errors import SubtaskFailed
 from tms_rp.trajectory import Joints, Trajectory
 
 PADDING = 0.1  # m around the bodies that the arm moves

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from tms_core.errors import SubtaskFailed
+from tms_reason.errors import SubtaskFailed
 
 
 @dataclass(frozen=True)

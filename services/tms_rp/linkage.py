@@ -11,8 +11,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from tms_core.errors import SubtaskFailed
-from tms_core.models import Origin
+from tms_config.models import Origin
+from tms_reason.errors import SubtaskFailed
 
 Vector = tuple[float, float, float]
 

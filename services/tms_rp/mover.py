@@ -4,10 +4,12 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from tms_core.border import STOP_PROVEN
-from tms_core.errors import SubtaskFailed
-from tms_core.fence import derived
-from tms_core.ros import LOST_TEXT, Call, Goal, Outcome, Peer
+from tms_machine.border import STOP_PROVEN
+from tms_reason.errors import SubtaskFailed
+from tms_ros.client import Call, Peer
+from tms_ros.fence import derived
+from tms_ros.goals import LOST_TEXT, Outcome
+from tms_ros.server import Goal
 from tms_rp.messages import follow
 from tms_rp.trajectory import Trajectory
 

@@ -3,9 +3,9 @@
 import numpy as np
 from tf2_msgs.msg import TFMessage
 
-from tms_core.app import App
-from tms_core.frames import Frames
+from tms_machine.frames import Frames
 from tms_rp.clearance import Matrix, Obstacle, placed
+from tms_runtime.app import App
 
 LOOK = 0.2  # s; a plan does not look itself, which would cost it some ms: 0.1 to 0.25 for each message
 DEPTH = 200  # messages a look: what ten machines with joints and navigation tell meanwhile
@@ -40,7 +40,8 @@ class Neighbours:
         others = {name: place for name, place in places.items() if place is not None}
         if own is None:
             if others:
-                self._log.warning("event=place_unknown /tf does not tell where %s is: others are left out", self._own)
+                reason = "/tf does not tell where it is: others are left out"
+                self._log.warning("place_unknown", target=self._own, reason=reason)
             return []
         back = np.linalg.inv(own)
         return [

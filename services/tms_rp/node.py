@@ -12,10 +12,10 @@ from sensor_msgs.msg import JointState
 from tms_msg_rp.action import TmsRpZx200ChangePose, TmsRpZx200ExcavateSimple, TmsRpZx200ReleaseSimple
 from tms_msg_rp.msg import TmsRpErrorCodes
 
-from tms_core.app import App
-from tms_core.errors import SubtaskFailed, TmsError
-from tms_core.permit import Permit, watch_server
-from tms_core.ros import Ended, Goal, Outcome, Rejection
+from tms_machine.permit import Permit, watch_server
+from tms_reason.errors import SubtaskFailed, TmsError
+from tms_ros.goals import Ended, Outcome, Rejection
+from tms_ros.server import Goal
 from tms_rp import messages
 from tms_rp.clearance import Clearance
 from tms_rp.kinds.backhoe import NAMES, Backhoe, Moves
@@ -23,6 +23,7 @@ from tms_rp.linkage import Pose
 from tms_rp.mover import Mover
 from tms_rp.neighbours import Neighbours
 from tms_rp.trajectory import Trajectory, trajectory
+from tms_runtime.app import App
 
 FRESH = 1.0  # s, older joint states are no start for a motion
 LOOK = 0.25  # s between looks at joint states, to know their age
@@ -81,8 +82,8 @@ class Planner:
         self._backhoe = Backhoe(self._model)
         self._clearance, self._neighbours = Clearance(self._model), Neighbours(app)
         self._rc = app.ros.peer(FollowJointTrajectory, f"/{app.machine}/rc/follow_joint_trajectory")
-        watch_server(app.ros, app.machine, "rc")(self._rc)
-        self._permit = Permit(app.ros, app.machine, "rp")
+        watch_server(app.ros, app.pulse, app.machine, "rc")(self._rc)
+        self._permit = Permit(app.ros, app.pulse, app.machine, "rp")
         self._mover = Mover(self._rc)
         self._renamed = app.site.border(app.machine).joints
         self._busy = False  # set on the executor thread, which accepts one goal after another
@@ -131,7 +132,7 @@ class Planner:
 
         def accept(_request: Any) -> Rejection | None:
             if action.moves and self._busy:
-                self._app.log.warning("event=refused action=%s reason='another goal moves the machine'", action.name)
+                self._app.log.warning("refused", action=action.name, reason="another goal moves the machine")
                 return Rejection("BUSY", f"{self._app.machine} is still moved by another goal")
             self._busy = self._busy or action.moves
             return None
@@ -166,7 +167,7 @@ class Planner:
                 outcome = self._mover.move(goal, made, lambda text: say(text + suffix))
         except TmsError as error:
             reason = f"{error.code}: {error.args[0]}"
-            self._app.log.warning("event=failed action=%s goal=%s reason=%r", action.name, goal.id, reason)
+            self._app.log.warning("failed", action=action.name, goal=goal.id, reason=reason)
             say(f"ABORTED: {reason}")
             return Outcome.ABORTED
         say(outcome.name)
@@ -182,9 +183,14 @@ class Planner:
         seconds = time.monotonic() - begun
         PLANNING.observe(seconds)
         self._app.log.info(
-            "event=planned action=%s goal=%s moves=%d duration=%.2f planning=%.4f note=%r",
-            action.name, goal.id, len(moves.targets), made.duration, seconds, moves.note,
-        )  # fmt: skip
+            "planned",
+            action=action.name,
+            goal=goal.id,
+            moves=len(moves.targets),
+            duration=round(made.duration, 2),
+            planning=round(seconds, 4),
+            note=moves.note,
+        )
         return made, moves.note
 
     def _trajectory(self, now: Pose, moves: Moves) -> Trajectory:

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from ruckig import InputParameter, Result, Ruckig, RuckigError, Synchronization
 from ruckig import Trajectory as Profile
 
-from tms_core.errors import SubtaskFailed
-from tms_core.models import Joint
+from tms_config.models import Joint
+from tms_reason.errors import SubtaskFailed
 
 STEP = 0.05  # s, at most, between two samples
 ROUNDING = 1e-6  # of the limit: what floating-point arithmetic may add

@@ -4,7 +4,7 @@ import math
 import threading
 from collections.abc import Mapping, Sequence
 
-from tms_core.models import Joint, Response
+from tms_config.models import Joint, Response
 from tms_sim.path import Path, Point
 from tms_sim.servo import Servo
 

@@ -5,7 +5,7 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from tms_core.models import Drive, Response
+from tms_config.models import Drive, Response
 from tms_sim.tracks import SUBSTEP, Tracks, cut
 
 THERE = 0.05  # m

@@ -7,7 +7,7 @@ zx200 about twice the acceleration that its motions are planned with.
 
 import math
 
-from tms_core.models import Joint, Response
+from tms_config.models import Joint, Response
 from tms_sim.dead_time import DeadTime
 
 TORQUE = 2.0  # times the acceleration limit of planned motions

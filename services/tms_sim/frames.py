@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from tms_core.frames import MAP
-from tms_core.models import Border, MachineModel
+from tms_config.models import Border, MachineModel
+from tms_machine.frames import MAP
 
 Quaternion = tuple[float, float, float, float]  # x, y, z, w
 

@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from tms_core.ros import Ros
+from tms_ros.node import Ros
 from tms_sim.report import Reading
 from tms_sim.sources import Topic
 

@@ -3,8 +3,8 @@
 import threading
 from collections.abc import Callable, Sequence
 
-from tms_core.models import DRIVE, Border, MachineModel
-from tms_core.site_file import Fault
+from tms_config.models import DRIVE, Border, MachineModel
+from tms_config.site_file import Fault
 from tms_sim.arm import Arm
 from tms_sim.base import Base
 from tms_sim.controller import Controller

@@ -8,7 +8,7 @@ from builtin_interfaces.msg import Duration
 from geometry_msgs.msg import PoseStamped
 from nav2_msgs.action import FollowWaypoints, NavigateThroughPoses, NavigateToPose
 
-from tms_core.frames import MAP
+from tms_machine.frames import MAP
 from tms_sim.base import Leg
 from tms_sim.frames import about
 from tms_sim.machine import StandIn

@@ -9,10 +9,10 @@ from geometry_msgs.msg import Twist
 from pydantic import ValidationError
 from std_msgs.msg import Bool, Float64, String
 
-from tms_core.app import App
-from tms_core.models import Border
-from tms_core.site_file import Fault
-from tms_core.yaml_file import explain
+from tms_config.models import Border
+from tms_config.site_file import Fault
+from tms_config.yaml_file import explain
+from tms_runtime.app import App
 from tms_sim.arm_server import trajectory_server
 from tms_sim.joint_commands import POSITION
 from tms_sim.machine import StandIn
@@ -67,6 +67,6 @@ def _break(app: App, machine: StandIn, text: str) -> None:
     try:
         machine.fault = Fault.model_validate_json(text or "{}")
     except ValidationError as error:
-        app.log.error("event=bad_fault text=%r reason=%r", text, explain(error))
+        app.log.error("bad_fault", text=text, reason=explain(error))
         return
-    app.log.warning("event=fault fault=%r", machine.fault)
+    app.log.warning("fault", fault=machine.fault)

@@ -5,7 +5,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from tms_core.models import Joint
+from tms_config.models import Joint
 
 INVALID_GOAL, INVALID_JOINTS = -1, -2  # control_msgs/FollowJointTrajectory result codes
 

@@ -5,7 +5,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import NamedTuple
 
-from tms_core.site_file import Fault
+from tms_config.site_file import Fault
 
 SECOND = 1_000_000_000  # ns
 

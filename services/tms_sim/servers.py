@@ -4,8 +4,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from tms_core.app import App
-from tms_core.ros import Ended, Goal, Outcome, Rejection
+from tms_ros.goals import Ended, Outcome, Rejection
+from tms_ros.server import Goal
+from tms_runtime.app import App
 from tms_sim.machine import StandIn
 from tms_sim.motion import Motion, Verdict
 
@@ -39,7 +40,7 @@ class Server:
         if refused is None:
             return None
         code, text = refused if isinstance(refused, tuple) else (0, refused)
-        self._log.warning("event=refused action=%s code=%d reason=%r", self._served.field, code, text)
+        self._log.warning("refused", action=self._served.field, code=code, reason=text)
         return Rejection(str(code), text)
 
     def run(self, goal: Goal) -> Ended:
@@ -57,7 +58,5 @@ class Server:
             if not machine.fault.drop_feedback:
                 goal.publish(served.feedback(motion))
         verdict = motion.verdict or Verdict("ABORTED")
-        self._log.info(
-            "event=ended action=%s goal=%s outcome=%s reason=%r", served.field, goal.id, verdict.outcome, verdict.text
-        )
+        self._log.info("ended", action=served.field, goal=goal.id, outcome=verdict.outcome, reason=verdict.text)
         return Outcome[verdict.outcome], served.result(motion, verdict)

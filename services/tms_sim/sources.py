@@ -12,9 +12,9 @@ from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
 
-from tms_core.frames import MAP
-from tms_core.models import Border, Source
-from tms_core.ros import Ros
+from tms_config.models import Border, Source
+from tms_machine.frames import MAP
+from tms_ros.node import Ros
 from tms_sim.frames import about
 from tms_sim.report import SECOND, Reading
 

@@ -10,7 +10,7 @@ from typing import Any
 from geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
 from tf2_msgs.msg import TFMessage
 
-from tms_core.app import App
+from tms_runtime.app import App
 from tms_sim.frames import Chain, Frame
 from tms_sim.impostor import Impostor
 from tms_sim.machine import StandIn

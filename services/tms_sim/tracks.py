@@ -2,7 +2,7 @@
 
 import math
 
-from tms_core.models import Drive, Response
+from tms_config.models import Drive, Response
 from tms_sim.dead_time import DeadTime
 
 SUBSTEP = 0.02  # s: the same motion at any time scale

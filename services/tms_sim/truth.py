@@ -9,7 +9,7 @@ from typing import Any
 
 from sensor_msgs.msg import JointState
 
-from tms_core.ros import Ros
+from tms_ros.node import Ros
 from tms_sim.machine import StandIn
 from tms_sim.sources import time_of
 

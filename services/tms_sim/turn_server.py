@@ -4,7 +4,7 @@ from typing import Any
 
 from com3_msgs.action import SetDumpAngle, SetSwingAngle
 
-from tms_core.models import TURNED
+from tms_config.models import TURNED
 from tms_sim.motion import SUCCEEDED, Verdict
 from tms_sim.servers import Served
 from tms_sim.turner import Turn, Turner

@@ -9,7 +9,7 @@ from typing import Any
 from prometheus_client import Counter, Gauge
 from tms_msg_sp.msg import InputState
 
-from tms_core.sensing import Input
+from tms_config.sensing import Input
 from tms_sp.clock import SourceClock
 from tms_sp.mapping import Key, Mapping, Reading, Refused
 from tms_sp.outbox import Counts, Post

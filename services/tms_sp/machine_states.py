@@ -8,7 +8,7 @@ from sensor_msgs.msg import JointState
 from tms_msg_db.msg import MachineState
 from tms_msg_db.srv import WriteMachineStates
 
-from tms_core.app import App
+from tms_runtime.app import App
 
 
 class MachineStates:

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from tms_core.sensing import FieldRule, Input
+from tms_config.sensing import FieldRule, Input
 from tms_sp.field_types import NAMES, PART, PLAIN, STAMPS, VALUES, Fields, FieldsOf, FieldTypes
 
 Key = tuple[str, str]  # model, record

@@ -8,10 +8,10 @@ from tms_msg_db.msg import RecordUpdate
 from tms_msg_db.srv import UpdateParameters
 from tms_msg_sp.msg import InputStates
 
-from tms_core.app import App
-from tms_core.errors import ConfigError
-from tms_core.sensing import Input, load_sensing, sensing_path
-from tms_core.values import to_parameters
+from tms_config.sensing import Input, load_sensing, sensing_path
+from tms_machine.values import to_parameters
+from tms_reason.errors import ConfigError
+from tms_runtime.app import App
 from tms_sp.field_types import Fields
 from tms_sp.inputs import SensingInput
 from tms_sp.machine_states import MachineStates
@@ -77,7 +77,7 @@ def _input(app: App, name: str, given: Input, clock_limit: float, sender: "Sende
 def _state(app: App, one: SensingInput) -> Any:
     state = one.state()
     if one.news:
-        app.log.warning("event=refused input=%s refused=%d %s", one.name, one.refused, one.news)
+        app.log.warning("refused", input=one.name, refused=one.refused, reason=one.news)
         one.news = ""
     return state
 
@@ -107,7 +107,7 @@ class Listener:
         self._subscription = self._ros.subscribe(
             message_class(given.type), given.topic, one.hear, given.depth, best_effort=given.reliability != "reliable"
         )
-        self._log.info("event=listening input=%s topic=%s type=%s", one.name, given.topic, given.type)
+        self._log.info("listening", input=one.name, topic=given.topic, type=given.type)
 
 
 class Sender:
@@ -174,7 +174,7 @@ class Sender:
         del self._flights[number], self._forget[number]
         self._outbox.stored(number, [(one.index, one.code, one.text) for one in answer.refused])
         if self._trouble:
-            self._log.info("event=database_back")
+            self._log.info("database_back")
             self._trouble = ""
 
     def _fail(self, number: int, why: str) -> None:
@@ -186,7 +186,7 @@ class Sender:
         self._outbox.failed(number)
         self._not_before = time.monotonic() + RETRY
         if not self._trouble:
-            self._log.warning("event=database_away %s", why)
+            self._log.warning("database_away", reason=why)
         self._trouble = why
 
     def _look(self) -> None:

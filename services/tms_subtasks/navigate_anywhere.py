@@ -1,7 +1,7 @@
 """Drive to the place of a record and stand there."""
 
-from tms_core.places import Place
-from tms_core.subtask import Machine, Progress, subtask
+from tms_machine.places import Place
+from tms_machine.subtask import Machine, Progress, subtask
 
 
 @subtask(timeout=900)

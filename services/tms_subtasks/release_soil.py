@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping
 
-from tms_core.models import TURNED
-from tms_core.subtask import Machine, Params, Progress, subtask
+from tms_config.models import TURNED
+from tms_machine.subtask import Machine, Params, Progress, subtask
 
 
 class Vessel(Params):

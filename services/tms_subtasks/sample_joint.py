@@ -6,7 +6,7 @@ from typing import Any
 
 from pydantic import field_validator, model_validator
 
-from tms_core.subtask import Machine, Params, Progress, subtask
+from tms_machine.subtask import Machine, Params, Progress, subtask
 
 
 class Angle(Params):

@@ -5,8 +5,8 @@ from typing import Any, Generic, TypeVar
 
 from tms_msg_db.srv import GetParameter, SetParameter
 
-from tms_core.ros import Ros
-from tms_core.values import from_parameters, to_parameters
+from tms_machine.values import from_parameters, to_parameters
+from tms_ros.node import Ros
 from tms_ts.shared_records import SharedRecords
 from tms_ts.world import Value
 

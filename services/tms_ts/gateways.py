@@ -9,10 +9,10 @@ from std_msgs.msg import Bool
 from tms_msg_rc.msg import MachineState, StopReceipt
 from tms_msg_rc.srv import StopMachine
 
-from tms_core.app import App
-from tms_core.border import Controls
-from tms_core.fence import Owner
-from tms_core.permit import NOBODY, Link, Permit
+from tms_machine.border import Controls
+from tms_machine.permit import NOBODY, Link, Permit
+from tms_ros.fence import Owner
+from tms_runtime.app import App
 
 SETTLE = 0.3  # s from the first word of a new gateway until it has discovered us as well
 SIGNALS = 100  # of all buttons that may wait: no `false` may push out the `true` of another one
@@ -52,11 +52,13 @@ class Gateways:
         app.ros.subscribe(Bool, "/emergency_signal", self._signal, depth=SIGNALS)
 
     def _attend(self, machine: str) -> None:
-        ros = self._app.ros
+        ros, pulse = self._app.ros, self._app.pulse
         ros.prepare(StopMachine, f"/{machine}/rc/stop")
         self._controls[machine] = Controls(ros, machine, self._app.site.border(machine))
-        self._permits[machine] = Permit(ros, machine, "ts", lambda: self._alive(machine))
-        self._links[machine] = Link(ros, machine, "rc", lambda link: self._gateway_changed(machine, link))
+        self._permits[machine] = Permit(ros, pulse, machine, "ts", lambda: self._alive(machine))
+        self._links[machine] = Link(
+            ros, self._app.pulse, machine, "rc", lambda link: self._gateway_changed(machine, link)
+        )
         ros.subscribe(MachineState, f"/{machine}/rc/state", lambda state: self._state(machine, state), latched=True)
         ros.subscribe(StopReceipt, f"/{machine}/rc/receipts", self._receipt, depth=20, latched=True)
 
@@ -150,4 +152,4 @@ class Gateways:
             return
         self._controls[machine].zero()
         self._controls[machine].cancel_everything()
-        self._app.log.warning("event=gateway_lost machine=%s action='cancelled its goals'", machine)
+        self._app.log.warning("gateway_lost", machine=machine, action="cancelled its goals")

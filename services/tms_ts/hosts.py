@@ -6,8 +6,8 @@ from collections.abc import Callable
 from tms_msg_host.msg import Process, Processes
 from tms_msg_host.srv import ControlProcess
 
-from tms_core.errors import RosError
-from tms_core.ros import Ros
+from tms_reason.errors import RosError
+from tms_ros.node import Ros
 
 START_LIMIT = 10.0  # s
 

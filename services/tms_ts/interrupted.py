@@ -9,9 +9,9 @@ from builtin_interfaces.msg import Time
 from tms_msg_db.msg import Event, Run
 from tms_msg_ts.srv import CancelRun, ResumePlan
 
-from tms_core.app import App
-from tms_core.border import STOP_PROVEN
-from tms_core.errors import TaskError
+from tms_machine.border import STOP_PROVEN
+from tms_reason.errors import TaskError
+from tms_runtime.app import App
 from tms_ts.journal import Journal
 from tms_ts.machines import receipt_text
 from tms_ts.past import Header, Key, Over, Past
@@ -78,7 +78,7 @@ class Interrupted:
         self._journal.put(_row(header, "interrupted", reason, self._app.ros.now()))
         record.interrupted()
         record.close()
-        self._app.log.warning("event=interrupted run=%s", header.run_id)
+        self._app.log.warning("interrupted", run=header.run_id)
 
     def _complete(self, past: Past, header: Header, over: Over) -> None:
         """The run had ended, but perhaps nobody was told before the power went: tell it, maybe once more."""

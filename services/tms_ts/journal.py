@@ -7,7 +7,6 @@ database. An entry that the database will never take is dropped, so that the oth
 """
 
 import base64
-import logging
 import threading
 import time
 from pathlib import Path
@@ -16,10 +15,12 @@ from prometheus_client import Counter, Gauge
 from tms_msg_db.msg import Event, Run
 from tms_msg_db.srv import WriteJournal
 
-from tms_core.errors import DbError, RosError
-from tms_core.group_commit import GroupCommit
-from tms_core.ros import Ros, pack, unpack
-from tms_core.spool import Spool
+from tms_reason.errors import DbError, RosError
+from tms_ros.node import Ros
+from tms_ros.packing import pack, unpack
+from tms_runtime.group_commit import GroupCommit
+from tms_runtime.log import Logger
+from tms_runtime.spool import Spool
 
 BATCH = 200
 RETRY = 0.5  # s
@@ -37,7 +38,7 @@ LOST = Counter("tms_ts_journal_lost_total", "Journal entries that could not be k
 class Journal:
     """Keeps the order; repeats a batch until the database has it."""
 
-    def __init__(self, ros: Ros, log: logging.Logger, disk: GroupCommit, state: Path) -> None:
+    def __init__(self, ros: Ros, log: Logger, disk: GroupCommit, state: Path) -> None:
         self._ros, self._log, self._disk = ros, log, disk
         self._news, self._urgent = threading.Event(), threading.Event()
         self._spool = Spool(state / "ts" / "journal", self._news.set)
@@ -115,14 +116,14 @@ class Journal:
         """Whether the same entries can be written later; told once."""
         passes = isinstance(problem, RosError) or problem.code in MAY_PASS
         if passes and not self._away:
-            self._log.warning("event=journal_waits reason=%r", str(problem))
+            self._log.warning("journal_waits", reason=str(problem))
         self._away = passes
         return passes
 
     def _lost(self, entry: Run | Event | None, reason: str) -> None:
         LOST.inc()
         run, number = (entry.run_id, getattr(entry, "number", 0)) if entry is not None else ("", 0)
-        self._log.error("event=journal_lost run=%s number=%d reason=%r", run, number, reason)
+        self._log.error("journal_lost", run=run, number=number, reason=reason)
         with self._losing:
             count, first, _ = self._untold.get(run, (0, number, number))
             self._untold[run] = (count + 1, first, number)
@@ -147,6 +148,6 @@ class Journal:
             entry: Run | Event = unpack(base64.b64decode(line[1:], validate=True), KINDS[line[:1]])
         except (KeyError, ValueError, RuntimeError) as error:
             if line:
-                self._log.error("event=journal_unreadable reason=%r", str(error))
+                self._log.error("journal_unreadable", reason=str(error))
             return None
         return entry

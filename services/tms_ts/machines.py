@@ -11,10 +11,12 @@ from tms_msg_rc.msg import StopReceipt
 from tms_msg_rc.srv import StopMachine
 from tms_msg_ts.action import LeafNodeBase
 
-from tms_core.border import STOP_PROVEN
-from tms_core.errors import RosError
-from tms_core.fence import LEAVES, Owner
-from tms_core.ros import LOST_TEXT, Call, Outcome, Peer, Ros
+from tms_machine.border import STOP_PROVEN
+from tms_reason.errors import RosError
+from tms_ros.client import Call, Peer
+from tms_ros.fence import LEAVES, Owner
+from tms_ros.goals import LOST_TEXT, Outcome
+from tms_ros.node import Ros
 from tms_ts.gateways import Gateways
 from tms_ts.hosts import Hosts
 from tms_ts.past import Key

@@ -9,16 +9,17 @@ from typing import Any
 
 from builtin_interfaces.msg import Time
 from prometheus_client import Gauge
+from structlog.contextvars import bind_contextvars
 from tms_msg_db.srv import GetTask
 from tms_msg_ts.action import ExecuteTask
 from tms_msg_ts.msg import RunStates
 from tms_msg_ts.srv import AnswerQuestion, CancelRun, CheckTask, ResumePlan
 
-from tms_core import log
-from tms_core.app import App
-from tms_core.errors import NOT_STORED, TaskError, TmsError
-from tms_core.group_commit import GroupCommit
-from tms_core.ros import Ended, Goal, Outcome
+from tms_reason.errors import NOT_STORED, TaskError, TmsError
+from tms_ros.goals import Ended, Outcome
+from tms_ros.server import Goal
+from tms_runtime.app import App
+from tms_runtime.group_commit import GroupCommit
 from tms_ts import bt
 from tms_ts.flags import Flags
 from tms_ts.gateways import Gateways, Holder
@@ -120,7 +121,7 @@ class Scheduler:
         with self._lock:
             runs = list(self._runs.values())
         for text in self._journal.alarms():
-            self._app.log.error("event=alarm reason=%r", text)
+            self._app.log.error("alarm", reason=text)
             for run in runs:
                 run.tell("alarm", "", text)
         for state in STATES:
@@ -195,7 +196,7 @@ class Scheduler:
             facts = self._facts(goal, past)
         except TaskError as error:
             return _refused(goal.request.resume, error.code, str(error))
-        log.bind(run=facts.run_id)
+        bind_contextvars(run=facts.run_id)
         run = Run(
             self._ros, self._journal, self._app.log, goal, facts, self._records.open(facts.run_id), self._news.set
         )

@@ -1,16 +1,17 @@
 """Fencing numbers of runs: always growing, also over restarts, power cuts, and when the clock goes back."""
 
-import logging
 import threading
 import time
 from pathlib import Path
 
-from tms_core import durable
-from tms_core.errors import TaskError
-from tms_core.group_commit import GroupCommit
+import structlog
+
+from tms_reason.errors import TaskError
+from tms_runtime import durable
+from tms_runtime.group_commit import GroupCommit
 
 LIMIT = 5.0  # s for a number to be on the disk
-log = logging.getLogger(__name__)
+log = structlog.stdlib.get_logger(__name__)
 
 
 class Numbers:
@@ -58,7 +59,7 @@ class Numbers:
             return 0
         except (OSError, ValueError) as error:
             aside = durable.set_aside(self._path)
-            log.error("event=number_unreadable kept=%s reason=%r action='the clock gives the next'", aside, str(error))
+            log.error("number_unreadable", kept=aside, reason=str(error), action="the clock gives the next")
             return 0
 
 

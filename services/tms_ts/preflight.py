@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
-from tms_core.config import Site
+from tms_config.config import Site
 from tms_ts.bt import Tree
 from tms_ts.bt.errors import did_you_mean, short
 from tms_ts.bt.tree import LeafGoal, SharedValue

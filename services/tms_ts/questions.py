@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from builtin_interfaces.msg import Time
 from tms_msg_ts.msg import Question
 
-from tms_core.ros import Ros
+from tms_ros.node import Ros
 from tms_ts.flags import Answer
 
 Tell = Callable[[str, str, str], None]  # kind, node, text

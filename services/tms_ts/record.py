@@ -6,23 +6,23 @@ nothing. In each group the records are on the disk before the journal: no event 
 """
 
 import json
-import logging
 import time
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+import structlog
 from prometheus_client import Counter
 
-from tms_core.append_file import AppendFile
-from tms_core.durable import set_aside
-from tms_core.group_commit import GroupCommit
+from tms_runtime.append_file import AppendFile
+from tms_runtime.durable import set_aside
+from tms_runtime.group_commit import GroupCommit
 from tms_ts.past import Header, Key, Past
 
 READ_LIMIT = 2.0  # s for lines on their way to the disk before it is read
 
-log = logging.getLogger(__name__)
+log = structlog.stdlib.get_logger(__name__)
 LOST = Counter("tms_ts_record_lost_total", "Lines of a run's record that could not be kept; it cannot be resumed")
 
 
@@ -45,7 +45,7 @@ class Record:
             return  # news of a run that is over
         if not self._disk.put(self, b"\n" + json.dumps({**data, "t": time.time()}).encode(), vital=True, urgent=urgent):
             LOST.inc()
-            log.error("event=record_lost file=%s line=%r", self.path.name, next(iter(data)))
+            log.error("record_lost", file=self.path.name, line=next(iter(data)))
 
     def begin(self, header: Header) -> None:
         self._line({"run": asdict(header)})
@@ -124,9 +124,9 @@ class Records:
             except OSError as error:
                 problem = str(error)
             if problem:
-                log.error("event=record_unreadable kept=%s reason=%r", set_aside(path), problem)
+                log.error("record_unreadable", kept=set_aside(path), reason=problem)
             elif past.damaged:
-                log.error("event=record_damaged file=%s lines=%d", path, past.damaged)
+                log.error("record_damaged", file=path, lines=past.damaged)
 
     def past(self) -> list[Past]:
         """Runs that did not end in order, oldest first. Waits a moment for what is on its way to the disk."""

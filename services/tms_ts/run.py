@@ -1,6 +1,5 @@
 """One run of a task: ticks its tree, records every change, and ends with every machine seen to stand."""
 
-import logging
 import threading
 import time
 from collections.abc import Callable, Mapping
@@ -14,9 +13,11 @@ from tms_msg_db.msg import Run as RunRow
 from tms_msg_ts.action import ExecuteTask
 from tms_msg_ts.msg import NodeStatus, RunState
 
-from tms_core.border import STOP_PROVEN
-from tms_core.ros import Goal, Ros
-from tms_core.values import to_parameters
+from tms_machine.border import STOP_PROVEN
+from tms_machine.values import to_parameters
+from tms_ros.node import Ros
+from tms_ros.server import Goal
+from tms_runtime.log import Logger
 from tms_ts.bt import IDLE, Node, Status, Tree, TreeError
 from tms_ts.budget import Budget
 from tms_ts.flags import Flags
@@ -61,7 +62,7 @@ class Run:
     """Lives as long as its ExecuteTask goal."""
 
     def __init__(
-        self, ros: Ros, journal: Journal, log: logging.Logger, goal: Goal, facts: Facts, record: Record,
+        self, ros: Ros, journal: Journal, log: Logger, goal: Goal, facts: Facts, record: Record,
         changed: Callable[[], None],
     ) -> None:  # fmt: skip
         self.facts = facts
@@ -117,7 +118,7 @@ class Run:
         if kind == "alarm":
             ALARMS.inc()
         if kind != "node":
-            self._log.info("event=%s run=%s node=%s %s", kind, self.facts.run_id, node, text)
+            self._log.info(kind, run=self.facts.run_id, node=node, reason=text)
 
     def enter(self, state: str, reason: str = "", ended: bool = False) -> None:
         """Change the run's state."""

@@ -2,7 +2,7 @@
 
 import time
 
-from tms_core.ros import Call, Peer
+from tms_ros.client import Call, Peer
 from tms_ts.past import Key
 from tms_ts.world import GoalState
 

@@ -12,7 +12,7 @@ from typing import Any
 
 from tms_msg_db.msg import RecordChanges
 
-from tms_core.ros import Ros
+from tms_ros.node import Ros
 
 KEPT = 1.0  # s
 CHANGES_KEPT = 100  # messages that may wait

@@ -8,12 +8,12 @@ from pydantic import ValidationError
 from tms_msg_db.srv import ListParameters
 from tms_msg_sp.msg import InputStates
 
-from tms_core.app import App
-from tms_core.errors import RosError
-from tms_core.models import MachineModel
-from tms_core.subtask import load
-from tms_core.values import from_parameters
-from tms_core.yaml_file import explain
+from tms_config.models import MachineModel
+from tms_config.yaml_file import explain
+from tms_machine.subtask import load
+from tms_machine.values import from_parameters
+from tms_reason.errors import RosError
+from tms_runtime.app import App
 from tms_ts.preflight import Stored
 
 DB_LIMIT = 5.0  # s

@@ -15,10 +15,10 @@ from argon2 import PasswordHasher
 from argon2.exceptions import InvalidHashError, VerificationError
 from pydantic import Field, model_validator
 
-from tms_core.errors import ConfigError, TmsError
-from tms_core.models import Settings
-from tms_core.names import Name
-from tms_core.yaml_file import parse
+from tms_config.models import Settings
+from tms_config.names import Name
+from tms_config.yaml_file import parse
+from tms_reason.errors import ConfigError, TmsError
 from tms_ur.brake import Brake
 
 Role = Literal["viewer", "operator", "admin"]

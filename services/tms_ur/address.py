@@ -6,9 +6,9 @@ A path of the site file is relative to it, whatever the folder is in which someb
 import ssl
 from pathlib import Path
 
-from tms_core.config import Site
-from tms_core.errors import ConfigError
-from tms_core.site_file import Files, SiteFile
+from tms_config.config import Site
+from tms_config.site_file import Files, SiteFile
+from tms_reason.errors import ConfigError
 
 ALL = {"0.0.0.0": "127.0.0.1", "::": "::1"}  # bound to all addresses: a browser of this PC takes this one
 

@@ -1,7 +1,6 @@
 """The HTTP API and the console's files; `/openapi.json` describes it."""
 
 import json
-import logging
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from http import HTTPStatus
@@ -9,14 +8,15 @@ from pathlib import Path as File
 from typing import TYPE_CHECKING
 
 import anyio.to_thread
+import structlog
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse, Response
 from fastapi.staticfiles import StaticFiles
 from starlette.exceptions import HTTPException
 
-from tms_core.config import Site
-from tms_core.errors import TmsError
+from tms_config.config import Site
+from tms_reason.errors import TmsError
 from tms_ur import commands, reading, sessions
 from tms_ur.access import Access
 from tms_ur.brake import Throttled
@@ -40,7 +40,7 @@ STATUS = {
     "ROLE": HTTPStatus.FORBIDDEN,
     **dict.fromkeys(("THROTTLED", "MANY_LOGINS"), HTTPStatus.TOO_MANY_REQUESTS),
 }  # fmt: skip
-log = logging.getLogger(__name__)
+log = structlog.stdlib.get_logger(__name__)
 
 
 def create_app(gateway: "Gateway", audit: "Audit", site: Site, access: Access) -> FastAPI:

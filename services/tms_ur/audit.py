@@ -5,7 +5,6 @@ One thread writes to the disk, another one sends from there to the database. Not
 request; a stop is sent whether or not its entry is on the disk, any other command waits for that a moment.
 """
 
-import logging
 import queue
 import sqlite3
 import threading
@@ -14,14 +13,15 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+import structlog
 from builtin_interfaces.msg import Time
 from prometheus_client import Counter
 from tms_msg_db.msg import Event
 from tms_msg_db.srv import ListEvents, WriteJournal
 
-from tms_core.errors import TmsError
-from tms_core.ros import Ros
-from tms_core.values import from_parameters, to_parameters
+from tms_machine.values import from_parameters, to_parameters
+from tms_reason.errors import TmsError
+from tms_ros.node import Ros
 from tms_ur.audit_chain import RUN, Entry, Note, Place, entry, highest, tied
 from tms_ur.audit_ledger import Ledger, LedgerFull, opened
 from tms_ur.strangers import Strangers
@@ -32,7 +32,7 @@ LOOK = 1.0  # s between looks at what strangers did
 RETRY = 1.0  # s
 LONGEST = 600  # characters of a text
 LOST = Counter("tms_ur_audit_lost_total", "Commands that are in the log only: the disk failed or was full")
-log = logging.getLogger(__name__)
+log = structlog.stdlib.get_logger(__name__)
 
 
 class Audit:
@@ -52,7 +52,7 @@ class Audit:
 
     def put(self, who: str, source: str, what: str, target: str, times: int = 1) -> threading.Event:
         """Take a note; waits for nobody. The event is set once it is on the disk."""
-        log.info("event=command what=%s target=%s who=%s from=%s times=%d", what, target, who, source, times)
+        log.info("command", what=what, target=target, who=who, source=source, times=times)
         kept = threading.Event()
         note = Note(time.time_ns() // 1_000_000, what, _clean(target), _clean(f"{who} from {source}"), times)
         try:
@@ -101,10 +101,10 @@ class Audit:
         try:
             self._ledger, new = opened(self._file)
         except (sqlite3.Error, OSError) as error:
-            log.error("event=audit_disk_failed file=%s reason=%r", self._file, str(error))
+            log.error("audit_disk_failed", file=self._file, reason=str(error))
             return
         if new:
-            log.error("event=audit_file_unreadable file=%s: entries that waited there are in the log only", self._file)
+            log.error("audit_file_unreadable", file=self._file, reason="what waited there is in the log only")
 
     def _gather(self) -> list[tuple[Note, threading.Event]]:
         found: list[tuple[Note, threading.Event]] = []
@@ -123,10 +123,10 @@ class Audit:
             ledger.append([note for note, _ in found])
         except LedgerFull:
             LOST.inc(len(found))
-            log.error("event=audit_lost entries=%d reason='too many wait for the database'", len(found))
+            log.error("audit_lost", entries=len(found), reason="too many wait for the database")
             return True
         except (sqlite3.Error, OSError) as error:
-            log.error("event=audit_disk_failed file=%s reason=%r", self._file, str(error))
+            log.error("audit_disk_failed", file=self._file, reason=str(error))
             return False
         for _, kept in found:
             kept.set()
@@ -151,7 +151,7 @@ class Audit:
             except TmsError:  # the database is away, which others tell
                 self._closing.wait(RETRY)
             except (sqlite3.Error, OSError) as error:
-                log.error("event=audit_disk_failed file=%s reason=%r", self._file, str(error))
+                log.error("audit_disk_failed", file=self._file, reason=str(error))
                 self._closing.wait(RETRY)
 
     def _take_place(self, ledger: Ledger) -> None:
@@ -163,7 +163,7 @@ class Audit:
             ours = tied(place, ledger.waiting(BATCH)[1])[: len(stored)]
             if [one.hash for one in ours] == [one.hash for one in stored]:
                 return  # what the database has already, if anything, is sent once more and changes nothing
-            log.error("event=audit_place_lost number=%d: the database has others behind it", place.number)
+            log.error("audit_place_lost", number=place.number, reason="the database has others behind it")
         number = highest(lambda after: bool(self._stored(after, 1)))
         last = self._stored(number - 1, 1) if number else []
         self._number = number

@@ -12,7 +12,7 @@ from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from tms_core.errors import TmsError
+from tms_reason.errors import TmsError
 from tms_ur.callers import caller
 
 FORGET = 900.0  # s after which wrong passwords count no more

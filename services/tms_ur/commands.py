@@ -1,6 +1,5 @@
 """Endpoints that change something: each says who may, and each is audited."""
 
-import logging
 import math
 import threading
 from collections.abc import Iterator
@@ -10,10 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import anyio
 import anyio.to_thread
+import structlog
 from fastapi import FastAPI, Path, Request
 
-from tms_core.config import Site
-from tms_core.errors import TmsError
+from tms_config.config import Site
+from tms_reason.errors import TmsError
 from tms_ur.access import Person
 from tms_ur.data_models import FieldGiven, RecordGiven
 from tms_ur.guard import source
@@ -42,7 +42,7 @@ CANCELS = 10  # runs that are asked to stop at the same time
 KEPT_LIMIT = 1.0  # s that a command waits for its entry to be on the disk
 MachineName = Annotated[str, Path(pattern=r"^[a-z][a-z0-9_]{0,63}$")]
 QuestionId = Annotated[str, Path(pattern=r"^[0-9A-Za-z_-]{1,100}$")]
-log = logging.getLogger(__name__)
+log = structlog.stdlib.get_logger(__name__)
 
 
 def add(app: FastAPI, gateway: "Gateway", audit: "Audit", site: Site) -> None:
@@ -64,7 +64,7 @@ class _Note:
         """Of a command: what is told as done is on the disk. Not on the event loop."""
         where = source(request.scope)
         if not self._audit.put(person.name, where, what, str(target)).wait(KEPT_LIMIT):
-            log.warning("event=audit_late what=%s: the disk is slow; the command is in the log", what)
+            log.warning("audit_late", what=what, reason="the disk is slow; the command is in the log")
         return f"{person.name} at {where}"
 
     def of_stop(self, request: Request, person: Person, what: str, target: str) -> str:

@@ -5,7 +5,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from tms_core.names import Name
+from tms_config.names import Name
 from tms_ur.models import Command, Model, Value
 
 

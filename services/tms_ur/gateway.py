@@ -24,13 +24,13 @@ from tms_msg_ts.action import ExecuteTask
 from tms_msg_ts.msg import RunStates
 from tms_msg_ts.srv import AnswerQuestion, CancelRun, CheckTask
 
-from tms_core.border import STOP_PROVEN
-from tms_core.config import Site
-from tms_core.errors import RosError, TmsError
-from tms_core.frames import Frames
-from tms_core.names import check_sent
-from tms_core.ros import Ros
-from tms_core.values import to_parameters
+from tms_config.config import Site
+from tms_config.names import check_sent
+from tms_machine.border import STOP_PROVEN
+from tms_machine.frames import Frames
+from tms_machine.values import to_parameters
+from tms_reason.errors import RosError, TmsError
+from tms_ros.node import Ros
 from tms_ur import messages
 from tms_ur.board import Board
 from tms_ur.data_models import Change, Record, Sensing

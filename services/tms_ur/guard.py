@@ -14,7 +14,7 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import JSONResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from tms_core.errors import TmsError
+from tms_reason.errors import TmsError
 from tms_ur.access import Access, Person
 from tms_ur.brake import Throttled
 from tms_ur.callers import caller

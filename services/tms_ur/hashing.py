@@ -7,7 +7,7 @@ from typing import TypeVar
 import anyio
 import anyio.to_thread
 
-from tms_core.errors import TmsError
+from tms_reason.errors import TmsError
 from tms_ur.callers import caller
 
 MOST_WAITING = 16  # each takes 19 MB and some 30 ms while its turn lasts

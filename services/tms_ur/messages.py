@@ -5,8 +5,8 @@ from typing import Any
 
 from rcl_interfaces.msg import ParameterType
 
-from tms_core.units import unit
-from tms_core.values import from_parameters
+from tms_machine.values import from_parameters
+from tms_reason.units import unit
 from tms_ur.data_models import Change, Record, SensingInput
 from tms_ur.models import ActiveRun, Event, Joint, Machine, Process, Question, Receipt, Run
 from tms_ur.models import MachineState as Shown

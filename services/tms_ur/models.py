@@ -5,7 +5,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from tms_core.names import Text
+from tms_config.names import Text
 
 Value = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
 MachineState = Literal["moving", "standing", "not_ready", "silent"]

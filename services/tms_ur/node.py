@@ -2,10 +2,10 @@
 
 import socket
 
-from tms_core.app import App
-from tms_core.config import Site
-from tms_core.errors import ConfigError
-from tms_core.site_file import SiteFile
+from tms_config.config import Site
+from tms_config.site_file import SiteFile
+from tms_reason.errors import ConfigError
+from tms_runtime.app import App
 from tms_ur import address
 from tms_ur.access import Access
 from tms_ur.api import create_app
@@ -28,7 +28,7 @@ def start(app: App) -> None:
     app.on_stop(server.stop)
     app.on_stop(gateway.board.close)  # first, so that the streams end
     app.ready_when(server.unready)
-    app.log.info("event=listening url=%s bind=%s access=%r", address.url(file), file.bind, _told(file, access))
+    app.log.info("listening", url=address.url(file), bind=file.bind, access=_told(file, access))
 
 
 def _told(file: SiteFile, access: Access) -> str:

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 from fastapi import Depends, Request
 from fastapi.responses import JSONResponse
 
-from tms_core.errors import TmsError
+from tms_reason.errors import TmsError
 from tms_ur.access import Person, Role
 from tms_ur.models import Problem
 

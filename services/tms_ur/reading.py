@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from fastapi import FastAPI, Path, Query, Request, Response
 
-from tms_core.config import Site
-from tms_core.errors import TmsError
-from tms_core.names import Name
+from tms_config.config import Site
+from tms_config.names import Name
+from tms_reason.errors import TmsError
 from tms_ur import export
 from tms_ur.audit_chain import RUN as AUDIT
 from tms_ur.data_models import Change, Record, Sensing

@@ -10,7 +10,7 @@ import h11
 import uvicorn
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
-from tms_core.site_file import Files
+from tms_config.site_file import Files
 from tms_ur.connections import BODY, HEADERS, SILENCE, Connection, Gate, Listener
 
 STOP_LIMIT = 0.8  # s for open requests to end; the runtime ends the process within 2

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from fastapi import FastAPI, Request, Response
 
-from tms_core.errors import TmsError
+from tms_reason.errors import TmsError
 from tms_ur.access import Access, Person
 from tms_ur.guard import COOKIE, session_key, source
 from tms_ur.hashing import Hashing

@@ -5,14 +5,14 @@ overwrites, and memory stays bounded however slowly it reads. A client that does
 """
 
 import asyncio
-import logging
 
 import anyio
+import structlog
 from prometheus_client import Counter, Gauge
 from starlette.responses import Response
 from starlette.types import Receive, Scope, Send
 
-from tms_core.errors import TmsError
+from tms_reason.errors import TmsError
 from tms_ur.board import Board
 
 MOST_CLIENTS = 50
@@ -23,7 +23,7 @@ SLOW_LIMIT = 5.0  # s to take one snapshot
 CLIENTS = Gauge("tms_ur_stream_clients", "Connected consoles")
 DROPPED = Counter("tms_ur_stream_dropped_total", "Consoles dropped because they read too slowly")
 HEADERS = [(b"content-type", b"text/event-stream; charset=utf-8"), (b"x-accel-buffering", b"no")]
-log = logging.getLogger(__name__)
+log = structlog.stdlib.get_logger(__name__)
 
 
 class Client:
@@ -121,7 +121,7 @@ class StreamResponse(Response):
             while (text := await client.next()) is not None:
                 if not await _sent(send, text):
                     DROPPED.inc()
-                    log.warning("event=console_dropped from=%s reason='reads too slowly'", scope.get("client"))
+                    log.warning("console_dropped", source=scope.get("client"), reason="reads too slowly")
                     return  # without the end of the answer: the server cuts the connection
             await send({"type": "http.response.body", "body": b"", "more_body": False})
         finally:

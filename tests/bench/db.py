@@ -16,7 +16,7 @@ from tms_msg_db.srv import AddTask
 
 from bench.rig.mesh import at, rig
 from bench.runner import Figure
-from tms_core.ros import Ros
+from tms_ros.node import Ros
 
 READS, TASKS = 500, 1000
 AT_ONCE = 50  # requests under way

@@ -18,7 +18,7 @@ from action_msgs.msg import GoalStatus, GoalStatusArray
 
 from bench.rig.mesh import Rig, at, rig
 from bench.runner import Figure
-from tms_core.ros import Ros
+from tms_ros.node import Ros
 
 LEAVES = 60
 HOPS = [f"/bare/link_{number}" for number in range(4)]  # subtask, planner, gateway, controller

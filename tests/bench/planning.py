@@ -15,10 +15,10 @@ import time
 from collections.abc import Callable, Iterable
 
 from bench.runner import PROJECT, Figure
-from tms_core.config import CONFIGS
-from tms_core.errors import SubtaskFailed
-from tms_core.models import MachineModel
-from tms_core.yaml_file import parse
+from tms_config.config import CONFIGS
+from tms_config.models import MachineModel
+from tms_config.yaml_file import parse
+from tms_reason.errors import SubtaskFailed
 from tms_rp.clearance import Clearance, Obstacle, placed
 from tms_rp.goals import TipGoal
 from tms_rp.kinds.backhoe import Backhoe

@@ -16,7 +16,7 @@ from prometheus_client.parser import text_string_to_metric_families
 
 from bench.rig.mesh import Rig, rig, until
 from bench.runner import Figure
-from tms_core.processes import find
+from tms_config.processes import find
 
 RUNS, SECONDS = 10, 10.0
 PERIOD = 50.0  # ms between the ticks of a run

@@ -26,9 +26,10 @@ from tms_msg_ts.action import ExecuteTask
 
 from bench.rig.mesh import Rig, rig, until
 from bench.runner import Figure
-from tms_core.processes import find
-from tms_core.ros import Call, Ros
-from tms_core.values import to_parameters
+from tms_config.processes import find
+from tms_machine.values import to_parameters
+from tms_ros.client import Call
+from tms_ros.node import Ros
 
 SIZES = (1, 5, 20, 50)
 RUNS = 20  # at most; a run moves a machine at least
@@ -74,7 +75,7 @@ def _cost(size: int) -> Cost:
     machines = {name: {"model": "zx200"} for name in names}
     with rig(machines=machines, services={"db": {}, "ts": {}}) as own, ExitStack() as stack:
         for process in ("tms:store", "tms:db", "tms:ts"):
-            pid = stack.enter_context(_process(own, "-m", "tms_core.run", process)).pid
+            pid = stack.enter_context(_process(own, "-m", "tms_runtime.run", process)).pid
         crowds = [
             stack.enter_context(_process(own, str(CROWD), names[i], ",".join(SUBTASKS), *names[i : i + A_PROCESS]))
             for i in range(0, size, A_PROCESS)

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 from bench.runner import Figure
 from conftest import claimed_domain
-from tms_core.permit import LEASE
+from tms_machine.permit import LEASE
 from tms_ts.bt import load
 from unit.tms_ts.fakes import FakeMachines, FakeWorld
 
@@ -48,7 +48,7 @@ def measure() -> Iterable[Figure]:
         site = make_site(folder, domain)
         for name in names():
             log = stack.enter_context((folder / f"{name}.log").open("w"))
-            stack.enter_context(process("-m", "tms_core.run", f"{name}:rc", stdout=log, stderr=log))
+            stack.enter_context(process("-m", "tms_runtime.run", f"{name}:rc", stdout=log, stderr=log))
         hurry()
         yield from _stops(stack, site, process, BURN)
 

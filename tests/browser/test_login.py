@@ -13,8 +13,8 @@ import yaml
 from playwright.sync_api import Browser, Page, expect
 
 from conftest import ports_of, site_data, wait_until
-from tms_core import environment
-from tms_core.config import load_site
+from tms_config import environment
+from tms_config.config import load_site
 from tms_ur.access import hashed
 
 pytestmark = [pytest.mark.ros, pytest.mark.browser]
@@ -33,7 +33,7 @@ class Server:
 
     def start(self) -> None:
         with self.log.open("wb") as out:
-            words = [sys.executable, "-m", "tms_core.run", "tms:ur"]
+            words = [sys.executable, "-m", "tms_runtime.run", "tms:ur"]
             process = self.process = subprocess.Popen(words, env=self.env, stdout=out, stderr=out)
         ended = lambda: process.poll() is not None  # noqa: E731
         wait_until(lambda: ended() or "event=started" in self.log.read_text(), LIMIT, "tms:ur is up")

@@ -13,7 +13,7 @@ import yaml
 from playwright.sync_api import Page, expect
 
 from conftest import site_data
-from tms_core.config import load_site
+from tms_config.config import load_site
 from tms_ur.access import Access
 from tms_ur.api import create_app
 from tms_ur.board import Board

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tms_core.config import PROJECT
+from tms_config.config import PROJECT
 from tms_db import store
 
 PROGRAM = PROJECT / ".venv-store" / "bin" / "secantusd-py"

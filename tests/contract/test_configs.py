@@ -9,14 +9,14 @@ from pathlib import Path
 import pytest
 
 from conftest import PROJECT
-from tms_core.config import CONFIGS, load_site
-from tms_core.models import TURNED, MachineModel
-from tms_core.processes import table
-from tms_core.record_lock import FLAG
-from tms_core.sensing import load_sensing
-from tms_core.subtask_server import load
-from tms_core.yaml_file import parse, read_yaml
+from tms_config.config import CONFIGS, load_site
+from tms_config.models import TURNED, MachineModel
+from tms_config.processes import table
+from tms_config.sensing import load_sensing
+from tms_config.yaml_file import parse, read_yaml
 from tms_host.supervisor import render
+from tms_machine.record_lock import FLAG
+from tms_machine.subtask_server import load
 
 MODELS = sorted((CONFIGS / "machines").glob("*.yaml"))
 SITES = [CONFIGS / "site.yaml", *sorted((CONFIGS / "sites").glob("*.yaml"))]
@@ -104,7 +104,7 @@ def test_process_table(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPat
     rows = table(site)
     assert len({row.full for row in rows}) == len({row.port for row in rows}) == len(rows)
     text = render(site, rows)
-    assert all(f"-m tms_core.run {row.full}\n" in text for row in rows)
+    assert all(f"-m tms_runtime.run {row.full}\n" in text for row in rows)
     assert "chmod=0600" in text and "inet_http_server" not in text
 
 
@@ -112,7 +112,8 @@ def test_imports_have_no_effects() -> None:
     """Importing a service must not start threads, read configuration or open anything."""
     code = (
         "import threading, importlib, pkgutil, sys\n"
-        "for name in ('tms_core', 'tms_db', 'tms_ts', 'tms_rp', 'tms_rc', 'tms_sim', 'tms_host', 'tms_cli'):\n"
+        "layers = ('tms_config', 'tms_machine', 'tms_reason', 'tms_ros', 'tms_runtime')\n"
+        "for name in (*layers, 'tms_db', 'tms_ts', 'tms_rp', 'tms_rc', 'tms_sim', 'tms_host', 'tms_cli'):\n"
         "    package = importlib.import_module(name)\n"
         "    for found in pkgutil.walk_packages(package.__path__, name + '.'):\n"
         "        importlib.import_module(found.name)\n"

@@ -1,24 +1,24 @@
 """Records that were read are remembered until the store tells that somebody has changed them."""
 
-import logging
 import queue
 from collections.abc import Callable
 from typing import Any, cast
 
 import pytest
+import structlog
 
 from conftest import wait_until
 from stores import Server
-from tms_core.errors import DbError
-from tms_core.ros import Ros
 from tms_db import store
 from tms_db.connection import Connection
 from tms_db.heads import Heads
 from tms_db.parameters import Change, Parameters
 from tms_db.watching import Watching
+from tms_reason.errors import DbError
+from tms_ros.node import Ros
 
 KEY = ("zx200", "p")
-LOG = logging.getLogger("test")
+LOG = structlog.stdlib.get_logger("test")
 
 
 class Executor:

@@ -20,13 +20,13 @@ from pymongo.collection import Collection
 from pymongo.errors import AutoReconnect
 
 from tms_cli.commands import db as verb
-from tms_core.errors import DbError, TmsError
 from tms_db import archive, backup, schema, store
 from tms_db.crc64 import Crc64
 from tms_db.history import Event, History, Run
 from tms_db.parameters import Change, Parameters
 from tms_db.tasks import Tasks
 from tms_db.terrain import Terrain
+from tms_reason.errors import DbError, TmsError
 
 BEGIN = datetime(2026, 1, 31, 6, 0, tzinfo=timezone.utc)
 SEQUENCE = '<root><BehaviorTree ID="old"><AlwaysSuccess/></BehaviorTree></root>'

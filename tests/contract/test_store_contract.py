@@ -1,6 +1,5 @@
 """What the repositories promise, on the in-memory store and on a real server of MongoDB's wire protocol."""
 
-import logging
 import queue
 import threading
 import time
@@ -13,11 +12,11 @@ from itertools import count
 from typing import Any
 
 import pytest
+import structlog
 from pymongo.collection import Collection
 from pymongo.errors import AutoReconnect
 
 from stores import Server
-from tms_core.errors import DbError, TaskError, TmsError
 from tms_db import freshness, store
 from tms_db.batches import Batches, Update
 from tms_db.connection import Connection
@@ -27,6 +26,7 @@ from tms_db.parameters import Change, Parameters
 from tms_db.past import Past
 from tms_db.records import Record, Value
 from tms_db.tasks import Tasks
+from tms_reason.errors import DbError, TaskError, TmsError
 
 BEGIN = datetime(2026, 1, 31, 6, 0, tzinfo=timezone.utc)
 
@@ -354,7 +354,7 @@ class Batched:
     """Batches of updates over a store, with what their callers were told."""
 
     def __init__(self, db: store.Db) -> None:
-        log = logging.getLogger("test")
+        log = structlog.stdlib.get_logger("test")
         self.connection = Connection(db, "test", log)
         self.connection.start()
         deadline = time.monotonic() + 20
@@ -420,7 +420,7 @@ def test_callers_are_told_when_the_store_is_away(own_server: Server) -> None:
 
 def test_the_last_changes_of_a_record(shared_db: store.Db) -> None:
     batched = Batched(shared_db)
-    past = Past(shared_db, batched.connection, logging.getLogger("test"))
+    past = Past(shared_db, batched.connection, structlog.stdlib.get_logger("test"))
     for number in range(60):
         past.note(("zx200", "a"), BEGIN + timedelta(seconds=number), "cli", {"x": number})
     past.start()
@@ -439,7 +439,7 @@ def test_a_change_is_told_once_though_its_write_was_repeated(
     shared_db: store.Db, monkeypatch: pytest.MonkeyPatch, done: int
 ) -> None:
     batched = Batched(shared_db)
-    past = Past(shared_db, batched.connection, logging.getLogger("test"))
+    past = Past(shared_db, batched.connection, structlog.stdlib.get_logger("test"))
     write, keys = Collection.bulk_write, (("zx200", "a"), ("zx200", "b"))
 
     def lost(self: Collection[Any], steps: list[Any], **more: Any) -> None:

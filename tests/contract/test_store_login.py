@@ -8,9 +8,9 @@ import pytest
 import yaml
 
 from stores import Server
-from tms_core.config import load_site
-from tms_core.errors import DbError
+from tms_config.config import load_site
 from tms_db import schema, store
+from tms_reason.errors import DbError
 
 PASSWORD = "p@ss/w:rd%"
 PARTS: dict[str, object] = {

@@ -1,18 +1,18 @@
 """What is older than the site keeps goes, whole; everything else stays."""
 
-import logging
 import time
 from datetime import datetime, timedelta, timezone
 from typing import Any
 
 import pytest
+import structlog
 
-from tms_core.errors import DbError
-from tms_core.site_file import SiteFile, Store
+from tms_config.site_file import SiteFile, Store
 from tms_db import retention, store
 from tms_db.connection import Connection
 from tms_db.history import Event, History, Run
 from tms_db.retention import Retention, delete_runs, delete_states
+from tms_reason.errors import DbError
 
 NOW = datetime(2026, 1, 31, 6, 0, tzinfo=timezone.utc)
 
@@ -103,7 +103,7 @@ def test_it_looks_by_itself_once_the_store_is_there(shared_db: store.Db, monkeyp
         Run(name, 1, "", "success", "", (), ended, ended - timedelta(days=days)) for name, days in (("a", 9), ("b", 0))
     ]
     History(shared_db).write(runs, [])
-    log = logging.getLogger("test")
+    log = structlog.stdlib.get_logger("test")
     connection = Connection(shared_db, "test", log)
     watch = Retention(shared_db, connection, Store(history_days=7), log)
     watch.start()  # before there is a connection

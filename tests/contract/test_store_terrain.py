@@ -15,10 +15,10 @@ from PIL import Image
 from sensor_msgs.msg import PointCloud2, PointField
 
 from tms_cli.commands import terrain as verb
-from tms_core.errors import DbError
 from tms_db import store, terrain_files, terrain_messages
 from tms_db.terrain import NEWEST_KEPT, Terrain
 from tms_db.terrain_files import Size
+from tms_reason.errors import DbError
 
 SIZE = Size(120.0, 80.0, 14.0, -24.0, 12.0)
 HEIGHTS = np.arange(60 * 40, dtype=np.uint16).reshape(40, 60) * 27

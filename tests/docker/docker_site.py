@@ -12,9 +12,9 @@ import yaml
 
 from conftest import PROJECT, wait_until
 from prometheus_server import get
-from tms_core import metrics
-from tms_core.config import load_site
-from tms_core.processes import table
+from tms_config.config import load_site
+from tms_config.processes import table
+from tms_runtime import metrics
 
 DOCKER = os.environ.get("DOCKER") or "docker"
 IMAGE = "tms:harness"

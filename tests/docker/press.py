@@ -9,10 +9,10 @@ import time
 
 from tms_msg_rc.srv import StopMachine
 
-from tms_core import environment
-from tms_core.config import load_site
-from tms_core.last_resort import end_after
-from tms_core.ros import Ros
+from tms_config import environment
+from tms_config.config import load_site
+from tms_ros.node import Ros
+from tms_runtime.last_resort import end_after
 
 LIMIT = 10.0  # s for a receipt
 

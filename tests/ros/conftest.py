@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from console_process import Console, running, site_of_a_console
-from tms_core.config import Site
-from tms_core.ros import Ros
+from tms_config.config import Site
+from tms_ros.node import Ros
 
 
 @pytest.fixture

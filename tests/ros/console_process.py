@@ -16,9 +16,9 @@ from typing import Any
 import pytest
 
 from conftest import ports_of
-from tms_core import environment
-from tms_core.config import Site, load_site
-from tms_core.processes import find
+from tms_config import environment
+from tms_config.config import Site, load_site
+from tms_config.processes import find
 
 LIMIT = 60.0  # s for whatever must happen at all
 SITE = """
@@ -71,7 +71,7 @@ class Console:
 
 
 def spawn(site: Site, log: Path) -> subprocess.Popen[bytes]:
-    words = [sys.executable, "-m", "tms_core.run", "tms:ur"]
+    words = [sys.executable, "-m", "tms_runtime.run", "tms:ur"]
     with log.open("ab") as file:
         return subprocess.Popen(words, env={**os.environ, **environment.environment(site)}, stdout=file, stderr=file)
 

@@ -19,9 +19,11 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
-from tms_core import environment
-from tms_core.config import load_site
-from tms_core.ros import Call, Outcome, Ros
+from tms_config import environment
+from tms_config.config import load_site
+from tms_ros.client import Call
+from tms_ros.goals import Outcome
+from tms_ros.node import Ros
 
 LIMIT = 40.0  # s for whatever must happen at all
 SITE = """
@@ -64,7 +66,7 @@ class Rig:
         return self.running[f"sim:{self.machine}"]
 
     def start(self, name: str) -> None:
-        words = [sys.executable, "-m", "tms_core.run", name]
+        words = [sys.executable, "-m", "tms_runtime.run", name]
         self.running[name] = subprocess.Popen(words, env=self._environment)
 
     def _framed(self, message: Any) -> None:

@@ -33,7 +33,7 @@ from tms_msg_db.srv import (
 )
 
 from few_processes import LIMIT, Mesh, bare
-from tms_core.config import CONFIGS
+from tms_config.config import CONFIGS
 from tms_db import store
 from tms_db.terrain import Terrain
 from tms_db.terrain_files import Size

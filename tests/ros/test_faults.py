@@ -12,7 +12,9 @@ from tms_msg_rc.msg import MachineState, StopReceipt
 from tms_msg_rc.srv import Rearm
 
 from stand_in_rig import SITE, Rig, client_in, pose
-from tms_core.ros import Call, Outcome, Ros
+from tms_ros.client import Call
+from tms_ros.goals import Outcome
+from tms_ros.node import Ros
 
 pytestmark = [
     pytest.mark.ros,

@@ -14,8 +14,9 @@ from std_msgs.msg import Bool
 from tms_msg_rc.msg import MachineState, StopReceipt
 
 from conftest import GATEWAYS_ONLY, Mesh, mesh_apart, rearm, wait_until
-from tms_core.border import MOTIONS, Motion
-from tms_core.ros import Outcome, Ros
+from tms_machine.border import MOTIONS, Motion
+from tms_ros.goals import Outcome
+from tms_ros.node import Ros
 
 pytestmark = [pytest.mark.ros, pytest.mark.timeout(300)]
 MACHINE = "mst110cr_2"  # has all kinds of motion but a trajectory, which tests of the whole mesh stop

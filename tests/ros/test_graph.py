@@ -3,12 +3,13 @@
 import logging
 
 import pytest
+import structlog
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from std_msgs.msg import Bool, String
 
 from conftest import wait_until
-from tms_core.graph import Graph
-from tms_core.ros import Ros
+from tms_ros.node import Ros
+from tms_runtime.graph import Graph
 
 pytestmark = pytest.mark.ros
 LIMIT = 20.0  # s for whatever must happen at all
@@ -21,7 +22,7 @@ class Watched:
     def __init__(self, ros: Ros, caplog: pytest.LogCaptureFixture) -> None:
         self._ros, self._caplog = ros, caplog
         caplog.set_level(logging.WARNING)
-        self._graph = Graph(ros, logging.getLogger("test"))
+        self._graph = Graph(ros, structlog.stdlib.get_logger("test"))
 
     def told(self) -> list[str]:
         self._ros.do(self._graph.look, LIMIT)

@@ -23,10 +23,11 @@ from std_msgs.msg import Bool, Float64, Float64MultiArray
 from std_srvs.srv import SetBool, Trigger
 
 from conftest import wait_until
-from tms_core import environment
-from tms_core.config import load_site
-from tms_core.errors import RosError
-from tms_core.ros import Ros, pack, unpack
+from tms_config import environment
+from tms_config.config import load_site
+from tms_reason.errors import RosError
+from tms_ros.node import Ros
+from tms_ros.packing import pack, unpack
 from unity_client import Unity, frame, text
 
 pytestmark = [
@@ -57,7 +58,7 @@ class Bridge:
     def __init__(self, file: Path, port: int) -> None:
         self.port, self._log = port, file.with_suffix(".log")
         with self._log.open("w") as log:
-            words = [sys.executable, "-m", "tms_core.run", "tms:if"]
+            words = [sys.executable, "-m", "tms_runtime.run", "tms:if"]
             env = {**os.environ, **environment.environment(load_site(str(file)))}
             self.process = subprocess.Popen(words, env=env, stdout=log, stderr=log)
         self.ros = Ros("if_test")
@@ -362,7 +363,7 @@ def test_it_listens_on_loopback_and_says_when_it_cannot(bridge: Bridge, tmp_path
     (tmp_path / "site.yaml").write_text(
         SITE.format(domain=domain, port=bridge.port + 1, tcp=bridge.port, machine=MACHINE)
     )
-    words = [sys.executable, "-m", "tms_core.run", "tms:if"]
+    words = [sys.executable, "-m", "tms_runtime.run", "tms:if"]
     env = {**os.environ, **environment.environment(load_site(str(tmp_path / "site.yaml")))}
     done = subprocess.run(words, env=env, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 1

@@ -1,16 +1,16 @@
 """The journal of runs on its way through a real tms:db into a real store: large entries, and one that is refused."""
 
-import logging
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+import structlog
 from tms_msg_db.msg import Event
 from tms_msg_db.srv import ListEvents
 
 from few_processes import Mesh, bare
-from tms_core.group_commit import GroupCommit
-from tms_core.values import to_parameters
+from tms_machine.values import to_parameters
+from tms_runtime.group_commit import GroupCommit
 from tms_ts.journal import LOST, Journal
 
 pytestmark = pytest.mark.ros
@@ -38,8 +38,8 @@ def test_large_entries_arrive_and_one_that_no_store_takes_keeps_nobody_waiting(m
         return [(event.number, len(event.values[0].value.string_array_value)) for event in events]
 
     before = LOST._value.get()
-    disk = GroupCommit(logging.getLogger("disk"))
-    journal = Journal(mesh.ros, logging.getLogger("journal"), disk, tmp_path / "state")
+    disk = GroupCommit(structlog.stdlib.get_logger("disk"))
+    journal = Journal(mesh.ros, structlog.stdlib.get_logger("journal"), disk, tmp_path / "state")
     journal.put(tree(1, 6000, 50))
     journal.put(tree(2, 20_000, 130))  # the most nodes that a tree may have
     journal.put(tree(3, 20_000, 158))  # small enough for ROS, larger than 16 MB as a document

@@ -6,8 +6,8 @@ from typing import Any
 import pytest
 from tms_msg_rc.msg import Permit as Message
 
-from tms_core.permit import LEASE
-from tms_core.ros import Ros
+from tms_machine.permit import LEASE
+from tms_ros.node import Ros
 
 pytestmark = pytest.mark.ros
 TOPIC, LIMIT = "/zx200/permit/rc", 20.0

@@ -6,8 +6,8 @@ import sys
 from pathlib import Path
 
 from conftest import ports_of, wait_until
-from tms_core import environment
-from tms_core.config import load_site
+from tms_config import environment
+from tms_config.config import load_site
 
 SITE = """
 name: leaving
@@ -18,8 +18,8 @@ machines: {{zx200: {{model: zx200}}}}
 """
 HANGS = """
 import ctypes, sys
-from tms_core import run
-from tms_core.ros import Ros
+from tms_runtime import run
+from tms_ros.node import Ros
 Ros.leave = lambda self: ctypes.PyDLL(None).sleep(60)  # native code that keeps the interpreter
 sys.exit(run.main("sim:zx200"))
 """

@@ -10,8 +10,8 @@ import pytest
 import yaml
 
 from conftest import ports_of, site_data, wait_until
-from tms_core.config import load_site
-from tms_core.processes import find
+from tms_config.config import load_site
+from tms_config.processes import find
 
 LOOPBACK = {"127.0.0.1", "239.255.0.1"}  # the group of DDS discovery is joined on the loopback interface only
 
@@ -23,7 +23,7 @@ def test_a_process_of_a_single_pc_listens_on_loopback_only(name: str, own_domain
     environment = {**os.environ, "TMS_SITE": str(file), "TMS_STATE": str(tmp_path), "ROS_DOMAIN_ID": str(own_domain)}
     row = find(load_site(str(file)), name)
     with (tmp_path / "log").open("w") as log:
-        words = [sys.executable, "-m", "tms_core.run", name]
+        words = [sys.executable, "-m", "tms_runtime.run", name]
         running = subprocess.Popen(words, env=environment, stdout=log, stderr=log)
     try:
         wait_until(lambda: "event=started" in (tmp_path / "log").read_text(), 20, "it has started")

@@ -12,7 +12,9 @@ from tms_msg_ts.action import LeafNodeBase
 from tms_msg_ts.srv import ResumePlan
 
 from conftest import wait_until
-from tms_core.ros import Outcome, Peer, Ros
+from tms_ros.client import Peer
+from tms_ros.goals import Outcome
+from tms_ros.node import Ros
 from tms_ts.machines import Identity, Machines
 from tms_ts.replay import Replay
 

@@ -1,15 +1,15 @@
 """The planner's neighbours on a real /tf."""
 
-import logging
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
+import structlog
 from geometry_msgs.msg import TransformStamped
 from tf2_msgs.msg import TFMessage
 
 from conftest import wait_until
-from tms_core.ros import Ros
+from tms_ros.node import Ros
 from tms_rp.neighbours import Neighbours
 
 pytestmark = pytest.mark.ros
@@ -31,7 +31,7 @@ def test_a_place_that_is_told_now_and_then_is_heard_among_all_the_joints(two_nod
         file=SimpleNamespace(machines=MACHINES),
         model_of=lambda _: SimpleNamespace(footprint={"body": object()}),
     )
-    app: Any = SimpleNamespace(site=site, machine="zx200", log=logging.getLogger("test"), ros=planner)
+    app: Any = SimpleNamespace(site=site, machine="zx200", log=structlog.stdlib.get_logger("test"), ros=planner)
     neighbours = Neighbours(app)
     say = nav.publisher(TFMessage, "/tf", depth=200)
     places = lambda: [one.place[0, 3] for one in neighbours.obstacles()]  # noqa: E731

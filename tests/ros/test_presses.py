@@ -9,11 +9,11 @@ from builtin_interfaces.msg import Time
 from std_msgs.msg import Bool
 
 from conftest import wait_until
-from tms_core.border import stood_in
-from tms_core.ros import Ros
+from tms_machine.border import stood_in
 from tms_rc import presses
 from tms_rc.guard import Kind
 from tms_rc.presses import Presses
+from tms_ros.node import Ros
 
 pytestmark = pytest.mark.ros
 TOPIC = "/zx200/emg_stop"

@@ -20,8 +20,9 @@ from tms_msg_rc.srv import Rearm, StopMachine
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from conftest import GATEWAYS_ONLY, Mesh, mesh_apart, wait_until
-from tms_core.config import load_site
-from tms_core.ros import Call, Ros
+from tms_config.config import load_site
+from tms_ros.client import Call
+from tms_ros.node import Ros
 
 pytestmark = [pytest.mark.ros, pytest.mark.timeout(300)]
 LIMIT = 60.0  # s for whatever must happen at all
@@ -296,10 +297,10 @@ def test_a_second_gateway_does_not_serve(machine: Machine, tmp_path_factory: pyt
     data["ports"]["metrics"] += 30
     (folder / "site.yaml").write_text(yaml.safe_dump(data))
     env = {**machine.mesh.env, "TMS_SITE": str(folder / "site.yaml"), "TMS_STATE": str(folder / "state")}
-    from tms_core import metrics
-    from tms_core.processes import find
+    from tms_config.processes import find
+    from tms_runtime import metrics
 
-    second = subprocess.Popen([sys.executable, "-m", "tms_core.run", "zx200:rc"], env=env)
+    second = subprocess.Popen([sys.executable, "-m", "tms_runtime.run", "zx200:rc"], env=env)
     try:
         machine.until(lambda: "another gateway for zx200 runs (pid" in machine.state.reason, "the first one says so")
         row = find(load_site(str(folder / "site.yaml")), "zx200:rc")

@@ -19,10 +19,12 @@ from tms_msg_rp.msg import TmsRpErrorCodes, TmsRpZx200PositionWithAngle
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from conftest import rearm
-from tms_core import environment
-from tms_core.config import load_site
-from tms_core.ros import Call, Outcome, Ros
+from tms_config import environment
+from tms_config.config import load_site
 from tms_rc.memory import Memory
+from tms_ros.client import Call
+from tms_ros.goals import Outcome
+from tms_ros.node import Ros
 
 pytestmark = [
     pytest.mark.ros,
@@ -64,7 +66,7 @@ class Rig:
     def start(self, *names: str) -> None:
         with self.log.open("ab") as log:
             for name in names:
-                words = [sys.executable, "-m", "tms_core.run", name]
+                words = [sys.executable, "-m", "tms_runtime.run", name]
                 self.running[name] = subprocess.Popen(words, env=self.environment, stdout=log, stderr=log)
 
     def end_process(self, name: str, codes: tuple[int, ...] = (0,)) -> None:

@@ -24,9 +24,9 @@ from tms_msg_sp.msg import InputStates
 
 from conftest import PROJECT
 from few_processes import Mesh, bare
-from tms_core.errors import RosError
-from tms_core.ros.packing import pack
-from tms_core.values import from_parameters, to_parameters
+from tms_machine.values import from_parameters, to_parameters
+from tms_reason.errors import RosError
+from tms_ros.packing import pack
 
 pytestmark = [
     pytest.mark.ros,

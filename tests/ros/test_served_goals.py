@@ -11,7 +11,9 @@ from rclpy.clock_type import ClockType
 from tms_msg_ts.action import LeafNodeBase
 
 from conftest import wait_until
-from tms_core.ros import Ended, Goal, Outcome, Ros
+from tms_ros.goals import Ended, Outcome
+from tms_ros.node import Ros
+from tms_ros.server import Goal
 
 pytestmark = pytest.mark.ros
 LIMIT = 20.0  # s for whatever must happen at all

@@ -12,7 +12,8 @@ from nav2_msgs.action import FollowWaypoints, NavigateThroughPoses, NavigateToPo
 from std_msgs.msg import Bool
 
 from stand_in_rig import SITE, Rig, client_in, pose
-from tms_core.ros import Outcome, Ros
+from tms_ros.goals import Outcome
+from tms_ros.node import Ros
 
 pytestmark = [
     pytest.mark.ros,

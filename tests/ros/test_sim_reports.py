@@ -17,9 +17,9 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64, String
 
 from stand_in_rig import client_in
-from tms_core import environment
-from tms_core.config import load_site
-from tms_core.ros import Ros
+from tms_config import environment
+from tms_config.config import load_site
+from tms_ros.node import Ros
 
 pytestmark = [
     pytest.mark.ros,
@@ -94,7 +94,7 @@ def stand_in(tmp_path_factory: pytest.TempPathFactory, domain: int, first_port: 
         file.write_text(SITE.format(domain=domain, port=first_port + 76, name=NAME))
         said = Said(ros)
         env = {**os.environ, **environment.environment(load_site(str(file)))}
-        process = subprocess.Popen([sys.executable, "-m", "tms_core.run", f"sim:{NAME}"], env=env)
+        process = subprocess.Popen([sys.executable, "-m", "tms_runtime.run", f"sim:{NAME}"], env=env)
         try:
             said.until(lambda: all(said.heard.values()), "telemetry")
             yield said

@@ -19,9 +19,10 @@ from tms_msg_rc.msg import MachineState
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from conftest import GATEWAYS_ONLY, Mesh, mesh_apart, running, wait_until
-from tms_core.config import load_site
-from tms_core.ros import Outcome, Ros
+from tms_config.config import load_site
 from tms_host.supervisor import Supervisor
+from tms_ros.goals import Outcome
+from tms_ros.node import Ros
 
 pytestmark = [pytest.mark.ros, pytest.mark.timeout(300)]
 JOINTS = ["swing_joint", "boom_joint", "arm_joint", "bucket_joint", "bucket_end_joint"]

@@ -8,8 +8,8 @@ from functools import partial
 import pytest
 
 from conftest import wait_until
-from tms_core.ros import Ros
-from tms_core.ros.loop import _undisturbed
+from tms_ros.loop import _undisturbed
+from tms_ros.node import Ros
 
 LIMIT = 30.0  # s
 

@@ -21,8 +21,10 @@ from tms_msg_ts.msg import RunState, RunStates
 from tms_msg_ts.srv import CancelRun
 
 from console_process import LIMIT, Console, running, spawn, until
-from tms_core.config import Site
-from tms_core.ros import Ended, Goal, Outcome, Ros
+from tms_config.config import Site
+from tms_ros.goals import Ended, Outcome
+from tms_ros.node import Ros
+from tms_ros.server import Goal
 
 pytestmark = pytest.mark.ros
 

@@ -16,9 +16,9 @@ from tms_msg_rc.srv import StopMachine
 
 from console_process import LIMIT, Console, running, until
 from hanging import hanging, still_open
-from tms_core.config import Site, load_site
-from tms_core.processes import find
-from tms_core.ros import Ros
+from tms_config.config import Site, load_site
+from tms_config.processes import find
+from tms_ros.node import Ros
 
 pytestmark = pytest.mark.ros
 MANY = 1000

@@ -8,7 +8,7 @@ import pymongo
 import pytest
 
 from conftest import Mesh, wait_until
-from tms_core.config import load_site
+from tms_config.config import load_site
 
 pytestmark = [pytest.mark.system, pytest.mark.timeout(300)]
 

@@ -10,8 +10,8 @@ import pytest
 import yaml
 
 from conftest import site_data, wait_until
-from tms_core.config import Site, load_site
-from tms_core.processes import here
+from tms_config.config import Site, load_site
+from tms_config.processes import here
 from tms_host.supervisor import Supervisor, render
 
 pytestmark = pytest.mark.system

@@ -8,9 +8,9 @@ import pytest
 import yaml
 
 from conftest import PROJECT, Mesh, ports_of, running, site_data
-from tms_core.config import CONFIGS
-from tms_core.models import MachineModel
-from tms_core.yaml_file import parse, read_yaml
+from tms_config.config import CONFIGS
+from tms_config.models import MachineModel
+from tms_config.yaml_file import parse, read_yaml
 
 pytestmark = [pytest.mark.system, pytest.mark.timeout(300)]
 MODELS = sorted(path.stem for path in (CONFIGS / "machines").glob("*.yaml"))

@@ -12,9 +12,9 @@ from test_mesh import CHANGE_POSE, events, newest, processes, run, stops, swingi
 from test_stop import rearm, state_of
 
 from conftest import PROJECT, Mesh, wait_until
-from tms_core.config import Site, load_site
-from tms_core.ros import Ros
+from tms_config.config import Site, load_site
 from tms_host.supervisor import Supervisor
+from tms_ros.node import Ros
 
 pytestmark = [pytest.mark.system, pytest.mark.timeout(300)]
 

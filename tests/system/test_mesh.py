@@ -17,7 +17,7 @@ from tms_msg_rc.msg import MachineState
 
 from conftest import PROJECT, Mesh, wait_until
 from lateness import Lateness
-from tms_core.ros import Ros
+from tms_ros.node import Ros
 
 pytestmark = pytest.mark.system
 CHANGE_POSE = "zx200:subtask_zx200_change_pose"
@@ -182,4 +182,4 @@ def test_processes_are_forks_of_supervisord_that_show_their_names(mesh: Mesh) ->
     """Executed ones would cost twice the memory and start-up time (figures: `make bench ONLY=process`)."""
     daemon = int((mesh.state / "supervisord.pid").read_text())
     names = {" ".join(child.cmdline()).partition(" -m ")[2].strip() for child in psutil.Process(daemon).children()}
-    assert {"tms_core.run zx200:rc", "tms_core.run tms:ts"} <= names
+    assert {"tms_runtime.run zx200:rc", "tms_runtime.run tms:ts"} <= names

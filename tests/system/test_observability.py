@@ -14,9 +14,9 @@ from diagnostic_msgs.msg import DiagnosticArray
 
 from conftest import PROJECT, Mesh, ports_of, wait_until
 from prometheus_server import get, processes_up, prometheus, query
-from tms_core.config import load_site
-from tms_core.ros import Ros
+from tms_config.config import load_site
 from tms_db import store
+from tms_ros.node import Ros
 
 pytestmark = pytest.mark.system
 NEEDS_A_RUN = ("tms_ts_runs", "tms_action_goals", "tms_ts_handover_seconds")

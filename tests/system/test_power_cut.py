@@ -24,7 +24,7 @@ from tms_msg_ts.srv import CancelRun
 
 from conftest import PROJECT, Mesh, claimed_domain, node_in, ports_of, running, site_data, wait_until
 from power_cut import Disk, family, own_disk
-from tms_core.ros import Ros
+from tms_ros.node import Ros
 
 pytestmark = pytest.mark.system
 CUTS = int(os.environ.get("TMS_POWER_CUTS", "3"))

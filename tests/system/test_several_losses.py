@@ -14,7 +14,7 @@ from std_msgs.msg import Bool
 from test_mesh import processes, swinging
 
 from conftest import PROJECT, Mesh, mesh_apart, running, wait_until
-from tms_core.ros import Ros
+from tms_ros.node import Ros
 
 pytestmark = [pytest.mark.system, pytest.mark.timeout(300)]
 STATUS = "/zx200/upper_arm_controller/follow_joint_trajectory/_action/status"

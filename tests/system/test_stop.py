@@ -18,8 +18,9 @@ from tms_msg_ts.msg import RunStates
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from conftest import Mesh, wait_until
-from tms_core.fence import Owner
-from tms_core.ros import Outcome, Ros
+from tms_ros.fence import Owner
+from tms_ros.goals import Outcome
+from tms_ros.node import Ros
 
 pytestmark = pytest.mark.system
 JOINTS = ["swing_joint", "boom_joint", "arm_joint", "bucket_joint", "bucket_end_joint"]

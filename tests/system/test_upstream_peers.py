@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 from conftest import PROJECT, Mesh
-from tms_core.config import load_site
-from tms_core.environment import environment
+from tms_config.config import load_site
+from tms_config.environment import environment
 
 pytestmark = pytest.mark.system
 SCRIPT = str(PROJECT / "tests" / "data" / "upstream_client.py")

@@ -3,13 +3,12 @@
 from collections.abc import Iterator
 
 import pytest
-
-from tms_core import log
+from structlog.contextvars import bound_contextvars, clear_contextvars
 
 
 @pytest.fixture(autouse=True)
 def own_log_fields() -> Iterator[None]:
     """Code that runs on a goal's own thread in the product runs on the one thread of all tests here."""
-    token = log._bound.set({})
-    yield
-    log._bound.reset(token)
+    with bound_contextvars():
+        clear_contextvars()
+        yield

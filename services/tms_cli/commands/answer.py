@@ -8,10 +8,10 @@ import click
 
 from tms_cli import live, session
 from tms_cli.words import say
-from tms_core.errors import RosError, TmsError
+from tms_reason.errors import RosError, TmsError
 
 if TYPE_CHECKING:
-    from tms_core.ros import Ros
+    from tms_ros.node import Ros
 
 
 @click.command()

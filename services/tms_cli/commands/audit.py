@@ -8,10 +8,10 @@ import click
 
 from tms_cli import live, session
 from tms_cli.words import Group, say
-from tms_core.errors import TmsError
+from tms_reason.errors import TmsError
 
 if TYPE_CHECKING:
-    from tms_core.ros import Ros
+    from tms_ros.node import Ros
     from tms_ur.audit_chain import Entry, Fault, Place, Verdict
 
 PAGE = 1000
@@ -101,7 +101,7 @@ def _verdict(node: "Ros", remembered: "Place | None") -> "Verdict":
 
 
 def _entry(event: Any) -> "Entry":
-    from tms_core.values import from_parameters
+    from tms_machine.values import from_parameters
     from tms_ur.audit_chain import Note, entry
 
     at = event.stamp.sec * 1000 + event.stamp.nanosec // 1_000_000

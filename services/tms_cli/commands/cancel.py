@@ -8,10 +8,10 @@ import click
 from tms_cli import session
 from tms_cli.commands.runs import MOST, as_dict, find_run, has_ended, history, recent
 from tms_cli.words import say, state
-from tms_core.errors import TmsError
+from tms_reason.errors import TmsError
 
 if TYPE_CHECKING:
-    from tms_core.ros import Ros
+    from tms_ros.node import Ros
 
 END_LIMIT = 30.0  # s for the machines to stand still
 LOOK = 0.2  # s

@@ -4,9 +4,9 @@ import click
 
 from tms_cli import session
 from tms_cli.words import say
-from tms_core.config import load_site
-from tms_core.processes import table
-from tms_core.sensing import load_sensing
+from tms_config.config import load_site
+from tms_config.processes import table
+from tms_config.sensing import load_sensing
 from tms_ur.address import certificate, users
 
 

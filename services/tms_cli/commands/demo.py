@@ -8,11 +8,11 @@ import click
 from tms_cli import live, mesh, session, stored_records
 from tms_cli.commands import rearm, run, task, up
 from tms_cli.words import say
-from tms_core.config import CONFIGS, Site
+from tms_config.config import CONFIGS, Site
 from tms_ur import address
 
 if TYPE_CHECKING:
-    from tms_core.ros import Ros
+    from tms_ros.node import Ros
 
 PARAMETERS = CONFIGS / "parameters" / "zx200.yaml"
 TASK = CONFIGS / "tasks" / "one_loading_cycle.xml"

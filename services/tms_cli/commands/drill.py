@@ -17,9 +17,9 @@ from tms_cli.drill.plan import STOPS, Trial, plan, plan_only
 from tms_cli.drill.report import markdown, text
 from tms_cli.drill.stand_ins import GROUP, StandIns
 from tms_cli.drill.verdict import Row
-from tms_core.config import Site
-from tms_core.errors import ConfigError, TmsError
+from tms_config.config import Site
 from tms_host.supervisor import Supervisor
+from tms_reason.errors import ConfigError, TmsError
 
 FOLDER = "drill"  # in the state folder of the site, new for each drill
 QUICK_LIMIT, LIMIT = 330.0, 900.0  # s, the latter a round

@@ -10,7 +10,7 @@ from tms_cli import live, session
 from tms_cli.commands.runs import MOST, find_run, has_ended, history, recent
 
 if TYPE_CHECKING:
-    from tms_core.ros import Ros
+    from tms_ros.node import Ros
 
 PAGE = 1000
 LOOK = 0.5  # s between looks with --follow
@@ -45,7 +45,7 @@ def _follow(node: "Ros", run_id: str) -> None:
 
 
 def _as_dict(event: Any) -> dict[str, Any]:
-    from tms_core.values import from_parameters
+    from tms_machine.values import from_parameters
 
     return {
         "run_id": event.run_id,
@@ -59,7 +59,7 @@ def _as_dict(event: Any) -> dict[str, Any]:
 
 
 def _line(event: Any) -> str:
-    from tms_core.values import from_parameters
+    from tms_machine.values import from_parameters
 
     when = live.moment(event.stamp)
     clock = when.strftime("%H:%M:%S.") + f"{when.microsecond // 1000:03}" if when else "-" * 12

@@ -5,8 +5,8 @@ import subprocess
 import click
 
 from tms_cli import session
-from tms_core.errors import TmsError
-from tms_core.processes import find, table
+from tms_config.processes import find, table
+from tms_reason.errors import TmsError
 
 
 @click.command()

@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from tms_cli import session
-from tms_core.errors import TmsError
+from tms_reason.errors import TmsError
 
 
 @click.command()

@@ -6,7 +6,7 @@ import subprocess
 import click
 
 from tms_cli import session
-from tms_core.errors import TmsError
+from tms_reason.errors import TmsError
 from tms_ur import address
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")

@@ -10,7 +10,7 @@ from tms_cli import live, session
 from tms_cli.record_words import key_argument, parse_fields
 from tms_cli.stored_records import age, as_dict, kind, load_file, records, summary, text, title, write
 from tms_cli.words import Group, say
-from tms_core.units import unit
+from tms_reason.units import unit
 
 TYPES = click.Choice(["static", "dynamic"])
 WHATEVER_AGE = -1.0
@@ -207,7 +207,7 @@ def history(key: tuple[str, str], limit: int, as_json: bool) -> None:
     """
     from tms_msg_db.srv import ListParameterHistory
 
-    from tms_core.values import from_parameters
+    from tms_machine.values import from_parameters
 
     with session.ros() as node:
         found = session.call(

@@ -6,7 +6,7 @@ import click
 
 from tms_cli import session
 from tms_cli.words import say
-from tms_core.processes import table
+from tms_config.processes import table
 from tms_host.supervisor import Running, Supervisor
 
 COLOURS = {"RUNNING": "green", "STARTING": "yellow", "BACKOFF": "red", "FATAL": "red", "EXITED": "red"}

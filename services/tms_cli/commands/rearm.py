@@ -6,11 +6,11 @@ import click
 
 from tms_cli import session
 from tms_cli.words import say
-from tms_core.errors import TmsError
-from tms_core.fence import NO_NOTE
+from tms_reason.errors import TmsError
+from tms_ros.fence import NO_NOTE
 
 if TYPE_CHECKING:
-    from tms_core.ros import Ros
+    from tms_ros.node import Ros
 
 ARMED = "NOT_STOPPED"  # code of a gateway whose machine is armed already
 

@@ -9,7 +9,7 @@ from tms_cli.commands.run import Runner, report
 from tms_cli.words import say
 
 if TYPE_CHECKING:
-    from tms_core.ros import Ros
+    from tms_ros.node import Ros
 
 SHOWN = 3  # of the leaves that are not repeated
 

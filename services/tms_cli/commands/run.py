@@ -11,10 +11,10 @@ import click
 from tms_cli import live, session
 from tms_cli.commands.runs import has_ended, recent
 from tms_cli.words import say, state, what_next
-from tms_core.errors import NOT_STORED, TmsError
+from tms_reason.errors import NOT_STORED, TmsError
 
 if TYPE_CHECKING:
-    from tms_core.ros import Ros
+    from tms_ros.node import Ros
 
 ACTION = "/tms/execute_task"
 SERVER_LIMIT = 5.0  # s
@@ -152,7 +152,7 @@ class Runner:
         return run if run is not None and has_ended(run) else None
 
     def _end(self, interrupted: bool) -> End:
-        from tms_core.ros import Outcome
+        from tms_ros.goals import Outcome
 
         result, view = self._call.result, self.view
         if self._call.outcome is None and self._told is not None:

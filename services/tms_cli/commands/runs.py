@@ -7,10 +7,10 @@ import click
 
 from tms_cli import live, session
 from tms_cli.words import padded, say, state
-from tms_core.errors import TmsError
+from tms_reason.errors import TmsError
 
 if TYPE_CHECKING:
-    from tms_core.ros import Ros
+    from tms_ros.node import Ros
 
 RECENT = 100
 MOST = 10_000  # runs that the database lists at most

@@ -8,7 +8,7 @@ import click
 from tms_cli import session
 from tms_cli.replay.verb import replay
 from tms_cli.words import Group, say
-from tms_core.errors import TmsError
+from tms_reason.errors import TmsError
 
 
 @click.group(cls=Group, invoke_without_command=True)

@@ -7,10 +7,10 @@ import click
 
 from tms_cli import live, session
 from tms_cli.words import say
-from tms_core.errors import ConfigError, RosError
+from tms_reason.errors import ConfigError, RosError
 
 if TYPE_CHECKING:
-    from tms_core.ros import Ros
+    from tms_ros.node import Ros
 
 ANSWER_LIMIT = 13.0  # s; a gateway gives itself 10 s to see the machine stand
 CAUSE = "software stop by an operator"

@@ -7,7 +7,7 @@ import click
 
 from tms_cli import live, session
 from tms_cli.words import Group, say
-from tms_core.errors import TaskError, TmsError
+from tms_reason.errors import TaskError, TmsError
 
 task_id_argument = click.argument("task_id", type=click.IntRange(1), metavar="ID")
 

@@ -8,7 +8,7 @@ import click
 from tms_cli import session
 from tms_cli.open_store import opened
 from tms_cli.words import Group
-from tms_core.errors import TmsError
+from tms_reason.errors import TmsError
 
 if TYPE_CHECKING:
     from tms_db.terrain import Stored

@@ -6,9 +6,9 @@ import click
 
 from tms_cli import mesh, session
 from tms_cli.words import say
-from tms_core.config import Site
-from tms_core.errors import ConfigError
-from tms_core.processes import here
+from tms_config.config import Site
+from tms_config.processes import here
+from tms_reason.errors import ConfigError
 from tms_ur import address
 
 

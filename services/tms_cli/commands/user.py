@@ -9,8 +9,8 @@ import yaml
 
 from tms_cli import session
 from tms_cli.words import Group
-from tms_core.errors import TmsError
-from tms_core.yaml_file import parse
+from tms_config.yaml_file import parse
+from tms_reason.errors import TmsError
 
 SHORTEST = 8  # characters of a password
 NAME = click.Path(path_type=Path, dir_okay=False)

@@ -7,8 +7,8 @@ import re
 from collections.abc import Iterable
 from datetime import datetime
 
-from tms_core.config import Site
-from tms_core.processes import table
+from tms_config.config import Site
+from tms_config.processes import table
 from tms_host.supervisor import log_file
 
 BEFORE, AFTER = 1.5, 2.0  # s around the begin of a stop: a lease, and a line that is written late

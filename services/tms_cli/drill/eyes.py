@@ -12,9 +12,10 @@ from std_msgs.msg import Bool
 from tms_msg_rc.msg import MachineState, StopReceipt
 
 from tms_cli.drill.record import Goal, Receipt, Recording, State, sample_of, time_of
-from tms_core.border import motions
-from tms_core.config import Site
-from tms_core.ros import Ros
+from tms_config.config import Site
+from tms_machine.border import motions
+from tms_ros.node import Ros
+from tms_runtime.pulse import Pulse
 
 CANCELING, SUCCEEDED, CANCELED, ABORTED = 3, 4, 5, 6  # action_msgs/GoalStatus
 KEPT = 120.0  # s, longer than any trial
@@ -33,7 +34,7 @@ class Eyes:
         self._forgotten = time.time()
         # Not by callbacks: a hundred and fifty a second would take a busy PC a tenth of a processor.
         self._truth = node.sample_arrivals(JointState, f"/{machine}/sim/truth", WAITING, best_effort=False)
-        node.pulse.add(self._look)
+        Pulse(node).add(self._look)
         node.subscribe(StopReceipt, f"/{machine}/rc/receipts", self._on_receipt, depth=20, latched=True)
         node.subscribe(MachineState, f"/{machine}/rc/state", self._on_state, depth=10, latched=True)
         for motion in motions(border):

@@ -12,12 +12,12 @@ import psutil
 from tms_cli import mesh
 from tms_cli.drill.plan import RC, RP, SUBTASK, How, Stop
 from tms_cli.drill.stand_ins import GROUP, NICE
-from tms_core import metrics
-from tms_core.config import Site
-from tms_core.errors import TmsError
-from tms_core.priority import come_first
-from tms_core.processes import find, table
+from tms_config.config import Site
+from tms_config.processes import find, table
 from tms_host.supervisor import Supervisor
+from tms_reason.errors import TmsError
+from tms_ros.priority import come_first
+from tms_runtime import metrics
 
 FROZEN = 2.0  # s
 BACK_LIMIT = 40.0  # s

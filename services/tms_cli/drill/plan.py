@@ -99,7 +99,7 @@ OFTEN = 3  # times that each stop is tried without a fault for once with each
 
 
 def fault_of(name: str, joints: Sequence[str]) -> dict[str, Any]:
-    """What to tell a stand-in (tms_core.site_file.Fault)."""
+    """What to tell a stand-in (tms_config.site_file.Fault)."""
     fault = dict(FAULTS[name])
     return {**fault, "mute": [joints[0]]} if "mute" in fault else fault
 

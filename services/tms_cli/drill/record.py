@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from tms_core.models import Still
+from tms_config.models import Still
 
 
 @dataclass(frozen=True)

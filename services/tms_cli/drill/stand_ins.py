@@ -5,10 +5,10 @@ import subprocess
 import sys
 from types import TracebackType
 
-from tms_core import state_folder
-from tms_core.config import Site
-from tms_core.environment import environment
-from tms_core.priority import come_first, session_first
+from tms_config import state_folder
+from tms_config.config import Site
+from tms_config.environment import environment
+from tms_ros.priority import come_first, session_first
 
 GROUP = "sim"  # of the process table
 END_LIMIT = 5.0  # s
@@ -23,7 +23,7 @@ class StandIns:
 
     def _start(self, site: Site, machine: str) -> "subprocess.Popen[bytes]":
         with state_folder.private(), (site.state / "log" / f"{GROUP}.{machine}.log").open("ab") as log:
-            words = [sys.executable, "-m", "tms_core.run", f"{GROUP}:{machine}"]
+            words = [sys.executable, "-m", "tms_runtime.run", f"{GROUP}:{machine}"]
             env = {**os.environ, **environment(site)}
             child = subprocess.Popen(
                 words, env=env, stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT, start_new_session=True

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from typing import Any
 from xml.sax.saxutils import quoteattr
 
-from tms_core.config import Site
-from tms_core.models import MachineModel
+from tms_config.config import Site
+from tms_config.models import MachineModel
 
 SWING = 1.2  # rad to each side
 TURN = 70.0  # deg, the same of a single joint

@@ -17,10 +17,10 @@ from tms_cli.drill.plan import NONE, TS, How, Stop, Trial
 from tms_cli.drill.record import Recording
 from tms_cli.drill.verdict import AFTER, BY_ITSELF, GOES_ON, HUNG, UNPROVEN, Row, Seen, judge
 from tms_cli.drill.work import Work
-from tms_core.config import Site
-from tms_core.errors import TmsError
-from tms_core.ros import Ros
+from tms_config.config import Site
 from tms_rc.standstill import StandStill
+from tms_reason.errors import TmsError
+from tms_ros.node import Ros
 
 MOVES_LIMIT = 40.0  # s for a run to move its machine
 LEAD = 0.8  # s from the choice of the moment to the hit: a fault may come before it

@@ -14,10 +14,10 @@ from tms_cli.drill.report import line
 from tms_cli.drill.stand_ins import NICE, StandIns
 from tms_cli.drill.trials import LEAD, Hand, Struck
 from tms_cli.drill.verdict import Row, empty
-from tms_core.config import Site
-from tms_core.errors import TmsError
-from tms_core.priority import come_first, others, session_first
-from tms_core.ros import Ros
+from tms_config.config import Site
+from tms_reason.errors import TmsError
+from tms_ros.node import Ros
+from tms_ros.priority import come_first, others, session_first
 
 T = TypeVar("T")
 

@@ -15,9 +15,10 @@ from tms_cli.commands.runs import has_ended, recent
 from tms_cli.drill import tasks
 from tms_cli.drill.plan import fault_of
 from tms_cli.drill.verdict import INTERRUPTED
-from tms_core.config import Site
-from tms_core.errors import TmsError
-from tms_core.ros import Call, Ros
+from tms_config.config import Site
+from tms_reason.errors import TmsError
+from tms_ros.client import Call
+from tms_ros.node import Ros
 
 ARM_LIMIT = 30.0  # s for the machine to be armed again
 SERVER_LIMIT = 20.0  # s for the scheduler to be there

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from tms_cli.replay.recording import Track
-from tms_core.config import Site
-from tms_core.errors import TmsError
-from tms_core.models import Border
-from tms_core.sensing import Input, sensing_path
+from tms_config.config import Site
+from tms_config.models import Border
+from tms_config.sensing import Input, sensing_path
+from tms_reason.errors import TmsError
 from tms_sp.node import message_class
 
 

@@ -9,11 +9,11 @@ from tms_cli.replay.matching import Matches
 from tms_cli.replay.pace import Pace
 from tms_cli.replay.recording import Recording, Track
 from tms_cli.replay.stamps import Stamps
-from tms_core.errors import TmsError
+from tms_reason.errors import TmsError
 from tms_sp.node import message_class
 
 if TYPE_CHECKING:
-    from tms_core.ros import Ros
+    from tms_ros.node import Ros
 
 READER_LIMIT = 10.0  # s for tms:sp to hear the topics
 LAST_LIMIT = 5.0  # s for the last messages to arrive

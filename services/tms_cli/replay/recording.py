@@ -13,7 +13,7 @@ from rosbags.rosbag2 import Reader, ReaderError
 from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
 from rosbags.typesys.base import TypesysError
 
-from tms_core.errors import TmsError
+from tms_reason.errors import TmsError
 
 # What the reader raises for files that are damaged: it believes the lengths and texts that it finds.
 DAMAGED = (

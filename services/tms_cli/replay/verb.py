@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from tms_cli import session
-from tms_core.errors import TmsError
+from tms_reason.errors import TmsError
 
 if TYPE_CHECKING:
     from tms_cli.replay.matching import Matches
@@ -51,7 +51,7 @@ def replay(
         from tms_cli.replay.matching import match
         from tms_cli.replay.pace import Pace
         from tms_cli.replay.player import LOOP_GAP, Player
-        from tms_core.sensing import load_sensing
+        from tms_config.sensing import load_sensing
 
         span = _span(recording, start, duration)
         found = match(recording.tracks, load_sensing(session.site()).inputs, session.site(), topics)

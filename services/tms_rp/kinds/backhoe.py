@@ -4,8 +4,8 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from tms_core.errors import ConfigError, SubtaskFailed
-from tms_core.models import MachineModel
+from tms_config.models import MachineModel
+from tms_reason.errors import ConfigError, SubtaskFailed
 from tms_rp.goals import ChangePose, LinkGoal, TipGoal, finite
 from tms_rp.linkage import Linkage, Pose, Tip, wrap
 

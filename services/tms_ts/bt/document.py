@@ -8,7 +8,7 @@ from pathlib import Path
 
 from lxml import etree
 
-from tms_core.xml_text import MAX_BYTES, MAX_DEPTH
+from tms_runtime.xml_text import MAX_BYTES, MAX_DEPTH
 from tms_ts.bt.errors import MAX_WARNINGS, TreeError, short
 from tms_ts.bt.source import Source, line_of, parse, read_file
 

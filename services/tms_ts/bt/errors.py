@@ -9,7 +9,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
-from tms_core.errors import TaskError
+from tms_reason.errors import TaskError
 
 MAX_WARNINGS = 500  # of one tree; more than that helps nobody
 MAX_NAMES = 1000  # to look for a near one among, which takes some 30 ms

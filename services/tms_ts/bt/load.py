@@ -8,7 +8,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from tms_core.xml_text import MAX_BYTES
+from tms_runtime.xml_text import MAX_BYTES
 from tms_ts.bt.advice import advise
 from tms_ts.bt.blackboard import Blackboard
 from tms_ts.bt.build import Builder

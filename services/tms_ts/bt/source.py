@@ -11,8 +11,8 @@ from pathlib import Path
 
 from lxml import etree
 
-from tms_core import xml_text
-from tms_core.xml_text import MAX_BYTES
+from tms_runtime import xml_text
+from tms_runtime.xml_text import MAX_BYTES
 from tms_ts.bt.errors import TreeError
 
 _MARKUP = re.compile(

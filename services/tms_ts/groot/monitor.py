@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import threading
 import time
 from collections import deque
@@ -11,6 +10,7 @@ from contextlib import contextmanager
 
 import zmq
 
+from tms_runtime.log import Logger
 from tms_ts.bt.node import Node
 from tms_ts.bt.status import IDLE, Status
 from tms_ts.bt.tree import Tree
@@ -26,7 +26,7 @@ MOST_CHANGES = 10_000  # kept for one message; a tree that spins makes more than
 class Monitors:
     """Gives every run the lowest free set of ports."""
 
-    def __init__(self, log: logging.Logger, bind: str, first_port: int) -> None:
+    def __init__(self, log: Logger, bind: str, first_port: int) -> None:
         self._log, self._bind, self._first = log, bind, first_port
         self._used: set[int] = set()
         self._lock = threading.Lock()
@@ -52,9 +52,9 @@ class Monitors:
         try:
             monitor = Monitor(tree, self._bind, port)
         except (zmq.ZMQError, ValueError) as error:  # a port that is taken, an ID that no document can have
-            self._log.warning("event=no_groot run=%s port=%d reason=%r", run_id, port, str(error))
+            self._log.warning("no_groot", run=run_id, port=port, reason=str(error))
             return None
-        self._log.info("event=groot run=%s groot1=%d,%d groot2=%d", run_id, port, port + 1, port + 2)
+        self._log.info("groot", run=run_id, groot1=port, groot2=port + 2)
         return monitor
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import logging
+import structlog
 
 from tms_ts.bt.convert import MISSING
 from tms_ts.bt.leaf import SyncAction
@@ -10,7 +10,7 @@ from tms_ts.bt.ports import InOut
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, SUCCESS, Status
 
-log = logging.getLogger(__name__)
+log = structlog.stdlib.get_logger(__name__)
 
 
 @node

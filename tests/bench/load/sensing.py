@@ -9,8 +9,8 @@ import time
 from typing import Any
 
 from bench.sensing import RATE, RECORDS, SECONDS, TOPIC
-from tms_core import environment
-from tms_core.config import load_site
+from tms_config import environment
+from tms_config.config import load_site
 
 LIMIT = 20.0  # s
 PROBE = "/bench/probe"
@@ -89,7 +89,7 @@ def final(ros: Any) -> dict[str, float]:
 
 if __name__ == "__main__":
     environment.enter(load_site())
-    from tms_core.ros import Ros
+    from tms_ros.node import Ros
 
     node = Ros(f"bench_{sys.argv[1]}")
     print(json.dumps({"publish": publish, "read": read, "final": final}[sys.argv[1]](node)))

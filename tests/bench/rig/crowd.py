@@ -19,8 +19,11 @@ from tms_msg_rc.msg import MachineState, StopReceipt
 from tms_msg_rc.srv import StopMachine
 from tms_msg_ts.action import LeafNodeBase
 
-from tms_core.permit import Permit
-from tms_core.ros import Ended, Goal, Outcome, Ros
+from tms_machine.permit import Permit
+from tms_ros.goals import Ended, Outcome
+from tms_ros.node import Ros
+from tms_ros.server import Goal
+from tms_runtime.pulse import Pulse
 
 NEWS = 0.2  # s, as gateways tell their states
 WORK = 10.0  # s that a goal takes
@@ -37,7 +40,7 @@ class Machine:
         self._latch = ""
         self.open = 0  # goals
         self._states = ros.publisher(MachineState, f"/{name}/rc/state", depth=1, latched=True)
-        self._permit = Permit(ros, name, "rc")
+        self._permit = Permit(ros, Pulse(ros), name, "rc")
         self._permit.hold(GATEWAY)
         ros.offer(StopMachine, f"/{name}/rc/stop", self._stop)
         for subtask in subtasks:

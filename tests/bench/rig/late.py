@@ -8,7 +8,7 @@ from __future__ import annotations
 import sys
 import time
 
-from tms_core.ros import Ros
+from tms_ros.node import Ros
 
 LIMIT = 60.0  # s
 LOOK = 0.005  # s

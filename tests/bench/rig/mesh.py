@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING
 import yaml
 
 from conftest import Mesh, claimed_domain, ports_of, site_data
-from tms_core import environment
-from tms_core.config import Site, load_site
+from tms_config import environment
+from tms_config.config import Site, load_site
 
 if TYPE_CHECKING:
-    from tms_core.ros import Ros
+    from tms_ros.node import Ros
 
 BARE = Path(__file__).parent / "bare.py"
 LIMIT = 90.0  # s; only bounds a hang
@@ -54,7 +54,7 @@ class Rig:
     @contextmanager
     def node(self) -> Iterator[Ros]:
         """A node of this process."""
-        from tms_core.ros import Ros
+        from tms_ros.node import Ros
 
         ros = Ros("bench")
         try:

@@ -12,10 +12,12 @@ sys.path[0:1] = [str(TESTS), str(TESTS.parent / "services")]
 from control_msgs.action import FollowJointTrajectory  # noqa: E402
 
 from bench.yard.machines import LIMIT, MODEL, motion, names  # noqa: E402
-from tms_core.config import load_site  # noqa: E402
-from tms_core.fence import Owner  # noqa: E402
-from tms_core.permit import Permit  # noqa: E402
-from tms_core.ros import Call, Ros  # noqa: E402
+from tms_config.config import load_site  # noqa: E402
+from tms_machine.permit import Permit  # noqa: E402
+from tms_ros.client import Call  # noqa: E402
+from tms_ros.fence import Owner  # noqa: E402
+from tms_ros.node import Ros  # noqa: E402
+from tms_runtime.pulse import Pulse  # noqa: E402
 
 AGAIN = 0.5  # s between looks for refused goals: with busy cores not everybody has found everybody yet
 
@@ -24,9 +26,10 @@ def main(run: int) -> None:
     site, ros = load_site(), Ros("bench_holder")
     peers = {name: ros.peer(FollowJointTrajectory, f"/{name}/rc/follow_joint_trajectory") for name in names()}
     subtask = next(iter(site.models[MODEL].subtasks))
-    permits = {name: Permit(ros, name, subtask) for name in names()}
+    pulse = Pulse(ros)
+    permits = {name: Permit(ros, pulse, name, subtask) for name in names()}
     for name in names():
-        Permit(ros, name, "ts").hold(Owner(run).goal_id(), "bench")
+        Permit(ros, pulse, name, "ts").hold(Owner(run).goal_id(), "bench")
     calls: dict[str, Call] = {}
     deadline = time.monotonic() + 10 * LIMIT
     leaf = 0

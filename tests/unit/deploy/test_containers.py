@@ -10,9 +10,9 @@ import pytest
 import yaml
 
 from conftest import PROJECT
-from tms_core.config import load_site
-from tms_core.pcs import ROLES
-from tms_core.processes import table
+from tms_config.config import load_site
+from tms_config.pcs import ROLES
+from tms_config.processes import table
 
 DEPLOY = PROJECT / "deploy"
 COMPOSE = sorted(path for path in (DEPLOY / "compose").glob("*.yml") if path.stem != "base")

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from conftest import PROJECT
-from tms_core.pcs import ROLES
+from tms_config.pcs import ROLES
 
 HIDDEN = {"SITE", "ROLE", "PC", "RUNTIME", "VENV", "NAV2_DISTRO", "LOCK", "TMS_SITE", "TMS_IMAGE", "MAKEFLAGS"}
 

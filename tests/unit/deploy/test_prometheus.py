@@ -12,9 +12,9 @@ from click.testing import CliRunner
 from conftest import PROJECT
 from tms_cli import monitoring
 from tms_cli.commands import prometheus
-from tms_core.config import load_site
-from tms_core.errors import ConfigError
-from tms_core.processes import table
+from tms_config.config import load_site
+from tms_config.processes import table
+from tms_reason.errors import ConfigError
 
 FOLDER = PROJECT / "deploy" / "prometheus"
 DASHBOARDS = sorted((PROJECT / "deploy" / "grafana" / "dashboards").glob("*.json"))

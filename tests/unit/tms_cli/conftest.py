@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from tms_cli import session
-from tms_core.errors import RosError, TmsError
+from tms_reason.errors import RosError, TmsError
 
 
 class FakeMesh:

@@ -12,8 +12,8 @@ from tms_msg_db.srv import ListEvents
 
 from tms_cli import session
 from tms_cli.commands import audit
-from tms_core.errors import TmsError
-from tms_core.values import to_parameters
+from tms_machine.values import to_parameters
+from tms_reason.errors import TmsError
 from tms_ur.audit_chain import Note, Place, tied
 from tms_ur.audit_ledger import Ledger
 

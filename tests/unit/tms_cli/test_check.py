@@ -10,7 +10,7 @@ import yaml
 
 from conftest import site_data
 from tms_cli.commands import check
-from tms_core import config
+from tms_config import config
 
 MODEL = yaml.safe_load((config.CONFIGS / "machines" / "zx200.yaml").read_text(encoding="utf-8"))
 

@@ -7,7 +7,7 @@ from tms_msg_db.srv import AddTask
 
 from tms_cli import stored_records
 from tms_cli.commands import demo, run
-from tms_core.errors import TmsError
+from tms_reason.errors import TmsError
 
 
 @pytest.fixture

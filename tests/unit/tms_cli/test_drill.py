@@ -13,8 +13,8 @@ from tms_cli.drill.figures import percentile, summary
 from tms_cli.drill.plan import FAULTS, NONE, RP, SINGLE, STOPS, fault_of, plan, plan_only
 from tms_cli.drill.report import line, markdown, text
 from tms_cli.drill.verdict import HUNG, LEFT_OUT, Row
-from tms_core.config import CONFIGS, load_site
-from tms_core.site_file import Fault
+from tms_config.config import CONFIGS, load_site
+from tms_config.site_file import Fault
 from tms_ts import bt
 
 MACHINES = {"zx200": True, "zx120": True, "ic120_1": False, "mst2200_1": False, "mst110cr_2": False, "d37": False}

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from tms_cli.drill.busy import stood_still
-from tms_core.config import Site, load_site
+from tms_config.config import Site, load_site
 from tms_host.supervisor import log_file
 
 AT = datetime(2026, 1, 31, 6, 0, 10).timestamp()  # local time, as the logs have it

@@ -9,7 +9,7 @@ import pytest
 from tms_cli.drill.plan import NONE, RC, TS, How, Stop, Trial
 from tms_cli.drill.record import Goal, Receipt, Recording, Sample, State, sample_of
 from tms_cli.drill.verdict import GOES_ON, Row, Seen, judge
-from tms_core.models import Still
+from tms_config.models import Still
 
 HIT = 1000.0  # s since 1970
 KILL = Stop(How.KILL, (RC,))

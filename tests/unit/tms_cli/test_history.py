@@ -10,8 +10,8 @@ from tms_msg_db.srv import ListEvents, ListRuns
 from tms_msg_ts.srv import CancelRun
 
 from tms_cli.commands import cancel, events, runs
-from tms_core.errors import RosError, TmsError
-from tms_core.values import to_parameters
+from tms_machine.values import to_parameters
+from tms_reason.errors import RosError, TmsError
 
 
 def made(run_id: str, state: str = "success", seconds: int | None = 4) -> Run:

@@ -197,13 +197,13 @@ HANGS = """
 import ctypes, sys
 from types import SimpleNamespace
 from tms_cli import main, session
-from tms_core import ros
+from tms_ros import node
 
 def leave():
     print("leaving", file=sys.stderr, flush=True)
     ctypes.PyDLL(None).sleep(60)  # native code that keeps the interpreter, as DDS does
 
-ros.Ros = lambda name: SimpleNamespace(stop=lambda: None, leave=leave)
+node.Ros = lambda name: SimpleNamespace(stop=lambda: None, leave=leave)
 session.call = lambda *_, **__: SimpleNamespace(runs=[])
 main.LEAVE_LIMIT = 0.1
 main.entry()

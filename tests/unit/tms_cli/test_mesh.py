@@ -11,8 +11,8 @@ import yaml
 from conftest import site_data
 from tms_cli import mesh
 from tms_cli.commands import check
-from tms_core.config import Site, load_site
-from tms_core.errors import ConfigError
+from tms_config.config import Site, load_site
+from tms_reason.errors import ConfigError
 
 PCS = {
     "cps": {"address": "127.0.0.1", "roles": ["cps", "machine", "sim"]},
@@ -124,4 +124,4 @@ def test_a_group_that_the_caller_runs_itself_is_left_out(tmp_path: Path, monkeyp
     monkeypatch.setattr(mesh.Supervisor, "pid", lambda _: os.getpid())
     monkeypatch.setattr(mesh, "_start", lambda _, conf: started.append(conf.read_text()))
     assert mesh.up(ours, without="sim") is True
-    assert "tms_core.run zx200:rc\n" in started[0] and "tms_core.run sim:" not in started[0]
+    assert "tms_runtime.run zx200:rc\n" in started[0] and "tms_runtime.run sim:" not in started[0]

@@ -6,7 +6,7 @@ from pathlib import Path
 from lxml import etree
 
 from tms_cli.commands import palette
-from tms_core.errors import TmsError
+from tms_reason.errors import TmsError
 from tms_ts.bt import registry
 
 

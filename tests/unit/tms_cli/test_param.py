@@ -11,8 +11,8 @@ from tms_msg_db.srv import GetParameter, ListParameters, SetParameter
 
 from tms_cli import record_words
 from tms_cli.commands import param
-from tms_core.errors import DbError, TmsError
-from tms_core.values import from_parameters, to_parameters
+from tms_machine.values import from_parameters, to_parameters
+from tms_reason.errors import DbError, TmsError
 
 
 @pytest.mark.parametrize(

@@ -10,8 +10,8 @@ import click
 import pytest
 
 from tms_cli.main import tms
-from tms_core.config import PROJECT
-from tms_core.subtask import Subtask
+from tms_config.config import PROJECT
+from tms_machine.subtask import Subtask
 
 README = (PROJECT / "README.md").read_text(encoding="utf-8")
 COMMANDS = sorted(

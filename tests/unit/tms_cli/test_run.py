@@ -13,8 +13,8 @@ from tms_msg_ts.msg import NodeStatus, RunState, RunStates
 from tms_msg_ts.srv import CancelRun
 
 from tms_cli.commands import run
-from tms_core.errors import NOT_STORED, DbError, RosError
-from tms_core.ros import Outcome
+from tms_reason.errors import NOT_STORED, DbError, RosError
+from tms_ros.goals import Outcome
 
 XML = '<root><BehaviorTree ID="T"><AlwaysSuccess/></BehaviorTree></root>'
 

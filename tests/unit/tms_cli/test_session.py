@@ -7,7 +7,7 @@ import pytest
 from tms_msg_db.srv import AddTask
 
 from tms_cli import session
-from tms_core.errors import TmsError
+from tms_reason.errors import TmsError
 
 
 def test_a_number_that_json_does_not_have_is_null(capsys: pytest.CaptureFixture[str]) -> None:

@@ -10,7 +10,7 @@ from tms_msg_ts.srv import CheckTask
 
 from tms_cli import check_task
 from tms_cli.commands import task
-from tms_core.errors import DbError, TaskError
+from tms_reason.errors import DbError, TaskError
 
 GOOD = '<root><BehaviorTree ID="T"><Sequence><AlwaysSuccess/></Sequence></BehaviorTree></root>'
 LEAF = """<root><BehaviorTree ID="T">

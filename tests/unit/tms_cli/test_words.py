@@ -132,7 +132,18 @@ def test_every_help_page_is_in_both_languages(monkeypatch: pytest.MonkeyPatch) -
 
 def test_every_error_code_says_in_japanese_what_to_do() -> None:
     codes = set()
-    for package in ("tms_core", "tms_cli", "tms_db", "tms_host", "tms_ts", "tms_rc"):
+    for package in (
+        "tms_config",
+        "tms_machine",
+        "tms_reason",
+        "tms_ros",
+        "tms_runtime",
+        "tms_cli",
+        "tms_db",
+        "tms_host",
+        "tms_ts",
+        "tms_rc",
+    ):
         for file in (SERVICES / package).rglob("*.py"):
             for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
                 if isinstance(node, ast.Call) and name_of(node).endswith("Error"):

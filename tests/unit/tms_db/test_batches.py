@@ -2,8 +2,8 @@
 
 from datetime import datetime, timezone
 
-from tms_core.record_lock import released, taken
 from tms_db.batches import Update
+from tms_machine.record_lock import released, taken
 
 NOON = datetime(2026, 1, 31, 12, 0, tzinfo=timezone.utc)
 SENSED = Update(1, {"x": 1.0}, NOON, "sp")

@@ -1,16 +1,16 @@
 """A store that is away costs each request nothing, and is found again by itself."""
 
-import logging
 import threading
 from collections.abc import Iterator
 from typing import Any
 
 import pytest
+import structlog
 from pymongo.errors import AutoReconnect
 
-from tms_core.errors import DbError
 from tms_db import connection, schema, store
 from tms_db.connection import Connection
+from tms_reason.errors import DbError
 
 
 class Away:
@@ -50,7 +50,7 @@ def fake(monkeypatch: pytest.MonkeyPatch) -> Away:
 
 @pytest.fixture
 def link(fake: Any) -> Iterator[Connection]:
-    link = Connection(fake, "mongodb://here", logging.getLogger("test"))
+    link = Connection(fake, "mongodb://here", structlog.stdlib.get_logger("test"))
     link.start()
     yield link
     link.stop()
@@ -102,7 +102,7 @@ def test_a_refusal_is_no_loss(fake: Away, link: Connection) -> None:
 
 
 def test_trouble_is_told_once(fake: Away, caplog: pytest.LogCaptureFixture) -> None:
-    link = Connection(fake, "mongodb://here", logging.getLogger("test"))  # type: ignore[arg-type]
+    link = Connection(fake, "mongodb://here", structlog.stdlib.get_logger("test"))  # type: ignore[arg-type]
     link.start()
     for _ in range(5):
         assert fake.asked.acquire(timeout=5)

@@ -4,9 +4,9 @@ from datetime import datetime, timedelta, timezone
 
 import pytest
 
-from tms_core.errors import DbError
-from tms_core.record_lock import LEASE, released, taken
 from tms_db.freshness import check
+from tms_machine.record_lock import LEASE, released, taken
+from tms_reason.errors import DbError
 
 NOW = datetime(2026, 1, 31, 6, 0, tzinfo=timezone.utc)
 

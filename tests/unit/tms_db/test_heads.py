@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
-from tms_core.errors import DbError
 from tms_db.heads import KEPT, Heads
 from tms_db.records import Document
+from tms_reason.errors import DbError
 
 KEY = ("zx200", "p")
 

@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from tms_core.values import to_parameters
 from tms_db.batches import Update
 from tms_db.heads import Head, Key
 from tms_db.parameter_services import OLDEST, ParameterServices
+from tms_machine.values import to_parameters
 
 
 def taken(age: float) -> timedelta:

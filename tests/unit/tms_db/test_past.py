@@ -1,11 +1,11 @@
 """The memory of a record's changes fits into one document of the store, however large they are."""
 
-import logging
 from datetime import datetime, timezone
 from typing import Any
 
 import bson
 import pytest
+import structlog
 
 from tms_db.past import KEPT, ROOM, Past
 
@@ -30,7 +30,7 @@ class Stored:
 
 
 def save(stored: Stored, *sizes: int) -> None:
-    past: Any = Past(stored, None, logging.getLogger("test"))  # type: ignore[arg-type]
+    past: Any = Past(stored, None, structlog.stdlib.get_logger("test"))  # type: ignore[arg-type]
     past._save({KEY: [{"stamp": NOON, "source": "sp", "values": {"x": "." * size}} for size in sizes]})
 
 

@@ -5,10 +5,10 @@ from typing import Any
 
 import pytest
 
-from tms_core.config import CONFIGS
-from tms_core.errors import ConfigError, DbError
+from tms_config.config import CONFIGS
 from tms_db import records
 from tms_db.parameters import Change
+from tms_reason.errors import ConfigError, DbError
 
 LOADING = {
     "initial_pose", "target_excavate_pose", "hold_soil_while_elevating_pose", "hold_soil_while_turning_pose",

@@ -13,8 +13,8 @@ from pymongo.errors import (
     ServerSelectionTimeoutError,
 )
 
-from tms_core.errors import ConfigError, DbError
 from tms_db import store
+from tms_reason.errors import ConfigError, DbError
 
 
 @pytest.mark.parametrize(

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from tms_core.errors import TaskError
 from tms_db.task_generator import TASKS, find
+from tms_reason.errors import TaskError
 
 
 @pytest.mark.parametrize("name", ["one_loading_cycle", "one_loading_cycle.xml", str(TASKS / "one_loading_cycle.xml")])

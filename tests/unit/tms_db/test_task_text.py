@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from tms_core.config import CONFIGS
-from tms_core.errors import TaskError
+from tms_config.config import CONFIGS
 from tms_db import task_text
+from tms_reason.errors import TaskError
 
 TREE = '<root main_tree_to_execute="A"><BehaviorTree ID="A"><AlwaysSuccess/></BehaviorTree></root>'
 BOMB = '<!DOCTYPE r [<!ENTITY a "ha"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;">]>' + TREE.replace("A", "&b;")

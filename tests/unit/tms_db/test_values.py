@@ -6,12 +6,12 @@ from typing import Any
 import pytest
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 
-from tms_core.errors import DbError
 from tms_db import messages
 from tms_db.cpp_services import content
 from tms_db.history import Event, Run
 from tms_db.tasks import Task
 from tms_db.values import from_parameters, from_time, to_parameters, to_time
+from tms_reason.errors import DbError
 
 NOON = datetime(2026, 1, 31, 12, 0, 0, 123000, tzinfo=timezone.utc)
 

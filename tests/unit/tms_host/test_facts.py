@@ -5,7 +5,7 @@ from pathlib import Path
 
 from prometheus_client import CollectorRegistry
 
-from tms_core.processes import Process
+from tms_config.processes import Process
 from tms_host import facts
 from tms_host.diagnostics import ERROR, OK, STALE, WARN, judge
 from tms_host.facts import Clock, Facts

@@ -1,19 +1,19 @@
 """When a process that does not answer counts as frozen."""
 
-import logging
 import threading
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
+import structlog
 import yaml
 
-from tms_core.config import load_site
-from tms_core.metrics import Health
-from tms_core.processes import find
+from tms_config.config import load_site
+from tms_config.processes import find
 from tms_host.frozen import STARTING, Answers, Watchdog
 from tms_host.supervisor import Running
+from tms_runtime.metrics import Health
 
 
 def test_a_process_that_has_answered_may_be_silent_for_so_long() -> None:
@@ -47,7 +47,10 @@ def app(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
     }))  # fmt: skip
     site = load_site(str(file))
     return SimpleNamespace(
-        site=site, process=find(site, "tms:host_cps"), stopping=threading.Event(), log=logging.getLogger("test")
+        site=site,
+        process=find(site, "tms:host_cps"),
+        stopping=threading.Event(),
+        log=structlog.stdlib.get_logger("test"),
     )
 
 

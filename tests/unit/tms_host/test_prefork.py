@@ -34,8 +34,8 @@ options.execve("/nonexistent/python", ["python", "-m", {module!r}, {name!r}], {{
 WAITS = "os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])"
 START = """
 import ctypes
-from tms_core import run
-from tms_core.errors import ConfigError
+from tms_runtime import run
+from tms_reason.errors import ConfigError
 
 def load_site():
     signal = ctypes.c_int()

@@ -8,11 +8,11 @@ import pytest
 import yaml
 
 from conftest import site_data
-from tms_core.config import Site, load_site
-from tms_core.errors import ConfigError, TmsError
-from tms_core.processes import table
+from tms_config.config import Site, load_site
+from tms_config.processes import table
 from tms_host import supervisor as module
 from tms_host.supervisor import Supervisor, SupervisorDown, render, runtime_folder, socket_path
+from tms_reason.errors import ConfigError, TmsError
 
 
 @pytest.fixture

@@ -9,12 +9,12 @@ import pytest
 from nav_msgs.msg import Odometry
 from std_srvs.srv import Trigger
 
-from tms_core.errors import RosError
-from tms_core.ros import pack
 from tms_if import joint_cmd
 from tms_if.commands import CommandError, Registration
 from tms_if.ends import OPEN_CALLS, Ends
 from tms_if.names import Allowed
+from tms_reason.errors import RosError
+from tms_ros.packing import pack
 
 TOPIC, SPAWN = "zx200/odom", "/spawn"
 ALLOWED = Allowed(

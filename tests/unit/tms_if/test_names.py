@@ -7,10 +7,10 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tms_core.config import Site, load_site
-from tms_core.errors import ConfigError
+from tms_config.config import Site, load_site
 from tms_if.commands import CommandError, Registration, full_name, parse
 from tms_if.names import Allowed, allowed
+from tms_reason.errors import ConfigError
 
 SITE = {
     "name": "t", "domain": 1, "backend": "physx",

@@ -1,7 +1,7 @@
 """Who must stand behind a goal before it may move a machine."""
 
-from tms_core.fence import Owner
 from tms_rc.chain import gap, members
+from tms_ros.fence import Owner
 
 RUN = Owner(100)
 SUBTASK, PLANNER = Owner(100, 4, 0), Owner(100, 4, 1)

@@ -5,10 +5,10 @@ from typing import Any
 
 import pytest
 
-from tms_core.fence import Owner
 from tms_rc.gateway import Gateway
 from tms_rc.guard import Active, Guard, Kind
 from tms_rc.latch import Latch
+from tms_ros.fence import Owner
 
 RUN = Owner(7)
 GOAL = Owner(7, 1, 1)  # of the subtask; the scheduler and the subtask stand behind it

@@ -2,8 +2,8 @@
 
 import pytest
 
-from tms_core.fence import Owner
 from tms_rc.latch import ANY_LEAF, TOKEN_SECONDS, UNKNOWN_RUN, Latch
+from tms_ros.fence import Owner
 
 LOST = Owner(5, 1, 2)  # the goal during which a process was lost
 AGAIN = Owner(5, 2, 2)  # the next goal of the same run

@@ -2,9 +2,9 @@
 
 import pytest
 
-from tms_core.config import CONFIGS
-from tms_core.models import MachineModel
-from tms_core.yaml_file import parse
+from tms_config.config import CONFIGS
+from tms_config.models import MachineModel
+from tms_config.yaml_file import parse
 from tms_rc.limits import Point, angle_problem, escaped, pace_problem, pose_problem, problem
 
 MODEL = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel)

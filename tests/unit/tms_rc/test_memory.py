@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
-from tms_core.fence import NO_NOTE
 from tms_rc.memory import UNREADABLE, Left, Memory
 from tms_rc.receipts import Receipts
+from tms_ros.fence import NO_NOTE
 
 
 def test_a_machine_without_a_note_is_latched(tmp_path: Path) -> None:
@@ -72,7 +72,7 @@ def full_disk(monkeypatch: pytest.MonkeyPatch) -> None:
     def fails(*_: Any) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("tms_core.durable.write_all", fails)
+    monkeypatch.setattr("tms_runtime.durable.write_all", fails)
 
 
 def test_a_full_disk_latches_all_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tms_core.models import Border, MachineModel
+from tms_config.models import Border, MachineModel
 from tms_rc.source import Sample
 from tms_rc.standstill import HEADING, JOINTS, NOTHING, ODOM, PLACE, UNKNOWN, Expected, StandStill, Travel
 

@@ -10,11 +10,11 @@ from geometry_msgs.msg import Quaternion
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu, JointState
 
-from tms_core.models import MachineModel, Source
-from tms_core.ros.topics import Arrival
-from tms_core.yaml_file import parse
+from tms_config.models import MachineModel, Source
+from tms_config.yaml_file import parse
 from tms_rc import view
 from tms_rc.standstill import HEADING, JOINTS, PLACE, TURNING, StandStill
+from tms_ros.topics import Arrival
 
 CONFIGS = Path(__file__).resolve().parents[3] / "configs"
 SOURCE = Source(period=0.05, stamps="none", frozen_after=2.0, origin="a test")

@@ -3,10 +3,10 @@
 from types import SimpleNamespace
 from typing import Any
 
-from tms_core.border import MOTIONS
-from tms_core.config import CONFIGS
-from tms_core.models import MachineModel
-from tms_core.yaml_file import parse
+from tms_config.config import CONFIGS
+from tms_config.models import MachineModel
+from tms_config.yaml_file import parse
+from tms_machine.border import MOTIONS
 from tms_rc.gateway import Gateway
 from tms_rc.guard import Active, Kind
 

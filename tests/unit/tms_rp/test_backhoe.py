@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tms_core.config import CONFIGS
-from tms_core.errors import ConfigError, SubtaskFailed
-from tms_core.models import MachineModel
-from tms_core.yaml_file import parse
+from tms_config.config import CONFIGS
+from tms_config.models import MachineModel
+from tms_config.yaml_file import parse
+from tms_reason.errors import ConfigError, SubtaskFailed
 from tms_rp.goals import ChangePose, LinkGoal, TipGoal, joint_goal
 from tms_rp.kinds.backhoe import Backhoe
 from tms_rp.linkage import Pose

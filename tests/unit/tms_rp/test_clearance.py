@@ -4,10 +4,10 @@ import math
 
 import pytest
 
-from tms_core.config import CONFIGS
-from tms_core.errors import SubtaskFailed
-from tms_core.models import MachineModel
-from tms_core.yaml_file import parse
+from tms_config.config import CONFIGS
+from tms_config.models import MachineModel
+from tms_config.yaml_file import parse
+from tms_reason.errors import SubtaskFailed
 from tms_rp.clearance import Clearance, Obstacle, placed
 from tms_rp.trajectory import Trajectory, trajectory
 

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tms_core.config import CONFIGS
-from tms_core.errors import SubtaskFailed
-from tms_core.models import MachineModel
-from tms_core.yaml_file import parse
+from tms_config.config import CONFIGS
+from tms_config.models import MachineModel
+from tms_config.yaml_file import parse
+from tms_reason.errors import SubtaskFailed
 from tms_rp.linkage import Linkage, Pose, Tip, wrap
 
 LINKAGE = Linkage.of(parse(CONFIGS / "machines" / "zx200.yaml", MachineModel).geometry)

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tms_core.config import CONFIGS
-from tms_core.models import MachineModel
-from tms_core.yaml_file import parse
+from tms_config.config import CONFIGS
+from tms_config.models import MachineModel
+from tms_config.yaml_file import parse
 from tms_rp.linkage import Linkage, Pose, wrap
 
 EXCAVATORS = {

@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from tms_core.errors import SubtaskFailed
-from tms_core.ros import Outcome
+from tms_reason.errors import SubtaskFailed
+from tms_ros.goals import Outcome
 from tms_rp.mover import _verdict
 
 

@@ -1,10 +1,10 @@
 """Where other machines stand, and what the collision check makes of it."""
 
-import logging
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
+import structlog
 from geometry_msgs.msg import TransformStamped
 from tf2_msgs.msg import TFMessage
 
@@ -32,7 +32,7 @@ def neighbours(*told: TransformStamped) -> Neighbours:
         beside=lambda *_: None,
         subscribe=lambda *_, **__: None,
     )
-    made = Neighbours(SimpleNamespace(site=site, machine="zx200", log=logging.getLogger("test"), ros=ros))  # type: ignore[arg-type]
+    made = Neighbours(SimpleNamespace(site=site, machine="zx200", log=structlog.stdlib.get_logger("test"), ros=ros))  # type: ignore[arg-type]
     made._look()
     made._look()
     return made
@@ -54,4 +54,4 @@ def test_a_place_that_is_not_a_number_leaves_the_machine_where_it_was() -> None:
 
 def test_who_does_not_know_its_own_place_says_so(caplog: pytest.LogCaptureFixture) -> None:
     assert neighbours(at("ic120_tf/base_link", 7.0)).obstacles() == []
-    assert "event=place_unknown /tf does not tell where zx200 is" in caplog.text
+    assert "event=place_unknown target=zx200" in caplog.text

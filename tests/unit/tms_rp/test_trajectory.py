@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tms_core.config import CONFIGS
-from tms_core.errors import SubtaskFailed
-from tms_core.models import Joint, MachineModel
-from tms_core.yaml_file import parse
+from tms_config.config import CONFIGS
+from tms_config.models import Joint, MachineModel
+from tms_config.yaml_file import parse
+from tms_reason.errors import SubtaskFailed
 from tms_rp import trajectory as module
 from tms_rp.trajectory import Sample, trajectory
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tms_core.models import Drive
+from tms_config.models import Drive
 from tms_sim.base import ALIGNED, SUBSTEP, Base, Leg
 
 DRIVE = Drive(velocity=1.0, acceleration=0.5, turn_velocity=0.35, turn_acceleration=0.35)

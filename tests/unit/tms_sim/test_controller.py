@@ -2,9 +2,9 @@
 
 import pytest
 
-from tms_core.config import CONFIGS
-from tms_core.models import MachineModel
-from tms_core.yaml_file import parse
+from tms_config.config import CONFIGS
+from tms_config.models import MachineModel
+from tms_config.yaml_file import parse
 from tms_sim.arm import Arm
 from tms_sim.controller import GOAL_VIOLATED, Controller, Motion
 from tms_sim.path import Point

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tms_core.models import Joint, Response
+from tms_config.models import Joint, Response
 from tms_sim.drive import TORQUE, Drive
 
 JOINT = Joint(min=-1.0, max=1.0, velocity=1.0, acceleration=2.0, jerk=4.0)

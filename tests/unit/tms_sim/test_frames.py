@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from tms_core.config import CONFIGS
-from tms_core.models import Border, MachineModel
-from tms_core.yaml_file import parse
+from tms_config.config import CONFIGS
+from tms_config.models import Border, MachineModel
+from tms_config.yaml_file import parse
 from tms_sim.frames import Chain, Frame, Quaternion, _times
 
 MODEL = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel)

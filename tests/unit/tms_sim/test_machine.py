@@ -4,10 +4,10 @@ import math
 
 import pytest
 
-from tms_core.config import CONFIGS
-from tms_core.models import Border, MachineModel
-from tms_core.site_file import Fault
-from tms_core.yaml_file import parse
+from tms_config.config import CONFIGS
+from tms_config.models import Border, MachineModel
+from tms_config.site_file import Fault
+from tms_config.yaml_file import parse
 from tms_sim.base import Leg
 from tms_sim.machine import StandIn
 from tms_sim.motion import Motion

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from tms_core.models import Joint
+from tms_config.models import Joint
 from tms_sim.path import INVALID_GOAL, INVALID_JOINTS, Path, Point, refusal
 
 JOINTS = {

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from tms_core.site_file import Fault
+from tms_config.site_file import Fault
 from tms_sim.report import SECOND, Reading, Report
 
 KEPT = 50

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import pytest
 
-from tms_core.models import Drive, Response
+from tms_config.models import Drive, Response
 from tms_sim.base import Base, Leg
 from tms_sim.tracks import SUBSTEP
 

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from prometheus_client import REGISTRY
 
-from tms_core.sensing import Input
+from tms_config.sensing import Input
 from tms_sp.inputs import SensingInput
 from tms_sp.mapping import Mapping
 from tms_sp.outbox import Post

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from pydantic import ValidationError
 
-from tms_core.sensing import Input
+from tms_config.sensing import Input
 from tms_sp.mapping import Mapping, Refused
 
 EXCAVATE = {"model_name": "string", "record_name": "string", "x": "double", "y": "double"}

@@ -1,15 +1,15 @@
 """What tests of the scheduler share."""
 
-import logging
 from collections.abc import Iterator
 
 import pytest
+import structlog
 
-from tms_core.group_commit import GroupCommit
+from tms_runtime.group_commit import GroupCommit
 
 
 @pytest.fixture
 def disk() -> Iterator[GroupCommit]:
-    made = GroupCommit(logging.getLogger("disk"))
+    made = GroupCommit(structlog.stdlib.get_logger("disk"))
     yield made
     made.close(10)

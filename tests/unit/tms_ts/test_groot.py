@@ -2,7 +2,6 @@
 
 import itertools
 import json
-import logging
 import socket
 import struct
 import time
@@ -12,6 +11,7 @@ from typing import Any
 
 import msgpack
 import pytest
+import structlog
 import zmq
 from lxml import etree
 
@@ -205,7 +205,7 @@ def test_a_finished_node_shows_how_it_ended(port: int, viewer: zmq.Context[Any])
 
 
 def test_every_run_has_ports_of_its_own(port: int, viewer: zmq.Context[Any], caplog: pytest.LogCaptureFixture) -> None:
-    monitors = Monitors(logging.getLogger("test"), "127.0.0.1", port)
+    monitors = Monitors(structlog.stdlib.get_logger("test"), "127.0.0.1", port)
     first, second = load(SLOW), load(SLOW)
     with monitors.watch("r-1", first):
         with monitors.watch("r-2", second):
@@ -222,7 +222,7 @@ def test_a_taken_port_costs_the_view_only(port: int, caplog: pytest.LogCaptureFi
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", port + 1))
         taken.listen()
-        with Monitors(logging.getLogger("test"), "127.0.0.1", port).watch("r-1", one):
+        with Monitors(structlog.stdlib.get_logger("test"), "127.0.0.1", port).watch("r-1", one):
             assert not one.observers
             assert one.tick() is RUNNING
     assert "no_groot" in caplog.text
@@ -249,7 +249,7 @@ def test_a_tree_that_cannot_be_shown_costs_the_view_only(
         raise ValueError("no such shape")
 
     monkeypatch.setattr("tms_ts.groot.monitor.Groot2", fail)
-    monitors = Monitors(logging.getLogger("test"), "127.0.0.1", port)
+    monitors = Monitors(structlog.stdlib.get_logger("test"), "127.0.0.1", port)
     with monitors.watch("r-1", load(SLOW)):
         assert "no such shape" in caplog.text
     assert not monitors._used
@@ -259,7 +259,7 @@ def test_ports_are_free_again_however_the_view_fails(port: int, monkeypatch: pyt
     def end(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monitors = Monitors(logging.getLogger("test"), "127.0.0.1", port)
+    monitors = Monitors(structlog.stdlib.get_logger("test"), "127.0.0.1", port)
     monkeypatch.setattr(monitors, "_open", end)
     with pytest.raises(KeyboardInterrupt), monitors.watch("r-1", load(SLOW)):
         pass

@@ -1,6 +1,5 @@
 """An interrupted run is resumed or abandoned once, whoever asks at the same time."""
 
-import logging
 import threading
 from dataclasses import replace
 from pathlib import Path
@@ -8,12 +7,13 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+import structlog
 from builtin_interfaces.msg import Time
 from tms_msg_rc.msg import StopReceipt
 from tms_msg_ts.srv import CancelRun
 
-from tms_core.errors import TaskError
-from tms_core.group_commit import GroupCommit
+from tms_reason.errors import TaskError
+from tms_runtime.group_commit import GroupCommit
 from tms_ts.interrupted import STOP_LIMIT, Interrupted
 from tms_ts.past import Header, Past
 from tms_ts.record import Records
@@ -45,7 +45,9 @@ def interrupted(records: Records, journal: list[Any]) -> Interrupted:
 
 
 def successor(records: Records, journal: list[Any]) -> Interrupted:
-    app = SimpleNamespace(stopping=threading.Event(), log=logging.getLogger("test"), ros=SimpleNamespace(now=Time))
+    app = SimpleNamespace(
+        stopping=threading.Event(), log=structlog.stdlib.get_logger("test"), ros=SimpleNamespace(now=Time)
+    )
     return Interrupted(app, SimpleNamespace(put=journal.append), records)  # type: ignore[arg-type]
 
 

@@ -1,6 +1,5 @@
 """The journal against a database that refuses: what waits, what is dropped, and that nobody else pays for it."""
 
-import logging
 import os
 import threading
 import time
@@ -10,12 +9,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import structlog
 from tms_msg_db.msg import Event, Run
 from tms_msg_db.srv import WriteJournal
 
 from slow_disk import slow_disk
-from tms_core.errors import RosError
-from tms_core.group_commit import SPARE, GroupCommit
+from tms_reason.errors import RosError
+from tms_runtime.group_commit import SPARE, GroupCommit
 from tms_ts import journal
 from tms_ts.journal import LOST, Journal
 
@@ -62,7 +62,7 @@ def kept(db: FakeDb, disk: GroupCommit, tmp_path: Path) -> Iterator[Journal]:
 
 @contextmanager
 def keeping(db: FakeDb, disk: GroupCommit, folder: Path) -> Iterator[Journal]:
-    made = Journal(db, logging.getLogger("journal"), disk, folder)  # type: ignore[arg-type]
+    made = Journal(db, structlog.stdlib.get_logger("journal"), disk, folder)  # type: ignore[arg-type]
     yield made
     db.bad, db.trouble = {}, ""
     assert disk.wait(10)
@@ -148,8 +148,8 @@ def test_what_memory_cannot_hold_while_the_disk_is_full_is_counted_and_named(
             raise OSError(28, "No space left on device")
         return write(file, data)
 
-    monkeypatch.setattr("tms_core.durable.os.write", refuses)
-    disk, before = GroupCommit(logging.getLogger("disk"), SPARE + 10_000), lost()
+    monkeypatch.setattr("tms_runtime.durable.os.write", refuses)
+    disk, before = GroupCommit(structlog.stdlib.get_logger("disk"), SPARE + 10_000), lost()
     with keeping(db, disk, tmp_path) as journal:
         put(journal, range(1, 9), "x" * 1500)  # more than the room, but for what is vital
         journal.put(Event(run_id="r", number=9, kind="stop", text="zx200 stood"))

@@ -6,7 +6,8 @@ from typing import Any
 import pytest
 from tms_msg_rc.msg import StopReceipt
 
-from tms_core.ros import Call, Outcome
+from tms_ros.client import Call
+from tms_ros.goals import Outcome
 from tms_ts import machines
 from tms_ts.gateways import Gateways
 from tms_ts.machines import ASK_AGAIN, Identity, Machines

@@ -7,9 +7,9 @@ import pytest
 import yaml
 
 from conftest import site_data
-from tms_core.config import CONFIGS, Site, load_site
-from tms_core.models import MachineModel
-from tms_core.yaml_file import parse
+from tms_config.config import CONFIGS, Site, load_site
+from tms_config.models import MachineModel
+from tms_config.yaml_file import parse
 from tms_ts import bt
 from tms_ts.preflight import Stored, Values, machines_of, preflight, processes_of, records_of
 from tms_ts.surroundings import unfit

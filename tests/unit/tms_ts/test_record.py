@@ -1,11 +1,11 @@
 """What a crash leaves of a run is enough to close it and to go on with it."""
 
-import logging
 from pathlib import Path
 
 import pytest
+import structlog
 
-from tms_core.group_commit import GroupCommit
+from tms_runtime.group_commit import GroupCommit
 from tms_ts.past import Header, Key, Over, Past
 from tms_ts.record import LOST, Records
 from tms_ts.replay import Replay
@@ -105,10 +105,10 @@ def test_what_the_tree_did_not_ask_for_again_is_done_again() -> None:
 def test_lines_that_no_memory_is_left_for_are_counted_and_told(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
-    disk, lost = GroupCommit(logging.getLogger("disk"), 0), LOST._value.get()
+    disk, lost = GroupCommit(structlog.stdlib.get_logger("disk"), 0), LOST._value.get()
     Records(tmp_path, disk).open("r").event(1)
     assert LOST._value.get() == lost + 1
-    assert "event=record_lost file=r.jsonl line='n'" in caplog.text
+    assert "event=record_lost file=r.jsonl line=n" in caplog.text
     disk.close(10)
 
 

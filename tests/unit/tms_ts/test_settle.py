@@ -1,18 +1,18 @@
 """However a run ends, its machines are stopped; and it ticks as long as it lasts."""
 
-import logging
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
+import structlog
 from builtin_interfaces.msg import Time
 from tms_msg_rc.msg import StopReceipt
 from tms_msg_ts.action import ExecuteTask
 
-from tms_core.group_commit import GroupCommit
-from tms_core.ros import Outcome
+from tms_ros.goals import Outcome
+from tms_runtime.group_commit import GroupCommit
 from tms_ts import run as module
 from tms_ts.bt import Status
 from tms_ts.budget import AT_ONCE
@@ -60,7 +60,7 @@ def a_run(rows: list[Any]) -> Run:
     return Run(
         SimpleNamespace(now=Time),  # type: ignore[arg-type]
         SimpleNamespace(put=rows.append),  # type: ignore[arg-type]
-        logging.getLogger("test"),
+        structlog.stdlib.get_logger("test"),
         SimpleNamespace(request=SimpleNamespace(resume=""), publish=lambda _: None),  # type: ignore[arg-type]
         Facts("run", 1, 1, "", ["zx200"], Time()),
         record,  # type: ignore[arg-type]
@@ -124,7 +124,7 @@ def test_a_run_that_meets_a_bug_is_closed_in_the_history(a_run: Run, rows: list[
     scheduler._facts = lambda goal, past: a_run.facts
     scheduler._execute = lambda *_: broken()
     scheduler._ros = scheduler._journal = scheduler._app = SimpleNamespace(
-        log=logging.getLogger("test"), now=Time, put=rows.append
+        log=structlog.stdlib.get_logger("test"), now=Time, put=rows.append
     )
     scheduler._records = SimpleNamespace(open=lambda _: a_run.record)
     scheduler._runs, scheduler._holders = {}, {}
@@ -142,7 +142,7 @@ def test_a_run_that_meets_a_bug_is_closed_in_the_history(a_run: Run, rows: list[
 
 
 def test_a_resume_that_is_refused_leaves_its_record_and_no_open_file(a_run: Run, tmp_path: Path) -> None:
-    disk = GroupCommit(logging.getLogger("disk"))
+    disk = GroupCommit(structlog.stdlib.get_logger("disk"))
 
     def files() -> int:
         return len(list(Path("/proc/self/fd").iterdir()))

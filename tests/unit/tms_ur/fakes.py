@@ -9,9 +9,9 @@ from typing import Any
 import httpx
 from fastapi import FastAPI
 
-from tms_core.config import Site, load_site
-from tms_core.errors import TmsError
-from tms_core.site_file import Console, SiteFile
+from tms_config.config import Site, load_site
+from tms_config.site_file import Console, SiteFile
+from tms_reason.errors import TmsError
 from tms_ur.access import Access
 from tms_ur.api import create_app
 from tms_ur.board import Board

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 import yaml
 
-from tms_core.errors import ConfigError
-from tms_core.site_file import Console, Files
+from tms_config.site_file import Console, Files
+from tms_reason.errors import ConfigError
 from tms_ur.access import SESSION_IDLE, Access, hashed
 from unit.tms_ur.fakes import HERE, Client, FakeAudit, FakeGateway, app
 

@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
-from tms_core.config import Site
-from tms_core.errors import ConfigError
-from tms_core.site_file import SiteFile
+from tms_config.config import Site
+from tms_config.site_file import SiteFile
+from tms_reason.errors import ConfigError
 from tms_ur import address
 
 TLS = {"certificate": "cert.pem", "key": "key.pem"}

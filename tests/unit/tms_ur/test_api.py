@@ -6,7 +6,7 @@ from datetime import datetime, timedelta, timezone
 
 import pytest
 
-from tms_core.errors import TmsError
+from tms_reason.errors import TmsError
 from tms_ur.guard import SECURITY, is_loopback
 from tms_ur.models import ActiveRun, Event, Host, Joint, Machine, Process
 from unit.tms_ur.fakes import HERE, XML, Client, FakeAudit, FakeGateway, app

@@ -10,7 +10,7 @@ from rclpy.serialization import deserialize_message, serialize_message
 from tms_msg_db.msg import Event
 from tms_msg_db.srv import ListEvents, WriteJournal
 
-from tms_core.errors import RosError
+from tms_reason.errors import RosError
 from tms_ur import audit
 from tms_ur.audit_chain import Note, Place, Verdict, tied
 from tms_ur.audit_ledger import Ledger, told

@@ -5,7 +5,7 @@ import threading
 import anyio
 import pytest
 
-from tms_core.errors import TmsError
+from tms_reason.errors import TmsError
 from tms_ur.brake import ACCOUNT, ADDRESS, MOST_KEYS, PAIR, Brake, Throttled
 from tms_ur.callers import caller
 from tms_ur.hashing import MOST_OF_ONE, MOST_WAITING, Hashing

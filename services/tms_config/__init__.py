@@ -1,0 +1,1 @@
+"""Site, machines, processes, PCs: everything that reads `configs/`. No ROS."""

@@ -1,0 +1,164 @@
+"""The chosen site with its machine models, checked: see `load_site`."""
+
+import importlib.metadata
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+from tms_config import pcs, store_address
+from tms_config.models import Backend, Border, MachineModel
+from tms_config.site_file import Bridge, SiteFile
+from tms_config.yaml_file import parse
+from tms_reason.errors import ConfigError
+
+PROJECT = Path(__file__).resolve().parents[2]
+CONFIGS = PROJECT / "configs"
+
+
+@dataclass(frozen=True)
+class Site:
+    """A checked site: its file, the machine models it uses, and where its state lives."""
+
+    path: Path
+    file: SiteFile
+    models: dict[str, MachineModel]
+    state: Path
+    pc: str | None = None  # which of `pcs:` this one is
+
+    @property
+    def name(self) -> str:
+        return self.file.name
+
+    @property
+    def domain(self) -> int:
+        return self.file.domain
+
+    @property
+    def store_uri(self) -> str:
+        """URI of the store, with its password: never log it.
+
+        Raises:
+            ConfigError: a file with a secret cannot be read.
+        """
+        if given := _secret("TMS_MONGODB_URI"):
+            return given
+        if given := self.file.store.uri:
+            return store_address.address(self.file.store, given, self.path)
+        return f"mongodb://127.0.0.1:{self.file.ports.store}/?directConnection=true"
+
+    @property
+    def embedded_store(self) -> bool:
+        return self.file.store.kind == "embedded" and not {"TMS_MONGODB_URI", "TMS_MONGODB_URI_FILE"} & set(os.environ)
+
+    @property
+    def bridge(self) -> Bridge:
+        """Settings of the ROS-TCP endpoint.
+
+        Raises:
+            ConfigError: the site has none.
+        """
+        found = self.file.services.get("if")
+        if not isinstance(found, Bridge):
+            raise ConfigError(f"{self.path}: services: there is no 'if'")
+        return found
+
+    def model_of(self, machine: str) -> MachineModel:
+        """The model of a machine instance.
+
+        Raises:
+            ConfigError: the site has no such machine.
+        """
+        use = self.file.machines.get(machine)
+        if use is None:
+            known = ", ".join(self.file.machines) or "none"
+            raise ConfigError(f"{self.path}: no machine '{machine}' under machines: (there: {known})")
+        return self.models[use.model]
+
+    def border(self, machine: str) -> Border:
+        """Border names of a machine for this site's backend, with the machine's own name filled in."""
+        border = self.model_of(machine).borders[self.file.names]
+        own = {key: getattr(border, key).format(name=machine) for key in ("frame_prefix", "base_frame")}
+        return border.model_copy(update=own)
+
+    def start_of(self, machine: str) -> tuple[float, float, float]:
+        """Where a stand-in begins: x [m], y [m], yaw [rad] in map."""
+        return self.file.machines[machine].start or self.model_of(machine).start
+
+
+def _secret(name: str) -> str | None:
+    """Value of a variable, or of the file that NAME_FILE names, as containers and systemd hand out secrets."""
+    path = os.environ.get(f"{name}_FILE")
+    if name in os.environ or not path:
+        return os.environ.get(name)
+    try:
+        return Path(path).read_text(encoding="utf-8").strip()
+    except OSError as error:
+        raise ConfigError(f"{name}_FILE: {path}: cannot be read ({error.strerror})") from error
+
+
+def version() -> str:
+    """Version of this project, as it is installed."""
+    return importlib.metadata.version("ros2-tms")
+
+
+def site_path(chosen: str | None = None) -> Path:
+    """File of the chosen site: a path, a name below configs/sites/, or the demo."""
+    chosen = chosen or os.environ.get("TMS_SITE") or ""
+    if not chosen:
+        return CONFIGS / "site.yaml"
+    if chosen.endswith((".yaml", ".yml")) or "/" in chosen:
+        return Path(chosen).resolve()
+    return CONFIGS / "sites" / f"{chosen}.yaml"
+
+
+def load_site(chosen: str | None = None) -> Site:
+    """Read and check a site and every machine model it uses.
+
+    Raises:
+        ConfigError: names the file and the key.
+    """
+    path = site_path(chosen)
+    file = parse(path, SiteFile)
+    if "ROS_DOMAIN_ID" in os.environ:
+        file = file.model_copy(update={"domain": _domain(os.environ["ROS_DOMAIN_ID"])})
+    models: dict[str, MachineModel] = {}
+    for machine, use in file.machines.items():
+        if use.model not in models:
+            models[use.model] = _model(path, machine, use.model, file.names)
+    _check_machines(path, file, models)
+    pcs.check(path, file)
+    state = Path(os.environ.get("TMS_STATE") or PROJECT / ".state" / file.name).resolve()
+    return Site(path, file, models, state, pcs.chosen(path, file, state))
+
+
+def _check_machines(path: Path, file: SiteFile, models: dict[str, MachineModel]) -> None:
+    """Refuse two machines in one frame and faults of machines that are not there."""
+    frames: dict[str, str] = {}
+    for machine, use in file.machines.items():
+        prefix = models[use.model].borders[file.names].frame_prefix.format(name=machine)
+        if prefix in frames:
+            raise ConfigError(
+                f"{path}: {frames[prefix]} and {machine} would share their frames ('{prefix}base_link'): "
+                f"give borders.{file.names}.frame_prefix of configs/machines/{use.model}.yaml a {{name}}"
+            )
+        frames[prefix] = machine
+    for machine in file.sim.faults:
+        if machine not in file.machines:
+            raise ConfigError(f"{path}: sim.faults.{machine}: no such machine (there: {', '.join(file.machines)})")
+
+
+def _domain(text: str) -> int:
+    if not text.isdigit() or int(text) > 101:
+        raise ConfigError(f"ROS_DOMAIN_ID is '{text}': use a number from 0 to 101, or unset it")
+    return int(text)
+
+
+def _model(site: Path, machine: str, name: str, backend: Backend) -> MachineModel:
+    path = CONFIGS / "machines" / f"{name}.yaml"
+    if not path.exists():
+        known = ", ".join(sorted(p.stem for p in path.parent.glob("*.yaml")))
+        raise ConfigError(f"{site}: machines.{machine}.model: no model '{name}' (there: {known})")
+    model = parse(path, MachineModel)
+    if backend not in model.borders:
+        raise ConfigError(f"{path}: borders: nothing for backend '{backend}', which {site} uses")
+    return model

@@ -1,0 +1,24 @@
+"""`tms:discovery`: becomes Fast DDS's discovery server, for sites whose network passes no multicast."""
+
+import os
+import sys
+from pathlib import Path
+
+from tms_config import pcs
+from tms_config.config import Site
+from tms_reason.errors import ConfigError
+
+
+def become(site: Site) -> None:
+    """Replace this process by the server (same pid, so supervisord sees the real one).
+
+    Raises:
+        ConfigError: the site uses none, or the program is missing.
+    """
+    address = pcs.discovery_server(site)
+    program = Path(sys.executable).parent / "fast-discovery-server"
+    if address is None or not program.exists():
+        raise ConfigError(f"{site.path}: network.discovery: no server to start ({program})")
+    host, _, port = address.partition(":")
+    os.environ.pop("ROS_DISCOVERY_SERVER", None)
+    os.execv(program, [str(program), "-i", "0", "-l", host, "-p", port])

@@ -1,0 +1,61 @@
+"""Environment variables of every process of a mesh; set before rclpy starts."""
+
+import os
+from pathlib import Path
+
+from tms_config import pcs, state_folder
+from tms_config.config import PROJECT, Site
+
+# UDP on one interface only, no shared memory: the LOCALHOST range of Fast DDS silently loses
+# everything above 32 participants, and shared memory leaks with every killed process.
+PROFILE = PROJECT / "deploy" / "dds" / "loopback.xml"
+LOOPBACK = "<address>127.0.0.1</address>"
+
+
+def environment(site: Site) -> dict[str, str]:
+    """What a process of this site needs beside PATH and HOME.
+
+    Raises:
+        ConfigError: it is not known which PC of the site this is, or its address is not known.
+    """
+    server = pcs.discovery_server(site)
+    # A super client hears of all endpoints, not only of those that it uses: preflight asks for others' servers.
+    discovery = {"ROS_DISCOVERY_SERVER": server, "ROS_SUPER_CLIENT": "TRUE"} if server else {}
+    return {
+        **discovery,
+        **({"TMS_PC": site.pc} if site.pc else {}),
+        "ROS_DOMAIN_ID": str(site.domain),
+        "ROS_LOG_DIR": str(site.state / "ros"),
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET",
+        "FASTRTPS_DEFAULT_PROFILES_FILE": str(_profile(site)),
+        "RMW_FASTRTPS_USE_QOS_FROM_XML": "1",  # heartbeats: see the profile
+        "TMS_SITE": str(site.path),
+        "TMS_STATE": str(site.state),
+        "OPENBLAS_NUM_THREADS": "1",  # numpy comes with rclpy; its threads are of no use here
+        "HOME": os.environ.get("HOME") or str(Path("/tmp")),  # rclpy does not start without one
+        "PYTHONPATH": str(PROJECT / "services"),
+        "PYTHONUNBUFFERED": "1",
+    }
+
+
+def _profile(site: Site) -> Path:
+    """The loopback profile; on a site of several PCs the same with this PC's address beside it."""
+    if not site.file.pcs:
+        return PROFILE
+    pcs.required(site)
+    assert site.pc is not None
+    address = pcs.resolve(site, site.file.pcs[site.pc].address)
+    path = site.state / "dds.xml"
+    text = PROFILE.read_text(encoding="utf-8").replace(LOOPBACK, f"<address>{address}</address>{LOOPBACK}")
+    if not path.exists() or path.read_text(encoding="utf-8") != text:
+        state_folder.make(site.state)
+        with state_folder.private():
+            path.write_text(text, encoding="utf-8")
+    return path
+
+
+def enter(site: Site) -> None:
+    """Give this process the environment of the site, for programs that a person starts."""
+    os.environ.update(environment(site))
+    state_folder.make(site.state)
+    (site.state / "ros").mkdir(mode=0o700, exist_ok=True)

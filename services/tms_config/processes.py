@@ -1,0 +1,140 @@
+"""The process table: services + machines x subtasks. Nothing else starts processes."""
+
+import difflib
+from dataclasses import dataclass, replace
+
+from tms_config import pcs
+from tms_config.config import CONFIGS, Site
+from tms_config.models import MachineModel
+from tms_config.pcs import Role
+from tms_reason.errors import ConfigError
+
+# package of a service -> what it is for, shown by `tms ps`
+SERVICES = {
+    "db": "tasks, parameters and history in MongoDB",
+    "sp": "sensing topics into dynamic parameters",
+    "ts": "runs tasks: the behaviour-tree scheduler",
+    "ur": "HTTP API and console",
+    "if": "TCP bridge that OperaSim-PhysX connects to",
+    "host": "processes of this PC",
+}
+
+
+@dataclass(frozen=True)
+class Process:
+    """One row: a supervised process."""
+
+    group: str
+    name: str
+    role: Role
+    module: str  # has start(app)
+    port: int  # of its metrics and health
+    purpose: str
+    machine: str | None = None
+    action: str | None = None  # a subtask's action name
+    autostart: bool = True
+    pc: str = ""  # which PC of the site runs it; empty when there is one only
+    address: str = "127.0.0.1"  # where its port is
+    ours: bool = True  # has metrics and health; not so for programs of others
+
+    @property
+    def full(self) -> str:
+        """Name as supervisord and `tms ps` show it."""
+        return f"{self.group}:{self.name}"
+
+
+def table(site: Site) -> tuple[Process, ...]:
+    """All processes of a site, in start order, each with its own metrics port.
+
+    Raises:
+        ConfigError: a service or subtask that does not exist, or two rows with one name.
+    """
+    rows = [*_services(site), *(row for machine in site.file.machines for row in _machine(site, machine))]
+    base = site.file.ports.metrics
+    numbered = tuple(_placed(site, replace(row, port=base + i)) for i, row in enumerate(rows))
+    for row in numbered:
+        if sum(other.full == row.full for other in numbered) > 1:
+            raise ConfigError(f"{site.path}: two processes are called '{row.full}'")
+    return numbered
+
+
+def here(site: Site) -> tuple[Process, ...]:
+    """The rows that this PC runs.
+
+    Raises:
+        ConfigError: as `table`; or it is not known which PC of the site this is.
+    """
+    pcs.required(site)
+    return tuple(row for row in table(site) if not row.pc or row.pc == site.pc)
+
+
+def find(site: Site, name: str) -> Process:
+    """The row called `name`; a part of the name is enough when only one row has it.
+
+    Raises:
+        ConfigError: none or several match; names them.
+    """
+    rows = table(site)
+    exact = [row for row in rows if row.full == name]
+    if exact:
+        return exact[0]
+    group, _, part = name.rpartition(":")
+    near = [row for row in rows if part and part in row.name and group in ("", row.group)]
+    plain = [row for row in near if row.name.endswith(part)]
+    hits = plain if len(plain) == 1 else near
+    if len(hits) == 1:
+        return hits[0]
+    if hits:
+        raise ConfigError(f"'{name}' fits {', '.join(row.full for row in hits)}: give the full name")
+    close = difflib.get_close_matches(name, [row.full for row in rows], 1, 0.5)
+    hint = f"did you mean {close[0]}?" if close else "`tms ps` lists them"
+    raise ConfigError(f"no process '{name}': {hint}")
+
+
+def _placed(site: Site, row: Process) -> Process:
+    pc = row.pc or pcs.place(site, row)
+    return replace(row, pc=pc, address=site.file.pcs[pc].address if pc else site.file.bind)
+
+
+def _services(site: Site) -> list[Process]:
+    rows = []
+    if site.embedded_store:
+        rows.append(Process("tms", "store", "cps", "tms_config.store", 0, "embedded store of the demo", ours=False))
+    if pcs.discovery_server(site) is not None:
+        purpose = "lets the PCs' processes find each other"
+        rows.append(Process("tms", "discovery", "cps", "tms_config.discovery", 0, purpose, ours=False))
+    for name, service in site.file.services.items():
+        if name not in SERVICES:
+            raise ConfigError(f"{site.path}: services.{name}: unknown (there: {', '.join(SERVICES)})")
+        if name == "host" and site.file.pcs:
+            rows += [_host(pc, pcs.roles(pc, facts)[0]) for pc, facts in site.file.pcs.items()]
+        else:
+            rows.append(Process("tms", name, service.role, f"tms_{name}.node", 0, SERVICES[name]))
+    return rows
+
+
+def _host(pc: str, role: Role) -> Process:
+    return Process("tms", f"host_{pc}", role, "tms_host.node", 0, SERVICES["host"], pc=pc)
+
+
+def _machine(site: Site, machine: str) -> list[Process]:
+    use, model = site.file.machines[machine], site.model_of(machine)
+    rows = []
+    if site.file.backend == "sim":
+        rows.append(Process("sim", machine, "sim", "tms_sim.node", 0, f"stand-in for {machine}", machine))
+    rows.append(Process(machine, "rc", use.role, "tms_rc.node", 0, "gateway: every motion passes it", machine))
+    if model.kind == "backhoe":
+        rows.append(Process(machine, "rp", use.role, "tms_rp.node", 0, "plans motions", machine))
+    rows += [_subtask(site, machine, model, action) for action in model.subtasks]
+    return rows
+
+
+def _subtask(site: Site, machine: str, model: MachineModel, action: str) -> Process:
+    file = model.subtask(action).run
+    if not (CONFIGS.parent / "services" / "tms_subtasks" / f"{file}.py").exists():
+        where = CONFIGS / "machines" / f"{site.file.machines[machine].model}.yaml"
+        raise ConfigError(f"{where}: subtasks.{action}: no file services/tms_subtasks/{file}.py")
+    return Process(
+        machine, action, site.file.machines[machine].role, "tms_machine.subtask_server", 0,
+        f"subtask {file}", machine, action, autostart=False,
+    )  # fmt: skip

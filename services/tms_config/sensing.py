@@ -1,0 +1,122 @@
+"""What configs/sensing.yaml may hold: inputs, each from a topic into parameter records."""
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, field_validator, model_validator
+
+from tms_config.config import CONFIGS, Site
+from tms_config.models import NAME, Settings
+from tms_config.names import Name, Text
+from tms_config.yaml_file import parse
+
+# Unit of a message -> factor to the unit that records use (m, rad, s, m/s, rad/s).
+UNITS: Mapping[str, float] = {
+    "deg": math.pi / 180, "deg/s": math.pi / 180, "mm": 0.001, "cm": 0.01, "km": 1000.0, "ms": 0.001, "us": 1e-6,
+    "ns": 1e-9, "km/h": 1 / 3.6,
+}  # fmt: skip
+PATH = r"^[A-Za-z]\w*(\[[^\[\]]+\])?(\.[A-Za-z]\w*(\[[^\[\]]+\])?)*$"
+Limits = tuple[float, float]
+
+
+class FieldRule(Settings):
+    """Where the value of one field of the record comes from.
+
+    `path` names a field of the message, through sub-messages (`pose.pose.position.x`), an element of an array
+    (`data[0]`), or the element whose `name` beside it is the given one (`position[swing_joint]`).
+    """
+
+    path: str = Field(pattern=PATH)
+    unit: str | None = None  # of the message; the record gets SI
+    scale: float = 1.0
+    size: int | None = Field(ge=1, default=None)  # elements that an array must have
+
+    @field_validator("unit")
+    @classmethod
+    def _known(cls, unit: str | None) -> str | None:
+        if unit is not None and unit not in UNITS:
+            raise ValueError(f"no unit '{unit}' (there: {', '.join(UNITS)}); SI values need none")
+        return unit
+
+    @property
+    def factor(self) -> float:
+        return self.scale * (UNITS[self.unit] if self.unit else 1.0)
+
+
+def _short(given: Any) -> Any:
+    return {"path": given} if isinstance(given, str) else given
+
+
+class Input(Settings):
+    """One topic. A `model` or `record` that begins with $ is a field of the message, else it is the name itself."""
+
+    topic: str = Field(pattern=r"^/?[A-Za-z][A-Za-z0-9_/]*$")
+    type: str = Field(pattern=r"^[a-z][a-z0-9_]*/msg/[A-Z][A-Za-z0-9]*$")
+    reliability: Literal["reliable", "best_effort"] = "reliable"
+    depth: int = Field(ge=1, le=1000, default=500)  # half a second at the highest rate: a busy PC loses nothing
+    model: Text = "$model_name"  # "" = a record that all machines share
+    record: Name = "$record_name"
+    # Empty: every field of the message into the field of the record with that name, whatever its case, if there is one.
+    fields: dict[Name, Annotated[FieldRule, BeforeValidator(_short)]] = Field(default_factory=dict)
+    range: dict[str, Limits] = Field(
+        default_factory=dict
+    )  # field of the record (in lower case without `fields`) -> least, most
+    keep: str | None = None  # a field of the message that lists fields of the record which must stay
+    only_if: dict[str, bool | int | float | str] = Field(
+        default_factory=dict
+    )  # fields of the record that must hold these values
+    stamp: str | None = None  # path of the time of measurement; a header's stamp is known without
+    hz: float = Field(ge=0, default=0.0)  # expected rate; 0: it comes when it comes
+    max_hz: float | None = Field(gt=0, default=None)  # messages of one record that come faster are left out
+
+    @field_validator("range")
+    @classmethod
+    def _ordered(cls, ranges: dict[str, Limits]) -> dict[str, Limits]:
+        for name, (least, most) in ranges.items():
+            if not least < most:
+                raise ValueError(f"{name}: [{least}, {most}] must be [least, most]")
+        return ranges
+
+    @model_validator(mode="after")
+    def _ranges_of_fields(self) -> "Input":
+        for name in self.range:
+            if self.fields and name not in self.fields:
+                raise ValueError(f"range.{name}: no such field under fields:")
+        return self
+
+    @property
+    def fixed_target(self) -> tuple[str, str] | None:
+        """Model and record, where both are named here."""
+        return None if "$" in (self.model[:1], self.record[:1]) else (self.model, self.record)
+
+
+class MachineState(Settings):
+    """Pose and joints of the site's machines, for the collections machine_pose and machine_joints."""
+
+    hz: float = Field(ge=0, le=10, default=1.0)  # 0: none
+
+
+class Sensing(Settings):
+    """What sensing.yaml may hold."""
+
+    clock_limit: float = Field(
+        gt=0, default=0.5
+    )  # s that a source's clock may be off; stamps further ahead are refused
+    machine_state: MachineState = MachineState()
+    inputs: dict[Annotated[str, Field(pattern=NAME)], Input] = Field(default_factory=dict)
+
+
+def sensing_path(site: Site) -> Path:
+    """The file of this site: `sensing:` of the site file, beside it, or configs/sensing.yaml."""
+    return site.path.parent / site.file.sensing if site.file.sensing else CONFIGS / "sensing.yaml"
+
+
+def load_sensing(site: Site) -> Sensing:
+    """The inputs of a site.
+
+    Raises:
+        ConfigError: names the file and the key.
+    """
+    return parse(sensing_path(site), Sensing)

@@ -1,0 +1,188 @@
+"""What configs/site.yaml and configs/sites/*.yaml may hold."""
+
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, ValidationError, field_validator, model_validator
+
+from tms_config import store_address
+from tms_config.models import NAME, Backend, Settings
+from tms_config.pcs import Network, Pc, Role
+from tms_config.yaml_file import explain
+
+ServiceName = Annotated[str, Field(pattern=r"^(/[A-Za-z_][A-Za-z0-9_]*)+$", max_length=200)]
+ServiceType = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*/[A-Z][A-Za-z0-9]*$")]  # pkg/Type
+
+
+class Service(Settings):
+    role: Role = "cps"
+
+
+class Bridge(Service):
+    """The ROS-TCP endpoint that OperaSim-PhysX connects to."""
+
+    role: Role = "sim"
+    port: int = Field(ge=1024, le=65535, default=10000)
+    bind: str = "127.0.0.1"  # whoever reaches it may publish sensor data: open it to the simulator's network only
+    joint_cmd: Literal["plain", "control_type"] = "plain"  # layout of com3_msgs/JointCmd that the simulator knows
+    message_limit: int = Field(ge=1024, le=64 * 1024 * 1024, default=4 * 1024 * 1024)  # bytes a message
+    clock: bool = False  # pass on the simulator's time as /clock
+    calls: dict[ServiceName, ServiceType] = Field(default_factory=dict)  # ROS services that a client may call
+    offers: dict[ServiceName, ServiceType] = Field(default_factory=dict)  # services that a client may offer
+
+
+class MachineUse(Settings):
+    """One real machine of the site."""
+
+    model: str = Field(pattern=NAME)
+    role: Role = "machine"
+    start: tuple[float, float, float] | None = None  # x m, y m, yaw rad: where its stand-in begins, if not as the model
+
+
+class Ports(Settings):
+    """First of the consecutive metrics ports, and the fixed ones. All on `bind`."""
+
+    metrics: int = Field(ge=1024, le=65000, default=9410)
+    console: int = Field(ge=1024, le=65535, default=8080)
+    store: int = Field(ge=1024, le=65535, default=27117)
+    groot: int = Field(
+        ge=1024, le=65000, default=1666
+    )  # of the first run: Groot 1 here and +1, Groot 2 +2; next run +10
+
+
+class Store(Settings):
+    """`embedded` is the demo's own store; `mongodb` is a server that the site runs.
+
+    A password never stands here: it is in `password_file`, or in a whole URI that comes from TMS_MONGODB_URI or the
+    file that TMS_MONGODB_URI_FILE names; what is here about user and TLS then does not count.
+    """
+
+    kind: Literal["embedded", "mongodb"] = "embedded"
+    uri: str | None = None  # mongodb://db1,db2,db3/?replicaSet=rs0
+    user: str | None = Field(min_length=1, default=None)
+    password_file: Path | None = None
+    tls_ca: Path | None = None  # PEM of the authority that signed the server's certificate; its use means TLS
+    tls_certificate: Path | None = None  # PEM of our own certificate and key, where the server asks for one
+    database: str = Field(pattern=r"^[A-Za-z][A-Za-z0-9_-]*$", default="rostmsdb")
+    history_days: int | None = Field(ge=1, default=365)  # that an ended run and its events stay; null: for ever
+    machine_state_days: int | None = Field(ge=1, default=None)  # the same for machine_pose and machine_joints
+
+    @model_validator(mode="after")
+    def _whole(self) -> "Store":
+        if store_address.holds_password(self.uri or ""):
+            raise ValueError("uri holds a password: write user and password_file instead, or use TMS_MONGODB_URI_FILE")
+        if (self.user is None) != (self.password_file is None):
+            raise ValueError("user and password_file go together: give both or none")
+        if self.uri is None and (self.user or self.tls_ca or self.tls_certificate):
+            raise ValueError("user, password_file and TLS need the uri of a MongoDB: add it")
+        if self.user is not None and "@" in (self.uri or ""):
+            raise ValueError("the user stands in uri and in user: keep the latter")
+        return self
+
+
+class Fault(Settings):
+    """What goes wrong in a stand-in; times are seconds of the machine, 0 is off.
+
+    What it reports lies: `zero_velocity` to `back_in_time`. How it moves is unkind: `coast` to `ignore_emg_stop`.
+    """
+
+    stall: float | None = Field(ge=0, default=None)  # s in motion after which the machine stands and the goal goes on
+    die: float | None = Field(ge=0, default=None)  # s in motion after which the process is gone
+    late: float = Field(ge=0, default=0.0)  # s from every command to its effect
+    drift: float = 0.0  # m/s or rad/s that the machine creeps while it should stand
+    refuse: tuple[str, ...] = ()  # actions, by their key under borders:, that take no goal
+    drop_feedback: bool = False
+    miss: tuple[int, ...] = ()  # waypoints, from 0, that follow_waypoints cannot reach
+    zero_velocity: bool = False  # every velocity is told as 0
+    frozen_stamp: bool = False  # the last message again and again, with its old stamp
+    replay: bool = False  # its last 2 s again and again, with new stamps
+    mute: tuple[str, ...] = ()  # joints that are left out
+    second_publisher: bool = False  # another publisher says at 60 Hz that the machine stands
+    jump: float = 0.0  # rad, m: every position is told this far off
+    nan: bool = False  # every number is told as NaN
+    back_in_time: float = Field(ge=0, default=0.0)  # s that stamps jump back
+    coast: float = Field(ge=0, default=0.0)  # s that it goes on as it was after every order to stop
+    dead_time: float = Field(ge=0, default=0.0)  # s more than its model has
+    creep: float = 0.0  # m/s or rad/s at which it leaves stand-still, 3 s after it came to it
+    ignore_cancel: bool = False
+    ignore_emg_stop: bool = False
+
+
+class Simulator(Settings):
+    speed: float = Field(gt=0, le=100, default=1.0)  # times real time
+    seed: int = 0
+    response: Literal["machine", "ideal"] = "machine"  # ideal: without dead time and lag, where no stop is tried
+    names: Backend = "sim"  # whose names and joint names the stand-ins use
+    faults: dict[str, Fault] = Field(default_factory=dict)  # machine -> what goes wrong from the start
+
+
+class Groot(Settings):
+    """Who may look at running trees with Groot: its protocols know no passwords."""
+
+    bind: str = "127.0.0.1"
+
+
+class Files(Settings):
+    """Certificate and key in PEM."""
+
+    certificate: Path
+    key: Path
+
+
+class Console(Settings):
+    """Who may use the console; see `tms user --help`."""
+
+    users: Path | None = None  # file that `tms user` writes; absent: only this PC, without asking who
+    tls: Files | None = None
+    names: tuple[str, ...] = ()  # further names under which browsers reach it, e.g. site-pc.example
+
+
+class OnLoss(Settings):
+    """What happens when a process is lost."""
+
+    retries: int = Field(ge=0, le=10, default=2)  # times that a leaf sends its goal again
+    frozen: float = Field(ge=0, default=20.0)  # s without an answer after which tms:host restarts a process; 0: never
+
+
+class Log(Settings):
+    """How processes log; supervisord keeps and rotates the files."""
+
+    level: Literal["DEBUG", "INFO", "WARNING", "ERROR"] = "INFO"
+    json_lines: bool = False  # a JSON object a line, for Loki
+
+
+class SiteFile(Settings):
+    """What site.yaml may hold."""
+
+    name: str = Field(pattern=NAME)
+    domain: int = Field(ge=0, le=101)  # ROS_DOMAIN_ID
+    bind: str = "127.0.0.1"
+    backend: Backend = "sim"
+    ports: Ports = Ports()
+    store: Store = Store()
+    sim: Simulator = Simulator()
+    on_loss: OnLoss = OnLoss()
+    groot: Groot = Groot()
+    console: Console = Console()
+    log: Log = Log()
+    pcs: dict[str, Pc] = Field(default_factory=dict)  # none: everything on this one
+    network: Network = Network()
+    sensing: str | None = None  # file of the sensing inputs, beside this one; default: configs/sensing.yaml
+    services: dict[str, Service]
+    machines: dict[Annotated[str, Field(pattern=NAME)], MachineUse] = Field(default_factory=dict)
+
+    @field_validator("services", mode="before")
+    @classmethod
+    def _bridge(cls, services: Any) -> Any:
+        """The bridge has settings of its own."""
+        if not (isinstance(services, dict) and isinstance(services.get("if"), dict)):
+            return services
+        try:
+            return {**services, "if": Bridge.model_validate(services["if"])}
+        except ValidationError as error:
+            raise ValueError(f"if.{explain(error)}") from error
+
+    @property
+    def names(self) -> Backend:
+        """Whose border names hold here: stand-ins may use those of another backend."""
+        return self.sim.names if self.backend == "sim" else self.backend

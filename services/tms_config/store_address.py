@@ -1,0 +1,47 @@
+"""The URI of the site's MongoDB out of what the site file says and a password that stands in a file of its own."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+from urllib.parse import quote, urlencode
+
+from tms_reason.errors import ConfigError
+
+if TYPE_CHECKING:
+    from tms_config.site_file import Store
+
+
+def holds_password(uri: str) -> bool:
+    """Whether a URI names a user with a password."""
+    return ":" in uri.partition("://")[2].rpartition("@")[0]
+
+
+def address(store: "Store", uri: str, site: Path) -> str:
+    """The URI with user, password and TLS files of the site; files are looked for beside the site file.
+
+    Raises:
+        ConfigError: the password's file cannot be read or is empty; no message holds the password.
+    """
+    scheme, _, rest = uri.partition("://")
+    if store.user is not None and store.password_file is not None:
+        password = _password(site.parent / store.password_file)
+        rest = f"{quote(store.user, safe='')}:{quote(password, safe='')}@{rest}"
+    options: dict[str, str] = {}
+    if store.tls_ca is not None:
+        options = {"tls": "true", "tlsCAFile": str(site.parent / store.tls_ca)}
+    if store.tls_certificate is not None:
+        options |= {"tls": "true", "tlsCertificateKeyFile": str(site.parent / store.tls_certificate)}
+    if options:
+        rest += ("/" if "/" not in rest else "") + ("&" if "?" in rest else "?") + urlencode(options)
+    return f"{scheme}://{rest}"
+
+
+def _password(path: Path) -> str:
+    try:
+        text = path.read_text(encoding="utf-8").rstrip("\r\n")
+    except OSError as error:
+        raise ConfigError(f"store.password_file: {path}: cannot be read ({error.strerror})") from error
+    except UnicodeDecodeError as error:
+        raise ConfigError(f"store.password_file: {path}: is no UTF-8 text") from error
+    if not text:
+        raise ConfigError(f"store.password_file: {path}: is empty: write the password into it")
+    return text

@@ -1,0 +1,81 @@
+"""The machine's own border: its motion actions, and the commands that stop it. Blocks nowhere, asks nobody."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from action_msgs.srv import CancelGoal
+from com3_msgs.action import SetDumpAngle, SetSwingAngle
+from control_msgs.action import FollowJointTrajectory
+from geometry_msgs.msg import Twist
+from nav2_msgs.action import FollowWaypoints, NavigateThroughPoses, NavigateToPose
+from std_msgs.msg import Bool
+
+from tms_config.models import Border
+from tms_ros.node import Ros
+
+STOP_PROVEN = 10.0  # s after which a gateway has seen that a machine stands, or says that it has not
+
+
+@dataclass(frozen=True)
+class Motion:
+    """One kind of motion action that a machine may have."""
+
+    field: str  # of the border's configuration
+    served: str  # name below /<machine>/rc/
+    type: Any
+
+
+MOTIONS = (
+    Motion("trajectory", "follow_joint_trajectory", FollowJointTrajectory),
+    Motion("navigate_to_pose", "navigate_to_pose", NavigateToPose),
+    Motion("navigate_through_poses", "navigate_through_poses", NavigateThroughPoses),
+    Motion("follow_waypoints", "follow_waypoints", FollowWaypoints),
+    Motion("set_dump_angle", "set_dump_angle", SetDumpAngle),
+    Motion("set_swing_angle", "set_swing_angle", SetSwingAngle),
+)
+
+
+def motions(border: Border) -> list[Motion]:
+    """The motion actions that a machine has."""
+    return [motion for motion in MOTIONS if getattr(border, motion.field)]
+
+
+def stood_in(machine: str) -> str:
+    """Topic on which a host agent keeps when it last pressed `emg_stop` in place of a lost gateway."""
+    return f"/{machine}/rc/stood_in"
+
+
+class Controls:
+    """Direct access to a machine; only the gateway, and whoever stands in for a lost one, may have it."""
+
+    def __init__(self, ros: Ros, machine: str, border: Border, keeps_emergency: bool = True) -> None:
+        """`keeps_emergency`: a machine that is switched on later still gets the last `emg_stop`. For the gateway only,
+        which also releases it: a machine would keep to the old `true` of anybody else.
+        """
+        self._ros = ros
+        self._cancels = [f"/{machine}/{getattr(border, m.field)}/_action/cancel_goal" for m in motions(border)]
+        for service in self._cancels:
+            ros.prepare(CancelGoal, service)
+        self._cmd_vel = ros.publisher(Twist, f"/{machine}/{border.cmd_vel}", 1) if border.cmd_vel else None
+        emg_stop = f"/{machine}/{border.emg_stop}"
+        self._emg_stop = ros.publisher(Bool, emg_stop, 1, latched=keeps_emergency) if border.emg_stop else None
+
+    def cancel_everything(self) -> None:
+        """A cancel request with zero id reaches the goals of all clients."""
+        for service in self._cancels:
+            if self._ros.has_service(CancelGoal, service):
+                self._ros.post(CancelGoal, service, CancelGoal.Request())
+
+    def zero(self) -> None:
+        """Ask for no velocity, where the machine takes velocities."""
+        if self._cmd_vel is not None:
+            self._cmd_vel.publish(Twist())
+
+    def emergency(self, on: bool) -> None:
+        """Set or clear the machine's own stop, where it has one."""
+        if self._emg_stop is not None:
+            self._emg_stop.publish(Bool(data=on))
+
+    def reachable(self) -> bool:
+        """Whether every action server of the machine could be told to cancel now."""
+        return all(self._ros.has_service(CancelGoal, service) for service in self._cancels)

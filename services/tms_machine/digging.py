@@ -1,0 +1,64 @@
+"""Capability of excavators: goals for the arm, planned by the machine's TMS_RP."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from geometry_msgs.msg import Point, Pose
+from tms_msg_rp.action import TmsRpZx200ChangePose, TmsRpZx200ExcavateSimple, TmsRpZx200ReleaseSimple
+from tms_msg_rp.msg import TmsRpZx200PositionWithAngle
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+from tms_machine.acting import Acting, Progress
+
+
+class Digging(Acting):
+    """An arm with boom, arm and bucket. `plan_only` asks whether it could, and never moves."""
+
+    def change_pose(
+        self,
+        progress: Progress,
+        *,
+        joints: dict[str, float] | None = None,
+        pose: Pose | None = None,
+        tip: tuple[float, float, float, float] | None = None,
+        plan_only: bool = False,
+    ) -> None:
+        """Move the arm: to joint angles [rad], to a Pose of the bucket tip, or to x, y, z [m], theta_w [rad].
+
+        Poses are in base_link; exactly one of the three is given. Joints left out stay where they are.
+        """
+        goal = TmsRpZx200ChangePose.Goal()
+        if joints is not None:
+            point = JointTrajectoryPoint(positions=list(joints.values()))
+            goal.trajectory = JointTrajectory(joint_names=list(joints), points=[point])
+        if pose is not None:
+            goal.pose_sequence = [pose]
+        if tip is not None:
+            goal.position_with_angle_sequence = [_tip(tip[:3], tip[3])]
+        self._plan(TmsRpZx200ChangePose, "change_pose", goal, progress, plan_only)
+
+    def excavate(
+        self,
+        progress: Progress,
+        tip: tuple[float, float, float],
+        theta_w: float,
+        offset: float,
+        plan_only: bool = False,
+    ) -> None:
+        """Dig at x, y, z [m, base_link], reaching `offset` [m] further out, bucket at theta_w [rad]."""
+        goal = TmsRpZx200ExcavateSimple.Goal(position_with_angle=_tip(tip, theta_w, offset))
+        self._plan(TmsRpZx200ExcavateSimple, "excavate_simple", goal, progress, plan_only)
+
+    def release_soil(self, progress: Progress, target_angle: float) -> None:
+        """Open the bucket to `target_angle` [rad]."""
+        goal = TmsRpZx200ReleaseSimple.Goal(target_angle=target_angle)
+        self._plan(TmsRpZx200ReleaseSimple, "release_simple", goal, progress, False)
+
+    def _plan(self, action_type: Any, what: str, goal: Any, progress: Progress, plan_only: bool) -> None:
+        action = f"tms_rp_{self._model_name}_{what}" + ("_plan" if plan_only else "")
+        self.act(action_type, action, goal, lambda feedback: progress(feedback.state))
+
+
+def _tip(position: Sequence[float], theta_w: float, offset: float = 0.0) -> TmsRpZx200PositionWithAngle:
+    x, y, z = position
+    return TmsRpZx200PositionWithAngle(position=Point(x=x, y=y, z=z), theta_w=theta_w, offset=offset)

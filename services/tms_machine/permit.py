@@ -1,0 +1,116 @@
+"""The motion permit: processes stand behind goals by DDS liveliness, and others notice when one is lost.
+
+Every process between scheduler and machine publishes on /<machine>/permit/<process> which goal it works for, and
+asserts that topic as long as it does (MANUAL_BY_TOPIC, lease 500 ms). DDS tells the readers when the lease runs
+out, whether the process was killed, frozen or cut off. A process that works for nothing asserts nothing.
+"""
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+from tms_msg_rc.msg import Permit as Message
+
+from tms_ros.client import Peer
+from tms_ros.node import Ros
+from tms_runtime.pulse import Pulse
+
+BEATS = 2  # of the pulse from one assertion to the next: each wakes every process of the machine
+LEASE = 0.5  # s without an assertion until a process counts as lost
+GRACE = 0.1  # s more when the PC of the watcher itself did not run for a moment
+NOBODY = bytes(16)
+
+
+def topic(machine: str, process: str) -> str:
+    """Where a process of a machine tells what it works for; `ts` stands for the scheduler."""
+    return f"/{machine}/permit/{process}"
+
+
+class Permit:
+    """The side of the process itself: `hold` while it works for a goal, `drop` afterwards."""
+
+    def __init__(
+        self, ros: Ros, pulse: Pulse, machine: str, process: str, alive: Callable[[], bool] = lambda: True
+    ) -> None:
+        """`alive` tells at every beat whether the process still does its work."""
+        self._pulse, self._process, self._alive = pulse, process, alive
+        self._beats = 0
+        self._publisher = ros.lease_publisher(Message, topic(machine, process), LEASE)
+
+    def hold(self, goal: bytes, holder: str = "") -> None:
+        """Stand behind a goal from now on."""
+        self._publisher.publish(Message(process=self._process, goal=list(goal), holder=holder))
+        self._pulse.add(self._beat)
+
+    def drop(self) -> None:
+        """The goal is over; nothing is asserted any more."""
+        self._pulse.remove(self._beat)
+        self._publisher.publish(Message(process=self._process))
+
+    def _beat(self) -> None:
+        self._beats += 1
+        if self._beats % BEATS == 0 and self._pulse.works() and self._alive():
+            self._publisher.assert_liveliness()
+
+
+class Link:
+    """What one process says that it works for, and whether it is still there. Readable from any thread."""
+
+    def __init__(self, ros: Ros, pulse: Pulse, machine: str, process: str, changed: Callable[["Link"], None]) -> None:
+        self.process, self.goal, self.holder = process, NOBODY, ""
+        self._ros, self._pulse, self._changed = ros, pulse, changed
+        self.corpses = 0  # predecessors that discovery has not dropped yet, or the process itself while it is frozen
+        self.left = False  # the last one took leave, in order; a killed one leaves a corpse
+        self._heard, self._alive, self._asserted = 0.0, False, 0
+        ros.lease_subscribe(Message, topic(machine, process), LEASE, self._on_message, self._on_liveliness)
+
+    @property
+    def alive(self) -> bool:
+        """Whether the process works for `goal` now."""
+        # A message may be handled before the news that its writer lives again.
+        return self.goal != NOBODY and (self._alive or time.monotonic() - self._heard < LEASE)
+
+    def _on_message(self, message: Any) -> None:
+        self._heard = time.monotonic()
+        self.goal, self.holder = bytes(message.goal), message.holder
+        self._changed(self)
+
+    def _on_liveliness(self, alive_count: int, not_alive_count: int) -> None:
+        if alive_count > 0 or self._asserted > 0:
+            self.left = alive_count == 0 and not_alive_count <= self.corpses
+        self._asserted, self.corpses = alive_count, not_alive_count
+        if alive_count > 0:
+            self._alive = True
+        elif self._pulse.late():  # its assertions may be there, but not handled yet
+            self._ros.after(GRACE, self._judge)
+            return
+        else:
+            self._alive, self._heard = False, 0.0
+        self._changed(self)
+
+    def _judge(self) -> None:
+        if self._asserted == 0 and self._alive:
+            self._alive, self._heard = False, 0.0
+            self._changed(self)
+
+
+def watch_server(ros: Ros, pulse: Pulse, machine: str, process: str) -> Callable[[Peer], None]:
+    """A function that makes open calls to a peer end as LOST when the process behind it is lost.
+
+    Discovery does not tell: a restarted server has the same name, so the peer stays ready throughout.
+    """
+    peers: list[Peer] = []
+
+    def changed(link: Link) -> None:
+        for peer in peers:
+            if link.alive and not link.corpses:  # with one, it is the first sign of a successor
+                peer.found()
+            elif not link.alive and link.goal != NOBODY:
+                peer.lost()
+
+    def add(peer: Peer) -> None:
+        if peer not in peers:
+            peers.append(peer)
+
+    Link(ros, pulse, machine, process, changed)
+    return add

@@ -1,0 +1,96 @@
+"""Records that name places: one pose or a path, oriented by quaternions or by degrees."""
+
+import math
+from typing import Literal
+
+from geometry_msgs.msg import Point, Pose, Quaternion
+from pydantic import model_validator
+
+from tms_machine.subtask import Params
+
+Angles = Literal["quaternion", "degrees"]
+TURN = {"quaternion": ("qx", "qy", "qz", "qw"), "degrees": ("yaw",)}
+LENGTH_ERROR = 0.02  # of a quaternion: records are typed by hand with three decimals
+
+
+class Place(Params):
+    """One pose in `map`; z counts for nothing, the ground does."""
+
+    angles: Angles = "quaternion"  # an input of the variant
+    x: float  # m
+    y: float  # m
+    qx: float | None = None
+    qy: float | None = None
+    qz: float | None = None
+    qw: float | None = None
+    yaw: float | None = None  # deg
+
+    @model_validator(mode="after")
+    def _complete(self) -> "Place":
+        names = TURN[self.angles]
+        for name in names:
+            if getattr(self, name) is None:
+                raise ValueError(f"field '{name}' is missing")
+        turn(*(getattr(self, name) for name in names))
+        return self
+
+    def pose(self) -> Pose:
+        """As ROS writes it."""
+        numbers = [getattr(self, name) for name in TURN[self.angles]]
+        return Pose(position=Point(x=self.x, y=self.y), orientation=turn(*numbers))
+
+
+class Path(Params):
+    """Poses in `map`, one list a coordinate, all of one length."""
+
+    angles: Angles = "quaternion"  # an input of the variant
+    x: list[float]  # m
+    y: list[float]  # m
+    z: list[float]  # m
+    qx: list[float] | None = None
+    qy: list[float] | None = None
+    qz: list[float] | None = None
+    qw: list[float] | None = None
+    yaw: list[float] | None = None  # deg
+
+    @model_validator(mode="after")
+    def _fits(self) -> "Path":
+        lengths = {name: len(self._list(name)) for name in ("x", "y", "z", *TURN[self.angles])}
+        if len(set(lengths.values())) != 1:
+            told = ", ".join(f"{name} {length}" for name, length in lengths.items())
+            raise ValueError(f"the lists differ in length: {told}")
+        if not self.x:
+            raise ValueError("the path is empty")
+        self.poses()
+        return self
+
+    def poses(self) -> list[Pose]:
+        """As ROS writes them."""
+        places = zip(self.x, self.y, self.z, strict=True)
+        turns = zip(*(self._list(name) for name in TURN[self.angles]), strict=True)
+        return [
+            Pose(position=Point(x=x, y=y, z=z), orientation=turn(*numbers))
+            for (x, y, z), numbers in zip(places, turns, strict=True)
+        ]
+
+    def _list(self, name: str) -> list[float]:
+        found: list[float] | None = getattr(self, name)
+        if found is None:
+            raise ValueError(f"field '{name}' is missing")
+        return found
+
+
+def turn(*numbers: float) -> Quaternion:
+    """Orientation from qx, qy, qz, qw, or from one yaw [deg].
+
+    Raises:
+        ValueError: four numbers that are no quaternion.
+    """
+    if len(numbers) == 1:
+        half = math.radians(numbers[0]) / 2
+        return Quaternion(z=math.sin(half), w=math.cos(half))
+    length = math.sqrt(sum(number * number for number in numbers))
+    if abs(length - 1) > LENGTH_ERROR:
+        raise ValueError(f"qx, qy, qz, qw have length {length:.3f}, an orientation has 1")
+    x, y, z, w = (number / length for number in numbers)
+    return Quaternion(x=x, y=y, z=z, w=w)

@@ -1,0 +1,74 @@
+"""LOCK_FLG of a dynamic record, as a lease: between planning with it and moving with it, sensing leaves it alone.
+
+In the C++ system it is a bare flag, and a crash in between leaves it set for ever. Here LOCK_OWNER and LOCK_UNTIL
+stand beside it, so that it ends by itself. The `_plan` variant of a subtask takes it and gives it back when it fails;
+the variant that moves gives it back however it ends.
+"""
+
+import time
+from collections.abc import Mapping
+from typing import Any
+
+from tms_msg_db.srv import SetParameter
+
+from tms_machine.values import Value, to_parameters
+from tms_reason.errors import SubtaskFailed
+from tms_ros.node import Ros
+
+FLAG, OWNER, UNTIL = "LOCK_FLG", "LOCK_OWNER", "LOCK_UNTIL"
+FIELDS = {FLAG, OWNER, UNTIL}
+LEASE = 300.0  # s from planning to the end of the motion
+LIMIT = 2.0  # s for the database
+SERVICE = "/tms/db/set_parameter"
+
+
+def holder(fields: Mapping[str, Value], now: float) -> str | None:
+    """Who has locked a record, as its fields tell; None if nobody has (any more). `now` is Unix time [s].
+
+    A flag without an end was set by the C++ system and holds until it is cleared.
+    """
+    until = fields.get(UNTIL)
+    if fields.get(FLAG) is not True or (isinstance(until, (int, float)) and now >= until):
+        return None
+    return str(fields.get(OWNER) or "a system that gives no name")
+
+
+def locked_since(fields: Mapping[str, Value], now: float) -> float | None:
+    """Unix time [s] since which nobody but its holder changes the record; None if nobody holds a lease of it."""
+    until = fields.get(UNTIL)
+    return until - LEASE if isinstance(until, (int, float)) and holder(fields, now) is not None else None
+
+
+def taken(owner: str, now: float) -> dict[str, Value]:
+    """Fields that lock a record."""
+    return {FLAG: True, OWNER: owner, UNTIL: now + LEASE}
+
+
+def released() -> dict[str, Value]:
+    """Fields that free it."""
+    return {FLAG: False, OWNER: "", UNTIL: 0.0}
+
+
+class RecordLock:
+    """The lock of one record, as a subtask process sees it."""
+
+    def __init__(self, ros: Ros, owner: str, model_name: str, record_name: str) -> None:
+        self._ros, self._owner = ros, owner
+        self._key = {"model_name": model_name, "record_name": record_name}
+
+    def take(self) -> None:
+        """Lock it, or say why not; from worker threads only.
+
+        Raises:
+            SubtaskFailed, RosError: the database refused or did not answer.
+        """
+        answer = self._ros.call(SetParameter, SERVICE, self._request(taken(self._owner, time.time())), LIMIT)
+        if answer.error_code:
+            raise SubtaskFailed(answer.error_code, answer.error_msg)
+
+    def release(self) -> None:
+        """Free it. Waits for nobody: the end of a motion must not depend on a database."""
+        self._ros.post(SetParameter, SERVICE, self._request(released()))
+
+    def _request(self, values: Mapping[str, Value]) -> Any:
+        return SetParameter.Request(**self._key, source=self._owner, values=to_parameters(values))

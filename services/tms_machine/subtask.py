@@ -1,0 +1,100 @@
+"""What the author of a subtask writes against: one function or one class, and the record as a model."""
+
+import importlib
+import inspect
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar, get_type_hints
+
+from pydantic import BaseModel, ConfigDict
+
+from tms_machine.machine import Cancelled, Machine, Progress
+from tms_machine.values import Value
+from tms_reason.errors import ConfigError, SubtaskFailed
+
+__all__ = ["Cancelled", "Machine", "Params", "Progress", "Subtask", "SubtaskFailed", "load", "subtask"]
+
+
+class Params(BaseModel):
+    """A record as the subtask needs it. Further fields of the record are ignored, missing ones refuse the goal."""
+
+    model_config = ConfigDict(frozen=True, strict=True, allow_inf_nan=False, extra="ignore")
+
+    def joint_angles(self) -> Mapping[str, float]:
+        """Joint angles [rad] that the record asks for; the check before a run compares them with the limits."""
+        return {}
+
+
+class Subtask:
+    """Class form, for subtasks that read records while they run.
+
+    The runtime makes one instance a goal, calls `execute` in a worker thread, and stops whatever the
+    machine still does when it ends, however it ends. Returning is success.
+    """
+
+    timeout: float = 60.0  # s for the whole goal
+    params: type[Params] | None = None  # when given, the goal's record is checked before the goal is accepted
+
+    def __init__(self, machine: Machine, want: Any, read: Callable[[str, str, float], dict[str, Value]]) -> None:
+        self.machine = machine
+        self.want = want  # the checked record, None without `params`
+        self._read = read
+
+    def execute(self, model_name: str, record_name: str, progress: Progress) -> None:
+        """Do it.
+
+        Raises:
+            SubtaskFailed: the machine cannot; the code and text reach the leaf node.
+        """
+        raise NotImplementedError
+
+    def on_cancel(self) -> None:
+        """Called before the motion is stopped, twice if the cancel comes at the begin; must return at once."""
+
+    def get_param_from_db(self, model_name: str, record_name: str, max_age: float = 0.0) -> dict[str, Value]:
+        """The record as it is now, at any time and any number of times.
+
+        `max_age`: s that a dynamic record may be old; 0 = as the record itself says.
+
+        Raises:
+            SubtaskFailed: it is missing or too old, or the database does not answer.
+        """
+        return self._read(model_name, record_name, max_age)
+
+
+F = TypeVar("F", bound=Callable[..., None])
+
+
+def subtask(timeout: float) -> Callable[[F], F]:
+    """Mark `def name(machine: Machine, want: SomeParams, progress: Progress)` as a subtask."""
+
+    def mark(function: F) -> F:
+        wanted = list(get_type_hints(function).values())[1]
+        if not (inspect.isclass(wanted) and issubclass(wanted, Params)):
+            raise TypeError(f"{function.__name__}: the second argument needs a Params class as its type")
+
+        class FromFunction(Subtask):
+            def execute(self, model_name: str, record_name: str, progress: Progress) -> None:
+                function(self.machine, self.want, progress)
+
+        FromFunction.timeout, FromFunction.params = timeout, wanted
+        function.__dict__["subtask"] = FromFunction
+        return function
+
+    return mark
+
+
+def load(file: str) -> type[Subtask]:
+    """The subtask in tms_subtasks/<file>.py: a Subtask class of its own, or the marked function.
+
+    Raises:
+        ConfigError: the file holds none or several.
+    """
+    module = importlib.import_module(f"tms_subtasks.{file}")
+    own = [item for item in vars(module).values() if getattr(item, "__module__", "") == module.__name__]
+    classes = [item for item in own if inspect.isclass(item) and issubclass(item, Subtask)]
+    marked = [item.__dict__["subtask"] for item in own if inspect.isfunction(item) and "subtask" in item.__dict__]
+    found = classes + marked
+    if len(found) != 1:
+        raise ConfigError(f"tms_subtasks/{file}.py: {len(found)} subtasks in it, there must be one")
+    chosen: type[Subtask] = found[0]
+    return chosen

@@ -1,0 +1,195 @@
+"""Process of one subtask: the LeafNodeBase action server around one file of tms_subtasks/."""
+
+import threading
+import time
+from collections.abc import Callable
+from typing import Any
+
+from pydantic import ValidationError
+from tms_msg_db.srv import GetParameter
+from tms_msg_ts.action import LeafNodeBase
+
+from tms_config.yaml_file import explain
+from tms_machine.machine import Cancelled, Machine
+from tms_machine.permit import Permit, watch_server
+from tms_machine.record_lock import FLAG, RecordLock
+from tms_machine.subtask import Params, Subtask, load
+from tms_machine.values import Value, from_parameters
+from tms_reason.errors import RosError, SubtaskFailed
+from tms_ros.client import Peer
+from tms_ros.goals import Ended, Outcome, Rejection
+from tms_ros.server import Goal
+from tms_runtime.app import App
+
+DB_LIMIT = 10.0  # s to wait for it at the start; goals are refused with a reason after that
+RECORD_LIMIT = 0.8  # s for the database while a goal waits for its answer: a C++ leaf gives up after 1 s
+FEEDBACK_GAP = 0.1  # s between feedbacks
+
+
+def start(app: App) -> None:
+    """Serve `/<machine>/<action>`."""
+    assert app.process.action is not None
+    use = app.site.model_of(app.machine).subtask(app.process.action)
+    server = _Server(app, load(use.run), dict(use.inputs), use.max_age)
+    app.ready_when(lambda: None if server.offered else "waiting for tms:db")
+    threading.Thread(target=server.offer, name="offer", daemon=True).start()
+
+
+class _Server:
+    """One goal at a time: a machine does one thing at a time."""
+
+    def __init__(self, app: App, kind: type[Subtask], inputs: dict[str, Any], max_age: float) -> None:
+        self._app, self._kind, self._inputs, self._max_age = app, kind, inputs, max_age
+        self._permit = Permit(app.ros, app.pulse, app.machine, str(app.process.action))
+        self._watches: dict[str, Callable[[Peer], None]] = {}
+        self._reserved = False
+        self._want: Params | None = None
+        self._lock: RecordLock | None = None
+        self._plans = bool(inputs.get("plan_only"))
+        self.offered = False
+
+    def offer(self) -> None:
+        """Serve once the database is there: the first goal comes as soon as the action is seen."""
+        app, deadline = self._app, time.monotonic() + DB_LIMIT
+        while not app.ros.has_service(GetParameter, "/tms/db/get_parameter") and time.monotonic() < deadline:
+            app.stopping.wait(0.02)
+        app.ros.serve(LeafNodeBase, f"/{app.machine}/{app.process.action}", self.run, self.accept)
+        self.offered = True
+
+    async def accept(self, request: Any) -> Rejection | None:
+        if self._reserved:
+            return Rejection("BUSY", f"{self._app.process.full} is still at its last goal")
+        self._reserved = True
+        refusal = await self._check(request)
+        self._reserved = refusal is None
+        if refusal is not None:
+            self._app.log.warning("rejected", record=request.record_name, reason=refusal)
+        return refusal
+
+    async def _check(self, request: Any) -> Rejection | None:
+        self._want = self._lock = None
+        if self._kind.params is None:
+            return None
+        if set(self._kind.params.model_fields) <= set(self._inputs):  # nothing is left that a record could tell
+            self._want = self._kind.params.model_validate(self._inputs)
+            return None
+        wanted = GetParameter.Request(
+            model_name=request.model_name, record_name=request.record_name, max_age=self._max_age
+        )
+        answer = await self._app.ros.ask(GetParameter, "/tms/db/get_parameter", wanted, RECORD_LIMIT)
+        if answer is None:
+            return Rejection("NO_DATABASE", "tms:db did not answer; see `tms ps` and `tms restart tms:db`")
+        if answer.error_code:
+            return Rejection(answer.error_code, answer.error_msg)
+        fields = from_parameters(answer.record.values)
+        if FLAG in fields and answer.record.type == "dynamic" and "plan_only" in self._inputs:
+            self._lock = RecordLock(self._app.ros, self._app.process.full, request.model_name, request.record_name)
+        try:
+            self._want = self._checked(request, fields)
+        except SubtaskFailed as error:
+            if self._lock is not None and not self._plans:
+                self._lock.release()  # the variant that moves gives it back however it ends
+            return Rejection(error.code, error.args[0])
+        return None
+
+    def _checked(self, request: Any, fields: dict[str, Value]) -> Params:
+        """What the subtask needs of a record's fields.
+
+        Raises:
+            SubtaskFailed: BAD_RECORD, with what is wrong.
+        """
+        assert self._kind.params is not None
+        try:
+            return self._kind.params.model_validate({**fields, **self._inputs})
+        except ValidationError as error:
+            name = f"{request.model_name}/{request.record_name}"
+            text = f"record {name}: {explain(error)}; correct it with `tms param set`"
+            raise SubtaskFailed("BAD_RECORD", text) from None
+
+    def run(self, goal: Goal) -> Ended:
+        outcome = Outcome.ABORTED
+        self._permit.hold(goal.uuid)
+        try:
+            outcome = self._execute(goal)
+        finally:
+            self._permit.drop()
+            self._reserved = False
+        return outcome, LeafNodeBase.Result(result=outcome is Outcome.SUCCEEDED)
+
+    def _execute(self, goal: Goal) -> Outcome:
+        """However the subtask ends, its motion has ended when this returns."""
+        app, request = self._app, goal.request
+        use = app.site.file.machines[app.machine]
+        model, limit = app.site.model_of(app.machine), self._kind.timeout
+        machine = Machine(app.ros, app.machine, use.model, model, limit, goal.uuid, self._watched())
+        subtask = self._kind(machine, self._want, self._read)
+        say = _Feedback(goal)
+        lock = self._lock
+
+        def cancel() -> None:
+            subtask.on_cancel()
+            machine.cancel()
+
+        goal.on_cancel = cancel
+        if goal.cancelled.is_set():
+            cancel()
+        failure: SubtaskFailed | None = None
+        finished = stopped = cancelled = False
+        try:
+            if lock is not None and self._plans:
+                lock.take()
+                # Sensing may have written between the goal's check and the lock; what is planned is what is locked.
+                subtask.want = self._checked(request, self._read(request.model_name, request.record_name, 0.0))
+            subtask.execute(request.model_name, request.record_name, say)
+            finished = True
+        except Cancelled:
+            pass
+        except RosError as error:
+            failure = SubtaskFailed(error.code, str(error))
+        except SubtaskFailed as error:
+            failure = error
+        finally:
+            stopped, cancelled = machine.release(), goal.cancelled.is_set()
+            if lock is not None and not (self._plans and finished and not cancelled):
+                lock.release()
+            if not (finished or failure or cancelled):
+                say.last(f"INTERNAL: the subtask has a bug, see `tms logs {app.process.full}`")
+        if not stopped:
+            failure = SubtaskFailed("NOT_STOPPED", f"{app.machine} did not end its motion")
+        if failure is None or (cancelled and stopped):
+            return Outcome.CANCELED if cancelled else Outcome.SUCCEEDED
+        app.log.warning("failed", goal=goal.id, reason=str(failure))
+        say.last(str(failure))
+        return Outcome.ABORTED
+
+    def _watched(self) -> dict[str, Callable[[Peer], None]]:
+        """Begins with the first goal: the gateway's lease, ten times a second, must not wake what nobody uses."""
+        if not self._watches:
+            self._watches = {
+                name: watch_server(self._app.ros, self._app.pulse, self._app.machine, name) for name in ("rc", "rp")
+            }
+        return self._watches
+
+    def _read(self, model_name: str, record_name: str, max_age: float) -> dict[str, Value]:
+        limit = max_age or self._max_age
+        wanted = GetParameter.Request(model_name=model_name, record_name=record_name, max_age=limit)
+        answer = self._app.ros.call(GetParameter, "/tms/db/get_parameter", wanted)
+        if answer.error_code:
+            raise SubtaskFailed(answer.error_code, answer.error_msg)
+        return from_parameters(answer.record.values)
+
+
+class _Feedback:
+    """Progress texts of one goal, at a bounded rate; the last one carries the reason of a failure."""
+
+    def __init__(self, goal: Goal) -> None:
+        self._goal = goal
+        self._next = 0.0
+
+    def __call__(self, text: str) -> None:
+        if time.monotonic() >= self._next:
+            self.last(text)
+
+    def last(self, text: str) -> None:
+        self._next = time.monotonic() + FEEDBACK_GAP
+        self._goal.publish(LeafNodeBase.Feedback(status=text))

@@ -1,0 +1,56 @@
+"""Capability of carriers: a vessel that tips and an upper body that turns."""
+
+import threading
+from typing import Any
+
+from com3_msgs.action import SetDumpAngle, SetSwingAngle
+from tms_msg_rc.msg import MachineState
+
+from tms_machine.acting import Acting, Progress
+from tms_reason.errors import SubtaskFailed
+
+STATE_LIMIT = 2.0  # s for the gateway to tell where the joints are
+
+
+class Tipping(Acting):
+    """Angles [rad] of vessel and upper body."""
+
+    def set_dump_angle(self, progress: Progress, target_angle: float) -> None:
+        """Tip the vessel to an angle [rad]: 0 lowered, negative raises."""
+        self._turn("set_dump_angle", SetDumpAngle, target_angle, progress)
+
+    def set_swing_angle(self, progress: Progress, target_angle: float) -> None:
+        """Turn the upper body to an angle [rad] against the tracks."""
+        self._turn("set_swing_angle", SetSwingAngle, target_angle, progress)
+
+    def angle_of(self, joint: str) -> float:
+        """Where a joint is now [rad], as the gateway hears it from the machine.
+
+        Raises:
+            SubtaskFailed: NO_SUCH_JOINT, or NO_JOINT_STATE within 2 s.
+        """
+        self.joint(joint)
+        found: list[float] = []
+        heard = threading.Event()
+
+        def look(state: Any) -> None:
+            if state.ready and joint in state.joint_names:
+                found.append(state.positions[list(state.joint_names).index(joint)])
+                heard.set()
+
+        topic = f"/{self.name}/rc/state"
+        subscription = self._ros.subscribe(MachineState, topic, look, latched=True)
+        there = heard.wait(STATE_LIMIT)
+        self._ros.on_executor(lambda: self._ros.node.destroy_subscription(subscription))
+        self.check()
+        if not there:
+            raise SubtaskFailed("NO_JOINT_STATE", f"no '{joint}' on {topic} within {STATE_LIMIT:.0f} s: see `tms ps`")
+        return found[0]
+
+    def _turn(self, field: str, action_type: Any, angle: float, progress: Progress) -> None:
+        def heard(feedback: Any) -> None:
+            progress(f"TURNING {feedback.current_error:+.2f} rad to go")
+
+        result = self.guarded(field, action_type, action_type.Goal(target_angle=angle), heard)
+        if not result.success:
+            raise SubtaskFailed("NOT_REACHED", f"{self.name} says that {field} {angle:.2f} rad was not reached")

@@ -1,0 +1,1 @@
+"""The wrapper round rclpy, the only package that imports it."""

@@ -1,0 +1,246 @@
+"""Goals that this process sends.
+
+- Goals are sent on the executor thread only: rclpy books a goal's sequence number after sending it, so
+  from another thread the answer can come first and is lost.
+- A client takes all feedback before the result, since rclpy forgets the feedback callback with the result
+  and the last feedback carries the reason of a failure.
+"""
+
+import threading
+import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+from uuid import uuid4
+
+from rclpy.action import ActionClient
+from rclpy.action.client import ClientGoalHandle
+from rclpy.task import Future
+from unique_identifier_msgs.msg import UUID
+
+from tms_ros.goals import InterfaceType, Message, Outcome, Request
+from tms_ros.quality import SERVICE
+
+if TYPE_CHECKING:
+    from tms_ros.node import Ros
+
+UNKNOWN_GOAL = 2  # action_msgs/CancelGoal: the server does not know the goal, so it was restarted
+DISCOVERY_LEASE = 6.0  # s after which discovery itself has dropped a dead process (5 s in our DDS profile)
+
+
+class Call:
+    """A goal that this process sent. All fields are set on the executor thread, readable from any."""
+
+    def __init__(
+        self, goal_id: bytes, on_change: Callable[["Call"], None] | None, on_feedback: Callable[[Message], None] | None
+    ):
+        self.id = goal_id
+        self.accepted = False
+        self.outcome: Outcome | None = None  # set once the goal is terminal
+        self.result: Message = None
+        self.feedback: Message = None  # the last one
+        self._cancel_wanted = False
+        self._handle: Any = None
+        self._on_change, self._on_feedback = on_change, on_feedback
+        self._changed = threading.Condition()
+
+    def wait_for(self, holds: Callable[[], bool], seconds: float) -> bool:
+        """Wait until `holds` after a change of this goal; False when the time is over."""
+        with self._changed:
+            return self._changed.wait_for(holds, max(0.0, seconds))
+
+    def changed(self) -> None:
+        with self._changed:
+            self._changed.notify_all()
+        if self._on_change is not None:
+            self._on_change(self)
+
+    def end(self, outcome: Outcome, result: Message = None) -> None:
+        if self.outcome is None:
+            self.result = result
+            self.outcome = outcome
+            self.changed()
+
+    def heard(self, message: Message) -> None:
+        self.feedback = message.feedback
+        if self._on_feedback is not None:
+            self._on_feedback(message.feedback)
+        self.changed()
+
+    def answered(self, handle: Any) -> None:
+        if not handle.accepted:
+            self.end(Outcome.REJECTED)
+            return
+        self._handle, self.accepted = handle, True
+        handle.get_result_async().add_done_callback(self._finished)
+        if self._cancel_wanted:  # asked for before the server had answered: it must not get lost
+            self._send_cancel()
+        self.changed()
+
+    def _finished(self, future: Future) -> None:
+        answer = future.result()
+        known = {o.value: o for o in (Outcome.SUCCEEDED, Outcome.CANCELED, Outcome.ABORTED)}
+        self.end(known.get(answer.status, Outcome.LOST), answer.result)
+
+    def ask_again(self) -> None:
+        """Ask for the result once more: a reply to a client that is very new may be lost by discovery."""
+        if self._handle is not None and self.outcome is None:
+            self._handle.get_result_async().add_done_callback(self._finished)
+
+    def doubt(self, handle: ClientGoalHandle) -> None:
+        """Its answer is overdue: a server that does not know the goal says so, another one ends it."""
+        if self._handle is None and self.outcome is None:
+            self._cancel_wanted = True  # should the answer come after all
+            handle.cancel_goal_async()
+            handle.get_result_async().add_done_callback(self._finished)
+
+    def cancel_now(self) -> None:
+        self._cancel_wanted = True
+        if self._handle is not None and self.outcome is None:
+            self._send_cancel()
+
+    def _send_cancel(self) -> None:
+        self._handle.cancel_goal_async().add_done_callback(self._cancel_answered)
+
+    def _cancel_answered(self, future: Future) -> None:
+        answer = future.result()
+        if answer is not None and answer.return_code == UNKNOWN_GOAL:
+            self.end(Outcome.LOST)
+
+
+class _Client(ActionClient):  # type: ignore[misc]
+    """An action client that takes all waiting feedback before a result or a rejection.
+
+    A server drops its answer when it has not yet discovered a client that has long discovered it; its status, which
+    is kept for late comers, then tells that the goal was accepted.
+    """
+
+    def __init__(self, *args: Any, **settings: Any) -> None:
+        super().__init__(*args, **settings)
+        self._told_by_status: set[int] = set()  # goal requests whose answer may still come
+
+    def take_data(self) -> dict[str, Any]:
+        data: dict[str, Any] = super().take_data()
+        first = data.pop("feedback", None)
+        waiting = [] if first is None else [first]
+        if "goal" in data or "result" in data:
+            while (message := self._client_handle.take_feedback(self._action_type.Impl.FeedbackMessage)) is not None:
+                waiting.append(message)
+        return {"waiting": waiting, **data}
+
+    async def execute(self, taken_data: dict[str, Any]) -> None:
+        for message in taken_data.pop("waiting"):
+            await super().execute({"feedback": message})
+        if "goal" in taken_data and taken_data["goal"][0] in self._told_by_status:
+            self._told_by_status.discard(taken_data.pop("goal")[0])
+        await super().execute(taken_data)
+        for status in taken_data["status"].status_list if "status" in taken_data else ():
+            await self._accepted_by(status)
+
+    async def _accepted_by(self, status: Any) -> None:
+        wanted = bytes(status.goal_info.goal_id.uuid)
+        for number, goal_id in list(self._goal_sequence_number_to_goal_id.items()):
+            if bytes(goal_id.uuid) == wanted and wanted not in self._goal_handles:
+                self._told_by_status.add(number)
+                answer = self._action_type.Impl.SendGoalService.Response(accepted=True, stamp=status.goal_info.stamp)
+                await super().execute({"goal": (number, answer)})
+
+    def forget(self, goal_id: bytes) -> None:
+        """Of a goal that has ended; rclpy itself forgets only those that had a result."""
+        self._feedback_callbacks.pop(goal_id, None)
+
+    def handle_of(self, goal_id: bytes) -> ClientGoalHandle:
+        """A handle for a goal that the server has not answered, to ask whether it has it after all."""
+        answer = self._action_type.Impl.SendGoalService.Response(accepted=True)
+        return ClientGoalHandle(self, UUID(uuid=list(goal_id)), answer)
+
+
+class Peer:
+    """An action server elsewhere, as this process reaches it."""
+
+    def __init__(self, ros: "Ros", action_type: InterfaceType, name: str) -> None:
+        self._ros, self.name, self._type = ros, name, action_type
+        self._open: list[Call] = []  # used on the executor thread only
+        self._taken_by: frozenset[bytes] = frozenset()  # servers that could have taken the last goal
+        self._dead_until = 0.0
+        self._dead: frozenset[bytes] = frozenset()  # servers that are known to be gone, though discovery is slower
+        self._client = _Client(
+            ros.node, action_type, name, callback_group=ros.group, goal_service_qos_profile=SERVICE,
+            result_service_qos_profile=SERVICE, cancel_service_qos_profile=SERVICE,
+        )  # fmt: skip
+
+    def ready(self) -> bool:
+        """Whether a server is there and connected in both directions."""
+        if self._dead and (time.monotonic() > self._dead_until or self._servers() - self._dead):
+            self._dead = frozenset()
+        return not self._dead and bool(self._client.server_is_ready())
+
+    def left(self) -> bool:
+        """Whether every server that could have taken the last goal is gone; its successor knows nothing of it."""
+        return not self.ready() or (bool(self._taken_by) and not self._taken_by & self._servers())
+
+    def found(self) -> None:
+        """It was not dead, only frozen for a while."""
+        self._dead = frozenset()
+
+    def _servers(self) -> frozenset[bytes]:
+        """The servers of this name; the status topic is the last thing that a new one announces."""
+        found = self._ros.node.get_publishers_info_by_topic(f"{self.name}/_action/status")
+        return frozenset(bytes(info.endpoint_gid) for info in found)
+
+    def wait_ready(self, seconds: float) -> None:
+        """Block until the server is there.
+
+        Raises:
+            RosError: it did not come.
+        """
+        self._ros.wait_for(self.ready, seconds, f"action server {self.name} is not there")
+
+    def send(
+        self,
+        goal: Request,
+        *,
+        goal_id: bytes | None = None,
+        on_change: Callable[[Call], None] | None = None,
+        on_feedback: Callable[[Message], None] | None = None,
+    ) -> Call:
+        """Send a goal and return at once; `on_*` run on the executor thread and must be quick."""
+        call = Call(goal_id or uuid4().bytes, on_change, on_feedback)
+
+        def send() -> None:
+            for other in self._open:
+                if other.outcome is not None:
+                    self._client.forget(other.id)
+            self._open = [other for other in self._open if other.outcome is None] + [call]
+            goal_id = UUID(uuid=list(call.id))
+            future = self._client.send_goal_async(goal, feedback_callback=call.heard, goal_uuid=goal_id)
+            future.add_done_callback(lambda done: call.answered(done.result()))
+            self._taken_by = self._servers()  # takes a while: the goal is on its way meanwhile
+
+        self._ros.on_executor(send)
+        return call
+
+    def lost(self) -> None:
+        """The process behind the server is gone: whatever it had accepted never ends by itself.
+
+        Discovery counts it for some seconds more, and its successor has the same name: a goal sent before the
+        successor is there would get lost, so `ready` waits for a server that is not one of the old ones.
+        """
+        self._dead, self._dead_until = self._taken_by, time.monotonic() + DISCOVERY_LEASE
+        self._ros.on_executor(self._end_open)
+
+    def _end_open(self) -> None:
+        for call in self._open:
+            if call.accepted:
+                call.end(Outcome.LOST)
+
+    def ask_again(self, call: Call) -> None:
+        """Ask for a result that should be there by now. Returns at once."""
+        self._ros.on_executor(call.ask_again)
+
+    def doubt(self, call: Call) -> None:
+        """Give up a goal that was not answered in time; it ends as LOST when the server knows nothing of it."""
+        self._ros.on_executor(lambda: call.doubt(self._client.handle_of(call.id)))
+
+    def cancel(self, call: Call) -> None:
+        """Ask for the end of a goal, also before it was accepted. Returns at once."""
+        self._ros.on_executor(call.cancel_now)

@@ -1,0 +1,243 @@
+"""A node and its executor thread.
+
+Why it is built this way (all measured with the rclpy in use):
+- One SingleThreadedExecutor in a thread of its own.
+- All callbacks share a reentrant group: with rclpy's default group, a callback that awaits an answer
+  keeps the answer from being delivered. One thread runs them all, so nothing runs at the same time.
+"""
+
+import os
+import threading
+import time
+from collections import deque
+from collections.abc import Awaitable, Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, TypeVar
+
+import rclpy
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
+from rclpy.context import Context
+from rclpy.exceptions import InvalidHandle
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+from rclpy.task import Future
+
+from tms_reason.errors import RosError
+from tms_ros.goals import Message
+from tms_ros.priority import come_first, threads
+
+T = TypeVar("T")
+
+HANGS = 5.0  # s after which an executor that does not run counts as hanging
+POLL = 0.02  # s between looks at the ROS graph, which has no cheap event in rclpy
+
+
+class Loop:
+    """A node, the thread that runs its callbacks, and what else runs there."""
+
+    def __init__(self, name: str, namespace: str = "/") -> None:
+        self._context = Context()
+        rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
+        with _undisturbed():
+            self.node: Node = rclpy.create_node(
+                name, namespace=namespace, context=self._context, start_parameter_services=False, enable_rosout=False
+            )
+        self.group = ReentrantCallbackGroup()
+        self._steady = Clock(clock_type=ClockType.STEADY_TIME)  # a node's own stands still when NTP sets it back
+        self._executor = _Executor(context=self._context)
+        self._executor.add_node(self.node)
+        self._coming, self._starting = deque[Callable[[], None]](), deque[Callable[[], Awaitable[None]]]()
+        self._asked: float | None = None  # monotonic time since which the executor has not shown itself
+        self.failed = threading.Event()  # a thread of this node died of an exception: the process ends, not half of it
+        self.closing = False  # nothing can be sent any more
+        self._ends: list[Callable[[], None]] = []
+        self._thread = self.begin(self._spin, "ros")
+
+    def busy_since(self) -> float | None:
+        """When the present callback of the executor began, monotonic [s]; None while it waits."""
+        return self._executor.busy_since
+
+    def thread_number(self) -> int | None:
+        """The executor thread's number in the kernel."""
+        return self._thread.native_id
+
+    def on_stop(self, step: Callable[[], None]) -> None:
+        """Run `step` before this node stops."""
+        self._ends.append(step)
+
+    def begin(self, work: Callable[[], None], name: str) -> threading.Thread:
+        """Start a thread that does this; when it dies of an exception, so does the process."""
+
+        def run() -> None:
+            try:
+                work()
+            finally:
+                if not self.closing:
+                    self.failed.set()
+
+        thread = threading.Thread(target=run, name=name, daemon=True)
+        thread.start()
+        return thread
+
+    def _spin(self) -> None:
+        try:
+            self._executor.spin()
+        except ExternalShutdownException:
+            pass
+        except InvalidHandle:  # on a busy PC, the node may be gone before the last callback has ended
+            if not self.closing:
+                raise
+
+    def stop(self) -> None:
+        """End the thread: nothing is heard any more."""
+        self.closing = True
+        for step in self._ends:
+            step()
+        self._executor.shutdown(timeout_sec=0.5)
+        self._thread.join(0.5)
+
+    def leave(self) -> None:
+        """Leave the graph, after `stop`. DDS hangs here now and then, see `last_resort`."""
+        self.node.destroy_node()
+        rclpy.shutdown(context=self._context)
+
+    def on_executor(self, step: Callable[[], None]) -> None:
+        """Run `step` on the executor thread, soon, behind those that were asked for before."""
+        if threading.current_thread() is self._thread:
+            step()
+        else:
+            self._coming.append(step)
+            self._executor.create_task(lambda: self._coming.popleft()())  # rclpy runs the newest task first
+
+    def do(self, step: Callable[[], T], seconds: float) -> T:
+        """Run `step` on the executor thread and wait for what it returns or raises; from worker threads only.
+
+        Raises:
+            RosError: the executor did not come to it within `seconds`.
+        """
+        there = threading.Event()
+        results: list[T] = []
+        errors: list[Exception] = []
+
+        def run() -> None:
+            try:
+                results.append(step())
+            except Exception as error:  # raised again in the caller's thread; here it would end the executor
+                errors.append(error)
+            there.set()
+
+        self.on_executor(run)
+        if not there.wait(seconds):
+            raise RosError(f"the ROS thread did not answer within {seconds:.0f} s", "BUSY")
+        if errors:
+            raise errors[0]
+        return results[0]
+
+    def hangs(self) -> str | None:
+        """Asks the executor to show itself; why it should be restarted when it has not done so since it was asked."""
+        asked = self._asked
+        if asked is not None:
+            seconds = time.monotonic() - asked
+            return f"the ROS thread has not run for {seconds:.0f} s" if seconds > HANGS else None
+        self._asked = time.monotonic()
+        self.on_executor(self._shown)
+        return None
+
+    def _shown(self) -> None:
+        self._asked = None
+
+    def start(self, step: Callable[[], Awaitable[None]]) -> None:
+        """Run a coroutine function on the executor thread, begun behind those that were asked for before."""
+
+        async def oldest() -> None:
+            await self._starting.popleft()()
+
+        self._starting.append(step)
+        self._executor.create_task(oldest)
+
+    def promise(self) -> Future:
+        """A result that coroutines on the executor thread await; set it there, see `on_executor`."""
+        return Future(executor=self._executor)
+
+    def now(self) -> Message:
+        """Present time as builtin_interfaces/Time."""
+        return self.node.get_clock().now().to_msg()
+
+    def wait_for(self, there: Callable[[], bool], seconds: float, otherwise: str) -> None:
+        """Poll `there` until it holds.
+
+        Raises:
+            RosError: it did not hold within `seconds`; the message starts with `otherwise`.
+        """
+        deadline = time.monotonic() + seconds
+        while not there():
+            if time.monotonic() > deadline:
+                raise RosError(f"{otherwise} after {seconds:.1f} s: is its process running? See `tms ps`", "NO_SERVER")
+            time.sleep(POLL)
+
+    # times
+
+    def every(self, seconds: float, step: Callable[[], None]) -> Any:
+        """Call `step` on the executor thread at a fixed rate."""
+        return self.node.create_timer(seconds, step, callback_group=self.group, clock=self._steady)
+
+    def beside(self, seconds: float, step: Callable[[], None], name: str) -> None:
+        """Call `step` at a fixed rate in a thread of its own, for what only samples: it costs a tenth of a timer."""
+
+        def sample() -> None:
+            while not self.closing:
+                try:
+                    step()
+                except InvalidHandle:  # the node is gone
+                    return
+                time.sleep(seconds)
+
+        self.begin(sample, name)
+
+    def after(self, seconds: float, step: Callable[[], None]) -> None:
+        """Call `step` on the executor thread once, in a while. On the executor thread only."""
+
+        def once() -> None:
+            self.node.destroy_timer(timer)
+            step()
+
+        timer = self.every(seconds, once)
+
+
+@contextmanager
+def _undisturbed() -> Iterator[None]:
+    """No other process takes this thread's processor, where the system allows it (CAP_SYS_NICE or LimitRTPRIO).
+
+    Fast DDS announces a participant a moment before it listens. On a PC with forty processes, all of them wake up to
+    answer; if they run before the participant listens, it hears of them only with their next announcement: measured
+    2.1 s instead of 0.25 s. It takes 3 ms, in a program that has to load the middleware first 25 ms.
+
+    Threads that are started meanwhile do not come first: theirs are some hundred milliseconds of answers to read, and
+    seven processes that started at once kept everything else on the PC from its two processors for up to 2.8 s.
+    """
+    before = threads()
+    try:
+        os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(1))
+    except OSError:  # not allowed, or not known here
+        yield
+        return
+    try:
+        yield
+    finally:
+        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+        come_first(os.getpriority(os.PRIO_PROCESS, 0), threads() - before)  # their share was reset as well
+
+
+class _Executor(SingleThreadedExecutor):  # type: ignore[misc]
+    """Knows since when it has been in its present callback."""
+
+    busy_since: float | None = None  # monotonic; None while it waits
+
+    def wait_for_ready_callbacks(self, *args: Any, **settings: Any) -> Any:
+        self.busy_since = None
+        found = super().wait_for_ready_callbacks(*args, **settings)
+        self.busy_since = time.monotonic()
+        return found

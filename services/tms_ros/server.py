@@ -1,0 +1,180 @@
+"""Goals that this process serves: a worker thread each.
+
+Blocking callbacks in a MultiThreadedExecutor starve cancels, and `async` execute callbacks hang (measured with the
+rclpy in use); so rclpy's execute callback is never used.
+"""
+
+import threading
+import time
+from collections.abc import Awaitable, Callable
+from typing import TYPE_CHECKING, Any
+
+from prometheus_client import Counter, Histogram
+from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.action.server import ServerGoalHandle
+from structlog.contextvars import bind_contextvars
+
+from tms_ros.fence import parse
+from tms_ros.goals import LOST_TEXT, Accept, Ended, InterfaceType, Message, Outcome, Rejection, Request
+from tms_ros.quality import SERVICE
+
+if TYPE_CHECKING:
+    from tms_ros.node import Ros
+
+RESULT_KEPT = 10  # s that a server keeps a result; every status message lists all kept goals
+POLL = 0.02  # s
+
+GOALS = Counter("tms_action_goals_total", "Goals served, by action and outcome", ["action", "outcome"])
+SECONDS = Histogram(
+    "tms_action_goal_seconds", "From the acceptance of a goal to its end", ["action"],
+    buckets=(0.1, 0.5, 1, 2, 5, 10, 30, 60, 300, 1800),
+)  # fmt: skip
+
+
+class Goal:
+    """A goal that this process serves, as its worker thread sees it."""
+
+    def __init__(self, handle: ServerGoalHandle, action_type: InterfaceType) -> None:
+        self._handle, self._type = handle, action_type
+        self.request: Request = handle.request
+        self.uuid = bytes(handle.goal_id.uuid)
+        self.id = self.uuid.hex()
+        self.cancelled = threading.Event()
+        self.on_cancel: Callable[[], None] | None = None  # called once, on the executor thread
+
+    def publish(self, feedback: Message) -> None:
+        """Send feedback; does nothing once the goal has ended."""
+        if self._handle.is_active:
+            self._handle.publish_feedback(feedback)
+
+    def say(self, text: str) -> None:
+        """Send a reason as feedback, where the type of feedback has room for one."""
+        feedback = _saying(self._type, text)
+        if feedback is not None:
+            self.publish(feedback)
+
+    def cancel(self) -> None:
+        """What a cancel request does; also called when the process stops."""
+        first = not self.cancelled.is_set()
+        self.cancelled.set()
+        step = self.on_cancel  # a copy: its worker may end this moment
+        if first and step is not None:
+            step()
+
+
+class _Server(ActionServer):  # type: ignore[misc]
+    """An action server that tells its goal callback which goal id is arriving."""
+
+    arriving: Any = None
+
+    async def _execute_goal_request(self, request_header_and_message: Any) -> None:
+        self.arriving = request_header_and_message[1].goal_id
+        await super()._execute_goal_request(request_header_and_message)
+
+
+class Served:
+    """The actions that one node serves, and their open goals."""
+
+    def __init__(self, ros: "Ros") -> None:
+        self._ros = ros
+        # By action and id; a goal on its handle would be a cycle, which is freed late.
+        self._goals: dict[tuple[str, bytes], Goal] = {}
+        self._leaving = False
+
+    def leave(self, seconds: float) -> None:
+        """Cancel what is served and give the workers `seconds` to stop their motions."""
+        self._leaving = True
+        for goal in list(self._goals.values()):
+            goal.cancel()
+        deadline = time.monotonic() + seconds
+        while self._goals and time.monotonic() < deadline:
+            time.sleep(POLL)
+
+    def serve(
+        self,
+        action_type: InterfaceType,
+        name: str,
+        run: Callable[[Goal], Ended],
+        accept: Accept | None = None,
+    ) -> None:
+        """See `Ros.serve`."""
+        reasons = self._ros.publisher(action_type.Impl.FeedbackMessage, f"{name}/_action/feedback")
+
+        async def decide(request: Request) -> GoalResponse:
+            goal_id = server.arriving  # valid until the first await
+            verdict = accept(request) if accept is not None else None
+            if isinstance(verdict, Awaitable):
+                verdict = await verdict
+            if verdict is None and self._leaving:
+                verdict = Rejection(LOST_TEXT, f"{self._ros.node.get_name()} is being stopped")
+            if verdict is None:
+                return GoalResponse.ACCEPT
+            GOALS.labels(name, "rejected").inc()
+            self._ros.node.get_logger().debug(f"{name}: {verdict.code}: {verdict.text}")
+            feedback = _saying(action_type, f"{verdict.code}: {verdict.text}")
+            if feedback is not None:
+                reasons.publish(action_type.Impl.FeedbackMessage(goal_id=goal_id, feedback=feedback))
+            return GoalResponse.REJECT
+
+        def accepted(handle: ServerGoalHandle) -> None:
+            goal = Goal(handle, action_type)
+            self._goals[name, goal.uuid] = goal
+            if self._leaving:  # since the decision
+                goal.cancel()
+            threading.Thread(target=self._work, args=(action_type, run, goal, name), name=name, daemon=True).start()
+
+        def cancel(handle: ServerGoalHandle) -> CancelResponse:
+            goal = self._goals.get((name, bytes(handle.goal_id.uuid)))
+            if goal is not None:  # else it has ended and its result is being delivered
+                goal.cancel()
+            return CancelResponse.ACCEPT
+
+        server = _Server(
+            self._ros.node, action_type, name, execute_callback=_never, goal_callback=decide,
+            handle_accepted_callback=accepted, cancel_callback=cancel, result_timeout=RESULT_KEPT,
+            callback_group=self._ros.group,
+            goal_service_qos_profile=SERVICE, result_service_qos_profile=SERVICE,
+            cancel_service_qos_profile=SERVICE,
+        )  # fmt: skip
+
+    def _work(self, action_type: InterfaceType, run: Callable[[Goal], Ended], goal: Goal, name: str) -> None:
+        owner = parse(goal.uuid)
+        bind_contextvars(goal=goal.id, **({"run_number": owner.run} if owner is not None else {}))
+        begun = time.monotonic()
+        ended: Ended = (Outcome.ABORTED, action_type.Result())
+        try:
+            ended = run(goal)
+        finally:
+            goal.on_cancel = None  # it refers to what the goal did, and that to the goal
+            SECONDS.labels(name).observe(time.monotonic() - begun)
+            GOALS.labels(name, ended[0].name.lower()).inc()
+            self._ros.on_executor(lambda: self._deliver(name, goal, *ended))
+
+    def _deliver(self, name: str, goal: Goal, outcome: Outcome, result: Message) -> None:
+        asked = goal._handle.is_cancel_requested
+        if self._leaving and outcome is Outcome.CANCELED and not asked:
+            goal.say(f"{LOST_TEXT}: {self._ros.node.get_name()} was stopped during its goal")
+
+        def finish(handle: ServerGoalHandle) -> Message:
+            if outcome is Outcome.SUCCEEDED:
+                handle.succeed()
+            elif outcome is Outcome.CANCELED and asked:
+                handle.canceled()
+            else:  # rcl allows CANCELED only after a cancel request
+                handle.abort()
+            return result
+
+        self._goals.pop((name, goal.uuid))
+        goal._handle.execute(finish)
+
+
+def _saying(action_type: InterfaceType, text: str) -> Message | None:
+    """Feedback that is only a reason; None where its type has no room for one."""
+    kind = action_type.Feedback
+    known = kind.get_fields_and_field_types()
+    field = next((name for name in ("status", "state") if known.get(name) == "string"), None)
+    return None if field is None else kind(**{field: text})
+
+
+def _never(handle: ServerGoalHandle) -> Message:
+    raise AssertionError("goals are executed by their own worker threads")

@@ -1,0 +1,170 @@
+"""Services: offered, called, and asked from callbacks."""
+
+import threading
+import time
+from collections.abc import Awaitable, Callable
+from typing import Any
+
+from rclpy.exceptions import NameValidationException
+from rclpy.task import Future
+
+from tms_reason.errors import RosError
+from tms_ros import quality
+from tms_ros.answers import send_surely
+from tms_ros.goals import InterfaceType, Request, Response
+from tms_ros.loop import POLL
+from tms_ros.topics import Topics
+
+LOOK = 0.1  # s between looks whether a server that owes an answer is still there
+
+
+class Services(Topics):
+    """The services of a node, beside its topics."""
+
+    def __init__(self, name: str, namespace: str = "/") -> None:
+        super().__init__(name, namespace)
+        self._clients: dict[tuple[str, str], Any] = {}  # by type and name
+        self._making = threading.Lock()
+
+    def offer(
+        self,
+        service_type: InterfaceType,
+        name: str,
+        handler: Callable[[Request, Response], Response | Awaitable[Response]],
+    ) -> None:
+        """Offer a service; the handler runs on the executor thread and must be quick, or be a coroutine function."""
+        self._offered(service_type, name, handler)
+
+    def _offered(self, service_type: InterfaceType, name: str, handler: Callable[..., Any]) -> Any:
+        service = self.node.create_service(
+            service_type, name, handler, qos_profile=quality.SERVICE, callback_group=self.group
+        )
+        send_surely(service, self.after)
+        return service
+
+    def offer_slow(
+        self, service_type: InterfaceType, name: str, handler: Callable[[Request, Response], Response | None]
+    ) -> Any:
+        """Offer a service whose handler may block: each call runs in a thread of its own; None is no answer at all."""
+
+        async def answer(request: Request, response: Response) -> Response:
+            done = self.promise()
+
+            def work() -> None:
+                filled = _failed(response)
+                try:
+                    filled = handler(request, service_type.Response())
+                finally:  # a bug is logged by the thread; the caller still gets an answer
+                    self.on_executor(lambda: done.set_result(filled))
+
+            threading.Thread(target=work, name=name, daemon=True).start()
+            return await done
+
+        return self._offered(service_type, name, answer)
+
+    def _service(self, service_type: InterfaceType, name: str) -> Any:
+        key = (service_type.__name__, name)
+        with self._making:
+            if key not in self._clients:
+                try:
+                    self._clients[key] = self.node.create_client(
+                        service_type, name, qos_profile=quality.SERVICE, callback_group=self.group
+                    )
+                except NameValidationException as error:
+                    raise RosError(f"service {name}: {str(error).partition(chr(10))[0]}", "BAD_NAME") from error
+            return self._clients[key]
+
+    def prepare(self, service_type: InterfaceType, name: str) -> None:
+        """Make the client of a service now, for requests that must not wait for discovery when they count."""
+        self._service(service_type, name)
+
+    def call(
+        self,
+        service_type: InterfaceType,
+        name: str,
+        request: Request,
+        seconds: float = 5.0,
+        lost: Callable[[], bool] = lambda: False,
+    ) -> Response:
+        """Call a service and wait for its answer; from worker threads only.
+
+        `lost` tells of a server that is known to be gone, so that nobody waits for what it will not say any more.
+
+        Raises:
+            RosError: NO_SERVER or NO_ANSWER within `seconds`, or LOST.
+        """
+        assert threading.current_thread() is not self._thread, "blocking call on the executor thread"
+        client = self._service(service_type, name)
+        deadline = time.monotonic() + seconds
+        self.wait_for(client.service_is_ready, seconds, f"service {name} is not there")
+        done = threading.Event()
+        future = client.call_async(request)
+        future.add_done_callback(lambda _: done.set())
+        while not done.wait(min(LOOK, max(0.0, deadline - time.monotonic()))):
+            if lost() or time.monotonic() >= deadline:
+                client.remove_pending_request(future)
+                if lost():
+                    raise RosError(f"the process behind service {name} was lost before it answered", "LOST")
+                raise RosError(f"service {name} did not answer within {seconds:.1f} s", "NO_ANSWER")
+        return future.result()
+
+    def has_service(self, service_type: InterfaceType, name: str) -> bool:
+        """Whether a service is there now."""
+        return bool(self._service(service_type, name).service_is_ready())
+
+    def post(self, service_type: InterfaceType, name: str, request: Request) -> None:
+        """Send a service request; nobody waits for its answer, which may never come."""
+        client = self._service(service_type, name)
+        self.on_executor(lambda: client.remove_pending_request(client.call_async(request)))
+
+    def request(
+        self, service_type: InterfaceType, name: str, request: Request, answered: Callable[[Response], None]
+    ) -> Callable[[], None] | None:
+        """Send a request; `answered` is called on the executor thread, where this must be called, too.
+
+        Returns what forgets the request, or None when the service is not there.
+        """
+        client = self._service(service_type, name)
+        if not client.service_is_ready():
+            return None
+        future = client.call_async(request)
+        future.add_done_callback(lambda done: answered(done.result()))
+        return lambda: client.remove_pending_request(future)
+
+    async def ask(self, service_type: InterfaceType, name: str, request: Request, seconds: float) -> Response | None:
+        """Call a service from a callback on the executor thread; None when it did not answer in time.
+
+        Raises:
+            RosError: BAD_NAME.
+        """
+        client = self._service(service_type, name)
+        answer = Future(executor=self._executor)
+        deadline = time.monotonic() + seconds
+        sent: list[Future] = []
+
+        def look() -> None:
+            if not sent and client.service_is_ready():
+                sent.append(client.call_async(request))
+                sent[0].add_done_callback(lambda future: settle(future.result()))
+            elif time.monotonic() >= deadline:
+                settle(None)
+
+        def settle(value: Response | None) -> None:
+            if not answer.done():
+                answer.set_result(value)
+
+        look()
+        timer = self.every(seconds if sent else POLL, look)
+        try:
+            return await answer
+        finally:
+            self.node.destroy_timer(timer)
+            if sent and not sent[0].done():
+                client.remove_pending_request(sent[0])
+
+
+def _failed(response: Response) -> Response:
+    """What a caller hears when a handler has a bug."""
+    if hasattr(response, "error_code") and isinstance(response.error_code, str):
+        response.error_code, response.error_msg = "INTERNAL", "this is a bug: see the log of the process"
+    return response

@@ -1,0 +1,1 @@
+"""What every process does: start, pulse, log, metrics, health, end."""

@@ -1,0 +1,186 @@
+"""Group commit: any thread puts entries, one thread writes those that wait and syncs the disk once for all of them.
+
+Whoever puts waits for nothing but a short lock. An entry is *stored* when it is on the disk: a power cut does not take
+it back. While the disk is full, or does not answer, entries wait in memory up to a bound and in their order; beyond the
+bound they are refused, and who put them tells what is lost. A process that is killed loses what waits here, which is
+what came within the last moment (GATHER): nobody was told that it is stored.
+"""
+
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from itertools import islice
+from typing import Protocol
+
+from prometheus_client import Gauge
+
+from tms_runtime.log import Logger
+
+GATHER = 0.05  # s from the first entry to its writing, so that many share a sync; an urgent one is written at once
+RETRY = 0.5  # s between attempts at a disk that is full
+GROUP = 2000  # entries of one group
+MOST = 32 * 2**20  # bytes that may wait ...
+SPARE = 4 * 2**20  # bytes, ... of which so many are kept for vital entries
+SLOW = 5.0  # s without an answer of the disk that are told
+
+WAITING = Gauge("tms_unstored_bytes", "Entries in memory that are not on the disk yet")
+
+
+class Sink(Protocol):
+    """A file that entries go to; called by the writing thread only."""
+
+    order: int  # in which the files of one group are synced: what others rely on comes first
+
+    def write(self, entries: list[bytes]) -> None:
+        """Entries of one group; after an OSError they come again."""
+
+    def sync(self) -> None:
+        """Wait until the entries are on the disk; after an OSError they come again."""
+
+    def keep(self) -> None:
+        """The whole group is on the disk."""
+
+
+Step = Callable[[], None]
+
+
+@dataclass(frozen=True)
+class Entry:
+    """Data for a sink, or a step to be done when everything before it is stored."""
+
+    sink: Sink | None
+    data: bytes = b""
+    step: Step | None = None
+    at: float = field(default_factory=time.monotonic)
+
+
+class GroupCommit:
+    """The queue and its writing thread; one a process."""
+
+    def __init__(self, log: Logger, most: int = MOST) -> None:
+        self._log, self._most = log, most
+        self._changed = threading.Condition()  # over the next four; held for moments only
+        self._waiting: deque[Entry] = deque()
+        self._bytes = 0
+        self._put = self._stored = 0  # entries, since the start
+        self._some, self._urgent, self._closed = threading.Event(), threading.Event(), threading.Event()
+        self._problem = ""  # why the disk takes nothing now
+        self._thread = threading.Thread(target=self._run, name="disk", daemon=True)
+        self._thread.start()
+
+    def put(self, sink: Sink, data: bytes, *, vital: bool = False, urgent: bool = False) -> bool:
+        """Take an entry for a file; False when too much waits already, then it is lost. Waits for nobody.
+
+        Args:
+            sink: the file.
+            data: the entry.
+            vital: it may use the room that is kept for what must not be lost.
+            urgent: do not wait for others to share the sync with.
+        """
+        return self._take(Entry(sink, data), self._most if vital else self._most - SPARE, urgent)
+
+    def after(self, step: Step) -> None:
+        """Do a step (it may raise OSError) in the writing thread once all that was put before is stored."""
+        self._take(Entry(None, step=step), 2 * self._most, False)
+
+    def wait(self, seconds: float) -> bool:
+        """Wait until all that was put before is stored; False when it is not within the time."""
+        with self._changed:
+            end = self._put
+            if self._stored < end:
+                self._urgent.set()
+            self._changed.wait_for(lambda: self._stored >= end or self._closed.is_set(), seconds)
+            return self._stored >= end
+
+    def trouble(self) -> str:
+        """Why nothing is stored now, empty if all is well."""
+        with self._changed:
+            if self._problem or not self._waiting:
+                return self._problem
+            since = time.monotonic() - self._waiting[0].at
+        return f"the disk has not answered for {since:.0f} s" if since > SLOW else ""
+
+    def close(self, seconds: float) -> None:
+        """Give what waits some time to be stored; then nothing more is."""
+        self.wait(seconds)
+        with self._changed:
+            self._closed.set()
+            self._changed.notify_all()
+        self._some.set()
+        self._urgent.set()
+        self._thread.join(seconds)
+
+    def _take(self, entry: Entry, room: int, urgent: bool) -> bool:
+        with self._changed:
+            if self._closed.is_set() or self._bytes + len(entry.data) > room:
+                return False
+            self._waiting.append(entry)
+            self._bytes += len(entry.data)
+            self._put += 1
+        if not self._some.is_set():
+            self._some.set()
+        if urgent:
+            self._urgent.set()
+        return True
+
+    def _run(self) -> None:
+        while self._some.wait() and not self._closed.is_set():
+            self._urgent.wait(GATHER)
+            self._urgent.clear()
+            with self._changed:
+                group = list(islice(self._waiting, GROUP))
+                if not group and not self._closed.is_set():
+                    self._some.clear()
+            self._store(group)
+
+    def _store(self, group: list[Entry]) -> None:
+        while group and not self._closed.is_set():
+            WAITING.set(self._bytes)
+            try:
+                _write(group)
+            except OSError as error:
+                self._failed(str(error))
+                self._closed.wait(RETRY)
+            else:
+                self._kept(group)
+                return
+
+    def _failed(self, problem: str) -> None:
+        if problem != self._problem:
+            self._log.error("disk_fails", reason=problem, action="entries wait in memory")
+        self._problem = problem
+
+    def _kept(self, group: list[Entry]) -> None:
+        if self._problem:
+            self._log.warning("disk_works_again", waiting=self._bytes)
+        self._problem = ""
+        for entry in group:
+            if entry.step is not None:
+                self._do(entry.step)
+        with self._changed:
+            for _ in group:
+                self._bytes -= len(self._waiting.popleft().data)
+            self._stored += len(group)
+            self._changed.notify_all()
+        WAITING.set(self._bytes)
+
+    def _do(self, step: Step) -> None:
+        try:
+            step()
+        except OSError as error:
+            self._log.error("disk_fails", reason=str(error))
+
+
+def _write(group: Iterable[Entry]) -> None:
+    parts: dict[Sink, list[bytes]] = {}
+    for entry in group:
+        if entry.sink is not None:
+            parts.setdefault(entry.sink, []).append(entry.data)
+    for sink, entries in parts.items():
+        sink.write(entries)
+    for sink in sorted(parts, key=lambda sink: sink.order):
+        sink.sync()
+    for sink in parts:
+        sink.keep()

@@ -1,0 +1,105 @@
+"""One line an event: `key=value` for people, or a JSON object for Loki; process, run and goal are bound to it.
+
+A goal's worker thread binds `goal` and `run` (structlog.contextvars), so everything that it logs carries them; threads
+that it starts do not.
+"""
+
+import logging
+import queue
+import sys
+from collections.abc import Sequence
+from logging.handlers import QueueHandler, QueueListener
+from typing import Any
+
+import structlog
+from prometheus_client import Counter
+from structlog.typing import EventDict, Processor, WrappedLogger
+
+Logger = structlog.stdlib.BoundLogger
+
+BREAKS = str.maketrans({"\n": "\\n", "\r": "\\r"})  # an event is one line, whatever its text holds
+FIRST = ("process", "machine", "run", "goal", "event")  # keys, in this order; the others follow as they were given
+WAITING = 10_000  # lines at most that wait for a reader of stdout
+LOST = Counter("tms_log_lines_lost_total", "Log lines that nobody read in time")
+
+_listeners: list["Listener"] = []
+
+
+class Queue(QueueHandler):
+    """A thread that logs waits for no reader: a full pipe would stand still with everything that stops machines."""
+
+    def enqueue(self, record: logging.LogRecord) -> None:
+        """Take a finished line, or count that it was lost."""
+        try:
+            self.queue.put_nowait(record)
+        except queue.Full:
+            LOST.inc()
+
+
+class Listener(QueueListener):
+    """Writes what waits to stdout."""
+
+    def enqueue_sentinel(self) -> None:
+        """Wait for room where the standard library would fail: what waits is still to be written."""
+        assert isinstance(self.queue, queue.Queue)
+        self.queue.put(None)
+
+
+def setup(process: str, machine: str | None = None, *, level: str = "INFO", as_json: bool = False) -> Logger:
+    """Send everything to stdout, which supervisord keeps and rotates; returns the process's logger."""
+    fields = {"process": process, **({"machine": machine} if machine else {})}
+    lines: queue.Queue[logging.LogRecord] = queue.Queue(WAITING)
+    handler = Queue(lines)
+    handler.setFormatter(formatter(fields, as_json))
+    logging.basicConfig(level=level, handlers=[handler], force=True)
+    logging.captureWarnings(True)
+    structlog.configure(
+        processors=[structlog.stdlib.filter_by_level, structlog.stdlib.ProcessorFormatter.wrap_for_formatter],
+        logger_factory=structlog.stdlib.LoggerFactory(),
+        wrapper_class=Logger,
+        cache_logger_on_first_use=True,
+    )
+    listener = Listener(lines, logging.StreamHandler(sys.stdout))
+    listener.start()
+    _listeners.append(listener)
+    logger: Logger = structlog.stdlib.get_logger(process)
+    return logger
+
+
+def close() -> None:
+    """Write what waits; a reader that does not read is waited for."""
+    while _listeners:
+        _listeners.pop().stop()
+
+
+def formatter(fields: dict[str, str], as_json: bool) -> logging.Formatter:
+    """Lines of this process; libraries that use the standard library's loggers come out the same way."""
+
+    def about(_logger: WrappedLogger, method: str, event: EventDict) -> EventDict:
+        return {"level": method.upper(), **fields, **event}
+
+    shared: Sequence[Processor] = (
+        structlog.contextvars.merge_contextvars,
+        about,
+        structlog.processors.TimeStamper(fmt="%Y-%m-%dT%H:%M:%S.%f", utc=False, key="time"),
+        structlog.processors.ExceptionRenderer(),
+    )
+    renderer: Processor = structlog.processors.JSONRenderer(ensure_ascii=False, default=str) if as_json else line
+    return structlog.stdlib.ProcessorFormatter(
+        processors=[*shared, structlog.stdlib.ProcessorFormatter.remove_processors_meta, renderer]
+    )
+
+
+def line(_logger: WrappedLogger, _method: str, event: EventDict) -> str:
+    """`2026-01-31T06:00:00.123456 INFO process=zx200:rc machine=zx200 goal=1f.. event=.. ..`, tracebacks last."""
+    time, level = event.pop("time"), event.pop("level")
+    trace = event.pop("exception", None)
+    keys = [key for key in FIRST if key in event] + [key for key in event if key not in FIRST]
+    words = [f"{key}={_shown(event[key])}" for key in keys]
+    words += [] if trace is None else [f"trace={trace!r}"]
+    return " ".join([time, level, *words]).translate(BREAKS)
+
+
+def _shown(value: Any) -> str:
+    text = str(value)
+    return repr(text) if not text or any(sign in text for sign in " \"'=") else text

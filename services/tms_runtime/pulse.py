@@ -1,0 +1,152 @@
+"""A thread of its own that beats at a fixed rate, and knows how late it was.
+
+Leases are asserted here and not on the executor thread: its timers come late when callbacks are long, and each of
+their wake-ups costs ten times as much. What the executor does is still what counts: a process whose executor has been
+in one callback for long, or does not come out of its waiting when it is asked, asserts nothing. Whoever judges others
+by their silence asks first whether this process itself, or the whole PC, did not run meanwhile.
+"""
+
+import threading
+import time
+from collections.abc import Callable
+from typing import Protocol
+
+from tms_ros.priority import waited
+
+BEAT = 0.05  # s
+LATE = 0.1  # s that a beat may come late before it tells of a PC that is too busy
+STOOD_STILL = 0.3  # s without an assertion that are told: with the lease of 0.5 s, others are about to take it for lost
+REMEMBERED = 1.0  # s for which a late beat is remembered
+ASK = 1.0  # s between questions to the executor whether it runs: each wakes it
+STUCK = 0.18  # s in one callback, or without an answer, after which nothing is asserted; with the lease below 0.7 s
+
+Step = Callable[[], None]
+
+
+class Executor(Protocol):
+    """The thread that runs the callbacks of a node."""
+
+    def begin(self, work: Step, name: str) -> threading.Thread:
+        """Start a thread whose death ends the process."""
+
+    def on_executor(self, step: Step) -> None:
+        """Have a step run on the executor thread, soon."""
+
+    def busy_since(self) -> float | None:
+        """When its present callback began, monotonic [s]; None while it waits."""
+
+    def thread_number(self) -> int | None:
+        """Its number in the kernel."""
+
+    def on_stop(self, step: Step) -> None:
+        """Run a step before the node stops."""
+
+
+class Lateness:
+    """When beats came late. Pure logic, for one writing thread and any reader; times are monotonic [s]."""
+
+    def __init__(self) -> None:
+        self._last: float | None = None
+        self._late_at = float("-inf")
+
+    def beat(self, now: float) -> float:
+        """Note a beat; how late it was [s]."""
+        last, self._last = self._last, now
+        if self._overdue(now, last):
+            self._late_at = now
+        return 0.0 if last is None else now - last - BEAT
+
+    def late(self, now: float) -> bool:
+        """Whether a beat came late a moment ago, or one is overdue now."""
+        return self._overdue(now, self._last) or now - self._late_at < REMEMBERED
+
+    def pause(self) -> None:
+        """Nothing beats for a while, on purpose."""
+        self._last = None
+
+    @staticmethod
+    def _overdue(now: float, last: float | None) -> bool:
+        return last is not None and now - last > BEAT + LATE
+
+
+class Pulse:
+    """One a process. Without steps its thread sleeps, so an idle process costs nothing."""
+
+    def __init__(self, executor: Executor) -> None:
+        self._executor = executor
+        self._steps: tuple[Step, ...] = ()
+        self._changing = threading.Lock()
+        self._wanted, self._closed = threading.Event(), threading.Event()
+        self._asked = self._answered = 0.0
+        self._lateness = Lateness()
+        self._worked: float | None = None  # when this process was last seen to work
+        self._waited = 0.0  # s for which its threads had waited for a processor by the last question
+        self.stood_still: Callable[[float, float], None] = lambda silent, waited: None  # see `_tell`
+        self._thread = executor.begin(self._run, "pulse")
+        executor.on_stop(self.close)
+
+    def add(self, step: Step) -> None:
+        """Call `step` at every beat from now on, in the pulse's thread; it must be quick."""
+        with self._changing:
+            if not self._steps:
+                self._asked = self._answered = time.monotonic()
+            self._steps = (*(other for other in self._steps if other != step), step)
+            self._wanted.set()
+
+    def remove(self, step: Step) -> None:
+        """Not any more; one call may still be under way."""
+        with self._changing:
+            self._steps = tuple(other for other in self._steps if other != step)
+            if not self._steps:
+                self._wanted.clear()
+
+    def late(self) -> bool:
+        """Whether this process, or the whole PC, did not run for a moment just now."""
+        return self._lateness.late(time.monotonic())
+
+    def works(self) -> bool:
+        """Whether the executor is in no long callback, and has answered when it was asked."""
+        now, since, asked = time.monotonic(), self._executor.busy_since(), self._asked
+        answered = self._answered >= asked or now - asked < STUCK
+        return answered and (since is None or now - since < STUCK)
+
+    def close(self) -> None:
+        """End the thread, after a beat that is under way."""
+        self._closed.set()
+        self._wanted.set()
+        self._thread.join(1.0)
+
+    def _run(self) -> None:
+        while not self._closed.is_set():
+            if not self._wanted.is_set():
+                self._lateness.pause()
+                self._worked = None
+                self._wanted.wait()
+            now = time.monotonic()
+            self._lateness.beat(now)
+            if self.works():
+                self._tell(now)
+            self._ask(now)
+            for step in self._steps:
+                step()
+            self._closed.wait(BEAT)
+
+    def _ask(self, now: float) -> None:
+        if self._answered >= self._asked and now - self._asked >= ASK:
+            self._asked, self._waited = now, self._waits()
+            self._executor.on_executor(self._answer)
+
+    def _tell(self, now: float) -> None:
+        """Of a long time in which nothing was asserted [s], and for how much of it a processor was waited for [s]."""
+        silent = now - (self._worked or now) - BEAT
+        self._worked = now
+        if silent > STOOD_STILL:
+            waits = self._waits()
+            self.stood_still(silent, min(silent, waits - self._waited))
+            self._waited = waits
+
+    def _waits(self) -> float:
+        return waited({number for number in (self._executor.thread_number(), threading.get_native_id()) if number})
+
+    def _answer(self) -> None:
+        self._answered = time.monotonic()

@@ -1,0 +1,128 @@
+"""`python -m tms_runtime.run <group:name>`: the one entry of every process."""
+
+import ctypes
+import importlib
+import os
+import platform
+import signal
+import sys
+import threading
+import time
+
+from tms_config import discovery, environment, state_folder, store
+from tms_config.config import Site, load_site, version
+from tms_config.processes import Process, find
+from tms_reason.errors import ConfigError
+from tms_ros.priority import come_first, threads
+from tms_runtime import log, metrics
+from tms_runtime.last_resort import LEAVE_LIMIT, end_after
+from tms_runtime.log import Logger
+from tms_runtime.metrics import Health
+
+LOOK = 0.5  # s
+FORGOTTEN = 3.0  # s; lease of discovery (5 s) less the time since the last announcement (1.5 s at most), 0.5 s to spare
+EXIT_LIMIT = 2.0  # s from SIGTERM to the end, whatever hangs
+PR_SET_PDEATHSIG = 1
+# Nice of processes that must not miss a beat on a busy PC, nor see one missed, once they have started: none that starts
+# keeps one that works from its beats.
+FIRST = {"tms_ts.node": -15, "tms_rc.node": -12, "tms_host.node": -12}
+OF_A_MACHINE = -5  # planner and subtasks; those above, too, while they start
+
+
+def main(name: str) -> int:
+    """Run one process of the table until SIGTERM or SIGINT; 0 on a clean end."""
+    try:
+        _die_with_parent()
+        os.umask(state_folder.UMASK)
+        site = load_site()
+        row = find(site, name)
+        if row.name == "store":
+            store.become(site)
+        if row.name == "discovery":
+            discovery.become(site)
+        environment.enter(site)
+        return _serve(site, row)
+    except ConfigError as error:
+        print(f"{name}: {error}", file=sys.stderr)
+        return 1
+    finally:
+        log.close()
+
+
+def _serve(site: Site, row: Process) -> int:
+    metrics.BUILD.info({"version": version(), "python": platform.python_version()})
+    from tms_ros.node import Ros
+    from tms_runtime.app import App  # rclpy reads the environment when it is imported first
+    from tms_runtime.graph import Graph
+
+    logger = log.setup(row.full, row.machine, level=site.file.log.level, as_json=site.file.log.json_lines)
+    app_box: list[App] = []
+    health = Health(
+        row.address,
+        row.port,
+        unready=lambda: app_box[0].unready() if app_box else "starting",
+        hangs=lambda: app_box[0].ros.hangs() if app_box else None,
+    )
+    stop = threading.Event()
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, lambda _number, _frame: stop.set())
+    if row.module in FIRST:
+        come_first(OF_A_MACHINE, threads())
+    ros = Ros(row.full.replace(":", "_"))
+    app = App(site, row, ros, logger)
+    app.pulse.stood_still = lambda silent, waited: _stood_still(logger, silent, waited)
+    importlib.import_module(row.module).start(app)
+    app_box.append(app)
+    Graph(ros, logger)
+    if row.module in FIRST or row.group == row.machine:
+        come_first(FIRST.get(row.module, OF_A_MACHINE), threads())
+    logger.info("started", pid=os.getpid())
+    _wait_for_end(stop, ros.failed, logger)
+    end_after(EXIT_LIMIT, 1)
+    app.stop()
+    ros.stop()
+    health.close()
+    logger.info("stopped")
+    log.close()
+    code = 1 if ros.failed.is_set() else 0
+    end_after(LEAVE_LIMIT, code)
+    ros.leave()
+    return code
+
+
+def _stood_still(logger: Logger, silent: float, waited: float) -> None:
+    """Why others took this process for lost: whoever debugs at night looks into its log."""
+    metrics.STOOD_STILL.inc(silent)
+    reason = "its PC was too busy" if waited > silent / 2 else "a long callback, or it was frozen"
+    logger.warning("stood_still", seconds=round(silent, 2), waited=round(waited, 2), reason=reason)
+
+
+def _wait_for_end(stop: threading.Event, failed: threading.Event, logger: Logger) -> None:
+    """Until the process is asked to end, or has failed.
+
+    One that stood still for long has failed: others may have forgotten it, and two of which one has forgotten the other
+    may stay deaf to each other for ever. Its successor is found by all.
+    """
+    before = time.monotonic()
+    while not stop.wait(LOOK) and not failed.is_set():
+        before, gap = time.monotonic(), time.monotonic() - before
+        if gap > FORGOTTEN:  # it may have begun just after a look, or just before the next
+            logger.error("forgotten", seconds=round(gap, 1), action="restarted")
+            failed.set()
+
+
+def _die_with_parent() -> None:
+    """After a `kill -9` of supervisord no orphan may live on beside the processes of the next one."""
+    parent = os.getppid()
+    ctypes.CDLL(None, use_errno=True).prctl(PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)
+    if os.getppid() != parent:
+        raise ConfigError("supervisord ended while this process started")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        print(
+            "usage: python -m tms_runtime.run <group:name>, for example zx200:rc; `tms ps` lists them", file=sys.stderr
+        )
+        sys.exit(2)
+    sys.exit(main(sys.argv[1]))

@@ -1,0 +1,121 @@
+"""XML from outside: whatever a hostile or broken text can do ends here, in one refusal with its line.
+
+One place for both who read tasks: tms_db stores their text, tms_ts builds their trees.
+"""
+
+import re
+
+from lxml import etree
+
+from tms_reason.errors import TaskError
+
+MAX_BYTES = 5_000_000
+MAX_TAGS = 200_000  # "<" in the text; bounds the memory that the parser takes
+MAX_DEPTH = 200  # a tree that people drew is a tenth as deep
+MAX_EQUALS = 5000  # "=" in one tag; the parser compares attribute names pairwise
+TOO_LARGE = "a task file has some 10 to 100 kB: is this the right one?"
+
+_PROLOG = re.compile(r"\s+|<\?.*?\?>|<!--.*?-->", re.DOTALL)
+_DECLARATION = re.compile(r"<\?xml\s.*?\?>", re.DOTALL)
+
+
+class XmlRefused(TaskError):
+    """A text that is no XML, or none that a task may be."""
+
+    def __init__(self, text: str, line: int | None = None, hint: str = "") -> None:
+        place = f"line {line}: " if line else ""
+        super().__init__(f"{place}{text}: {hint}" if hint else f"{place}{text}")
+        self.text, self.line, self.hint = text, line, hint
+
+
+def decode(data: bytes | str, limit: int = MAX_BYTES) -> str:
+    """Text with plain line feeds; bytes are UTF-8 whatever the XML declaration says.
+
+    Raises:
+        XmlRefused: it is too large, empty or no text.
+    """
+    if len(data) > limit:
+        raise XmlRefused(f"the task is larger than {limit} bytes", hint=TOO_LARGE)
+    if isinstance(data, bytes):
+        raw = data
+        try:
+            data = raw.decode("utf-8-sig")
+        except UnicodeDecodeError as error:
+            line = raw.count(b"\n", 0, error.start) + 1
+            raise XmlRefused("the text is not UTF-8", line, "save the file as UTF-8") from error
+    text = data.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
+    zero = text.find("\0")
+    if zero >= 0:
+        raise XmlRefused("the text contains a NUL byte", _line(text, zero), "save it again from Groot")
+    if not text.strip():
+        raise XmlRefused(
+            "the task is empty", hint='export it from Groot; it begins with <root main_tree_to_execute="...">'
+        )
+    return text
+
+
+def elements(text: str, comments: bool) -> etree._Element:
+    """The outermost element of a decoded text, with or without comments and processing instructions.
+
+    Raises:
+        XmlRefused: names the line.
+    """
+    _refuse_dtd(text)
+    if text.count("<") > MAX_TAGS:
+        raise XmlRefused(f"the text has more than {MAX_TAGS} tags")
+    if max(tag.count("=") for tag in text.split("<")) > MAX_EQUALS:
+        raise XmlRefused("an element has too many attributes")
+    declaration = _DECLARATION.match(text)
+    if declaration is not None:  # its encoding would be believed; keep the lines
+        text = "\n" * declaration[0].count("\n") + text[declaration.end() :]
+    try:
+        root = etree.fromstring(text.encode(), _parser(comments))
+    except UnicodeEncodeError as error:
+        raise XmlRefused("a character is no valid Unicode", _line(text, error.start), "save it as UTF-8") from error
+    except etree.XMLSyntaxError as error:
+        raise _refusal(error) from error
+    _check_depth(root)
+    return root
+
+
+def _parser(comments: bool) -> etree.XMLParser:
+    return etree.XMLParser(
+        encoding="utf-8", resolve_entities=False, load_dtd=False, no_network=True, huge_tree=False,
+        remove_comments=not comments, remove_pis=not comments,
+    )  # fmt: skip
+
+
+def _refuse_dtd(text: str) -> None:
+    """It can stand before the root element only; nothing of it (entities!) may reach the parser."""
+    position = 0
+    while (found := _PROLOG.match(text, position)) is not None:
+        position = found.end()
+    if text.startswith("<!DOCTYPE", position):
+        raise XmlRefused("a task must not have a DOCTYPE (DTD) or entities", _line(text, position), "remove them")
+
+
+def _refusal(error: etree.XMLSyntaxError) -> XmlRefused:
+    said = " ".join(str(error.msg or "malformed").split(", line ")[0].split())
+    line = error.lineno or 1
+    if "depth" in said:  # libxml2's own limit lies a little above ours
+        return _too_deep(line)
+    if "XML_PARSE_HUGE" in said:
+        return XmlRefused("a name or a value is too long", line)
+    return XmlRefused(f"not well-formed XML ({said})", line, "correct it there")
+
+
+def _check_depth(root: etree._Element) -> None:
+    depth = 0
+    for event, element in etree.iterwalk(root, events=("start", "end")):
+        depth += 1 if event == "start" else -1
+        if depth > MAX_DEPTH:
+            line: object = element.sourceline
+            raise _too_deep(line if isinstance(line, int) else 1)
+
+
+def _too_deep(line: int) -> XmlRefused:
+    return XmlRefused(f"the elements are nested deeper than {MAX_DEPTH}", line, "split the task into subtrees")
+
+
+def _line(text: str, position: int) -> int:
+    return text.count("\n", 0, position) + 1

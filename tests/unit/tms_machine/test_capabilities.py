@@ -1,0 +1,117 @@
+"""What a machine's answers mean to a subtask: success only when it says so in every way it can."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from com3_msgs.action import SetDumpAngle
+from geometry_msgs.msg import Point, Pose
+from nav2_msgs.action import FollowWaypoints, NavigateThroughPoses, NavigateToPose
+from pydantic import ValidationError
+from tms_msg_rp.action import TmsRpZx200ChangePose, TmsRpZx200ExcavateSimple
+
+from tms_config.config import CONFIGS
+from tms_config.models import MachineModel
+from tms_config.yaml_file import parse
+from tms_machine.acting import missed
+from tms_machine.machine import Machine
+from tms_reason.errors import SubtaskFailed
+from tms_ros.client import Call
+from tms_ros.goals import Outcome
+from tms_subtasks.sample_joint import Angle
+
+PATH = [Pose(position=Point(x=float(x))) for x in range(3)]
+
+
+class Recorded(Machine):
+    """A machine that answers every goal with `result` after `heard` was given `feedback`."""
+
+    def __init__(self, model: str, result: Any = None, feedback: Any = None) -> None:
+        ros: Any = SimpleNamespace(now=lambda: PATH_TIME)
+        super().__init__(ros, f"{model}_1", model, parse(CONFIGS / "machines" / f"{model}.yaml", MachineModel), 60.0)
+        self.sent: list[tuple[Any, str, Any]] = []
+        self._result, self._feedback = result, feedback
+
+    def act(self, action_type: Any, action: str, goal: Any, heard: Any = None) -> Any:
+        self.sent.append((action_type, action, goal))
+        if self._feedback is not None:
+            heard(self._feedback)
+        return self._result
+
+
+PATH_TIME = NavigateToPose.Goal().pose.header.stamp
+
+
+def waypoints(*numbers: int) -> Any:
+    """A result as Jazzy's Nav2 gives it, and as Humble's does."""
+    return SimpleNamespace(missed_waypoints=[SimpleNamespace(index=number) for number in numbers])
+
+
+def test_missed_waypoints_of_both_distributions() -> None:
+    assert missed(waypoints(1, 2)) == missed(SimpleNamespace(missed_waypoints=[1, 2])) == [1, 2]
+    assert missed(FollowWaypoints.Result()) == missed(None) == []
+
+
+def test_a_path_with_missed_waypoints_is_a_failure_that_names_them() -> None:
+    Recorded("ic120", waypoints()).follow(print, PATH)
+    with pytest.raises(SubtaskFailed, match=r"MISSED_WAYPOINTS: .* waypoint 1 \(1.00, 0.00\), 2 \(2.00, 0.00\)"):
+        Recorded("ic120", waypoints(1, 2)).follow(print, PATH)
+
+
+def test_an_angle_that_was_not_reached_is_a_failure() -> None:
+    Recorded("ic120", SetDumpAngle.Result(success=True)).set_dump_angle(print, -1.0)
+    with pytest.raises(SubtaskFailed, match="NOT_REACHED"):
+        Recorded("ic120", SetDumpAngle.Result(success=False)).set_dump_angle(print, -1.0)
+
+
+def test_what_the_model_lacks_is_refused() -> None:
+    machine = Recorded("ic120")
+    with pytest.raises(SubtaskFailed, match="NO_CAPABILITY: ic120_1 has no set_swing_angle"):
+        machine.set_swing_angle(print, 1.0)
+    assert machine.sent == []
+
+
+@pytest.mark.parametrize("angle", [400.0, -361.0])
+def test_a_sample_of_more_than_a_turn_is_no_pose_to_stay_in(angle: float) -> None:
+    given = {"joint": "swing_joint", "field": "goal", "goal": angle}
+    with pytest.raises(ValidationError, match="more than one turn"):
+        Angle.model_validate(given)
+    assert Angle.model_validate({**given, "goal": 360.0}).angle == 360.0
+
+
+@pytest.mark.parametrize(("outcome", "stopped"), [(Outcome.CANCELED, True), (Outcome.LOST, False)])
+def test_a_motion_whose_server_was_lost_as_it_was_stopped_was_not_seen_to_end(outcome: Outcome, stopped: bool) -> None:
+    machine, call = Recorded("zx200"), Call(bytes(16), None, None)
+    call.accepted = True
+    peer: Any = SimpleNamespace(cancel=lambda one: one.end(outcome))
+    machine._calls = [(peer, call)]
+    assert machine.release() is stopped
+
+
+def test_goals_go_through_the_gateway_in_the_map() -> None:
+    machine = Recorded("d37pxi")
+    machine.navigate_to(print, PATH[1])
+    machine.navigate_through(print, PATH)
+    assert [action for _, action, _ in machine.sent] == ["rc/navigate_to_pose", "rc/navigate_through_poses"]
+    assert machine.sent[0][2].pose.header.frame_id == machine.sent[1][2].poses[2].header.frame_id == "map"
+
+
+def test_feedback_is_passed_on() -> None:
+    said: list[str] = []
+    feedback = NavigateThroughPoses.Feedback(distance_remaining=3.25, number_of_poses_remaining=2)
+    Recorded("ic120", feedback=feedback).navigate_through(said.append, PATH)
+    done = waypoints()
+    Recorded("ic120", done, FollowWaypoints.Feedback(current_waypoint=1)).follow(said.append, PATH)
+    assert said == ["DRIVING 3.2 m to go, 2 poses to go", "DRIVING to waypoint 1 of 0..2"]
+
+
+def test_plan_variants_ask_the_servers_that_never_move() -> None:
+    machine = Recorded("zx120")
+    machine.change_pose(print, joints={"boom_joint": -0.5}, plan_only=True)
+    machine.excavate(print, (4.0, 0.0, 0.0), 1.0, 0.0, plan_only=True)
+    machine.change_pose(print, joints={"boom_joint": -0.5})
+    assert [(kind, action) for kind, action, _ in machine.sent] == [
+        (TmsRpZx200ChangePose, "tms_rp_zx120_change_pose_plan"),
+        (TmsRpZx200ExcavateSimple, "tms_rp_zx120_excavate_simple_plan"),
+        (TmsRpZx200ChangePose, "tms_rp_zx120_change_pose"),
+    ]

@@ -1,0 +1,120 @@
+"""What a watcher makes of the news of a lease; DDS itself is replaced."""
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from tms_msg_rc.msg import Permit as Message
+
+from tms_machine.permit import GRACE, Link, watch_server
+
+GOAL = [7] * 16
+
+
+class Dds:
+    """What a Link needs of Ros: keeps the callbacks, and decides whether this process was late."""
+
+    def __init__(self) -> None:
+        self.pulse = self
+        self.was_late = False
+        self.later: list[tuple[float, Callable[[], None]]] = []
+
+    def late(self) -> bool:
+        return self.was_late
+
+    def after(self, seconds: float, step: Callable[[], None]) -> None:
+        self.later.append((seconds, step))
+
+    def lease_subscribe(self, _type: Any, _topic: str, _lease: float, heard: Any, alive: Any) -> None:
+        self.heard, self.alive = heard, alive
+
+
+@pytest.fixture
+def dds() -> Dds:
+    return Dds()
+
+
+@pytest.fixture
+def link(dds: Dds) -> tuple[Link, list[bool]]:
+    seen: list[bool] = []
+    made = Link(dds, dds, "zx200", "rc", lambda link: seen.append(link.alive))  # type: ignore[arg-type]
+    dds.heard(Message(process="rc", goal=GOAL))
+    dds.alive(1, 0)
+    return made, seen
+
+
+def test_a_lapsed_lease_is_a_loss_at_once(dds: Dds, link: tuple[Link, list[bool]]) -> None:
+    dds.alive(0, 1)
+    assert link[1][-1] is False and not link[0].alive and not dds.later
+
+
+def test_a_watcher_that_was_late_itself_waits_for_a_sign_of_life(dds: Dds, link: tuple[Link, list[bool]]) -> None:
+    dds.was_late = True
+    dds.alive(0, 1)
+    assert link[0].alive and dds.later[0][0] == GRACE
+    dds.alive(1, 0)
+    dds.later[0][1]()
+    assert link[0].alive and all(link[1])
+
+
+def test_it_does_not_wait_for_ever(dds: Dds, link: tuple[Link, list[bool]]) -> None:
+    dds.was_late = True
+    dds.alive(0, 1)
+    dds.later[0][1]()
+    assert not link[0].alive and link[1][-1] is False
+
+
+@pytest.mark.parametrize("corpses", [0, 1])  # of predecessors
+def test_who_takes_leave_leaves_no_corpse(dds: Dds, link: tuple[Link, list[bool]], corpses: int) -> None:
+    dds.alive(1, corpses)
+    dds.alive(0, corpses)
+    assert not link[0].alive and link[0].left
+    dds.alive(1, corpses)
+    assert not link[0].left
+    dds.alive(0, corpses + 1)
+    assert not link[0].alive and not link[0].left
+    dds.alive(0, 0)  # discovery drops the corpse
+    assert not link[0].left
+
+
+class Server:
+    """What a watcher needs of a Peer: keeps what it was told."""
+
+    def __init__(self) -> None:
+        self.told: list[str] = []
+
+    def lost(self) -> None:
+        self.told.append("lost")
+
+    def found(self) -> None:
+        self.told.append("found")
+
+
+@pytest.fixture
+def server(dds: Dds) -> Server:
+    made = Server()
+    watch_server(dds, dds, "zx200", "rc")(made)  # type: ignore[arg-type]
+    dds.heard(Message(process="rc", goal=GOAL))
+    dds.alive(1, 0)
+    made.told.clear()
+    return made
+
+
+def test_a_frozen_process_that_runs_again_is_found(dds: Dds, server: Server) -> None:
+    dds.alive(0, 1)
+    dds.alive(1, 0)
+    assert server.told == ["lost", "found"]
+
+
+def test_a_successor_is_not_taken_for_the_process_that_was_lost(dds: Dds, server: Server) -> None:
+    dds.alive(0, 1)
+    dds.alive(1, 1)
+    dds.heard(Message(process="rc", goal=GOAL))
+    assert server.told == ["lost"]
+
+
+def test_a_process_that_ends_between_two_goals_loses_none(dds: Dds, server: Server) -> None:
+    dds.heard(Message(process="rc"))
+    server.told.clear()
+    dds.alive(0, 1)
+    assert not server.told

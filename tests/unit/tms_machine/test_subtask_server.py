@@ -1,0 +1,146 @@
+"""The process of a subtask: what it locks and frees, and what a cancel reaches."""
+
+import asyncio
+import threading
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+import structlog
+from tms_msg_db.msg import Record
+from tms_msg_db.srv import GetParameter, SetParameter
+from tms_msg_ts.action import LeafNodeBase
+
+from tms_machine.record_lock import FLAG
+from tms_machine.subtask import Params, Progress, Subtask
+from tms_machine.subtask_server import _Server
+from tms_machine.values import from_parameters, to_parameters
+from tms_reason.errors import SubtaskFailed
+from tms_ros.goals import Outcome
+
+REQUEST = LeafNodeBase.Goal(model_name="zx200", record_name="p")
+
+
+class Place(Params):
+    x: float
+
+
+class Dig(Subtask):
+    """Notes where it digs."""
+
+    params = Place
+    dug: list[float]  # set by the test
+    cancels: list[str]
+
+    def execute(self, model_name: str, record_name: str, progress: Progress) -> None:
+        self.dug.append(self.want.x)
+
+    def on_cancel(self) -> None:
+        self.cancels.append("heard")
+
+
+class Goal:
+    """As the runtime hands it to a worker."""
+
+    def __init__(self, cancelled: bool = False) -> None:
+        self.request, self.id, self.uuid = REQUEST, "g1", bytes(16)
+        self.cancelled, self.on_cancel, self.said = threading.Event(), None, list[str]()
+        if cancelled:
+            self.cancelled.set()
+
+    def publish(self, feedback: Any) -> None:
+        self.said.append(feedback.status)
+
+
+class Database:
+    """One dynamic record with a lock flag; `next` is what sensing writes as soon as it has been read."""
+
+    def __init__(self, x: Any, *following: Any) -> None:
+        self.x, self.next = x, list(following)
+        self.lock: list[bool] = []
+
+    def _answer(self) -> Any:
+        record = Record(type="dynamic", values=to_parameters({"x": self.x, FLAG: False}))
+        self.x = self.next.pop(0) if self.next else self.x
+        return GetParameter.Response(record=record)
+
+    async def ask(self, *_: Any) -> Any:
+        return self._answer()
+
+    def call(self, service: Any, _name: str, request: Any, *_limit: Any) -> Any:
+        if service is GetParameter:
+            return self._answer()
+        self.lock.append(bool(from_parameters(request.values)[FLAG]))
+        return SetParameter.Response()
+
+    def post(self, service: Any, name: str, request: Any) -> None:
+        self.call(service, name, request)
+
+
+def served(database: Database, plan_only: bool) -> Any:
+    """The server of Dig on this database, and the class that notes what it did."""
+    nothing: Any = SimpleNamespace(lease_publisher=lambda *_: None, lease_subscribe=lambda *_: None)
+    ros: Any = SimpleNamespace(**vars(nothing), ask=database.ask, call=database.call, post=database.post)
+    site = SimpleNamespace(
+        file=SimpleNamespace(machines={"zx200": SimpleNamespace(model="zx200")}), model_of=lambda _: None
+    )
+    app: Any = SimpleNamespace(
+        ros=ros, pulse=None, machine="zx200", site=site, log=structlog.stdlib.get_logger("test"),
+        process=SimpleNamespace(full="zx200:subtask_dig", action="subtask_dig"),
+    )  # fmt: skip
+    kind = type("Noted", (Dig,), {"dug": [], "cancels": []})
+    return _Server(app, kind, {"plan_only": plan_only}, 0.0), kind
+
+
+def accepted(server: Any) -> Any:
+    return asyncio.run(server.accept(REQUEST))
+
+
+def test_what_was_locked_is_what_is_planned() -> None:
+    database = Database(1.0, 2.0)  # sensing wrote between the check of the goal and the lock
+    server, kind = served(database, plan_only=True)
+    assert accepted(server) is None
+    assert server._execute(Goal()) is Outcome.SUCCEEDED
+    assert kind.dug == [2.0]
+    assert database.lock == [True]  # kept for the variant that moves
+
+
+def test_a_plan_whose_cancel_came_as_it_ended_frees_the_record() -> None:
+    database, goal = Database(1.0), Goal()
+    server, kind = served(database, plan_only=True)
+    kind.execute = lambda *_: goal.cancelled.set()
+    assert accepted(server) is None
+    assert server._execute(goal) is Outcome.CANCELED
+    assert database.lock == [True, False]
+
+
+def test_a_motion_frees_the_record_however_it_ends() -> None:
+    database = Database(1.0)
+    server, kind = served(database, plan_only=False)
+
+    def fails(*_: Any) -> None:
+        raise SubtaskFailed("OUT_OF_REACH", "too far")
+
+    kind.execute = fails
+    goal = Goal()
+    assert accepted(server) is None
+    assert server._execute(goal) is Outcome.ABORTED
+    assert goal.said == ["OUT_OF_REACH: too far"]
+    assert database.lock == [False]
+
+
+@pytest.mark.parametrize(("plan_only", "freed"), [(False, [False]), (True, [])])
+def test_a_motion_that_is_refused_for_its_record_frees_it(plan_only: bool, freed: list[bool]) -> None:
+    database = Database("far")
+    server, _ = served(database, plan_only)
+    refusal = accepted(server)
+    assert refusal.code == "BAD_RECORD" and "record zx200/p: x: Input should be a valid number" in refusal.text
+    assert database.lock == freed
+    assert not server._reserved
+
+
+def test_a_cancel_that_came_first_reaches_the_subtask() -> None:
+    server, kind = served(Database(1.0), plan_only=False)
+    assert accepted(server) is None
+    assert server._execute(Goal(cancelled=True)) is Outcome.CANCELED
+    assert kind.cancels == ["heard"]

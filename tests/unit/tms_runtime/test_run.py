@@ -1,0 +1,42 @@
+"""When a process ends by itself."""
+
+import threading
+
+import pytest
+import structlog
+
+from tms_runtime import run
+
+
+class Stop(threading.Event):
+    """Waits of which some take longer than they should: the process did not run."""
+
+    def __init__(self, patch: pytest.MonkeyPatch, takes: list[float]) -> None:
+        super().__init__()
+        self.now, self.takes = 100.0, takes
+        patch.setattr(run.time, "monotonic", lambda: self.now)
+
+    def wait(self, timeout: float | None = None) -> bool:
+        if not self.takes:
+            return True
+        self.now += self.takes.pop(0)
+        return False
+
+
+def test_a_process_that_stood_still_for_long_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    stop, failed = Stop(monkeypatch, [run.LOOK, run.FORGOTTEN + 0.1, run.LOOK]), threading.Event()
+    run._wait_for_end(stop, failed, structlog.stdlib.get_logger("test"))
+    assert failed.is_set()
+
+
+def test_one_that_stood_still_for_a_moment_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    stop, failed = Stop(monkeypatch, [run.LOOK, run.LOOK + 2.2, run.LOOK + 2.2, run.LOOK]), threading.Event()
+    run._wait_for_end(stop, failed, structlog.stdlib.get_logger("test"))
+    assert not failed.is_set() and not stop.takes
+
+
+def test_one_that_has_failed_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    stop, failed = Stop(monkeypatch, [run.LOOK] * 3), threading.Event()
+    failed.set()
+    run._wait_for_end(stop, failed, structlog.stdlib.get_logger("test"))
+    assert len(stop.takes) == 2
