@@ -1,4 +1,4 @@
-"""The errors that cross a border, one tree.
+"""The errors that cross a border, one tree; each carries the reason why.
 
 TmsError                 code and one line: what is wrong, where, what to do next
 ├── ConfigError          a file of configs/ is wrong: fix the file
@@ -8,17 +8,23 @@ TmsError                 code and one line: what is wrong, where, what to do nex
 └── SubtaskFailed        the machine cannot, or must not, do what was asked
 """
 
+from tms_reason.reason import Foreign, Reason
+from tms_reason.texts import sentence
+
 # Ends the reason of a run whose end the disk has not taken yet; who shows the result looks for it.
 NOT_STORED = "(not stored yet: the disk of the scheduler's PC is slow or full)"
 
 
 class TmsError(Exception):
-    """An error that a person reads: `code` for programs, the message for people."""
+    """An error that a person reads: its reason for programs, and the reason's English text for the log."""
 
     code = "FAILED"
 
-    def __init__(self, message: str, code: str | None = None) -> None:
-        super().__init__(message)
+    def __init__(self, reason: Reason | str, code: str | None = None) -> None:
+        super().__init__(sentence(reason, "en") if isinstance(reason, Reason) else reason)
+        self.reason = reason if isinstance(reason, Reason) else Foreign(reason)
+        if isinstance(reason, Reason):
+            self.code = reason.code
         if code is not None:
             self.code = code
 
@@ -48,13 +54,16 @@ class DbError(TmsError):
 
 
 class SubtaskFailed(TmsError):
-    """A subtask cannot do what its goal asks.
+    """A subtask cannot do what its goal asks: `SubtaskFailed(reason)`.
 
-    Written `SubtaskFailed(code, message)`, as authors of subtasks think: the code first.
+    Still written `SubtaskFailed(code, message)` where a subtask has no reasons of its own yet.
     """
 
-    def __init__(self, code: str, message: str) -> None:
-        super().__init__(message, code)
+    def __init__(self, reason: Reason | str, message: str | None = None) -> None:
+        if isinstance(reason, Reason):
+            super().__init__(reason)
+        else:
+            super().__init__(message or "", reason)
 
     def __str__(self) -> str:
         return f"{self.code}: {self.args[0]}"

@@ -15,6 +15,10 @@ import structlog
 from prometheus_client import Counter
 from structlog.typing import EventDict, Processor, WrappedLogger
 
+from tms_reason.reason import Reason
+from tms_reason.texts import text
+from tms_reason.wire import to_line
+
 Logger = structlog.stdlib.BoundLogger
 
 BREAKS = str.maketrans({"\n": "\\n", "\r": "\\r"})  # an event is one line, whatever its text holds
@@ -81,6 +85,7 @@ def formatter(fields: dict[str, str], as_json: bool) -> logging.Formatter:
     shared: Sequence[Processor] = (
         structlog.contextvars.merge_contextvars,
         about,
+        _reasons,
         structlog.processors.TimeStamper(fmt="%Y-%m-%dT%H:%M:%S.%f", utc=False, key="time"),
         structlog.processors.ExceptionRenderer(),
     )
@@ -88,6 +93,14 @@ def formatter(fields: dict[str, str], as_json: bool) -> logging.Formatter:
     return structlog.stdlib.ProcessorFormatter(
         processors=[*shared, structlog.stdlib.ProcessorFormatter.remove_processors_meta, renderer]
     )
+
+
+def _reasons(_logger: WrappedLogger, _method: str, event: EventDict) -> EventDict:
+    """A reason is logged as its code and arguments, for programs, and as its English text."""
+    for key, value in list(event.items()):
+        if isinstance(value, Reason):
+            event[key], event[f"{key}_text"] = to_line(value), text(value, "en")
+    return event
 
 
 def line(_logger: WrappedLogger, _method: str, event: EventDict) -> str:

@@ -11,6 +11,7 @@ from typing import Any
 from structlog.contextvars import bind_contextvars
 
 from tms_config.config import PROJECT
+from tms_reason.reason import Foreign
 from tms_runtime import log
 
 
@@ -80,6 +81,11 @@ def test_json_keeps_the_types_of_values() -> None:
     row = json.loads(JSON.format(record({"event": "stop", "cause": "it's lost", "confirmed": True, "seconds": 0.25})))
     assert row["process"] == "zx200:rc" and row["machine"] == "zx200" and row["level"] == "INFO"
     assert (row["event"], row["cause"], row["confirmed"], row["seconds"]) == ("stop", "it's lost", True, 0.25)
+
+
+def test_a_reason_is_told_to_programs_and_to_people() -> None:
+    shown = LINE.format(record({"event": "refused", "reason": Foreign("no room")}))
+    assert shown.endswith("""event=refused reason='FOREIGN words="no room"' reason_text='no room'""")
 
 
 def test_nobody_who_logs_waits_for_a_reader_that_does_not_read() -> None:

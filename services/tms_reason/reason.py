@@ -1,0 +1,58 @@
+"""A reason: a code with typed arguments, declared once with its text and with what an operator can do about it.
+
+    class GatewayLost(Reason, text="the gateway of {machine} is lost", action=RESTART_GATEWAY):
+        machine: str
+
+The class name gives the code (`GATEWAY_LOST`), the annotations its arguments, with units (`Seconds`, see
+quantities.py); an argument may be a reason itself, or a tuple of reasons or texts. `text` is the English text and the
+key of the Japanese one (locale/ja/*.po). `details` is shown to who asks for them
+only: names of topics, errors of a system. No argument is called text, code, details, remedy or args.
+Every package declares its reasons in a module `reasons.py`, one line a reason.
+"""
+
+import re
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar, dataclass_transform
+
+from tms_reason.remedies import Remedy
+
+WORD = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
+
+
+@dataclass_transform(frozen_default=True)
+class Reason:
+    """Base of all reasons; equal when code and arguments are."""
+
+    code: ClassVar[str] = ""
+    text: ClassVar[str] = ""
+    details: ClassVar[str] = ""
+    remedy: ClassVar[Remedy | None] = None
+
+    def __init_subclass__(
+        cls, *, text: str, action: Remedy | None = None, details: str = "", code: str = "", **more: Any
+    ) -> None:
+        super().__init_subclass__(**more)
+        dataclass(frozen=True, repr=False)(cls)
+        cls.code = code or WORD.sub("_", cls.__name__).upper()
+        cls.text, cls.details, cls.remedy = text, details, action
+        known = REGISTRY.setdefault(cls.code, cls)
+        if (known.__module__, known.__qualname__) != (cls.__module__, cls.__qualname__):
+            raise TypeError(f"{cls.__module__} and {known.__module__} both declare the reason {cls.code}")
+
+    @property
+    def args(self) -> dict[str, Any]:
+        """Its arguments by name."""
+        return {one.name: getattr(self, one.name) for one in fields(self)}  # type: ignore[arg-type]
+
+    def __repr__(self) -> str:
+        return f"{self.code}({', '.join(f'{name}={value!r}' for name, value in self.args.items())})"
+
+
+REGISTRY: dict[str, type[Reason]] = {}  # by code
+
+
+# fmt: off
+class Foreign(Reason, text="{words}"): words: str  # of another system, or of a library
+class Unknown(Reason, text="{name}", details="{arguments}"): name: str; arguments: str  # a code of another release
+class Several(Reason, text="{reasons}"): reasons: tuple[Reason, ...]
+# fmt: on

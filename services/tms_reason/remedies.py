@@ -1,0 +1,30 @@
+"""What an operator can do about a reason: the console shows it as a button, the command line as a command."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Remedy:
+    """`name` is the console's; `command` and `text` are format strings over the arguments of the reason."""
+
+    name: str
+    command: str  # of a shell; empty where only hands help
+    text: str  # English; the key of its Japanese text
+
+
+REARM = Remedy("rearm", "tms rearm {machine}", "Look at the machine, then re-arm it")
+RESUME = Remedy("resume", "tms resume {run}", "Resume the run, or abandon it")
+GIVE_BACK = Remedy("give_back", "tms give-back {machine}", "Give the machine back")
+CANCEL = Remedy("cancel", "tms cancel {run}", "Cancel the run that holds it")
+PROCESSES = Remedy("processes", "tms ps", "See which processes run")
+RESTART = Remedy("restart", "tms restart {process}", "Restart the process")
+STATUS = Remedy("status", "tms status", "See what is wrong with the system")
+TASKS = Remedy("tasks", "tms task list", "See which tasks there are")
+RECORDS = Remedy("records", "tms param list", "See which records there are")
+RUNS = Remedy("runs", "tms runs", "See which runs there are")
+CHECK = Remedy("check", "tms check", "Check the configuration")
+EDIT_TASK = Remedy("edit_task", "", "Correct the task in the editor and store it again")
+EDIT_CONFIG = Remedy("edit_config", "", "Correct the file")
+RELEASE_STOP = Remedy("release_stop", "", "Release the software stop")
+LOOK = Remedy("look", "", "Look at the machine and at its PC")
+RETRY = Remedy("retry", "", "Try again in a moment")

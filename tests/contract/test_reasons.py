@@ -1,0 +1,56 @@
+"""Every reason has both texts, uses its arguments, and is raised by somebody."""
+
+import re
+from pathlib import Path
+from string import Formatter
+
+import pytest
+
+from conftest import PROJECT
+from tms_reason import texts, wire
+from tms_reason.reason import REGISTRY, Reason
+
+SERVICES = PROJECT / "services"
+
+
+def declared() -> list[type[Reason]]:
+    wire.load()
+    return sorted((one for one in REGISTRY.values() if one.__module__.startswith("tms_")), key=lambda one: one.code)
+
+
+def templates(kind: type[Reason]) -> list[str]:
+    return [one for one in (kind.text, kind.details, kind.remedy.text if kind.remedy else "") if one]
+
+
+def names(template: str) -> set[str]:
+    return {name for _, name, _, _ in Formatter().parse(template) if name is not None}
+
+
+def arguments(kind: type[Reason]) -> set[str]:
+    return set(getattr(kind, "__dataclass_fields__"))  # noqa: B009
+
+
+@pytest.mark.parametrize("kind", declared(), ids=lambda kind: kind.code)
+def test_its_texts(kind: type[Reason]) -> None:
+    for template in templates(kind):
+        japanese = texts.translated(template, "ja")
+        if re.sub(r"{[a-z_0-9]+}", "", template).strip(" :;,.()"):
+            assert japanese != template, f"{kind.code}: no Japanese for {template!r}"
+        assert names(japanese) == names(template), f"{kind.code}: {japanese!r} has other arguments than {template!r}"
+    command = kind.remedy.command if kind.remedy else ""
+    used = names(kind.text) | names(kind.details) | names(command)
+    assert used == arguments(kind), f"{kind.code}: declared {sorted(arguments(kind))}, used {sorted(used)}"
+
+
+def test_no_code_is_unused_and_no_text_is_left_behind() -> None:
+    sources = {path: path.read_text(encoding="utf-8") for path in SERVICES.rglob("*.py") if path.name != "reasons.py"}
+    words = set(re.findall(r"\w+", "\n".join(sources.values())))
+    assert [kind.code for kind in declared() if kind.__name__ not in words] == []
+    wanted = {template for kind in declared() for template in templates(kind)}
+    assert sorted(set(texts.catalogue("ja")) - wanted) == []
+
+
+def test_a_module_of_reasons_imports_nothing_but_tms_reason() -> None:
+    for path in SERVICES.glob("tms_*/**/reasons.py"):
+        found = re.findall(r"^(?:from|import) ([\w.]+)", path.read_text(encoding="utf-8"), re.MULTILINE)
+        assert {one.partition(".")[0] for one in found} <= {"tms_reason", "typing"}, Path(path).relative_to(SERVICES)
