@@ -1,4 +1,4 @@
-"""A subtask is one file and one line (those of the README), a machine one line: done to a copy of the project."""
+"""A subtask is one file and one line (those of CONTRIBUTING.md), a machine one line: done to a copy of the project."""
 
 import json
 import re
@@ -14,9 +14,9 @@ import yaml
 from conftest import PROJECT, Mesh, ports_of, running, site_data
 
 pytestmark = [pytest.mark.system, pytest.mark.timeout(200)]
-README = (PROJECT / "README.md").read_text(encoding="utf-8")
-(FILE,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
-(LINE,) = re.findall(r"```yaml\n(  st_zx200_lift: lift\n)```", README)
+GUIDE = (PROJECT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+(FILE,) = re.findall(r"```python\n(.*?)```", GUIDE, re.DOTALL)
+(LINE,) = re.findall(r"```yaml\n(  st_zx200_lift: lift\n)```", GUIDE)
 TREE = (
     '<root main_tree_to_execute="T"><BehaviorTree ID="T"><Action ID="LeafNodeZx200" model_name="zx200_2" '
     'record_name="high" subtask_name="st_zx200_lift"/></BehaviorTree></root>'

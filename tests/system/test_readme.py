@@ -1,4 +1,4 @@
-"""The README's `tms` commands work as they stand, one after the other."""
+"""The `tms` commands of the README and of the console's guide work as they stand, one after the other."""
 
 import os
 import re
@@ -18,7 +18,7 @@ from tms_ros.packing import pack
 
 pytestmark = pytest.mark.system
 
-README = (PROJECT / "README.md").read_text()
+README = "".join((PROJECT / name).read_text() for name in ("README.md", "deploy/CONSOLE.md"))
 BLOCKS = re.findall(r"```sh\n(.*?)```", README, re.DOTALL)
 TMS = [line.split("#")[0].strip() for block in BLOCKS for line in block.splitlines() if line.startswith("tms ")]
 

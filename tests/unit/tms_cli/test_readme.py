@@ -1,4 +1,4 @@
-"""What the README shows works: its subtask loads, its commands and make targets exist."""
+"""What README and guides show works: their subtask loads, its commands and make targets exist."""
 
 import importlib.util
 import re
@@ -13,7 +13,10 @@ from tms_cli.main import tms
 from tms_config.config import PROJECT
 from tms_machine.subtask import Subtask
 
-README = (PROJECT / "README.md").read_text(encoding="utf-8")
+PAGES = {name: (PROJECT / name).read_text(encoding="utf-8") for name in (
+    "README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "deploy/CONSOLE.md", "configs/README.md",
+)}  # fmt: skip
+README = "\n".join(PAGES.values())
 COMMANDS = sorted(
     {line for block in re.findall(r"```sh\n(.*?)```", README, re.DOTALL) for line in block.splitlines()}
     | set(re.findall(r"`(tms [a-z][^`]*)`", README))
@@ -43,7 +46,11 @@ def test_make_targets_of_the_readme_exist() -> None:
     assert set(re.findall(r"(?:`|^)make ([a-z][a-z-]*)", README, re.MULTILINE)) <= targets
 
 
-def test_the_subtask_of_the_readme_is_one(tmp_path: Path) -> None:
+def test_the_readme_is_short() -> None:
+    assert len(PAGES["README.md"].splitlines()) <= 200
+
+
+def test_the_subtask_of_the_guide_is_one(tmp_path: Path) -> None:
     (code,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
     (tmp_path / "lift.py").write_text(code)
     spec = importlib.util.spec_from_file_location("readme_lift", tmp_path / "lift.py")
@@ -61,5 +68,6 @@ def test_the_subtask_of_the_readme_is_one(tmp_path: Path) -> None:
 
 
 def test_links_of_the_readme_lead_somewhere() -> None:
-    for target in re.findall(r"\]\(([^)#]+)\)", README):
-        assert (PROJECT / target).exists(), target
+    for name, page in PAGES.items():
+        for target in re.findall(r"\]\(([^)#:]+)\)", page):
+            assert ((PROJECT / name).parent / target).exists(), f"{name}: {target}"
