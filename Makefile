@@ -47,6 +47,7 @@ $(VENV)-store/.ready: requirements-store.lock | $(UV)
 $(VENV)/.interfaces-$(NAV2_DISTRO): $(VENV)/.requirements build.lock interfaces.txt $(shell find services/interfaces -type f)
 	@echo "building the ROS interface packages (about a minute)"
 	$(UV) pip install -q -p $(PY) --no-deps --build-constraints build.lock -r interfaces.txt
+	$(PY) services/interfaces/_wheel/stubs.py
 	@rm -f $(VENV)/.interfaces-*
 	@touch $@
 

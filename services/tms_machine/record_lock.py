@@ -7,7 +7,6 @@ the variant that moves gives it back however it ends.
 
 import time
 from collections.abc import Mapping
-from typing import Any
 
 from tms_msg_db.srv import SetParameter
 
@@ -54,7 +53,7 @@ class RecordLock:
 
     def __init__(self, ros: Ros, owner: str, model_name: str, record_name: str) -> None:
         self._ros, self._owner = ros, owner
-        self._key = {"model_name": model_name, "record_name": record_name}
+        self._model_name, self._record_name = model_name, record_name
 
     def take(self) -> None:
         """Lock it, or say why not; from worker threads only.
@@ -70,5 +69,8 @@ class RecordLock:
         """Free it. Waits for nobody: the end of a motion must not depend on a database."""
         self._ros.post(SetParameter, SERVICE, self._request(released()))
 
-    def _request(self, values: Mapping[str, Value]) -> Any:
-        return SetParameter.Request(**self._key, source=self._owner, values=to_parameters(values))
+    def _request(self, values: Mapping[str, Value]) -> SetParameter.Request:
+        return SetParameter.Request(
+            model_name=self._model_name, record_name=self._record_name, source=self._owner,
+            values=to_parameters(values),
+        )  # fmt: skip

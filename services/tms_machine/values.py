@@ -57,7 +57,9 @@ def _to_value(name: str, value: Any) -> ParameterValue:
         raise TypeError(f"{name}: a {type(value).__name__} cannot travel as a parameter")
     number, field = (ARRAY if isinstance(value, list) else ALONE)[kind]
     plain = [kind(part) for part in value] if isinstance(value, list) else kind(value)
-    return ParameterValue(type=number, **{field: plain})
+    message = ParameterValue(type=number)
+    setattr(message, field, plain)
+    return message
 
 
 def _kind(value: Any) -> type | None:

@@ -44,7 +44,7 @@ class Telemetry:
         self._impostor = Impostor(ros, made)
         self._truth = Truth(ros, name, machine)
         self._tf = ros.publisher(TFMessage, "/tf")
-        self._frames: TFMessage = None
+        self._frames = TFMessage()
         self._told: Any = None  # place and joints of the frames
         self._stepped, self._ticks = time.monotonic(), 0
 

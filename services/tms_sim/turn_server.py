@@ -9,7 +9,10 @@ from tms_sim.motion import SUCCEEDED, Verdict
 from tms_sim.servers import Served
 from tms_sim.turner import Turn, Turner
 
-TYPES = {"set_dump_angle": SetDumpAngle, "set_swing_angle": SetSwingAngle}
+TYPES: dict[str, type[SetDumpAngle | SetSwingAngle]] = {
+    "set_dump_angle": SetDumpAngle,
+    "set_swing_angle": SetSwingAngle,
+}
 
 
 def turn_server(field: str, turner: Turner) -> Served:

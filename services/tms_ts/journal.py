@@ -57,8 +57,9 @@ class Journal:
         if len(data) > LARGEST:
             self._lost(entry, f"an entry of {len(data)} bytes, allowed are {LARGEST}")
             return
-        urgent = isinstance(entry, Run) or entry.kind == "tree"  # somebody looks at a run that begins or ends
-        vital = urgent or entry.kind in VITAL
+        event = "" if isinstance(entry, Run) else entry.kind
+        urgent = isinstance(entry, Run) or event == "tree"  # somebody looks at a run that begins or ends
+        vital = urgent or event in VITAL
         if self._spool.full():
             self._lost(entry, f"{self._spool.waiting()} bytes wait already for the database")
         elif not self._disk.put(self._spool, kind + base64.b64encode(data), vital=vital, urgent=urgent):
