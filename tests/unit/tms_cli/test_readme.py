@@ -46,6 +46,16 @@ def test_make_targets_of_the_readme_exist() -> None:
     assert set(re.findall(r"(?:`|^)make ([a-z][a-z-]*)", README, re.MULTILINE)) <= targets
 
 
+def test_both_languages_of_the_readme_show_the_same() -> None:
+    japanese = (PROJECT / "README.ja.md").read_text(encoding="utf-8")
+    for shown in (r"```sh\n(.*?)```", r"^\| (`(?:make|TMS)[^|]*?) \|"):
+        parts = [re.findall(shown, page, re.DOTALL | re.MULTILINE) for page in (PAGES["README.md"], japanese)]
+        ours, theirs = ([re.sub(r"#.*", "", part) for part in found] for found in parts)
+        assert [re.sub(r"\s+\n", "\n", one) for one in ours] == [re.sub(r"\s+\n", "\n", one) for one in theirs]
+        assert ours
+    assert re.findall(r"\]\(([^)]+)\)", japanese)[1:] == re.findall(r"\]\(([^)]+)\)", PAGES["README.md"])[1:]
+
+
 def test_the_readme_is_short() -> None:
     assert len(PAGES["README.md"].splitlines()) <= 200
 
