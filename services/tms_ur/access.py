@@ -19,7 +19,7 @@ from tms_config.models import Settings
 from tms_config.names import Name
 from tms_config.yaml_file import parse
 from tms_reason.errors import ConfigError, TmsError
-from tms_ur.brake import Brake
+from tms_ur.login_throttle import LoginThrottle
 
 Role = Literal["viewer", "operator", "admin"]
 RANK: dict[Role, int] = {"viewer": 0, "operator": 1, "admin": 2}
@@ -71,7 +71,7 @@ class Access:
         self.asks = file is not None
         self._users: dict[str, User] = {} if file is None else read_users(file)
         self._clock = clock
-        self._brake = Brake(clock)
+        self._throttle = LoginThrottle(clock)
         self._decoy = hashed(secrets.token_urlsafe()) if self.asks else ""
         self._sessions: OrderedDict[str, tuple[Person, float]] = OrderedDict()  # digest of the key -> since when idle
         self._tokens: OrderedDict[str, Person] = OrderedDict()  # digest of a token that was verified
@@ -127,11 +127,11 @@ class Access:
         return person
 
     def _verified(self, name: str, user: User | None, kept: str | None, secret: str, source: str) -> Person:
-        self._brake.attempt(name, source)
+        self._throttle.attempt(name, source)
         right = _matches(kept or self._decoy, secret)  # a name that is not there takes as long as one that is
         if not right or user is None or kept is None:
             raise TmsError("the name or the password is wrong", "LOGIN")
-        self._brake.right(name, source)
+        self._throttle.right(name, source)
         return Person(name, user.role)
 
 

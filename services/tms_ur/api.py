@@ -19,14 +19,14 @@ from tms_config.config import Site
 from tms_reason.errors import TmsError
 from tms_ur import commands, reading, sessions
 from tms_ur.access import Access
-from tms_ur.brake import Throttled
-from tms_ur.guard import SECURITY, Guard
 from tms_ur.hashing import Hashing
+from tms_ur.login_throttle import Throttled
 from tms_ur.problems import problem, problems
+from tms_ur.security import SECURITY, SecurityMiddleware
 
 if TYPE_CHECKING:
     from tms_ur.audit import Audit
-    from tms_ur.gateway import Gateway
+    from tms_ur.site_client import SiteClient
 
 STATIC = File(__file__).parent / "static"
 WORKERS = 8  # threads for calls that wait for a module
@@ -43,7 +43,7 @@ STATUS = {
 log = structlog.stdlib.get_logger(__name__)
 
 
-def create_app(gateway: "Gateway", audit: "Audit", site: Site, access: Access) -> FastAPI:
+def create_app(client: "SiteClient", audit: "Audit", site: Site, access: Access) -> FastAPI:
     """The application for one site."""
     app = FastAPI(
         title="ROS2-TMS for Construction, task management", version="0.1.0", lifespan=_lifespan,
@@ -54,15 +54,20 @@ def create_app(gateway: "Gateway", audit: "Audit", site: Site, access: Access) -
         responses=problems(400, 401, 422),
     )  # fmt: skip
     hashing = Hashing()
-    reading.add(app, gateway, audit, site)
-    commands.add(app, gateway, audit, site)
+    reading.add(app, client, audit, site)
+    commands.add(app, client, audit, site)
     sessions.add(app, access, hashing, audit, secure=site.file.console.tls is not None)
     app.add_exception_handler(TmsError, _tms_error)
     app.add_exception_handler(HTTPException, _http_error)
     app.add_exception_handler(RequestValidationError, _bad_request)
     app.add_exception_handler(500, _bug)
     app.add_middleware(
-        Guard, bind=site.file.bind, access=access, hashing=hashing, audit=audit, names=site.file.console.names
+        SecurityMiddleware,
+        bind=site.file.bind,
+        access=access,
+        hashing=hashing,
+        audit=audit,
+        names=site.file.console.names,
     )
     _describe(app)
     app.mount("/", StaticFiles(directory=STATIC, html=True), name="console")
@@ -114,5 +119,5 @@ def _bad_request(_request: Request, error: Exception) -> JSONResponse:
 def _bug(_request: Request, error: Exception) -> JSONResponse:
     """The traceback goes to the log; the server writes it."""
     answer = problem(500, "INTERNAL", f"{type(error).__name__} in the console: see `tms logs tms:ur`")
-    answer.headers.update(SECURITY)  # it is made outside the guard
+    answer.headers.update(SECURITY)  # it is made outside the middleware
     return answer

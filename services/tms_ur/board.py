@@ -1,4 +1,4 @@
-"""The latest of what the site says, with its age: fed by the gateway's ROS thread, read by the web server's."""
+"""The latest of what the site says, with its age: fed by the ROS thread of site_client.py, read by the web server's."""
 
 import threading
 import time

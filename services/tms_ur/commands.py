@@ -16,7 +16,6 @@ from tms_config.config import Site
 from tms_reason.errors import TmsError
 from tms_ur.access import Person
 from tms_ur.data_models import FieldGiven, RecordGiven
-from tms_ur.guard import source
 from tms_ur.models import (
     Added,
     AnswerGiven,
@@ -31,10 +30,11 @@ from tms_ur.models import (
 )  # fmt: skip
 from tms_ur.problems import Admin, Operator, Viewer, problems
 from tms_ur.reading import ProcessName, RunId, TaskId
+from tms_ur.security import source
 
 if TYPE_CHECKING:
     from tms_ur.audit import Audit
-    from tms_ur.gateway import Gateway
+    from tms_ur.site_client import SiteClient
 
 ANSWERS = problems(403, 404, 409, 411, 413, 415, 503)
 STOPS = 40  # stops at the same time, each with a thread a machine: no worker that waits is in their way
@@ -45,13 +45,13 @@ QuestionId = Annotated[str, Path(pattern=r"^[0-9A-Za-z_-]{1,100}$")]
 log = structlog.stdlib.get_logger(__name__)
 
 
-def add(app: FastAPI, gateway: "Gateway", audit: "Audit", site: Site) -> None:
+def add(app: FastAPI, client: "SiteClient", audit: "Audit", site: Site) -> None:
     """Put them into the application."""
     note = _Note(audit)
-    _runs(app, gateway, note)
-    _machines(app, gateway, note, site)
-    _stored(app, gateway, note)
-    _processes(app, gateway, note)
+    _runs(app, client, note)
+    _machines(app, client, note, site)
+    _stored(app, client, note)
+    _processes(app, client, note)
 
 
 class _Note:
@@ -74,7 +74,7 @@ class _Note:
         return f"{person.name} at {where}"
 
 
-def _runs(app: FastAPI, gateway: "Gateway", note: _Note) -> None:
+def _runs(app: FastAPI, client: "SiteClient", note: _Note) -> None:
     starting = _Once()
     cancels = anyio.CapacityLimiter(CANCELS)
 
@@ -82,19 +82,19 @@ def _runs(app: FastAPI, gateway: "Gateway", note: _Note) -> None:
     def start_run(request: Request, wanted: StartRun, person: Operator) -> RunAsked:
         note(request, person, "start_run", f"task {wanted.task_id}")
         with starting.only(wanted.task_id):
-            return RunAsked(run_id=gateway.start_run(wanted.task_id, wanted.ignore_warnings))
+            return RunAsked(run_id=client.start_run(wanted.task_id, wanted.ignore_warnings))
 
     @app.post("/api/runs/{run_id}/cancel", status_code=202, summary="Ask a run to stop", responses=ANSWERS)
     async def cancel_run(request: Request, run_id: RunId, _: Nothing, person: Operator) -> RunAsked:
         note.of_stop(request, person, "cancel_run", run_id)
-        await anyio.to_thread.run_sync(gateway.cancel_run, run_id, limiter=cancels)
+        await anyio.to_thread.run_sync(client.cancel_run, run_id, limiter=cancels)
         return RunAsked(run_id=run_id)
 
     @app.post("/api/questions/{question_id}", summary="Answer a question of a run; the first answer counts",
               responses=ANSWERS)  # fmt: skip
     def answer(request: Request, question_id: QuestionId, given: AnswerGiven, person: Operator) -> AnswerGiven:
         who = note(request, person, "answer", f"{question_id} {'yes' if given.yes else 'no'}")
-        gateway.answer(question_id, given.yes, who)
+        client.answer(question_id, given.yes, who)
         return given
 
 
@@ -118,7 +118,7 @@ class _Once:
                 self._open.discard(task_id)
 
 
-def _machines(app: FastAPI, gateway: "Gateway", note: _Note, site: Site) -> None:
+def _machines(app: FastAPI, client: "SiteClient", note: _Note, site: Site) -> None:
     names = list(site.file.machines)
     stops = anyio.CapacityLimiter(STOPS)
 
@@ -127,14 +127,14 @@ def _machines(app: FastAPI, gateway: "Gateway", note: _Note, site: Site) -> None
     async def stop(request: Request, asked: StopAsked, person: Viewer) -> list[Receipt]:
         machines = [_known(asked.machine, names)] if asked.machine else names
         who = note.of_stop(request, person, "stop", asked.machine or "all machines")
-        return await anyio.to_thread.run_sync(_stop_all, gateway, machines, who, limiter=stops)
+        return await anyio.to_thread.run_sync(_stop_all, client, machines, who, limiter=stops)
 
     @app.post("/api/machines/{name}/rearm", summary="Re-arm a stopped machine, in two steps", responses=ANSWERS)
     def rearm(
         request: Request, name: MachineName, asked: RearmAsked, person: Operator
     ) -> Rearmed:  # fmt: skip
         note(request, person, "rearm" if asked.token else "rearm_asked", _known(name, names))
-        return gateway.rearm(name, asked.token)
+        return client.rearm(name, asked.token)
 
 
 def _known(machine: str, names: list[str]) -> str:
@@ -143,23 +143,23 @@ def _known(machine: str, names: list[str]) -> str:
     return machine
 
 
-def _stop_all(gateway: "Gateway", machines: list[str], who: str) -> list[Receipt]:
+def _stop_all(client: "SiteClient", machines: list[str], who: str) -> list[Receipt]:
     cause = f"software stop by {who}"
     with ThreadPoolExecutor(max(1, len(machines)), "stop") as pool:
-        return list(pool.map(lambda machine: gateway.stop(machine, cause), machines))
+        return list(pool.map(lambda machine: client.stop(machine, cause), machines))
 
 
-def _stored(app: FastAPI, gateway: "Gateway", note: _Note) -> None:
+def _stored(app: FastAPI, client: "SiteClient", note: _Note) -> None:
     @app.post("/api/tasks", status_code=201, summary="Store a tree as a task", responses=ANSWERS)
     def add_task(request: Request, given: TaskGiven, person: Admin) -> Added:
-        number, there = gateway.add_task(given.xml, given.description)
+        number, there = client.add_task(given.xml, given.description)
         note(request, person, "add_task", f"task {number}")
         return Added(id=number, already_stored=there)
 
     @app.post("/api/tasks/{task_id}/remove", summary="Take a task out; its number becomes free", responses=ANSWERS)
     def remove_task(request: Request, task_id: TaskId, _: Nothing, person: Admin) -> Nothing:
         note(request, person, "remove_task", f"task {task_id}")
-        gateway.remove_task(task_id)
+        client.remove_task(task_id)
         return Nothing()
 
     @app.post("/api/parameters", summary="Set fields of a record in one step", responses=ANSWERS)
@@ -167,7 +167,7 @@ def _stored(app: FastAPI, gateway: "Gateway", note: _Note) -> None:
         values = {field.name: _typed(field) for field in given.fields}
         told = ", ".join(f"{name}={value}" for name, value in values.items())
         who = note(request, person, "set_parameter", f"{given.model_name}/{given.record_name} {told}"[:500])
-        gateway.set_parameter(given.model_name, given.record_name, values, who, given.create, given.type)
+        client.set_parameter(given.model_name, given.record_name, values, who, given.create, given.type)
         return Nothing()
 
 
@@ -200,9 +200,9 @@ def _fits(kind: str, value: Any) -> bool:
     return kind != "int" or -(2**63) <= value < 2**63
 
 
-def _processes(app: FastAPI, gateway: "Gateway", note: _Note) -> None:
+def _processes(app: FastAPI, client: "SiteClient", note: _Note) -> None:
     @app.post("/api/processes/{name}/restart", summary="Restart a process", responses=ANSWERS)
     def restart(request: Request, name: ProcessName, _: Nothing, person: Operator) -> Nothing:
         note(request, person, "restart", name)
-        gateway.restart(name)
+        client.restart(name)
         return Nothing()

@@ -11,9 +11,9 @@ from tms_ur.access import Access
 from tms_ur.api import create_app
 from tms_ur.audit import Audit
 from tms_ur.connections import SENT, Listener
-from tms_ur.gateway import Gateway
-from tms_ur.guard import is_loopback
+from tms_ur.security import is_loopback
 from tms_ur.server import Server
+from tms_ur.site_client import SiteClient
 
 
 def start(app: App) -> None:
@@ -22,11 +22,11 @@ def start(app: App) -> None:
     tls = address.certificate(app.site)
     access = Access(address.users(app.site))
     listener = _listen(app.site)
-    gateway, audit = Gateway(app.ros, app.site), Audit(app.ros, app.site.state / "audit.db")
-    server = Server(create_app(gateway, audit, app.site, access), listener, tls)
+    client, audit = SiteClient(app.ros, app.site), Audit(app.ros, app.site.state / "audit.db")
+    server = Server(create_app(client, audit, app.site, access), listener, tls)
     app.on_stop(audit.close)
     app.on_stop(server.stop)
-    app.on_stop(gateway.board.close)  # first, so that the streams end
+    app.on_stop(client.board.close)  # first, so that the streams end
     app.ready_when(server.unready)
     app.log.info("listening", url=address.url(file), bind=file.bind, access=_told(file, access))
 

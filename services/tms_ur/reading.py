@@ -36,7 +36,7 @@ from tms_ur.stream import Stream, StreamResponse
 
 if TYPE_CHECKING:
     from tms_ur.audit import Audit
-    from tms_ur.gateway import Gateway
+    from tms_ur.site_client import SiteClient
 
 UINT32 = 2**32 - 1
 PAGE = 1000  # events of one answer
@@ -48,23 +48,23 @@ TaskId = Annotated[int, Path(ge=1, le=INT32)]
 ProcessName = Annotated[str, Path(pattern=r"^[0-9A-Za-z_]{1,64}:[0-9A-Za-z_]{1,64}$", description="group:name")]
 
 
-def add(app: FastAPI, gateway: "Gateway", audit: "Audit", site: Site) -> None:
+def add(app: FastAPI, client: "SiteClient", audit: "Audit", site: Site) -> None:
     """Put them into the application."""
-    _live(app, gateway, site)
-    _stored(app, gateway)
-    _audit(app, gateway, audit)
-    _data(app, gateway)
-    _tasks(app, gateway)
+    _live(app, client, site)
+    _stored(app, client)
+    _audit(app, client, audit)
+    _data(app, client)
+    _tasks(app, client)
 
 
-def _live(app: FastAPI, gateway: "Gateway", site: Site) -> None:
-    stream = Stream(gateway.board)
+def _live(app: FastAPI, client: "SiteClient", site: Site) -> None:
+    stream = Stream(client.board)
     shown = _site(site)
 
     # `async` where nothing waits, so that these answer even when all workers wait for a module
     @app.get("/api/state", summary="Machines, active runs, questions and processes as they are now")
     async def state() -> State:
-        return gateway.board.snapshot()
+        return client.board.snapshot()
 
     @app.get("/api/site", summary="The site's machines and their bodies")
     async def site_info() -> SiteInfo:
@@ -84,13 +84,13 @@ def _live(app: FastAPI, gateway: "Gateway", site: Site) -> None:
     def log(
         name: ProcessName, size: Annotated[int, Query(ge=100, le=200_000, description="bytes at most")] = 16_384
     ) -> Log:
-        return Log(text=gateway.log(name, size))
+        return Log(text=client.log(name, size))
 
 
-def _stored(app: FastAPI, gateway: "Gateway") -> None:
+def _stored(app: FastAPI, client: "SiteClient") -> None:
     @app.get("/api/runs", summary="The history, newest first", responses=problems(503))
     def runs(limit: Annotated[int, Query(ge=1, le=1000)] = 20) -> list[Run]:
-        return gateway.runs(limit)
+        return client.runs(limit)
 
     @app.get("/api/runs/{run_id}/events", summary="The journal of a run, in order", responses=problems(404, 503))
     def run_events(
@@ -98,11 +98,11 @@ def _stored(app: FastAPI, gateway: "Gateway") -> None:
         after: Annotated[int, Query(ge=0, le=UINT32, description="only events with a greater number")] = 0,
         limit: Annotated[int, Query(ge=1, le=PAGE)] = PAGE,
     ) -> list[Event]:
-        return gateway.events(run_id, after, limit)
+        return client.events(run_id, after, limit)
 
     @app.get("/api/runs/{run_id}/tree", summary="The shape of a run's tree", responses=problems(404, 503))
     def run_tree(run_id: RunId) -> Tree:
-        for event in gateway.events(run_id, 0, BEGINNING):
+        for event in client.events(run_id, 0, BEGINNING):
             if event.kind == "tree":
                 return Tree.model_validate(event.values)
         raise TmsError(f"the journal of run {run_id} holds no tree: it was refused, or is older than this", "NO_TREE")
@@ -114,7 +114,7 @@ def _stored(app: FastAPI, gateway: "Gateway") -> None:
         response_class=Response,
     )
     def run_export(run_id: RunId, form: Literal["json", "csv", "mcap"] = "json") -> Response:
-        found = _all_events(gateway, run_id)
+        found = _all_events(client, run_id)
         name = f'attachment; filename="{run_id}.{form}"'
         return Response(export.FORMS[form](run_id, found), 200, {"Content-Disposition": name}, export.TYPES[form])
 
@@ -122,19 +122,19 @@ def _stored(app: FastAPI, gateway: "Gateway") -> None:
     def parameters(
         model_name: Annotated[str, Query(pattern=r"^[0-9A-Za-z_]{0,64}$", description="empty: of all machines")] = "",
     ) -> list[Record]:
-        return gateway.parameters(model_name)
+        return client.parameters(model_name)
 
 
-def _audit(app: FastAPI, gateway: "Gateway", audit: "Audit") -> None:
+def _audit(app: FastAPI, client: "SiteClient", audit: "Audit") -> None:
     @app.get("/api/audit", summary="The last of who did what, oldest first", responses=problems(503))
     def newest(
         hours: Annotated[float, Query(gt=0, le=24 * 366)] = 24, limit: Annotated[int, Query(ge=1, le=PAGE)] = PAGE
     ) -> list[Event]:
         since = datetime.now(timezone.utc) - timedelta(hours=hours)
-        return _newest_of_audit(gateway, audit.number(), since, limit)
+        return _newest_of_audit(client, audit.number(), since, limit)
 
 
-def _data(app: FastAPI, gateway: "Gateway") -> None:
+def _data(app: FastAPI, client: "SiteClient") -> None:
     @app.get("/api/parameters/history", summary="The last changes of a record, newest first",
              responses=problems(404, 503))  # fmt: skip
     def parameter_history(
@@ -142,68 +142,68 @@ def _data(app: FastAPI, gateway: "Gateway") -> None:
         model_name: Annotated[str, Query(pattern=r"^[0-9A-Za-z_]{0,64}$", description="empty: shared by all")] = "",
         limit: Annotated[int, Query(ge=1, le=200)] = 20,
     ) -> list[Change]:
-        return gateway.parameter_history(model_name, record_name, limit)
+        return client.parameter_history(model_name, record_name, limit)
 
     @app.get("/api/sensing", summary="The sensing inputs: rate, age, refusals")
     async def sensing() -> Sensing:
-        return gateway.sensing()
+        return client.sensing()
 
 
-def _tasks(app: FastAPI, gateway: "Gateway") -> None:
+def _tasks(app: FastAPI, client: "SiteClient") -> None:
     @app.get("/api/tasks", summary="Stored tasks", responses=problems(503))
     def tasks() -> list[Task]:
-        return gateway.tasks()
+        return client.tasks()
 
     @app.get("/api/tasks/{task_id}", summary="One task with its tree", responses=problems(404, 503))
     def task(task_id: TaskId) -> TaskText:
-        return gateway.task(task_id)
+        return client.task(task_id)
 
     @app.post("/api/tasks/check", summary="Check a tree; stores and runs nothing",
               responses=problems(403, 409, 411, 413, 415, 503))  # fmt: skip
     def check(given: Xml, person: Viewer) -> Checked:
-        errors, warnings = gateway.check_task(given.xml)
+        errors, warnings = client.check_task(given.xml)
         return Checked(errors=list(map(_finding, errors)), warnings=list(map(_finding, warnings)))
 
     @app.post("/api/tasks/{task_id}/diff", summary="What differs between the stored tree and a given one",
               responses=problems(403, 404, 409, 411, 413, 415, 503))  # fmt: skip
     def diff(task_id: TaskId, given: Xml, person: Viewer) -> Diff:
-        stored = gateway.task(task_id).xml.splitlines()
+        stored = client.task(task_id).xml.splitlines()
         lines = difflib.unified_diff(stored, given.xml.splitlines(), f"task {task_id}", "this file", lineterm="")
         return Diff(text="\n".join(lines))
 
 
-def _all_events(gateway: "Gateway", run_id: str) -> list[Event]:
+def _all_events(client: "SiteClient", run_id: str) -> list[Event]:
     found: list[Event] = []
     while len(found) < MOST_EVENTS:
-        page = gateway.events(run_id, found[-1].number if found else 0, PAGE)
+        page = client.events(run_id, found[-1].number if found else 0, PAGE)
         found += page
         if len(page) < PAGE:
             return found
     last = found[-1].number
-    if gateway.events(run_id, last, 1):
+    if client.events(run_id, last, 1):
         text = f"cut after {len(found)} events: the rest is at /api/runs/{run_id}/events?after={last}"
         found.append(Event(number=last, stamp=found[-1].stamp, kind="cut", node="", text=text))
     return found
 
 
-def _newest_of_audit(gateway: "Gateway", last: int, since: datetime, limit: int) -> list[Event]:
+def _newest_of_audit(client: "SiteClient", last: int, since: datetime, limit: int) -> list[Event]:
     """The end of the journal, looked for further and further back: old entries have gaps in their numbers."""
     back = limit
     while True:
         after = max(0, last - back)
-        found = _audit_after(gateway, after)
+        found = _audit_after(client, after)
         young = [event for event in found if event.stamp is not None and event.stamp >= since]
         if after == 0 or len(young) >= limit or len(young) < len(found):
             return young[-limit:]
         back *= 8
 
 
-def _audit_after(gateway: "Gateway", after: int) -> list[Event]:
+def _audit_after(client: "SiteClient", after: int) -> list[Event]:
     """All entries behind a number, of which the last page and a half is kept."""
     found: list[Event] = []
     while True:
         try:
-            page = gateway.events(AUDIT, after, PAGE)
+            page = client.events(AUDIT, after, PAGE)
         except TmsError as error:
             if error.code != "RUN_MISSING":  # none, or none behind a full page
                 raise

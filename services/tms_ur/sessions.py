@@ -6,10 +6,10 @@ from fastapi import FastAPI, Request, Response
 
 from tms_reason.errors import TmsError
 from tms_ur.access import Access, Person
-from tms_ur.guard import COOKIE, session_key, source
 from tms_ur.hashing import Hashing
 from tms_ur.models import Login, Nothing, Session
 from tms_ur.problems import problems
+from tms_ur.security import COOKIE, session_key, source
 
 if TYPE_CHECKING:
     from tms_ur.audit import Audit

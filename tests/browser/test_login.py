@@ -1,4 +1,4 @@
-"""A console with users, over TLS: login, roles, and the brake on guessing."""
+"""A console with users, over TLS: login, roles, and the throttle on guessing."""
 
 import os
 import shutil

@@ -21,7 +21,7 @@ from tms_ur.connections import Listener
 from tms_ur.data_models import Record
 from tms_ur.models import ActiveRun, Event, Host, Machine, Place, Process, Question, Rearmed, Run
 from tms_ur.node import Server
-from unit.tms_ur.fakes import NOON, FakeAudit, FakeGateway
+from unit.tms_ur.fakes import NOON, FakeAudit, FakeSiteClient
 
 pytestmark = pytest.mark.browser
 MACHINES = ("zx200", "ic120")
@@ -30,7 +30,7 @@ RUN = ActiveRun(run_id="r-1", task_id=4, state="running", machines=["zx200"])
 LONG = 20_000  # events, as many as a browser replays
 
 
-class Yard(FakeGateway):
+class Yard(FakeSiteClient):
     """Two machines, and a clock that the test turns."""
 
     def __init__(self) -> None:

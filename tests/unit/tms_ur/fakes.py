@@ -1,4 +1,4 @@
-"""A site without ROS: the gateway that the API's tests talk to, and a client without a network."""
+"""A site without ROS: the site client that the API's tests talk to, and a client without a network."""
 
 import asyncio
 import threading
@@ -23,7 +23,7 @@ HERE = "http://127.0.0.1:8080"
 XML = "<root><BehaviorTree ID='A'/></root>"
 
 
-class FakeGateway:
+class FakeSiteClient:
     """Same methods as the real one; `error` is what the next call raises, `calls` what was asked."""
 
     def __init__(self) -> None:
@@ -146,11 +146,11 @@ def site(**changes: Any) -> Site:
     return Site(demo.path, file, demo.models, demo.state)
 
 
-def app(gateway: FakeGateway, bind: str = "127.0.0.1", users: Path | None = None, **parts: Any) -> FastAPI:
+def app(site_client: FakeSiteClient, bind: str = "127.0.0.1", users: Path | None = None, **parts: Any) -> FastAPI:
     """The application with fakes; `parts` may hold an audit, a clock and settings of the console."""
     access = Access(users, parts["clock"]) if "clock" in parts else Access(users)
     where = site(bind=bind, console=parts.get("console", Console()))
-    return create_app(gateway, parts.get("audit", FakeAudit()), where, access)  # type: ignore[arg-type]
+    return create_app(site_client, parts.get("audit", FakeAudit()), where, access)  # type: ignore[arg-type]
 
 
 class Client:

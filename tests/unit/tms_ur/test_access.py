@@ -1,4 +1,4 @@
-"""Roles, sessions, tokens, and the brake on guessing passwords."""
+"""Roles, sessions, tokens, and the throttle on guessing passwords."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -9,7 +9,7 @@ import yaml
 from tms_config.site_file import Console, Files
 from tms_reason.errors import ConfigError
 from tms_ur.access import SESSION_IDLE, Access, hashed
-from unit.tms_ur.fakes import HERE, Client, FakeAudit, FakeGateway, app
+from unit.tms_ur.fakes import HERE, Client, FakeAudit, FakeSiteClient, app
 
 START = ("/api/runs", {"task_id": 4})
 STORE = ("/api/tasks", {"xml": "<root/>"})
@@ -34,11 +34,11 @@ class Site:
 
     file: Path
     now: float = 1000.0
-    gateway: FakeGateway = field(default_factory=FakeGateway)
+    site_client: FakeSiteClient = field(default_factory=FakeSiteClient)
     audit: FakeAudit = field(default_factory=FakeAudit)
 
     def __post_init__(self) -> None:
-        self.client = Client(app(self.gateway, users=self.file, audit=self.audit, clock=lambda: self.now))
+        self.client = Client(app(self.site_client, users=self.file, audit=self.audit, clock=lambda: self.now))
 
     def login(self, name: str, password: str) -> dict[str, str]:
         """Headers of the session."""
@@ -59,7 +59,7 @@ def test_nothing_is_told_before_the_login(site: Site) -> None:
     assert site.client.post(*START[:1], json=START[1]).status_code == 401
     assert site.client.get("/").status_code == 200
     assert site.client.get("/api/session").json() == {"name": None, "role": None, "login": True}
-    assert site.gateway.calls == []
+    assert site.site_client.calls == []
 
 
 @pytest.mark.parametrize(
@@ -86,7 +86,7 @@ def test_cookie_is_out_of_reach(site: Site) -> None:
     assert "SameSite=strict" in cookie
     assert "Secure" not in cookie  # there is no TLS here
     tls = Console(tls=Files(certificate=Path("c"), key=Path("k")))
-    over_tls = Client(app(site.gateway, users=site.file, console=tls))
+    over_tls = Client(app(site.site_client, users=site.file, console=tls))
     answer = over_tls.post("/api/login", json={"name": "ken", "password": "ken-pass"})
     assert "Secure" in answer.headers["set-cookie"]
 
@@ -153,21 +153,21 @@ def test_strangers_are_audited_where_they_command_or_guess(site: Site) -> None:
 
 
 def test_without_users_the_login_says_so() -> None:
-    client = Client(app(FakeGateway()))
+    client = Client(app(FakeSiteClient()))
     assert client.get("/api/session").json() == {"name": "local", "role": "admin", "login": False}
     answer = client.post("/api/login", json={"name": "ken", "password": "x"})
     assert (answer.status_code, answer.json()["code"]) == (409, "NO_USERS")
 
 
 def test_with_users_others_may_command(site: Site) -> None:
-    client = Client(app(site.gateway, "0.0.0.0", users=site.file), base_url="http://192.0.2.1:8080")
+    client = Client(app(site.site_client, "0.0.0.0", users=site.file), base_url="http://192.0.2.1:8080")
     answer = client.post("/api/login", json={"name": "ken", "password": "ken-pass"})
     me = {"Cookie": answer.headers["set-cookie"].partition(";")[0]}
     assert client.post(START[0], json=START[1], headers=me).status_code == 202
 
 
 def test_further_names(users: Path) -> None:
-    client = Client(app(FakeGateway(), users=users, console=Console(names=("Site-PC.example",))))
+    client = Client(app(FakeSiteClient(), users=users, console=Console(names=("Site-PC.example",))))
     assert client.get("/api/session", headers={"Host": "site-pc.example:8080"}).status_code == 200
     assert client.get("/api/session", headers={"Host": "other.example"}).status_code == 400
 

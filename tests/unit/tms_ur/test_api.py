@@ -7,9 +7,9 @@ from datetime import datetime, timedelta, timezone
 import pytest
 
 from tms_reason.errors import TmsError
-from tms_ur.guard import SECURITY, is_loopback
 from tms_ur.models import ActiveRun, Event, Host, Joint, Machine, Process
-from unit.tms_ur.fakes import HERE, XML, Client, FakeAudit, FakeGateway, app
+from tms_ur.security import SECURITY, is_loopback
+from unit.tms_ur.fakes import HERE, XML, Client, FakeAudit, FakeSiteClient, app
 
 READS = [
     "/api/tasks", "/api/tasks/4", "/api/runs", "/api/runs/r-1/events", "/api/runs/r-1/tree", "/api/runs/r-1/export",
@@ -25,23 +25,23 @@ COMMANDS = [
 
 
 @pytest.fixture
-def gateway() -> FakeGateway:
-    return FakeGateway()
+def site_client() -> FakeSiteClient:
+    return FakeSiteClient()
 
 
 @pytest.fixture
-def client(gateway: FakeGateway) -> Client:
-    return Client(app(gateway))
+def client(site_client: FakeSiteClient) -> Client:
+    return Client(app(site_client))
 
 
-def test_the_fake_has_the_methods_of_the_real_gateway() -> None:
-    from tms_ur.gateway import Gateway
+def test_the_fake_has_the_methods_of_the_real_client() -> None:
+    from tms_ur.site_client import SiteClient
 
     def methods(of: type) -> dict[str, inspect.Signature]:
         found = inspect.getmembers(of, inspect.isfunction)
         return {name: inspect.signature(method) for name, method in found if not name.startswith("_")}
 
-    assert methods(FakeGateway) == methods(Gateway)
+    assert methods(FakeSiteClient) == methods(SiteClient)
 
 
 # state
@@ -56,11 +56,11 @@ def test_state_before_anything_was_heard(client: Client) -> None:
     assert state["runs"] == state["hosts"] == state["questions"] == []
 
 
-def test_state_shows_what_was_heard(client: Client, gateway: FakeGateway) -> None:
+def test_state_shows_what_was_heard(client: Client, site_client: FakeSiteClient) -> None:
     joint = Joint(name="swing_joint", position=1.5, velocity=0.1)
-    gateway.board.put_machine(Machine(name="zx200", state="moving", joints=[joint], joint_age=0.0))
-    gateway.board.put_runs([ActiveRun(run_id="r-2", task_id=4, state="running", machines=["zx200"])])
-    gateway.board.put_host(Host(name="pc", processes=[Process(name="tms:ts", state="RUNNING", pid=7)]))
+    site_client.board.put_machine(Machine(name="zx200", state="moving", joints=[joint], joint_age=0.0))
+    site_client.board.put_runs([ActiveRun(run_id="r-2", task_id=4, state="running", machines=["zx200"])])
+    site_client.board.put_host(Host(name="pc", processes=[Process(name="tms:ts", state="RUNNING", pid=7)]))
     state = client.get("/api/state").json()
     assert state["machines"][0]["state"] == "moving"
     assert state["machines"][0]["joints"] == [{"name": "swing_joint", "position": 1.5, "velocity": 0.1}]
@@ -79,33 +79,33 @@ def test_tasks(client: Client) -> None:
     assert client.get("/api/tasks/7").json()["xml"] == XML
 
 
-def test_runs_and_events(client: Client, gateway: FakeGateway) -> None:
+def test_runs_and_events(client: Client, site_client: FakeSiteClient) -> None:
     assert client.get("/api/runs?limit=5").json()[0]["reason"] == "pose out of reach"
     assert client.get("/api/runs/r-1/events?after=6&limit=2").json()[0]["number"] == 7
     assert client.get("/api/runs/r-1/events").status_code == 200
-    assert gateway.calls == [("runs", 5), ("events", "r-1", 6, 2), ("events", "r-1", 0, 1000)]
+    assert site_client.calls == [("runs", 5), ("events", "r-1", 6, 2), ("events", "r-1", 0, 1000)]
 
 
-def test_parameters_keep_their_types(client: Client, gateway: FakeGateway) -> None:
+def test_parameters_keep_their_types(client: Client, site_client: FakeSiteClient) -> None:
     values = client.get("/api/parameters?model_name=zx200").json()[0]["values"]
     assert values == {"i": 3, "d": 3.0, "b": True, "s": "3", "dd": [1.0, 2.5], "nan": None}
     assert [type(values[name]) for name in ("i", "d", "b")] == [int, float, bool]
-    assert gateway.calls == [("parameters", "zx200")]
+    assert site_client.calls == [("parameters", "zx200")]
 
 
 # commands
 
 
-def test_start_a_run(client: Client, gateway: FakeGateway) -> None:
+def test_start_a_run(client: Client, site_client: FakeSiteClient) -> None:
     answer = client.post("/api/runs", json={"task_id": 4, "ignore_warnings": True})
     assert (answer.status_code, answer.json()) == (202, {"run_id": "r-2"})
-    assert gateway.calls == [("start_run", 4, True)]
+    assert site_client.calls == [("start_run", 4, True)]
 
 
-def test_stop_asks_every_machine_and_any_role_may(client: Client, gateway: FakeGateway) -> None:
+def test_stop_asks_every_machine_and_any_role_may(client: Client, site_client: FakeSiteClient) -> None:
     receipts = client.post("/api/stop", json={}).json()
     assert [(one["machine"], one["confirmed"], one["seconds"]) for one in receipts] == [("zx200", True, 0.4)]
-    assert gateway.calls == [("stop", "zx200", "software stop by local at 127.0.0.1")]
+    assert site_client.calls == [("stop", "zx200", "software stop by local at 127.0.0.1")]
     answer = client.post("/api/stop", json={"machine": "ic120"})
     assert (answer.status_code, answer.json()["code"]) == (404, "NO_MACHINE")
     assert "zx200" in answer.json()["message"]
@@ -118,14 +118,14 @@ def test_rearm_has_two_steps(client: Client) -> None:
     assert client.post("/api/machines/ic120/rearm", json={}).status_code == 404
 
 
-def test_answer_a_question(client: Client, gateway: FakeGateway) -> None:
+def test_answer_a_question(client: Client, site_client: FakeSiteClient) -> None:
     assert client.post("/api/questions/r-1-1", json={"yes": False}).status_code == 200
-    assert gateway.calls == [("answer", "r-1-1", False, "local at 127.0.0.1")]
-    gateway.error = TmsError("answered meanwhile", "NO_QUESTION")
+    assert site_client.calls == [("answer", "r-1-1", False, "local at 127.0.0.1")]
+    site_client.error = TmsError("answered meanwhile", "NO_QUESTION")
     assert client.post("/api/questions/r-1-1", json={"yes": True}).status_code == 404
 
 
-def test_tasks_are_checked_compared_and_stored(client: Client, gateway: FakeGateway) -> None:
+def test_tasks_are_checked_compared_and_stored(client: Client, site_client: FakeSiteClient) -> None:
     found = client.post("/api/tasks/check", json={"xml": XML}).json()
     assert found["errors"] == [{"line": 7, "text": "line 7, at 0.1: unknown node 'Dig'"}]
     assert found["warnings"] == [{"line": None, "text": "nobody writes flag F"}]
@@ -137,9 +137,9 @@ def test_tasks_are_checked_compared_and_stored(client: Client, gateway: FakeGate
     assert large.status_code == 201  # trees may be larger than other commands
 
 
-def test_values_of_records_have_types(client: Client, gateway: FakeGateway) -> None:
+def test_values_of_records_have_types(client: Client, site_client: FakeSiteClient) -> None:
     assert client.post("/api/parameters", json=RECORD).status_code == 200
-    (_, model, record, values, source, create, kind), *_ = gateway.calls
+    (_, model, record, values, source, create, kind), *_ = site_client.calls
     assert (model, record, values, source, create, kind) == (
         "zx200", "pose", {"a": 3.0}, "local at 127.0.0.1", False, "",
     )  # fmt: skip
@@ -149,11 +149,13 @@ def test_values_of_records_have_types(client: Client, gateway: FakeGateway) -> N
 @pytest.mark.parametrize(
     ("kind", "value"), [("int", 3.5), ("bool", 1), ("int", True), ("double", "3"), ("int[]", 3), ("int", [3])]
 )
-def test_values_that_do_not_fit_their_type(client: Client, gateway: FakeGateway, kind: str, value: object) -> None:
+def test_values_that_do_not_fit_their_type(
+    client: Client, site_client: FakeSiteClient, kind: str, value: object
+) -> None:
     body = {**RECORD, "fields": [{"name": "a", "type": kind, "value": value}]}
     answer = client.post("/api/parameters", json=body)
     assert (answer.status_code, answer.json()["code"]) == (409, "BAD_VALUE")
-    assert gateway.calls == []
+    assert site_client.calls == []
 
 
 HUGE = str(10**400)
@@ -167,34 +169,34 @@ HUGE = str(10**400)
         ("double[]", f"[1, -{HUGE}]"),
     ],
 )  # fmt: skip
-def test_values_that_neither_ros_nor_the_database_can_hold(gateway: FakeGateway, kind: str, value: str) -> None:
+def test_values_that_neither_ros_nor_the_database_can_hold(site_client: FakeSiteClient, kind: str, value: str) -> None:
     audit = FakeAudit()
     fields = f'[{{"name": "a", "type": "{kind}", "value": {value}}}]'
     body = f'{{"model_name": "zx200", "record_name": "pose", "fields": {fields}}}'
     headers = {"Content-Type": "application/json"}
-    answer = Client(app(gateway, audit=audit)).post("/api/parameters", content=body, headers=headers)
+    answer = Client(app(site_client, audit=audit)).post("/api/parameters", content=body, headers=headers)
     assert (answer.status_code, answer.json()["code"]) == (409, "BAD_VALUE")
-    assert gateway.calls == audit.notes == []
+    assert site_client.calls == audit.notes == []
 
 
 @pytest.mark.parametrize(
     ("kind", "value"), [("int", 2**63 - 1), ("int", -(2**63)), ("double", 2**70), ("string", "掘")]
 )
-def test_values_at_the_limits(client: Client, gateway: FakeGateway, kind: str, value: object) -> None:
+def test_values_at_the_limits(client: Client, site_client: FakeSiteClient, kind: str, value: object) -> None:
     body = {**RECORD, "fields": [{"name": "a", "type": kind, "value": value}]}
     assert client.post("/api/parameters", json=body).status_code == 200
-    assert gateway.calls[0][3] == {"a": value}
+    assert site_client.calls[0][3] == {"a": value}
 
 
 @pytest.mark.parametrize("key", ["model_name", "record_name", "name", "\\ud800"])
-def test_names_are_unicode(client: Client, gateway: FakeGateway, key: str) -> None:
+def test_names_are_unicode(client: Client, site_client: FakeSiteClient, key: str) -> None:
     names = {"model_name": "zx200", "record_name": "pose", "name": "a", key: "\\ud800"}
     name = names.pop("name")
     told = ", ".join(f'"{one}": "{text}"' for one, text in names.items())
     body = f'{{{told}, "fields": [{{"name": "{name}", "type": "int", "value": 1}}]}}'
     answer = client.post("/api/parameters", content=body, headers={"Content-Type": "application/json"})
     assert (answer.status_code, answer.json()["code"]) == (422, "BAD_REQUEST")
-    assert gateway.calls == []
+    assert site_client.calls == []
 
 
 @pytest.mark.parametrize(
@@ -211,21 +213,21 @@ def test_names_are_unicode(client: Client, gateway: FakeGateway, key: str) -> No
     ],
 )  # fmt: skip
 def test_no_name_holds_a_control_character(
-    client: Client, gateway: FakeGateway, path: str, body: dict[str, object]
+    client: Client, site_client: FakeSiteClient, path: str, body: dict[str, object]
 ) -> None:
     answer = client.post(path, json=body)
     assert (answer.status_code, answer.json()["code"]) == (422, "BAD_REQUEST")
-    assert gateway.calls == []
+    assert site_client.calls == []
 
 
-def test_processes(client: Client, gateway: FakeGateway) -> None:
+def test_processes(client: Client, site_client: FakeSiteClient) -> None:
     assert client.get("/api/processes/zx200:rc/log?size=1000").json() == {"text": "event=started\n"}
     assert client.post("/api/processes/zx200:rc/restart", json={}).status_code == 200
-    assert gateway.calls == [("log", "zx200:rc", 1000), ("restart", "zx200:rc")]
+    assert site_client.calls == [("log", "zx200:rc", 1000), ("restart", "zx200:rc")]
     assert client.get("/api/processes/a%2Fb/log").status_code in (404, 422)
 
 
-def test_tree_of_a_run(client: Client, gateway: FakeGateway) -> None:
+def test_tree_of_a_run(client: Client, site_client: FakeSiteClient) -> None:
     assert client.get("/api/runs/r-1/tree").json()["names"] == ["all"]
 
 
@@ -240,20 +242,20 @@ def test_exports(client: Client, form: str, begins: bytes) -> None:
 
 @pytest.mark.parametrize(("stored", "last"), [(2000, "event 2000"), (2001, "cut after 2000 events: the rest is at ")])
 def test_an_export_that_is_cut_says_so(
-    client: Client, gateway: FakeGateway, monkeypatch: pytest.MonkeyPatch, stored: int, last: str
+    client: Client, site_client: FakeSiteClient, monkeypatch: pytest.MonkeyPatch, stored: int, last: str
 ) -> None:
     def events(run_id: str, after: int, limit: int) -> list[Event]:
         numbers = range(after + 1, stored + 1)[:limit]
         return [Event(number=number, kind="node", node="", text=f"event {number}") for number in numbers]
 
-    monkeypatch.setattr(gateway, "events", events)
+    monkeypatch.setattr(site_client, "events", events)
     monkeypatch.setattr("tms_ur.reading.MOST_EVENTS", 2000)
     assert client.get("/api/runs/r-1/export").json()["events"][-1]["text"].startswith(last)
 
 
-def test_every_command_is_audited(gateway: FakeGateway) -> None:
+def test_every_command_is_audited(site_client: FakeSiteClient) -> None:
     audit = FakeAudit()
-    client = Client(app(gateway, audit=audit))
+    client = Client(app(site_client, audit=audit))
     for path, body in [*COMMANDS, ("/api/stop", {})]:
         assert client.post(path, json=body).is_success, path
     assert {what for _, _, what, _ in audit.notes} == {
@@ -263,7 +265,7 @@ def test_every_command_is_audited(gateway: FakeGateway) -> None:
     assert {(who, where) for who, where, _, _ in audit.notes} == {("local", "127.0.0.1")}
 
 
-def journal(monkeypatch: pytest.MonkeyPatch, gateway: FakeGateway, rows: dict[int, datetime]) -> Client:
+def journal(monkeypatch: pytest.MonkeyPatch, site_client: FakeSiteClient, rows: dict[int, datetime]) -> Client:
     """The audit's entries by number, with their time."""
     audit = FakeAudit()
     audit.last = max(rows, default=0)
@@ -275,40 +277,40 @@ def journal(monkeypatch: pytest.MonkeyPatch, gateway: FakeGateway, rows: dict[in
             raise TmsError("there is no run 'audit'", "RUN_MISSING")
         return [Event(number=number, stamp=rows[number], kind="stop", node="", text="") for number in numbers]
 
-    monkeypatch.setattr(gateway, "events", events)
-    return Client(app(gateway, audit=audit))
+    monkeypatch.setattr(site_client, "events", events)
+    return Client(app(site_client, audit=audit))
 
 
 def shown(client: Client, query: str = "") -> list[int]:
     return [row["number"] for row in client.get(f"/api/audit{query}").json()]
 
 
-def test_the_audit_shows_the_newest(gateway: FakeGateway, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_audit_shows_the_newest(site_client: FakeSiteClient, monkeypatch: pytest.MonkeyPatch) -> None:
     """An entry every half minute."""
     now = datetime.now(timezone.utc)
-    client = journal(monkeypatch, gateway, {n: now - timedelta(seconds=30 * (2500 - n)) for n in range(1, 2500)})
+    client = journal(monkeypatch, site_client, {n: now - timedelta(seconds=30 * (2500 - n)) for n in range(1, 2500)})
     assert shown(client) == list(range(1500, 2500))
     assert shown(client, "?limit=2") == [2498, 2499]
     assert shown(client, "?hours=0.05") == list(range(2495, 2500))
-    assert shown(journal(monkeypatch, gateway, {})) == []
+    assert shown(journal(monkeypatch, site_client, {})) == []
 
 
 def test_the_audit_shows_entries_from_before_that_were_numbered_by_the_clock(
-    gateway: FakeGateway, monkeypatch: pytest.MonkeyPatch
+    site_client: FakeSiteClient, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     now = datetime.now(timezone.utc)
     old = {1_790_000_000 - 3000 * n: now - timedelta(seconds=3000 * n) for n in range(1, 40)}
-    client = journal(monkeypatch, gateway, {**old, 1_790_000_001: now})
+    client = journal(monkeypatch, site_client, {**old, 1_790_000_001: now})
     assert len(shown(client)) == 29  # of the last 24 h
     assert shown(client, "?limit=3") == [1_790_000_000 - 6000, 1_790_000_000 - 3000, 1_790_000_001]
 
 
 def test_a_stop_waits_for_no_audit_and_other_commands_for_a_moment(
-    gateway: FakeGateway, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+    site_client: FakeSiteClient, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     audit = FakeAudit()
     audit.kept.clear()  # its disk hangs
-    client = Client(app(gateway, audit=audit))
+    client = Client(app(site_client, audit=audit))
     monkeypatch.setattr("tms_ur.commands.KEPT_LIMIT", 300.0)  # whoever waits for it fails by the test's own limit
     assert client.post("/api/stop", json={}).status_code == 200
     assert client.post("/api/runs/r-1/cancel", json={}).status_code == 202
@@ -318,9 +320,9 @@ def test_a_stop_waits_for_no_audit_and_other_commands_for_a_moment(
     assert "event=audit_late what=start_run" in caplog.text
 
 
-def test_refused_strangers_are_audited(gateway: FakeGateway) -> None:
+def test_refused_strangers_are_audited(site_client: FakeSiteClient) -> None:
     audit = FakeAudit()
-    client = Client(app(gateway, audit=audit))
+    client = Client(app(site_client, audit=audit))
     client.post("/api/stop", json={}, headers={"Origin": "http://evil.example"})
     client.get("/api/state", headers={"Host": "evil.example"})
     where = ("-", "127.0.0.1", "refused")
@@ -336,10 +338,10 @@ def test_the_site_is_described(client: Client) -> None:
     assert all(len(box["min"]) == len(box["max"]) == 3 for box in machine["footprint"])
 
 
-def test_cancel_a_run(client: Client, gateway: FakeGateway) -> None:
+def test_cancel_a_run(client: Client, site_client: FakeSiteClient) -> None:
     answer = client.post("/api/runs/r-1/cancel", json={})
     assert (answer.status_code, answer.json()) == (202, {"run_id": "r-1"})
-    assert gateway.calls == [("cancel_run", "r-1")]
+    assert site_client.calls == [("cancel_run", "r-1")]
 
 
 @pytest.mark.parametrize(
@@ -349,8 +351,8 @@ def test_cancel_a_run(client: Client, gateway: FakeGateway) -> None:
         ("REFUSED", 409), ("NO_SERVER", 503), ("NO_ANSWER", 503), ("STORE_DOWN", 503),
     ],
 )  # fmt: skip
-def test_errors_of_modules(client: Client, gateway: FakeGateway, code: str, status: int) -> None:
-    gateway.error = TmsError("what is wrong and what to do", code)
+def test_errors_of_modules(client: Client, site_client: FakeSiteClient, code: str, status: int) -> None:
+    site_client.error = TmsError("what is wrong and what to do", code)
     reads = [path for path in READS if code != "RUN_MISSING" or path != "/api/audit"]  # nothing was audited then
     answers = [client.get(path) for path in reads] + [client.post(path, json=body) for path, body in COMMANDS]
     for answer in answers:
@@ -366,21 +368,21 @@ def test_errors_of_modules(client: Client, gateway: FakeGateway, code: str, stat
         "/api/parameters?model_name=a/b", "/api/parameters/history?record_name=ev%00il",
     ],
 )  # fmt: skip
-def test_bad_values(client: Client, gateway: FakeGateway, path: str) -> None:
+def test_bad_values(client: Client, site_client: FakeSiteClient, path: str) -> None:
     answer = client.get(path)
     assert answer.status_code == 422
     assert answer.json()["code"] == "BAD_REQUEST"
-    assert gateway.calls == []
+    assert site_client.calls == []
 
 
 @pytest.mark.parametrize(
     "body", [b"{", b"[]", b"{}", b'{"task_id": "4"}', b'{"task_id": 0}', b'{"task_id": 4, "speed": 9}', b"\xff"]
 )
-def test_bad_commands(client: Client, gateway: FakeGateway, body: bytes) -> None:
+def test_bad_commands(client: Client, site_client: FakeSiteClient, body: bytes) -> None:
     answer = client.post("/api/runs", content=body, headers={"Content-Type": "application/json"})
     assert answer.status_code in (400, 422)
     assert answer.json()["code"] == "BAD_REQUEST"
-    assert gateway.calls == []
+    assert site_client.calls == []
 
 
 def test_unknown_path_and_method(client: Client) -> None:
@@ -389,9 +391,9 @@ def test_unknown_path_and_method(client: Client) -> None:
     assert (answer.status_code, answer.json()["code"]) == (405, "METHOD_NOT_ALLOWED")
 
 
-def test_a_bug_is_told_without_its_insides(gateway: FakeGateway) -> None:
-    gateway.error = ZeroDivisionError("inside")  # type: ignore[assignment]
-    client = Client(app(gateway))
+def test_a_bug_is_told_without_its_insides(site_client: FakeSiteClient) -> None:
+    site_client.error = ZeroDivisionError("inside")  # type: ignore[assignment]
+    client = Client(app(site_client))
     answer = client.get("/api/tasks")
     assert (answer.status_code, answer.json()["code"]) == (500, "INTERNAL")
     assert "inside" not in answer.text
@@ -409,14 +411,14 @@ def test_security_headers_are_everywhere(client: Client, path: str) -> None:
 
 
 @pytest.mark.parametrize("host", ["evil.example", "evil.example:8080", "127.0.0.1.evil.example", "", "[", "192.0.2.1"])
-def test_foreign_names_are_not_answered(client: Client, gateway: FakeGateway, host: str) -> None:
+def test_foreign_names_are_not_answered(client: Client, site_client: FakeSiteClient, host: str) -> None:
     for answer in (
         client.get("/api/tasks", headers={"Host": host}),
         client.post("/api/runs", json={"task_id": 4}, headers={"Host": host}),
     ):
         assert (answer.status_code, answer.json()["code"]) == (400, "FOREIGN_HOST")
         assert answer.headers["X-Frame-Options"] == "DENY"
-    assert gateway.calls == []
+    assert site_client.calls == []
 
 
 @pytest.mark.parametrize("host", ["localhost", "LOCALHOST:8080", "127.0.0.1:1", "[::1]:8080"])
@@ -424,8 +426,8 @@ def test_own_names_are_answered(client: Client, host: str) -> None:
     assert client.get("/api/state", headers={"Host": host}).status_code == 200
 
 
-def test_bound_to_all_addresses_numbers_are_answered(gateway: FakeGateway) -> None:
-    client = Client(app(gateway, "0.0.0.0"), base_url="http://192.0.2.1:8080")
+def test_bound_to_all_addresses_numbers_are_answered(site_client: FakeSiteClient) -> None:
+    client = Client(app(site_client, "0.0.0.0"), base_url="http://192.0.2.1:8080")
     assert client.get("/api/state").status_code == 200
     assert client.get("/api/state", headers={"Host": "evil.example"}).status_code == 400
 
@@ -433,11 +435,11 @@ def test_bound_to_all_addresses_numbers_are_answered(gateway: FakeGateway) -> No
 @pytest.mark.parametrize(
     "origin", ["http://evil.example", "null", "http://127.0.0.1:9999", "http://localhost:8080", "file://", ""]
 )
-def test_commands_from_foreign_pages_are_refused(client: Client, gateway: FakeGateway, origin: str) -> None:
+def test_commands_from_foreign_pages_are_refused(client: Client, site_client: FakeSiteClient, origin: str) -> None:
     for path, body in COMMANDS:
         answer = client.post(path, json=body, headers={"Origin": origin})
         assert (answer.status_code, answer.json()["code"]) == (403, "FOREIGN_ORIGIN")
-    assert gateway.calls == []
+    assert site_client.calls == []
 
 
 def test_commands_from_our_own_page(client: Client) -> None:
@@ -445,13 +447,13 @@ def test_commands_from_our_own_page(client: Client) -> None:
 
 
 @pytest.mark.parametrize("kind", ["text/plain", "application/x-www-form-urlencoded", "multipart/form-data", ""])
-def test_commands_are_json(client: Client, gateway: FakeGateway, kind: str) -> None:
+def test_commands_are_json(client: Client, site_client: FakeSiteClient, kind: str) -> None:
     answer = client.post("/api/runs", content=b'{"task_id": 4}', headers={"Content-Type": kind})
     assert (answer.status_code, answer.json()["code"]) == (415, "NOT_JSON")
-    assert gateway.calls == []
+    assert site_client.calls == []
 
 
-def test_commands_are_short(client: Client, gateway: FakeGateway) -> None:
+def test_commands_are_short(client: Client, site_client: FakeSiteClient) -> None:
     async def chunks() -> AsyncIterator[bytes]:
         yield b"{}"
 
@@ -463,19 +465,19 @@ def test_commands_are_short(client: Client, gateway: FakeGateway) -> None:
     framed = {"Content-Length": "2", "Transfer-Encoding": "chunked"}
     both = client.post("/api/runs", content=chunks(), headers={**kind, **framed})  # the chunks count
     assert (both.status_code, both.json()["code"]) == (411, "NO_LENGTH")
-    assert gateway.calls == []
+    assert site_client.calls == []
 
 
 @pytest.mark.parametrize("bind", ["0.0.0.0", "192.0.2.7", "::", "site-pc"])
-def test_commands_need_loopback(gateway: FakeGateway, bind: str) -> None:
-    client = Client(app(gateway, bind), base_url="http://localhost:8080")
+def test_commands_need_loopback(site_client: FakeSiteClient, bind: str) -> None:
+    client = Client(app(site_client, bind), base_url="http://localhost:8080")
     assert client.get("/api/tasks").status_code == 200
-    gateway.calls.clear()
+    site_client.calls.clear()
     for path, body in COMMANDS:
         answer = client.post(path, json=body)
         assert (answer.status_code, answer.json()["code"]) == (403, "NO_ACCESS_CONTROL")
         assert bind in answer.json()["message"]
-    assert gateway.calls == []
+    assert site_client.calls == []
 
 
 def test_loopback() -> None:
@@ -496,7 +498,10 @@ def test_every_endpoint_is_in_the_document(client: Client) -> None:
         "/api/tasks/{task_id}/diff", "/api/tasks/{task_id}/remove", "/api/runs/{run_id}/tree",
         "/api/runs/{run_id}/export", "/api/audit", "/api/processes/{name}/log", "/api/processes/{name}/restart",
     }  # fmt: skip
-    assert {method for path in document["paths"].values() for method in path} == {"get", "post"}  # what the guard knows
+    assert {method for path in document["paths"].values() for method in path} == {
+        "get",
+        "post",
+    }  # as in security.py
     problem = document["paths"]["/api/runs"]["post"]["responses"]["409"]["content"]["application/json"]["schema"]
     assert problem == {"$ref": "#/components/schemas/Problem"}
     assert document["components"]["schemas"]["Joint"]["properties"]["position"]["description"] == "rad"

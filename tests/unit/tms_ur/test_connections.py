@@ -10,7 +10,7 @@ from tms_ur import connections
 from tms_ur.connections import FULL, GRACE, HEADERS, MOST, MOST_OF_ONE, Gate, Listener
 from tms_ur.room import MOST_OF_ONE as MOST_ASKED
 from tms_ur.room import Room
-from unit.tms_ur.fakes import FakeGateway, app
+from unit.tms_ur.fakes import FakeSiteClient, app
 
 
 class FakeSocket:
@@ -162,8 +162,8 @@ def test_the_room_counts_by_caller() -> None:
 
 def test_a_stop_is_answered_when_no_other_request_is() -> None:
     """As many requests as one address may have hang in their bodies."""
-    gateway = FakeGateway()
-    application = app(gateway)
+    site_client = FakeSiteClient()
+    application = app(site_client)
 
     async def story() -> None:
         never = asyncio.Event()
@@ -178,7 +178,7 @@ def test_a_stop_is_answered_when_no_other_request_is() -> None:
             await asyncio.sleep(0)
         assert (await ask("GET", "/api/state", hang, "192.0.2.9"))[0] == 200
         status, body = await ask("POST", "/api/stop", whole)
-        assert (status, gateway.calls) == (200, [("stop", "zx200", "software stop by local at 127.0.0.1")]), body
+        assert (status, site_client.calls) == (200, [("stop", "zx200", "software stop by local at 127.0.0.1")]), body
         assert (await ask("POST", "/api/runs/r-1/cancel", whole))[0] == 202
         assert (await ask("POST", "/api/runs", whole))[0] == 503
         for task in hanging:

@@ -12,9 +12,9 @@ from schemathesis.specs.openapi.checks import (
     status_code_conformance,
 )  # fmt: skip
 
-from unit.tms_ur.fakes import FakeGateway, app
+from unit.tms_ur.fakes import FakeSiteClient, app
 
-schema = schemathesis.openapi.from_asgi("/openapi.json", app(FakeGateway()), headers={"Host": "localhost"})
+schema = schemathesis.openapi.from_asgi("/openapi.json", app(FakeSiteClient()), headers={"Host": "localhost"})
 BESIDE_THE_STREAM = schema.exclude(path="/api/events")  # it has no end
 EXAMPLES = 15
 CHECKS = [

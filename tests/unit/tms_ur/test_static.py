@@ -9,8 +9,8 @@ import pytest
 from tms_cli.japanese import STATES
 from tms_ts import bt
 from tms_ur.api import STATIC
-from tms_ur.guard import LOCAL
-from unit.tms_ur.fakes import Client, FakeGateway, app
+from tms_ur.security import LOCAL
+from unit.tms_ur.fakes import Client, FakeSiteClient, app
 from unit.tms_ur.phrases import known
 
 FILES = sorted(path for path in STATIC.rglob("*") if path.is_file())
@@ -107,7 +107,7 @@ def test_nothing_comes_from_elsewhere(file: Path) -> None:
 
 
 def test_files_are_served_and_small() -> None:
-    client = Client(app(FakeGateway()))
+    client = Client(app(FakeSiteClient()))
     assert client.get("/").text == (STATIC / "index.html").read_text(encoding="utf-8")
     assert client.get("/console.js").headers["content-type"].startswith("text/javascript")
     assert client.get("/pages/run.js").status_code == client.get("/panel.html").status_code == 200

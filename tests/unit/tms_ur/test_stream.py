@@ -9,7 +9,7 @@ import pytest
 
 from tms_ur import stream
 from tms_ur.models import Machine
-from unit.tms_ur.fakes import FakeGateway, app
+from unit.tms_ur.fakes import FakeSiteClient, app
 
 LIMIT = 5.0  # s
 SCOPE = {
@@ -51,16 +51,16 @@ class Console:
         await asyncio.wait_for(self.task, LIMIT)
 
 
-Scenario = Callable[[FakeGateway, Any], Awaitable[None]]
+Scenario = Callable[[FakeSiteClient, Any], Awaitable[None]]
 
 
 def play(scenario: Scenario) -> None:
-    gateway = FakeGateway()
-    asyncio.run(scenario(gateway, app(gateway)))
+    site_client = FakeSiteClient()
+    asyncio.run(scenario(site_client, app(site_client)))
 
 
 def test_first_state_comes_at_once_and_changes_follow() -> None:
-    async def scenario(gateway: FakeGateway, app: Any) -> None:
+    async def scenario(site_client: FakeSiteClient, app: Any) -> None:
         console = Console(app)
         start = await console.message()
         headers = dict(start["headers"])
@@ -68,7 +68,7 @@ def test_first_state_comes_at_once_and_changes_follow() -> None:
         assert headers[b"content-type"].startswith(b"text/event-stream")
         assert headers[b"x-frame-options"] == b"DENY"
         assert (await console.state())["machines"][0]["state"] == "silent"
-        await asyncio.to_thread(gateway.board.put_machine, Machine(name="zx200", state="moving"))
+        await asyncio.to_thread(site_client.board.put_machine, Machine(name="zx200", state="moving"))
         while (await console.state())["machines"][0]["state"] != "moving":
             pass
         await console.leave()
@@ -77,7 +77,7 @@ def test_first_state_comes_at_once_and_changes_follow() -> None:
 
 
 def test_without_a_change_there_is_a_state_every_two_seconds_at_least() -> None:
-    async def scenario(gateway: FakeGateway, app: Any) -> None:
+    async def scenario(site_client: FakeSiteClient, app: Any) -> None:
         console = Console(app)
         await console.message()
         await console.state()
@@ -88,12 +88,12 @@ def test_without_a_change_there_is_a_state_every_two_seconds_at_least() -> None:
 
 
 def test_at_most_ten_states_a_second() -> None:
-    async def scenario(gateway: FakeGateway, app: Any) -> None:
+    async def scenario(site_client: FakeSiteClient, app: Any) -> None:
         console = Console(app)
         loop = asyncio.get_running_loop()
         begun = loop.time()
         while loop.time() - begun < 0.55:
-            gateway.board.put_machine(Machine(name="zx200", state="moving", goal=str(loop.time())))
+            site_client.board.put_machine(Machine(name="zx200", state="moving", goal=str(loop.time())))
             await asyncio.sleep(0)
         assert console.sent.qsize() <= 1 + 1 + 6
         await console.leave()
@@ -102,7 +102,7 @@ def test_at_most_ten_states_a_second() -> None:
 
 
 def test_clients_are_bounded_and_leave_their_place() -> None:
-    async def scenario(gateway: FakeGateway, app: Any) -> None:
+    async def scenario(site_client: FakeSiteClient, app: Any) -> None:
         consoles = [Console(app) for _ in range(stream.MOST_CLIENTS)]
         for console in consoles:
             assert (await console.message())["status"] == 200
@@ -121,7 +121,7 @@ def test_clients_are_bounded_and_leave_their_place() -> None:
 def test_a_client_that_does_not_read_is_dropped(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(stream, "SLOW_LIMIT", 0.05)
 
-    async def scenario(gateway: FakeGateway, app: Any) -> None:
+    async def scenario(site_client: FakeSiteClient, app: Any) -> None:
         stuck, fine = Console(app, stuck=True), Console(app)
         await asyncio.wait_for(stuck.task, LIMIT)
         for _ in range(2):
@@ -133,7 +133,7 @@ def test_a_client_that_does_not_read_is_dropped(monkeypatch: pytest.MonkeyPatch)
 
 
 def test_a_slow_client_gets_the_newest_state_only() -> None:
-    async def scenario(gateway: FakeGateway, app: Any) -> None:
+    async def scenario(site_client: FakeSiteClient, app: Any) -> None:
         client = stream.Client()
         for text in (b"1", b"2", b"3"):
             client.put(text)
@@ -143,11 +143,11 @@ def test_a_slow_client_gets_the_newest_state_only() -> None:
 
 
 def test_the_end_of_the_process_ends_the_streams() -> None:
-    async def scenario(gateway: FakeGateway, app: Any) -> None:
+    async def scenario(site_client: FakeSiteClient, app: Any) -> None:
         console = Console(app)
         await console.message()
         await console.state()
-        gateway.board.close()
+        site_client.board.close()
         await asyncio.wait_for(console.task, 0.5)
 
     play(scenario)

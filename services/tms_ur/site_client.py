@@ -44,7 +44,7 @@ FRAMES_PERIOD = 0.2  # s between looks at /tf: to be woken by each of its messag
 FRAMES_DEPTH = 200  # messages of all machines in that time
 
 
-class Gateway:
+class SiteClient:
     """The site as the API sees it."""
 
     def __init__(self, ros: Ros, site: Site) -> None:

@@ -16,9 +16,9 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from tms_reason.errors import TmsError
 from tms_ur.access import Access, Person
-from tms_ur.brake import Throttled
 from tms_ur.callers import caller
 from tms_ur.hashing import Hashing
+from tms_ur.login_throttle import Throttled
 from tms_ur.room import Room, is_stop
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ BUSY = Refusal(
 NOBODY = Refusal(401, "LOGIN", "log in first: POST /api/login, or send `Authorization: Bearer NAME:TOKEN`")
 
 
-class Guard:
+class SecurityMiddleware:
     """ASGI middleware around the whole application."""
 
     def __init__(

@@ -1,4 +1,4 @@
-"""The brake on guessing passwords: by account and address together, and more gently by each of them alone.
+"""The throttle on guessing passwords: by account and address together, and more gently by each of them alone.
 
 The pair stops somebody who guesses at one account. The limit of an address stops one who tries a few passwords on many
 accounts, that of an account one who has many addresses. A pair that has logged in before is free of these two, so that
@@ -75,7 +75,7 @@ class Failures:
             self.clear(key)
 
 
-class Brake:
+class LoginThrottle:
     """Every try counts as wrong until it was right, so that tries at the same time are not free; thread safe."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:

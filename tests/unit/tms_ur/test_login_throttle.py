@@ -6,9 +6,9 @@ import anyio
 import pytest
 
 from tms_reason.errors import TmsError
-from tms_ur.brake import ACCOUNT, ADDRESS, MOST_KEYS, PAIR, Brake, Throttled
 from tms_ur.callers import caller
 from tms_ur.hashing import MOST_OF_ONE, MOST_WAITING, Hashing
+from tms_ur.login_throttle import ACCOUNT, ADDRESS, MOST_KEYS, PAIR, LoginThrottle, Throttled
 
 
 class Clock:
@@ -24,93 +24,93 @@ def clock() -> Clock:
 
 
 @pytest.fixture
-def brake(clock: Clock) -> Brake:
-    return Brake(clock)
+def throttle(clock: Clock) -> LoginThrottle:
+    return LoginThrottle(clock)
 
 
-def guesses(brake: Brake, clock: Clock, seconds: int, *pairs: tuple[str, str]) -> int:
+def guesses(throttle: LoginThrottle, clock: Clock, seconds: int, *pairs: tuple[str, str]) -> int:
     """How many guesses come through if each pair tries again and again."""
     through = 0
     for _ in range(seconds):
         clock.now += 1.0
         for account, address in pairs:
             try:
-                brake.attempt(account, address)
+                throttle.attempt(account, address)
                 through += 1
             except Throttled:
                 continue
     return through
 
 
-def test_one_pair(brake: Brake, clock: Clock) -> None:
-    assert guesses(brake, clock, 3600, ("ken", "192.0.2.1")) < PAIR.free + 70
+def test_one_pair(throttle: LoginThrottle, clock: Clock) -> None:
+    assert guesses(throttle, clock, 3600, ("ken", "192.0.2.1")) < PAIR.free + 70
     with pytest.raises(Throttled, match="try again in"):
-        brake.attempt("ken", "192.0.2.1")
+        throttle.attempt("ken", "192.0.2.1")
 
 
-def test_the_wait_is_bounded_and_forgotten(brake: Brake, clock: Clock) -> None:
-    guesses(brake, clock, 3600, ("ken", "192.0.2.1"))
+def test_the_wait_is_bounded_and_forgotten(throttle: LoginThrottle, clock: Clock) -> None:
+    guesses(throttle, clock, 3600, ("ken", "192.0.2.1"))
     clock.now += PAIR.longest
-    brake.attempt("ken", "192.0.2.1")
+    throttle.attempt("ken", "192.0.2.1")
     clock.now += 1000
-    assert guesses(brake, clock, 3, ("ken", "192.0.2.1")) == 3
+    assert guesses(throttle, clock, 3, ("ken", "192.0.2.1")) == 3
 
 
-def test_many_accounts_from_one_address(brake: Brake, clock: Clock) -> None:
+def test_many_accounts_from_one_address(throttle: LoginThrottle, clock: Clock) -> None:
     pairs = [(f"user{number}", "192.0.2.1") for number in range(500)]
-    assert guesses(brake, clock, 600, *pairs) < ADDRESS.free + 600 / ADDRESS.longest + 10
+    assert guesses(throttle, clock, 600, *pairs) < ADDRESS.free + 600 / ADDRESS.longest + 10
 
 
-def test_one_account_from_many_addresses(brake: Brake, clock: Clock) -> None:
+def test_one_account_from_many_addresses(throttle: LoginThrottle, clock: Clock) -> None:
     pairs = [("ken", f"192.0.{number // 250}.{number % 250}") for number in range(500)]
-    assert guesses(brake, clock, 600, *pairs) < ACCOUNT.free + 600 / ACCOUNT.longest + 10
+    assert guesses(throttle, clock, 600, *pairs) < ACCOUNT.free + 600 / ACCOUNT.longest + 10
 
 
-def test_somebody_elses_guesses_keep_nobody_out_for_long(brake: Brake, clock: Clock) -> None:
+def test_somebody_elses_guesses_keep_nobody_out_for_long(throttle: LoginThrottle, clock: Clock) -> None:
     pairs = [("ken", f"192.0.2.{number}") for number in range(1, 200)]
-    brake.attempt("ken", "198.51.100.1")
-    brake.right("ken", "198.51.100.1")
-    guesses(brake, clock, 600, *pairs)
-    brake.attempt("ken", "198.51.100.1")  # where he has logged in before: at once
+    throttle.attempt("ken", "198.51.100.1")
+    throttle.right("ken", "198.51.100.1")
+    guesses(throttle, clock, 600, *pairs)
+    throttle.attempt("ken", "198.51.100.1")  # where he has logged in before: at once
     clock.now += ACCOUNT.longest
-    brake.attempt("ken", "203.0.113.1")  # from a new place after some seconds
+    throttle.attempt("ken", "203.0.113.1")  # from a new place after some seconds
 
 
-def test_a_guesser_behind_the_same_address_keeps_out_nobody_who_was_in(brake: Brake, clock: Clock) -> None:
-    brake.attempt("mina", "192.0.2.1")
-    brake.right("mina", "192.0.2.1")
-    guesses(brake, clock, 600, *[(f"user{number}", "192.0.2.1") for number in range(100)])
-    brake.attempt("mina", "192.0.2.1")
+def test_a_guesser_behind_the_same_address_keeps_out_nobody_who_was_in(throttle: LoginThrottle, clock: Clock) -> None:
+    throttle.attempt("mina", "192.0.2.1")
+    throttle.right("mina", "192.0.2.1")
+    guesses(throttle, clock, 600, *[(f"user{number}", "192.0.2.1") for number in range(100)])
+    throttle.attempt("mina", "192.0.2.1")
 
 
-def test_right_passwords_clear_nothing_of_others(brake: Brake, clock: Clock) -> None:
+def test_right_passwords_clear_nothing_of_others(throttle: LoginThrottle, clock: Clock) -> None:
     """Whoever has an account must not get free guesses at others by logging in between."""
     through = 0
     for number in range(200):
         clock.now += 1.0
-        brake.attempt("mina", "192.0.2.1")
-        brake.right("mina", "192.0.2.1")
-        through += _try(brake, f"user{number}", "192.0.2.1")
+        throttle.attempt("mina", "192.0.2.1")
+        throttle.right("mina", "192.0.2.1")
+        through += _try(throttle, f"user{number}", "192.0.2.1")
     assert through < ADDRESS.free + 20
 
 
-def _try(brake: Brake, account: str, address: str) -> int:
+def _try(throttle: LoginThrottle, account: str, address: str) -> int:
     try:
-        brake.attempt(account, address)
+        throttle.attempt(account, address)
     except Throttled:
         return 0
     return 1
 
 
-def test_tries_at_the_same_time_are_not_free(brake: Brake) -> None:
-    through = sum(_try(brake, "ken", "192.0.2.1") for _ in range(100))  # none of them is known to be wrong yet
+def test_tries_at_the_same_time_are_not_free(throttle: LoginThrottle) -> None:
+    through = sum(_try(throttle, "ken", "192.0.2.1") for _ in range(100))  # none of them is known to be wrong yet
     assert through == PAIR.free + 1
 
 
-def test_memory_is_bounded(brake: Brake) -> None:
+def test_memory_is_bounded(throttle: LoginThrottle) -> None:
     for number in range(3 * MOST_KEYS):
-        _try(brake, "x" * 10_000 + str(number), f"2001:db8:{number:x}::1")
-    for counts in (brake._pairs, brake._addresses, brake._accounts):
+        _try(throttle, "x" * 10_000 + str(number), f"2001:db8:{number:x}::1")
+    for counts in (throttle._pairs, throttle._addresses, throttle._accounts):
         assert len(counts._counts) <= MOST_KEYS
         assert max(map(len, counts._counts)) < 200
 
