@@ -8,6 +8,7 @@ from tms_msg_rc.msg import Permit as Message
 
 from tms_machine.permit import LEASE
 from tms_ros.node import Ros
+from tms_runtime.pulse import Pulse
 
 pytestmark = pytest.mark.ros
 TOPIC, LIMIT = "/zx200/permit/rc", 20.0
@@ -39,17 +40,17 @@ def test_a_reader_that_comes_second_knows_that_a_publisher_lives(two_nodes: tupl
     """The first one of its process has been told, and Fast DDS does not tell it again."""
     server, client = two_nodes
     publisher = server.lease_publisher(Message, TOPIC, LEASE)
-    beat = publisher.assert_liveliness
+    beat, pulse = publisher.assert_liveliness, Pulse(server)
     publisher.publish(Message(process="rc", goal=[1] * 16))
-    server.pulse.add(beat)
+    pulse.add(beat)
     readers = [Reader(client)]
     readers[0].wait(1, 0)
     readers.append(Reader(client))
     readers[1].wait(1, 0)
     assert readers[1].heard == 1
-    server.pulse.remove(beat)
+    pulse.remove(beat)
     for reader in readers:
         reader.wait(0, 1)
-    server.pulse.add(beat)
+    pulse.add(beat)
     for reader in readers:
         reader.wait(1, 0)

@@ -10,6 +10,7 @@ import pytest
 from conftest import wait_until
 from tms_ros.loop import _undisturbed
 from tms_ros.node import Ros
+from tms_runtime.pulse import Pulse
 
 LIMIT = 30.0  # s
 
@@ -22,7 +23,7 @@ def broken() -> None:
 @pytest.mark.parametrize(
     "give",
     [
-        lambda ros: ros.pulse.add(broken),
+        lambda ros: Pulse(ros).add(broken),
         lambda ros: ros.beside(0.1, broken, "looks"),
         lambda ros: ros.every(0.1, broken),
     ],
@@ -37,8 +38,9 @@ def test_a_thread_that_dies_of_a_bug_ends_the_process(two_nodes: tuple[Ros, Ros]
 
 def test_a_node_that_is_closed_has_not_failed(own_domain: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(os.environ, "ROS_DOMAIN_ID", str(own_domain))
-    node, before = Ros("server"), set(threading.enumerate())
-    node.pulse.add(lambda: None)
+    node = Ros("server")
+    Pulse(node).add(lambda: None)
+    before = set(threading.enumerate())
     node.beside(0.01, lambda: None, "looks")
     (looks,) = set(threading.enumerate()) - before
     node.close()

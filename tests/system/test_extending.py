@@ -1,10 +1,11 @@
-"""A subtask is one file and one line (those of CONTRIBUTING.md), a machine one line: done to a copy of the project."""
+"""What it costs to add something: each row of the table of CONTRIBUTING.md, done to a copy of the project."""
 
 import json
 import re
 import shutil
 import subprocess
 import sys
+import urllib.request
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -15,11 +16,51 @@ from conftest import PROJECT, Mesh, ports_of, running, site_data
 
 pytestmark = [pytest.mark.system, pytest.mark.timeout(200)]
 GUIDE = (PROJECT / "CONTRIBUTING.md").read_text(encoding="utf-8")
-(FILE,) = re.findall(r"```python\n(.*?)```", GUIDE, re.DOTALL)
+TABLE = GUIDE.partition("## What it costs to add\n")[2].partition("\n## ")[0]
+ROWS = {name.strip() for name in re.findall(r"^\| ([a-z][^|]*)\|", TABLE, re.MULTILINE)} - {"thing"}
+(SUBTASK,) = re.findall(r"```python\n(.*?)```", GUIDE, re.DOTALL)
 (LINE,) = re.findall(r"```yaml\n(  st_zx200_lift: lift\n)```", GUIDE)
+NODE = '''"""Say a word and count how often."""
+
+from prometheus_client import Counter
+
+from tms_ts.bt.leaf import SyncAction
+from tms_ts.bt.ports import In
+from tms_ts.bt.registry import node
+from tms_ts.bt.status import SUCCESS, Status
+
+GREETINGS = Counter("tms_greetings_total", "Words that were said")
+
+
+@node
+class Greet(SyncAction):
+    """Say a word.
+
+    word: what to say
+    """
+
+    __slots__ = ()
+    word: In[str]
+
+    def tick(self) -> Status:
+        GREETINGS.inc()
+        return SUCCESS
+'''
+VERB = '''"""`tms hello`: say it."""
+
+import click
+
+
+@click.command()
+def command() -> None:
+    """Say hello."""
+    click.echo("hello")
+'''
+SENSING = "\n  height: {topic: /height, type: sensing_msgs/msg/Sample}\n"
 TREE = (
-    '<root main_tree_to_execute="T"><BehaviorTree ID="T"><Action ID="LeafNodeZx200" model_name="zx200_2" '
-    'record_name="high" subtask_name="st_zx200_lift"/></BehaviorTree></root>'
+    '<root main_tree_to_execute="T"><BehaviorTree ID="T"><Sequence><Greet word="good morning"/>'
+    '<Action ID="LeafNodeZx200" model_name="zx200_2" record_name="high" subtask_name="st_zx200_lift"/>'
+    "</Sequence></BehaviorTree></root>"
 )
 
 
@@ -38,26 +79,50 @@ class Copy(Mesh):
         return done
 
 
+def add(project: Path) -> set[str]:
+    """One of each; returns the rows of the table that this covers."""
+    services, machines = project / "services", project / "configs" / "machines"
+    (services / "tms_subtasks" / "lift.py").write_text(SUBTASK)
+    (services / "tms_ts" / "nodes" / "greet.py").write_text(NODE)
+    (services / "tms_cli" / "commands" / "hello.py").write_text(VERB)
+    (machines / "zx210.yaml").write_text((machines / "zx200.yaml").read_text() + LINE)
+    with (project / "configs" / "sensing.yaml").open("a") as inputs:
+        inputs.write(SENSING)
+    return {
+        "subtask",
+        "machine model",
+        "machine of a site",
+        "node of trees",
+        "verb of `tms`",
+        "metric",
+        "sensing input",
+    }
+
+
 @pytest.fixture
 def copy(own_domain: int, tmp_path: Path) -> Iterator[Copy]:
-    """The project with one file and one line more, and a site with one more machine."""
+    """The project with one more of each, and a site with a machine of the new model."""
     project = tmp_path / "project"
     for part in ("services", "configs", "deploy"):
         shutil.copytree(PROJECT / part, project / part, ignore=shutil.ignore_patterns("interfaces", "__pycache__"))
     (project / ".venv-store").symlink_to(PROJECT / ".venv-store")
-    (project / "services" / "tms_subtasks" / "lift.py").write_text(FILE)
-    with (project / "configs" / "machines" / "zx200.yaml").open("a") as model:
-        model.write(LINE)
-    data = site_data(own_domain, ports_of(own_domain), name="copy", machines={"zx200_2": {"model": "zx200"}})
+    assert add(project) | {"reason"} == ROWS  # tests/contract/test_reasons.py walks every reason
+    data = site_data(own_domain, ports_of(own_domain), name="copy", machines={"zx200_2": {"model": "zx210"}})
     (project / "site.yaml").write_text(yaml.safe_dump(data))
     made = Copy(project / "site.yaml", tmp_path / "state")
     with running(made):
         yield made
 
 
-def test_one_file_and_one_line_each(copy: Copy, tmp_path: Path) -> None:
+def test_one_of_each_is_added_and_works(copy: Copy, tmp_path: Path) -> None:
     copy.tms("param", "set", "zx200_2/high", "--create", "--type", "static", "boom=-1.0")
     (tmp_path / "tree.xml").write_text(TREE)
     copy.tms("task", "add", str(tmp_path / "tree.xml"))
     done = copy.tms("run", "1", "--wait", "--json", expect=None)
     assert json.loads(done.stdout)["outcome"] == "success", done.stdout + done.stderr
+    assert copy.tms("hello").stdout == "hello\n"
+    assert 'ID="Greet"' in copy.tms("palette").stdout
+    assert "height" in {row["name"] for row in json.loads(copy.tms("sensing", "--json").stdout)}
+    (port,) = [row["port"] for row in json.loads(copy.tms("ps", "--json").stdout) if row["name"] == "tms:ts"]
+    with urllib.request.urlopen(f"http://127.0.0.1:{port}/metrics", timeout=10) as page:
+        assert "tms_greetings_total 1.0" in page.read().decode()

@@ -95,7 +95,9 @@ def test_the_log_of_a_goal_names_process_machine_run_and_goal(mesh: Mesh) -> Non
     mesh.tms("run", "1", "--wait", "--json")
     lines = (mesh.state / "log" / "tms.ts.log").read_text(encoding="utf-8").splitlines()
     told = [line for line in lines if "event=run" in line and "success" in line]
-    assert told and all(re.search(r"process=tms:ts goal=[0-9a-f]{32} .*\brun=\S+", line) for line in told), told[-1:]
+    assert told and all(re.search(r"process=tms:ts run=\S+ goal=[0-9a-f]{32} event=run", line) for line in told), told[
+        -1:
+    ]
 
 
 def test_diagnostics_tell_every_process(mesh: Mesh, node: Ros) -> None:
