@@ -1,6 +1,7 @@
 """The host agent stops a machine in place of its gateway: no scheduler, database or console is there to do it."""
 
 import os
+import re
 import signal
 import threading
 import time
@@ -77,10 +78,7 @@ class Small:
 
     def told(self, event: str, begin: int) -> bool:
         """Whether the host agent's log has an event behind `begin` characters."""
-        return (
-            f"machine=zx200 event={event}\n" in self.log()[begin:]
-            or f"machine=zx200 event={event} " in self.log()[begin:]
-        )
+        return re.search(rf"machine=zx200 event={event}\b", self.log()[begin:]) is not None
 
     def wait_armed(self) -> None:
         """Ready for a goal, whatever the test before has left."""
