@@ -8,9 +8,10 @@ from typing import Any
 from tms_config.models import Joint, MachineModel
 from tms_machine.border import STOP_PROVEN
 from tms_reason.errors import SubtaskFailed
-from tms_ros.client import Call, Peer
+from tms_ros.client import AnyCall, AnyPeer
 from tms_ros.fence import derived
 from tms_ros.goals import LOST_TEXT, Outcome
+from tms_ros.interface_types import ActionType, F, G, R
 from tms_ros.node import Ros
 
 SERVER_LIMIT = 5.0  # s for an action server to appear
@@ -37,7 +38,7 @@ class Acting:
         model: MachineModel,
         timeout: float,
         goal_id: bytes = b"",
-        watches: Mapping[str, Callable[[Peer], None]] | None = None,
+        watches: Mapping[str, Callable[[AnyPeer], None]] | None = None,
     ) -> None:
         """`goal_id` is of the goal this is for; `watches` make calls to rc and rp end when those processes die."""
         self._goal_id, self._watches = goal_id, watches or {}
@@ -46,7 +47,7 @@ class Acting:
         self._ros, self._model_name, self._timeout = ros, model_name, timeout
         self._deadline = time.monotonic() + timeout
         self._cancelled = threading.Event()
-        self._calls: list[tuple[Peer, Call]] = []
+        self._calls: list[tuple[AnyPeer, AnyCall]] = []
 
     def joint(self, name: str) -> Joint:
         """Limits of a joint.
@@ -76,7 +77,9 @@ class Acting:
         if time.monotonic() > self._deadline:
             raise SubtaskFailed("TIMEOUT", f"{self.name} was not done after {self._timeout:.0f} s")
 
-    def act(self, action_type: Any, action: str, goal: Any, heard: Callable[[Any], None] | None = None) -> Any:
+    def act(
+        self, action_type: ActionType[G, R, F], action: str, goal: G, heard: Callable[[F], None] | None = None
+    ) -> R:
         """Send a goal to an action of this machine and wait for its result.
 
         Raises:
@@ -95,9 +98,10 @@ class Acting:
             raise SubtaskFailed(LOST_TEXT, f"the process behind {peer.name} was lost during its goal")
         if call.outcome is not Outcome.SUCCEEDED:
             raise SubtaskFailed(call.outcome.name if call.outcome else "LOST", f"{peer.name}: {_why(call)}")
+        assert call.result is not None, "a goal that succeeded has a result"
         return call.result
 
-    def guarded(self, field: str, action_type: Any, goal: Any, heard: Callable[[Any], None]) -> Any:
+    def guarded(self, field: str, action_type: ActionType[G, R, F], goal: G, heard: Callable[[F], None]) -> R:
         """`act` on one of the machine's own motions, by its key under borders:, through the gateway.
 
         Raises:
@@ -108,7 +112,7 @@ class Acting:
             raise SubtaskFailed("NO_CAPABILITY", text)
         return self.act(action_type, f"rc/{field}", goal, heard)
 
-    def _wait(self, peer: Peer, call: Call, done: Callable[[], bool], limit: float | None, action: str) -> None:
+    def _wait(self, peer: AnyPeer, call: AnyCall, done: Callable[[], bool], limit: float | None, action: str) -> None:
         end = self._deadline if limit is None else min(self._deadline, time.monotonic() + limit)
         while not (done() or self._cancelled.is_set()) and time.monotonic() < end:
             call.wait_for(lambda: done() or self._cancelled.is_set(), min(LOOK, end - time.monotonic()))
@@ -135,15 +139,15 @@ def missed(result: Any) -> list[int]:
     return [int(getattr(one, "index", one)) for one in getattr(result, "missed_waypoints", ())]
 
 
-def _known(call: Call) -> Callable[[], bool]:
+def _known(call: AnyCall) -> Callable[[], bool]:
     return lambda: call.accepted or call.outcome is not None
 
 
-def _ended(call: Call) -> Callable[[], bool]:
+def _ended(call: AnyCall) -> Callable[[], bool]:
     return lambda: call.outcome is not None
 
 
-def _why(call: Call) -> str:
+def _why(call: AnyCall) -> str:
     """The reason that a result or the last feedback gives; results of Humble's Nav2 have none."""
     state = getattr(call.feedback, "state", "") or getattr(call.feedback, "status", "")
     text = getattr(call.result, "error_string", "") or getattr(call.result, "error_msg", "") or state

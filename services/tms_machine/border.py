@@ -11,6 +11,7 @@ from nav2_msgs.action import FollowWaypoints, NavigateThroughPoses, NavigateToPo
 from std_msgs.msg import Bool
 
 from tms_config.models import Border
+from tms_ros.interface_types import ActionType
 from tms_ros.node import Ros
 
 STOP_PROVEN = 10.0  # s after which a gateway has seen that a machine stands, or says that it has not
@@ -22,7 +23,7 @@ class Motion:
 
     field: str  # of the border's configuration
     served: str  # name below /<machine>/rc/
-    type: Any
+    type: ActionType[Any, Any, Any]
 
 
 MOTIONS = (

@@ -7,11 +7,10 @@ out, whether the process was killed, frozen or cut off. A process that works for
 
 import time
 from collections.abc import Callable
-from typing import Any
 
 from tms_msg_rc.msg import Permit as Message
 
-from tms_ros.client import Peer
+from tms_ros.client import AnyPeer
 from tms_ros.node import Ros
 from tms_runtime.pulse import Pulse
 
@@ -70,7 +69,7 @@ class Link:
         # A message may be handled before the news that its writer lives again.
         return self.goal != NOBODY and (self._alive or time.monotonic() - self._heard < LEASE)
 
-    def _on_message(self, message: Any) -> None:
+    def _on_message(self, message: Message) -> None:
         self._heard = time.monotonic()
         self.goal, self.holder = bytes(message.goal), message.holder
         self._changed(self)
@@ -94,12 +93,12 @@ class Link:
             self._changed(self)
 
 
-def watch_server(ros: Ros, pulse: Pulse, machine: str, process: str) -> Callable[[Peer], None]:
+def watch_server(ros: Ros, pulse: Pulse, machine: str, process: str) -> Callable[[AnyPeer], None]:
     """A function that makes open calls to a peer end as LOST when the process behind it is lost.
 
     Discovery does not tell: a restarted server has the same name, so the peer stays ready throughout.
     """
-    peers: list[Peer] = []
+    peers: list[AnyPeer] = []
 
     def changed(link: Link) -> None:
         for peer in peers:
@@ -108,7 +107,7 @@ def watch_server(ros: Ros, pulse: Pulse, machine: str, process: str) -> Callable
             elif not link.alive and link.goal != NOBODY:
                 peer.lost()
 
-    def add(peer: Peer) -> None:
+    def add(peer: AnyPeer) -> None:
         if peer not in peers:
             peers.append(peer)
 

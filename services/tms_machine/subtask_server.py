@@ -16,7 +16,7 @@ from tms_machine.record_lock import FLAG, RecordLock
 from tms_machine.subtask import Params, Subtask, load
 from tms_machine.values import Value, from_parameters
 from tms_reason.errors import RosError, SubtaskFailed
-from tms_ros.client import Peer
+from tms_ros.client import AnyPeer
 from tms_ros.goals import Ended, Outcome, Rejection
 from tms_ros.server import Goal
 from tms_runtime.app import App
@@ -24,6 +24,7 @@ from tms_runtime.app import App
 DB_LIMIT = 10.0  # s to wait for it at the start; goals are refused with a reason after that
 RECORD_LIMIT = 0.8  # s for the database while a goal waits for its answer: a C++ leaf gives up after 1 s
 FEEDBACK_GAP = 0.1  # s between feedbacks
+LeafGoal = Goal[LeafNodeBase.Goal, LeafNodeBase.Feedback]
 
 
 def start(app: App) -> None:
@@ -41,7 +42,7 @@ class _Server:
     def __init__(self, app: App, kind: type[Subtask], inputs: dict[str, Any], max_age: float) -> None:
         self._app, self._kind, self._inputs, self._max_age = app, kind, inputs, max_age
         self._permit = Permit(app.ros, app.pulse, app.machine, str(app.process.action))
-        self._watches: dict[str, Callable[[Peer], None]] = {}
+        self._watches: dict[str, Callable[[AnyPeer], None]] = {}
         self._reserved = False
         self._want: Params | None = None
         self._lock: RecordLock | None = None
@@ -56,7 +57,7 @@ class _Server:
         app.ros.serve(LeafNodeBase, f"/{app.machine}/{app.process.action}", self.run, self.accept)
         self.offered = True
 
-    async def accept(self, request: Any) -> Rejection | None:
+    async def accept(self, request: LeafNodeBase.Goal) -> Rejection | None:
         if self._reserved:
             return Rejection("BUSY", f"{self._app.process.full} is still at its last goal")
         self._reserved = True
@@ -66,7 +67,7 @@ class _Server:
             self._app.log.warning("rejected", record=request.record_name, reason=refusal)
         return refusal
 
-    async def _check(self, request: Any) -> Rejection | None:
+    async def _check(self, request: LeafNodeBase.Goal) -> Rejection | None:
         self._want = self._lock = None
         if self._kind.params is None:
             return None
@@ -92,7 +93,7 @@ class _Server:
             return Rejection(error.code, error.args[0])
         return None
 
-    def _checked(self, request: Any, fields: dict[str, Value]) -> Params:
+    def _checked(self, request: LeafNodeBase.Goal, fields: dict[str, Value]) -> Params:
         """What the subtask needs of a record's fields.
 
         Raises:
@@ -106,7 +107,7 @@ class _Server:
             text = f"record {name}: {explain(error)}; correct it with `tms param set`"
             raise SubtaskFailed("BAD_RECORD", text) from None
 
-    def run(self, goal: Goal) -> Ended:
+    def run(self, goal: LeafGoal) -> Ended[LeafNodeBase.Result]:
         outcome = Outcome.ABORTED
         self._permit.hold(goal.uuid)
         try:
@@ -116,7 +117,7 @@ class _Server:
             self._reserved = False
         return outcome, LeafNodeBase.Result(result=outcome is Outcome.SUCCEEDED)
 
-    def _execute(self, goal: Goal) -> Outcome:
+    def _execute(self, goal: LeafGoal) -> Outcome:
         """However the subtask ends, its motion has ended when this returns."""
         app, request = self._app, goal.request
         use = app.site.file.machines[app.machine]
@@ -162,7 +163,7 @@ class _Server:
         say.last(str(failure))
         return Outcome.ABORTED
 
-    def _watched(self) -> dict[str, Callable[[Peer], None]]:
+    def _watched(self) -> dict[str, Callable[[AnyPeer], None]]:
         """Begins with the first goal: the gateway's lease, ten times a second, must not wake what nobody uses."""
         if not self._watches:
             self._watches = {
@@ -182,7 +183,7 @@ class _Server:
 class _Feedback:
     """Progress texts of one goal, at a bounded rate; the last one carries the reason of a failure."""
 
-    def __init__(self, goal: Goal) -> None:
+    def __init__(self, goal: LeafGoal) -> None:
         self._goal = goal
         self._next = 0.0
 

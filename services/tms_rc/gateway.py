@@ -10,10 +10,10 @@ from tms_rc.following import Follower, ways
 from tms_rc.guard import Active, Guard, Kind
 from tms_rc.standstill import JOINTS, StandStill
 from tms_reason.errors import RosError
-from tms_ros.client import Call, Peer
+from tms_ros.client import AnyCall, AnyPeer
 from tms_ros.fence import parse
 from tms_ros.goals import LOST_TEXT, Ended, Outcome
-from tms_ros.server import Goal
+from tms_ros.server import AnyGoal
 from tms_runtime.app import App
 
 SERVER_LIMIT = 3.0  # s for the machine's server to be there, and for news of the machine to be heard
@@ -33,12 +33,12 @@ class Gateway:
         self._model = app.site.model_of(app.machine)
         self._speed = speed_of(app)
 
-    def serve(self, motion: Motion, peer: Peer) -> None:
+    def serve(self, motion: Motion, peer: AnyPeer) -> None:
         """Offer /<machine>/rc/<action> in front of the machine's own action."""
         name = f"/{self._app.machine}/rc/{motion.served}"
         self._app.ros.serve(motion.type, name, lambda goal: self._run(motion, peer, goal))
 
-    def _run(self, motion: Motion, peer: Peer, goal: Goal) -> Ended:
+    def _run(self, motion: Motion, peer: AnyPeer, goal: AnyGoal) -> Ended[Any]:
         active = Active(goal, parse(goal.uuid), peer, {}, self._watch.positions)
         wrong = self._limits(motion, goal.request) or self._guard.take(active)
         if wrong is not None:
@@ -63,7 +63,7 @@ class Gateway:
             return limits.angle_problem(self._model, motion.field, request.target_angle, self._watch.positions)
         return limits.pose_problem([_numbers(stamped.pose) for stamped in poses_of(request)])
 
-    def _pass_on(self, motion: Motion, active: Active) -> Ended:
+    def _pass_on(self, motion: Motion, active: Active) -> Ended[Any]:
         active.peer.wait_ready(SERVER_LIMIT)
         unseen = self._unseen(active.goal)
         if unseen is not None:
@@ -91,7 +91,7 @@ class Gateway:
         )
         return Outcome.ABORTED, call.result if reason_of(call.result) else aborted(motion, text)[1]
 
-    def _unseen(self, goal: Goal) -> str | None:
+    def _unseen(self, goal: AnyGoal) -> str | None:
         """What is not heard of the machine: it would be stopped and latched as soon as it moves.
 
         A machine that was switched on just now may be heard here a moment later than where the goal comes from.
@@ -193,13 +193,13 @@ class Gateway:
 
     def _wait(self, active: Active, enough: Any, seconds: float) -> None:
         def over() -> bool:
-            call: Call | None = active.call
+            call: AnyCall | None = active.call
             return active.stop is not None or (call is not None and (enough(call) or call.outcome is not None))
 
         with active.changed:
             active.changed.wait_for(over, seconds)
 
-    def _stopped(self, motion: Motion, active: Active) -> Ended:
+    def _stopped(self, motion: Motion, active: Active) -> Ended[Any]:
         stop = active.stop
         if stop is None:
             return aborted(motion, "stopped, but nobody saw the end of it")
@@ -266,6 +266,6 @@ def with_reason(motion: Motion, text: str, code: int | None = None) -> Any:
     return result
 
 
-def aborted(motion: Motion, text: str) -> Ended:
+def aborted(motion: Motion, text: str) -> Ended[Any]:
     """The end of a goal that must not go on."""
     return Outcome.ABORTED, with_reason(motion, text)

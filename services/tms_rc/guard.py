@@ -24,10 +24,10 @@ from tms_rc.permits import Permits
 from tms_rc.standstill import NOTHING, Expected, StandStill
 from tms_rc.stopper import Stop, Stopper
 from tms_rc.vigil import Vigil
-from tms_ros.client import Call, Peer
+from tms_ros.client import AnyCall, AnyPeer
 from tms_ros.fence import Owner
 from tms_ros.goals import LOST_TEXT
-from tms_ros.server import Goal
+from tms_ros.server import AnyGoal
 from tms_runtime.app import App
 
 PERMIT_LIMIT = 3.0  # s that a goal may come before the permits behind it: a new process is discovered late on a busy PC
@@ -50,15 +50,15 @@ class Kind(Enum):
 class Active:
     """The goal that moves the machine."""
 
-    goal: Goal
+    goal: AnyGoal
     owner: Owner | None
-    peer: Peer
+    peer: AnyPeer
     chain: dict[str, Owner]
     start: dict[str, float]  # rad, joints when it began
     sent: float = 0.0  # s, monotonic: when it left for the machine; 0 before
     begun: float = 0.0  # s, monotonic: when it was heard that it was accepted; 0 before
     follower: Follower | None = None  # of a trajectory, once it was accepted
-    call: Call | None = None
+    call: AnyCall | None = None
     stop: Stop | None = None
     changed: threading.Condition = field(default_factory=threading.Condition)
 

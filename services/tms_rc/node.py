@@ -22,7 +22,7 @@ from tms_rc.presses import Presses
 from tms_rc.recovery import Recovery
 from tms_rc.standstill import StandStill
 from tms_rc.view import View
-from tms_ros.client import Peer
+from tms_ros.client import AnyPeer
 from tms_runtime.app import App
 
 TOLD_MOVING, TOLD_STILL = 0.2, 0.5  # s between messages about the machine; a change is told at once
@@ -124,7 +124,7 @@ class Told:
 
     def __init__(self, app: App, guard: Guard, view: View, claim: Claim) -> None:
         self._app, self._guard, self._view, self._claim = app, guard, view, claim
-        self.peers: list[Peer] = []
+        self.peers: list[AnyPeer] = []
 
     def unready(self) -> str | None:
         """Why the machine cannot be moved now, apart from a stop."""

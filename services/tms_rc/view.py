@@ -99,7 +99,7 @@ def _full_name(kind: Any) -> str:
     return f"{kind.__module__.split('.')[0]}/msg/{kind.__name__}"
 
 
-def _sample(arrival: Arrival, places: Mapping[str, Place], speeds: Mapping[str, float]) -> Sample:
+def _sample(arrival: Arrival[Any], places: Mapping[str, Place], speeds: Mapping[str, float]) -> Sample:
     stamp = arrival.message.header.stamp
     return Sample(arrival.received, stamp.sec + stamp.nanosec * 1e-9, arrival.number, places, speeds)
 

@@ -9,7 +9,7 @@
 import threading
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Generic
 from uuid import uuid4
 
 from rclpy.action import ActionClient
@@ -17,7 +17,8 @@ from rclpy.action.client import ClientGoalHandle
 from rclpy.task import Future
 from unique_identifier_msgs.msg import UUID
 
-from tms_ros.goals import InterfaceType, Message, Outcome, Request
+from tms_ros.goals import Outcome
+from tms_ros.interface_types import ActionType, F, G, R
 from tms_ros.quality import SERVICE
 
 if TYPE_CHECKING:
@@ -27,17 +28,20 @@ UNKNOWN_GOAL = 2  # action_msgs/CancelGoal: the server does not know the goal, s
 DISCOVERY_LEASE = 6.0  # s after which discovery itself has dropped a dead process (5 s in our DDS profile)
 
 
-class Call:
+class Call(Generic[R, F]):
     """A goal that this process sent. All fields are set on the executor thread, readable from any."""
 
     def __init__(
-        self, goal_id: bytes, on_change: Callable[["Call"], None] | None, on_feedback: Callable[[Message], None] | None
-    ):
+        self,
+        goal_id: bytes,
+        on_change: Callable[["Call[R, F]"], None] | None,
+        on_feedback: Callable[[F], None] | None,
+    ) -> None:
         self.id = goal_id
         self.accepted = False
         self.outcome: Outcome | None = None  # set once the goal is terminal
-        self.result: Message = None
-        self.feedback: Message = None  # the last one
+        self.result: R | None = None  # of a goal that its server ended
+        self.feedback: F | None = None  # the last one
         self._cancel_wanted = False
         self._handle: Any = None
         self._on_change, self._on_feedback = on_change, on_feedback
@@ -54,13 +58,13 @@ class Call:
         if self._on_change is not None:
             self._on_change(self)
 
-    def end(self, outcome: Outcome, result: Message = None) -> None:
+    def end(self, outcome: Outcome, result: R | None = None) -> None:
         if self.outcome is None:
             self.result = result
             self.outcome = outcome
             self.changed()
 
-    def heard(self, message: Message) -> None:
+    def heard(self, message: Any) -> None:
         self.feedback = message.feedback
         if self._on_feedback is not None:
             self._on_feedback(message.feedback)
@@ -154,12 +158,15 @@ class _Client(ActionClient):  # type: ignore[misc]
         return ClientGoalHandle(self, UUID(uuid=list(goal_id)), answer)
 
 
-class Peer:
+AnyCall = Call[Any, Any]  # of any action
+
+
+class Peer(Generic[G, R, F]):
     """An action server elsewhere, as this process reaches it."""
 
-    def __init__(self, ros: "Ros", action_type: InterfaceType, name: str) -> None:
-        self._ros, self.name, self._type = ros, name, action_type
-        self._open: list[Call] = []  # used on the executor thread only
+    def __init__(self, ros: "Ros", action_type: ActionType[G, R, F], name: str) -> None:
+        self._ros, self.name = ros, name
+        self._open: list[Call[R, F]] = []  # used on the executor thread only
         self._taken_by: frozenset[bytes] = frozenset()  # servers that could have taken the last goal
         self._dead_until = 0.0
         self._dead: frozenset[bytes] = frozenset()  # servers that are known to be gone, though discovery is slower
@@ -197,12 +204,12 @@ class Peer:
 
     def send(
         self,
-        goal: Request,
+        goal: G,
         *,
         goal_id: bytes | None = None,
-        on_change: Callable[[Call], None] | None = None,
-        on_feedback: Callable[[Message], None] | None = None,
-    ) -> Call:
+        on_change: Callable[[Call[R, F]], None] | None = None,
+        on_feedback: Callable[[F], None] | None = None,
+    ) -> Call[R, F]:
         """Send a goal and return at once; `on_*` run on the executor thread and must be quick."""
         call = Call(goal_id or uuid4().bytes, on_change, on_feedback)
 
@@ -233,14 +240,17 @@ class Peer:
             if call.accepted:
                 call.end(Outcome.LOST)
 
-    def ask_again(self, call: Call) -> None:
+    def ask_again(self, call: Call[R, F]) -> None:
         """Ask for a result that should be there by now. Returns at once."""
         self._ros.on_executor(call.ask_again)
 
-    def doubt(self, call: Call) -> None:
+    def doubt(self, call: Call[R, F]) -> None:
         """Give up a goal that was not answered in time; it ends as LOST when the server knows nothing of it."""
         self._ros.on_executor(lambda: call.doubt(self._client.handle_of(call.id)))
 
-    def cancel(self, call: Call) -> None:
+    def cancel(self, call: Call[R, F]) -> None:
         """Ask for the end of a goal, also before it was accepted. Returns at once."""
         self._ros.on_executor(call.cancel_now)
+
+
+AnyPeer = Peer[Any, Any, Any]  # of any action

@@ -1,16 +1,12 @@
-"""What both sides of an action share: how a goal ends, and names for rclpy's untyped messages."""
+"""What both sides of an action share: how a goal ends, and what a server says of it."""
 
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from enum import Enum
-from typing import Any
+
+from tms_ros.interface_types import G, R
 
 LOST_TEXT = "PROCESS_LOST"  # in the reason of a goal that ended because a process did
-
-Request = Any  # rclpy's generated types are untyped; the names say what is meant
-Response = Any
-Message = Any
-InterfaceType = Any
 
 
 class Outcome(Enum):
@@ -31,5 +27,5 @@ class Rejection:
     text: str
 
 
-Ended = tuple[Outcome, Message]  # SUCCEEDED, CANCELED or ABORTED, and the result
-Accept = Callable[[Request], "Rejection | Awaitable[Rejection | None] | None"]
+Ended = tuple[Outcome, R]  # SUCCEEDED, CANCELED or ABORTED, and the result
+Accept = Callable[[G], "Rejection | Awaitable[Rejection | None] | None"]

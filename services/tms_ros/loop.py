@@ -15,6 +15,7 @@ from contextlib import contextmanager
 from typing import Any, TypeVar
 
 import rclpy
+from builtin_interfaces.msg import Time
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
@@ -26,7 +27,6 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Future
 
 from tms_reason.errors import RosError
-from tms_ros.goals import Message
 from tms_ros.priority import come_first, threads
 
 T = TypeVar("T")
@@ -162,9 +162,10 @@ class Loop:
         """A result that coroutines on the executor thread await; set it there, see `on_executor`."""
         return Future(executor=self._executor)
 
-    def now(self) -> Message:
+    def now(self) -> Time:
         """Present time as builtin_interfaces/Time."""
-        return self.node.get_clock().now().to_msg()
+        stamp: Time = self.node.get_clock().now().to_msg()
+        return stamp
 
     def wait_for(self, there: Callable[[], bool], seconds: float, otherwise: str) -> None:
         """Poll `there` until it holds.

@@ -3,8 +3,9 @@
 import time
 from collections.abc import Callable
 
-from tms_ros.client import Peer
-from tms_ros.goals import Accept, Ended, InterfaceType
+from tms_ros.client import AnyPeer, Peer
+from tms_ros.goals import Accept, Ended
+from tms_ros.interface_types import ActionType, F, G, R
 from tms_ros.server import Goal, Served
 from tms_ros.services import Services
 
@@ -17,7 +18,7 @@ class Ros(Services):
 
     def __init__(self, name: str, namespace: str = "/") -> None:
         super().__init__(name, namespace)
-        self._peers: dict[str, Peer] = {}
+        self._peers: dict[str, AnyPeer] = {}
         self._served = Served(self)
 
     def stop(self) -> None:
@@ -31,7 +32,7 @@ class Ros(Services):
         self.stop()
         self.leave()
 
-    def peer(self, action_type: InterfaceType, name: str) -> Peer:
+    def peer(self, action_type: ActionType[G, R, F], name: str) -> Peer[G, R, F]:
         """The action server called `name`; one client is kept for all goals."""
         with self._making:
             if name not in self._peers:
@@ -40,10 +41,10 @@ class Ros(Services):
 
     def serve(
         self,
-        action_type: InterfaceType,
+        action_type: ActionType[G, R, F],
         name: str,
-        run: Callable[[Goal], Ended],
-        accept: Accept | None = None,
+        run: Callable[[Goal[G, F]], Ended[R]],
+        accept: Accept[G] | None = None,
     ) -> None:
         """Serve an action: `run` in a worker thread a goal, `accept` on the executor thread before.
 

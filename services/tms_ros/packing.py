@@ -2,7 +2,7 @@
 
 from rclpy.serialization import deserialize_message, serialize_message
 
-from tms_ros.goals import InterfaceType, Message
+from tms_ros.interface_types import M, Message
 
 
 def pack(message: Message) -> bytes:
@@ -10,10 +10,11 @@ def pack(message: Message) -> bytes:
     return bytes(serialize_message(message))
 
 
-def unpack(data: bytes, message_type: InterfaceType) -> Message:
+def unpack(data: bytes, message_type: type[M]) -> M:
     """The message that was packed.
 
     Raises:
         RuntimeError: it is of another type or damaged.
     """
-    return deserialize_message(data, message_type)
+    message: M = deserialize_message(data, message_type)
+    return message

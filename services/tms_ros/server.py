@@ -7,7 +7,7 @@ rclpy in use); so rclpy's execute callback is never used.
 import threading
 import time
 from collections.abc import Awaitable, Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Generic
 
 from prometheus_client import Counter, Histogram
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
@@ -15,7 +15,8 @@ from rclpy.action.server import ServerGoalHandle
 from structlog.contextvars import bind_contextvars
 
 from tms_ros.fence import parse
-from tms_ros.goals import LOST_TEXT, Accept, Ended, InterfaceType, Message, Outcome, Rejection, Request
+from tms_ros.goals import LOST_TEXT, Accept, Ended, Outcome, Rejection
+from tms_ros.interface_types import ActionType, F, G, R
 from tms_ros.quality import SERVICE
 
 if TYPE_CHECKING:
@@ -31,18 +32,18 @@ SECONDS = Histogram(
 )  # fmt: skip
 
 
-class Goal:
+class Goal(Generic[G, F]):
     """A goal that this process serves, as its worker thread sees it."""
 
-    def __init__(self, handle: ServerGoalHandle, action_type: InterfaceType) -> None:
+    def __init__(self, handle: ServerGoalHandle, action_type: ActionType[G, R, F]) -> None:
         self._handle, self._type = handle, action_type
-        self.request: Request = handle.request
+        self.request: G = handle.request
         self.uuid = bytes(handle.goal_id.uuid)
         self.id = self.uuid.hex()
         self.cancelled = threading.Event()
         self.on_cancel: Callable[[], None] | None = None  # called once, on the executor thread
 
-    def publish(self, feedback: Message) -> None:
+    def publish(self, feedback: F) -> None:
         """Send feedback; does nothing once the goal has ended."""
         if self._handle.is_active:
             self._handle.publish_feedback(feedback)
@@ -62,6 +63,9 @@ class Goal:
             step()
 
 
+AnyGoal = Goal[Any, Any]  # of any action
+
+
 class _Server(ActionServer):  # type: ignore[misc]
     """An action server that tells its goal callback which goal id is arriving."""
 
@@ -78,7 +82,7 @@ class Served:
     def __init__(self, ros: "Ros") -> None:
         self._ros = ros
         # By action and id; a goal on its handle would be a cycle, which is freed late.
-        self._goals: dict[tuple[str, bytes], Goal] = {}
+        self._goals: dict[tuple[str, bytes], AnyGoal] = {}
         self._leaving = False
 
     def leave(self, seconds: float) -> None:
@@ -92,15 +96,17 @@ class Served:
 
     def serve(
         self,
-        action_type: InterfaceType,
+        action_type: ActionType[G, R, F],
         name: str,
-        run: Callable[[Goal], Ended],
-        accept: Accept | None = None,
+        run: Callable[[Goal[G, F]], Ended[R]],
+        accept: Accept[G] | None = None,
     ) -> None:
         """See `Ros.serve`."""
-        reasons = self._ros.publisher(action_type.Impl.FeedbackMessage, f"{name}/_action/feedback")
+        whole: Any = action_type
+        telling = whole.Impl.FeedbackMessage
+        reasons = self._ros.publisher(telling, f"{name}/_action/feedback")
 
-        async def decide(request: Request) -> GoalResponse:
+        async def decide(request: G) -> GoalResponse:
             goal_id = server.arriving  # valid until the first await
             verdict = accept(request) if accept is not None else None
             if isinstance(verdict, Awaitable):
@@ -113,7 +119,7 @@ class Served:
             self._ros.node.get_logger().debug(f"{name}: {verdict.code}: {verdict.text}")
             feedback = _saying(action_type, f"{verdict.code}: {verdict.text}")
             if feedback is not None:
-                reasons.publish(action_type.Impl.FeedbackMessage(goal_id=goal_id, feedback=feedback))
+                reasons.publish(telling(goal_id=goal_id, feedback=feedback))
             return GoalResponse.REJECT
 
         def accepted(handle: ServerGoalHandle) -> None:
@@ -137,11 +143,13 @@ class Served:
             cancel_service_qos_profile=SERVICE,
         )  # fmt: skip
 
-    def _work(self, action_type: InterfaceType, run: Callable[[Goal], Ended], goal: Goal, name: str) -> None:
+    def _work(
+        self, action_type: ActionType[G, R, F], run: Callable[[Goal[G, F]], Ended[R]], goal: Goal[G, F], name: str
+    ) -> None:
         owner = parse(goal.uuid)
         bind_contextvars(goal=goal.id, **({"run_number": owner.run} if owner is not None else {}))
         begun = time.monotonic()
-        ended: Ended = (Outcome.ABORTED, action_type.Result())
+        ended: Ended[R] = (Outcome.ABORTED, action_type.Result())
         try:
             ended = run(goal)
         finally:
@@ -150,12 +158,12 @@ class Served:
             GOALS.labels(name, ended[0].name.lower()).inc()
             self._ros.on_executor(lambda: self._deliver(name, goal, *ended))
 
-    def _deliver(self, name: str, goal: Goal, outcome: Outcome, result: Message) -> None:
+    def _deliver(self, name: str, goal: Goal[G, F], outcome: Outcome, result: R) -> None:
         asked = goal._handle.is_cancel_requested
         if self._leaving and outcome is Outcome.CANCELED and not asked:
             goal.say(f"{LOST_TEXT}: {self._ros.node.get_name()} was stopped during its goal")
 
-        def finish(handle: ServerGoalHandle) -> Message:
+        def finish(handle: ServerGoalHandle) -> R:
             if outcome is Outcome.SUCCEEDED:
                 handle.succeed()
             elif outcome is Outcome.CANCELED and asked:
@@ -168,13 +176,13 @@ class Served:
         goal._handle.execute(finish)
 
 
-def _saying(action_type: InterfaceType, text: str) -> Message | None:
+def _saying(action_type: ActionType[G, R, F], text: str) -> F | None:
     """Feedback that is only a reason; None where its type has no room for one."""
-    kind = action_type.Feedback
+    kind: Any = action_type.Feedback
     known = kind.get_fields_and_field_types()
     field = next((name for name in ("status", "state") if known.get(name) == "string"), None)
     return None if field is None else kind(**{field: text})
 
 
-def _never(handle: ServerGoalHandle) -> Message:
+def _never(handle: ServerGoalHandle) -> None:
     raise AssertionError("goals are executed by their own worker threads")

@@ -11,7 +11,7 @@ from rclpy.task import Future
 from tms_reason.errors import RosError
 from tms_ros import quality
 from tms_ros.answers import send_surely
-from tms_ros.goals import InterfaceType, Request, Response
+from tms_ros.interface_types import Req, Res, ServiceType
 from tms_ros.loop import POLL
 from tms_ros.topics import Topics
 
@@ -23,19 +23,19 @@ class Services(Topics):
 
     def __init__(self, name: str, namespace: str = "/") -> None:
         super().__init__(name, namespace)
-        self._clients: dict[tuple[str, str], Any] = {}  # by type and name
+        self._clients: dict[tuple[Any, str], Any] = {}  # by type and name
         self._making = threading.Lock()
 
     def offer(
         self,
-        service_type: InterfaceType,
+        service_type: ServiceType[Req, Res],
         name: str,
-        handler: Callable[[Request, Response], Response | Awaitable[Response]],
+        handler: Callable[[Req, Res], Res | Awaitable[Res]],
     ) -> None:
         """Offer a service; the handler runs on the executor thread and must be quick, or be a coroutine function."""
         self._offered(service_type, name, handler)
 
-    def _offered(self, service_type: InterfaceType, name: str, handler: Callable[..., Any]) -> Any:
+    def _offered(self, service_type: ServiceType[Req, Res], name: str, handler: Callable[..., Any]) -> Any:
         service = self.node.create_service(
             service_type, name, handler, qos_profile=quality.SERVICE, callback_group=self.group
         )
@@ -43,15 +43,15 @@ class Services(Topics):
         return service
 
     def offer_slow(
-        self, service_type: InterfaceType, name: str, handler: Callable[[Request, Response], Response | None]
+        self, service_type: ServiceType[Req, Res], name: str, handler: Callable[[Req, Res], Res | None]
     ) -> Any:
         """Offer a service whose handler may block: each call runs in a thread of its own; None is no answer at all."""
 
-        async def answer(request: Request, response: Response) -> Response:
+        async def answer(request: Req, response: Res) -> Any:
             done = self.promise()
 
             def work() -> None:
-                filled = _failed(response)
+                filled: Res | None = _failed(response)
                 try:
                     filled = handler(request, service_type.Response())
                 finally:  # a bug is logged by the thread; the caller still gets an answer
@@ -62,8 +62,8 @@ class Services(Topics):
 
         return self._offered(service_type, name, answer)
 
-    def _service(self, service_type: InterfaceType, name: str) -> Any:
-        key = (service_type.__name__, name)
+    def _service(self, service_type: ServiceType[Req, Res], name: str) -> Any:
+        key = (service_type, name)
         with self._making:
             if key not in self._clients:
                 try:
@@ -74,18 +74,18 @@ class Services(Topics):
                     raise RosError(f"service {name}: {str(error).partition(chr(10))[0]}", "BAD_NAME") from error
             return self._clients[key]
 
-    def prepare(self, service_type: InterfaceType, name: str) -> None:
+    def prepare(self, service_type: ServiceType[Req, Res], name: str) -> None:
         """Make the client of a service now, for requests that must not wait for discovery when they count."""
         self._service(service_type, name)
 
     def call(
         self,
-        service_type: InterfaceType,
+        service_type: ServiceType[Req, Res],
         name: str,
-        request: Request,
+        request: Req,
         seconds: float = 5.0,
         lost: Callable[[], bool] = lambda: False,
-    ) -> Response:
+    ) -> Res:
         """Call a service and wait for its answer; from worker threads only.
 
         `lost` tells of a server that is known to be gone, so that nobody waits for what it will not say any more.
@@ -106,19 +106,20 @@ class Services(Topics):
                 if lost():
                     raise RosError(f"the process behind service {name} was lost before it answered", "LOST")
                 raise RosError(f"service {name} did not answer within {seconds:.1f} s", "NO_ANSWER")
-        return future.result()
+        answer: Res = future.result()
+        return answer
 
-    def has_service(self, service_type: InterfaceType, name: str) -> bool:
+    def has_service(self, service_type: ServiceType[Req, Res], name: str) -> bool:
         """Whether a service is there now."""
         return bool(self._service(service_type, name).service_is_ready())
 
-    def post(self, service_type: InterfaceType, name: str, request: Request) -> None:
+    def post(self, service_type: ServiceType[Req, Res], name: str, request: Req) -> None:
         """Send a service request; nobody waits for its answer, which may never come."""
         client = self._service(service_type, name)
         self.on_executor(lambda: client.remove_pending_request(client.call_async(request)))
 
     def request(
-        self, service_type: InterfaceType, name: str, request: Request, answered: Callable[[Response], None]
+        self, service_type: ServiceType[Req, Res], name: str, request: Req, answered: Callable[[Res], None]
     ) -> Callable[[], None] | None:
         """Send a request; `answered` is called on the executor thread, where this must be called, too.
 
@@ -131,14 +132,14 @@ class Services(Topics):
         future.add_done_callback(lambda done: answered(done.result()))
         return lambda: client.remove_pending_request(future)
 
-    async def ask(self, service_type: InterfaceType, name: str, request: Request, seconds: float) -> Response | None:
+    async def ask(self, service_type: ServiceType[Req, Res], name: str, request: Req, seconds: float) -> Res | None:
         """Call a service from a callback on the executor thread; None when it did not answer in time.
 
         Raises:
             RosError: BAD_NAME.
         """
         client = self._service(service_type, name)
-        answer = Future(executor=self._executor)
+        settled = Future(executor=self._executor)
         deadline = time.monotonic() + seconds
         sent: list[Future] = []
 
@@ -149,21 +150,22 @@ class Services(Topics):
             elif time.monotonic() >= deadline:
                 settle(None)
 
-        def settle(value: Response | None) -> None:
-            if not answer.done():
-                answer.set_result(value)
+        def settle(value: Res | None) -> None:
+            if not settled.done():
+                settled.set_result(value)
 
         look()
         timer = self.every(seconds if sent else POLL, look)
         try:
-            return await answer
+            answer: Res | None = await settled
+            return answer
         finally:
             self.node.destroy_timer(timer)
             if sent and not sent[0].done():
                 client.remove_pending_request(sent[0])
 
 
-def _failed(response: Response) -> Response:
+def _failed(response: Any) -> Any:
     """What a caller hears when a handler has a bug."""
     if hasattr(response, "error_code") and isinstance(response.error_code, str):
         response.error_code, response.error_msg = "INTERNAL", "this is a bug: see the log of the process"

@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import product
-from typing import Any
+from typing import Any, Generic
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.duration import Duration
@@ -17,7 +17,7 @@ from rclpy.exceptions import InvalidHandle
 from rclpy.qos import QoSCompatibility, QoSProfile, qos_check_compatible
 
 from tms_ros import quality
-from tms_ros.goals import InterfaceType, Message
+from tms_ros.interface_types import M, Message, Publisher
 from tms_ros.loop import Loop
 
 TOLD = 0.1  # s in which the news that a publisher is asserted follows its message, twice
@@ -26,10 +26,10 @@ UNKNOWN = "_NODE_NAME_UNKNOWN_"  # of an end that discovery has found a moment b
 
 
 @dataclass(frozen=True)
-class Arrival:
+class Arrival(Generic[M]):
     """A message with what the middleware knows of its way."""
 
-    message: Message
+    message: M
     received: float  # s, monotonic
     number: int  # of the publisher's messages
 
@@ -37,17 +37,18 @@ class Arrival:
 class Topics(Loop):
     """The topics of a node."""
 
-    def publisher(self, message_type: InterfaceType, topic: str, depth: int = 10, latched: bool = False) -> Any:
+    def publisher(self, message_type: type[M], topic: str, depth: int = 10, latched: bool = False) -> Publisher[M]:
         """A reliable publisher; `latched` gives the last message to whoever comes later."""
         return self._published(message_type, topic, quality.topic(depth, latched))
 
-    def _published(self, message_type: InterfaceType, topic: str, quality_of_service: QoSProfile) -> Any:
+    def _published(self, message_type: type[M], topic: str, quality_of_service: QoSProfile) -> Publisher[M]:
         quiet = PublisherEventCallbacks(use_default_callbacks=False)
-        return self.node.create_publisher(message_type, topic, quality_of_service, event_callbacks=quiet)
+        made: Publisher[M] = self.node.create_publisher(message_type, topic, quality_of_service, event_callbacks=quiet)
+        return made
 
     def _subscribed(
         self,
-        message_type: InterfaceType,
+        message_type: type[Message],
         topic: str,
         heard: Callable[[Any], None],
         quality_of_service: QoSProfile,
@@ -61,15 +62,15 @@ class Topics(Loop):
             raw=raw,
         )  # fmt: skip
 
-    def delivered(self, publisher: Any, seconds: float) -> bool:
+    def delivered(self, publisher: Publisher[M], seconds: float) -> bool:
         """Wait until all readers have what was published; False: not within `seconds`."""
         return bool(publisher.wait_for_all_acked(Duration(seconds=seconds)))
 
     def subscribe(
         self,
-        message_type: InterfaceType,
+        message_type: type[M],
         topic: str,
-        heard: Callable[[Message], None],
+        heard: Callable[[M], None],
         depth: int = 1,
         latched: bool = False,
         best_effort: bool = False,
@@ -81,7 +82,7 @@ class Topics(Loop):
         """
         subscription: Any = None
 
-        def all_that_wait(message: Message) -> None:
+        def all_that_wait(message: M) -> None:
             heard(message)
             if subscription is None:  # this one came before the assignment below
                 return
@@ -97,7 +98,7 @@ class Topics(Loop):
         subscription = self._subscribed(message_type, topic, all_that_wait, quality.topic(depth, latched, best_effort))
         return subscription
 
-    def sample(self, message_type: InterfaceType, topic: str, depth: int = 1) -> Callable[[], list[Message]]:
+    def sample(self, message_type: type[M], topic: str, depth: int = 1) -> Callable[[], list[M]]:
         """What asks for the last `depth` messages that came since it was asked last, oldest first; from any thread.
 
         Messages do not wake the executor, which costs more than to take them.
@@ -106,15 +107,15 @@ class Topics(Loop):
         return lambda: [arrival.message for arrival in arrivals()]
 
     def sample_arrivals(
-        self, message_type: InterfaceType, topic: str, depth: int = 1, best_effort: bool = True
-    ) -> Callable[[], list[Arrival]]:
+        self, message_type: type[M], topic: str, depth: int = 1, best_effort: bool = True
+    ) -> Callable[[], list[Arrival[M]]]:
         """As `sample`, with when each message came and its number; `best_effort`: lost ones are not asked for again."""
         subscription = self._subscribed(
             message_type, topic, _unheard, quality.topic(depth, False, best_effort=best_effort), _Asleep()
         )
 
-        def news() -> list[Arrival]:
-            found: list[Arrival] = []
+        def news() -> list[Arrival[M]]:
+            found: list[Arrival[M]] = []
             while len(found) < depth and (arrival := _arrival(subscription)) is not None:
                 found.append(arrival)
             return found
@@ -130,21 +131,21 @@ class Topics(Loop):
         """How many publishers a topic has in the whole graph."""
         return int(self.node.count_publishers(topic))
 
-    def subscribe_raw(self, message_type: InterfaceType, topic: str, heard: Callable[[bytes], None]) -> Any:
+    def subscribe_raw(self, message_type: type[Message], topic: str, heard: Callable[[bytes], None]) -> Any:
         """Call `heard` with each message as it is on the wire, with the QoS of those who publish now."""
         offered = [info.qos_profile for info in self.node.get_publishers_info_by_topic(topic)]
         return self._subscribed(message_type, topic, heard, quality.as_offered(offered), raw=True)
 
-    def lease_publisher(self, message_type: InterfaceType, topic: str, seconds: float) -> Any:
+    def lease_publisher(self, message_type: type[M], topic: str, seconds: float) -> Publisher[M]:
         """A latched publisher whose readers are told when it was not asserted for `seconds`."""
         return self._published(message_type, topic, quality.lease(seconds))
 
     def lease_subscribe(
         self,
-        message_type: InterfaceType,
+        message_type: type[M],
         topic: str,
         seconds: float,
-        heard: Callable[[Message], None],
+        heard: Callable[[M], None],
         alive: Callable[[int, int], None],
     ) -> Any:
         """Call `heard` with messages and `alive` with the numbers of publishers that are, and are not, asserted.
@@ -154,7 +155,7 @@ class Topics(Loop):
 
         count = _Count(alive)
 
-        def heard_first(message: Message) -> None:
+        def heard_first(message: M) -> None:
             if not count.known:
                 # In two steps: what was told meanwhile is handled before the second one.
                 self.after(TOLD, lambda: self.after(TOLD, count.made_up))
@@ -235,13 +236,13 @@ class _Asleep(CallbackGroup):  # type: ignore[misc]
         raise AssertionError("nothing of this group is executed")
 
 
-def _take(subscription: Any) -> Message | None:
-    """The oldest message that waits."""
+def _take(subscription: Any) -> Any:
+    """The oldest message that waits, None without."""
     arrival = _arrival(subscription)
     return None if arrival is None else arrival.message
 
 
-def _arrival(subscription: Any) -> Arrival | None:
+def _arrival(subscription: Any) -> Arrival[Any] | None:
     """The oldest message that waits, and how it came."""
     with subscription.handle:
         taken = subscription.handle.take_message(subscription.msg_type, False)

@@ -2,14 +2,15 @@
 
 import time
 from collections.abc import Callable
-from typing import Any
+
+from control_msgs.action import FollowJointTrajectory
 
 from tms_machine.border import STOP_PROVEN
 from tms_reason.errors import SubtaskFailed
 from tms_ros.client import Call, Peer
 from tms_ros.fence import derived
 from tms_ros.goals import LOST_TEXT, Outcome
-from tms_ros.server import Goal
+from tms_ros.server import AnyGoal
 from tms_rp.messages import follow
 from tms_rp.trajectory import Trajectory
 
@@ -19,14 +20,17 @@ OVERRUN = 20.0  # s beyond the trajectory's own duration: the gateway gives up a
 STOP_LIMIT = STOP_PROVEN + 2.0  # s for a cancelled motion to have ended
 LOOK = 0.5  # s between looks whether the gateway is still there
 
+Gateway = Peer[FollowJointTrajectory.Goal, FollowJointTrajectory.Result, FollowJointTrajectory.Feedback]
+Motion = Call[FollowJointTrajectory.Result, FollowJointTrajectory.Feedback]
+
 
 class Mover:
     """The way to one machine's gateway."""
 
-    def __init__(self, peer: Peer) -> None:
+    def __init__(self, peer: Gateway) -> None:
         self._peer = peer
 
-    def move(self, goal: Goal, made: Trajectory, say: Callable[[str], None]) -> Outcome:
+    def move(self, goal: AnyGoal, made: Trajectory, say: Callable[[str], None]) -> Outcome:
         """Execute `made` for `goal`, saying how far it is; SUCCEEDED, or CANCELED once the machine has stopped.
 
         Raises:
@@ -49,7 +53,7 @@ class Mover:
             raise SubtaskFailed(*lost)
         return _verdict(goal, call, self._peer.name)
 
-    def _watch(self, goal: Goal, call: Call, deadline: float) -> tuple[str, str] | None:
+    def _watch(self, goal: AnyGoal, call: Motion, deadline: float) -> tuple[str, str] | None:
         """Wait for the end of the motion or for a cancel; code and reason when neither came."""
         while not _over(goal, call):
             if time.monotonic() > deadline:
@@ -59,7 +63,7 @@ class Mover:
             call.wait_for(lambda: _over(goal, call), min(LOOK, deadline - time.monotonic()))
         return None
 
-    def _stop(self, call: Call) -> None:
+    def _stop(self, call: Motion) -> None:
         """Cancel the motion and wait until it has ended."""
         self._peer.cancel(call)
         if not call.wait_for(lambda: call.outcome is not None, STOP_LIMIT):
@@ -73,7 +77,7 @@ class _Progress:
         self._made, self._say, self._said = made, say, ""
         self._begun = time.monotonic()
 
-    def __call__(self, feedback: Any) -> None:
+    def __call__(self, feedback: FollowJointTrajectory.Feedback) -> None:
         at = feedback.desired.time_from_start
         # Not every controller fills in its time; then the clock tells it.
         seconds = at.sec + at.nanosec * 1e-9 or time.monotonic() - self._begun
@@ -84,11 +88,11 @@ class _Progress:
             self._say(text)
 
 
-def _over(goal: Goal, call: Call) -> bool:
+def _over(goal: AnyGoal, call: Motion) -> bool:
     return call.outcome is not None or goal.cancelled.is_set()
 
 
-def _verdict(goal: Goal, call: Call, name: str) -> Outcome:
+def _verdict(goal: AnyGoal, call: Motion, name: str) -> Outcome:
     if call.outcome is Outcome.SUCCEEDED and not goal.cancelled.is_set():
         return Outcome.SUCCEEDED
     if goal.cancelled.is_set() and call.outcome not in (Outcome.ABORTED, Outcome.LOST):

@@ -15,7 +15,7 @@ from tms_msg_rp.msg import TmsRpErrorCodes
 from tms_machine.permit import Permit, watch_server
 from tms_reason.errors import SubtaskFailed, TmsError
 from tms_ros.goals import Ended, Outcome, Rejection
-from tms_ros.server import Goal
+from tms_ros.server import AnyGoal
 from tms_rp import messages
 from tms_rp.clearance import Clearance
 from tms_rp.kinds.backhoe import NAMES, Backhoe, Moves
@@ -38,7 +38,7 @@ class Action:
     """One action that is served: how its goal becomes moves, and whether they are executed."""
 
     name: str
-    type: Any
+    type: Any  # all have the same result and feedback
     plan: Plan
     moves: bool
 
@@ -139,7 +139,7 @@ class Planner:
 
         self._app.ros.serve(action.type, name, lambda goal: self._run(action, goal), accept)
 
-    def _run(self, action: Action, goal: Goal) -> Ended:
+    def _run(self, action: Action, goal: AnyGoal) -> Ended[Any]:
         outcome = Outcome.ABORTED
         if action.moves:
             self._permit.hold(goal.uuid)
@@ -152,7 +152,7 @@ class Planner:
         code = TmsRpErrorCodes.SUCCESS if outcome is Outcome.SUCCEEDED else TmsRpErrorCodes.FAILURE
         return outcome, action.type.Result(error_code=TmsRpErrorCodes(val=code))
 
-    def _execute(self, action: Action, goal: Goal) -> Outcome:
+    def _execute(self, action: Action, goal: AnyGoal) -> Outcome:
         def say(state: str) -> None:
             goal.publish(action.type.Feedback(state=state))
 
@@ -173,7 +173,7 @@ class Planner:
         say(outcome.name)
         return outcome
 
-    def _plan(self, action: Action, goal: Goal) -> tuple[Trajectory, str]:
+    def _plan(self, action: Action, goal: AnyGoal) -> tuple[Trajectory, str]:
         """The trajectory, and what of the goal was changed for it."""
         begun = time.monotonic()
         now = self.joints()

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from tms_ros.goals import Ended, Outcome, Rejection
-from tms_ros.server import Goal
+from tms_ros.server import AnyGoal
 from tms_runtime.app import App
 from tms_sim.machine import StandIn
 from tms_sim.motion import Motion, Verdict
@@ -43,7 +43,7 @@ class Server:
         self._log.warning("refused", action=self._served.field, code=code, reason=text)
         return Rejection(str(code), text)
 
-    def run(self, goal: Goal) -> Ended:
+    def run(self, goal: AnyGoal) -> Ended[Any]:
         """Follow one goal to its end."""
         machine, served = self._machine, self._served
         due = machine.time + machine.fault.late

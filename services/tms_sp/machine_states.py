@@ -1,6 +1,7 @@
 """Where the site's machines are, at a low rate, into the collections that the C++ system's readers know."""
 
 import json
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from nav_msgs.msg import Odometry
@@ -8,6 +9,7 @@ from sensor_msgs.msg import JointState
 from tms_msg_db.msg import MachineState
 from tms_msg_db.srv import WriteMachineStates
 
+from tms_ros.interface_types import Message
 from tms_runtime.app import App
 
 
@@ -16,7 +18,7 @@ class MachineStates:
 
     def __init__(self, app: App, hz: float) -> None:
         self._ros = app.ros
-        self._topics = []
+        self._topics: list[tuple[str, str, Callable[[], Sequence[Message]]]] = []
         for machine in app.site.file.machines:
             border = app.site.border(machine)
             if border.odom:

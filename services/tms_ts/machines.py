@@ -13,7 +13,6 @@ from tms_msg_ts.action import LeafNodeBase
 
 from tms_machine.border import STOP_PROVEN
 from tms_reason.errors import RosError
-from tms_ros.client import Call, Peer
 from tms_ros.fence import LEAVES, Owner
 from tms_ros.goals import LOST_TEXT, Outcome
 from tms_ros.node import Ros
@@ -22,7 +21,7 @@ from tms_ts.hosts import Hosts
 from tms_ts.past import Key
 from tms_ts.record import Record
 from tms_ts.replay import Replay
-from tms_ts.sent_goal import ACCEPT_LIMIT, SentGoal
+from tms_ts.sent_goal import ACCEPT_LIMIT, LeafCall, LeafPeer, SentGoal
 from tms_ts.world import GoalState
 
 SERVER_LIMIT = 10.0  # s for a subtask's server to be there
@@ -75,7 +74,7 @@ class Machines:
         self._open: list[SentGoal] = []
         self._stopping: set[str] = set()  # machines that are being stopped after a lost goal
 
-    def peer(self, machine: str, subtask: str) -> Peer:
+    def peer(self, machine: str, subtask: str) -> LeafPeer:
         """A subtask's action server; asking early lets discovery happen before the first goal."""
         return self._ros.peer(LeafNodeBase, f"/{machine}/{subtask}")
 
@@ -130,8 +129,7 @@ class Machines:
                     continue
                 stamp, why = self._ros.now(), str(error)
                 return StopReceipt(machine=machine, confirmed=False, cause=cause, detail=why, stamp=stamp)
-            receipt: StopReceipt = answer.receipt
-            return receipt
+            return answer.receipt
 
     def stop_all(self, machines: Sequence[str], cause: str) -> list[StopReceipt]:
         """`stop` for several machines at the same time."""
@@ -197,7 +195,7 @@ class Machines:
             self._tell("alarm", goal.node, fatal)
         return fatal
 
-    def _changed(self, goal: SentGoal, call: Call) -> None:
+    def _changed(self, goal: SentGoal, call: LeafCall) -> None:
         """A step of the action protocol, on the executor thread."""
         if call.outcome is Outcome.LOST if goal.call is None else call is not goal.call:
             return  # of a goal that is sent again (None alone is a goal whose sending is just being booked)
@@ -211,7 +209,7 @@ class Machines:
             self._tell("goal", goal.node, f"{goal.name} accepted")
         self._wake()
 
-    def _ended(self, goal: SentGoal, call: Call) -> None:
+    def _ended(self, goal: SentGoal, call: LeafCall) -> None:
         if call.outcome is Outcome.SUCCEEDED:
             self._end(goal, GoalState.SUCCEEDED, "")
             self._handed_over = time.monotonic()
@@ -248,7 +246,7 @@ class Machines:
         goal.reason, goal.state = reason, state  # last: the tree may see it now and ask for the next goal
         self._tell("goal", goal.node, f"{goal.name} {state.value}" + (f": {reason}" if reason else ""))
 
-    def _look_for_loss(self, goal: SentGoal, call: Call) -> None:
+    def _look_for_loss(self, goal: SentGoal, call: LeafCall) -> None:
         """A server that is gone never answers: end the goal, and stop what it may have left moving."""
         why = self._loss(goal)
         if not why:

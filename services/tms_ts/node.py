@@ -5,11 +5,11 @@ import time
 import uuid
 from collections import Counter
 from datetime import datetime, timezone
-from typing import Any
 
 from builtin_interfaces.msg import Time
 from prometheus_client import Gauge
 from structlog.contextvars import bind_contextvars
+from tms_msg_db.msg import Task
 from tms_msg_db.srv import GetTask
 from tms_msg_ts.action import ExecuteTask
 from tms_msg_ts.msg import RunStates
@@ -17,7 +17,6 @@ from tms_msg_ts.srv import AnswerQuestion, CancelRun, CheckTask, ResumePlan
 
 from tms_reason.errors import NOT_STORED, TaskError, TmsError
 from tms_ros.goals import Ended, Outcome
-from tms_ros.server import Goal
 from tms_runtime.app import App
 from tms_runtime.group_commit import GroupCommit
 from tms_ts import bt
@@ -34,7 +33,7 @@ from tms_ts.preflight import Findings, machines_of, preflight, processes_of, rec
 from tms_ts.questions import Clicks, Questions
 from tms_ts.record import Records
 from tms_ts.replay import Replay
-from tms_ts.run import Facts, Run
+from tms_ts.run import Facts, Run, TaskGoal
 from tms_ts.shared_records import SharedRecords
 from tms_ts.surroundings import Around, Sensing
 from tms_ts.world import World
@@ -172,14 +171,14 @@ class Scheduler:
 
     # a run
 
-    def execute(self, goal: Goal) -> Ended:
+    def execute(self, goal: TaskGoal) -> Ended[ExecuteTask.Result]:
         """One ExecuteTask goal, from the database to the machines' stand-still; its end is stored, then told."""
         how, result = self._execute_any(goal)
         if not self._disk.wait(END_STORED):
             result.error_msg = f"{result.error_msg} {NOT_STORED}".strip()
         return how, result
 
-    def _execute_any(self, goal: Goal) -> Ended:
+    def _execute_any(self, goal: TaskGoal) -> Ended[ExecuteTask.Result]:
         if not goal.request.resume:
             return self._run(goal, None)
         try:
@@ -191,7 +190,7 @@ class Scheduler:
         finally:
             self.interrupted.over(header.run_id)
 
-    def _run(self, goal: Goal, past: Past | None) -> Ended:
+    def _run(self, goal: TaskGoal, past: Past | None) -> Ended[ExecuteTask.Result]:
         try:
             facts = self._facts(goal, past)
         except TaskError as error:
@@ -225,7 +224,7 @@ class Scheduler:
             self._news.set()
             run.ended.set()
 
-    def _facts(self, goal: Goal, past: Past | None) -> Facts:
+    def _facts(self, goal: TaskGoal, past: Past | None) -> Facts:
         number = self._numbers.next()
         if past is not None and past.header is not None:
             old = past.header
@@ -235,7 +234,7 @@ class Scheduler:
         run_id = f"{stamp}-{uuid.uuid4().hex[:4]}"
         return Facts(run_id, number, goal.request.task_id, "", [], self._ros.now())
 
-    def _execute(self, run: Run, goal: Goal, past: Past | None) -> Ended:
+    def _execute(self, run: Run, goal: TaskGoal, past: Past | None) -> Ended[ExecuteTask.Result]:
         facts = run.facts
         goal.publish(ExecuteTask.Feedback(run_id=facts.run_id, state=facts.state))  # so that it can be cancelled
         if past is not None and past.header is not None:
@@ -319,7 +318,7 @@ class Scheduler:
 
     # the database
 
-    def _task(self, task_id: int) -> Any:
+    def _task(self, task_id: int) -> Task:
         answer = self._ros.call(GetTask, "/tms/db/get_task", GetTask.Request(task_id=task_id), DB_LIMIT)
         if answer.error_code:
             raise TaskError(answer.error_msg, answer.error_code)
@@ -345,7 +344,7 @@ def _no_problem(_machine: str) -> str:
     return ""
 
 
-def _ended(facts: Facts, outcome: str) -> Ended:
+def _ended(facts: Facts, outcome: str) -> Ended[ExecuteTask.Result]:
     codes = {
         "success": "",
         "failure": "FAILED",
@@ -358,6 +357,6 @@ def _ended(facts: Facts, outcome: str) -> Ended:
     return how.get(outcome, Outcome.ABORTED), result
 
 
-def _refused(run_id: str, code: str, text: str) -> Ended:
+def _refused(run_id: str, code: str, text: str) -> Ended[ExecuteTask.Result]:
     result = ExecuteTask.Result(run_id=run_id, outcome="refused", error_code=code, error_msg=text)
     return Outcome.ABORTED, result

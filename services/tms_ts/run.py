@@ -39,6 +39,8 @@ TICKS = Histogram("tms_ts_tick_seconds", "Duration of a tick", buckets=(0.001, 0
 ALARMS = Counter("tms_ts_alarms_total", "Stops that were not seen, and processes given up during a run")
 OVERRUNS = Counter("tms_ts_tick_overruns_total", "Ticks that took longer than the tick period")
 
+TaskGoal = Goal[ExecuteTask.Goal, ExecuteTask.Feedback]
+
 
 @dataclass
 class Facts:
@@ -62,7 +64,7 @@ class Run:
     """Lives as long as its ExecuteTask goal."""
 
     def __init__(
-        self, ros: Ros, journal: Journal, log: Logger, goal: Goal, facts: Facts, record: Record,
+        self, ros: Ros, journal: Journal, log: Logger, goal: TaskGoal, facts: Facts, record: Record,
         changed: Callable[[], None],
     ) -> None:  # fmt: skip
         self.facts = facts

@@ -2,12 +2,17 @@
 
 import time
 
+from tms_msg_ts.action import LeafNodeBase
+
 from tms_ros.client import Call, Peer
 from tms_ts.past import Key
 from tms_ts.world import GoalState
 
 ACCEPT_LIMIT = 5.0  # s for a subtask to take or refuse a goal
 RECOVERY = 15.0  # s after a loss
+
+LeafPeer = Peer[LeafNodeBase.Goal, LeafNodeBase.Result, LeafNodeBase.Feedback]
+LeafCall = Call[LeafNodeBase.Result, LeafNodeBase.Feedback]
 
 
 class SentGoal:
@@ -20,8 +25,8 @@ class SentGoal:
         self.reason = ""
         self.cancelled = False
         self.begun = time.monotonic()
-        self.call: Call | None = None
-        self.peer: Peer | None = None
+        self.call: LeafCall | None = None
+        self.peer: LeafPeer | None = None
         self.pid: int | None = None  # of the subtask's process when the goal was sent
         self.not_before = 0.0  # monotonic time of the next attempt
         self.waits_since: float | None = None  # for the database

@@ -27,6 +27,7 @@ import numpy
 import numpy.typing
 """
 SEQUENCE = "collections.abc.Sequence"
+PARTS = (("Request", "Response"), ("Goal", "Result", "Feedback"))
 
 
 def scalar(kind: Any) -> str:
@@ -113,18 +114,28 @@ def is_message(found: type) -> bool:
     return hasattr(found, "get_fields_and_field_types")
 
 
+def holder_body(holder: type) -> list[str]:
+    """The lines inside the class of a service or an action, or of a part of one that is no message."""
+    lines = []
+    for name, nested in vars(holder).items():
+        if not inspect.isclass(nested) or name == "Event":  # of service introspection, which is not used
+            continue
+        if nested.__module__ == holder.__module__:
+            lines += class_lines(name, nested)
+        else:  # what all actions share
+            package, folder, _ = nested.__module__.split(".")
+            lines.append(f"{name} = {package}.{folder}.{nested.__name__}")
+    for parts in PARTS:
+        if all(hasattr(holder, part) for part in parts):
+            arguments = ", ".join(f"{part.lower()}: {part}" for part in parts)
+            # For mypy only: without it a client of one service would take the requests of another.
+            lines += ["@staticmethod", f"def _types({arguments}) -> None: ..."]
+    return lines
+
+
 def class_lines(name: str, found: type) -> list[str]:
     """A message, service or action with what is nested in it."""
-    body = message_body(found) if is_message(found) else []
-    if not body:
-        for inner, nested in vars(found).items():
-            if not inspect.isclass(nested) or inner == "Event":  # of service introspection, which is not used
-                continue
-            if nested.__module__ == found.__module__:
-                body += class_lines(inner, nested)
-            else:  # what all actions share
-                package, folder, _ = nested.__module__.split(".")
-                body.append(f"{inner} = {package}.{folder}.{nested.__name__}")
+    body = message_body(found) if is_message(found) else holder_body(found)
     return [f"class {name}:", *(INDENT + line for line in body), ""]
 
 

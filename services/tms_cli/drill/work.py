@@ -42,7 +42,7 @@ class Work:
         self._task = stored.task_id
         self._peer = node.peer(ExecuteTask, "/tms/execute_task")
         self._fault = node.publisher(String, f"/{machine}/sim/fault")
-        self._call: Call | None = None
+        self._call: Call[ExecuteTask.Result, ExecuteTask.Feedback] | None = None
         self._run = ""
         self.lost = False  # its scheduler was lost: only the history tells how it ended
         self.subtask = next(iter(self._subtasks.values()))  # the process behind the present leaf

@@ -1,0 +1,49 @@
+"""What generated ROS classes look like to mypy, which knows their fields from stubs (`make interfaces`).
+
+Services and actions are classes that hold others: a method here stands for the class of that name, which is called
+to make a message.
+"""
+
+from typing import Any, Protocol, TypeVar
+
+
+class Message(Protocol):
+    """Any message; also the parts of services and actions."""
+
+    @classmethod
+    def get_fields_and_field_types(cls) -> dict[str, str]: ...
+
+
+M = TypeVar("M", bound=Message)
+M_in = TypeVar("M_in", bound=Message, contravariant=True)
+Req = TypeVar("Req", bound=Message)
+Res = TypeVar("Res", bound=Message)
+G = TypeVar("G", bound=Message)
+R = TypeVar("R", bound=Message)
+F = TypeVar("F", bound=Message)
+
+
+class Publisher(Protocol[M_in]):
+    """What sends the messages of a topic."""
+
+    def publish(self, message: M_in, /) -> None: ...
+    def assert_liveliness(self) -> None: ...
+    def get_subscription_count(self) -> int: ...
+    def wait_for_all_acked(self, timeout: Any) -> bool: ...
+
+
+class ServiceType(Protocol[Req, Res]):
+    """A service: what is asked and what is answered."""
+
+    def Request(self) -> Req: ...
+    def Response(self) -> Res: ...
+    def _types(self, request: Req, response: Res, /) -> None: ...
+
+
+class ActionType(Protocol[G, R, F]):
+    """An action: what is wanted, how it ended, what is told meanwhile."""
+
+    def Goal(self) -> G: ...
+    def Result(self) -> R: ...
+    def Feedback(self) -> F: ...
+    def _types(self, goal: G, result: R, feedback: F, /) -> None: ...
