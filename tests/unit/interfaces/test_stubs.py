@@ -81,5 +81,5 @@ def test_mypy_sees_the_installed_stubs(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "mypy", "--strict", "--config-file=", f"--cache-dir={PROJECT}/.mypy_cache/stubs"]
     done = subprocess.run([*command, "use.py"], cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False)
     for number, error in enumerate(told.values(), start=2):
-        found = [line for line in done.stdout.splitlines() if line.startswith(f"use.py:{number}:")]
+        found = [line for line in done.stdout.splitlines() if line.startswith(f"use.py:{number}: error:")]
         assert [error in line for line in found] == ([True] if error else []), done.stdout
