@@ -1,7 +1,5 @@
 """The joint trajectory controller's action."""
 
-from typing import Any
-
 from builtin_interfaces.msg import Duration
 from control_msgs.action import FollowJointTrajectory
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
@@ -15,14 +13,14 @@ from tms_sim.servers import Served
 def trajectory_server(controller: Controller) -> Served:
     """FollowJointTrajectory on a controller."""
 
-    def begin(request: Any) -> PathMotion:
+    def begin(request: FollowJointTrajectory.Goal) -> PathMotion:
         wanted, late = request.trajectory, request.goal_time_tolerance
         return controller.begin(list(wanted.joint_names), _points(wanted), late.sec + late.nanosec * 1e-9)
 
-    def refusal(request: Any) -> tuple[int, str] | None:
+    def refusal(request: FollowJointTrajectory.Goal) -> tuple[int, str] | None:
         return controller.refusal(list(request.trajectory.joint_names), _points(request.trajectory))
 
-    def feedback(motion: PathMotion) -> Any:
+    def feedback(motion: PathMotion) -> FollowJointTrajectory.Feedback:
         arm = controller.arm
         since = max(0.0, arm.elapsed)  # s, it begins a dead time after the goal was taken
         desired, actual = list(motion.path.at(since)), arm.positions
@@ -33,7 +31,7 @@ def trajectory_server(controller: Controller) -> Served:
             error=JointTrajectoryPoint(positions=[d - a for d, a in zip(desired, actual, strict=True)]),
         )
 
-    def result(_motion: PathMotion, verdict: Verdict) -> Any:
+    def result(_motion: PathMotion, verdict: Verdict) -> FollowJointTrajectory.Result:
         return FollowJointTrajectory.Result(error_code=verdict.code, error_string=verdict.text)
 
     return Served("trajectory", FollowJointTrajectory, refusal, begin, controller.cancel, feedback, result)

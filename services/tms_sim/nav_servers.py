@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from builtin_interfaces.msg import Duration
-from geometry_msgs.msg import PoseStamped
+from geometry_msgs.msg import Pose, PoseStamped
 from nav2_msgs.action import FollowWaypoints, NavigateThroughPoses, NavigateToPose
 
 from tms_machine.frames import MAP
@@ -20,7 +20,7 @@ from tms_sim.travel import MISSED, Travel, Trip
 def nav_servers(machine: StandIn, travel: Travel) -> list[Served]:
     """All three."""
 
-    def served(field: str, action: Any, poses: Callable[[Any], Sequence[Any]], through: bool = False) -> Served:
+    def served(field: str, action: Any, poses: Callable[[Any], Sequence[PoseStamped]], through: bool = False) -> Served:
         def begin(request: Any) -> Trip:
             waypoints = field == "follow_waypoints"
             miss = machine.fault.miss if waypoints else ()
@@ -39,18 +39,18 @@ def nav_servers(machine: StandIn, travel: Travel) -> list[Served]:
     ]
 
 
-def _strange_frame(poses: Sequence[Any]) -> str | None:
+def _strange_frame(poses: Sequence[PoseStamped]) -> str | None:
     frames = {pose.header.frame_id for pose in poses} - {MAP, ""}
     return f"poses in frame '{frames.pop()}': only '{MAP}' is known" if frames else None
 
 
-def _legs(poses: Sequence[Any], through: bool) -> list[Leg]:
+def _legs(poses: Sequence[PoseStamped], through: bool) -> list[Leg]:
     """Poses that are only passed have no yaw, but for the last."""
     last = len(poses) - 1
     return [_leg(stamped.pose, not through or i == last) for i, stamped in enumerate(poses)]
 
 
-def _leg(pose: Any, stands: bool) -> Leg:
+def _leg(pose: Pose, stands: bool) -> Leg:
     q = pose.orientation
     yaw = math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
     return Leg(pose.position.x, pose.position.y, yaw if stands else None)

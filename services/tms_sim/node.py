@@ -2,7 +2,6 @@
 
 import os
 from collections.abc import Callable
-from typing import Any
 
 from com3_msgs.msg import JointCmd
 from geometry_msgs.msg import Twist
@@ -49,7 +48,7 @@ def start(app: App) -> None:
     app.ready_when(lambda: None)
 
 
-def _angle_of(machine: StandIn, joint: str) -> Callable[[Any], None]:
+def _angle_of(machine: StandIn, joint: str) -> Callable[[Float64], None]:
     return lambda message: machine.turn([joint], POSITION, [message.data], [])
 
 

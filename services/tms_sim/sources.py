@@ -8,7 +8,7 @@ from collections.abc import Callable, Collection, Sequence
 from typing import Any
 
 from builtin_interfaces.msg import Time
-from geometry_msgs.msg import PoseStamped
+from geometry_msgs.msg import Pose, PoseStamped
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
 
@@ -75,7 +75,7 @@ def topics(
 def _joint_states(border: Border, joints: Sequence[str], muted: Callable[[], Collection[str]]) -> Fill:
     names = [border.joints.get(joint, joint) for joint in joints]
 
-    def fill(state: Any, reading: Reading) -> None:
+    def fill(state: JointState, reading: Reading) -> None:
         silent = muted()
         heard = [i for i, joint in enumerate(joints) if joint not in silent]
         state.name, state.effort = [names[i] for i in heard], [0.0] * len(heard)
@@ -85,7 +85,7 @@ def _joint_states(border: Border, joints: Sequence[str], muted: Callable[[], Col
     return fill
 
 
-def _odometry(odom: Any, reading: Reading, origin: tuple[float, float, float]) -> None:
+def _odometry(odom: Odometry, reading: Reading, origin: tuple[float, float, float]) -> None:
     """Position since the start, in a frame of its own, as encoders count it."""
     (x, y, yaw), (x0, y0, yaw0) = reading.place, origin
     dx, dy, c, s = x - x0, y - y0, math.cos(yaw0), math.sin(yaw0)
@@ -93,15 +93,15 @@ def _odometry(odom: Any, reading: Reading, origin: tuple[float, float, float]) -
     odom.twist.twist.linear.x, odom.twist.twist.angular.z = reading.speeds
 
 
-def _global_pose(odom: Any, reading: Reading) -> None:
+def _global_pose(odom: Odometry, reading: Reading) -> None:
     """Without velocities, as the simulator sends it."""
     _place(odom.pose.pose, *reading.place)
 
 
-def _pose_stamped(pose: Any, reading: Reading) -> None:
+def _pose_stamped(pose: PoseStamped, reading: Reading) -> None:
     _place(pose.pose, *reading.place)
 
 
-def _place(pose: Any, x: float, y: float, yaw: float) -> None:
+def _place(pose: Pose, x: float, y: float, yaw: float) -> None:
     pose.position.x, pose.position.y = x, y
     _, _, pose.orientation.z, pose.orientation.w = about("z", yaw)

@@ -15,7 +15,7 @@ from tms_sim.frames import Chain, Frame
 from tms_sim.impostor import Impostor
 from tms_sim.machine import StandIn
 from tms_sim.report import Reading, Report
-from tms_sim.sources import time_of, topics
+from tms_sim.sources import Topic, time_of, topics
 from tms_sim.truth import Truth
 
 PERIOD = 0.04  # s
@@ -35,7 +35,7 @@ class Telemetry:
         self._origin = (machine.base.x, machine.base.y, machine.base.yaw) if machine.base else app.site.start_of(name)
         joints = list(machine.arm.joints)
 
-        def made() -> Any:
+        def made() -> list[Topic]:
             return topics(ros, name, border, joints, self._origin, lambda: machine.fault.mute, begun)
 
         begun = time.time_ns()

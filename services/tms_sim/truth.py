@@ -5,7 +5,6 @@ Its time passes in the steps of its telemetry, 0.04 s unless the process was hel
 
 import math
 import time
-from typing import Any
 
 from sensor_msgs.msg import JointState
 
@@ -23,7 +22,7 @@ class Truth:
     def __init__(self, ros: Ros, name: str, machine: StandIn) -> None:
         self._machine = machine
         self._publisher = ros.publisher(JointState, f"/{name}/sim/truth", KEPT)
-        self._message: Any = JointState(name=[*machine.arm.joints, *(TRACKS if machine.base else [])])
+        self._message = JointState(name=[*machine.arm.joints, *(TRACKS if machine.base else [])])
 
     def tell(self) -> None:
         """After every step."""

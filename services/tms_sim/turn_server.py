@@ -1,7 +1,5 @@
 """The actions that bring a carrier's vessel or upper body to an angle."""
 
-from typing import Any
-
 from com3_msgs.action import SetDumpAngle, SetSwingAngle
 
 from tms_config.models import TURNED
@@ -20,10 +18,10 @@ def turn_server(field: str, turner: Turner) -> Served:
     joint = next(name for name in TURNED[field] if name in turner.arm.joints)
     action = TYPES[field]
 
-    def feedback(turn: Turn) -> Any:
+    def feedback(turn: Turn) -> SetDumpAngle.Feedback | SetSwingAngle.Feedback:
         return action.Feedback(current_error=turn.target - turner.angle(joint))
 
-    def result(_turn: Turn, verdict: Verdict) -> Any:
+    def result(_turn: Turn, verdict: Verdict) -> SetDumpAngle.Result | SetSwingAngle.Result:
         return action.Result(success=verdict.outcome == SUCCEEDED)
 
     return Served(
