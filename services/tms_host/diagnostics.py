@@ -2,7 +2,6 @@
 
 import threading
 from collections.abc import Callable, Mapping
-from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
@@ -54,7 +53,7 @@ class Diagnostics:
             return None
         return metrics.unready(process.address, process.port, ANSWER)
 
-    def _status(self, row: Running) -> Any:
+    def _status(self, row: Running) -> DiagnosticStatus:
         level, text = judge(row, self._table.get(row.name), self._reasons.get(row.name), self._silent().get(row.name))
         values = {"state": row.state, "pid": row.pid, "restarts": self._restarts.get(row.name, 0),
                   "uptime_seconds": round(row.uptime)}  # fmt: skip

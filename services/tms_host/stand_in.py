@@ -15,7 +15,6 @@ Only a gateway releases `emg_stop`. The commands leave from the pulse's thread, 
 import time
 from dataclasses import dataclass
 from enum import Enum
-from typing import Any
 
 from builtin_interfaces.msg import Time
 from prometheus_client import Counter, Gauge
@@ -112,7 +111,7 @@ class Post:
         self._gateway = Link(ros, app.pulse, machine, "rc", _looked_at)
         self._scheduler = Link(ros, app.pulse, machine, "ts", _looked_at)
         self._news = ros.sample(MachineState, f"/{machine}/rc/state")
-        self._state: Any = None  # the last one of a gateway that is lost
+        self._state: MachineState | None = None  # the last one of a gateway that is lost
         self._held_at = float("-inf")  # when a run last had the machine
         LOST.labels(machine).set(0)
         STOOD_IN.labels(machine)
