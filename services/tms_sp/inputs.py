@@ -4,12 +4,12 @@ import math
 import time
 from collections import deque
 from collections.abc import Callable
-from typing import Any
 
 from prometheus_client import Counter, Gauge
 from tms_msg_sp.msg import InputState
 
 from tms_config.sensing import Input
+from tms_ros.interface_types import Message
 from tms_sp.clock import SourceClock
 from tms_sp.mapping import Key, Mapping, Reading, Refused
 from tms_sp.outbox import Counts, Post
@@ -45,7 +45,7 @@ class SensingInput:
         self.last_refusal = ""
         self.news = ""  # a refusal that the log has not told
 
-    def hear(self, message: Any) -> None:
+    def hear(self, message: Message) -> None:
         """One message."""
         try:
             result = self._take(message)
@@ -60,7 +60,7 @@ class SensingInput:
         self.last_refusal = self.news = f"{code}: {text}"
         MESSAGES.labels(self.name, code).inc()
 
-    def _take(self, message: Any) -> str:
+    def _take(self, message: Message) -> str:
         reading = self._mapping.read(message)
         now, wall = time.monotonic(), time.time()
         age = self._age(reading, wall)
@@ -103,7 +103,7 @@ class SensingInput:
             return "silent"
         return "clock" if self._clock.off else "alive"
 
-    def state(self) -> Any:
+    def state(self) -> InputState:
         """For the topic of input states; also brings the metrics up to date."""
         now = time.monotonic()
         age = now - self._arrivals[-1] if self._arrivals else -1.0

@@ -44,7 +44,7 @@ class MachineStates:
             sent = self._ros.request(WriteMachineStates, "/tms/db/write_machine_states", request, self._written)
             self._waiting = sent is not None
 
-    def _written(self, _: Any) -> None:
+    def _written(self, _: WriteMachineStates.Response) -> None:
         self._waiting = False
 
 

@@ -2,15 +2,17 @@
 
 import importlib
 import time
+from collections.abc import Callable
 from typing import Any
 
 from tms_msg_db.msg import RecordUpdate
 from tms_msg_db.srv import UpdateParameters
-from tms_msg_sp.msg import InputStates
+from tms_msg_sp.msg import InputState, InputStates
 
 from tms_config.sensing import Input, load_sensing, sensing_path
 from tms_machine.values import to_parameters
 from tms_reason.errors import ConfigError
+from tms_ros.interface_types import Message
 from tms_runtime.app import App
 from tms_sp.field_types import Fields
 from tms_sp.inputs import SensingInput
@@ -47,7 +49,7 @@ def start(app: App) -> None:
     app.ready_when(sender.unready)
 
 
-def message_class(name: str) -> Any:
+def message_class(name: str) -> type[Message]:
     """The class of `package/msg/Name`.
 
     Raises:
@@ -55,15 +57,15 @@ def message_class(name: str) -> Any:
     """
     package, _, kind = name.split("/")
     try:
-        return getattr(importlib.import_module(f"{package}.msg"), kind)
+        found: type[Message] = getattr(importlib.import_module(f"{package}.msg"), kind)
+        return found
     except (ImportError, AttributeError) as error:
         raise LookupError(f"no message type {name}: is its package built?") from error
 
 
 def fields_inside(kind: str) -> Fields:
     """Fields of the message that another one calls `package/Name`."""
-    fields: Fields = message_class(kind.replace("/", "/msg/")).get_fields_and_field_types()
-    return fields
+    return message_class(kind.replace("/", "/msg/")).get_fields_and_field_types()
 
 
 def _input(app: App, name: str, given: Input, clock_limit: float, sender: "Sender") -> SensingInput:
@@ -74,7 +76,7 @@ def _input(app: App, name: str, given: Input, clock_limit: float, sender: "Sende
         raise ConfigError(f"{sensing_path(app.site)}: inputs.{name}: {error}") from error
 
 
-def _state(app: App, one: SensingInput) -> Any:
+def _state(app: App, one: SensingInput) -> InputState:
     state = one.state()
     if one.news:
         app.log.warning("refused", input=one.name, refused=one.refused, reason=one.news)
@@ -118,7 +120,7 @@ class Sender:
         self.inputs: dict[str, SensingInput] = {}
         self._outbox = Outbox(lambda name: self.inputs[name].counts)
         self._flights: dict[int, float] = {}  # number -> when it is given up
-        self._forget: dict[int, Any] = {}
+        self._forget: dict[int, Callable[[], None]] = {}
         self._not_before = 0.0
         self._trouble = ""
         self._clock = app.ros.every(GAP, self._send)  # stands while nothing waits
@@ -157,7 +159,7 @@ class Sender:
         else:
             self._forget[number] = forget
 
-    def _update(self, post: Post, now: float) -> Any:
+    def _update(self, post: Post, now: float) -> RecordUpdate:
         one = self.inputs[post.source]
         return RecordUpdate(
             model_name=post.key[0], record_name=post.key[1], source=f"sp {post.source}", age=now - post.measured,
@@ -165,7 +167,7 @@ class Sender:
             expected=to_parameters(one.only_if),
         )  # fmt: skip
 
-    def _answered(self, number: int, answer: Any) -> None:
+    def _answered(self, number: int, answer: UpdateParameters.Response) -> None:
         if number not in self._flights:
             return
         if answer.error_code:
