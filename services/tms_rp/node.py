@@ -43,15 +43,15 @@ class Action:
     moves: bool
 
 
-def _change_pose(planner: Backhoe, now: Pose, request: Any) -> Moves:
+def _change_pose(planner: Backhoe, now: Pose, request: TmsRpZx200ChangePose.Goal) -> Moves:
     return planner.change_pose(now, messages.change_pose(request))
 
 
-def _excavate(planner: Backhoe, now: Pose, request: Any) -> Moves:
+def _excavate(planner: Backhoe, now: Pose, request: TmsRpZx200ExcavateSimple.Goal) -> Moves:
     return planner.excavate(now, messages.tip(request.position_with_angle))
 
 
-def _release(planner: Backhoe, now: Pose, request: Any) -> Moves:
+def _release(planner: Backhoe, now: Pose, request: TmsRpZx200ReleaseSimple.Goal) -> Moves:
     return planner.release(now, request.target_angle)
 
 
