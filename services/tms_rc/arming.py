@@ -1,8 +1,8 @@
 """What a person does at a stopped machine: re-arm it, take it to drive it by hand, give it back."""
 
 import time
-from typing import Any
 
+from std_msgs.msg import Bool
 from tms_msg_rc.msg import StopReceipt
 from tms_msg_rc.srv import Rearm, TakeMachine
 
@@ -115,7 +115,7 @@ class Arming:
             return "NOT_TAKEN", f"nobody has taken {self._app.machine}: `tms status` shows who drives what"
         return "", ""
 
-    def manual(self, message: Any) -> None:
+    def manual(self, message: Bool) -> None:
         """The machine's own signal that a person drives it by its levers. On the executor thread."""
         guard, on = self._guard, bool(message.data)
         if on and not guard.by_hand:

@@ -1,8 +1,13 @@
 """Passes goals on to the machine's own action servers, one at a time, and ends them when they must end."""
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
+
+from builtin_interfaces.msg import Duration
+from geometry_msgs.msg import Pose, PoseStamped
+from tms_msg_rc.msg import StopReceipt
+from trajectory_msgs.msg import JointTrajectoryPoint
 
 from tms_machine.border import Motion
 from tms_rc import limits
@@ -191,7 +196,7 @@ class Gateway:
             return None
         return f"FROZEN: {source.label} are the same to the last bit for {same:.1f} s while the machine should move"
 
-    def _wait(self, active: Active, enough: Any, seconds: float) -> None:
+    def _wait(self, active: Active, enough: Callable[[AnyCall], bool], seconds: float) -> None:
         def over() -> bool:
             call: AnyCall | None = active.call
             return active.stop is not None or (call is not None and (enough(call) or call.outcome is not None))
@@ -219,27 +224,27 @@ def speed_of(app: App) -> float:
     return app.site.file.sim.speed if app.site.file.backend == "sim" else 1.0
 
 
-def travel_text(receipt: Any) -> str:
+def travel_text(receipt: StopReceipt) -> str:
     """How far it went until it stood."""
     parts = [f"{receipt.travel_rad:.3f} rad ({receipt.travel_joint})"] if receipt.travel_joint else []
     return ", ".join([*parts, f"{receipt.travel_m:.2f} m"])
 
 
-def poses_of(request: Any) -> Sequence[Any]:
+def poses_of(request: Any) -> Sequence[PoseStamped]:
     """The poses of a goal for the navigation."""
     return list(request.poses) if hasattr(request, "poses") else [request.pose]
 
 
-def _numbers(pose: Any) -> tuple[float, ...]:
+def _numbers(pose: Pose) -> tuple[float, ...]:
     at, turn = pose.position, pose.orientation
     return at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w
 
 
-def _seconds(duration: Any) -> float:
+def _seconds(duration: Duration) -> float:
     return float(duration.sec + duration.nanosec * 1e-9)
 
 
-def _point(point: Any) -> limits.Point:
+def _point(point: JointTrajectoryPoint) -> limits.Point:
     rest = [*point.velocities, *point.accelerations, *point.effort]
     return limits.Point(_seconds(point.time_from_start), point.positions, rest)
 

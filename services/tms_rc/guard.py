@@ -9,8 +9,8 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any
 
+from std_msgs.msg import Bool
 from tms_msg_rc.msg import StopReceipt
 from tms_msg_rc.srv import StopMachine
 
@@ -261,7 +261,7 @@ class Guard:
             raise RuntimeError("the gateway's executor does not run any more")
         return begun[0]
 
-    def signal(self, message: Any) -> None:
+    def signal(self, message: Bool) -> None:
         """/emergency_signal: true stops and latches, as often as it is repeated; false does not arm anything."""
         now = time.monotonic()
         if not message.data:

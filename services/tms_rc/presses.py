@@ -5,7 +5,6 @@ what somebody else has pressed latches, since only a person's re-arm may release
 """
 
 import time
-from typing import Any
 
 from builtin_interfaces.msg import Time
 from std_msgs.msg import Bool
@@ -32,11 +31,11 @@ class Presses:
         app.ros.subscribe(Time, stood_in(app.machine), self._on_stood_in, latched=True)
         app.ros.subscribe(Bool, topic, self._on_press, depth=DEPTH)
 
-    def _on_stood_in(self, told: Any) -> None:
+    def _on_stood_in(self, told: Time) -> None:
         if abs(self._app.ros.now().sec - told.sec) <= OLD:  # of the same PC's clock
             self._told_at, self._guard.stood_in = time.monotonic(), True
 
-    def _on_press(self, message: Any) -> None:
+    def _on_press(self, message: Bool) -> None:
         if message.data and not self._guard.latch.cause:  # latched, this gateway presses it itself
             now = time.monotonic()
             doubt = YOUNG_DOUBT if now - self._begun < YOUNG else DOUBT

@@ -9,8 +9,8 @@ import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
 
+from builtin_interfaces.msg import Time
 from prometheus_client import Counter, Histogram
 from tms_msg_rc.msg import StopReceipt
 
@@ -41,7 +41,7 @@ class Stop:
     run: int
     ended: Callable[[], bool]  # whether the goal that was stopped is terminal
     begun: float  # s, monotonic, and on the wall clock:
-    stamp: Any
+    stamp: Time
     proof: Proof
     broken: str = ""  # why it cannot be confirmed whatever is seen: it had moved without a goal
     receipt: StopReceipt | None = None
@@ -83,7 +83,7 @@ class Stopper:
         return not self.busy
 
     def begin(
-        self, cause: str, begun: float, stamp: Any, *, latched: bool, run: int = 0,
+        self, cause: str, begun: float, stamp: Time, *, latched: bool, run: int = 0,
         ended: Callable[[], bool] = lambda: True, expected: Expected = NOTHING, broken: str = "",
     ) -> Stop:  # fmt: skip
         """Have a stop watched that was wanted at `begun` [s, monotonic], `stamp`, and has been commanded by now.

@@ -2,10 +2,10 @@
 
 import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from geometry_msgs.msg import PoseStamped
+from geometry_msgs.msg import Pose, PoseStamped
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu, JointState
 
@@ -80,7 +80,7 @@ class View:
             return _odometry
         return _global_odometry if border.sources["pose"].message == "Odometry" else _pose
 
-    def _joints(self, message: Any) -> Numbers:
+    def _joints(self, message: JointState) -> Numbers:
         """Joint states are matched by name: backends order them differently, and may send some joints at a time."""
         known = [(i, self._names[name]) for i, name in enumerate(message.name) if name in self._names]
         places = {name: (value,) for name, value in _numbers(known, message.position).items()}
@@ -104,12 +104,12 @@ def _sample(arrival: Arrival[Any], places: Mapping[str, Place], speeds: Mapping[
     return Sample(arrival.received, stamp.sec + stamp.nanosec * 1e-9, arrival.number, places, speeds)
 
 
-def _numbers(known: list[tuple[int, str]], values: Any) -> dict[str, float]:
+def _numbers(known: list[tuple[int, str]], values: Sequence[float]) -> dict[str, float]:
     """By joint; what is not there or not a number was not heard."""
     return {name: values[i] for i, name in known if i < len(values) and math.isfinite(values[i])}
 
 
-def _placed(pose: Any) -> dict[str, Place]:
+def _placed(pose: Pose) -> dict[str, Place]:
     at, turn = pose.position, pose.orientation
     numbers = (at.x, at.y, turn.x, turn.y, turn.z, turn.w)
     if not all(map(math.isfinite, numbers)):
@@ -117,22 +117,22 @@ def _placed(pose: Any) -> dict[str, Place]:
     return {PLACE: (at.x, at.y), HEADING: (yaw_of(turn.x, turn.y, turn.z, turn.w),)}
 
 
-def _pose(message: Any) -> Numbers:
+def _pose(message: PoseStamped) -> Numbers:
     return _placed(message.pose), {}
 
 
-def _global_odometry(message: Any) -> Numbers:
+def _global_odometry(message: Odometry) -> Numbers:
     """A pose as odometry: its twist is empty, which is no speed of 0."""
     return _placed(message.pose.pose), {}
 
 
-def _odometry(message: Any) -> Numbers:
+def _odometry(message: Odometry) -> Numbers:
     speed = message.twist.twist
     speeds = {PLACE: math.hypot(speed.linear.x, speed.linear.y), HEADING: speed.angular.z}
     return _placed(message.pose.pose), {name: value for name, value in speeds.items() if math.isfinite(value)}
 
 
-def _imu(message: Any) -> Numbers:
+def _imu(message: Imu) -> Numbers:
     turning = message.angular_velocity
     speed = math.hypot(turning.x, turning.y, turning.z)
     return ({TURNING: ()}, {TURNING: speed}) if math.isfinite(speed) else ({}, {})
