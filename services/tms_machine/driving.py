@@ -1,7 +1,6 @@
 """Capability of machines that travel: goals for Nav2, in the frame `map`."""
 
 from collections.abc import Sequence
-from typing import Any
 
 from geometry_msgs.msg import Pose, PoseStamped
 from nav2_msgs.action import FollowWaypoints, NavigateThroughPoses, NavigateToPose
@@ -22,7 +21,7 @@ class Driving(Acting):
     def navigate_through(self, progress: Progress, poses: Sequence[Pose]) -> None:
         """Drive through poses without a stop, and stand at the last."""
 
-        def heard(feedback: Any) -> None:
+        def heard(feedback: NavigateThroughPoses.Feedback) -> None:
             progress(f"{_left(feedback)}, {feedback.number_of_poses_remaining} poses to go")
 
         goal = NavigateThroughPoses.Goal(poses=[self._stamped(pose) for pose in poses])
@@ -35,7 +34,7 @@ class Driving(Acting):
             SubtaskFailed: MISSED_WAYPOINTS, also when the navigation itself calls that a success.
         """
 
-        def heard(feedback: Any) -> None:
+        def heard(feedback: FollowWaypoints.Feedback) -> None:
             progress(f"DRIVING to waypoint {feedback.current_waypoint} of 0..{len(poses) - 1}")
 
         goal = FollowWaypoints.Goal(poses=[self._stamped(pose) for pose in poses])
@@ -51,5 +50,5 @@ class Driving(Acting):
         return stamped
 
 
-def _left(feedback: Any) -> str:
+def _left(feedback: NavigateToPose.Feedback | NavigateThroughPoses.Feedback) -> str:
     return f"DRIVING {feedback.distance_remaining:.1f} m to go"

@@ -3,7 +3,9 @@
 import math
 import time
 from collections.abc import Callable, Iterable
-from typing import Any, NamedTuple
+from typing import NamedTuple
+
+from tf2_msgs.msg import TFMessage
 
 MAP = "map"
 
@@ -24,15 +26,15 @@ class Frames:
         self._wanted, self._clock = set(frames), clock
         self._seen: dict[str, tuple[str, Seen]] = {}  # frame -> its parent, and where it is in that
 
-    def hear(self, message: Any) -> set[str]:
+    def hear(self, message: TFMessage) -> set[str]:
         """Take a tf2_msgs/TFMessage of /tf; the frames of interest that it told of."""
         return self._take(message, self._clock())
 
-    def hear_fixed(self, message: Any) -> None:
+    def hear_fixed(self, message: TFMessage) -> None:
         """Take one of /tf_static."""
         self._take(message, math.inf)
 
-    def _take(self, message: Any, heard: float) -> set[str]:
+    def _take(self, message: TFMessage, heard: float) -> set[str]:
         told = set()
         for one in message.transforms:
             at, q = one.transform.translation, one.transform.rotation

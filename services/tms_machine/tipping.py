@@ -33,7 +33,7 @@ class Tipping(Acting):
         found: list[float] = []
         heard = threading.Event()
 
-        def look(state: Any) -> None:
+        def look(state: MachineState) -> None:
             if state.ready and joint in state.joint_names:
                 found.append(state.positions[list(state.joint_names).index(joint)])
                 heard.set()
