@@ -18,6 +18,7 @@ GIVE_BACK = Remedy("give_back", "tms give-back {machine}", "Give the machine bac
 CANCEL = Remedy("cancel", "tms cancel {run}", "Cancel the run that holds it")
 PROCESSES = Remedy("processes", "tms ps", "See which processes run")
 RESTART = Remedy("restart", "tms restart {process}", "Restart the process")
+LOGS = Remedy("logs", "tms logs {process}", "Read the log of the process")
 STATUS = Remedy("status", "tms status", "See what is wrong with the system")
 TASKS = Remedy("tasks", "tms task list", "See which tasks there are")
 RECORDS = Remedy("records", "tms param list", "See which records there are")

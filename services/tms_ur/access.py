@@ -20,9 +20,10 @@ from tms_config.names import Name
 from tms_config.yaml_file import parse
 from tms_reason.errors import ConfigError, TmsError
 from tms_ur.login_throttle import LoginThrottle
+from tms_ur.reasons import Login, NoUsersFile, UnreadableUsers, UsersForAll, WrongPassword
 
-Role = Literal["viewer", "operator", "admin"]
-RANK: dict[Role, int] = {"viewer": 0, "operator": 1, "admin": 2}
+RoleName = Literal["viewer", "operator", "admin"]
+RANK: dict[RoleName, int] = {"viewer": 0, "operator": 1, "admin": 2}
 HASHER = PasswordHasher(time_cost=2, memory_cost=19_456, parallelism=1)  # OWASP's least: a site PC has other work
 SESSION_IDLE = 12 * 3600.0  # s: one shift
 MOST_SESSIONS = 500
@@ -31,7 +32,7 @@ MOST_SESSIONS = 500
 class User(Settings):
     """One person or program."""
 
-    role: Role
+    role: RoleName
     password: str | None = Field(default=None, pattern=r"^\$argon2id\$")  # hash
     token: str | None = Field(default=None, pattern=r"^\$argon2id\$")  # hash
 
@@ -53,9 +54,9 @@ class Person:
     """Who asks."""
 
     name: str
-    role: Role
+    role: RoleName
 
-    def may(self, role: Role) -> bool:
+    def may(self, role: RoleName) -> bool:
         return RANK[self.role] >= RANK[role]
 
 
@@ -130,7 +131,7 @@ class Access:
         self._throttle.attempt(name, source)
         right = _matches(kept or self._decoy, secret)  # a name that is not there takes as long as one that is
         if not right or user is None or kept is None:
-            raise TmsError("the name or the password is wrong", "LOGIN")
+            raise TmsError(Login(WrongPassword()))
         self._throttle.right(name, source)
         return Person(name, user.role)
 
@@ -160,10 +161,9 @@ def read_users(file: Path) -> dict[str, User]:
     try:
         mode = file.stat().st_mode
     except FileNotFoundError as error:
-        text = f"{file}: the users file of console.users is not there: `tms user add NAME --role admin`"
-        raise ConfigError(text) from error
+        raise ConfigError(NoUsersFile(str(file))) from error
     except OSError as error:
-        raise ConfigError(f"{file}: the users file of console.users cannot be read ({error.strerror})") from error
+        raise ConfigError(UnreadableUsers(str(file), str(error.strerror))) from error
     if stat.S_ISREG(mode) and mode & 0o007:
-        raise ConfigError(f"{file}: everybody on this PC may read it: `chmod 600 {file}`")
+        raise ConfigError(UsersForAll(str(file)))
     return parse(file, Users).users

@@ -9,6 +9,8 @@ from pathlib import Path
 from tms_config.config import Site
 from tms_config.site_file import Files, SiteFile
 from tms_reason.errors import ConfigError
+from tms_reason.reason import Reason
+from tms_ur.reasons import NoCertificate, UnreadableCertificate
 
 ALL = {"0.0.0.0": "127.0.0.1", "::": "::1"}  # bound to all addresses: a browser of this PC takes this one
 
@@ -34,15 +36,15 @@ def certificate(site: Site) -> Files | None:
         try:
             path.open("rb").close()
         except OSError as error:
-            raise ConfigError(f"{site.path}: console.tls.{name}: {path}: cannot be read ({error.strerror})") from error
+            reason: Reason = UnreadableCertificate(str(site.path), name, str(path), str(error.strerror))
+            raise ConfigError(reason) from error
     try:
         # Without a password of ours OpenSSL would ask for that of an encrypted key on the terminal.
         ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER).load_cert_chain(found.certificate, found.key, password=lambda: "none")
     except ssl.SSLError as error:
-        raise ConfigError(
-            f"{site.path}: console.tls: {found.certificate} and {found.key} are no certificate and its unencrypted "
-            f"key in PEM ({error.reason or error})"
-        ) from error
+        problem = str(error.reason or error)
+        reason = NoCertificate(str(site.path), str(found.certificate), str(found.key), problem)
+        raise ConfigError(reason) from error
     return found
 
 

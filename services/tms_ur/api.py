@@ -17,11 +17,12 @@ from starlette.exceptions import HTTPException
 
 from tms_config.config import Site
 from tms_reason.errors import TmsError
+from tms_reason.reason import Reason
 from tms_ur import commands, reading, sessions
 from tms_ur.access import Access
 from tms_ur.hashing import Hashing
-from tms_ur.login_throttle import Throttled
 from tms_ur.problems import problem, problems
+from tms_ur.reasons import BadRequest, InternalError, MethodNotAllowed, NotFound
 from tms_ur.security import SECURITY, SecurityMiddleware
 
 if TYPE_CHECKING:
@@ -31,15 +32,6 @@ if TYPE_CHECKING:
 STATIC = File(__file__).parent / "static"
 WORKERS = 8  # threads for calls that wait for a module
 
-# What is not here is a refusal (409): asked well, but not possible now.
-STATUS = {
-    **dict.fromkeys(("TASK_MISSING", "RUN_MISSING", "RECORD_MISSING", "NO_RUN", "NO_TREE"), HTTPStatus.NOT_FOUND),
-    **dict.fromkeys(("NO_QUESTION", "NO_PROCESS", "NO_MACHINE"), HTTPStatus.NOT_FOUND),
-    **dict.fromkeys(("NO_SERVER", "NO_ANSWER", "STORE_DOWN", "STORE_FULL", "TOO_MANY"), HTTPStatus.SERVICE_UNAVAILABLE),
-    "LOGIN": HTTPStatus.UNAUTHORIZED,
-    "ROLE": HTTPStatus.FORBIDDEN,
-    **dict.fromkeys(("THROTTLED", "MANY_LOGINS"), HTTPStatus.TOO_MANY_REQUESTS),
-}  # fmt: skip
 log = structlog.stdlib.get_logger(__name__)
 
 
@@ -94,17 +86,15 @@ def _describe(app: FastAPI) -> None:
 
 def _tms_error(_request: Request, error: Exception) -> JSONResponse:
     assert isinstance(error, TmsError)
-    answer = problem(STATUS.get(error.code, HTTPStatus.CONFLICT), error.code, str(error))
-    if isinstance(error, Throttled):
-        answer.headers["Retry-After"] = str(round(error.seconds) + 1)
-    return answer
+    return problem(error)
 
 
 def _http_error(request: Request, error: Exception) -> JSONResponse:
     assert isinstance(error, HTTPException)
-    code = HTTPStatus(error.status_code).name
-    message = f"{request.method} {request.url.path}: {error.detail}: see /openapi.json"
-    answer = problem(error.status_code, code, message)
+    asked = request.method, request.url.path
+    known: dict[int, Reason] = {404: NotFound(*asked), 405: MethodNotAllowed(*asked)}
+    reason = known.get(error.status_code) or BadRequest(" ".join(asked), error.detail)
+    answer = problem(TmsError(reason), error.status_code)
     answer.headers.update(error.headers or {})
     return answer
 
@@ -113,11 +103,11 @@ def _bad_request(_request: Request, error: Exception) -> JSONResponse:
     assert isinstance(error, RequestValidationError)
     first = error.errors()[0]
     where = ".".join(str(part) for part in first["loc"])
-    return problem(422, "BAD_REQUEST", f"{where}: {first['msg']}: see /openapi.json")
+    return problem(TmsError(BadRequest(where, str(first["msg"]))), HTTPStatus.UNPROCESSABLE_ENTITY)
 
 
 def _bug(_request: Request, error: Exception) -> JSONResponse:
     """The traceback goes to the log; the server writes it."""
-    answer = problem(500, "INTERNAL", f"{type(error).__name__} in the console: see `tms logs tms:ur`")
+    answer = problem(TmsError(InternalError(type(error).__name__, "tms:ur")), HTTPStatus.INTERNAL_SERVER_ERROR)
     answer.headers.update(SECURITY)  # it is made outside the middleware
     return answer

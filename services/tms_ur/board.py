@@ -6,6 +6,8 @@ from collections.abc import Callable, Iterable
 from datetime import datetime, timezone
 
 from tms_ur.models import ActiveRun, Host, Machine, Place, Process, Question, Scheduler, State
+from tms_ur.reason_view import view
+from tms_ur.reasons import MachineSilent, MachineUnheard
 
 MACHINE_SILENT = 2.0  # s, four periods of a machine's gateway
 SCHEDULER_SILENT = 5.0  # s, five periods of the scheduler's list of runs
@@ -103,13 +105,13 @@ def _content(machine: Machine) -> Machine:
 
 def _aged(machine: Machine, now: float, at: float | None, place: tuple[Place, float] | None) -> Machine:
     if at is None:
-        why = f"{machine.name}:rc has not been heard yet: see the processes"
-        return machine.model_copy(update={"reason": why, **_placed(now, place)})
+        why = MachineUnheard(f"{machine.name}:rc")
+        return machine.model_copy(update={"reason": view(why), **_placed(now, place)})
     age = now - at
     joint_age = None if machine.joint_age is None else round(machine.joint_age + age, 1)
     update: dict[str, object] = {"age": round(age, 1), "joint_age": joint_age, **_placed(now, place)}
     if age > MACHINE_SILENT:
-        update |= {"state": "silent", "reason": f"{machine.name}:rc has said nothing for {age:.0f} s"}
+        update |= {"state": "silent", "reason": view(MachineSilent(f"{machine.name}:rc", round(age)))}
     return machine.model_copy(update=update)
 
 

@@ -14,22 +14,14 @@ from fastapi import FastAPI, Path, Request
 
 from tms_config.config import Site
 from tms_reason.errors import TmsError
+from tms_reason.reason import Reason
 from tms_ur.access import Person
+from tms_ur.command_models import AnswerGiven, Nothing, RearmAsked, StartRun, StopAsked, TaskGiven
 from tms_ur.data_models import FieldGiven, RecordGiven
-from tms_ur.models import (
-    Added,
-    AnswerGiven,
-    Nothing,
-    RearmAsked,
-    Rearmed,
-    Receipt,
-    RunAsked,
-    StartRun,
-    StopAsked,
-    TaskGiven,
-)  # fmt: skip
+from tms_ur.models import Added, Rearmed, Receipt, RunAsked
 from tms_ur.problems import Admin, Operator, Viewer, problems
 from tms_ur.reading import ProcessName, RunId, TaskId
+from tms_ur.reasons import BadValue, IntTooLong, NoMachine, NotFinite, NotOfType, NotUnicode, Starting
 from tms_ur.security import source
 
 if TYPE_CHECKING:
@@ -109,7 +101,7 @@ class _Once:
     def only(self, task_id: int) -> Iterator[None]:
         with self._lock:
             if task_id in self._open:
-                raise TmsError(f"task {task_id} is being started already", "STARTING")
+                raise TmsError(Starting(task_id))
             self._open.add(task_id)
         try:
             yield
@@ -139,7 +131,7 @@ def _machines(app: FastAPI, client: "SiteClient", note: _Note, site: Site) -> No
 
 def _known(machine: str, names: list[str]) -> str:
     if machine not in names:
-        raise TmsError(f"the site has no machine '{machine}' (there: {', '.join(names) or 'none'})", "NO_MACHINE")
+        raise TmsError(NoMachine(machine, tuple(names)))
     return machine
 
 
@@ -171,6 +163,9 @@ def _stored(app: FastAPI, client: "SiteClient", note: _Note) -> None:
         return Nothing()
 
 
+LIMITS: dict[str, type[Reason]] = {"int": IntTooLong, "double": NotFinite, "string": NotUnicode}
+
+
 def _typed(field: FieldGiven) -> Any:
     """The value as its type says: JSON writes 3.0 as 3."""
     kinds: dict[str, tuple[type, ...]] = {"bool": (bool,), "int": (int,), "double": (int, float), "string": (str,)}
@@ -179,10 +174,9 @@ def _typed(field: FieldGiven) -> Any:
     values = field.value if isinstance(field.value, list) else [field.value]
     wrong = [one for one in values if not isinstance(one, kinds[kind]) or isinstance(one, bool) != (kind == "bool")]
     if wrong or several != isinstance(field.value, list):
-        raise TmsError(f"{field.name}: {field.value!r} is no {field.type}", "BAD_VALUE")
+        raise TmsError(BadValue(field.name, repr(field.value), NotOfType(field.type)))
     if not all(_fits(kind, one) for one in values):
-        limits = {"int": "has 64 bits", "double": "is finite", "string": "is valid Unicode without NUL"}
-        raise TmsError(f"{field.name}: {field.value!r} cannot be stored: a {kind} {limits[kind]}", "BAD_VALUE")
+        raise TmsError(BadValue(field.name, repr(field.value), LIMITS[kind]()))
     typed = [float(one) if kind == "double" else one for one in values]
     return typed if several else typed[0]
 

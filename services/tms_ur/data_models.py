@@ -6,7 +6,9 @@ from typing import Literal
 from pydantic import Field
 
 from tms_config.names import Name
-from tms_ur.models import Command, Model, Value
+from tms_ur.command_models import Command
+from tms_ur.models import Model, Value
+from tms_ur.reason_view import ReasonView
 
 
 class Record(Model):
@@ -42,7 +44,7 @@ class SensingInput(Model):
     age: float | None = Field(description="s since the last accepted message, null: none yet")
     accepted: int
     refused: int
-    last_refusal: str = Field(description="why, empty if none")
+    last_refusal: ReasonView | None = Field(description="why, null: none yet")
     records: list[str] = Field(description="written so far")
 
 

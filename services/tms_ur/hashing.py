@@ -9,6 +9,7 @@ import anyio.to_thread
 
 from tms_reason.errors import TmsError
 from tms_ur.callers import caller
+from tms_ur.reasons import ManyLogins
 
 MOST_WAITING = 16  # each takes 19 MB and some 30 ms while its turn lasts
 MOST_OF_ONE = 2  # of them from one address, so that a guesser leaves room for others
@@ -32,7 +33,7 @@ class Hashing:
         key = (stop, caller(address))
         others = sum(count for (lane, _), count in self._waiting.items() if lane is stop)
         if others >= MOST_WAITING or self._waiting[key] >= MOST_OF_ONE:
-            raise TmsError("too many passwords are being checked: try again in a second", "MANY_LOGINS")
+            raise TmsError(ManyLogins())
         self._waiting[key] += 1
         try:
             return await anyio.to_thread.run_sync(work, limiter=self._stop_lane if stop else self._lane)

@@ -14,19 +14,10 @@ from dataclasses import dataclass
 
 from tms_reason.errors import TmsError
 from tms_ur.callers import caller
+from tms_ur.reasons import Throttled
 
 FORGET = 900.0  # s after which wrong passwords count no more
 MOST_KEYS = 2000  # of each kind; the longest unused one goes
-
-
-class Throttled(TmsError):
-    """Too many wrong passwords; `seconds` until the next try."""
-
-    code = "THROTTLED"
-
-    def __init__(self, seconds: float) -> None:
-        super().__init__(f"too many wrong passwords: try again in {seconds:.0f} s")
-        self.seconds = seconds
 
 
 @dataclass(frozen=True)
@@ -87,7 +78,7 @@ class LoginThrottle:
         """Count a try.
 
         Raises:
-            Throttled: it comes too soon, and was not counted.
+            TmsError: THROTTLED: it comes too soon, and was not counted.
         """
         pair, address, account = _keys(account, address)
         with self._lock:
@@ -95,7 +86,7 @@ class LoginThrottle:
             wider = 0.0 if familiar else max(self._addresses.wait(address), self._accounts.wait(account))
             wait = max(self._pairs.wait(pair), wider)
             if wait > 0:
-                raise Throttled(wait)
+                raise TmsError(Throttled(wait))
             self._pairs.add(pair)
             if not familiar:
                 self._addresses.add(address)

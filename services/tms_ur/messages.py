@@ -6,10 +6,12 @@ from typing import Any
 from rcl_interfaces.msg import ParameterType
 
 from tms_machine.values import from_parameters
+from tms_reason.reason import Foreign
 from tms_reason.units import unit
 from tms_ur.data_models import Change, Record, SensingInput
 from tms_ur.models import ActiveRun, Event, Joint, Machine, Process, Question, Receipt, Run
 from tms_ur.models import MachineState as Shown
+from tms_ur.reason_view import ReasonView, of_line
 
 NEVER = 1e8  # s, a larger age means that there was nothing yet
 TYPES = {
@@ -31,17 +33,17 @@ def machine(message: Any) -> Machine:
     joints = zip(message.joint_names, message.positions, message.velocities, strict=False)
     state: Shown = "not_ready" if not message.ready else "moving" if message.moving else "standing"
     return Machine(
-        name=message.machine, state=state, reason=message.reason, goal=message.goal, owner=message.owner,
+        name=message.machine, state=state, reason=of_line(message.reason), goal=message.goal, owner=message.owner,
         joints=[Joint(name=name, position=round(p, 4), velocity=round(v, 4)) for name, p, v in joints],
         joint_age=message.age if message.age < NEVER else None,
-        armed=message.armed, latch=message.latch, hold=message.hold, by_hand=message.by_hand,
+        armed=message.armed, latch=of_line(message.latch), hold=of_line(message.hold), by_hand=message.by_hand,
     )  # fmt: skip
 
 
 def active_run(run: Any) -> ActiveRun:
     return ActiveRun(
-        run_id=run.run_id, task_id=run.task_id, state=run.state, machines=list(run.machines), reason=run.reason,
-        started_at=when(run.started_at), leaf=run.leaf, nodes="".join(map(str, run.nodes)),
+        run_id=run.run_id, task_id=run.task_id, state=run.state, machines=list(run.machines),
+        reason=of_line(run.reason), started_at=when(run.started_at), leaf=run.leaf, nodes="".join(map(str, run.nodes)),
     )  # fmt: skip
 
 
@@ -56,7 +58,7 @@ def receipt(made: Any) -> Receipt:
     return Receipt(
         machine=made.machine, confirmed=made.confirmed, seconds=round(made.seconds, 3),
         travel_joint=made.travel_joint, travel_rad=round(made.travel_rad, 4), travel_m=round(made.travel_m, 3),
-        cause=made.cause, detail=made.detail, evidence=made.evidence, latched=made.latched,
+        cause=of_line(made.cause), detail=of_line(made.detail), evidence=of_line(made.evidence), latched=made.latched,
     )  # fmt: skip
 
 
@@ -67,7 +69,7 @@ def process(row: Any) -> Process:
         pid=row.pid,
         restarts=row.restarts,
         uptime=row.uptime,
-        detail=row.detail,
+        detail=of_line(row.detail),
         cpu=round(row.cpu, 1),
         memory=row.memory,
     )
@@ -80,16 +82,23 @@ def task(task: Any) -> dict[str, Any]:
 
 def run(run: Any) -> Run:
     return Run(
-        run_id=run.run_id, task_id=run.task_id, description=run.description, state=run.state, reason=run.reason,
-        machines=list(run.machines), started_at=when(run.started_at), ended_at=when(run.ended_at),
+        run_id=run.run_id, task_id=run.task_id, description=run.description, state=run.state,
+        reason=of_line(run.reason), machines=list(run.machines), started_at=when(run.started_at),
+        ended_at=when(run.ended_at),
     )  # fmt: skip
 
 
 def event(event: Any) -> Event:
     return Event(
         number=event.number, stamp=when(event.stamp), kind=event.kind, node=event.node, text=event.text,
-        values={**from_parameters(event.values)},
+        reason=_reason_in(event.text), values={**from_parameters(event.values)},
     )  # fmt: skip
+
+
+def _reason_in(text: str) -> ReasonView | None:
+    """The reason that a journal's text is; None for words, which are shown as they are."""
+    shown = of_line(text)
+    return None if shown is None or shown.code == Foreign.code else shown
 
 
 def record(record: Any) -> Record:
@@ -111,5 +120,5 @@ def sensing_input(told: Any, since: float) -> SensingInput:
     return SensingInput(
         name=told.name, topic=told.topic, state=told.state, hz=round(told.hz, 2), hz_expected=told.hz_expected or None,
         age=round(told.age + since, 1) if told.age >= 0 else None, accepted=told.accepted, refused=told.refused,
-        last_refusal=told.last_refusal, records=list(told.records),
+        last_refusal=of_line(told.last_refusal), records=list(told.records),
     )  # fmt: skip

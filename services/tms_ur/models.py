@@ -5,7 +5,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from tms_config.names import Text
+from tms_ur.reason_view import ReasonView
 
 Value = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
 MachineState = Literal["moving", "standing", "not_ready", "silent"]
@@ -16,13 +16,6 @@ class Model(BaseModel):
     """Base of all answers; what a client sends is checked as strictly as configuration."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=True)
-
-
-class Problem(Model):
-    """Every error of the API."""
-
-    code: str = Field(description="for programs, for example TASK_MISSING")
-    message: str = Field(description="for people: what is wrong and what to do next")
 
 
 class Joint(Model):
@@ -46,12 +39,12 @@ class Machine(Model):
     state: MachineState = Field(
         default="silent", description="silent: its gateway says nothing, what else is here is old"
     )
-    reason: str = Field(default="", description="why it is not ready or silent")
+    reason: ReasonView | None = Field(default=None, description="why it is not ready or silent")
     goal: str = Field(default="", description="id of the goal that it executes now, empty if none")
     owner: str = Field(default="", description="who sent the goal")
     armed: bool = Field(default=False, description="motions are accepted")
-    latch: str = Field(default="", description="why it is stopped until somebody re-arms it, empty if it is armed")
-    hold: str = Field(default="", description="why it is held until its run goes on")
+    latch: ReasonView | None = Field(default=None, description="why it is stopped until it is re-armed; null: armed")
+    hold: ReasonView | None = Field(default=None, description="why it is held until its run goes on")
     by_hand: str = Field(default="", description="who drives it by hand, empty if nobody does")
     place: Place | None = Field(default=None, description="null: /tf has not told")
     place_age: float | None = Field(default=None, description="s since /tf told the place, null: never")
@@ -67,7 +60,7 @@ class ActiveRun(Model):
     task_id: int
     state: str = Field(description="preparing, running or stopping")
     machines: list[str] = []
-    reason: str = Field(default="", description="why it does not move on, in one sentence")
+    reason: ReasonView | None = Field(default=None, description="why it does not move on")
     started_at: datetime | None = None
     leaf: str = Field(default="", description="path of the leaf that works or waits")
     nodes: str = Field(default="", description="a digit a node in the order of its tree: 0 idle, 1 running, 2 success, "
@@ -101,7 +94,7 @@ class Process(Model):
     uptime: float = Field(default=0.0, description="s")
     cpu: float = Field(default=0.0, description="% of one core, over the last seconds")
     memory: int = Field(default=0, description="bytes in RAM")
-    detail: str = ""
+    detail: ReasonView | None = None
 
 
 class Host(Model):
@@ -143,7 +136,7 @@ class Run(Model):
     task_id: int
     description: str
     state: str
-    reason: str
+    reason: ReasonView | None = None
     machines: list[str]
     started_at: datetime | None = None
     ended_at: datetime | None = Field(default=None, description="null while it runs")
@@ -156,7 +149,8 @@ class Event(Model):
     stamp: datetime | None = None
     kind: str = Field(description="run, node, goal, stop, ...")
     node: str = Field(description="path of the node, empty if none")
-    text: str
+    text: str = Field(description="as it is stored: a reason's line, or words")
+    reason: ReasonView | None = Field(default=None, description="of a text that is a reason's line")
     values: dict[str, Value | None] = Field(default={}, description="null: not a number, or infinite")
 
 
@@ -179,9 +173,9 @@ class Receipt(Model):
     travel_joint: str = Field(description="joint that went furthest meanwhile, empty if none did")
     travel_rad: float = Field(description="rad that this joint went")
     travel_m: float = Field(description="m that the machine went")
-    cause: str
-    detail: str = Field(description="why it is not confirmed")
-    evidence: str = Field(description="what it rests on, where that is less than stamped messages")
+    cause: ReasonView | None
+    detail: ReasonView | None = Field(description="why it is not confirmed")
+    evidence: ReasonView | None = Field(description="what it rests on, where that is less than stamped messages")
     latched: bool = Field(description="nothing moves until it is re-armed")
 
 
@@ -228,8 +222,8 @@ class Session(Model):
 class Finding(Model):
     """Something that the check found."""
 
-    line: int | None = None
-    text: str
+    line: int | None = Field(description="of the tree's text, null: of none")
+    reason: ReasonView
 
 
 class Checked(Model):
@@ -256,53 +250,8 @@ class Rearmed(Model):
     """First step: cause and a token. Second step, with the token: armed."""
 
     token: str
-    cause: str
+    cause: ReasonView | None
     armed: bool
-
-
-class Command(Model):
-    """Base of what clients send."""
-
-    model_config = ConfigDict(strict=True)
-
-
-class Login(Command):
-    name: Text = Field(max_length=64)
-    password: str = Field(max_length=200)
-
-
-class TaskGiven(Command):
-    xml: str = Field(max_length=5 * 2**20)
-    description: Text = Field(default="", max_length=1000)
-
-
-class Xml(Command):
-    xml: str = Field(max_length=5 * 2**20)
-
-
-class StopAsked(Command):
-    machine: str = Field(default="", pattern=r"^[a-z0-9_]{0,64}$", description="empty: all machines")
-
-
-class RearmAsked(Command):
-    token: str = Field(default="", max_length=100, description="of the first step, empty in the first step")
-
-
-class AnswerGiven(Command):
-    yes: bool
-
-
-class Nothing(Command):
-    """An empty object."""
-
-
-class StartRun(Model):
-    """Which task to run."""
-
-    model_config = ConfigDict(strict=True)
-
-    task_id: int = Field(ge=1, le=INT32)
-    ignore_warnings: bool = Field(default=False, description="start although the check before the run warns")
 
 
 class RunAsked(Model):

@@ -4,6 +4,7 @@ import socket
 
 from tms_config.config import Site
 from tms_config.site_file import SiteFile
+from tms_reason import wire
 from tms_reason.errors import ConfigError
 from tms_runtime.app import App
 from tms_ur import address
@@ -11,6 +12,7 @@ from tms_ur.access import Access
 from tms_ur.api import create_app
 from tms_ur.audit import Audit
 from tms_ur.connections import SENT, Listener
+from tms_ur.reasons import CannotListen
 from tms_ur.security import is_loopback
 from tms_ur.server import Server
 from tms_ur.site_client import SiteClient
@@ -18,6 +20,7 @@ from tms_ur.site_client import SiteClient
 
 def start(app: App) -> None:
     """Listen on the console's port of the site file."""
+    wire.load()  # the codes of all services, whose reasons it shows
     file = app.site.file
     tls = address.certificate(app.site)
     access = Access(address.users(app.site))
@@ -27,11 +30,11 @@ def start(app: App) -> None:
     app.on_stop(audit.close)
     app.on_stop(server.stop)
     app.on_stop(client.board.close)  # first, so that the streams end
-    app.ready_when(server.unready)
-    app.log.info("listening", url=address.url(file), bind=file.bind, access=_told(file, access))
+    app.ready_when(lambda: wire.to_line(server.unready()) or None)
+    app.log.info("listening", url=address.url(file), bind=file.bind, access=_who_may(file, access))
 
 
-def _told(file: SiteFile, access: Access) -> str:
+def _who_may(file: SiteFile, access: Access) -> str:
     """Who may do what, for the log."""
     if access.asks:
         return "users of console.users" + (
@@ -47,7 +50,4 @@ def _listen(site: Site) -> Listener:
         made.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SENT)  # of the connections that it accepts
         return Listener(fileno=made.detach())
     except OSError as error:
-        raise ConfigError(
-            f"{site.path}: cannot listen on port {port} of {bind} ({error.strerror}): stop the program "
-            "that uses it, or change ports.console or bind"
-        ) from error
+        raise ConfigError(CannotListen(str(site.path), port, bind, str(error.strerror))) from error

@@ -1,14 +1,17 @@
 """How the API tells what went wrong, and who may ask for what."""
 
 from collections.abc import Callable, Coroutine
+from http import HTTPStatus
 from typing import Annotated, Any
 
 from fastapi import Depends, Request
 from fastapi.responses import JSONResponse
 
 from tms_reason.errors import TmsError
-from tms_ur.access import Person, Role
-from tms_ur.models import Problem
+from tms_ur.access import Person, RoleName
+from tms_ur.reason_view import ReasonView, of_error
+from tms_ur.reasons import Login, NobodyLoggedIn, Role
+from tms_ur.statuses import STATUS, retry_after
 
 TEXTS = {
     400: "the request cannot be read", 401: "log in first", 403: "you may not do this",
@@ -20,22 +23,25 @@ TEXTS = {
 
 def problems(*statuses: int) -> dict[int | str, dict[str, Any]]:
     """The `responses` of an endpoint."""
-    return {status: {"model": Problem, "description": TEXTS[status]} for status in statuses}
+    return {status: {"model": ReasonView, "description": TEXTS[status]} for status in statuses}
 
 
-def problem(status: int, code: str, message: str) -> JSONResponse:
-    return JSONResponse({"code": code, "message": message}, status)
+def problem(error: TmsError, status: int | None = None) -> JSONResponse:
+    """The answer that tells an error; `status` where it does not follow from the code."""
+    shown = of_error(error).model_dump(mode="json")
+    found = STATUS.get(error.code, HTTPStatus.CONFLICT) if status is None else status
+    return JSONResponse(shown, found, retry_after(error.reason))
 
 
-def _needs(role: Role) -> Any:
+def _needs(role: RoleName) -> Any:
     """The person who asks, who must have at least this role."""
 
     async def check(request: Request) -> Person:
         person: Person | None = request.state.person
         if person is None:
-            raise TmsError("log in first", "LOGIN")
+            raise TmsError(Login(NobodyLoggedIn()))
         if not person.may(role):
-            raise TmsError(f"this needs the role {role}, {person.name} is {person.role}", "ROLE")
+            raise TmsError(Role(role, person.name, person.role))
         return person
 
     wanted: Callable[[Request], Coroutine[Any, Any, Person]] = check

@@ -1,7 +1,6 @@
 """Endpoints that only show something; every role may ask them."""
 
 import difflib
-import re
 from datetime import datetime, timedelta, timezone
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -9,9 +8,12 @@ from fastapi import FastAPI, Path, Query, Request, Response
 
 from tms_config.config import Site
 from tms_config.names import Name
+from tms_reason import wire
 from tms_reason.errors import TmsError
+from tms_reason.reason import Reason
 from tms_ur import export
 from tms_ur.audit_chain import RUN as AUDIT
+from tms_ur.command_models import Xml
 from tms_ur.data_models import Change, Record, Sensing
 from tms_ur.models import (
     INT32,
@@ -29,9 +31,10 @@ from tms_ur.models import (
     Task,
     TaskText,
     Tree,
-    Xml,
-)  # fmt: skip
+)
 from tms_ur.problems import Viewer, problems
+from tms_ur.reason_view import view
+from tms_ur.reasons import JournalCut, NoTree
 from tms_ur.stream import Stream, StreamResponse
 
 if TYPE_CHECKING:
@@ -105,7 +108,7 @@ def _stored(app: FastAPI, client: "SiteClient") -> None:
         for event in client.events(run_id, 0, BEGINNING):
             if event.kind == "tree":
                 return Tree.model_validate(event.values)
-        raise TmsError(f"the journal of run {run_id} holds no tree: it was refused, or is older than this", "NO_TREE")
+        raise TmsError(NoTree(run_id))
 
     @app.get(
         "/api/runs/{run_id}/export",
@@ -181,8 +184,9 @@ def _all_events(client: "SiteClient", run_id: str) -> list[Event]:
             return found
     last = found[-1].number
     if client.events(run_id, last, 1):
-        text = f"cut after {len(found)} events: the rest is at /api/runs/{run_id}/events?after={last}"
-        found.append(Event(number=last, stamp=found[-1].stamp, kind="cut", node="", text=text))
+        cut = JournalCut(len(found), run_id, last)
+        found.append(Event(number=last, stamp=found[-1].stamp, kind="cut", node="", text=wire.to_line(cut),
+                           reason=view(cut)))  # fmt: skip
     return found
 
 
@@ -214,9 +218,9 @@ def _audit_after(client: "SiteClient", after: int) -> list[Event]:
         after = page[-1].number
 
 
-def _finding(text: str) -> Finding:
-    line = re.search(r"\bline (\d+)", text)
-    return Finding(line=int(line[1]) if line else None, text=text)
+def _finding(reason: Reason) -> Finding:
+    line = reason.args.get("line")
+    return Finding(line=line if isinstance(line, int) else None, reason=view(reason))
 
 
 def _site(site: Site) -> SiteInfo:

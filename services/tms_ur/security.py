@@ -11,15 +11,29 @@ from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
 from starlette.datastructures import Headers, MutableHeaders
+from starlette.requests import HTTPConnection
 from starlette.responses import JSONResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from tms_reason.errors import TmsError
+from tms_reason.reason import Reason
 from tms_ur.access import Access, Person
 from tms_ur.callers import caller
 from tms_ur.hashing import Hashing
-from tms_ur.login_throttle import Throttled
+from tms_ur.reason_view import view
+from tms_ur.reasons import (
+    Crowded,
+    ForeignHost,
+    ForeignOrigin,
+    Login,
+    NoAccessControl,
+    NobodyLoggedIn,
+    NoLength,
+    NotJson,
+    RequestTooLarge,
+)
 from tms_ur.room import Room, is_stop
+from tms_ur.statuses import STATUS, retry_after
 
 if TYPE_CHECKING:
     from tms_ur.audit import Audit
@@ -47,16 +61,15 @@ class Refusal:
     """Why a request is not let through."""
 
     status: int
-    code: str
-    message: str
+    reason: Reason
     headers: dict[str, str] | None = None
 
 
 BUSY = Refusal(
-    503, "CROWDED", "too many requests are being answered: try again; a stop is answered always",
+    503, Crowded(),
     {"Connection": "close", "Retry-After": "2"},  # what waits behind it on the same connection goes, too
 )  # fmt: skip
-NOBODY = Refusal(401, "LOGIN", "log in first: POST /api/login, or send `Authorization: Bearer NAME:TOKEN`")
+NOBODY = Refusal(401, Login(NobodyLoggedIn()))
 
 
 class SecurityMiddleware:
@@ -99,16 +112,14 @@ class SecurityMiddleware:
             await self._app(scope, receive, send)
             return
         if refusal is not NOBODY or scope["method"] == "POST":  # a page whose session is over asks on
-            self._audit.refused("-", source(scope), "refused", refusal.code)
+            self._audit.refused("-", source(scope), "refused", refusal.reason.code)
         await _refuse(refusal, scope, receive, send)
 
     def _refusal(self, scope: Scope) -> Refusal | None:
         headers = Headers(scope=scope)
         host = headers.get("host", "")
         if not self._ours(host):
-            text = f"this console does not answer to the name '{host}': open http://{self._bind} or http://localhost, "
-            text += "or add the name to console.names of the site file"
-            return Refusal(400, "FOREIGN_HOST", text)
+            return Refusal(400, ForeignHost(host, self._bind))
         if scope["method"] != "POST":  # nothing is changed by any other one; the router refuses what it does not know
             return None
         return self._command_refusal(headers, host, MOST_TASK if scope["path"].startswith("/api/tasks") else MOST_BODY)
@@ -116,42 +127,38 @@ class SecurityMiddleware:
     async def _stranger(self, scope: Scope) -> Refusal | None:
         """Find out who asks, for the endpoints; everything of the API but the login needs somebody."""
         try:
-            person = await self._person(Headers(scope=scope), source(scope), is_stop(scope))
-        except Throttled as error:
-            return Refusal(429, error.code, str(error), {"Retry-After": str(round(error.seconds) + 1)})
+            person = await self._person(scope)
         except TmsError as error:
-            return Refusal(429 if error.code == "MANY_LOGINS" else 401, error.code, str(error))
+            return Refusal(STATUS[error.code], error.reason, retry_after(error.reason))
         scope.setdefault("state", {})["person"] = person
         if person is None and scope["path"].startswith("/api/") and scope["path"] not in OPEN:
             return NOBODY
         return None
 
-    async def _person(self, headers: Headers, where: str, stop: bool) -> Person | None:
+    async def _person(self, scope: Scope) -> Person | None:
         if not self._access.asks:
             return LOCAL if self._loopback else GUEST
+        headers, where = Headers(scope=scope), source(scope)
         kind, _, token = headers.get("authorization", "").partition(" ")
         if kind.lower() == "bearer":
             known = self._access.known_token(token)
-            return known or await self._hashing.run(where, lambda: self._access.token(token, where), stop)
-        key = session_key(headers)
+            return known or await self._hashing.run(where, lambda: self._access.token(token, where), is_stop(scope))
+        key = HTTPConnection(scope).cookies.get(COOKIE, "")
         return self._access.session(key) if key else None
 
     def _command_refusal(self, headers: Headers, host: str, most: int) -> Refusal | None:
         if not self._loopback and not self._access.asks:
-            text = f"commands are refused because the console listens on {self._bind}, where others can connect, and "
-            text += "has no users: name a file under console.users of the site file (`tms user add`), or set "
-            text += "`bind: 127.0.0.1`, or use `tms` on this PC"
-            return Refusal(403, "NO_ACCESS_CONTROL", text)
+            return Refusal(403, NoAccessControl(self._bind))
         origin = headers.get("origin")
         if origin is not None and _split(origin) != host.lower():
-            return Refusal(403, "FOREIGN_ORIGIN", f"commands from pages of '{origin}' are refused: use our own console")
+            return Refusal(403, ForeignOrigin(origin))
         if headers.get("content-type", "").partition(";")[0].strip().lower() != "application/json":
-            return Refusal(415, "NOT_JSON", "send commands with `Content-Type: application/json`")
+            return Refusal(415, NotJson())
         length = headers.get("content-length", "0")
         if "transfer-encoding" in headers or not length.isdigit():  # chunks count, whatever length stands beside them
-            return Refusal(411, "NO_LENGTH", "send commands with a Content-Length")
+            return Refusal(411, NoLength())
         if int(length) > most:
-            return Refusal(413, "TOO_LARGE", f"this command has {most} bytes at most")
+            return Refusal(413, RequestTooLarge(most))
         return None
 
     def _ours(self, host: str) -> bool:
@@ -163,7 +170,7 @@ class SecurityMiddleware:
 
 
 async def _refuse(refusal: Refusal, scope: Scope, receive: Receive, send: Send) -> None:
-    body = {"code": refusal.code, "message": refusal.message}
+    body = view(refusal.reason).model_dump(mode="json")
     await JSONResponse(body, refusal.status, refusal.headers)(scope, receive, send)
 
 
@@ -171,12 +178,6 @@ def source(scope: Scope) -> str:
     """Address of whoever asks."""
     client = scope.get("client")
     return str(client[0]) if client else "-"
-
-
-def session_key(headers: Headers) -> str:
-    """Our cookie, empty if there is none."""
-    pairs = (part.strip().partition("=") for part in headers.get("cookie", "").split(";"))
-    return next((value for name, _, value in pairs if name == COOKIE), "")
 
 
 def is_loopback(bind: str) -> bool:

@@ -11,7 +11,9 @@ import uvicorn
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from tms_config.site_file import Files
+from tms_reason.reason import Reason
 from tms_ur.connections import BODY, HEADERS, SILENCE, Connection, Gate, Listener
+from tms_ur.reasons import ServerEnded, ServerStarting
 
 STOP_LIMIT = 0.8  # s for open requests to end; the runtime ends the process within 2
 KEEP_ALIVE = 15  # s for the next request of a connection
@@ -34,11 +36,11 @@ class Server:
         self._thread = threading.Thread(target=self._server.run, args=([listener],), name="http", daemon=True)
         self._thread.start()
 
-    def unready(self) -> str | None:
+    def unready(self) -> Reason | None:
         """Why nobody is answered."""
         if not self._thread.is_alive():
-            return "the web server has ended: see `tms logs tms:ur`"
-        return None if self._server.started else "the web server is not up yet"
+            return ServerEnded("tms:ur")
+        return None if self._server.started else ServerStarting()
 
     def stop(self) -> None:
         """Let open requests end for a moment, then leave them."""

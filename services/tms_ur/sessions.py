@@ -6,10 +6,12 @@ from fastapi import FastAPI, Request, Response
 
 from tms_reason.errors import TmsError
 from tms_ur.access import Access, Person
+from tms_ur.command_models import Login, Nothing
 from tms_ur.hashing import Hashing
-from tms_ur.models import Login, Nothing, Session
+from tms_ur.models import Session
 from tms_ur.problems import problems
-from tms_ur.security import COOKIE, session_key, source
+from tms_ur.reasons import NoUsers
+from tms_ur.security import COOKIE, source
 
 if TYPE_CHECKING:
     from tms_ur.audit import Audit
@@ -29,7 +31,7 @@ def add(app: FastAPI, access: Access, hashing: Hashing, audit: "Audit", secure: 
     )
     async def login(request: Request, response: Response, wanted: Login) -> Session:
         if not access.asks:
-            raise TmsError("this site has no users: nobody needs to log in", "NO_USERS")
+            raise TmsError(NoUsers())
         where = source(request.scope)
         try:
             key, person = await hashing.run(where, lambda: access.login(wanted.name, wanted.password, where))
@@ -42,7 +44,7 @@ def add(app: FastAPI, access: Access, hashing: Hashing, audit: "Audit", secure: 
 
     @app.post("/api/logout", summary="End the session", responses=problems(403, 411, 413, 415))
     async def logout(request: Request, response: Response, _: Nothing) -> Session:
-        access.logout(session_key(request.headers))
+        access.logout(request.cookies.get(COOKIE, ""))
         response.delete_cookie(COOKIE, path="/")
         return _session(access, None if access.asks else request.state.person)
 

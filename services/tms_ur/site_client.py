@@ -29,13 +29,18 @@ from tms_config.names import check_sent
 from tms_machine.border import STOP_PROVEN
 from tms_machine.frames import Frames
 from tms_machine.values import to_parameters
+from tms_reason import wire
 from tms_reason.errors import RosError, TmsError
+from tms_reason.reason import Foreign, Reason
 from tms_ros.node import Ros
 from tms_ur import messages
 from tms_ur.board import Board
 from tms_ur.data_models import Change, Record, Sensing
 from tms_ur.models import Event, Host, Place, Rearmed, Receipt, Run, Task, TaskText
+from tms_ur.reason_view import of_error, of_line
+from tms_ur.reasons import RunNotBegun, StartRefused, UnknownProcess
 
+SCHEDULER = "tms:ts"
 CALL_LIMIT = 4.0  # s for an answer of a module
 STOP_LIMIT = STOP_PROVEN + 3.0  # s for the receipt of a stop
 START_LIMIT = 30.0  # s for a run to begin: the scheduler may start its subtasks first
@@ -149,10 +154,10 @@ class SiteClient:
 
     # the scheduler
 
-    def check_task(self, xml: str) -> tuple[list[str], list[str]]:
+    def check_task(self, xml: str) -> tuple[list[Reason], list[Reason]]:
         """Errors and warnings of a tree; nothing is stored and nothing runs."""
         answer = self._ask(CheckTask, "/tms/check_task", xml=xml)
-        return list(answer.errors), list(answer.warnings)
+        return list(map(wire.known, answer.errors)), list(map(wire.known, answer.warnings))
 
     def start_run(self, task_id: int, ignore_warnings: bool) -> str:
         """Start a task and return the run's id once it has begun.
@@ -167,11 +172,11 @@ class SiteClient:
             return str(call.feedback.run_id)
         if call.outcome is None:  # whoever is told "no" must not see it start later
             self._scheduler.cancel(call)
-            raise RosError(f"the run did not begin within {START_LIMIT:.0f} s: see `tms logs tms:ts`", "NO_ANSWER")
+            raise RosError(RunNotBegun(START_LIMIT, SCHEDULER))
         if call.result is None:
-            raise TmsError("the scheduler did not take the task: see `tms logs tms:ts`", "REFUSED")
+            raise TmsError(StartRefused(SCHEDULER))
         if call.result.outcome == "refused":
-            raise TmsError(call.result.error_msg, call.result.error_code)
+            raise _error(call.result)
         return str(call.result.run_id)  # it was over before anything was told of it
 
     def cancel_run(self, run_id: str) -> None:
@@ -199,17 +204,9 @@ class SiteClient:
             answer = self._ros.call(StopMachine, f"/{machine}/rc/stop", request, STOP_LIMIT)
         except RosError as error:
             return Receipt(
-                machine=machine,
-                confirmed=False,
-                seconds=0.0,
-                travel_joint="",
-                travel_rad=0.0,
-                travel_m=0.0,
-                cause=cause,
-                detail=str(error),
-                evidence="",
-                latched=False,
-            )
+                machine=machine, confirmed=False, seconds=0.0, travel_joint="", travel_rad=0.0, travel_m=0.0,
+                cause=of_line(cause), detail=of_error(error), evidence=None, latched=False,
+            )  # fmt: skip
         return messages.receipt(answer.receipt)
 
     def rearm(self, machine: str, token: str) -> Rearmed:
@@ -219,7 +216,7 @@ class SiteClient:
             TmsError: refused, with the reason.
         """
         answer = self._ask(Rearm, f"/{machine}/rearm", token=token)
-        return Rearmed(token=answer.token, cause=answer.cause, armed=answer.armed)
+        return Rearmed(token=answer.token, cause=of_line(answer.cause), armed=answer.armed)
 
     # processes
 
@@ -242,7 +239,7 @@ class SiteClient:
     def _host_of(self, process: str) -> str:
         host = self.board.host_of(process)
         if host is None:
-            raise TmsError(f"no PC of the site has a process '{process}': `tms ps` lists them", "NO_PROCESS")
+            raise TmsError(UnknownProcess(process))
         return host
 
     def _ask(self, service_type: Any, name: str, **fields: Any) -> Any:
@@ -253,8 +250,13 @@ class SiteClient:
 
 def _checked(answer: Any) -> Any:
     if answer.error_code:
-        raise TmsError(answer.error_msg, answer.error_code)
+        raise _error(answer)
     return answer
+
+
+def _error(answer: Any) -> TmsError:
+    """The refusal in an answer."""
+    return TmsError(wire.of(answer.error_msg) or Foreign(answer.error_code), answer.error_code)
 
 
 def _begun(call: Any) -> bool:

@@ -8,12 +8,14 @@ import asyncio
 
 import anyio
 import structlog
+from fastapi.sse import format_sse_event
 from prometheus_client import Counter, Gauge
 from starlette.responses import Response
 from starlette.types import Receive, Scope, Send
 
 from tms_reason.errors import TmsError
 from tms_ur.board import Board
+from tms_ur.reasons import TooManyConsoles
 
 MOST_CLIENTS = 50
 SHORTEST = 0.1  # s between snapshots
@@ -68,7 +70,7 @@ class Stream:
             TmsError: there are too many.
         """
         if len(self._clients) >= MOST_CLIENTS:
-            raise TmsError(f"{MOST_CLIENTS} consoles are connected already: close one of them", "TOO_MANY")
+            raise TmsError(TooManyConsoles(MOST_CLIENTS))
         client = Client()
         self._clients.add(client)
         CLIENTS.set(len(self._clients))
@@ -89,7 +91,7 @@ class Stream:
             loop.call_soon_threadsafe(self._changed.set)
 
     def _text(self) -> bytes:
-        return b"event: state\ndata: " + self._board.snapshot().model_dump_json().encode() + b"\n\n"
+        return format_sse_event(event="state", data_str=self._board.snapshot().model_dump_json())
 
     async def _run(self) -> None:
         while self._clients and not self._board.closed:

@@ -115,7 +115,7 @@ def test_upload_fix_run_watch_stop_rearm_and_run_again(page: Page, address: str,
     expect(page.locator("[data-machine=zx200]")).to_contain_text("Stopped because: software stop by local")
     expect(page.locator("#list_active li")).to_have_count(0)
     start(page, 1)
-    expect(page.locator("#message")).to_contain_text("Press Re-arm of zx200.")  # refused while it is stopped
+    expect(page.locator("#message.bad")).to_contain_text("zx200")  # refused while it is stopped
     rearm(page)
     start(page, SWINGS)
     expect(page.locator("#list_active li")).to_have_count(1)

@@ -21,6 +21,7 @@ from tms_ur.connections import Listener
 from tms_ur.data_models import Record
 from tms_ur.models import ActiveRun, Event, Host, Machine, Place, Process, Question, Rearmed, Run
 from tms_ur.node import Server
+from tms_ur.reason_view import of_line
 from unit.tms_ur.fakes import NOON, FakeAudit, FakeSiteClient
 
 pytestmark = pytest.mark.browser
@@ -53,7 +54,7 @@ class Yard(FakeSiteClient):
 
     def runs(self, limit: int) -> list[Run]:
         facts = {"task_id": 4, "description": "", "machines": [], "started_at": NOON, "ended_at": NOON}
-        return [Run(run_id=name, state="abandoned", reason="", **facts) for name in self.journals]
+        return [Run(run_id=name, state="abandoned", **facts) for name in self.journals]
 
     def events(self, run_id: str, after: int, limit: int) -> list[Event]:
         return self.journals[run_id][after : after + limit] if self.journals else super().events(run_id, after, limit)
@@ -90,7 +91,7 @@ def event(number: int, kind: str = "node", **values: Any) -> Event:
 
 
 def test_one_yes_arms_one_machine(page: Page, address: str, yard: Yard) -> None:
-    yard.hear(latch="software stop")
+    yard.hear(latch=of_line("software stop"))
     page.goto(f"{address}/#run")
     late = page.get_by_role("button", name="Re-arm zx200")
     late.click()

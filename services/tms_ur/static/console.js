@@ -8,10 +8,10 @@ import * as system from "./pages/system.js";
 import * as tasks from "./pages/tasks.js";
 import * as tree from "./pages/tree.js";
 import { buildQuestion, fillQuestion } from "./questions.js";
+import { sayError } from "./reasons.js";
 import { ask, watch } from "./server.js";
 import { reportOpen, stop } from "./stop.js";
-import { onLanguage, switchLanguage, t, translatePage } from "./strings.js";
-import { told } from "./told.js";
+import { onLanguage, said, switchLanguage, t, translatePage } from "./strings.js";
 
 const PAGES = { run, tree, site, history, data, system, tasks };
 let shown = null; // name of the page on the screen
@@ -67,7 +67,7 @@ async function tellEnd(id) {
   }
   if (run?.ended_at && run.state !== "refused") { // whoever asked for that one was told why
     const seconds = (new Date(run.ended_at) - new Date(run.started_at)) / 1000;
-    say(t("run_ended", { task: run.task_id, state: t(run.state), duration: duration(seconds), reason: told(run.reason) }), run.state !== "success");
+    say(t("run_ended", { task: run.task_id, state: t(run.state), duration: duration(seconds), reason: said(run.reason) }), run.state !== "success");
     at("message").append(" ", make("a", { className: "button", href: `#history/${encodeURIComponent(id)}` }, t("p_history")));
   }
 }
@@ -120,7 +120,7 @@ at("login").addEventListener("submit", async (event) => {
     }
   } catch (error) {
     at("login_password").value = "";
-    say(error.message, true);
+    sayError(error);
   }
 });
 at("logout").addEventListener("click", () => ask("/api/logout", {}).then(() => location.reload()));

@@ -1,6 +1,5 @@
 // Building blocks of all pages.
 import { t } from "./strings.js";
-import { told } from "./told.js";
 
 const MARKS = { moving: "▶", running: "▶", RUNNING: "▶", standing: "■", success: "✔", STOPPED: "■", stopping: "…",
   preparing: "…", STARTING: "…", STOPPING: "…", armed: "✔", held: "…",
@@ -136,26 +135,4 @@ export function confirmed(text) {
   return new Promise((resolve) => {
     dialog.addEventListener("close", () => resolve(dialog.returnValue === "yes"), { once: true });
   });
-}
-
-/** Runs a command once: the button is dead until the answer is there. `work` returns what to say. */
-export async function once(element, work) {
-  if (element.disabled) {
-    return;
-  }
-  element.disabled = true;
-  say("");
-  try {
-    const text = await work();
-    if (text) {
-      say(text);
-    }
-  } catch (error) {
-    say(told(error.message), true);
-  } finally {
-    element.disabled = false;
-    if (document.activeElement === document.body) {
-      element.focus(); // a disabled button has lost it
-    }
-  }
 }

@@ -1,10 +1,10 @@
 // The panel of one task: a green start, a red software stop, and what the run asks.
-import { at, keep, once, say, setText } from "./dom.js";
+import { at, keep, setText } from "./dom.js";
 import { buildQuestion, fillQuestion } from "./questions.js";
 import { ask, watch } from "./server.js";
+import { fillReason, once, sayError } from "./reasons.js";
 import { reportOpen, stop } from "./stop.js";
-import { onLanguage, switchLanguage, t, translatePage } from "./strings.js";
-import { told } from "./told.js";
+import { onLanguage, said, switchLanguage, t, translatePage } from "./strings.js";
 
 const id = Number(new URLSearchParams(location.search).get("task"));
 let task = null;
@@ -15,15 +15,16 @@ function heard(now) {
   const run = now.runs.find((one) => one.task_id === id);
   keep(at("questions"), now.questions.filter((one) => one.run_id === run?.run_id), (one) => one.id, buildQuestion, fillQuestion);
   const latched = now.machines.filter((machine) => machine.latch);
-  const stopped = latched.map((machine) => `${machine.name}: ${t("why_latched", { cause: told(machine.latch) })}`).join(" ");
+  const stopped = latched.map((machine) => `${machine.name}: ${t("why_latched", { cause: said(machine.latch) })}`).join(" ");
   setText(at("machines"), stopped);
   at("machines").className = stopped ? "bad" : "";
-  setText(at("state"), now.scheduler.alive ? tellState(run) : t("scheduler_silent"));
+  const reason = now.scheduler.alive ? run?.reason : null;
+  fillReason(at("state"), reason, { text: now.scheduler.alive ? tellState(run) : t("scheduler_silent") });
   at("start").disabled = run !== undefined;
 }
 
 function tellState(run) {
-  return run ? `${t(run.state)}: ${told(run.reason) || t(run.state === "running" ? "moving_on" : run.state)}` : t("panel_ready");
+  return run ? `${t(run.state)}: ${said(run.reason) || t(run.state === "running" ? "moving_on" : run.state)}` : t("panel_ready");
 }
 
 function name() {
@@ -34,7 +35,7 @@ async function load() {
   try {
     task = await ask(`/api/tasks/${id}`);
   } catch (error) {
-    say(error.message, true);
+    sayError(error);
   }
   name();
 }
@@ -66,4 +67,4 @@ ask("/api/session").then((session) => {
     at("lost").hidden = there !== false;
     document.body.classList.toggle("old", !there);
   });
-}, (error) => say(error.message, true));
+}, sayError);

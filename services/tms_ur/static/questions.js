@@ -1,5 +1,6 @@
 // Questions of WaitForClick nodes, with their buttons.
-import { button, make, once, part, parts, setText } from "./dom.js";
+import { button, make, part, parts, setText } from "./dom.js";
+import { once } from "./reasons.js";
 import { ask, siteNow } from "./server.js";
 import { t } from "./strings.js";
 

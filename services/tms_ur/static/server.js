@@ -1,5 +1,5 @@
 // The server as the console sees it: commands, lists, and the live state with its watchdog.
-import { t } from "./strings.js";
+import { said, t } from "./strings.js";
 
 const SILENCE = 1700; // ms without a state: the server sends one every 0.7 s at least
 const LIMIT = 60_000; // ms for an answer
@@ -11,7 +11,7 @@ let ahead = 0; // ms by which the site's clock is ahead of this device's
 /** The site's time in ms: ages are told by it, since a tablet's clock may be wrong. */
 export const siteNow = () => Date.now() + ahead;
 
-/** An answer of the API within `limit` ms; throws an Error whose message people can read. */
+/** An answer of the API within `limit` ms; throws an Error whose message people can read, with the reason that the server gave. */
 export async function ask(path, body, limit = LIMIT) {
   const signal = AbortSignal.timeout(limit);
   const post = { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body), signal };
@@ -27,7 +27,7 @@ export async function ask(path, body, limit = LIMIT) {
     location.reload(); // the session is over: the page begins with the login
   }
   if (!response.ok) {
-    throw new Error(answer.message);
+    throw Object.assign(new Error(said(answer)), { reason: answer });
   }
   return answer;
 }

@@ -1,7 +1,7 @@
 // The software stop: asks every gateway at once and says what was seen.
 import { at, setText } from "./dom.js";
 import { ask } from "./server.js";
-import { t } from "./strings.js";
+import { said, t } from "./strings.js";
 
 const AGAIN = 1000; // ms between attempts while the server cannot be reached
 const LONGEST = 60_000; // ms of attempts: nobody expects a stop later than that
@@ -31,8 +31,8 @@ async function attempt(machine) {
   try {
     const receipts = await ask("/api/stop", { machine }, ANSWER);
     keepOpen(false);
-    const told = receipts.map((one) => t(one.confirmed ? "stood" : "not_stood", one));
-    report(`${told.join(" ")} ${t("stop_note")}`, receipts.some((one) => !one.confirmed));
+    const seen = receipts.map((one) => t(one.confirmed ? "stood" : "not_stood", { ...one, detail: said(one.detail) }));
+    report(`${seen.join(" ")} ${t("stop_note")}`, receipts.some((one) => !one.confirmed));
     return null;
   } catch (error) {
     return error;

@@ -20,6 +20,12 @@ export function t(key, values = {}) {
   return text.replace(/\{(\w+)\}/g, (_, name) => String(values[name] ?? ""));
 }
 
+/** One of the texts that the server sends in every language. */
+export const inLanguage = (texts) => texts[language];
+
+/** The text of a reason; empty for none. */
+export const said = (reason) => (reason ? inLanguage(reason.text) : "");
+
 /** Date and time as the language writes them. */
 export function when(iso) {
   return iso ? new Date(iso).toLocaleString(language === "ja" ? "ja-JP" : "en-GB") : "-";

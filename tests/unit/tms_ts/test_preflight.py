@@ -13,7 +13,6 @@ from tms_config.yaml_file import parse
 from tms_ts import bt
 from tms_ts.preflight import Stored, Values, machines_of, preflight, processes_of, records_of
 from tms_ts.surroundings import unfit
-from unit.tms_ur.phrases import known
 
 LEAF = '<Action ID="LeafNodeZx200" model_name="{}" record_name="{}" subtask_name="{}"/>\n'
 
@@ -97,7 +96,6 @@ def test_errors_name_line_and_remedy(site: Site, leaf: tuple[str, str, str], sai
     found = preflight(tree(GOOD, leaf), site, Around())
     assert len(found.errors) == 1
     assert said in found.errors[0]
-    assert known(found.errors[0]) in ("told_machine", "told_subtask", "told_record")
 
 
 def test_what_only_the_run_decides_is_a_warning(site: Site) -> None:
@@ -165,7 +163,7 @@ def test_an_angle_beyond_the_limit_of_its_joint_does_not_fit(
     assert said in found
     assert bool(said) == bool(found)
     errors = preflight(tree(GOOD), site, Around(misfit=found)).errors
-    assert [known(text) for text in errors] == (["told_limit"] if said else [])
+    assert len(errors) == bool(said)
 
 
 def test_a_flag_that_is_waited_for_and_that_nobody_writes_is_a_warning(site: Site) -> None:

@@ -12,15 +12,25 @@ from fastapi import FastAPI
 from tms_config.config import Site, load_site
 from tms_config.site_file import Console, SiteFile
 from tms_reason.errors import TmsError
+from tms_reason.reason import Foreign, Reason
+from tms_reason.remedies import EDIT_TASK
 from tms_ur.access import Access
 from tms_ur.api import create_app
 from tms_ur.board import Board
 from tms_ur.data_models import Change, Record, Sensing, SensingInput
 from tms_ur.models import Event, Rearmed, Receipt, Run, Task, TaskText
+from tms_ur.reason_view import of_line
 
 NOON = datetime(2026, 1, 31, 12, tzinfo=timezone.utc)
 HERE = "http://127.0.0.1:8080"
 XML = "<root><BehaviorTree ID='A'/></root>"
+
+
+class WrongLine(Reason, text="line {line}: there is no node '{node}'", action=EDIT_TASK):
+    """A finding as the scheduler has them."""
+
+    line: int
+    node: str
 
 
 class FakeSiteClient:
@@ -42,7 +52,7 @@ class FakeSiteClient:
     def runs(self, limit: int) -> list[Run]:
         self._called("runs", limit)
         facts = {"run_id": "r-1", "task_id": 4, "description": "掘削", "machines": ["zx200"], "started_at": NOON}
-        return [Run(**facts, state="failure", reason="pose out of reach", ended_at=NOON)]
+        return [Run(**facts, state="failure", reason=of_line("pose out of reach"), ended_at=NOON)]
 
     def events(self, run_id: str, after: int, limit: int) -> list[Event]:
         self._called("events", run_id, after, limit)
@@ -65,7 +75,12 @@ class FakeSiteClient:
 
     def sensing(self) -> Sensing:
         facts = {"name": "pile", "topic": "/pile", "state": "alive", "hz": 1.0, "hz_expected": None, "age": 0.5}
-        counts = {"accepted": 3, "refused": 1, "last_refusal": "z: 99.0 is above 5.0", "records": ["zx200/PILE"]}
+        counts = {
+            "accepted": 3,
+            "refused": 1,
+            "last_refusal": of_line("z: 99.0 is above 5.0"),
+            "records": ["zx200/PILE"],
+        }
         return Sensing(age=0.2, inputs=[SensingInput(**facts, **counts)])
 
     def add_task(self, xml: str, description: str) -> tuple[int, bool]:
@@ -75,9 +90,9 @@ class FakeSiteClient:
     def remove_task(self, task_id: int) -> None:
         self._called("remove_task", task_id)
 
-    def check_task(self, xml: str) -> tuple[list[str], list[str]]:
+    def check_task(self, xml: str) -> tuple[list[Reason], list[Reason]]:
         self._called("check_task", xml)
-        return ["line 7, at 0.1: unknown node 'Dig'"], ["nobody writes flag F"]
+        return [WrongLine(7, "Dig")], [Foreign("nobody writes flag F")]
 
     def set_parameter(
         self, model_name: str, record_name: str, values: dict[str, Any], source: str, create: bool, kind: str
@@ -91,12 +106,12 @@ class FakeSiteClient:
         self._called("stop", machine, cause)
         return Receipt(
             machine=machine, confirmed=True, seconds=0.4, travel_joint="swing_joint", travel_rad=0.01, travel_m=0.0,
-            cause=cause, detail="", evidence="", latched=True,
+            cause=of_line(cause), detail=None, evidence=None, latched=True,
         )  # fmt: skip
 
     def rearm(self, machine: str, token: str) -> Rearmed:
         self._called("rearm", machine, token)
-        return Rearmed(token="" if token else "t-1", cause="software stop", armed=bool(token))
+        return Rearmed(token="" if token else "t-1", cause=of_line("software stop"), armed=bool(token))
 
     def restart(self, process: str) -> None:
         self._called("restart", process)

@@ -74,10 +74,10 @@ def test_files_that_do_not_belong_together_are_refused(site: Site, tmp_path: Pat
     other = (tmp_path / "key.pem").read_text()
     make_certificate(tmp_path)
     (tmp_path / "key.pem").write_text(other)
-    with pytest.raises(ConfigError, match="no certificate and its unencrypted key"):
+    with pytest.raises(ConfigError, match="are no PEM certificate, key"):
         address.certificate(site)
     (tmp_path / "key.pem").write_text("nonsense")
-    with pytest.raises(ConfigError, match="no certificate and its unencrypted key"):
+    with pytest.raises(ConfigError, match="are no PEM certificate, key"):
         address.certificate(site)
 
 
@@ -85,7 +85,7 @@ def test_a_key_with_a_password_is_refused_and_not_asked_for(site: Site, tmp_path
     make_certificate(tmp_path)
     words = ["openssl", "rsa", "-aes128", "-passout", "pass:secret", "-in", "key.pem", "-out", "key.pem"]
     subprocess.run(words, cwd=tmp_path, check=True, capture_output=True)
-    with pytest.raises(ConfigError, match="no certificate and its unencrypted key"):
+    with pytest.raises(ConfigError, match="are no PEM certificate, key"):
         address.certificate(site)
 
 

@@ -7,9 +7,11 @@ from datetime import datetime, timedelta, timezone
 import pytest
 
 from tms_reason.errors import TmsError
+from tms_reason.reason import Foreign
 from tms_ur.models import ActiveRun, Event, Host, Joint, Machine, Process
+from tms_ur.reason_view import view
 from tms_ur.security import SECURITY, is_loopback
-from unit.tms_ur.fakes import HERE, XML, Client, FakeAudit, FakeSiteClient, app
+from unit.tms_ur.fakes import HERE, XML, Client, FakeAudit, FakeSiteClient, WrongLine, app
 
 READS = [
     "/api/tasks", "/api/tasks/4", "/api/runs", "/api/runs/r-1/events", "/api/runs/r-1/tree", "/api/runs/r-1/export",
@@ -51,7 +53,9 @@ def test_state_before_anything_was_heard(client: Client) -> None:
     state = client.get("/api/state").json()
     assert state["machines"][0]["state"] == "silent"
     assert state["machines"][0]["age"] is None
-    assert "zx200:rc" in state["machines"][0]["reason"]
+    reason = state["machines"][0]["reason"]
+    assert (reason["code"], reason["args"]) == ("MACHINE_UNHEARD", {"process": "zx200:rc"})
+    assert reason["action"]["command"] == "tms ps"
     assert state["scheduler"] == {"alive": False, "age": None}
     assert state["runs"] == state["hosts"] == state["questions"] == []
 
@@ -80,7 +84,7 @@ def test_tasks(client: Client) -> None:
 
 
 def test_runs_and_events(client: Client, site_client: FakeSiteClient) -> None:
-    assert client.get("/api/runs?limit=5").json()[0]["reason"] == "pose out of reach"
+    assert client.get("/api/runs?limit=5").json()[0]["reason"]["text"]["en"] == "pose out of reach"
     assert client.get("/api/runs/r-1/events?after=6&limit=2").json()[0]["number"] == 7
     assert client.get("/api/runs/r-1/events").status_code == 200
     assert site_client.calls == [("runs", 5), ("events", "r-1", 6, 2), ("events", "r-1", 0, 1000)]
@@ -108,7 +112,7 @@ def test_stop_asks_every_machine_and_any_role_may(client: Client, site_client: F
     assert site_client.calls == [("stop", "zx200", "software stop by local at 127.0.0.1")]
     answer = client.post("/api/stop", json={"machine": "ic120"})
     assert (answer.status_code, answer.json()["code"]) == (404, "NO_MACHINE")
-    assert "zx200" in answer.json()["message"]
+    assert answer.json()["args"] == {"machine": "ic120", "machines": ["zx200"]}
 
 
 def test_rearm_has_two_steps(client: Client) -> None:
@@ -127,8 +131,8 @@ def test_answer_a_question(client: Client, site_client: FakeSiteClient) -> None:
 
 def test_tasks_are_checked_compared_and_stored(client: Client, site_client: FakeSiteClient) -> None:
     found = client.post("/api/tasks/check", json={"xml": XML}).json()
-    assert found["errors"] == [{"line": 7, "text": "line 7, at 0.1: unknown node 'Dig'"}]
-    assert found["warnings"] == [{"line": None, "text": "nobody writes flag F"}]
+    assert found["errors"] == [{"line": 7, "reason": view(WrongLine(7, "Dig")).model_dump()}]
+    assert found["warnings"] == [{"line": None, "reason": view(Foreign("nobody writes flag F")).model_dump()}]
     assert client.post("/api/tasks/4/diff", json={"xml": XML}).json() == {"text": ""}
     assert "+<root/>" in client.post("/api/tasks/4/diff", json={"xml": "<root/>"}).json()["text"]
     answer = client.post("/api/tasks", json={"xml": XML, "description": "掘削"})
@@ -240,7 +244,9 @@ def test_exports(client: Client, form: str, begins: bytes) -> None:
     assert answer.headers["content-disposition"] == f'attachment; filename="r-1.{form}"'
 
 
-@pytest.mark.parametrize(("stored", "last"), [(2000, "event 2000"), (2001, "cut after 2000 events: the rest is at ")])
+@pytest.mark.parametrize(
+    ("stored", "last"), [(2000, "event 2000"), (2001, 'JOURNAL_CUT count=2000 run="r-1" last=2000')]
+)
 def test_an_export_that_is_cut_says_so(
     client: Client, site_client: FakeSiteClient, monkeypatch: pytest.MonkeyPatch, stored: int, last: str
 ) -> None:
@@ -348,7 +354,7 @@ def test_cancel_a_run(client: Client, site_client: FakeSiteClient) -> None:
     ("code", "status"),
     [
         ("TASK_MISSING", 404), ("RUN_MISSING", 404), ("NO_RUN", 404), ("MACHINE_BUSY", 409), ("PREFLIGHT", 409),
-        ("REFUSED", 409), ("NO_SERVER", 503), ("NO_ANSWER", 503), ("STORE_DOWN", 503),
+        ("START_REFUSED", 409), ("NO_SERVER", 503), ("NO_ANSWER", 503), ("RUN_NOT_BEGUN", 503), ("STORE_DOWN", 503),
     ],
 )  # fmt: skip
 def test_errors_of_modules(client: Client, site_client: FakeSiteClient, code: str, status: int) -> None:
@@ -357,7 +363,7 @@ def test_errors_of_modules(client: Client, site_client: FakeSiteClient, code: st
     answers = [client.get(path) for path in reads] + [client.post(path, json=body) for path, body in COMMANDS]
     for answer in answers:
         assert answer.status_code == status
-        assert answer.json() == {"code": code, "message": "what is wrong and what to do"}
+        assert answer.json() == {**view(Foreign("what is wrong and what to do")).model_dump(), "code": code}
 
 
 @pytest.mark.parametrize(
@@ -395,7 +401,7 @@ def test_a_bug_is_told_without_its_insides(site_client: FakeSiteClient) -> None:
     site_client.error = ZeroDivisionError("inside")  # type: ignore[assignment]
     client = Client(app(site_client))
     answer = client.get("/api/tasks")
-    assert (answer.status_code, answer.json()["code"]) == (500, "INTERNAL")
+    assert (answer.status_code, answer.json()["code"]) == (500, "INTERNAL_ERROR")
     assert "inside" not in answer.text
     assert answer.headers["X-Content-Type-Options"] == "nosniff"
 
@@ -460,7 +466,7 @@ def test_commands_are_short(client: Client, site_client: FakeSiteClient) -> None
     kind = {"Content-Type": "application/json"}
     long = client.post("/api/runs", content=b" " * 20_000, headers=kind)
     unknown = client.post("/api/runs", content=chunks(), headers=kind)
-    assert (long.status_code, long.json()["code"]) == (413, "TOO_LARGE")
+    assert (long.status_code, long.json()["code"]) == (413, "REQUEST_TOO_LARGE")
     assert (unknown.status_code, unknown.json()["code"]) == (411, "NO_LENGTH")
     framed = {"Content-Length": "2", "Transfer-Encoding": "chunked"}
     both = client.post("/api/runs", content=chunks(), headers={**kind, **framed})  # the chunks count
@@ -476,7 +482,7 @@ def test_commands_need_loopback(site_client: FakeSiteClient, bind: str) -> None:
     for path, body in COMMANDS:
         answer = client.post(path, json=body)
         assert (answer.status_code, answer.json()["code"]) == (403, "NO_ACCESS_CONTROL")
-        assert bind in answer.json()["message"]
+        assert answer.json()["args"] == {"bind": bind}
     assert site_client.calls == []
 
 
@@ -503,5 +509,5 @@ def test_every_endpoint_is_in_the_document(client: Client) -> None:
         "post",
     }  # as in security.py
     problem = document["paths"]["/api/runs"]["post"]["responses"]["409"]["content"]["application/json"]["schema"]
-    assert problem == {"$ref": "#/components/schemas/Problem"}
+    assert problem == {"$ref": "#/components/schemas/ReasonView"}
     assert document["components"]["schemas"]["Joint"]["properties"]["position"]["description"] == "rad"

@@ -4,6 +4,8 @@ from dataclasses import dataclass, field
 
 from tms_ur.board import Board
 from tms_ur.models import ActiveRun, Host, Joint, Machine, Place, Process
+from tms_ur.reason_view import view
+from tms_ur.reasons import MachineSilent
 
 
 @dataclass
@@ -44,7 +46,7 @@ def test_silence_is_told_and_heals() -> None:
     watched.now += 6
     state = watched.board.snapshot()
     assert (state.machines[0].state, state.machines[0].joint_age) == ("silent", None)
-    assert state.machines[0].reason == "zx200:rc has said nothing for 6 s"
+    assert state.machines[0].reason == view(MachineSilent("zx200:rc", 6.0))
     assert state.machines[0].joints, "the last angles stay, as old ones"
     assert not state.scheduler.alive
     watched.board.put_machine(machine(1.0))

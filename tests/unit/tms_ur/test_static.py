@@ -7,17 +7,14 @@ from pathlib import Path
 import pytest
 
 from tms_cli.japanese import STATES
-from tms_ts import bt
+from tms_reason import remedies
 from tms_ur.api import STATIC
-from tms_ur.security import LOCAL
 from unit.tms_ur.fakes import Client, FakeSiteClient, app
-from unit.tms_ur.phrases import known
 
 FILES = sorted(path for path in STATIC.rglob("*") if path.is_file())
 CODE = {path: path.read_text(encoding="utf-8") for path in FILES if path.suffix == ".js"}
 PAGES = {path: path.read_text(encoding="utf-8") for path in FILES if path.suffix == ".html"}
 FIRST_PAGE = 300_000  # bytes
-TREE = '<root main_tree_to_execute="T"><BehaviorTree ID="T"><AlwaysSuccess/></BehaviorTree></root>'
 
 
 def table() -> dict[str, dict[str, str]]:
@@ -45,7 +42,6 @@ def used() -> set[str]:
     for text in CODE.values():
         found |= set(re.findall(r'\bt\("(\w+)"', text)) | set(re.findall(r'\b(?:t|label): "(\w+)"', text))
         found |= set(re.findall(r'\bheading\("(\w+)"', text)) | set(re.findall(r'\bbutton\("(\w+)"', text))
-        found |= set(re.findall(r'"(told_\w+)"', text))
         for label, heads in re.findall(r'\btable\("\w+", ("\w+"), \[([^\]]*)\]', text):
             found |= set(re.findall(r'"(\w+)"', label + heads))
     return found
@@ -56,15 +52,12 @@ def test_every_text_that_the_pages_ask_for_is_there() -> None:
     assert used() <= table()["en"].keys()
 
 
-def test_what_other_processes_tell_is_told_in_both_languages() -> None:
-    with pytest.raises(bt.TreeError) as unknown:
-        bt.load(TREE.replace("AlwaysSuccess", "AlwaysSucces"), world=None)
-    assert known(str(unknown.value)) == "told_node_near"
-    assert known(f"software stop by {LOCAL.name} at 127.0.0.1") == "told_stop_by"
-    assert known("waits 2.5 s") == "told_waits"
-    assert known("given up by an operator after an interruption") == "told_given_up"
-    assert known("MOVING 2/3 68 % (theta_w 1.41 instead of 0.00 rad)") == "told_moving"
-    assert known("the shovel is away") == ""
+def test_actions_of_the_console_are_those_of_reasons() -> None:
+    text = CODE[STATIC / "actions.js"]
+    tables = re.findall(r"export const (?:COMMANDS|LINKS) = \{(.*?)\};", text, re.DOTALL)
+    names = set(re.findall(r"\b(\w+): [(\"]", "".join(tables)))
+    known = {one.name for one in vars(remedies).values() if isinstance(one, remedies.Remedy)}
+    assert {"rearm", "cancel", "restart", "logs"} <= names <= known
 
 
 def test_a_run_has_the_states_and_words_of_the_command_line() -> None:

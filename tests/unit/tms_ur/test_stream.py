@@ -108,7 +108,7 @@ def test_clients_are_bounded_and_leave_their_place() -> None:
             assert (await console.message())["status"] == 200
         late = Console(app)
         assert (await late.message())["status"] == 503
-        assert json.loads((await late.message())["body"])["code"] == "TOO_MANY"
+        assert json.loads((await late.message())["body"])["code"] == "TOO_MANY_CONSOLES"
         await consoles[0].leave()
         next_one = Console(app)
         assert (await next_one.message())["status"] == 200

@@ -1,5 +1,6 @@
 // Data: records with type, age, source and history; static ones can be edited; and the sensing inputs.
-import { at, button, duration, heading, keep, make, once, part, parts, setBadge, setText, table } from "../dom.js";
+import { at, button, duration, heading, keep, make, part, parts, setBadge, setText, table } from "../dom.js";
+import { fillReason, once, showError } from "../reasons.js";
 import { ask, siteNow } from "../server.js";
 import { t, when } from "../strings.js";
 
@@ -30,7 +31,7 @@ export function build(root) {
 export async function load() {
   try {
     records = await ask("/api/parameters");
-    setText(at("data_problem"), "");
+    showError(at("data_problem"), null);
     const audit = (await ask("/api/audit?hours=720")).filter((event) => event.kind === "set_parameter").reverse();
     keep(at("list_changes"), audit, (event) => event.number, () => make("tr", {}, ...parts("td", ["time", "who", "target"])), (row, event) => {
       setText(part(row, "time"), when(event.stamp));
@@ -38,9 +39,7 @@ export async function load() {
       setText(part(row, "target"), event.node);
     });
   } catch (error) {
-    if (at("data_problem") !== null) {
-      setText(at("data_problem"), error.message);
-    }
+    showError(at("data_problem"), error);
   }
   show();
 }
@@ -142,7 +141,7 @@ function fillInput(row, one) {
   setText(part(row, "age"), one.age === null ? "-" : duration(one.age));
   setText(part(row, "accepted"), String(one.accepted));
   setText(part(row, "refused"), String(one.refused));
-  setText(part(row, "why"), one.last_refusal);
+  fillReason(part(row, "why"), one.last_refusal);
   setText(part(row, "records"), one.records.join(", "));
 }
 
@@ -181,12 +180,12 @@ function showEditor(title, inner, save) {
 
 /** What is wrong is said where the person looks. */
 async function saved(save) {
-  setText(at("editor_problem"), "");
+  showError(at("editor_problem"), null);
   let name;
   try {
     name = await save();
   } catch (error) {
-    setText(at("editor_problem"), error.message);
+    showError(at("editor_problem"), error);
     return "";
   }
   at("editor").hidden = true;

@@ -1,8 +1,8 @@
 // History: past runs, their journal, and a slider that replays the tree.
 import { at, button, duration, heading, keep, make, part, parts, setBadge, setText, table } from "../dom.js";
+import { fillReason, showError } from "../reasons.js";
 import { ask } from "../server.js";
-import { clock, t, when } from "../strings.js";
-import { told } from "../told.js";
+import { clock, said, t, when } from "../strings.js";
 import { TreeView } from "../treeview.js";
 import { zoomBar } from "./tree.js";
 
@@ -37,17 +37,18 @@ export function build(root) {
 export async function load() {
   try {
     const runs = await ask("/api/runs?limit=50");
-    setText(at("history_problem"), "");
+    showError(at("history_problem"), null);
     at("none_history").hidden = runs.length > 0;
     keep(at("list_history"), runs, (run) => run.run_id, buildRun, fillRun);
   } catch (error) {
-    if (at("history_problem") !== null) {
-      setText(at("history_problem"), error.message);
-    }
+    showError(at("history_problem"), error);
   }
 }
 
 export function update() {}
+
+/** What a journal says: a reason, or words. */
+const textOf = (event) => (event.reason ? said(event.reason) : event.text);
 
 /** A run by its own address, so that a link or a reload finds it again. */
 export function open([run]) {
@@ -67,7 +68,7 @@ function fillRun(row, run) {
   setBadge(part(row, "state"), run.state);
   const seconds = run.ended_at && (new Date(run.ended_at) - new Date(run.started_at)) / 1000;
   setText(part(row, "duration"), seconds === null ? "-" : duration(seconds));
-  setText(part(row, "reason"), told(run.reason));
+  fillReason(part(row, "reason"), run.reason);
   markChosen(row);
 }
 
@@ -90,7 +91,7 @@ async function showRun(id) {
   try {
     await readJournal(id);
   } catch (error) {
-    setText(at("history_problem"), error.message);
+    showError(at("history_problem"), error);
     return;
   }
   const tree = journal.find((event) => event.kind === "tree");
@@ -100,7 +101,7 @@ async function showRun(id) {
     make("a", { className: "button", href: `/api/runs/${encodeURIComponent(id)}/export?form=${form}`, download: "" }, form.toUpperCase()))));
   const stops = journal.filter((event) => event.kind === "stop");
   at("receipts").replaceChildren(...(stops.length === 0 ? [make("li", {}, t(cut ? "no_receipts_yet" : "no_receipts"))]
-    : stops.map((event) => make("li", {}, `${clock(event.stamp)} ${event.text}`))));
+    : stops.map((event) => make("li", {}, `${clock(event.stamp)} ${textOf(event)}`))));
   setText(at("journal_cut"), cut ? t("journal_cut", { number: journal.length }) : "");
   at("past_tree").hidden = tree === undefined; // a refused run has none
   if (tree === undefined) {
@@ -129,13 +130,13 @@ async function readJournal(id) {
 /** The tree as it was after event number `index` of the journal. */
 function replay(index) {
   const event = journal[index];
-  setText(at("moment"), event === undefined ? "" : `${clock(event.stamp)} ${event.node} ${event.text}`);
+  setText(at("moment"), event === undefined ? "" : `${clock(event.stamp)} ${event.node} ${textOf(event)}`);
   const nearby = journal.slice(Math.max(0, index - 100), index + 1).filter((one) => one.kind !== "tree").reverse();
   keep(at("list_events"), nearby, (one) => one.number, () => make("tr", {}, ...parts("td", ["time", "kind", "node", "text"])), (row, one) => {
     setText(part(row, "time"), clock(one.stamp));
     setText(part(row, "kind"), one.kind);
     setText(part(row, "node"), one.node);
-    setText(part(row, "text"), one.text);
+    setText(part(row, "text"), textOf(one));
   });
   if (view.tree === null) {
     return;

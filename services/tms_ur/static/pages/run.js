@@ -1,12 +1,12 @@
 // Run: machines, active runs and tasks to start.
-import { at, button, confirmed, duration, heading, keep, make, number, once, part, parts, say, setBadge, setText, table } from "../dom.js";
+import { at, button, duration, heading, keep, make, number, part, parts, say, setBadge, setText, table } from "../dom.js";
+import { cancelRun, rearmMachine } from "../actions.js";
+import { fillReason, once, showError } from "../reasons.js";
 import { ask } from "../server.js";
 import { stop } from "../stop.js";
-import { t } from "../strings.js";
-import { told } from "../told.js";
+import { said, t } from "../strings.js";
 
 let tasks = null;
-let latched = []; // names of machines that somebody must re-arm
 
 export function build(root) {
   root.append(
@@ -24,9 +24,9 @@ export function build(root) {
 export async function load() {
   try {
     tasks = await ask("/api/tasks");
-    setText(at("run_problem"), "");
+    showError(at("run_problem"), null);
   } catch (error) {
-    setText(at("run_problem"), error.message);
+    showError(at("run_problem"), error);
   }
   if (tasks !== null && at("list_tasks") !== null) {
     at("none_tasks").hidden = tasks.length > 0;
@@ -38,7 +38,6 @@ export function update(state) {
   at("scheduler").hidden = state.scheduler.alive;
   at("none_active").hidden = state.runs.length > 0;
   keep(at("list_active"), state.runs, (run) => run.run_id, buildActive, fillActive);
-  latched = state.machines.filter((machine) => machine.latch).map((machine) => machine.name);
   at("none_machines").hidden = state.machines.length > 0;
   keep(at("list_machines"), state.machines, (machine) => machine.name, buildMachine, fillMachine);
 }
@@ -46,11 +45,7 @@ export function update(state) {
 // runs
 
 function buildActive(run) {
-  const path = `/api/runs/${encodeURIComponent(run.run_id)}/cancel`;
-  const cancel = (event) => once(event.currentTarget, async () => {
-    await ask(path, {});
-    return t("cancelling", { id: run.run_id });
-  });
+  const cancel = (event) => once(event.currentTarget, () => cancelRun(run.run_id));
   const link = make("a", { className: "button", href: `#tree/${encodeURIComponent(run.run_id)}`, data: { t: "p_tree" } }, t("p_tree"));
   return make("li", {}, ...parts("strong", ["task"]), ...parts("span", ["state", "machines", "reason"]), link,
     button("cancel", "stop", cancel, ["cancel_run", { id: run.run_id }]));
@@ -60,7 +55,7 @@ function fillActive(row, run) {
   setText(part(row, "task"), `${t("task")} ${run.task_id}`);
   setBadge(part(row, "state"), run.state);
   setText(part(row, "machines"), run.machines.join(", "));
-  setText(part(row, "reason"), told(run.reason));
+  fillReason(part(row, "reason"), run.reason, { done: "cancel" });
 }
 
 // tasks
@@ -68,12 +63,8 @@ function fillActive(row, run) {
 function buildTask(task) {
   const start = (event) => once(event.currentTarget, async () => {
     say(t("starting", { id: task.id }));
-    try {
-      const answer = await ask("/api/runs", { task_id: task.id });
-      return t("started", { id: answer.run_id });
-    } catch (error) {
-      throw latched.length > 0 ? new Error(`${told(error.message)} ${t("press_rearm", { names: latched.join(", ") })}`) : error;
-    }
+    const answer = await ask("/api/runs", { task_id: task.id });
+    return t("started", { id: answer.run_id });
   });
   const check = (event) => once(event.currentTarget, () => checkTask(task.id));
   return make("tr", {}, ...parts("td", ["id", "model", "description"]), make("td", { className: "bar" },
@@ -100,9 +91,15 @@ export function showFindings(box, found) {
   for (const kind of ["errors", "warnings"]) {
     if (found[kind].length > 0) {
       box.append(make("h3", {}, `${t(kind)} (${found[kind].length})`), make("ul", { className: kind },
-        ...found[kind].map((one) => make("li", { data: { line: one.line ?? "" } }, told(one.text)))));
+        ...found[kind].map(buildFinding)));
     }
   }
+}
+
+function buildFinding({ line, reason }) {
+  const row = make("li", { data: { line: line ?? "" } });
+  fillReason(row, reason, { done: "edit_task" }); // the text is on the screen
+  return row;
 }
 
 // machines
@@ -125,9 +122,10 @@ function fillMachine(card, machine) {
   setBadge(part(card, "armed"), machine.by_hand ? "by_hand" : machine.latch ? "latched" : machine.hold ? "held" : "armed");
   part(card, "armed").hidden = machine.state === "silent";
   setText(part(card, "by_hand"), machine.by_hand ? t("who_drives", { name: machine.by_hand }) : "");
-  setText(part(card, "latch"), machine.latch ? t("why_latched", { cause: told(machine.latch) }) : "");
-  setText(part(card, "hold"), told(machine.hold));
-  setText(part(card, "reason"), told(machine.reason));
+  const latch = machine.latch ? t("why_latched", { cause: said(machine.latch) }) : "";
+  fillReason(part(card, "latch"), machine.latch, { text: latch, done: "rearm" }); // the card has its button
+  fillReason(part(card, "hold"), machine.hold);
+  fillReason(part(card, "reason"), machine.reason, { done: "rearm" });
   setText(part(card, "goal"), machine.goal ? `${t("goal")}: ${machine.owner}` : "");
   setText(part(card, "age"), `${t("data_age")}: ${duration(machine.joint_age)}`);
   part(card, "rearm").hidden = !machine.latch;
@@ -137,14 +135,4 @@ function fillMachine(card, machine) {
       setText(part(row, "rad"), number(joint.position, 3));
       setText(part(row, "deg"), number((joint.position * 180) / Math.PI, 1));
     });
-}
-
-async function rearmMachine(name) {
-  const path = `/api/machines/${encodeURIComponent(name)}/rearm`;
-  const first = await ask(path, {});
-  if (!(await confirmed(t("rearm_ask", { name, cause: told(first.cause) })))) {
-    return "";
-  }
-  await ask(path, { token: first.token });
-  return t("rearmed", { name });
 }

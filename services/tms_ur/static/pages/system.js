@@ -1,5 +1,7 @@
 // System: processes of every PC, their logs, restart; and who gave which command.
-import { at, button, confirmed, duration, heading, keep, make, once, part, parts, setBadge, setText, table } from "../dom.js";
+import { at, button, duration, heading, keep, make, part, parts, setBadge, setText, table } from "../dom.js";
+import { restartProcess } from "../actions.js";
+import { once } from "../reasons.js";
 import { ask } from "../server.js";
 import { t, when } from "../strings.js";
 
@@ -45,14 +47,7 @@ export function update(state) {
 
 function buildProcess({ process }) {
   const name = process.name;
-  const restart = (event) => once(event.currentTarget, async () => {
-    const question = t("restart_ask", { name }) + (running > 0 ? ` ${t("restart_running", { running })}` : "");
-    if (!(await confirmed(question))) {
-      return "";
-    }
-    await ask(`/api/processes/${encodeURIComponent(name)}/restart`, {});
-    return t("restarted", { name });
-  });
+  const restart = (event) => once(event.currentTarget, () => restartProcess(name, running));
   return make("tr", {}, ...parts("td", ["name", "host"]), make("td", {}, ...parts("span", ["state"])), ...parts("td", ["uptime", "cpu", "memory", "restarts"]),
     make("td", { className: "bar" }, button("log", "", (event) => once(event.currentTarget, () => showLog(name)), ["log_of", { name }]),
       button("restart", "", restart, ["restart_process", { name }])));

@@ -1,5 +1,6 @@
 // Tasks: a file from Groot is checked, compared and stored here.
-import { at, button, confirmed, heading, keep, make, once, part, parts, say, setText, table } from "../dom.js";
+import { at, button, confirmed, heading, keep, make, part, parts, say, setText, table } from "../dom.js";
+import { once, showError } from "../reasons.js";
 import { ask } from "../server.js";
 import { t, when } from "../strings.js";
 import { showFindings } from "./run.js";
@@ -33,11 +34,9 @@ export function build(root) {
 export async function load() {
   try {
     stored = await ask("/api/tasks");
-    setText(at("tasks_problem"), "");
+    showError(at("tasks_problem"), null);
   } catch (error) {
-    if (at("tasks_problem") !== null) {
-      setText(at("tasks_problem"), error.message);
-    }
+    showError(at("tasks_problem"), error);
     return;
   }
   if (at("compare") === null) {
@@ -76,7 +75,9 @@ async function checkAgain() {
     showFindings(at("findings"), found);
   } catch (error) {
     found = null;
-    at("findings").replaceChildren(make("p", { className: "bad" }, error.message));
+    const box = make("p", { className: "bad" });
+    showError(box, error);
+    at("findings").replaceChildren(box);
   }
   const bad = new Set(found?.errors.map((one) => one.line) ?? []);
   const warned = new Set(found?.warnings.map((one) => one.line) ?? []);

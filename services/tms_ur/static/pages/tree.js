@@ -1,8 +1,8 @@
 // Tree: the live tree of a run, and one sentence that says why it is where it is.
 import { at, button, heading, keep, make, setBadge, setText } from "../dom.js";
+import { fillReason } from "../reasons.js";
 import { treeOf } from "../server.js";
-import { t } from "../strings.js";
-import { told } from "../told.js";
+import { said, t } from "../strings.js";
 import { TreeView } from "../treeview.js";
 
 let view = null;
@@ -48,7 +48,8 @@ export function update(state) {
     const moving = state.machines.some((machine) => run.machines.includes(machine.name) && machine.state === "moving");
     setText(at("tree_why_head"), t(moving ? "doing" : "why"));
     setBadge(at("tree_state"), alive ? run.state : "UNKNOWN");
-    setText(at("tree_reason"), !alive ? t("scheduler_silent") : told(run.reason) || t(run.state === "running" ? "moving_on" : run.state));
+    const text = !alive ? t("scheduler_silent") : said(run.reason) || t(run.state === "running" ? "moving_on" : run.state);
+    fillReason(at("tree_reason"), alive ? run.reason : null, { text });
   }
   if (tree === null) {
     return; // the last one stays on the screen

@@ -1,0 +1,49 @@
+"""What clients send; data_models.py has the records."""
+
+from pydantic import ConfigDict, Field
+
+from tms_config.names import Text
+from tms_ur.models import INT32, Model
+
+
+class Command(Model):
+    """Base of what clients send."""
+
+    model_config = ConfigDict(strict=True)
+
+
+class Login(Command):
+    name: Text = Field(max_length=64)
+    password: str = Field(max_length=200)
+
+
+class TaskGiven(Command):
+    xml: str = Field(max_length=5 * 2**20)
+    description: Text = Field(default="", max_length=1000)
+
+
+class Xml(Command):
+    xml: str = Field(max_length=5 * 2**20)
+
+
+class StopAsked(Command):
+    machine: str = Field(default="", pattern=r"^[a-z0-9_]{0,64}$", description="empty: all machines")
+
+
+class RearmAsked(Command):
+    token: str = Field(default="", max_length=100, description="of the first step, empty in the first step")
+
+
+class AnswerGiven(Command):
+    yes: bool
+
+
+class Nothing(Command):
+    """An empty object."""
+
+
+class StartRun(Command):
+    """Which task to run."""
+
+    task_id: int = Field(ge=1, le=INT32)
+    ignore_warnings: bool = Field(default=False, description="start although the check before the run warns")

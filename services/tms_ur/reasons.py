@@ -1,0 +1,79 @@
+"""Why the console refuses a request, what it misses, and what is wrong with its settings."""
+
+from tms_reason.quantities import Seconds
+from tms_reason.reason import Reason
+from tms_reason.remedies import CHECK, EDIT_CONFIG, LOGS, PROCESSES, RETRY, RUNS, STATUS
+
+
+# fmt: off
+# who asks
+class Login(Reason, text="{why}"): why: Reason  # what a person does next is always the same: log in
+class NobodyLoggedIn(Reason, text="log in first",
+    details="POST /api/login, or `Authorization: Bearer NAME:TOKEN`"): pass
+class WrongPassword(Reason, text="the name or the password is wrong"): pass
+class Throttled(Reason, text="too many wrong passwords: try again in {seconds}"): seconds: Seconds
+class ManyLogins(Reason, text="too many passwords are being checked", action=RETRY): pass
+class NoUsers(Reason, text="this site has no users: nobody needs to log in"): pass
+class Role(Reason, text="this needs the role {role}, {person} is {has}"): role: str; person: str; has: str
+class NoAccessControl(Reason, text="others can connect to {bind}, and the console has no users: commands are refused",
+    action=EDIT_CONFIG,
+    details="console.users names a file of users (`tms user add`); `bind: 127.0.0.1` keeps others out"):
+    bind: str
+
+# what a request looks like
+class Crowded(Reason, text="too many requests are being answered; a stop is answered always", action=RETRY): pass
+class ForeignHost(Reason, text="this console does not answer to the name '{host}'",
+    action=EDIT_CONFIG,
+    details="open http://{bind} or http://localhost, or add the name to console.names"):
+    host: str; bind: str
+class ForeignOrigin(Reason, text="commands from pages of '{origin}' are refused: use the console's own"):
+    origin: str
+class NotJson(Reason, text="a command needs `Content-Type: application/json`"): pass
+class NoLength(Reason, text="a command needs a Content-Length"): pass
+class RequestTooLarge(Reason, text="this command has {most} bytes at most"): most: int
+class BadRequest(Reason, text="{where}: {problem}", details="see /openapi.json"): where: str; problem: str
+class NotFound(Reason, text="{method} {path}: there is no such page",
+    details="see /openapi.json"): method: str; path: str
+class MethodNotAllowed(Reason, text="{method} {path}: this method is not offered",
+    details="see /openapi.json"): method: str; path: str
+class InternalError(Reason, text="{error} in the console: this is a bug", action=LOGS): error: str; process: str
+
+# values of records
+class BadValue(Reason, text="{field}: {value}: {why}"): field: str; value: str; why: Reason
+class NotOfType(Reason, text="this is no {type}"): type: str
+class IntTooLong(Reason, text="an int has 64 bits"): pass
+class NotFinite(Reason, text="a double is finite"): pass
+class NotUnicode(Reason, text="a string is valid Unicode without NUL"): pass
+
+# the site
+class NoMachine(Reason, text="the site has no machine '{machine}' (there: {machines})",
+    action=STATUS): machine: str; machines: tuple[str, ...]
+class UnknownProcess(Reason, text="no PC of the site has a process '{process}'", action=PROCESSES): process: str
+class NoTree(Reason, text="the journal of run {run} holds no tree: it was refused, or is an old one",
+    action=RUNS): run: str
+class JournalCut(Reason, text="cut after {count} events",
+    details="the rest is at /api/runs/{run}/events?after={last}"): count: int; run: str; last: int
+class TooManyConsoles(Reason, text="{most} consoles are connected already: close one of them"): most: int
+class Starting(Reason, text="task {task} is being started already"): task: int
+class RunNotBegun(Reason, text="the run did not begin within {limit}", action=LOGS): limit: Seconds; process: str
+class StartRefused(Reason, text="the scheduler did not take the task", action=LOGS): process: str
+class MachineUnheard(Reason, text="{process} has not been heard yet", action=PROCESSES): process: str
+class MachineSilent(Reason, text="{process} has said nothing for {age}", action=PROCESSES): process: str; age: Seconds
+
+# its own life
+class ServerEnded(Reason, text="the web server has ended", action=LOGS): process: str
+class ServerStarting(Reason, text="the web server is not up yet", action=RETRY): pass
+class CannotListen(Reason, text="{file}: ports.console: cannot listen on port {port} of {bind} ({problem})",
+    action=EDIT_CONFIG,
+    details="stop the program that uses the port, or change ports.console or bind"):
+    file: str; port: int; bind: str; problem: str
+class UnreadableCertificate(Reason, text="{file}: console.tls.{name}: {path}: cannot be read ({problem})",
+    action=EDIT_CONFIG): file: str; name: str; path: str; problem: str
+class NoCertificate(Reason, text="{file}: console.tls: {certificate} and {key} are no PEM certificate, key ({problem})",
+    action=EDIT_CONFIG): file: str; certificate: str; key: str; problem: str
+class NoUsersFile(Reason, text="{file}: the users file of console.users is not there: `tms user add NAME --role admin`",
+    action=CHECK): file: str
+class UnreadableUsers(Reason, text="{file}: the users file of console.users cannot be read ({problem})",
+    action=CHECK): file: str; problem: str
+class UsersForAll(Reason, text="{file}: everybody on this PC may read it: `chmod 600 {file}`", action=CHECK): file: str
+# fmt: on

@@ -1,0 +1,39 @@
+// What the console itself can do about a reason: by the name of the reason's action.
+import { confirmed } from "./dom.js";
+import { ask } from "./server.js";
+import { said, t } from "./strings.js";
+
+/** Commands by action, from its arguments; each resolves to what to say. */
+export const COMMANDS = {
+  rearm: ({ machine }) => rearmMachine(machine),
+  cancel: ({ run }) => cancelRun(run),
+  restart: ({ process }) => restartProcess(process),
+};
+
+/** Pages by action, where a person sees or corrects what it is about. */
+export const LINKS = { processes: "system", restart: "system", logs: "system", status: "system", tasks: "tasks", edit_task: "tasks",
+  records: "data", runs: "history" };
+
+export async function rearmMachine(name) {
+  const path = `/api/machines/${encodeURIComponent(name)}/rearm`;
+  const first = await ask(path, {});
+  if (!(await confirmed(t("rearm_ask", { name, cause: said(first.cause) })))) {
+    return "";
+  }
+  await ask(path, { token: first.token });
+  return t("rearmed", { name });
+}
+
+export async function cancelRun(id) {
+  await ask(`/api/runs/${encodeURIComponent(id)}/cancel`, {});
+  return t("cancelling", { id });
+}
+
+export async function restartProcess(name, running = 0) {
+  const question = t("restart_ask", { name }) + (running > 0 ? ` ${t("restart_running", { running })}` : "");
+  if (!(await confirmed(question))) {
+    return "";
+  }
+  await ask(`/api/processes/${encodeURIComponent(name)}/restart`, {});
+  return t("restarted", { name });
+}

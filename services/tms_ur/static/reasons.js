@@ -1,0 +1,80 @@
+// Reasons on the page: the text, what helps as a button, a link or a command, and details for who asks for them.
+import { COMMANDS, LINKS } from "./actions.js";
+import { at, make, say, setText } from "./dom.js";
+import { inLanguage, said, t } from "./strings.js";
+
+/** Shows a reason in `box`; `text` may stand around its own, and `done` is an action that has a button beside it. */
+export function fillReason(box, reason, { text = said(reason), done = "" } = {}) {
+  if (box === null) {
+    return; // its page has gone
+  }
+  const action = reason?.action && reason.action.name !== done ? reason.action : null;
+  const shape = JSON.stringify([text === "", action, reason?.details]);
+  if (box.dataset.shape !== shape) { // else its button keeps the focus while the state streams in
+    box.dataset.shape = shape;
+    box.replaceChildren(...(text === "" ? [] : [make("span"), ...help(action), ...details(reason)]));
+  }
+  setText(box.firstChild, text);
+  box.querySelectorAll("[data-said]").forEach((element) => setText(element, inLanguage(JSON.parse(element.dataset.said))));
+  box.querySelectorAll("summary").forEach((element) => setText(element, t("details")));
+}
+
+const texts = (both) => ({ said: JSON.stringify(both) });
+
+function help(action) {
+  if (action === null) {
+    return [];
+  }
+  if (action.name in COMMANDS && Object.keys(action.args).length > 0) {
+    const act = (event) => once(event.currentTarget, () => COMMANDS[action.name](action.args));
+    return [" ", make("button", { type: "button", className: "go", onclick: act, data: texts(action.text) })];
+  }
+  if (action.name in LINKS) {
+    return [" ", make("a", { className: "button", href: `/#${LINKS[action.name]}`, data: texts(action.text) })];
+  }
+  const command = action.command === "" ? [] : [": ", make("code", {}, action.command)];
+  return [" ", make("span", { data: texts(action.text) }), ...command];
+}
+
+function details(reason) {
+  if (!reason?.details.en) {
+    return [];
+  }
+  return [" ", make("details", {}, make("summary"), make("span", { data: texts(reason.details) }))];
+}
+
+/** Shows why something failed, or nothing for null; a page's own errors have words only. */
+export function showError(box, error) {
+  if (box !== null) {
+    fillReason(box, error?.reason ?? null, { text: error === null ? "" : error.message });
+  }
+}
+
+export function sayError(error) {
+  say("", true);
+  const box = make("span");
+  showError(box, error);
+  at("message").replaceChildren(box);
+}
+
+/** Runs a command once: the button is dead until the answer is there. `work` returns what to say. */
+export async function once(element, work) {
+  if (element.disabled) {
+    return;
+  }
+  element.disabled = true;
+  say("");
+  try {
+    const text = await work();
+    if (text) {
+      say(text);
+    }
+  } catch (error) {
+    sayError(error);
+  } finally {
+    element.disabled = false;
+    if (document.activeElement === document.body) {
+      element.focus(); // a disabled button has lost it
+    }
+  }
+}
