@@ -18,12 +18,14 @@ def as_json(run_id: str, events: list[Event]) -> bytes:
 
 
 def as_csv(run_id: str, events: list[Event]) -> bytes:
-    """With a byte order mark, so that Excel reads Japanese."""
+    """With a byte order mark, so that Excel reads Japanese; reasons as their English text."""
     out = io.StringIO()
     rows = csv.writer(out)
     rows.writerow(("run_id", *COLUMNS))
     for event in events:
-        facts = event.model_dump(mode="json")
+        facts = event.model_dump(mode="json", include=set(COLUMNS))
+        if event.reason is not None:
+            facts["text"] = event.reason.text.en
         rows.writerow((run_id, *(_harmless(facts[column]) for column in COLUMNS)))
     return out.getvalue().encode("utf-8-sig")
 
