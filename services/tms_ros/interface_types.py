@@ -14,10 +14,18 @@ class Message(Protocol):
     def get_fields_and_field_types(cls) -> dict[str, str]: ...
 
 
+class Coded(Message, Protocol):
+    """An answer that says why it is none: an empty code is success."""
+
+    error_code: str
+    error_msg: str
+
+
 M = TypeVar("M", bound=Message)
 M_in = TypeVar("M_in", bound=Message, contravariant=True)
 Req = TypeVar("Req", bound=Message)
 Res = TypeVar("Res", bound=Message)
+Reply = TypeVar("Reply", bound=Coded)
 G = TypeVar("G", bound=Message)
 R = TypeVar("R", bound=Message)
 F = TypeVar("F", bound=Message)
