@@ -6,6 +6,7 @@ from typing import Any, Generic, TypeVar
 from tms_msg_db.srv import GetParameter, SetParameter
 
 from tms_machine.values import from_parameters, to_parameters
+from tms_ros.interface_types import Reply, Req, ServiceType
 from tms_ros.node import Ros
 from tms_ts.shared_records import SharedRecords
 from tms_ts.world import Value
@@ -76,7 +77,14 @@ class Flags:
         self._ask(answer, SetParameter, "/tms/db/set_parameter", request, settle)
         return answer
 
-    def _ask(self, answer: Answer[Any], service: Any, name: str, request: Any, settle: Callable[[Any], None]) -> None:
+    def _ask(
+        self,
+        answer: Answer[T],
+        service: ServiceType[Req, Reply],
+        name: str,
+        request: Req,
+        settle: Callable[[Reply], None],
+    ) -> None:
         async def ask() -> None:
             response = await self._ros.ask(service, name, request, LIMIT)
             if response is None:

@@ -3,7 +3,6 @@
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 from std_msgs.msg import Bool
 from tms_msg_rc.msg import MachineState, StopReceipt
@@ -26,23 +25,23 @@ class Holder:
     number: int  # fencing number
     started: tuple[int, int]  # s and ns of the wall clock
     stopped: Callable[[str, str], None]  # machine, cause: it was stopped from outside and stays so
-    receipt: Callable[[Any], None]
+    receipt: Callable[[StopReceipt], None]
     alive: Callable[[], bool]
 
-    def concerns(self, receipt: Any) -> bool:
+    def concerns(self, receipt: StopReceipt) -> bool:
         """Whether a stop belongs to this run: a gateway that starts tells those of earlier runs and days once more."""
         if receipt.run == 0:  # the gateway had not heard of any run
             return (receipt.stamp.sec, receipt.stamp.nanosec) >= self.started
-        return bool(receipt.run == self.number)
+        return receipt.run == self.number
 
 
 class Gateways:
     """All machines of the site."""
 
-    def __init__(self, app: App, late_receipt: Callable[[Any], None]) -> None:
+    def __init__(self, app: App, late_receipt: Callable[[StopReceipt], None]) -> None:
         """`late_receipt` is called with stops that belong to no present run; kept ones come at once."""
         self._app, self._late_receipt = app, late_receipt
-        self._states: dict[str, Any] = {}
+        self._states: dict[str, MachineState] = {}
         self._links: dict[str, Link] = {}
         self._controls: dict[str, Controls] = {}
         self._permits: dict[str, Permit] = {}
@@ -121,27 +120,27 @@ class Gateways:
     def latch(self, machine: str) -> str:
         """Why the machine is latched until it is re-armed; empty if it is not."""
         state = self._states.get(machine)
-        return str(state.latch) if state is not None else ""
+        return state.latch if state is not None else ""
 
     def by_hand(self, machine: str) -> str:
         """Who drives the machine by hand; empty if nobody does."""
         state = self._states.get(machine)
-        return str(state.by_hand) if state is not None else ""
+        return state.by_hand if state is not None else ""
 
-    def _state(self, machine: str, state: Any) -> None:
+    def _state(self, machine: str, state: MachineState) -> None:
         self._states[machine] = state
         holder = self._holders.get(machine)
         if holder is not None and state.latch:
             holder.stopped(machine, state.latch)
 
-    def _receipt(self, receipt: Any) -> None:
+    def _receipt(self, receipt: StopReceipt) -> None:
         holder = self._holders.get(receipt.machine)
         if holder is not None and holder.concerns(receipt):
             holder.receipt(receipt)
         else:
             self._late_receipt(receipt)
 
-    def _signal(self, message: Any) -> None:
+    def _signal(self, message: Bool) -> None:
         if message.data:
             for machine, holder in list(self._holders.items()):
                 holder.stopped(machine, SOFTWARE_STOP)

@@ -3,10 +3,10 @@
 import threading
 import time
 from collections import deque
-from typing import Any
 
 from builtin_interfaces.msg import Time
 from tms_msg_db.msg import Event, Run
+from tms_msg_rc.msg import StopReceipt
 from tms_msg_ts.srv import CancelRun, ResumePlan
 
 from tms_machine.border import STOP_PROVEN
@@ -29,14 +29,14 @@ class Interrupted:
     def __init__(self, app: App, journal: Journal, records: Records) -> None:
         self._app, self._journal, self._records = app, journal, records
         self._active: set[str] = set()
-        self._receipts: deque[Any] = deque(maxlen=RECEIPTS)
+        self._receipts: deque[StopReceipt] = deque(maxlen=RECEIPTS)
         self._lock = threading.Lock()  # over the receipts; taken on the executor thread, so held for moments only
         self._choosing = threading.Lock()  # a run is resumed or abandoned, and once
         threading.Thread(target=self._close_all, name="interrupted", daemon=True).start()
 
     # closing
 
-    def receipt(self, receipt: Any) -> None:
+    def receipt(self, receipt: StopReceipt) -> None:
         """A gateway tells of a stop that belongs to no active run."""
         with self._lock:
             self._receipts.append(receipt)
@@ -58,7 +58,7 @@ class Interrupted:
     def _all_told(self, past: Past) -> bool:
         return past.header is None or set(past.header.machines) <= {r.machine for r in self._stops(past, past.header)}
 
-    def _stops(self, past: Past, header: Header) -> list[Any]:
+    def _stops(self, past: Past, header: Header) -> list[StopReceipt]:
         """What the gateways have told of the end of this run, in order; a latched receipt may come twice."""
         with self._lock:
             seen = {(_seconds(r.stamp), r.machine): r for r in self._receipts if r.run == header.number}
@@ -141,7 +141,7 @@ class Interrupted:
         return past, past.header
 
 
-def _what_was_seen(machines: list[str], stops: list[Any]) -> tuple[str, list[str]]:
+def _what_was_seen(machines: list[str], stops: list[StopReceipt]) -> tuple[str, list[str]]:
     """Why the run is interrupted, with each machine's last receipt or the lack of one; and what to alarm of."""
     last = {receipt.machine: receipt for receipt in stops}
     stood = [machine for machine in machines if machine in last and last[machine].confirmed]
@@ -159,11 +159,11 @@ def _words(key: Key) -> str:
     return f"{node}: /{machine}/{subtask}, record {record}"
 
 
-def _seconds(stamp: Any) -> float:
+def _seconds(stamp: Time) -> float:
     return float(stamp.sec + stamp.nanosec * 1e-9)
 
 
-def _row(header: Header, state: str, reason: str, ended: Any) -> Run:
+def _row(header: Header, state: str, reason: str, ended: Time) -> Run:
     return Run(
         run_id=header.run_id, task_id=header.task_id, description=header.description, state=state, reason=reason,
         machines=header.machines, records=header.records, ended_at=ended,

@@ -71,7 +71,7 @@ class SharedRecords:
                 readers.discard(wake)
             self._readers = {record: readers for record, readers in self._readers.items() if readers}
 
-    def _changed(self, message: Any) -> None:
+    def _changed(self, message: RecordChanges) -> None:
         for record in message.record_names:
             self.forget(record)
             with self._lock:

@@ -5,8 +5,9 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from pydantic import ValidationError
+from tms_msg_db.msg import Record
 from tms_msg_db.srv import ListParameters
-from tms_msg_sp.msg import InputStates
+from tms_msg_sp.msg import InputState, InputStates
 
 from tms_config.models import MachineModel
 from tms_config.yaml_file import explain
@@ -26,10 +27,10 @@ class Sensing:
     """The sensing inputs as tms:sp tells of them."""
 
     def __init__(self, app: App) -> None:
-        self._inputs: list[Any] = []
+        self._inputs: list[InputState] = []
         app.ros.subscribe(InputStates, "/tms/sp/inputs", self._heard, latched=True)
 
-    def _heard(self, message: Any) -> None:
+    def _heard(self, message: InputStates) -> None:
         self._inputs = list(message.inputs)
 
     def writes(self, record: str) -> bool:
@@ -99,7 +100,7 @@ def unfit(model: MachineModel, subtask: str, values: Mapping[str, Any]) -> str:
     return next((f"{name}: {text}" for name, text in broken if text), "")
 
 
-def _stored(record: Any, now: float) -> Stored:
+def _stored(record: Record, now: float) -> Stored:
     stamp = record.updated_at
     age = now - stamp.sec - stamp.nanosec * 1e-9 if stamp.sec else None
     return Stored(from_parameters(record.values), record.type, age, record.max_age)
