@@ -2,19 +2,19 @@
 
 import time
 from collections.abc import Awaitable, Callable
-from typing import Any
 
 from prometheus_client import Counter, Histogram
 
 from tms_db.connection import Connection
 from tms_reason.errors import TmsError
+from tms_ros.interface_types import Coded, Reply, Req, ServiceType
 from tms_runtime.app import App
 
 REQUESTS = Counter("tms_db_requests", "Requests answered", ["service", "code"])
 SECONDS = Histogram("tms_db_request_seconds", "Time from request to answer", ["service"])
 
-Handler = Callable[[Any, Any], None]
-LaterHandler = Callable[[Any, Any], Awaitable[None]]
+Handler = Callable[[Req, Reply], None]
+LaterHandler = Callable[[Req, Reply], Awaitable[None]]
 
 
 class Answering:
@@ -23,18 +23,18 @@ class Answering:
     def __init__(self, app: App, connection: Connection) -> None:
         self._app, self._connection = app, connection
 
-    def quick(self, service_type: Any, name: str, handler: Handler) -> None:
+    def quick(self, service_type: ServiceType[Req, Reply], name: str, handler: Handler[Req, Reply]) -> None:
         """A handler for one document, about a millisecond; on the executor thread these keep their order."""
         self._app.ros.offer(service_type, f"/tms/db/{name}", self._guard(name, handler))
 
-    def slow(self, service_type: Any, name: str, handler: Handler) -> None:
+    def slow(self, service_type: ServiceType[Req, Reply], name: str, handler: Handler[Req, Reply]) -> None:
         """A handler that may block; each call has a thread of its own."""
         self._app.ros.offer_slow(service_type, f"/tms/db/{name}", self._guard(name, handler))
 
-    def later(self, service_type: Any, name: str, handler: LaterHandler) -> None:
+    def later(self, service_type: ServiceType[Req, Reply], name: str, handler: LaterHandler[Req, Reply]) -> None:
         """A coroutine on the executor thread: it begins in order, and others are answered while it waits."""
 
-        async def answer(request: Any, response: Any) -> Any:
+        async def answer(request: Req, response: Reply) -> Reply:
             begin = time.monotonic()
             try:
                 with self._connection.use():
@@ -46,8 +46,8 @@ class Answering:
 
         self._app.ros.offer(service_type, f"/tms/db/{name}", answer)
 
-    def _guard(self, name: str, handler: Handler) -> Callable[[Any, Any], Any]:
-        def answer(request: Any, response: Any) -> Any:
+    def _guard(self, name: str, handler: Handler[Req, Reply]) -> Callable[[Req, Reply], Reply]:
+        def answer(request: Req, response: Reply) -> Reply:
             begin = time.monotonic()
             try:
                 with self._connection.use():
@@ -59,11 +59,11 @@ class Answering:
 
         return answer
 
-    def _refused(self, name: str, response: Any, error: TmsError) -> None:
+    def _refused(self, name: str, response: Coded, error: TmsError) -> None:
         response.error_code, response.error_msg = error.code, str(error)
         self._app.log.info("refused", service=name, code=error.code, reason=error)
 
     @staticmethod
-    def _count(name: str, response: Any, begin: float) -> None:
+    def _count(name: str, response: Coded, begin: float) -> None:
         REQUESTS.labels(name, response.error_code or "OK").inc()
         SECONDS.labels(name).observe(time.monotonic() - begin)

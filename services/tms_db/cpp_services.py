@@ -1,7 +1,6 @@
 """The C++ system's services under their names, for its nodes and tools; they know no error codes."""
 
 import json
-from typing import Any
 
 from tms_msg_db.msg import Tmsdb
 from tms_msg_db.srv import TmsdbGetData, TmsdbGetTask
@@ -29,7 +28,7 @@ class CppServices:
         self._app.ros.offer(TmsdbGetTask, "tms_db_reader_task", self.get_task)
         self._app.ros.offer(TmsdbGetData, "tms_db_param_reader", self.get_data)
 
-    def get_task(self, request: Any, response: Any) -> Any:
+    def get_task(self, request: TmsdbGetTask.Request, response: TmsdbGetTask.Response) -> TmsdbGetTask.Response:
         """The task's text, "" if there is none."""
         try:
             with self._connection.use():
@@ -38,7 +37,7 @@ class CppServices:
             self._app.log.warning("refused", service="tms_db_reader_task", code=error.code, reason=error)
         return response
 
-    def get_data(self, request: Any, response: Any) -> Any:
+    def get_data(self, request: TmsdbGetData.Request, response: TmsdbGetData.Response) -> TmsdbGetData.Response:
         """Records by name as JSON; those that are not there are left out."""
         try:
             with self._connection.use():
@@ -48,7 +47,7 @@ class CppServices:
             self._app.log.warning("refused", service="tms_db_param_reader", code=error.code, reason=error)
         return response
 
-    def _found(self, name: str, what: str) -> list[Any]:
+    def _found(self, name: str, what: str) -> list[Tmsdb]:
         documents = self._parameters.named(name)
         if not documents:
             self._app.log.warning(

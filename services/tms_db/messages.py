@@ -11,11 +11,11 @@ from tms_db.tasks import Task
 from tms_db.values import from_parameters, from_time, to_parameters, to_time
 
 
-def task(task: Task) -> Any:
+def task(task: Task) -> msg.Task:
     return msg.Task(**{**vars(task), "added_at": to_time(task.added_at)})
 
 
-def record(document: Document) -> tuple[Any, list[str]]:
+def record(document: Document) -> tuple[msg.Record, list[str]]:
     """The record, and the names of fields that cannot travel."""
     values, left_out = to_parameters(document)
     heads = ("model_name", "record_name", "type", "description", "source")
@@ -25,13 +25,13 @@ def record(document: Document) -> tuple[Any, list[str]]:
     return msg.Record(**texts, updated_at=to_time(document.get("updated_at")), max_age=max_age, values=values), left_out
 
 
-def run(run: Run) -> Any:
+def run(run: Run) -> msg.Run:
     times = {"started_at": to_time(run.started_at), "ended_at": to_time(run.ended_at)}
     lists = {"machines": list(run.machines), "records": list(run.records)}
     return msg.Run(**{**vars(run), **lists, **times})
 
 
-def stored_run(message: Any) -> Run:
+def stored_run(message: msg.Run) -> Run:
     ended = message.ended_at
     return Run(
         run_id=message.run_id,
@@ -46,12 +46,12 @@ def stored_run(message: Any) -> Run:
     )
 
 
-def event(event: Event) -> Any:
+def event(event: Event) -> msg.Event:
     values, _ = to_parameters(event.values, hidden=())
     return msg.Event(**{**vars(event), "stamp": to_time(event.stamp), "values": values})
 
 
-def stored_event(message: Any) -> Event:
+def stored_event(message: msg.Event) -> Event:
     return Event(
         run_id=message.run_id,
         number=message.number,
@@ -63,13 +63,13 @@ def stored_event(message: Any) -> Event:
     )
 
 
-def past(change: dict[str, Any]) -> Any:
+def past(change: dict[str, Any]) -> msg.PastValues:
     """One change of a record."""
     values, _ = to_parameters(change["values"], hidden=())
     return msg.PastValues(stamp=to_time(change["stamp"]), source=change["source"], values=values)
 
 
-def machine_state(message: Any) -> Document:
+def machine_state(message: msg.MachineState) -> Document:
     """A state in the form of the C++ system's collections.
 
     Raises:

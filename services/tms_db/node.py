@@ -1,7 +1,5 @@
 """`tms:db`: offers tasks, parameters and history as ROS services; stays up while the store is away."""
 
-from typing import Any
-
 from tms_msg_db.srv import (
     AddTask,
     GetTask,
@@ -47,34 +45,34 @@ class Services:
         answering.slow(ListRuns, "list_runs", self.list_runs)
         answering.slow(ListEvents, "list_events", self.list_events)
 
-    def add_task(self, request: Any, response: Any) -> None:
+    def add_task(self, request: AddTask.Request, response: AddTask.Response) -> None:
         added = self._tasks.add(request.task_sequence, request.description, self._models)
         response.task_id, response.model_name = added.task_id, added.model_name
         response.already_stored = added.already_stored
         self._app.log.info("task_added", task=added.task_id, stored_before=added.already_stored)
 
-    def get_task(self, request: Any, response: Any) -> None:
+    def get_task(self, request: GetTask.Request, response: GetTask.Response) -> None:
         response.task = messages.task(self._tasks.get(request.task_id))
 
-    def list_tasks(self, _: Any, response: Any) -> None:
+    def list_tasks(self, _: ListTasks.Request, response: ListTasks.Response) -> None:
         response.tasks = [messages.task(task) for task in self._tasks.all()]
 
-    def remove_task(self, request: Any, _: Any) -> None:
+    def remove_task(self, request: RemoveTask.Request, _: RemoveTask.Response) -> None:
         self._tasks.remove(request.task_id)
         self._app.log.info("task_removed", task=request.task_id)
 
-    def write_journal(self, request: Any, _: Any) -> None:
+    def write_journal(self, request: WriteJournal.Request, _: WriteJournal.Response) -> None:
         runs = [messages.stored_run(run) for run in request.runs]
         self._history.write(runs, [messages.stored_event(event) for event in request.events])
 
-    def list_runs(self, request: Any, response: Any) -> None:
+    def list_runs(self, request: ListRuns.Request, response: ListRuns.Response) -> None:
         response.runs = [messages.run(run) for run in self._history.runs(request.limit)]
 
-    def list_events(self, request: Any, response: Any) -> None:
+    def list_events(self, request: ListEvents.Request, response: ListEvents.Response) -> None:
         found = self._history.events(request.run_id, request.after, request.limit)
         response.events = [messages.event(event) for event in found]
 
-    def write_machine_states(self, request: Any, _: Any) -> None:
+    def write_machine_states(self, request: WriteMachineStates.Request, _: WriteMachineStates.Response) -> None:
         self._states.write([messages.machine_state(state) for state in request.states])
 
 

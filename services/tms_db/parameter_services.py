@@ -7,9 +7,8 @@ followed by an older one.
 import time
 from collections.abc import Callable, Iterable
 from datetime import datetime, timedelta, timezone
-from typing import Any
 
-from tms_msg_db.msg import RecordChanges, Refusal
+from tms_msg_db.msg import Record, RecordChanges, RecordUpdate, Refusal
 from tms_msg_db.srv import (
     GetParameter,
     ListParameterHistory,
@@ -64,19 +63,19 @@ class ParameterServices:
         self._app.on_stop(self._past.stop)
         self._app.on_stop(self._batches.stop)
 
-    def get(self, request: Any, response: Any) -> None:
+    def get(self, request: GetParameter.Request, response: GetParameter.Response) -> None:
         key = (request.model_name, request.record_name)
         document = self._heads.document(key)
         freshness.check(document, request.max_age)
         response.record = self._record(document)
 
-    def list(self, request: Any, response: Any) -> None:
+    def list(self, request: ListParameters.Request, response: ListParameters.Response) -> None:
         response.records = [
             self._record({**document, **self._batches.newest(_key(document))})
             for document in self._parameters.all(request.model_name)
         ]
 
-    async def set(self, request: Any, response: Any) -> None:
+    async def set(self, request: SetParameter.Request, response: SetParameter.Response) -> None:
         key = (request.model_name, request.record_name)
         where = title(*key)
         change = Change(
@@ -96,7 +95,7 @@ class ParameterServices:
             self._past.note(key, _now(), request.source, change.values)
             self._tell([key])
 
-    async def update(self, request: Any, response: Any) -> None:
+    async def update(self, request: UpdateParameters.Request, response: UpdateParameters.Response) -> None:
         taken: dict[Key, Update] = {}
         for index, wanted in enumerate(request.updates):
             key = (wanted.model_name, wanted.record_name)
@@ -109,7 +108,7 @@ class ParameterServices:
         if taken:
             await self._put(taken, hurry=False)
 
-    def remove(self, request: Any, _: Any) -> None:
+    def remove(self, request: RemoveParameter.Request, _: RemoveParameter.Response) -> None:
         key = (request.model_name, request.record_name)
         self._batches.settle(key)
         self._parameters.remove(*key)
@@ -117,13 +116,13 @@ class ParameterServices:
         self._tell([key])
         self._app.log.info("removed", reason=title(*key))
 
-    def history(self, request: Any, response: Any) -> None:
+    def history(self, request: ListParameterHistory.Request, response: ListParameterHistory.Response) -> None:
         key = (request.model_name, request.record_name)
         response.changes = [messages.past(change) for change in self._past.changes(key, request.limit)]
         if not response.changes:
             self._parameters.get(*key)  # says so when there is no such record
 
-    def _take(self, taken: dict[Key, Update], key: Key, wanted: Any) -> None:
+    def _take(self, taken: dict[Key, Update], key: Key, wanted: RecordUpdate) -> None:
         """One update of a batch."""
         if self._batches.gone.is_set():
             self._batches.gone.clear()
@@ -183,7 +182,7 @@ class ParameterServices:
         if names:
             self._changes.publish(RecordChanges(record_names=names))
 
-    def _record(self, document: Document) -> Any:
+    def _record(self, document: Document) -> Record:
         message, left_out = messages.record(document)
         if left_out:
             where = title(message.model_name, message.record_name)

@@ -13,7 +13,7 @@ CLOUD = ("height", "width", "is_bigendian", "point_step", "row_step", "is_dense"
 MAX_CLOUD = 16 * 2**20  # bytes: some 500,000 points; more keeps the store from writing parameters for a second
 
 
-def image(where: str, data: bytes) -> Any:
+def image(where: str, data: bytes) -> Image:
     """A PNG as sensor_msgs/Image.
 
     Raises:
@@ -35,7 +35,7 @@ def image(where: str, data: bytes) -> Any:
     return message
 
 
-def cloud_head(message: Any) -> dict[str, Any]:
+def cloud_head(message: PointCloud2) -> dict[str, Any]:
     """What is stored beside the bytes of a PointCloud2.
 
     Raises:
@@ -55,7 +55,7 @@ def cloud_head(message: Any) -> dict[str, Any]:
     return {"cloud": head}
 
 
-def cloud(where: str, head: Mapping[str, Any] | None, data: bytes) -> Any:
+def cloud(where: str, head: Mapping[str, Any] | None, data: bytes) -> PointCloud2:
     """The PointCloud2 that was stored.
 
     Raises:

@@ -4,7 +4,6 @@ These types have no error fields: who asks for what is not there gets an empty a
 """
 
 import threading
-from typing import Any
 
 from prometheus_client import Counter
 from tms_msg_db.msg import TmsdbGridFS
@@ -28,7 +27,7 @@ class TerrainServices:
     def __init__(self, app: App, db: store.Db, connection: Connection) -> None:
         self._app, self._connection = app, connection
         self._terrain = Terrain(db)
-        self._waiting: dict[str, Any] = {}
+        self._waiting: dict[str, TmsdbGridFS] = {}
         self._changed = threading.Condition()
         self._stopping = False
         self._thread = threading.Thread(target=self._write, name="terrain", daemon=True)
@@ -46,7 +45,9 @@ class TerrainServices:
             self._stopping = True
             self._changed.notify_all()
 
-    def image(self, request: Any, response: Any) -> Any:
+    def image(
+        self, request: TmsdbTerrainImageSrv.Request, response: TmsdbTerrainImageSrv.Response
+    ) -> TmsdbTerrainImageSrv.Response:
         """The newest heightmap or colour image, of that name if one is given."""
         try:
             with self._connection.use():
@@ -64,7 +65,9 @@ class TerrainServices:
             self._refused("terrain_image", error)
         return response
 
-    def cloud(self, request: Any, response: Any) -> Any:
+    def cloud(
+        self, request: TerrainStaticSrv.Request, response: TerrainStaticSrv.Response
+    ) -> TerrainStaticSrv.Response:
         """The newest cloud of a type."""
         try:
             with self._connection.use():
@@ -75,7 +78,7 @@ class TerrainServices:
             self._refused("terrain_cloud", error)
         return response
 
-    def heard(self, message: Any) -> None:
+    def heard(self, message: TmsdbGridFS) -> None:
         """A cloud from sensing; on the executor thread."""
         name = message.filename or message.type
         with self._changed:
@@ -100,7 +103,7 @@ class TerrainServices:
                 CLOUDS.labels("refused").inc()
                 self._refused(TOPIC, error)
 
-    def _store(self, name: str, message: Any) -> None:
+    def _store(self, name: str, message: TmsdbGridFS) -> None:
         if message.type != "dynamic":
             raise bad(f"terrain {name} of type {message.type!r} came over ROS: store files with `tms terrain add`")
         head = terrain_messages.cloud_head(message.pointcloud2)

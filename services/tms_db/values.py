@@ -5,6 +5,7 @@ from datetime import datetime, timezone
 from typing import Any
 
 from builtin_interfaces.msg import Time
+from rcl_interfaces.msg import Parameter
 
 from tms_db.records import RESERVED, Value, bad
 from tms_machine import values
@@ -12,7 +13,7 @@ from tms_machine import values
 LAST_SECOND = 2**31 - 1  # of builtin_interfaces/Time
 
 
-def to_parameters(document: Mapping[str, Any], hidden: Iterable[str] = RESERVED) -> tuple[list[Any], list[str]]:
+def to_parameters(document: Mapping[str, Any], hidden: Iterable[str] = RESERVED) -> tuple[list[Parameter], list[str]]:
     """The document's values as messages, and the names of those that cannot travel (nested, binary, dates)."""
     hidden = frozenset(hidden)
     shown = {name: value for name, value in document.items() if name not in hidden}
@@ -20,7 +21,7 @@ def to_parameters(document: Mapping[str, Any], hidden: Iterable[str] = RESERVED)
     return values.to_parameters({name: shown[name] for name in shown if name not in left_out}), left_out
 
 
-def from_parameters(where: str, parameters: Iterable[Any]) -> dict[str, Value]:
+def from_parameters(where: str, parameters: Iterable[Parameter]) -> dict[str, Value]:
     """Values by name.
 
     Raises:
@@ -37,7 +38,7 @@ def from_parameters(where: str, parameters: Iterable[Any]) -> dict[str, Value]:
     return found
 
 
-def to_time(moment: object) -> Any:
+def to_time(moment: object) -> Time:
     """A stored date as Time; zero for anything else."""
     if not isinstance(moment, datetime):
         return Time()
@@ -45,7 +46,7 @@ def to_time(moment: object) -> Any:
     return Time(sec=min(max(second, 0), LAST_SECOND), nanosec=moment.microsecond * 1000)
 
 
-def from_time(time: Any) -> datetime:
+def from_time(time: Time) -> datetime:
     """Time as a date; the store keeps milliseconds."""
     milliseconds = time.nanosec // 1_000_000
     return datetime.fromtimestamp(time.sec, timezone.utc).replace(microsecond=milliseconds * 1000)
