@@ -14,6 +14,7 @@ from tms_config import environment, state_folder
 from tms_config.config import Site, load_site
 from tms_config.names import check_sent
 from tms_reason.errors import ConfigError, TmsError
+from tms_ros.interface_types import M, Reply, Req, ServiceType
 
 if TYPE_CHECKING:
     from tms_ros.node import Ros
@@ -60,13 +61,16 @@ def machines(names: tuple[str, ...], every: bool) -> list[str]:
     return list(names)
 
 
-def call(node: "Ros", service_type: Any, name: str, *, seconds: float = CALL_LIMIT, **fields: Any) -> Any:
+def call(
+    node: "Ros", service_type: ServiceType[Req, Reply], name: str, *, seconds: float = CALL_LIMIT, **fields: Any
+) -> Reply:
     """Call a service of ours and raise what it reports.
 
     Raises:
         TmsError: the service refused, is not there, or did not answer; or a text would arrive cut.
     """
-    request = service_type.Request(**fields)
+    request_type: Any = service_type.Request
+    request: Req = request_type(**fields)
     check_sent(name, request)
     answer = node.call(service_type, name, request, seconds)
     if answer.error_code:
@@ -74,12 +78,12 @@ def call(node: "Ros", service_type: Any, name: str, *, seconds: float = CALL_LIM
     return answer
 
 
-def latched(node: "Ros", message_type: Any, topic: str) -> Any:
+def latched(node: "Ros", message_type: type[M], topic: str) -> M | None:
     """The state that a module keeps on a latched topic; None if it says nothing."""
-    heard: list[Any] = []
+    heard: list[M] = []
     there = threading.Event()
 
-    def hear(message: Any) -> None:
+    def hear(message: M) -> None:
         heard.append(message)
         there.set()
 
