@@ -26,7 +26,7 @@ RoleName = Literal["viewer", "operator", "admin"]
 RANK: dict[RoleName, int] = {"viewer": 0, "operator": 1, "admin": 2}
 HASHER = PasswordHasher(time_cost=2, memory_cost=19_456, parallelism=1)  # OWASP's least: a site PC has other work
 SESSION_IDLE = 12 * 3600.0  # s: one shift
-MOST_SESSIONS = 500
+MAX_SESSIONS = 500
 
 
 class User(Settings):
@@ -89,7 +89,7 @@ class Access:
         key = secrets.token_urlsafe(32)
         with self._lock:
             self._sessions[_digest(key)] = (person, self._clock())
-            while len(self._sessions) > MOST_SESSIONS:
+            while len(self._sessions) > MAX_SESSIONS:
                 self._sessions.popitem(last=False)
         return key, person
 
@@ -123,7 +123,7 @@ class Access:
         person = self._verified(name, user, user.token if user else None, secret, source)
         with self._lock:
             self._tokens[_digest(text)] = person
-            while len(self._tokens) > MOST_SESSIONS:
+            while len(self._tokens) > MAX_SESSIONS:
                 self._tokens.popitem(last=False)
         return person
 

@@ -26,7 +26,7 @@ from tms_ur.audit_chain import RUN, Entry, Note, Place, entry, highest, tied
 from tms_ur.audit_ledger import Ledger, LedgerFull, opened
 from tms_ur.strangers import Strangers
 
-MOST_NEW = 1000  # notes that wait for the disk
+MAX_NEW = 1000  # notes that wait for the disk
 BATCH = 100  # notes in one request to the database, which a crash may leave half done
 LOOK = 1.0  # s between looks at what strangers did
 RETRY = 1.0  # s
@@ -41,7 +41,7 @@ class Audit:
     def __init__(self, ros: Ros, file: Path) -> None:
         self._ros, self._file = ros, file
         self._strangers = Strangers()
-        self._new: queue.Queue[tuple[Note, threading.Event] | None] = queue.Queue(MOST_NEW)
+        self._new: queue.Queue[tuple[Note, threading.Event] | None] = queue.Queue(MAX_NEW)
         self._ledger: Ledger | None = None
         self._number = 0
         self._news, self._closing = threading.Event(), threading.Event()
@@ -109,7 +109,7 @@ class Audit:
     def _gather(self) -> list[tuple[Note, threading.Event]]:
         found: list[tuple[Note, threading.Event]] = []
         try:
-            while len(found) < MOST_NEW:
+            while len(found) < MAX_NEW:
                 one = self._new.get(timeout=LOOK) if not found else self._new.get_nowait()
                 if one is None:
                     break

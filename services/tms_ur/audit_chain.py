@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 RUN = "audit"  # the entries are the journal of this run
-MOST_FAULTS = 20  # that a report names
+MAX_FAULTS = 20  # that a report names
 LARGEST = 2**32 - 1  # number of an entry
 
 Value = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
@@ -145,5 +145,5 @@ class Verdict:
         self, number: int, what: Literal["missing", "changed", "out_of_order", "no_hash"], until: int = 0
     ) -> None:
         self.found += 1
-        if len(self.faults) < MOST_FAULTS:
+        if len(self.faults) < MAX_FAULTS:
             self.faults.append(Fault(number, what, until or number))

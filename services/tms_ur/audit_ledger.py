@@ -13,7 +13,7 @@ from pathlib import Path
 
 from tms_ur.audit_chain import Note, Place
 
-MOST_WAITING = 100_000  # notes; weeks of a database that is away
+MAX_WAITING = 100_000  # notes; weeks of a database that is away
 TABLES = """
 create table if not exists waiting (id integer primary key autoincrement, note text not null);
 create table if not exists place (one integer primary key check (one = 1), number integer not null, hash text not null);
@@ -48,7 +48,7 @@ class Ledger:
         """
         with self._lock, self._db:
             (waiting,) = self._db.execute("select count(*) from waiting").fetchone()
-            if waiting + len(notes) > MOST_WAITING:
+            if waiting + len(notes) > MAX_WAITING:
                 raise LedgerFull
             self._db.executemany("insert into waiting (note) values (?)", ((json.dumps(vars(one)),) for one in notes))
 

@@ -16,8 +16,8 @@ from prometheus_client import Counter as Metric
 
 from tms_ur.callers import caller
 
-MOST = 300  # connections once those that hang are cut
-MOST_OF_ONE = 64  # of them from one address
+MAX_CONNECTIONS = 300  # connections once those that hang are cut
+MAX_OF_ONE = 64  # of them from one address
 FULL = 600  # connections in the moment before; below FD_SETSIZE (1024), beyond which DDS may not open its files
 ROOM = 50  # that are cut at once when it is full
 GRACE = 0.5  # s that a connection has for its request before it may be cut for others
@@ -111,7 +111,7 @@ class Gate:
                 self._cut(one, reason)
         counts = Counter(one.caller for one in self._there.values())
         for one in self._oldest_hanging(GRACE):
-            if counts[one.caller] > MOST_OF_ONE or len(self._there) > MOST:
+            if counts[one.caller] > MAX_OF_ONE or len(self._there) > MAX_CONNECTIONS:
                 counts[one.caller] -= 1
                 self._cut(one, "crowd")
 

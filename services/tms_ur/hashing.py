@@ -11,8 +11,8 @@ from tms_reason.errors import TmsError
 from tms_ur.callers import caller
 from tms_ur.reasons import ManyLogins
 
-MOST_WAITING = 16  # each takes 19 MB and some 30 ms while its turn lasts
-MOST_OF_ONE = 2  # of them from one address, so that a guesser leaves room for others
+MAX_WAITING = 16  # each takes 19 MB and some 30 ms while its turn lasts
+MAX_OF_ONE = 2  # of them from one address, so that a guesser leaves room for others
 
 T = TypeVar("T")
 
@@ -32,7 +32,7 @@ class Hashing:
         """
         key = (stop, caller(address))
         others = sum(count for (lane, _), count in self._waiting.items() if lane is stop)
-        if others >= MOST_WAITING or self._waiting[key] >= MOST_OF_ONE:
+        if others >= MAX_WAITING or self._waiting[key] >= MAX_OF_ONE:
             raise TmsError(ManyLogins())
         self._waiting[key] += 1
         try:

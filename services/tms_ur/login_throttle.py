@@ -17,7 +17,7 @@ from tms_ur.callers import caller
 from tms_ur.reasons import Throttled
 
 FORGET = 900.0  # s after which wrong passwords count no more
-MOST_KEYS = 2000  # of each kind; the longest unused one goes
+MAX_KEYS = 2000  # of each kind; the longest unused one goes
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Failures:
     def add(self, key: str) -> None:
         count, last = self._counts.pop(key, (0, self._clock()))
         self._counts[key] = (1 if self._clock() - last > FORGET else count + 1, self._clock())
-        if len(self._counts) > MOST_KEYS:
+        if len(self._counts) > MAX_KEYS:
             self._counts.popitem(last=False)
 
     def clear(self, key: str) -> None:
@@ -101,7 +101,7 @@ class LoginThrottle:
                 self._addresses.take_back(address)
                 self._accounts.take_back(account)
             self._familiar[pair] = None
-            if len(self._familiar) > MOST_KEYS:
+            if len(self._familiar) > MAX_KEYS:
                 self._familiar.popitem(last=False)
 
 

@@ -115,10 +115,10 @@ def change(made: Any) -> Change:
     return Change(stamp=when(made.stamp), source=made.source, values={**from_parameters(made.values)})
 
 
-def sensing_input(told: Any, since: float) -> SensingInput:
-    """An input as `tms:sp` told of it `since` seconds ago."""
+def sensing_input(report: Any, since: float) -> SensingInput:
+    """An input as `tms:sp` reported it `since` seconds ago."""
     return SensingInput(
-        name=told.name, topic=told.topic, state=told.state, hz=round(told.hz, 2), hz_expected=told.hz_expected or None,
-        age=round(told.age + since, 1) if told.age >= 0 else None, accepted=told.accepted, refused=told.refused,
-        last_refusal=of_line(told.last_refusal), records=list(told.records),
+        name=report.name, topic=report.topic, state=report.state, hz=round(report.hz, 2),
+        hz_expected=report.hz_expected or None, age=round(report.age + since, 1) if report.age >= 0 else None,
+        accepted=report.accepted, refused=report.refused, last_refusal=of_line(report.last_refusal), records=list(report.records),
     )  # fmt: skip

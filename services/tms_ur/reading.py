@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
 UINT32 = 2**32 - 1
 PAGE = 1000  # events of one answer
-MOST_EVENTS = 200_000  # of an export
+MAX_EVENTS = 200_000  # of an export
 BEGINNING = 50  # events among which the shape of the tree is
 
 RunId = Annotated[str, Path(pattern=r"^[0-9A-Za-z_-]{1,64}$", description="id of a run")]
@@ -177,7 +177,7 @@ def _tasks(app: FastAPI, client: "SiteClient") -> None:
 
 def _all_events(client: "SiteClient", run_id: str) -> list[Event]:
     found: list[Event] = []
-    while len(found) < MOST_EVENTS:
+    while len(found) < MAX_EVENTS:
         page = client.events(run_id, found[-1].number if found else 0, PAGE)
         found += page
         if len(page) < PAGE:

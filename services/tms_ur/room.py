@@ -5,8 +5,8 @@ from collections import Counter
 
 from starlette.types import Scope
 
-MOST = 250  # requests that are answered at a time, streams among them
-MOST_OF_ONE = 100  # of them from one address; more than it may have that hang (connections.py)
+MAX_REQUESTS = 250  # requests that are answered at a time, streams among them
+MAX_OF_ONE = 100  # of them from one address; more than it may have that hang (connections.py)
 STOPS = re.compile(r"/api/(stop|runs/[^/]+/cancel)")
 
 
@@ -23,7 +23,7 @@ class Room:
 
     def enter(self, who: str) -> bool:
         """Whether one more may be answered; then it must be said when it has left."""
-        if self._open.total() >= MOST or self._open[who] >= MOST_OF_ONE:
+        if self._open.total() >= MAX_REQUESTS or self._open[who] >= MAX_OF_ONE:
             return False
         self._open[who] += 1
         return True

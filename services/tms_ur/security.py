@@ -39,8 +39,8 @@ if TYPE_CHECKING:
     from tms_ur.audit import Audit
 
 LOCAL_NAMES = frozenset({"localhost", "127.0.0.1", "::1"})
-MOST_BODY = 16 * 1024  # bytes of a command ...
-MOST_TASK = 6 * 2**20  # ... and of one that carries a tree
+MAX_BODY = 16 * 1024  # bytes of a command ...
+MAX_TASK = 6 * 2**20  # ... and of one that carries a tree
 OPEN = frozenset({"/api/session", "/api/login"})  # what is answered before a login
 COOKIE = "tms_session"
 LOCAL = Person("local", "admin")  # without users: whoever sits at this PC
@@ -122,7 +122,7 @@ class SecurityMiddleware:
             return Refusal(400, ForeignHost(host, self._bind))
         if scope["method"] != "POST":  # nothing is changed by any other one; the router refuses what it does not know
             return None
-        return self._command_refusal(headers, host, MOST_TASK if scope["path"].startswith("/api/tasks") else MOST_BODY)
+        return self._command_refusal(headers, host, MAX_TASK if scope["path"].startswith("/api/tasks") else MAX_BODY)
 
     async def _stranger(self, scope: Scope) -> Refusal | None:
         """Find out who asks, for the endpoints; everything of the API but the login needs somebody."""

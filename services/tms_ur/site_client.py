@@ -61,45 +61,45 @@ class SiteClient:
         self._machines = {site.border(name).base_frame: name for name in names}
         self._frames = Frames(self._machines)
         for name in names:
-            ros.subscribe(MachineState, f"/{name}/rc/state", self._machine_heard, latched=True)
+            ros.subscribe(MachineState, f"/{name}/rc/state", self._on_machine, latched=True)
             ros.prepare(StopMachine, f"/{name}/rc/stop")
-        ros.subscribe(RunStates, "/tms/runs", self._runs_heard, latched=True)
-        ros.subscribe(Processes, "/tms/host/processes", self._host_heard, depth=10, latched=True)
-        ros.subscribe(InputStates, "/tms/sp/inputs", self._inputs_heard, latched=True)
-        self._frame_news = ros.sample(TFMessage, "/tf", FRAMES_DEPTH)
+        ros.subscribe(RunStates, "/tms/runs", self._on_runs, latched=True)
+        ros.subscribe(Processes, "/tms/host/processes", self._on_processes, depth=10, latched=True)
+        ros.subscribe(InputStates, "/tms/sp/inputs", self._on_inputs, latched=True)
+        self._new_frames = ros.sample(TFMessage, "/tf", FRAMES_DEPTH)
         ros.subscribe(TFMessage, "/tf_static", self._frames.hear_fixed, depth=FRAMES_DEPTH, latched=True)
-        ros.beside(FRAMES_PERIOD, self._look_at_frames, "frames")
+        ros.beside(FRAMES_PERIOD, self._update_places, "frames")
 
     # topics
 
-    def _machine_heard(self, message: Any) -> None:
+    def _on_machine(self, message: Any) -> None:
         self.board.put_machine(messages.machine(message))
 
-    def _runs_heard(self, message: Any) -> None:
+    def _on_runs(self, message: Any) -> None:
         runs = [messages.active_run(run) for run in message.runs]
         self.board.put_runs(runs, [messages.question(asked) for asked in message.questions])
 
-    def _host_heard(self, message: Any) -> None:
+    def _on_processes(self, message: Any) -> None:
         self.board.put_host(Host(name=message.host, processes=[messages.process(row) for row in message.processes]))
 
-    def _inputs_heard(self, message: Any) -> None:
+    def _on_inputs(self, message: Any) -> None:
         self._inputs = (list(message.inputs), time.monotonic())
 
-    def _look_at_frames(self) -> None:
-        told = set[str]().union(*map(self._frames.hear, self._frame_news()))
-        for frame in told & self._machines.keys():
+    def _update_places(self) -> None:
+        moved = set[str]().union(*map(self._frames.hear, self._new_frames()))
+        for frame in moved & self._machines.keys():
             seen = self._frames.place(frame)
             if seen is not None:
                 place = Place(x=round(seen.x, 2), y=round(seen.y, 2), yaw=round(seen.yaw, 3))
                 self.board.put_place(self._machines[frame], place, max(0.0, time.monotonic() - seen.heard))
 
     def sensing(self) -> Sensing:
-        """The sensing inputs as `tms:sp` told of them last."""
-        told = self._inputs
-        if told is None:
+        """The sensing inputs as `tms:sp` reported them last."""
+        reported = self._inputs
+        if reported is None:
             return Sensing(age=None, inputs=[])
-        since = time.monotonic() - told[1]
-        return Sensing(age=round(since, 1), inputs=[messages.sensing_input(one, since) for one in told[0]])
+        since = time.monotonic() - reported[1]
+        return Sensing(age=round(since, 1), inputs=[messages.sensing_input(one, since) for one in reported[0]])
 
     # the database
 

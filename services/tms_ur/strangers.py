@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from tms_ur.callers import caller
 
 PERIOD = 60.0  # s
-MOST = 200  # addresses with kinds; those beyond are counted together
+MAX_KINDS = 200  # addresses with kinds; those beyond are counted together
 MANY = "many addresses"
 
 
@@ -36,7 +36,7 @@ class Strangers:
         """Count one; True if it is the first of its kind, to be told at once."""
         with self._lock:
             key = (caller(source), what, why)
-            if key not in self._open and len(self._open) >= MOST:
+            if key not in self._open and len(self._open) >= MAX_KINDS:
                 source, key = MANY, (MANY, what, why)
             found = self._open.get(key)
             if found is None:

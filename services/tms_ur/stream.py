@@ -17,7 +17,7 @@ from tms_reason.errors import TmsError
 from tms_ur.board import Board
 from tms_ur.reasons import TooManyConsoles
 
-MOST_CLIENTS = 50
+MAX_CLIENTS = 50
 SHORTEST = 0.1  # s between snapshots
 LONGEST = 0.7  # s without a change; the console calls the connection lost after 1.7
 SLOW_LIMIT = 5.0  # s to take one snapshot
@@ -69,8 +69,8 @@ class Stream:
         Raises:
             TmsError: there are too many.
         """
-        if len(self._clients) >= MOST_CLIENTS:
-            raise TmsError(TooManyConsoles(MOST_CLIENTS))
+        if len(self._clients) >= MAX_CLIENTS:
+            raise TmsError(TooManyConsoles(MAX_CLIENTS))
         client = Client()
         self._clients.add(client)
         CLIENTS.set(len(self._clients))

@@ -5,7 +5,7 @@ const SILENCE = 1700; // ms without a state: the server sends one every 0.7 s at
 const LIMIT = 60_000; // ms for an answer
 const RETRY = 1000; // ms between attempts to connect
 const PROLONG = 60_000; // ms; an open console is in use, so its session must not end
-const MOST_TREES = 100;
+const MAX_TREES = 100;
 let ahead = 0; // ms by which the site's clock is ahead of this device's
 
 /** The site's time in ms: ages are told by it, since a tablet's clock may be wrong. */
@@ -132,7 +132,7 @@ export function treeOf(runId) {
     return known.tree;
   }
   trees.set(runId, { tree: null, asked: performance.now() });
-  if (trees.size > MOST_TREES) {
+  if (trees.size > MAX_TREES) {
     trees.delete(trees.keys().next().value); // the oldest
   }
   ask(`/api/runs/${encodeURIComponent(runId)}/tree`).then(

@@ -255,7 +255,7 @@ def test_an_export_that_is_cut_says_so(
         return [Event(number=number, kind="node", node="", text=f"event {number}") for number in numbers]
 
     monkeypatch.setattr(site_client, "events", events)
-    monkeypatch.setattr("tms_ur.reading.MOST_EVENTS", 2000)
+    monkeypatch.setattr("tms_ur.reading.MAX_EVENTS", 2000)
     assert client.get("/api/runs/r-1/export").json()["events"][-1]["text"].startswith(last)
 
 

@@ -178,7 +178,7 @@ def test_put_waits_neither_for_disk_nor_database(
     (tmp_path / "audit.db").mkdir()
     notes = start()
     before = audit.LOST._value.get()
-    kept = [notes.put("mina", "192.0.2.1", "stop", f"stop {number}") for number in range(audit.MOST_NEW + 50)]
+    kept = [notes.put("mina", "192.0.2.1", "stop", f"stop {number}") for number in range(audit.MAX_NEW + 50)]
     assert not any(one.is_set() for one in kept)
     assert audit.LOST._value.get() > before
     until(lambda: "event=audit_disk_failed" in caplog.text)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from tms_ur.audit_chain import LARGEST, Entry, Note, Place, Verdict, highest, tied
-from tms_ur.strangers import MANY, MOST, Strangers
+from tms_ur.strangers import MANY, MAX_KINDS, Strangers
 
 CHAIN = tied(Place(0, ""), [Note(1000 * number, "stop", "zx200", f"mina {number}") for number in range(6)])
 
@@ -94,11 +94,11 @@ def test_strangers_need_no_more_memory_the_more_there_are() -> None:
     now = [0.0]
     strangers = Strangers(lambda: now[0])
     first = [strangers.add("-", f"192.0.{n // 250}.{n % 250}", "refused", "LOGIN") for n in range(5000)]
-    assert sum(first) == MOST + 1  # and one for all others together
+    assert sum(first) == MAX_KINDS + 1  # and one for all others together
     assert strangers.due() == []
     now[0] = 61.0
     (others,) = strangers.due()
-    assert (others.source, others.times) == (MANY, 5000 - MOST - 1)
+    assert (others.source, others.times) == (MANY, 5000 - MAX_KINDS - 1)
     now[0] = 122.0
     assert strangers.due() == []
     assert strangers.add("-", "192.0.2.1", "refused", "LOGIN")  # a minute without any: the next one is told at once

@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from tms_ur import connections
-from tms_ur.connections import FULL, GRACE, HEADERS, MOST, MOST_OF_ONE, Gate, Listener
-from tms_ur.room import MOST_OF_ONE as MOST_ASKED
+from tms_ur.connections import FULL, GRACE, HEADERS, MAX_CONNECTIONS, MAX_OF_ONE, Gate, Listener
+from tms_ur.room import MAX_OF_ONE as MAX_ASKED
 from tms_ur.room import Room
 from unit.tms_ur.fakes import FakeSiteClient, app
 
@@ -71,12 +71,12 @@ def there(socks: list[FakeSocket]) -> list[int]:
 def test_the_oldest_of_one_address_go(monkeypatch: pytest.MonkeyPatch) -> None:
     door = Door()
     other = door.come("192.0.2.2")
-    many = [door.come() for _ in range(MOST_OF_ONE + 10)]
+    many = [door.come() for _ in range(MAX_OF_ONE + 10)]
     door.gate.look()
-    assert len(there(many)) == MOST_OF_ONE + 10  # they get a moment for their request
+    assert len(there(many)) == MAX_OF_ONE + 10  # they get a moment for their request
     door.now = GRACE
     door.gate.look()
-    assert there(many) == list(range(10, MOST_OF_ONE + 10))
+    assert there(many) == list(range(10, MAX_OF_ONE + 10))
     assert there([other]) == [0]
 
 
@@ -92,10 +92,10 @@ def test_what_is_answered_stays() -> None:
 
 def test_all_together_are_limited() -> None:
     door = Door()
-    many = [door.come(f"198.51.{number // 200}.{number % 200}") for number in range(MOST + 100)]
+    many = [door.come(f"198.51.{number // 200}.{number % 200}") for number in range(MAX_CONNECTIONS + 100)]
     door.now = GRACE
     door.gate.look()
-    assert there(many) == list(range(100, MOST + 100))
+    assert there(many) == list(range(100, MAX_CONNECTIONS + 100))
 
 
 def test_a_new_one_gets_in_however_many_there_are() -> None:
@@ -154,7 +154,7 @@ def test_the_listener_lets_nobody_in_while_room_is_made(monkeypatch: pytest.Monk
 
 def test_the_room_counts_by_caller() -> None:
     room = Room()
-    assert [room.enter("a") for _ in range(MOST_ASKED + 1)] == [True] * MOST_ASKED + [False]
+    assert [room.enter("a") for _ in range(MAX_ASKED + 1)] == [True] * MAX_ASKED + [False]
     assert room.enter("b")
     room.leave("a")
     assert room.enter("a")
@@ -172,7 +172,7 @@ def test_a_stop_is_answered_when_no_other_request_is() -> None:
             await never.wait()
             return {"type": "http.disconnect"}
 
-        hanging = [asyncio.create_task(ask("POST", "/api/runs", hang)) for _ in range(MOST_ASKED)]
+        hanging = [asyncio.create_task(ask("POST", "/api/runs", hang)) for _ in range(MAX_ASKED)]
         await asyncio.sleep(0)
         while (await ask("GET", "/api/state", hang))[0] != 503:
             await asyncio.sleep(0)

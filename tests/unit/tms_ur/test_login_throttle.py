@@ -7,8 +7,8 @@ import pytest
 
 from tms_reason.errors import TmsError
 from tms_ur.callers import caller
-from tms_ur.hashing import MOST_OF_ONE, MOST_WAITING, Hashing
-from tms_ur.login_throttle import ACCOUNT, ADDRESS, MOST_KEYS, PAIR, LoginThrottle
+from tms_ur.hashing import MAX_OF_ONE, MAX_WAITING, Hashing
+from tms_ur.login_throttle import ACCOUNT, ADDRESS, MAX_KEYS, PAIR, LoginThrottle
 from tms_ur.reasons import Throttled
 
 
@@ -110,10 +110,10 @@ def test_tries_at_the_same_time_are_not_free(throttle: LoginThrottle) -> None:
 
 
 def test_memory_is_bounded(throttle: LoginThrottle) -> None:
-    for number in range(3 * MOST_KEYS):
+    for number in range(3 * MAX_KEYS):
         _try(throttle, "x" * 10_000 + str(number), f"2001:db8:{number:x}::1")
     for counts in (throttle._pairs, throttle._addresses, throttle._accounts):
-        assert len(counts._counts) <= MOST_KEYS
+        assert len(counts._counts) <= MAX_KEYS
         assert max(map(len, counts._counts)) < 200
 
 
@@ -134,8 +134,8 @@ def test_hashing_has_a_short_queue_with_room_for_everybody() -> None:
             done.append(await hashing.run(address, lambda: release.wait(30) and address, stop))
 
         async with anyio.create_task_group() as group:
-            for number in range(MOST_WAITING // MOST_OF_ONE):
-                for _ in range(MOST_OF_ONE):
+            for number in range(MAX_WAITING // MAX_OF_ONE):
+                for _ in range(MAX_OF_ONE):
                     group.start_soon(verify, f"192.0.2.{number}")
                 await anyio.wait_all_tasks_blocked()
                 if number == 0:
@@ -155,7 +155,7 @@ def test_hashing_has_a_short_queue_with_room_for_everybody() -> None:
                 await stop.wait()
             assert done == []
             release.set()
-        assert len(done) == MOST_WAITING
+        assert len(done) == MAX_WAITING
         await verify("192.0.2.0")
 
     anyio.run(story)

@@ -103,7 +103,7 @@ def test_at_most_ten_states_a_second() -> None:
 
 def test_clients_are_bounded_and_leave_their_place() -> None:
     async def scenario(site_client: FakeSiteClient, app: Any) -> None:
-        consoles = [Console(app) for _ in range(stream.MOST_CLIENTS)]
+        consoles = [Console(app) for _ in range(stream.MAX_CLIENTS)]
         for console in consoles:
             assert (await console.message())["status"] == 200
         late = Console(app)

@@ -7,7 +7,7 @@ import { TreeView } from "../treeview.js";
 import { zoomBar } from "./tree.js";
 
 const PAGE = 1000;
-const MOST = 20000; // events that a browser replays
+const MAX_EVENTS = 20000; // events that a browser replays
 const CODES = { IDLE: 0, RUNNING: 1, SUCCESS: 2, FAILURE: 3 };
 let view = null;
 let journal = [];
@@ -122,9 +122,9 @@ async function readJournal(id) {
     const after = found.length > 0 ? found[found.length - 1].number : 0;
     page = await ask(`/api/runs/${encodeURIComponent(id)}/events?after=${after}&limit=${PAGE}`);
     found.push(...page);
-  } while (page.length === PAGE && found.length <= MOST);
-  journal = found.slice(0, MOST);
-  cut = found.length > MOST;
+  } while (page.length === PAGE && found.length <= MAX_EVENTS);
+  journal = found.slice(0, MAX_EVENTS);
+  cut = found.length > MAX_EVENTS;
 }
 
 /** The tree as it was after event number `index` of the journal. */

@@ -5,9 +5,9 @@ import { ask } from "../server.js";
 import { t, when } from "../strings.js";
 import { showFindings } from "./run.js";
 
-const MOST_BYTES = 5_000_000; // as the server has it
-const MOST_LINES = 2000; // that are shown
-const MOST_WIDE = 500; // characters of a line
+const MAX_BYTES = 5_000_000; // as the server has it
+const MAX_LINES = 2000; // that are shown
+const MAX_WIDE = 500; // characters of a line
 let given = null; // { name, xml } of the chosen file
 let found = null; // its check
 let stored = [];
@@ -60,7 +60,7 @@ async function read() {
   say("");
   given = found = null;
   at("chosen").hidden = true;
-  if (file.size > MOST_BYTES) {
+  if (file.size > MAX_BYTES) {
     at("findings").replaceChildren(make("p", { className: "bad" }, t("too_large", { name: file.name })));
     return;
   }
@@ -82,8 +82,8 @@ async function checkAgain() {
   const bad = new Set(found?.errors.map((one) => one.line) ?? []);
   const warned = new Set(found?.warnings.map((one) => one.line) ?? []);
   at("store").disabled = found === null; // it cannot be read at all
-  at("source").replaceChildren(...given.xml.split("\n", MOST_LINES).map((line, index) => (
-    make("li", { className: bad.has(index + 1) ? "errors" : warned.has(index + 1) ? "warnings" : "" }, line.slice(0, MOST_WIDE) || " "))));
+  at("source").replaceChildren(...given.xml.split("\n", MAX_LINES).map((line, index) => (
+    make("li", { className: bad.has(index + 1) ? "errors" : warned.has(index + 1) ? "warnings" : "" }, line.slice(0, MAX_WIDE) || " "))));
   return showDifference();
 }
 
