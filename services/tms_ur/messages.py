@@ -120,5 +120,6 @@ def sensing_input(report: Any, since: float) -> SensingInput:
     return SensingInput(
         name=report.name, topic=report.topic, state=report.state, hz=round(report.hz, 2),
         hz_expected=report.hz_expected or None, age=round(report.age + since, 1) if report.age >= 0 else None,
-        accepted=report.accepted, refused=report.refused, last_refusal=of_line(report.last_refusal), records=list(report.records),
+        accepted=report.accepted, refused=report.refused,
+        last_refusal=of_line(report.last_refusal), records=list(report.records),
     )  # fmt: skip
