@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from contextlib import AbstractContextManager, ExitStack
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 from tms_msg_db.srv import GetTask
@@ -17,6 +17,9 @@ from tms_cli.words import say
 from tms_reason.errors import RosError, TaskError, TmsError
 from tms_ts import bt
 from tms_ts.bt.source import parse
+
+if TYPE_CHECKING:
+    from tms_ros.node import Ros
 
 PROGRESS = 2.0  # s between two lines that tell how far a folder is checked
 
@@ -63,13 +66,13 @@ class Scheduler(AbstractContextManager["Scheduler"]):
 
     def __init__(self) -> None:
         self._open = ExitStack()
-        self._node: Any = None
+        self._node: Ros | None = None
         self._absent = False
 
     def __exit__(self, *_: object) -> None:
         self._open.close()
 
-    def node(self) -> Any:
+    def node(self) -> "Ros":
         if self._node is None:
             self._node = self._open.enter_context(session.ros())
         return self._node

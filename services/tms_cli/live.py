@@ -8,11 +8,17 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import datetime, timezone
 from types import TracebackType
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import click
 
 from tms_cli.words import padded, say, state
+
+if TYPE_CHECKING:
+    from builtin_interfaces.msg import Time
+    from tms_msg_rc.msg import MachineState
+    from tms_msg_ts.action import ExecuteTask
+    from tms_msg_ts.msg import NodeStatus
 
 IDLE, RUNNING, SUCCESS, FAILURE = 0, 1, 2, 3  # tms_msg_ts/NodeStatus
 WORDS = {IDLE: "idle", RUNNING: "running", SUCCESS: "success", FAILURE: "failure"}
@@ -64,7 +70,7 @@ class View:
     leaf: str = ""
     reason: str = ""
     nodes: dict[int, Node] = field(default_factory=dict)
-    machines: dict[str, Any] = field(default_factory=dict)  # name -> tms_msg_rc/MachineState
+    machines: dict[str, "MachineState"] = field(default_factory=dict)  # by name
     over: bool = False
     begun: float = 0.0
 
@@ -75,7 +81,7 @@ class View:
     def elapsed(self) -> float:
         return self.clock() - self.begun
 
-    def heard(self, feedback: Any) -> list[Node]:
+    def heard(self, feedback: "ExecuteTask.Feedback") -> list[Node]:
         """Take a feedback; returns the changes of nodes in order."""
         self.run_id, self.state = feedback.run_id or self.run_id, feedback.state or self.state
         self.leaf, self.reason = feedback.running_leaf, feedback.reason
@@ -103,14 +109,14 @@ class View:
                     found.append(replace(node, status=SUCCESS))
         return found[::-1]  # children end before their parents
 
-    def _first(self, statuses: Sequence[Any]) -> None:
+    def _first(self, statuses: Sequence["NodeStatus"]) -> None:
         """The first message holds the whole tree: if it is the one we read ourselves, leaves get their goals."""
         same = [status.type for status in statuses] == [kind for kind, _ in self.goals]
         goals = [goal for _, goal in self.goals] if same else [""] * len(statuses)
         for status, goal in zip(statuses, goals, strict=True):
             self.nodes[status.uid] = Node(status.uid, status.parent, status.name, status.type, goal=goal)
 
-    def machine_heard(self, state: Any) -> None:
+    def machine_heard(self, state: "MachineState") -> None:
         """Take a tms_msg_rc/MachineState; called on ROS's thread."""
         self.machines[state.machine] = state
 
@@ -149,7 +155,7 @@ def _why(node: Node) -> str:
     return f"  — {node.reason}" if node.reason and node.status in (RUNNING, FAILURE) else ""
 
 
-def joint_lines(machines: Mapping[str, Any]) -> list[str]:
+def joint_lines(machines: Mapping[str, "MachineState"]) -> list[str]:
     """Joint angles of machines, in rad and degrees."""
     lines = []
     for name, machine in sorted(dict(machines).items()):
@@ -159,7 +165,7 @@ def joint_lines(machines: Mapping[str, Any]) -> list[str]:
     return lines
 
 
-def _posture(machine: Any) -> str:
+def _posture(machine: "MachineState") -> str:
     if machine.moving:
         return say("moving")
     return say("standing") if machine.ready else say("not ready: {reason}", reason=machine.reason)
@@ -252,20 +258,20 @@ def display(as_json: bool) -> Display:
     return Screen() if sys.stdout.isatty() else Lines()
 
 
-def moment(stamp: Any) -> datetime | None:
+def moment(stamp: "Time") -> datetime | None:
     """A builtin_interfaces/Time as local time; None for zero, which means never."""
     if not stamp.sec and not stamp.nanosec:
         return None
     return datetime.fromtimestamp(stamp.sec + stamp.nanosec / 1e9, timezone.utc).astimezone()
 
 
-def iso(stamp: Any) -> str | None:
+def iso(stamp: "Time") -> str | None:
     """The same for machines."""
     when = moment(stamp)
     return when.isoformat(timespec="milliseconds") if when else None
 
 
-def clock_time(stamp: Any) -> str:
+def clock_time(stamp: "Time") -> str:
     """The same for people."""
     when = moment(stamp)
     return when.strftime("%Y-%m-%d %H:%M:%S") if when else "-"

@@ -11,6 +11,8 @@ from tms_cli.words import say
 from tms_reason.errors import TmsError
 
 if TYPE_CHECKING:
+    from tms_msg_db.msg import Record as Message
+
     from tms_db.records import Record
     from tms_ros.node import Ros
 
@@ -20,8 +22,8 @@ def source() -> str:
     return f"cli {os.environ.get('USER', '')}".strip()
 
 
-def records(node: "Ros", model: str = "") -> list[Any]:
-    """Stored records (tms_msg_db/Record)."""
+def records(node: "Ros", model: str = "") -> "list[Message]":
+    """Stored records."""
     from tms_msg_db.srv import ListParameters
 
     return list(session.call(node, ListParameters, "/tms/db/list_parameters", model_name=model).records)
@@ -40,7 +42,7 @@ def write(
         node, SetParameter, "/tms/db/set_parameter", model_name=model, record_name=record, source=source(),
         values=to_parameters(values), expected=to_parameters(expected or {}), **more,
     )  # fmt: skip
-    return bool(answer.created)
+    return answer.created
 
 
 def load_file(node: "Ros", file: Path) -> dict[str, list[str]]:
@@ -68,7 +70,7 @@ def load_file(node: "Ros", file: Path) -> dict[str, list[str]]:
     return done
 
 
-def _says(stored: Any, wanted: "Record") -> bool:
+def _says(stored: "Message", wanted: "Record") -> bool:
     """Whether a stored record has all that a file says, types included."""
     from tms_machine.values import to_parameters
 
@@ -86,12 +88,12 @@ def summary(done: Mapping[str, list[str]]) -> str:
     return say("{created} created, {changed} changed, {unchanged} unchanged", **{k: len(v) for k, v in done.items()})
 
 
-def title(record: Any) -> str:
+def title(record: "Message") -> str:
     """MODEL/RECORD of a stored record."""
     return f"{record.model_name}/{record.record_name}"
 
 
-def as_dict(record: Any) -> dict[str, Any]:
+def as_dict(record: "Message") -> dict[str, Any]:
     """A record for --json."""
     from tms_machine.values import from_parameters
 
@@ -109,7 +111,7 @@ def as_dict(record: Any) -> dict[str, Any]:
     }
 
 
-def age(record: Any) -> str:
+def age(record: "Message") -> str:
     """How old a record's values are, in words."""
     updated = live.moment(record.updated_at)
     if updated is None:

@@ -11,6 +11,8 @@ from tms_cli.words import say
 from tms_reason.errors import RosError, TmsError
 
 if TYPE_CHECKING:
+    from tms_msg_ts.msg import Question
+
     from tms_ros.node import Ros
 
 
@@ -47,7 +49,7 @@ def command(reply: str | None, question: str | None, as_json: bool) -> None:
             click.echo(say("nobody asks anything"), err=True)
 
 
-def open_questions(node: "Ros") -> list[Any]:
+def open_questions(node: "Ros") -> "list[Question]":
     """Questions as the scheduler lists them.
 
     Raises:
@@ -61,7 +63,7 @@ def open_questions(node: "Ros") -> list[Any]:
     return list(heard.questions)
 
 
-def _only(asked: list[Any], question: str | None) -> Any:
+def _only(asked: "list[Question]", question: str | None) -> "Question":
     if len(asked) == 1:
         return asked[0]
     if not asked:
@@ -71,7 +73,7 @@ def _only(asked: list[Any], question: str | None) -> Any:
     raise TmsError(f"{len(asked)} questions are open: choose with --question ({names})", "AMBIGUOUS")
 
 
-def _as_dict(one: Any) -> dict[str, Any]:
+def _as_dict(one: "Question") -> dict[str, Any]:
     return {
         "id": one.id, "run_id": one.run_id, "node": one.node, "title": one.title, "text": one.text,
         "asked_at": live.iso(one.asked_at), "until": live.iso(one.until) if one.until.sec else None,

@@ -11,6 +11,8 @@ from tms_cli.words import Group, say
 from tms_reason.errors import TmsError
 
 if TYPE_CHECKING:
+    from tms_msg_db.msg import Event
+
     from tms_ros.node import Ros
     from tms_ur.audit_chain import Entry, Fault, Place, Verdict
 
@@ -100,7 +102,7 @@ def _verdict(node: "Ros", remembered: "Place | None") -> "Verdict":
     return verdict
 
 
-def _entry(event: Any) -> "Entry":
+def _entry(event: "Event") -> "Entry":
     from tms_machine.values import from_parameters
     from tms_ur.audit_chain import Note, entry
 
@@ -108,7 +110,7 @@ def _entry(event: Any) -> "Entry":
     return entry(event.number, Note(at, event.kind, event.node, event.text), from_parameters(event.values))
 
 
-def _page(node: "Ros", after: int, limit: int) -> list[Any]:
+def _page(node: "Ros", after: int, limit: int) -> "list[Event]":
     from tms_msg_db.srv import ListEvents
 
     try:
@@ -120,7 +122,7 @@ def _page(node: "Ros", after: int, limit: int) -> list[Any]:
         return []
 
 
-def _entries(node: "Ros", after: int) -> Iterator[Any]:
+def _entries(node: "Ros", after: int) -> Iterator["Event"]:
     while True:
         page = _page(node, after, PAGE)
         yield from page
@@ -129,7 +131,7 @@ def _entries(node: "Ros", after: int) -> Iterator[Any]:
         after = page[-1].number
 
 
-def _newest(node: "Ros", limit: int) -> list[Any]:
+def _newest(node: "Ros", limit: int) -> "list[Event]":
     """The last ones; entries from before there was a chain have gaps in their numbers, so it looks further back."""
     from tms_ur.audit_chain import highest
 
@@ -142,7 +144,7 @@ def _newest(node: "Ros", limit: int) -> list[Any]:
         back *= 8
 
 
-def _as_dict(event: Any) -> dict[str, Any]:
+def _as_dict(event: "Event") -> dict[str, Any]:
     one = _entry(event)
     return {
         "number": one.number, "stamp": live.iso(event.stamp), "what": event.kind, "target": event.node,
@@ -150,7 +152,7 @@ def _as_dict(event: Any) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _line(event: Any) -> str:
+def _line(event: "Event") -> str:
     times = _entry(event).note.times
     often = f"  ×{times}" if times > 1 else ""
     return f"{event.number:>10}  {live.clock_time(event.stamp)}  {event.kind:<14}  {event.node}  {event.text}{often}"

@@ -1,7 +1,7 @@
 """`tms cancel`: end a run; it has ended when its machines were seen to stand still."""
 
 import time
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -11,6 +11,8 @@ from tms_cli.words import say, state
 from tms_reason.errors import TmsError
 
 if TYPE_CHECKING:
+    from tms_msg_db.msg import Run
+
     from tms_ros.node import Ros
 
 END_LIMIT = 30.0  # s for the machines to stand still
@@ -31,10 +33,10 @@ def _which(node: "Ros", word: str) -> str:
     run = find_run(active if word == "last" else runs, word)
     if has_ended(run):
         raise TmsError(f"run {run.run_id} has ended already: {run.state}", "RUN_ENDED")
-    return str(run.run_id)
+    return run.run_id
 
 
-def _wait(node: "Ros", run_id: str) -> Any:
+def _wait(node: "Ros", run_id: str) -> "Run":
     deadline = time.monotonic() + END_LIMIT
     while time.monotonic() < deadline:
         run = recent(node, run_id)

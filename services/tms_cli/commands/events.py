@@ -10,6 +10,8 @@ from tms_cli import live, session
 from tms_cli.commands.runs import MOST, find_run, has_ended, history, recent
 
 if TYPE_CHECKING:
+    from tms_msg_db.msg import Event
+
     from tms_ros.node import Ros
 
 PAGE = 1000
@@ -17,8 +19,8 @@ LOOK = 0.5  # s between looks with --follow
 COLOURS = {"run": "cyan", "goal": "yellow", "stop": "red"}
 
 
-def journal(node: "Ros", run_id: str, after: int = 0) -> Iterator[Any]:
-    """All events of a run with a number above `after`, page by page (tms_msg_db/Event)."""
+def journal(node: "Ros", run_id: str, after: int = 0) -> Iterator["Event"]:
+    """All events of a run with a number above `after`, page by page."""
     from tms_msg_db.srv import ListEvents
 
     while True:
@@ -44,7 +46,7 @@ def _follow(node: "Ros", run_id: str) -> None:
         time.sleep(LOOK)
 
 
-def _as_dict(event: Any) -> dict[str, Any]:
+def _as_dict(event: "Event") -> dict[str, Any]:
     from tms_machine.values import from_parameters
 
     return {
@@ -58,7 +60,7 @@ def _as_dict(event: Any) -> dict[str, Any]:
     }
 
 
-def _line(event: Any) -> str:
+def _line(event: "Event") -> str:
     from tms_machine.values import from_parameters
 
     when = live.moment(event.stamp)

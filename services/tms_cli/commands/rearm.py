@@ -10,12 +10,15 @@ from tms_reason.errors import TmsError
 from tms_ros.fence import NO_NOTE
 
 if TYPE_CHECKING:
+    from tms_msg_rc.msg import MachineState
+    from tms_msg_rc.srv import Rearm
+
     from tms_ros.node import Ros
 
 ARMED = "NOT_STOPPED"  # code of a gateway whose machine is armed already
 
 
-def ask(node: "Ros", machine: str, token: str = "") -> Any:
+def ask(node: "Ros", machine: str, token: str = "") -> "Rearm.Response":
     """One step of re-arming.
 
     Raises:
@@ -26,7 +29,7 @@ def ask(node: "Ros", machine: str, token: str = "") -> Any:
     return session.call(node, Rearm, f"/{machine}/rearm", token=token)
 
 
-def never_armed(state: Any) -> bool:
+def never_armed(state: "MachineState | None") -> bool:
     """Whether a machine is stopped only because no note of this PC says how it was left."""
     return state is not None and state.latch == NO_NOTE
 

@@ -1,6 +1,6 @@
 """`tms resume`: go on with an interrupted run; leaves that have ended are not repeated."""
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -9,13 +9,15 @@ from tms_cli.commands.run import Runner, report
 from tms_cli.words import say
 
 if TYPE_CHECKING:
+    from tms_msg_ts.srv import ResumePlan
+
     from tms_ros.node import Ros
 
 SHOWN = 3  # of the leaves that are not repeated
 
 
-def plan(node: "Ros", run_id: str) -> Any:
-    """What resuming would do (tms_msg_ts/ResumePlan response).
+def plan(node: "Ros", run_id: str) -> "ResumePlan.Response":
+    """What resuming would do.
 
     Raises:
         TmsError: NO_RUN.
@@ -29,7 +31,7 @@ def _say(text: str) -> None:
     click.echo(text, err=True)
 
 
-def _explain(found: Any) -> None:
+def _explain(found: "ResumePlan.Response") -> None:
     _say(say("{count} leaves have ended and are not repeated", count=len(found.done)) + (":" if found.done else ""))
     if len(found.done) > SHOWN:
         _say("  ...")

@@ -4,7 +4,7 @@ import queue
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -14,6 +14,9 @@ from tms_cli.words import say, state, what_next
 from tms_reason.errors import NOT_STORED, TmsError
 
 if TYPE_CHECKING:
+    from tms_msg_db.msg import Run
+    from tms_msg_ts.msg import RunStates
+
     from tms_ros.node import Ros
 
 ACTION = "/tms/execute_task"
@@ -50,10 +53,10 @@ class Runner:
         from tms_msg_ts.msg import RunStates
 
         self._node = node
-        self._news: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        self._news: queue.SimpleQueue[ExecuteTask.Feedback] = queue.SimpleQueue()
         self._heard_at = self._listed_at = time.monotonic()
         self._asked_again = False
-        self._told: Any = None  # the run as the history has it, should its result never come
+        self._told: Run | None = None  # the run as the history has it, should its result never come
         self.view = _view(node, task_id)
         self._peer = node.peer(ExecuteTask, ACTION)
         self._peer.wait_ready(SERVER_LIMIT)
@@ -111,7 +114,7 @@ class Runner:
             )
             self._peer.cancel(self._call)
 
-    def _list_heard(self, message: Any) -> None:
+    def _list_heard(self, message: "RunStates") -> None:
         """The scheduler's active runs; called on ROS's thread."""
         now = time.monotonic()
         view = self.view
@@ -143,7 +146,7 @@ class Runner:
     def _over(self) -> bool:
         return self._call.outcome is not None or self._told is not None
 
-    def _in_history(self) -> Any:
+    def _in_history(self) -> "Run | None":
         """The run there, when it has ended."""
         try:
             run = recent(self._node, self.view.run_id)

@@ -10,30 +10,32 @@ from tms_cli.words import padded, say, state
 from tms_reason.errors import TmsError
 
 if TYPE_CHECKING:
+    from tms_msg_db.msg import Run
+
     from tms_ros.node import Ros
 
 RECENT = 100
 MOST = 10_000  # runs that the database lists at most
 
 
-def history(node: "Ros", limit: int) -> list[Any]:
-    """Runs as the database has them, newest first (tms_msg_db/Run)."""
+def history(node: "Ros", limit: int) -> "list[Run]":
+    """Runs as the database has them, newest first."""
     from tms_msg_db.srv import ListRuns
 
     return list(session.call(node, ListRuns, "/tms/db/list_runs", limit=limit).runs)
 
 
-def recent(node: "Ros", run_id: str) -> Any:
+def recent(node: "Ros", run_id: str) -> "Run | None":
     """A run among the newest ones as it stands now, None if it is not there."""
     return next((run for run in history(node, RECENT) if run.run_id == run_id), None)
 
 
-def has_ended(run: Any) -> bool:
+def has_ended(run: "Run") -> bool:
     """Whether a run of the history is over."""
     return live.moment(run.ended_at) is not None
 
 
-def find_run(runs: list[Any], word: str) -> Any:
+def find_run(runs: "list[Run]", word: str) -> "Run":
     """The run meant by an id, the beginning of one, or `last`.
 
     Raises:
@@ -51,7 +53,7 @@ def find_run(runs: list[Any], word: str) -> Any:
     return hits[0]
 
 
-def as_dict(run: Any) -> dict[str, Any]:
+def as_dict(run: "Run") -> dict[str, Any]:
     """A run for --json."""
     return {
         "run_id": run.run_id,
@@ -66,14 +68,14 @@ def as_dict(run: Any) -> dict[str, Any]:
     }
 
 
-def _seconds(run: Any) -> float:
+def _seconds(run: "Run") -> float:
     begun, ended = live.moment(run.started_at), live.moment(run.ended_at)
     if begun is None:
         return 0.0
     return (ended.timestamp() if ended else time.time()) - begun.timestamp()
 
 
-def line(run: Any) -> str:
+def line(run: "Run") -> str:
     """A run as one line of the table."""
     colour = live.OUTCOME_COLOURS.get(run.state, "red")
     word = click.style(padded(state(run.state), 16), fg=colour)

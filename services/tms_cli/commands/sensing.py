@@ -1,7 +1,7 @@
 """`tms sensing`: how the sensing inputs are; `tms sensing replay` plays a recording into them."""
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -9,6 +9,9 @@ from tms_cli import session
 from tms_cli.replay.verb import replay
 from tms_cli.words import Group, say
 from tms_reason.errors import TmsError
+
+if TYPE_CHECKING:
+    from tms_msg_sp.msg import InputState
 
 
 @click.group(cls=Group, invoke_without_command=True)
@@ -47,7 +50,7 @@ def command(ctx: click.Context, as_json: bool) -> None:
 command.add_command(replay)
 
 
-def _inputs() -> list[Any]:
+def _inputs() -> "list[InputState]":
     """The inputs as tms:sp tells of them.
 
     Raises:
@@ -63,7 +66,7 @@ def _inputs() -> list[Any]:
     return list(heard.inputs)
 
 
-def _row(one: Any) -> dict[str, Any]:
+def _row(one: "InputState") -> dict[str, Any]:
     return {
         "name": one.name,
         "topic": one.topic,

@@ -10,14 +10,16 @@ from tms_cli.words import say
 from tms_reason.errors import ConfigError, RosError
 
 if TYPE_CHECKING:
+    from tms_msg_rc.msg import StopReceipt
+
     from tms_ros.node import Ros
 
 ANSWER_LIMIT = 13.0  # s; a gateway gives itself 10 s to see the machine stand
 CAUSE = "software stop by an operator"
 
 
-def stop(node: "Ros", machine: str) -> Any:
-    """The gateway's receipt (tms_msg_rc/StopReceipt), or one that says why there is none."""
+def stop(node: "Ros", machine: str) -> "StopReceipt":
+    """The gateway's receipt, or one that says why there is none."""
     from tms_msg_rc.msg import StopReceipt
     from tms_msg_rc.srv import StopMachine
 
@@ -28,13 +30,13 @@ def stop(node: "Ros", machine: str) -> Any:
         return StopReceipt(machine=machine, confirmed=False, cause=CAUSE, detail=str(error))
 
 
-def stop_all(node: "Ros", machines: list[str]) -> list[Any]:
+def stop_all(node: "Ros", machines: list[str]) -> "list[StopReceipt]":
     """All machines at the same time, each by the shortest way: straight to its gateway."""
     with ThreadPoolExecutor(max(1, len(machines)), "stop") as pool:
         return list(pool.map(lambda machine: stop(node, machine), machines))
 
 
-def as_dict(receipt: Any) -> dict[str, Any]:
+def as_dict(receipt: "StopReceipt") -> dict[str, Any]:
     """A receipt for --json."""
     return {
         "machine": receipt.machine,
@@ -51,7 +53,7 @@ def as_dict(receipt: Any) -> dict[str, Any]:
     }
 
 
-def _line(receipt: Any) -> str:
+def _line(receipt: "StopReceipt") -> str:
     if receipt.confirmed:
         return say(
             "{machine}: stands, after {seconds:.2f} s and {angle:.3f} rad, {way:.2f} m; latched",

@@ -1,13 +1,19 @@
 """`tms task`: tasks (behaviour trees) in the database."""
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from tms_cli import live, session
 from tms_cli.words import Group, say
 from tms_reason.errors import TaskError, TmsError
+
+if TYPE_CHECKING:
+    from tms_msg_db.msg import Task
+    from tms_msg_db.srv import AddTask
+
+    from tms_ros.node import Ros
 
 task_id_argument = click.argument("task_id", type=click.IntRange(1), metavar="ID")
 
@@ -61,14 +67,14 @@ def add(file: str, description: str, as_json: bool) -> None:
         click.echo(stored_line(answer))
 
 
-def stored_line(answer: Any) -> str:
+def stored_line(answer: "AddTask.Response") -> str:
     """What storing a task did."""
     if answer.already_stored:
         return say("already stored as task {task}", task=answer.task_id)
     return say("stored as task {task}: run it with `tms run {task} --wait`", task=answer.task_id)
 
 
-def store(node: Any, file: str, description: str) -> Any:
+def store(node: "Ros", file: str, description: str) -> "AddTask.Response":
     """Store a file as a task; the answer of AddTask.
 
     Raises:
@@ -182,7 +188,7 @@ def check(ctx: click.Context, what: str, recursive: bool, as_json: bool) -> None
     ctx.exit(0 if right else 1)
 
 
-def _as_dict(task: Any) -> dict[str, Any]:
+def _as_dict(task: "Task") -> dict[str, Any]:
     return {
         "task_id": task.task_id,
         "model_name": task.model_name,

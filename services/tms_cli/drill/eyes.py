@@ -3,7 +3,6 @@
 import threading
 import time
 from collections.abc import Callable
-from typing import Any
 
 from action_msgs.msg import GoalStatusArray
 from geometry_msgs.msg import Twist
@@ -53,7 +52,7 @@ class Eyes:
                 self._forgotten = samples[-1].at
                 self._record = self._record.since(self._forgotten - KEPT)
 
-    def _on_receipt(self, message: Any) -> None:
+    def _on_receipt(self, message: StopReceipt) -> None:
         now = time.time()
         receipt = Receipt(
             time_of(message.stamp), message.seconds, message.confirmed, message.cause, message.detail, now
@@ -63,15 +62,15 @@ class Eyes:
             if not same and receipt.at > now - KEPT:
                 self._record.receipts.append(receipt)
 
-    def _on_state(self, message: Any) -> None:
+    def _on_state(self, message: MachineState) -> None:
         with self._lock:
             self._record.states.append(State(time.time(), message.latch, message.hold))
 
-    def _on_velocity(self, message: Any) -> None:
+    def _on_velocity(self, message: Twist) -> None:
         if message.linear.x == 0.0 and message.angular.z == 0.0:
             self._commanded()
 
-    def _on_emergency(self, message: Any) -> None:
+    def _on_emergency(self, message: Bool) -> None:
         if message.data:
             self._commanded()
 
@@ -79,7 +78,7 @@ class Eyes:
         with self._lock:
             self._record.commands.append(time.time())
 
-    def _on_status(self, message: Any) -> None:
+    def _on_status(self, message: GoalStatusArray) -> None:
         now = time.time()
         with self._lock:
             for one in message.status_list:

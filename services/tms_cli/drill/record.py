@@ -4,9 +4,13 @@ import math
 from bisect import bisect_left
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING
 
 from tms_config.models import Still
+
+if TYPE_CHECKING:
+    from builtin_interfaces.msg import Time
+    from sensor_msgs.msg import JointState
 
 
 @dataclass(frozen=True)
@@ -79,7 +83,7 @@ class Recording:
         return min((goal.began for goal in self.goals.values() if goal.began > at), default=math.inf)
 
 
-def sample_of(message: Any, still: Still) -> Sample:
+def sample_of(message: "JointState", still: Still) -> Sample:
     """Of the stand-in's sensor_msgs/JointState: joints, then x, y and yaw of the tracks."""
     places = dict(zip(message.name, message.position, strict=True))
     speeds = dict(zip(message.name, message.velocity, strict=True))
@@ -90,6 +94,6 @@ def sample_of(message: Any, still: Still) -> Sample:
     return Sample(time_of(message.header.stamp), max(joints, way, turn), {**places, "heading": yaw}, (x, y))
 
 
-def time_of(stamp: Any) -> float:
+def time_of(stamp: "Time") -> float:
     """s since 1970."""
     return float(stamp.sec + stamp.nanosec * 1e-9)

@@ -2,7 +2,6 @@
 
 import json
 import time
-from typing import Any
 
 from std_msgs.msg import String
 from tms_msg_db.srv import AddTask
@@ -116,9 +115,9 @@ class Work:
             run = recent(self._node, self._run)
         except TmsError:
             return ""  # the database may be what was hit
-        return str(run.state) if run is not None and has_ended(run) else ""
+        return run.state if run is not None and has_ended(run) else ""
 
-    def _heard(self, feedback: Any) -> None:
+    def _heard(self, feedback: ExecuteTask.Feedback) -> None:
         self._run = feedback.run_id or self._run
         self.subtask = self._subtasks.get(feedback.running_leaf, self.subtask)
 
