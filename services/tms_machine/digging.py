@@ -1,7 +1,7 @@
 """Capability of excavators: goals for the arm, planned by the machine's TMS_RP."""
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Protocol, TypeVar
 
 from geometry_msgs.msg import Point, Pose
 from tms_msg_rp.action import TmsRpZx200ChangePose, TmsRpZx200ExcavateSimple, TmsRpZx200ReleaseSimple
@@ -9,6 +9,16 @@ from tms_msg_rp.msg import TmsRpZx200PositionWithAngle
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from tms_machine.acting import Acting, Progress
+from tms_ros.interface_types import ActionType, G, Message, R
+
+
+class Feedback(Message, Protocol):
+    """Of the planner's actions."""
+
+    state: str
+
+
+Telling = TypeVar("Telling", bound=Feedback)
 
 
 class Digging(Acting):
@@ -54,7 +64,9 @@ class Digging(Acting):
         goal = TmsRpZx200ReleaseSimple.Goal(target_angle=target_angle)
         self._plan(TmsRpZx200ReleaseSimple, "release_simple", goal, progress, False)
 
-    def _plan(self, action_type: Any, what: str, goal: Any, progress: Progress, plan_only: bool) -> None:
+    def _plan(
+        self, action_type: ActionType[G, R, Telling], what: str, goal: G, progress: Progress, plan_only: bool
+    ) -> None:
         action = f"tms_rp_{self._model_name}_{what}" + ("_plan" if plan_only else "")
         self.act(action_type, action, goal, lambda feedback: progress(feedback.state))
 
