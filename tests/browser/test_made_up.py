@@ -14,6 +14,9 @@ from playwright.sync_api import Page, expect
 
 from conftest import site_data
 from tms_config.config import load_site
+from tms_reason.errors import TmsError
+from tms_reason.reason import Reason
+from tms_reason.remedies import REARM, RESUME
 from tms_ur.access import Access
 from tms_ur.api import create_app
 from tms_ur.board import Board
@@ -21,7 +24,7 @@ from tms_ur.connections import Listener
 from tms_ur.data_models import Record
 from tms_ur.models import ActiveRun, Event, Host, Machine, Place, Process, Question, Rearmed, Run
 from tms_ur.node import Server
-from tms_ur.reason_view import of_line
+from tms_ur.reason_view import of_line, view
 from unit.tms_ur.fakes import NOON, FakeAudit, FakeSiteClient
 
 pytestmark = pytest.mark.browser
@@ -65,6 +68,15 @@ class Yard(FakeSiteClient):
         return [Record(model_name="zx200", record_name="pose", **facts)]
 
 
+class MadeUpLatch(Reason, text="{machine} is made to wait", action=REARM, details="seen on {topic}"):
+    machine: str
+    topic: str
+
+
+class MadeUpInterruption(Reason, text="run {run} was interrupted", action=RESUME):
+    run: str
+
+
 @pytest.fixture
 def yard() -> Yard:
     yard = Yard()
@@ -103,6 +115,29 @@ def test_one_yes_arms_one_machine(page: Page, address: str, yard: Yard) -> None:
     page.locator("#dialog_yes").click()
     expect(page.locator("#message")).to_have_text("ic120 is armed.")
     assert [call[1] for call in yard.calls if call[0] == "rearm" and call[2]] == ["ic120"]
+
+
+def test_a_reason_has_what_helps_and_its_details(page: Page, address: str, yard: Yard) -> None:
+    """In the language of the page, and the command where the console has no button."""
+    yard.slow.set()
+    latched = MadeUpLatch("zx200", "/zx200/rc/state")
+    yard.board.put_runs([RUN.model_copy(update={"reason": view(latched)})])
+    page.goto(f"{address}/#run")
+    row = page.locator("#list_active [data-part=reason]")
+    expect(row).to_contain_text("zx200 is made to wait")
+    expect(row.locator("details span")).to_be_hidden()
+    row.locator("summary").click()
+    expect(row.locator("details span")).to_have_text("seen on /zx200/rc/state")
+    row.get_by_role("button", name="Look at the machine, then re-arm it").click()
+    expect(page.locator("#dialog_text")).to_contain_text("zx200 was stopped")
+    page.locator("#dialog_yes").click()
+    expect(page.locator("#message")).to_have_text("zx200 is armed.")
+    page.locator("#language").click()
+    expect(row.locator("summary")).to_have_text("詳細")
+    expect(row.get_by_role("button", name="機械を確認してから")).to_be_visible()
+    yard.error = TmsError(MadeUpInterruption("r-1"))
+    page.locator("#list_tasks button").first.click()
+    expect(page.locator("#message code")).to_have_text("tms resume r-1")
 
 
 def test_a_silent_scheduler_is_told_on_panel_and_tree(page: Page, address: str, yard: Yard) -> None:
