@@ -13,6 +13,7 @@ DOCKER ?= $(firstword $(wildcard /usr/bin/docker) docker)
 COMPOSE ?= $(if $(shell $(DOCKER) compose version 2>/dev/null),$(DOCKER) compose,docker-compose)
 # The one that is built here: the next `make` must not undo `make interfaces NAV2_DISTRO=humble`.
 NAV2_DISTRO ?= $(or $(patsubst .interfaces-%,%,$(notdir $(firstword $(wildcard $(VENV)/.interfaces-*)))),jazzy)
+LOCKS := deploy/requirements
 LOCK ?= requirements-dev.lock
 export NAV2_DISTRO
 UV := $(VENV)/bin/uv
@@ -21,7 +22,7 @@ TMS := $(VENV)/bin/tms $(if $(SITE),--site $(SITE))
 # A sourced ROS installation would mix its libraries into the venv's.
 unexport PYTHONPATH LD_LIBRARY_PATH AMENT_PREFIX_PATH CMAKE_PREFIX_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE
 .DEFAULT_GOAL := help
-.PHONY: help setup interfaces demo test up down status logs restart lint conformance bench soak drill nightly test-docker system clean
+.PHONY: help setup interfaces locks demo test up down status logs restart lint conformance bench soak drill nightly test-docker system clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -35,25 +36,34 @@ $(UV): | system
 	$(PYTHON) -m venv $(VENV)
 	$(VENV)/bin/pip install -q --disable-pip-version-check uv==0.13.8
 
-$(VENV)/.requirements: requirements.lock requirements-dev.lock | $(UV)
-	$(UV) pip install -q -p $(PY) --require-hashes -r $(LOCK)
+$(VENV)/.requirements: $(LOCKS)/requirements.lock $(LOCKS)/requirements-dev.lock | $(UV)
+	$(UV) pip install -q -p $(PY) --require-hashes -r $(LOCKS)/$(LOCK)
 	@touch $@
 
-$(VENV)-store/.ready: requirements-store.lock | $(UV)
+$(VENV)-store/.ready: $(LOCKS)/requirements-store.lock | $(UV)
 	$(PYTHON) -m venv $(VENV)-store
-	$(UV) pip install -q -p $(VENV)-store/bin/python --require-hashes -r requirements-store.lock
+	$(UV) pip install -q -p $(VENV)-store/bin/python --require-hashes -r $(LOCKS)/requirements-store.lock
 	@touch $@
 
-$(VENV)/.interfaces-$(NAV2_DISTRO): $(VENV)/.requirements build.lock interfaces.txt $(shell find services/interfaces -type f)
+$(VENV)/.interfaces-$(NAV2_DISTRO): $(VENV)/.requirements $(LOCKS)/build.lock $(LOCKS)/interfaces.txt $(shell find services/interfaces -type f)
 	@echo "building the ROS interface packages (about a minute)"
-	$(UV) pip install -q -p $(PY) --no-deps --build-constraints build.lock -r interfaces.txt
+	$(UV) pip install -q -p $(PY) --no-deps --build-constraints $(LOCKS)/build.lock -r $(LOCKS)/interfaces.txt
 	$(PY) services/interfaces/_wheel/stubs.py
 	@rm -f $(VENV)/.interfaces-*
 	@touch $@
 
 $(VENV)/.ready: $(VENV)/.interfaces-$(NAV2_DISTRO) pyproject.toml
-	$(UV) pip install -q -p $(PY) --no-deps --build-constraints build.lock -e .
+	$(UV) pip install -q -p $(PY) --no-deps --build-constraints $(LOCKS)/build.lock -e .
 	@touch $@
+
+# uv keeps the versions that a lock has already.
+COMPILE = $(UV) --directory $(LOCKS) pip compile -q --universal --python-version 3.10 --custom-compile-command "make locks" \
+  $(addprefix --upgrade-package=,$(UPGRADE))
+locks: | $(UV) ## lock the requirements of deploy/requirements/*.in anew (UPGRADE="name other": newest of these)
+	$(COMPILE) --generate-hashes requirements.in -o requirements.lock
+	$(COMPILE) --generate-hashes requirements-dev.in -o requirements-dev.lock
+	$(COMPILE) --generate-hashes requirements-store.in -o requirements-store.lock
+	$(COMPILE) build.in -o build.lock
 
 interfaces: $(VENV)/.interfaces-$(NAV2_DISTRO) ## build the .msg/.srv/.action packages (NAV2_DISTRO=humble for Humble machines)
 
