@@ -21,6 +21,7 @@ from tms_msg_db.srv import ListEvents, WriteJournal
 
 from tms_machine.values import from_parameters, to_parameters
 from tms_reason.errors import TmsError
+from tms_ros.interface_types import Reply, Req, ServiceType
 from tms_ros.node import Ros
 from tms_ur.audit_chain import RUN, Entry, Note, Place, entry, highest, tied
 from tms_ur.audit_ledger import Ledger, LedgerFull, opened
@@ -191,8 +192,10 @@ class Audit:
             return []
         return list(map(of_event, found.events))
 
-    def _ask(self, service_type: Any, name: str, **fields: Any) -> Any:
-        answer = self._ros.call(service_type, name, service_type.Request(**fields))
+    def _ask(self, service_type: ServiceType[Req, Reply], name: str, **fields: Any) -> Reply:
+        request_type: Any = service_type.Request
+        request: Req = request_type(**fields)
+        answer = self._ros.call(service_type, name, request)
         if answer.error_code:
             raise TmsError(answer.error_msg, answer.error_code)
         return answer
@@ -205,8 +208,8 @@ def _event(one: Entry) -> Event:
                  text=one.note.text, values=to_parameters(one.values()))  # fmt: skip
 
 
-def of_event(event: Any) -> Entry:
-    """An entry from its message (tms_msg_db/Event)."""
+def of_event(event: Event) -> Entry:
+    """An entry from its message."""
     at = event.stamp.sec * 1000 + event.stamp.nanosec // 1_000_000
     return entry(event.number, Note(at, event.kind, event.node, event.text), from_parameters(event.values))
 

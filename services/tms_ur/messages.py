@@ -3,7 +3,13 @@
 from datetime import datetime, timezone
 from typing import Any
 
+from builtin_interfaces.msg import Time
 from rcl_interfaces.msg import ParameterType
+from tms_msg_db import msg as db
+from tms_msg_host import msg as host
+from tms_msg_rc import msg as rc
+from tms_msg_sp import msg as sp
+from tms_msg_ts import msg as ts
 
 from tms_machine.values import from_parameters
 from tms_reason.reason import Foreign
@@ -22,14 +28,14 @@ TYPES = {
 }  # fmt: skip
 
 
-def when(stamp: Any) -> datetime | None:
-    """A builtin_interfaces/Time; None for zero, which means never."""
+def when(stamp: Time) -> datetime | None:
+    """As a date; None for zero, which means never."""
     if not stamp.sec and not stamp.nanosec:
         return None
     return datetime.fromtimestamp(stamp.sec + stamp.nanosec * 1e-9, timezone.utc)
 
 
-def machine(message: Any) -> Machine:
+def machine(message: rc.MachineState) -> Machine:
     joints = zip(message.joint_names, message.positions, message.velocities, strict=False)
     state: Shown = "not_ready" if not message.ready else "moving" if message.moving else "standing"
     return Machine(
@@ -40,21 +46,21 @@ def machine(message: Any) -> Machine:
     )  # fmt: skip
 
 
-def active_run(run: Any) -> ActiveRun:
+def active_run(run: ts.RunState) -> ActiveRun:
     return ActiveRun(
         run_id=run.run_id, task_id=run.task_id, state=run.state, machines=list(run.machines),
         reason=of_line(run.reason), started_at=when(run.started_at), leaf=run.leaf, nodes="".join(map(str, run.nodes)),
     )  # fmt: skip
 
 
-def question(asked: Any) -> Question:
+def question(asked: ts.Question) -> Question:
     return Question(
         id=asked.id, run_id=asked.run_id, node=asked.node, title=asked.title, text=asked.text,
         asked_at=when(asked.asked_at), until=when(asked.until),
     )  # fmt: skip
 
 
-def receipt(made: Any) -> Receipt:
+def receipt(made: rc.StopReceipt) -> Receipt:
     return Receipt(
         machine=made.machine, confirmed=made.confirmed, seconds=round(made.seconds, 3),
         travel_joint=made.travel_joint, travel_rad=round(made.travel_rad, 4), travel_m=round(made.travel_m, 3),
@@ -62,7 +68,7 @@ def receipt(made: Any) -> Receipt:
     )  # fmt: skip
 
 
-def process(row: Any) -> Process:
+def process(row: host.Process) -> Process:
     return Process(
         name=row.name,
         state=row.state,
@@ -75,12 +81,12 @@ def process(row: Any) -> Process:
     )
 
 
-def task(task: Any) -> dict[str, Any]:
+def task(task: db.Task) -> dict[str, Any]:
     return {"id": task.task_id, "model_name": task.model_name, "description": task.description,
             "added_at": when(task.added_at)}  # fmt: skip
 
 
-def run(run: Any) -> Run:
+def run(run: db.Run) -> Run:
     return Run(
         run_id=run.run_id, task_id=run.task_id, description=run.description, state=run.state,
         reason=of_line(run.reason), machines=list(run.machines), started_at=when(run.started_at),
@@ -88,7 +94,7 @@ def run(run: Any) -> Run:
     )  # fmt: skip
 
 
-def event(event: Any) -> Event:
+def event(event: db.Event) -> Event:
     return Event(
         number=event.number, stamp=when(event.stamp), kind=event.kind, node=event.node, text=event.text,
         reason=_reason_in(event.text), values={**from_parameters(event.values)},
@@ -101,7 +107,7 @@ def _reason_in(text: str) -> ReasonView | None:
     return None if shown is None or shown.code == Foreign.code else shown
 
 
-def record(record: Any) -> Record:
+def record(record: db.Record) -> Record:
     return Record(
         model_name=record.model_name, record_name=record.record_name, type=record.type,
         description=record.description, source=record.source, updated_at=when(record.updated_at),
@@ -111,11 +117,11 @@ def record(record: Any) -> Record:
     )  # fmt: skip
 
 
-def change(made: Any) -> Change:
+def change(made: db.PastValues) -> Change:
     return Change(stamp=when(made.stamp), source=made.source, values={**from_parameters(made.values)})
 
 
-def sensing_input(report: Any, since: float) -> SensingInput:
+def sensing_input(report: sp.InputState, since: float) -> SensingInput:
     """An input as `tms:sp` reported it `since` seconds ago."""
     return SensingInput(
         name=report.name, topic=report.topic, state=report.state, hz=round(report.hz, 2),

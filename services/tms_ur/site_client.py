@@ -19,7 +19,7 @@ from tms_msg_host.msg import Processes
 from tms_msg_host.srv import ControlProcess, ReadLog
 from tms_msg_rc.msg import MachineState
 from tms_msg_rc.srv import Rearm, StopMachine
-from tms_msg_sp.msg import InputStates
+from tms_msg_sp.msg import InputState, InputStates
 from tms_msg_ts.action import ExecuteTask
 from tms_msg_ts.msg import RunStates
 from tms_msg_ts.srv import AnswerQuestion, CancelRun, CheckTask
@@ -32,6 +32,8 @@ from tms_machine.values import to_parameters
 from tms_reason import wire
 from tms_reason.errors import RosError, TmsError
 from tms_reason.reason import Foreign, Reason
+from tms_ros.client import Call
+from tms_ros.interface_types import Coded, Reply, Req, ServiceType
 from tms_ros.node import Ros
 from tms_ur import messages
 from tms_ur.board import Board
@@ -56,7 +58,7 @@ class SiteClient:
         names = list(site.file.machines)
         self._ros = ros
         self.board = Board(names)
-        self._inputs: tuple[list[Any], float] | None = None  # read and replaced as one
+        self._inputs: tuple[list[InputState], float] | None = None  # read and replaced as one
         self._scheduler = ros.peer(ExecuteTask, "/tms/execute_task")
         self._machines = {site.border(name).base_frame: name for name in names}
         self._frames = Frames(self._machines)
@@ -72,17 +74,17 @@ class SiteClient:
 
     # topics
 
-    def _on_machine(self, message: Any) -> None:
+    def _on_machine(self, message: MachineState) -> None:
         self.board.put_machine(messages.machine(message))
 
-    def _on_runs(self, message: Any) -> None:
+    def _on_runs(self, message: RunStates) -> None:
         runs = [messages.active_run(run) for run in message.runs]
         self.board.put_runs(runs, [messages.question(asked) for asked in message.questions])
 
-    def _on_processes(self, message: Any) -> None:
+    def _on_processes(self, message: Processes) -> None:
         self.board.put_host(Host(name=message.host, processes=[messages.process(row) for row in message.processes]))
 
-    def _on_inputs(self, message: Any) -> None:
+    def _on_inputs(self, message: InputStates) -> None:
         self._inputs = (list(message.inputs), time.monotonic())
 
     def _update_places(self) -> None:
@@ -234,7 +236,7 @@ class SiteClient:
         """The end of a process's log."""
         request = ReadLog.Request(name=process, bytes=size)
         answer = self._ros.call(ReadLog, f"/tms/host/{self._host_of(process)}/log", request, CALL_LIMIT)
-        return str(_checked(answer).text)
+        return _checked(answer).text
 
     def _host_of(self, process: str) -> str:
         host = self.board.host_of(process)
@@ -242,23 +244,24 @@ class SiteClient:
             raise TmsError(UnknownProcess(process))
         return host
 
-    def _ask(self, service_type: Any, name: str, **fields: Any) -> Any:
-        request = service_type.Request(**fields)
+    def _ask(self, service_type: ServiceType[Req, Reply], name: str, **fields: Any) -> Reply:
+        request_type: Any = service_type.Request
+        request: Req = request_type(**fields)
         check_sent(name, request)
         return _checked(self._ros.call(service_type, name, request, CALL_LIMIT))
 
 
-def _checked(answer: Any) -> Any:
+def _checked(answer: Reply) -> Reply:
     if answer.error_code:
         raise _error(answer)
     return answer
 
 
-def _error(answer: Any) -> TmsError:
+def _error(answer: Coded) -> TmsError:
     """The refusal in an answer."""
     return TmsError(wire.of(answer.error_msg) or Foreign(answer.error_code), answer.error_code)
 
 
-def _begun(call: Any) -> bool:
+def _begun(call: Call[ExecuteTask.Result, ExecuteTask.Feedback]) -> bool:
     """Whether the run was not refused: until then it only prepares."""
     return call.feedback is not None and call.feedback.state != "preparing"
