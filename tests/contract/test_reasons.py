@@ -7,7 +7,7 @@ from string import Formatter
 import pytest
 
 from conftest import PROJECT
-from tms_reason import texts, wire
+from tms_reason import remedies, texts, wire
 from tms_reason.reason import REGISTRY, Reason
 
 SERVICES = PROJECT / "services"
@@ -47,6 +47,7 @@ def test_no_code_is_unused_and_no_text_is_left_behind() -> None:
     words = set(re.findall(r"\w+", "\n".join(sources.values())))
     assert [kind.code for kind in declared() if kind.__name__ not in words] == []
     wanted = {template for kind in declared() for template in templates(kind)}
+    wanted |= {one.text for one in vars(remedies).values() if isinstance(one, remedies.Remedy)}
     assert sorted(set(texts.catalogue("ja")) - wanted) == []
 
 
