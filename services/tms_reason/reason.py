@@ -12,7 +12,9 @@ Every package declares its reasons in a module `reasons.py`, one line a reason.
 
 import re
 from dataclasses import dataclass, fields
-from typing import Any, ClassVar, dataclass_transform
+from typing import Any, ClassVar
+
+from typing_extensions import dataclass_transform
 
 from tms_reason.remedies import Remedy
 
