@@ -22,7 +22,7 @@ TMS := $(VENV)/bin/tms $(if $(SITE),--site $(SITE))
 # A sourced ROS installation would mix its libraries into the venv's.
 unexport PYTHONPATH LD_LIBRARY_PATH AMENT_PREFIX_PATH CMAKE_PREFIX_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE
 .DEFAULT_GOAL := help
-.PHONY: help setup interfaces locks demo test up down status logs restart lint conformance bench soak drill nightly test-docker system clean
+.PHONY: help setup interfaces locks demo test test-fast up down status logs restart lint conformance bench soak drill nightly test-docker system clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -100,6 +100,9 @@ restart: setup ## restart one process (P=name)
 test: setup ## all tests that a laptop can run
 	@sh deploy/system-packages.sh chromium
 	$(PY) -m pytest
+
+test-fast: setup ## unit, contract and conformance tests: no ROS processes, two minutes
+	$(PY) -m pytest -q -n auto tests/unit tests/contract tests/conformance
 
 lint: setup ## ruff, mypy, import-linter
 	$(VENV)/bin/ruff check .
