@@ -4,11 +4,13 @@ PYTHON ?= python3
 P ?=
 SITE ?=
 ROLE ?=
+# Processes of `make test-fast`.
+WORKERS ?= auto
 # Key under pcs: of the site file, where a PC is not named after its role, as the compose files are. (make knows a PC itself.)
 PC = $(ROLE)
 RUNTIME ?= native
-# Debian's client first: it needs no plugin to build.
-DOCKER ?= $(firstword $(wildcard /usr/bin/docker) docker)
+# Debian's client first: it needs no plugin to build. Looked for when it is used: `make containers` may just have installed it.
+DOCKER ?= $(shell command -v /usr/bin/docker || echo docker)
 # Debian's Compose is a program of its own, others' are a plugin of the client.
 COMPOSE ?= $(if $(shell $(DOCKER) compose version 2>/dev/null),$(DOCKER) compose,docker-compose)
 # The one that is built here: the next `make` must not undo `make interfaces NAV2_DISTRO=humble`.
@@ -22,7 +24,7 @@ TMS := $(VENV)/bin/tms $(if $(SITE),--site $(SITE))
 # A sourced ROS installation would mix its libraries into the venv's.
 unexport PYTHONPATH LD_LIBRARY_PATH AMENT_PREFIX_PATH CMAKE_PREFIX_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE
 .DEFAULT_GOAL := help
-.PHONY: help setup interfaces locks demo test test-fast up down status logs restart lint conformance bench soak drill nightly test-docker system clean
+.PHONY: help setup interfaces locks demo test test-fast up down status logs restart lint conformance bench soak drill nightly test-docker system containers clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -98,11 +100,12 @@ restart: setup ## restart one process (P=name)
 	@$(TMS) restart $(P)
 
 test: setup ## all tests that a laptop can run
-	@sh deploy/system-packages.sh chromium
+	@DOCKER=$(DOCKER) sh deploy/system-packages.sh test
 	$(PY) -m pytest
 
-test-fast: setup ## unit, contract and conformance tests: no ROS processes, two minutes
-	$(PY) -m pytest -q -n auto tests/unit tests/contract tests/conformance
+test-fast: setup ## unit, contract and conformance tests: no ROS processes, two minutes (WORKERS=2)
+	@DOCKER=$(DOCKER) sh deploy/system-packages.sh test
+	$(PY) -m pytest -q -n $(WORKERS) tests/unit tests/contract tests/conformance
 
 lint: setup ## ruff, mypy, import-linter
 	$(VENV)/bin/ruff check .
@@ -127,7 +130,10 @@ bench: setup ## benchmarks with ratios to a floor of the same run (ONLY=group)
 soak: setup ## the two-machine demo over and over; nothing may grow (MINUTES=120)
 	@$(PY) tests/soak.py $(if $(MINUTES),--minutes "$(MINUTES)")
 
-test-docker: setup ## a site of four PCs as containers; starts a Docker engine where none runs
+containers: ## the system packages of test-docker: a Docker engine, Compose and more
+	@DOCKER=$(DOCKER) sh deploy/system-packages.sh containers
+
+test-docker: setup containers ## a site of four PCs as containers; starts a Docker engine where none runs
 	@started=$$(DOCKER=$(DOCKER) sh deploy/engine.sh) || exit 1; \
 	  trap '[ -z "$$started" ] || sh deploy/engine.sh stop $$started' EXIT; \
 	  DOCKER=$(DOCKER) $(PY) -m pytest -p no:randomly -m docker -s --durations=0 tests/docker

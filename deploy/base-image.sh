@@ -9,9 +9,7 @@ for image in "$wanted" "$made"; do
 done
 timeout 60 "$docker" pull -q "$wanted" >/dev/null 2>&1 && { echo "$wanted"; exit 0; }
 [ "$(id -u)" = 0 ] || { echo "$wanted cannot be pulled; set BASE_IMAGE, or run this as root to make one" >&2; exit 1; }
-command -v debootstrap >/dev/null || {
-  apt-get update -qq >&2
-  DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends debootstrap >&2; }
+sh "$(dirname "$0")/system-packages.sh" debootstrap >&2
 root=$(mktemp -d)
 trap 'rm -rf "$root"' EXIT
 debootstrap --variant=minbase --include=ca-certificates,python3 bookworm "$root" >&2

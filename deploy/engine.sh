@@ -1,5 +1,5 @@
 #!/bin/sh
-# Makes sure that a Docker engine answers: installs Debian's and starts it, as root and where there is none.
+# Makes sure that a Docker engine answers: starts the one that `make containers` installs, as root and where none runs.
 # Prints the pid of an engine that it started, so that whoever called can stop just that one: `engine.sh stop PID`,
 # which returns when it is gone (one that is still leaving keeps the next from starting).
 set -eu
@@ -16,10 +16,6 @@ fi
 docker=${DOCKER:-docker}
 "$docker" info >/dev/null 2>&1 && exit 0
 [ "$(id -u)" = 0 ] || { echo "no Docker engine answers: start it, or add yourself to the group docker" >&2; exit 1; }
-if ! command -v dockerd >/dev/null; then
-  apt-get update -qq >&2
-  RUNLEVEL=1 DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends docker.io iptables >&2
-fi
 log=${TMPDIR:-/tmp}/tms-dockerd.log
 setsid dockerd >"$log" 2>&1 &
 pid=$!

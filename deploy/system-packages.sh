@@ -1,31 +1,93 @@
 #!/bin/sh
 # Names the system packages that are missing with the one command that installs them; as root, installs them.
-# `system-packages.sh chromium` looks for the browser of the tests, too.
+# Arguments are groups: setup (when there is none), test, containers, chromium, debootstrap.
 set -eu
+PATH=$PATH:${SBIN:-/usr/local/sbin:/usr/sbin:/sbin} # where nft and others are, and only root looks
 missing=""
-python=$(command -v "${PYTHON:-python3}" || true)
-if [ -z "$python" ]; then
-  missing="$missing python3 python3-venv python3-dev"
-else
-  "$python" -c 'import sys; sys.exit(sys.version_info < (3, 10))' || {
-    echo "Python 3.10 or newer is needed, $python is $("$python" -V 2>&1): set PYTHON=python3.x" >&2; exit 1; }
-  "$python" -c 'import ensurepip, venv' 2>/dev/null || missing="$missing python3-venv"
-  "$python" -c 'import sys, sysconfig, pathlib
-sys.exit(not pathlib.Path(sysconfig.get_path("include"), "Python.h").exists())' || missing="$missing python3-dev"
-fi
-command -v gcc >/dev/null || missing="$missing gcc"
-command -v g++ >/dev/null || missing="$missing g++"
-[ -d /etc/ssl/certs ] && [ -n "$(ls -A /etc/ssl/certs 2>/dev/null)" ] || missing="$missing ca-certificates"
-if [ "${1:-}" = chromium ]; then
-  command -v chromium >/dev/null || command -v chromium-browser >/dev/null || missing="$missing chromium"
-fi
-[ -z "$missing" ] && exit 0
-if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
+has() { command -v "$1" >/dev/null; }
+lacks() { case " $missing " in *" $1 "*) ;; *) missing="$missing $1" ;; esac; }
+need() { # PACKAGE COMMAND...: the package, unless one of the commands is there
+  package=$1
+  shift
+  for name in "$@"; do
+    if has "$name"; then return; fi
+  done
+  lacks "$package"
+}
+
+setup() {
+  python=$(command -v "${PYTHON:-python3}" || true)
+  if [ -z "$python" ]; then
+    for package in python3 python3-venv python3-dev; do lacks $package; done
+  else
+    "$python" -c 'import sys; sys.exit(sys.version_info < (3, 10))' || {
+      echo "Python 3.10 or newer is needed, $python is $("$python" -V 2>&1): set PYTHON=python3.x" >&2; exit 1; }
+    "$python" -c 'import ensurepip, venv' 2>/dev/null || lacks python3-venv
+    "$python" -c 'import sys, sysconfig, pathlib
+sys.exit(not pathlib.Path(sysconfig.get_path("include"), "Python.h").exists())' || lacks python3-dev
+  fi
+  need gcc gcc
+  need g++ g++
+  [ -d /etc/ssl/certs ] && [ -n "$(ls -A /etc/ssl/certs 2>/dev/null)" ] || lacks ca-certificates
+}
+
+browser() { need chromium chromium chromium-browser; }
+
+compose() { # a plugin of the client, or a program of its own
+  client=${DOCKER:-docker}
+  [ -n "${DOCKER:-}" ] || [ ! -x /usr/bin/docker ] || client=/usr/bin/docker
+  "$client" compose version >/dev/null 2>&1 || need docker-compose docker-compose
+}
+
+shared() { # what both kinds of tests call
+  need prometheus promtool
+  need prometheus prometheus
+  need nftables nft
+  need iproute2 ip
+  compose
+}
+
+tests() {
+  shared
+  browser
+  need prometheus-alertmanager amtool
+  need openssl openssl
+  need e2fsprogs mkfs.ext4
+  need git git
+}
+
+containers() {
+  shared
+  need debootstrap debootstrap
+  need iptables iptables
+  "$client" info >/dev/null 2>&1 || need docker.io dockerd # an engine that answers may be another's
+}
+
+[ $# -gt 0 ] || set -- setup
+for group in "$@"; do
+  case $group in
+    test) tests ;;
+    chromium) browser ;;
+    debootstrap) need debootstrap debootstrap ;;
+    setup | containers) "$group" ;;
+    *) echo "no group of system packages: $group" >&2; exit 2 ;;
+  esac
+done
+[ -n "$missing" ] || exit 0
+root=$([ "$(id -u)" != 0 ] || command -v apt-get || true)
+[ -z "$root" ] || apt-get update -qq >/dev/null
+case "$missing " in
+  *" docker.io "*) # newer distributions have the client and the builder apart
+    for package in docker-cli docker-buildx; do
+      if apt-cache show $package >/dev/null 2>&1; then lacks $package; fi
+    done ;;
+esac
+if [ -n "$root" ]; then
   echo "installing system packages:$missing"
-  apt-get update -qq
+  # RUNLEVEL: a service that comes with its program is not started.
   # shellcheck disable=SC2086  # a list of words
-  DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing >/dev/null
+  RUNLEVEL=1 DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing >/dev/null
 else
-  echo "system packages are missing. Run:  sudo apt-get install -y$missing" >&2
+  echo "system packages are missing. Run:  sudo apt-get install -y --no-install-recommends$missing" >&2
   exit 1
 fi
