@@ -2,6 +2,7 @@
 
 import fcntl
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -72,6 +73,15 @@ def two_nodes(own_domain: int) -> Iterator["tuple[Ros, Ros]"]:
     yield server, client
     client.close()
     server.close()
+
+
+def tool(*names: str) -> str:
+    """Path of the first of these programs that is here; without one the test fails: skipped, nobody would miss it."""
+    where = os.pathsep.join((os.environ.get("PATH", os.defpath), "/usr/sbin", "/sbin"))
+    for name in names:
+        if found := shutil.which(name, path=where):
+            return found
+    pytest.fail(f"{' or '.join(names)} is missing: `make test` (`make test-docker` for tests/docker) installs it")
 
 
 def ports_of(domain: int) -> int:

@@ -110,7 +110,7 @@ class Mesh:
 def bare(folder: Path, domain: int, kind: type[M]) -> Iterator[M]:
     """A mesh where nothing runs yet; ends what the test started."""
     if not (PROJECT / ".venv-store" / "bin" / "secantusd-py").exists():
-        pytest.skip("no real store here: `make setup` installs it")
+        pytest.fail("no real store here: `make setup` installs it")
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("ROS_DOMAIN_ID", str(domain))
         patch.setenv("TMS_STATE", str(folder / "state"))

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from conftest import wait_until
+from conftest import tool, wait_until
 
 
 def get(url: str) -> str:
@@ -25,7 +25,7 @@ def prometheus(folder: Path, port: int) -> Iterator[str]:
     hurried = config.read_text().replace("_interval: 5s", "_interval: 1s").replace("_timeout: 3s", "_timeout: 1s")
     config.write_text(hurried)
     address = f"127.0.0.1:{port}"
-    words = ["prometheus", f"--config.file={config}", f"--storage.tsdb.path={folder}/data"]
+    words = [tool("prometheus"), f"--config.file={config}", f"--storage.tsdb.path={folder}/data"]
     with (folder / "log").open("w") as log:
         running = subprocess.Popen([*words, f"--web.listen-address={address}"], stdout=log, stderr=log)
         try:

@@ -2,7 +2,6 @@
 
 import json
 import re
-import shutil
 import urllib.error
 import urllib.request
 from collections.abc import Iterator
@@ -11,7 +10,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, Page, expect, sync_playwright
 
-from conftest import PROJECT, Mesh, wait_until
+from conftest import PROJECT, Mesh, tool, wait_until
 
 LIMIT = 60.0  # s for whatever must happen at all
 SHOTS = PROJECT / ".state" / "screenshots"
@@ -20,8 +19,7 @@ FLAGS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking"]
 
 @pytest.fixture(scope="module")
 def chromium() -> Iterator[Browser]:
-    program = shutil.which("chromium") or shutil.which("chromium-browser")
-    assert program, "chromium is not there: `sh deploy/system-packages.sh chromium` installs it"
+    program = tool("chromium", "chromium-browser")
     expect.set_options(timeout=LIMIT * 1000)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=program, args=FLAGS)

@@ -1,7 +1,6 @@
 """A console with users, over TLS: login, roles, and the throttle on guessing."""
 
 import os
-import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -12,7 +11,7 @@ import pytest
 import yaml
 from playwright.sync_api import Browser, Page, expect
 
-from conftest import ports_of, site_data, wait_until
+from conftest import ports_of, site_data, tool, wait_until
 from tms_config import environment
 from tms_config.config import load_site
 from tms_ur.access import hashed
@@ -50,11 +49,9 @@ class Server:
 def server(own_domain: int, tmp_path: Path) -> Iterator[Server]:
     """A `tms:ur` of its own; nothing else of its site runs."""
     port = ports_of(own_domain)
-    openssl = shutil.which("openssl")
-    assert openssl, "openssl makes the certificate of this test"
     key, certificate = tmp_path / "key.pem", tmp_path / "certificate.pem"
     subprocess.run(
-        [openssl, "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2", "-subj", "/CN=localhost",
+        [tool("openssl"), "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2", "-subj", "/CN=localhost",
          "-keyout", str(key), "-out", str(certificate)], check=True, capture_output=True,
     )  # fmt: skip
     users = tmp_path / "users.yaml"

@@ -44,7 +44,7 @@ def program() -> None:
 
 def _need_program() -> None:
     if not PROGRAM.exists():
-        pytest.skip(f"no real store here ({PROGRAM} is missing): `make setup` installs it")
+        pytest.fail(f"no real store here ({PROGRAM} is missing): `make setup` installs it")
 
 
 @pytest.fixture(params=["memory", "server"])

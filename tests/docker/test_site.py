@@ -2,7 +2,6 @@
 
 import json
 import os
-import shutil
 import signal
 import statistics
 import time
@@ -169,7 +168,6 @@ def test_the_cps_pc_is_restarted_while_nothing_runs(yard: Yard) -> None:
     recovered(yard)
 
 
-@pytest.mark.skipif(not shutil.which("prometheus"), reason="prometheus is Debian's package of that name")
 def test_prometheus_sees_every_pc_and_tells_which_one_is_gone(yard: Yard, tmp_path: Path) -> None:
     docker("cp", f"{yard.name('cps')}:/var/lib/tms/prometheus/.", str(tmp_path))
     wanted = {row.full for row in yard.rows if row.ours and row.autostart}

@@ -2,7 +2,6 @@
 
 import json
 import re
-import shutil
 import threading
 import urllib.error
 from datetime import datetime, timezone
@@ -29,7 +28,6 @@ def targets(mesh: Mesh) -> dict[str, str]:
     return {row["labels"]["process"]: row["targets"][0] for row in rows if row["labels"]["on_demand"] == "no"}
 
 
-@pytest.mark.skipif(not shutil.which("prometheus"), reason="prometheus is Debian's package of that name")
 def test_prometheus_sees_every_process_and_a_lost_one_fires(mesh: Mesh, domain: int, tmp_path: Path) -> None:
     wanted = set(targets(mesh))
     mesh.tms("prometheus", "-o", str(tmp_path))

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from conftest import PROJECT
+from conftest import PROJECT, tool
 from tms_config.config import load_site
 from tms_config.pcs import ROLES
 from tms_config.processes import table
@@ -17,7 +17,7 @@ from tms_config.processes import table
 DEPLOY = PROJECT / "deploy"
 COMPOSE = sorted(path for path in (DEPLOY / "compose").glob("*.yml") if path.stem != "base")
 
-needs_nft = pytest.mark.skipif(not shutil.which("nft") or os.getuid() != 0, reason="nft checks only for root")
+needs_root = pytest.mark.skipif(os.getuid() != 0, reason="nft checks only for root")
 
 
 def run(*words: str, **variables: str) -> subprocess.CompletedProcess[str]:
@@ -26,12 +26,12 @@ def run(*words: str, **variables: str) -> subprocess.CompletedProcess[str]:
 
 
 def compose() -> list[str]:
-    """The client of Compose that this PC has, new or old; none: the test is skipped."""
-    if shutil.which("docker") and run("docker", "compose", "version").returncode == 0:
-        return ["docker", "compose"]
-    if not shutil.which("docker-compose"):
-        pytest.skip("neither `docker compose` nor docker-compose is there")
-    return ["docker-compose"]
+    """The client of Compose that this PC has, a plugin of Docker's as `make` chooses it, or a program of its own."""
+    debians = "/usr/bin/docker"
+    docker = os.environ.get("DOCKER") or (debians if Path(debians).exists() else shutil.which("docker"))
+    if docker and run(docker, "compose", "version").returncode == 0:
+        return [docker, "compose"]
+    return [tool("docker-compose")]
 
 
 def test_the_image_is_as_hadolint_wants_it() -> None:
@@ -111,20 +111,21 @@ def test_alerts_go_to_the_alertmanager_beside_prometheus() -> None:
     assert f"--web.listen-address={to}" in services["alertmanager"]["command"]
 
 
-@needs_nft
+@needs_root
 def test_the_firewall_is_valid() -> None:
-    done = run("nft", "-c", "-f", str(DEPLOY / "network" / "nftables.conf"))
+    done = run(tool("nft"), "-c", "-f", str(DEPLOY / "network" / "nftables.conf"))
     assert done.returncode == 0, done.stderr
 
 
-@needs_nft
+@needs_root
 def test_a_pc_that_is_taken_out_of_the_firewall_is_not_let_in_any_more(tmp_path: Path) -> None:
     """In a network namespace of its own, where nothing else is."""
     rules = (DEPLOY / "network" / "nftables.conf").read_text()
     many, few = tmp_path / "many", tmp_path / "few"
     many.write_text(rules.replace("10.77.0.1-10.77.0.250", "10.77.0.1, 10.77.0.66"))
     few.write_text(rules.replace("10.77.0.1-10.77.0.250", "10.77.0.1"))
-    done = run("unshare", "-n", "sh", "-ec", f"nft -f {many}; nft -f {few}; nft list ruleset")
+    nft = tool("nft")
+    done = run("unshare", "-n", "sh", "-ec", f"{nft} -f {many}; {nft} -f {few}; {nft} list ruleset")
     assert done.returncode == 0, done.stderr
     assert "10.77.0.1 " in done.stdout and "10.77.0.66" not in done.stdout
     assert done.stdout.count('iif "lo" accept') == 1

@@ -2,14 +2,13 @@
 
 import json
 import re
-import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
 
-from conftest import PROJECT
+from conftest import PROJECT, tool
 from tms_cli import monitoring
 from tms_cli.commands import prometheus
 from tms_config.config import load_site
@@ -19,28 +18,23 @@ from tms_reason.errors import ConfigError
 FOLDER = PROJECT / "deploy" / "prometheus"
 DASHBOARDS = sorted((PROJECT / "deploy" / "grafana" / "dashboards").glob("*.json"))
 
-needs_promtool = pytest.mark.skipif(not shutil.which("promtool"), reason="promtool is in Debian's package prometheus")
-
 
 def check(*words: str, cwd: Path = FOLDER) -> None:
-    done = subprocess.run(["promtool", *words], cwd=cwd, capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run([tool("promtool"), *words], cwd=cwd, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-@needs_promtool
 def test_the_rules_fire_when_they_must_and_only_then() -> None:
     check("test", "rules", "rules_test.yml")
 
 
-@needs_promtool
 def test_the_rendered_configuration_is_valid(tmp_path: Path) -> None:
     monitoring.render(load_site(), tmp_path, alertmanager="127.0.0.1:9093")
     check("check", "config", "prometheus.yml", cwd=tmp_path)
 
 
-@pytest.mark.skipif(not shutil.which("amtool"), reason="amtool is in Debian's package prometheus-alertmanager")
 def test_the_example_of_the_alertmanager_is_valid() -> None:
-    words = ["amtool", "check-config", str(FOLDER / "alertmanager.example.yml")]
+    words = [tool("amtool"), "check-config", str(FOLDER / "alertmanager.example.yml")]
     done = subprocess.run(words, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 0, done.stderr
 
