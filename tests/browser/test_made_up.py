@@ -68,12 +68,12 @@ class Yard(FakeSiteClient):
         return [Record(model_name="zx200", record_name="pose", **facts)]
 
 
-class MadeUpLatch(Reason, text="{machine} is made to wait", action=REARM, details="seen on {topic}"):
+class PageLatch(Reason, text="{machine} is made to wait", action=REARM, details="seen on {topic}"):
     machine: str
     topic: str
 
 
-class MadeUpInterruption(Reason, text="run {run} was interrupted", action=RESUME):
+class PageInterruption(Reason, text="run {run} was interrupted", action=RESUME):
     run: str
 
 
@@ -120,7 +120,7 @@ def test_one_yes_arms_one_machine(page: Page, address: str, yard: Yard) -> None:
 def test_a_reason_has_what_helps_and_its_details(page: Page, address: str, yard: Yard) -> None:
     """In the language of the page, and the command where the console has no button."""
     yard.slow.set()
-    latched = MadeUpLatch("zx200", "/zx200/rc/state")
+    latched = PageLatch("zx200", "/zx200/rc/state")
     yard.board.put_runs([RUN.model_copy(update={"reason": view(latched)})])
     page.goto(f"{address}/#run")
     row = page.locator("#list_active [data-part=reason]")
@@ -135,7 +135,7 @@ def test_a_reason_has_what_helps_and_its_details(page: Page, address: str, yard:
     page.locator("#language").click()
     expect(row.locator("summary")).to_have_text("詳細")
     expect(row.get_by_role("button", name="機械を確認してから")).to_be_visible()
-    yard.error = TmsError(MadeUpInterruption("r-1"))
+    yard.error = TmsError(PageInterruption("r-1"))
     page.locator("#list_tasks button").first.click()
     expect(page.locator("#message code")).to_have_text("tms resume r-1")
 
