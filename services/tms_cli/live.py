@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import click
 
+from tms_cli import words
 from tms_cli.words import padded, say, state
 
 if TYPE_CHECKING:
@@ -84,14 +85,14 @@ class View:
     def heard(self, feedback: "ExecuteTask.Feedback") -> list[Node]:
         """Take a feedback; returns the changes of nodes in order."""
         self.run_id, self.state = feedback.run_id or self.run_id, feedback.state or self.state
-        self.leaf, self.reason = feedback.running_leaf, feedback.reason
+        self.leaf, self.reason = feedback.running_leaf, words.reason(feedback.reason)
         if not self.nodes:
             self._first(feedback.nodes)
         changed = []
         for status in feedback.nodes:
             node = self.nodes.setdefault(status.uid, Node(status.uid, status.parent, status.name, status.type))
             before = node.status
-            node.take(status.status, status.reason)
+            node.take(status.status, words.reason(status.reason))
             if node.status != before:
                 changed.append(replace(node))
         return changed
@@ -168,7 +169,7 @@ def joint_lines(machines: Mapping[str, "MachineState"]) -> list[str]:
 def _posture(machine: "MachineState") -> str:
     if machine.moving:
         return say("moving")
-    return say("standing") if machine.ready else say("not ready: {reason}", reason=machine.reason)
+    return say("standing") if machine.ready else say("not ready: {reason}", reason=words.reason(machine.reason))
 
 
 def change_line(view: View, node: Node) -> str:

@@ -11,7 +11,9 @@ from typing import NoReturn
 import click
 
 from tms_cli import commands, session, words
+from tms_reason import texts
 from tms_reason.errors import TmsError
+from tms_reason.reason import Foreign
 from tms_runtime.last_resort import LEAVE_LIMIT, end_after
 
 INTERRUPTED = 130
@@ -64,6 +66,11 @@ def _as_ours(error: OSError) -> TmsError:
     )
 
 
+def _words(error: TmsError) -> str:
+    """What went wrong, and what to do."""
+    return str(error) if isinstance(error.reason, Foreign) else texts.sentence(error.reason, words.language())
+
+
 def main() -> None:
     """0 done, 1 refused or failed, 2 usage, 130 interrupted."""
     try:
@@ -88,8 +95,9 @@ def main() -> None:
         sys.exit(1)
     except (TmsError, OSError) as error:
         ours = error if isinstance(error, TmsError) else _as_ours(error)
-        print(f"tms: {ours}", file=sys.stderr)
-        _hint(ours.code)
+        print(f"tms: {_words(ours)}", file=sys.stderr)
+        if ours.reason.remedy is None:
+            _hint(ours.code)
         sys.exit(1)
 
 

@@ -17,7 +17,7 @@ from pathlib import Path
 import psutil
 
 from tms_cli import monitoring
-from tms_cli.words import say
+from tms_cli.words import english, say
 from tms_config import pcs, state_folder, store
 from tms_config.config import Site
 from tms_config.environment import environment
@@ -239,12 +239,14 @@ def wait_ready(site: Site, report: Callable[[str], None]) -> None:
                 reasons[name] = reason
         if waiting and time.monotonic() > deadline:
             name = next(iter(waiting))
-            raise TmsError(f"{name} is not ready after {READY_LIMIT:.0f} s: {reasons[name]}; see `tms logs {name}`")
+            raise TmsError(
+                f"{name} is not ready after {READY_LIMIT:.0f} s: {english(reasons[name])}; see `tms logs {name}`"
+            )
         time.sleep(0.1)
 
 
 def unready(row: Process) -> str | None:
-    """Why a process cannot work now, as it says itself; None when it can."""
+    """Why a process cannot work now, as it says itself in a reason's line; None when it can."""
     return metrics.unready(row.address, row.port)
 
 

@@ -13,7 +13,9 @@ import click
 from tms_config import environment, state_folder
 from tms_config.config import Site, load_site
 from tms_config.names import check_sent
+from tms_reason import wire
 from tms_reason.errors import ConfigError, TmsError
+from tms_reason.reason import Foreign
 from tms_ros.interface_types import M, Reply, Req, ServiceType
 
 if TYPE_CHECKING:
@@ -74,7 +76,7 @@ def call(
     check_sent(name, request)
     answer = node.call(service_type, name, request, seconds)
     if answer.error_code:
-        raise TmsError(answer.error_msg, answer.error_code)
+        raise TmsError(wire.of(answer.error_msg) or Foreign(answer.error_code), answer.error_code)
     return answer
 
 

@@ -1,7 +1,7 @@
 """What `tms` says to people, in the language of the user's locale (LC_ALL, LC_MESSAGES, LANG: ja*).
 
 The English text in the code is the key, and japanese*.py are the only places for its Japanese. Dropped: gettext, which
-needs compiled catalogues in every installation. JSON output and what services report are never translated.
+needs compiled catalogues in every installation. JSON output is never translated; reasons have texts of their own.
 """
 
 import os
@@ -12,6 +12,7 @@ import click
 
 from tms_cli.japanese import HEADINGS, NEXT, SAID, STATES
 from tms_cli.japanese_help import HELP
+from tms_reason import texts, wire
 
 
 def japanese() -> bool:
@@ -23,6 +24,23 @@ def japanese() -> bool:
 def say(english: str, **values: Any) -> str:
     """A line for people; `english` is a format string with the values' names."""
     return (SAID[english] if japanese() else english).format(**values)
+
+
+def language() -> str:
+    """Of the texts of reasons."""
+    return "ja" if japanese() else "en"
+
+
+def reason(line: str) -> str:
+    """A reason as a message carries it, in words; empty for none."""
+    found = wire.of(line)
+    return "" if found is None else texts.text(found, language())
+
+
+def english(line: str) -> str:
+    """As `reason`, for JSON, which is never translated."""
+    found = wire.of(line)
+    return "" if found is None else texts.text(found, "en")
 
 
 def state(word: str) -> str:

@@ -4,6 +4,9 @@ from typing import Any, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from tms_config.reasons import AboveLimit, BelowLimit
+from tms_reason.reason import Reason
+
 Backend = Literal["sim", "opera", "physx"]
 Kind = Literal["backhoe", "crawler_dump", "bulldozer"]
 DRIVE = "drive"  # key of the tracks in `response`
@@ -28,12 +31,12 @@ class Joint(Settings):
     jerk: float = Field(gt=0)  # rad/s^3
     passive: bool = False  # no command moves it, such as a virtual tool frame; it is still watched
 
-    def violation(self, angle: float) -> str | None:
-        """Which bound `angle` [rad] breaks, as text, or None."""
+    def violation(self, angle: float) -> Reason | None:
+        """Which bound `angle` [rad] breaks, or None."""
         if self.min is not None and angle < self.min - 1e-6:
-            return f"{angle:.3f} rad is below its limit {self.min:.3f} rad"
+            return BelowLimit(angle, self.min)
         if self.max is not None and angle > self.max + 1e-6:
-            return f"{angle:.3f} rad is above its limit {self.max:.3f} rad"
+            return AboveLimit(angle, self.max)
         return None
 
 

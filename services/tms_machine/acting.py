@@ -7,12 +7,27 @@ from typing import Any
 
 from tms_config.models import Joint, MachineModel
 from tms_machine.border import STOP_PROVEN
+from tms_machine.reasons import (
+    Aborted,
+    Canceled,
+    ErrorNumber,
+    GoalTimeout,
+    Missed,
+    NoCapability,
+    NoReason,
+    NoSuchJoint,
+    Rejected,
+)
+from tms_reason import wire
 from tms_reason.errors import SubtaskFailed
+from tms_reason.reason import Reason, Several
 from tms_ros.client import AnyCall, AnyPeer
 from tms_ros.fence import derived
-from tms_ros.goals import LOST_TEXT, Outcome
+from tms_ros.goals import Outcome
 from tms_ros.interface_types import ActionType, F, G, R
+from tms_ros.naming import process_of
 from tms_ros.node import Ros
+from tms_ros.reasons import LostMeanwhile, NoAnswer, ProcessLost
 
 SERVER_LIMIT = 5.0  # s for an action server to appear
 ACCEPT_LIMIT = 3.0  # s for it to answer a goal
@@ -20,7 +35,8 @@ STOP_LIMIT = STOP_PROVEN + 2.5  # s for a cancelled motion to end
 LOOK = 0.2  # s between looks whether the server is still there
 UNANSWERED_LIMIT = 1.0  # s for a goal to be accepted after all
 
-Progress = Callable[[str], None]
+Progress = Callable[[Reason | str], None]  # words of a subtask's own are shown as they are
+ENDED = {Outcome.ABORTED: Aborted, Outcome.CANCELED: Canceled, Outcome.REJECTED: Rejected}
 
 
 class Cancelled(Exception):
@@ -56,7 +72,7 @@ class Acting:
             SubtaskFailed: the machine has no such joint.
         """
         if name not in self.model.joints:
-            raise SubtaskFailed("NO_SUCH_JOINT", f"{self.name} has no joint '{name}'")
+            raise SubtaskFailed(NoSuchJoint(name, tuple(self.model.joints)))
         return self.model.joints[name]
 
     def cancel(self) -> None:
@@ -70,12 +86,12 @@ class Acting:
 
         Raises:
             Cancelled: a cancel came.
-            SubtaskFailed: TIMEOUT.
+            SubtaskFailed: GoalTimeout.
         """
         if self._cancelled.is_set():
             raise Cancelled
         if time.monotonic() > self._deadline:
-            raise SubtaskFailed("TIMEOUT", f"{self.name} was not done after {self._timeout:.0f} s")
+            raise SubtaskFailed(GoalTimeout(self.name, self._timeout))
 
     def act(
         self, action_type: ActionType[G, R, F], action: str, goal: G, heard: Callable[[F], None] | None = None
@@ -95,9 +111,9 @@ class Acting:
         self._wait(peer, call, lambda: call.accepted or call.outcome is not None, ACCEPT_LIMIT, action)
         self._wait(peer, call, lambda: call.outcome is not None, None, action)
         if call.outcome is Outcome.LOST:
-            raise SubtaskFailed(LOST_TEXT, f"the process behind {peer.name} was lost during its goal")
+            raise SubtaskFailed(ProcessLost(LostMeanwhile(process_of(peer.name), peer.name)))
         if call.outcome is not Outcome.SUCCEEDED:
-            raise SubtaskFailed(call.outcome.name if call.outcome else "LOST", f"{peer.name}: {_why(call)}")
+            raise SubtaskFailed(ENDED[call.outcome or Outcome.ABORTED](_why(call), peer.name))
         assert call.result is not None, "a goal that succeeded has a result"
         return call.result
 
@@ -105,11 +121,10 @@ class Acting:
         """`act` on one of the machine's own motions, by its key under borders:, through the gateway.
 
         Raises:
-            Cancelled, SubtaskFailed: as `act`, and NO_CAPABILITY.
+            Cancelled, SubtaskFailed: as `act`, and NoCapability.
         """
         if not any(getattr(border, field) for border in self.model.borders.values()):
-            text = f"{self.name} has no {field}: see borders: in configs/machines/{self._model_name}.yaml"
-            raise SubtaskFailed("NO_CAPABILITY", text)
+            raise SubtaskFailed(NoCapability(self.name, field, self._model_name))
         return self.act(action_type, f"rc/{field}", goal, heard)
 
     def _wait(self, peer: AnyPeer, call: AnyCall, done: Callable[[], bool], limit: float | None, action: str) -> None:
@@ -120,7 +135,7 @@ class Acting:
                 peer.lost()  # it left in order, but without a result
         if not done():
             self.check()
-            raise SubtaskFailed("NO_ANSWER", f"/{self.name}/{action} did not answer a goal within {limit or 0:.0f} s")
+            raise SubtaskFailed(NoAnswer(process_of(peer.name), peer.name, limit or 0.0))
 
     def release(self) -> bool:
         """Stop every motion that still runs and wait until it has; False if nobody has told of its end."""
@@ -147,14 +162,14 @@ def _ended(call: AnyCall) -> Callable[[], bool]:
     return lambda: call.outcome is not None
 
 
-def _why(call: AnyCall) -> str:
+def _why(call: AnyCall) -> Reason:
     """The reason that a result or the last feedback gives; results of Humble's Nav2 have none."""
     state = getattr(call.feedback, "state", "") or getattr(call.feedback, "status", "")
-    text = getattr(call.result, "error_string", "") or getattr(call.result, "error_msg", "") or state
-    code = getattr(call.result, "error_code", 0)
-    if not text and isinstance(code, int) and code:
-        text = f"error code {code}"
-    lost = missed(call.result)
+    told = wire.of(getattr(call.result, "error_string", "") or getattr(call.result, "error_msg", "") or state)
+    number, lost = getattr(call.result, "error_code", 0), missed(call.result)
+    if told is None and isinstance(number, int) and number:
+        told = ErrorNumber(number)
     if lost:
-        text = f"missed waypoints {', '.join(map(str, lost))}" + (f" ({text})" if text else "")
-    return text or "no reason given"
+        waypoints = Missed(tuple(lost))
+        return waypoints if told is None else Several((waypoints, told))
+    return told or NoReason()

@@ -9,6 +9,8 @@ from tms_msg_rp.msg import TmsRpZx200PositionWithAngle
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from tms_machine.acting import Acting, Progress
+from tms_machine.reasons import NoReason
+from tms_reason import wire
 from tms_ros.interface_types import ActionType, G, Message, R
 
 
@@ -68,7 +70,7 @@ class Digging(Acting):
         self, action_type: ActionType[G, R, Telling], what: str, goal: G, progress: Progress, plan_only: bool
     ) -> None:
         action = f"tms_rp_{self._model_name}_{what}" + ("_plan" if plan_only else "")
-        self.act(action_type, action, goal, lambda feedback: progress(feedback.state))
+        self.act(action_type, action, goal, lambda feedback: progress(wire.of(feedback.state) or NoReason()))
 
 
 def _tip(position: Sequence[float], theta_w: float, offset: float = 0.0) -> TmsRpZx200PositionWithAngle:

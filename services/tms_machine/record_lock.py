@@ -12,6 +12,7 @@ from tms_msg_db.srv import SetParameter
 
 from tms_machine.values import Value, to_parameters
 from tms_reason.errors import SubtaskFailed
+from tms_reason.wire import refusal
 from tms_ros.node import Ros
 
 FLAG, OWNER, UNTIL = "LOCK_FLG", "LOCK_OWNER", "LOCK_UNTIL"
@@ -63,7 +64,7 @@ class RecordLock:
         """
         answer = self._ros.call(SetParameter, SERVICE, self._request(taken(self._owner, time.time())), LIMIT)
         if answer.error_code:
-            raise SubtaskFailed(answer.error_code, answer.error_msg)
+            raise SubtaskFailed(refusal(answer.error_code, answer.error_msg))
 
     def release(self) -> None:
         """Free it. Waits for nobody: the end of a motion must not depend on a database."""

@@ -12,12 +12,16 @@ from tms_msg_ts.action import LeafNodeBase
 from tms_config.yaml_file import explain
 from tms_machine.machine import Cancelled, Machine
 from tms_machine.permit import Permit, watch_server
+from tms_machine.reasons import BadRecord, Busy, MotionNotEnded, NoDatabase, WaitingFor
 from tms_machine.record_lock import FLAG, RecordLock
 from tms_machine.subtask import Params, Subtask, load
 from tms_machine.values import Value, from_parameters
 from tms_reason.errors import RosError, SubtaskFailed
+from tms_reason.reason import Foreign, Reason
+from tms_reason.wire import refusal, to_line
 from tms_ros.client import AnyPeer
-from tms_ros.goals import Ended, Outcome, Rejection
+from tms_ros.goals import Ended, Outcome
+from tms_ros.reasons import Internal
 from tms_ros.server import Goal
 from tms_runtime.app import App
 
@@ -32,7 +36,7 @@ def start(app: App) -> None:
     assert app.process.action is not None
     use = app.site.model_of(app.machine).subtask(app.process.action)
     server = _Server(app, load(use.run), dict(use.inputs), use.max_age)
-    app.ready_when(lambda: None if server.offered else "waiting for tms:db")
+    app.ready_when(lambda: None if server.offered else WaitingFor("tms:db"))
     threading.Thread(target=server.offer, name="offer", daemon=True).start()
 
 
@@ -57,17 +61,17 @@ class _Server:
         app.ros.serve(LeafNodeBase, f"/{app.machine}/{app.process.action}", self.run, self.accept)
         self.offered = True
 
-    async def accept(self, request: LeafNodeBase.Goal) -> Rejection | None:
+    async def accept(self, request: LeafNodeBase.Goal) -> Reason | None:
         if self._reserved:
-            return Rejection("BUSY", f"{self._app.process.full} is still at its last goal")
+            return Busy(self._app.process.full)
         self._reserved = True
-        refusal = await self._check(request)
-        self._reserved = refusal is None
-        if refusal is not None:
-            self._app.log.warning("rejected", record=request.record_name, reason=refusal)
-        return refusal
+        wrong = await self._check(request)
+        self._reserved = wrong is None
+        if wrong is not None:
+            self._app.log.warning("rejected", record=request.record_name, reason=wrong)
+        return wrong
 
-    async def _check(self, request: LeafNodeBase.Goal) -> Rejection | None:
+    async def _check(self, request: LeafNodeBase.Goal) -> Reason | None:
         self._want = self._lock = None
         if self._kind.params is None:
             return None
@@ -79,9 +83,9 @@ class _Server:
         )
         answer = await self._app.ros.ask(GetParameter, "/tms/db/get_parameter", wanted, RECORD_LIMIT)
         if answer is None:
-            return Rejection("NO_DATABASE", "tms:db did not answer; see `tms ps` and `tms restart tms:db`")
+            return NoDatabase("tms:db")
         if answer.error_code:
-            return Rejection(answer.error_code, answer.error_msg)
+            return refusal(answer.error_code, answer.error_msg)
         fields = from_parameters(answer.record.values)
         if FLAG in fields and answer.record.type == "dynamic" and "plan_only" in self._inputs:
             self._lock = RecordLock(self._app.ros, self._app.process.full, request.model_name, request.record_name)
@@ -90,22 +94,21 @@ class _Server:
         except SubtaskFailed as error:
             if self._lock is not None and not self._plans:
                 self._lock.release()  # the variant that moves gives it back however it ends
-            return Rejection(error.code, error.args[0])
+            return error.reason
         return None
 
     def _checked(self, request: LeafNodeBase.Goal, fields: dict[str, Value]) -> Params:
         """What the subtask needs of a record's fields.
 
         Raises:
-            SubtaskFailed: BAD_RECORD, with what is wrong.
+            SubtaskFailed: BadRecord, with what is wrong.
         """
         assert self._kind.params is not None
         try:
             return self._kind.params.model_validate({**fields, **self._inputs})
         except ValidationError as error:
             name = f"{request.model_name}/{request.record_name}"
-            text = f"record {name}: {explain(error)}; correct it with `tms param set`"
-            raise SubtaskFailed("BAD_RECORD", text) from None
+            raise SubtaskFailed(BadRecord(name, explain(error))) from None
 
     def run(self, goal: LeafGoal) -> Ended[LeafNodeBase.Result]:
         outcome = Outcome.ABORTED
@@ -146,7 +149,7 @@ class _Server:
         except Cancelled:
             pass
         except RosError as error:
-            failure = SubtaskFailed(error.code, str(error))
+            failure = SubtaskFailed(error.reason)
         except SubtaskFailed as error:
             failure = error
         finally:
@@ -154,13 +157,13 @@ class _Server:
             if lock is not None and not (self._plans and finished and not cancelled):
                 lock.release()
             if not (finished or failure or cancelled):
-                say.last(f"INTERNAL: the subtask has a bug, see `tms logs {app.process.full}`")
+                say.last(Internal(app.process.full))
         if not stopped:
-            failure = SubtaskFailed("NOT_STOPPED", f"{app.machine} did not end its motion")
+            failure = SubtaskFailed(MotionNotEnded(app.machine))
         if failure is None or (cancelled and stopped):
             return Outcome.CANCELED if cancelled else Outcome.SUCCEEDED
-        app.log.warning("failed", goal=goal.id, reason=str(failure))
-        say.last(str(failure))
+        app.log.warning("failed", goal=goal.id, reason=failure.reason)
+        say.last(failure.reason)
         return Outcome.ABORTED
 
     def _watched(self) -> dict[str, Callable[[AnyPeer], None]]:
@@ -176,7 +179,7 @@ class _Server:
         wanted = GetParameter.Request(model_name=model_name, record_name=record_name, max_age=limit)
         answer = self._app.ros.call(GetParameter, "/tms/db/get_parameter", wanted)
         if answer.error_code:
-            raise SubtaskFailed(answer.error_code, answer.error_msg)
+            raise SubtaskFailed(refusal(answer.error_code, answer.error_msg))
         return from_parameters(answer.record.values)
 
 
@@ -187,10 +190,10 @@ class _Feedback:
         self._goal = goal
         self._next = 0.0
 
-    def __call__(self, text: str) -> None:
+    def __call__(self, now: Reason | str) -> None:
         if time.monotonic() >= self._next:
-            self.last(text)
+            self.last(Foreign(now) if isinstance(now, str) else now)
 
-    def last(self, text: str) -> None:
+    def last(self, reason: Reason) -> None:
         self._next = time.monotonic() + FEEDBACK_GAP
-        self._goal.publish(LeafNodeBase.Feedback(status=text))
+        self._goal.publish(LeafNodeBase.Feedback(status=to_line(reason)))

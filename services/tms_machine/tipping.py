@@ -7,6 +7,7 @@ from com3_msgs.action import SetDumpAngle, SetSwingAngle
 from tms_msg_rc.msg import MachineState
 
 from tms_machine.acting import Acting, Progress
+from tms_machine.reasons import NoJointState, NotReached, Turning
 from tms_reason.errors import SubtaskFailed
 
 STATE_LIMIT = 2.0  # s for the gateway to tell where the joints are
@@ -27,7 +28,7 @@ class Tipping(Acting):
         """Where a joint is now [rad], as the gateway hears it from the machine.
 
         Raises:
-            SubtaskFailed: NO_SUCH_JOINT, or NO_JOINT_STATE within 2 s.
+            SubtaskFailed: NoSuchJoint, or NoJointState within 2 s.
         """
         self.joint(joint)
         found: list[float] = []
@@ -44,13 +45,13 @@ class Tipping(Acting):
         self._ros.on_executor(lambda: self._ros.node.destroy_subscription(subscription))
         self.check()
         if not there:
-            raise SubtaskFailed("NO_JOINT_STATE", f"no '{joint}' on {topic} within {STATE_LIMIT:.0f} s: see `tms ps`")
+            raise SubtaskFailed(NoJointState(joint, self.name, STATE_LIMIT, topic))
         return found[0]
 
     def _turn(self, field: str, action_type: Any, angle: float, progress: Progress) -> None:
         def heard(feedback: Any) -> None:
-            progress(f"TURNING {feedback.current_error:+.2f} rad to go")
+            progress(Turning(feedback.current_error))
 
         result = self.guarded(field, action_type, action_type.Goal(target_angle=angle), heard)
         if not result.success:
-            raise SubtaskFailed("NOT_REACHED", f"{self.name} says that {field} {angle:.2f} rad was not reached")
+            raise SubtaskFailed(NotReached(self.name, angle, field))

@@ -6,11 +6,32 @@ from std_msgs.msg import Bool
 from tms_msg_rc.msg import StopReceipt
 from tms_msg_rc.srv import Rearm, TakeMachine
 
+from tms_machine.reasons import ManualMode
 from tms_rc.guard import PRESSED, Guard, Kind
+from tms_rc.reasons import (
+    BadToken,
+    CausePersists,
+    GivenBack,
+    HeldByRun,
+    ManualOff,
+    ManualOn,
+    Nameless,
+    NotBelieved,
+    NotKept,
+    NotSeen,
+    NotStill,
+    NotStopped,
+    NotTaken,
+    StillActive,
+    StillPressed,
+    StillProven,
+)
+from tms_reason.reason import Reason
+from tms_reason.wire import to_line
 from tms_runtime.app import App
 
 PROOF_LIMIT = 3.0  # s that a person waits for a stop that is still being proven
-MANUAL = "the machine's own manual mode"
+MANUAL = to_line(ManualMode())  # as the name of who drives
 
 
 class Arming:
@@ -24,54 +45,51 @@ class Arming:
         guard = self._guard
         guard.stopper.wait_idle(PROOF_LIMIT)
         now = time.monotonic()
-        response.cause = guard.latch.cause or guard.latch.hold
-        code, text = self._keeps_from_arming(response.cause)
-        if not code and request.token:
-            text = guard.latch.confirm(request.token, now) or ""
-            code = "BAD_TOKEN" if text else ""
-            if not code:
-                code, text = self._arm(response.cause)
-        elif not code:
+        cause = guard.latch.cause or guard.latch.hold
+        response.cause = to_line(cause)
+        wrong = NotStopped(self._app.machine) if cause is None else self._keeps_from_arming()
+        if wrong is None and cause is not None and request.token:
+            refused = guard.latch.confirm(request.token, now)
+            wrong = self._arm(cause) if refused is None else BadToken(refused)
+        elif wrong is None:
             response.token = guard.latch.request(now)
-        response.armed = not guard.latch.cause and not guard.latch.hold
-        response.error_code, response.error_msg = code, text
+        response.armed = guard.latch.cause is None and guard.latch.hold is None
+        _fill(response, wrong)
         return response
 
-    def _arm(self, cause: str) -> tuple[str, str]:
+    def _arm(self, cause: Reason) -> Reason | None:
         """The note first: a machine counts as armed when the disk says so."""
         guard = self._guard
         unkept = guard.notes.hold("", 0)
         if unkept is not None:
             guard.latch.close(cause)
-            return "NOT_KEPT", unkept
+            return NotKept(unkept)
         guard.watch.accept_clocks()
         guard.controls.emergency(False)
         guard.stood_in = False
         guard.vigil.end(time.monotonic())
         self._app.log.info("armed")
         guard.told()
-        return "", ""
+        return None
 
-    def _keeps_from_arming(self, cause: str) -> tuple[str, str]:
+    def _keeps_from_arming(self) -> Reason | None:
         guard, machine, now = self._guard, self._app.machine, time.monotonic()
-        if not cause:
-            return "NOT_STOPPED", f"{machine} is armed: there is nothing to do"
         if guard.active is not None:
-            return "STILL_ACTIVE", f"{machine} still has an open goal: cancel its run first"
+            return StillActive(machine)
         if guard.by_hand:
-            return "TAKEN", f"{guard.by_hand} drives {machine} by hand: `tms give-back {machine}` first"
+            return guard.driver()
         if now - guard.pressed < PRESSED:
-            return "CAUSE_PERSISTS", "the software stop is still pressed: release it (false on /emergency_signal)"
+            return CausePersists(StillPressed())
         silent, trouble = guard.silent(), guard.watch.trouble(now)
         if silent is not None:
-            return "CAUSE_PERSISTS", f"nobody sees whether {machine} stands: {silent}; is the machine on?"
+            return CausePersists(NotSeen(machine, silent))
         if trouble is not None and not trouble.passes:
-            return "CAUSE_PERSISTS", f"what {machine} tells cannot be believed: {trouble.text}"
+            return CausePersists(NotBelieved(machine, trouble.reason))
         if guard.stopper.busy:
-            return "CAUSE_PERSISTS", f"a stop of {machine} is still being proven"
+            return CausePersists(StillProven(machine))
         if not guard.watch.standing(now, passing=True):
-            return "CAUSE_PERSISTS", f"{machine} does not stand still yet"
-        return "", ""
+            return CausePersists(NotStill(machine))
+        return None
 
     # by hand
 
@@ -80,48 +98,52 @@ class Arming:
 
         Watching, latch and alarms stay as they are.
         """
-        code, text = self._keeps_from_giving() if request.back else self._keeps_from_taking(request.who)
-        if not code:
-            text = self._guard.notes.take("" if request.back else request.who) or ""
-            code = "NOT_KEPT" if text else ""
-        if not code and request.back:
+        wrong = self._keeps_from_giving() if request.back else self._keeps_from_taking(request.who)
+        if wrong is None and (unkept := self._guard.notes.take("" if request.back else request.who)) is not None:
+            wrong = NotKept(unkept)
+        if wrong is None and request.back:
             response.receipt = self._give_back(request.who)
-        elif not code:
+        elif wrong is None:
             self._guard.by_hand = request.who
             self._app.log.warning("taken", who=request.who)
             self._guard.told()
-        response.error_code, response.error_msg = code, text
+        _fill(response, wrong)
         return response
 
     def _give_back(self, who: str) -> StopReceipt:
         self._guard.by_hand = ""
-        stop = self._guard.stop(f"given back by {who}", Kind.PLAIN)
+        stop = self._guard.stop(GivenBack(who), Kind.PLAIN)
         return stop.wait(self._app.machine)
 
-    def _keeps_from_taking(self, who: str) -> tuple[str, str]:
+    def _keeps_from_taking(self, who: str) -> Reason | None:
         guard, machine = self._guard, self._app.machine
         if not who.strip() or not who.isprintable():
-            return "NAMELESS", "say who drives: `tms take MACHINE --by NAME`"
+            return Nameless()
         if guard.by_hand:
-            return "TAKEN", f"{guard.by_hand} drives {machine} by hand already"
+            return guard.driver()
         if guard.active is not None:
-            return "STILL_ACTIVE", f"{machine} still has an open goal: cancel its run first"
+            return StillActive(machine)
         if guard.run is not None:
-            return "HELD_BY_RUN", f"run {guard.permits.holder()} holds {machine}: cancel it first"
-        return "", ""
+            return HeldByRun(guard.permits.holder(), machine)
+        return None
 
-    def _keeps_from_giving(self) -> tuple[str, str]:
+    def _keeps_from_giving(self) -> Reason | None:
         if not self._guard.by_hand or self._guard.by_hand == MANUAL:
-            return "NOT_TAKEN", f"nobody has taken {self._app.machine}: `tms status` shows who drives what"
-        return "", ""
+            return NotTaken(self._app.machine)
+        return None
 
     def manual(self, message: Bool) -> None:
         """The machine's own signal that a person drives it by its levers. On the executor thread."""
         guard, on = self._guard, bool(message.data)
         if on and not guard.by_hand:
-            guard.stop_now(f"{MANUAL} was switched on", Kind.PLAIN)
+            guard.stop_now(ManualOn(), Kind.PLAIN)
             guard.by_hand = MANUAL
         elif not on and guard.by_hand == MANUAL:
             guard.by_hand = ""
-            guard.stop_now(f"{MANUAL} was switched off", Kind.PLAIN)
+            guard.stop_now(ManualOff(), Kind.PLAIN)
         guard.told()
+
+
+def _fill(response: Rearm.Response | TakeMachine.Response, wrong: Reason | None) -> None:
+    """Answer with why it was refused, or with nothing."""
+    response.error_code, response.error_msg = ("", "") if wrong is None else (wrong.code, to_line(wrong))

@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from tms_rc.reasons import HeldByAnother, NoPlanner, NoScheduler, NoSubtask, OldRun
+from tms_reason.reason import Reason
 from tms_ros.fence import Owner
 
 SCHEDULER = "ts"
@@ -12,7 +14,7 @@ SCHEDULER = "ts"
 class Gap:
     """Why a goal has no permit; `late` when waiting cannot help."""
 
-    text: str
+    reason: Reason
     late: bool = False
 
 
@@ -23,15 +25,14 @@ def gap(owner: Owner | None, held: Mapping[str, Owner]) -> Gap | None:
     """
     run = held.get(SCHEDULER)
     if owner is None:
-        return None if run is None else Gap("the machine is held by a run: cancel it first", late=True)
+        return None if run is None else Gap(HeldByAnother(), late=True)
     if run is None:
-        return Gap("no scheduler stands behind its run")
+        return Gap(NoScheduler())
     if run.run != owner.run:
-        text = f"its fencing number {owner.run} is not the present run's ({run.run}): a goal of an abandoned run"
-        return Gap(text, late=owner.run < run.run)
+        return Gap(OldRun(owner.run, run.run), late=owner.run < run.run)
     for hop in range(owner.hop):
         if Owner(owner.run, owner.leaf, hop) not in held.values():
-            return Gap("the planner does not stand behind it" if hop else "the subtask does not stand behind it")
+            return Gap(NoPlanner() if hop else NoSubtask())
     return None
 
 

@@ -4,6 +4,9 @@ import math
 from dataclasses import dataclass
 from itertools import pairwise
 
+from tms_rc.reasons import PositionsMove, VelocitiesMove
+from tms_reason.reason import Reason
+
 WORST = 0.3  # s; the worst speed within this time counts, not the last message
 KEPT = 1.2  # s of samples
 SPAN = 0.8  # share of WORST that samples must span before positions and velocities are compared
@@ -89,25 +92,25 @@ class Channel:
         first, last = still[0], still[-1]
         return min(last.received - first.received, last.stamped - first.stamped) >= seconds
 
-    def disagreement(self) -> str:
-        """Which of position and velocity says motion while the other one says none; empty if they agree."""
+    def disagreement(self) -> Reason | None:
+        """Which of position and velocity says motion while the other one says none; None if they agree."""
         recent = self._recent()
         if not recent or not recent[0].place or recent[-1].received - recent[0].received < SPAN * WORST:
-            return ""
+            return None
         told = [abs(one.speed) for one in recent if one.speed is not None]
         if len(told) < len(recent):
-            return ""
+            return None
         first, last, limit = recent[0], recent[-1], self._limits.speed
         seconds = last.stamped - first.stamped
         if seconds <= 0 or self._hidden(recent):
-            return ""
+            return None
         away = max(0.0, self._distance(first.place, last.place) - self._limits.resolution)
         mean = away / (seconds * self._limits.scale)
         if mean > CLEARLY * limit and max(told) < limit:
-            return "positions move, velocities say that it stands"
+            return PositionsMove()
         if min(told) > CLEARLY * limit and mean < limit:
-            return "velocities say that it moves, positions stand"
-        return ""
+            return VelocitiesMove()
+        return None
 
     def _hidden(self, samples: list[Seen]) -> bool:
         """Whether messages are missing between samples, or a stand-in is too fast for its period."""

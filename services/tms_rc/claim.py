@@ -9,6 +9,8 @@ from prometheus_client import Gauge
 from tms_msg_rc.msg import GatewayClaim
 
 from tms_machine.permit import BEATS, LEASE
+from tms_rc.reasons import Rival
+from tms_reason.reason import Reason
 from tms_runtime.app import App
 
 SETTLE = 0.4  # s for gateways to find each other; one that is found later is told then
@@ -34,10 +36,10 @@ class Claim:
         app.pulse.add(self._beat)
 
     @property
-    def rival(self) -> str:
-        """Another gateway for this machine, empty if there is none."""
+    def rival(self) -> Reason | None:
+        """Another gateway for this machine."""
         other = self._other()
-        return f"another gateway for {self._app.machine} runs ({other.where})" if other is not None else ""
+        return Rival(self._app.machine, other.where) if other is not None else None
 
     def serve(self) -> bool:
         """Wait until no other gateway is at work, then say that this one is; False when the process ends before."""

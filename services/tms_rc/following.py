@@ -10,6 +10,9 @@ from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from tms_rc.reasons import OffPath, Stalled
+from tms_reason.reason import Reason
+
 QUIET = 0.8  # s for which a joint that is behind must not have moved at all
 QUIET_ANGLE = 0.005  # rad that count as no motion
 BEHIND = 0.05  # rad
@@ -98,17 +101,17 @@ class Follower:
         low, high = way.hull(passed - seconds * self._scale, passed)
         return high - low
 
-    def look(self, now: float, angles: Mapping[str, float]) -> str | None:
+    def look(self, now: float, angles: Mapping[str, float]) -> Reason | None:
         """What is wrong with where the joints are [rad], None if nothing."""
         for name, way in self._ways.items():
             if name not in angles:
                 continue
             wrong = self._stalled(name, way, now, angles[name]) or self._off(name, way, now, angles[name])
-            if wrong:
+            if wrong is not None:
                 return wrong
         return None
 
-    def _stalled(self, name: str, way: Way, now: float, angle: float) -> str | None:
+    def _stalled(self, name: str, way: Way, now: float, angle: float) -> Reason | None:
         seen = self._seen[name]
         seen.append((now, angle))
         while len(seen) > 1 and now - seen[1][0] >= QUIET:
@@ -119,10 +122,10 @@ class Follower:
         if there or now - seen[0][0] < QUIET or max(past) - min(past) > QUIET_ANGLE:
             return None
         due = min(low, high, key=lambda bound: abs(bound - angle))
-        return f"STALLED: {name} stands at {angle:.3f} rad, it should have passed {due:.3f} rad"
+        return Stalled(name, angle, due)
 
-    def _off(self, name: str, way: Way, now: float, angle: float) -> str | None:
+    def _off(self, name: str, way: Way, now: float, angle: float) -> Reason | None:
         low, high = way.hull(0.0, (now - self._begun + AHEAD) * self._scale)
         if low - OFF_PATH <= angle <= high + OFF_PATH:
             return None
-        return f"OFF_PATH: {name} is at {angle:.3f} rad, its way has been between {low:.3f} and {high:.3f} rad"
+        return OffPath(name, angle, low, high)

@@ -10,14 +10,36 @@ from tms_msg_rc.msg import StopReceipt
 from trajectory_msgs.msg import JointTrajectoryPoint
 
 from tms_machine.border import Motion
+from tms_machine.reasons import Stood, StoodWithoutJoints, StopUnconfirmed
 from tms_rc import limits
 from tms_rc.following import Follower, ways
 from tms_rc.guard import Active, Guard, Kind
+from tms_rc.reasons import (
+    Cancelled,
+    CancelledElsewhere,
+    ControllerAway,
+    ControllerEnded,
+    ControllerLeft,
+    Frozen,
+    GatewayStood,
+    GatewayStopped,
+    NoEnd,
+    NoGoalAnswer,
+    NotReady,
+    OffPath,
+    TooLong,
+    WhileMoving,
+)
 from tms_rc.standstill import JOINTS, StandStill
+from tms_reason import wire
 from tms_reason.errors import RosError
+from tms_reason.reason import Reason
+from tms_reason.wire import to_line
 from tms_ros.client import AnyCall, AnyPeer
 from tms_ros.fence import parse
-from tms_ros.goals import LOST_TEXT, Ended, Outcome
+from tms_ros.goals import Ended, Outcome
+from tms_ros.loop import POLL
+from tms_ros.reasons import ProcessLost
 from tms_ros.server import AnyGoal
 from tms_runtime.app import App
 
@@ -52,11 +74,11 @@ class Gateway:
         try:
             return self._pass_on(motion, active)
         except RosError as error:
-            return aborted(motion, str(error))
+            return aborted(motion, error.reason)
         finally:
             self._guard.release()
 
-    def _limits(self, motion: Motion, request: Any) -> str | None:
+    def _limits(self, motion: Motion, request: Any) -> Reason | None:
         if hasattr(request, "trajectory"):
             wanted = request.trajectory
             points = [point.positions for point in wanted.points]
@@ -69,18 +91,19 @@ class Gateway:
         return limits.pose_problem([_numbers(stamped.pose) for stamped in poses_of(request)])
 
     def _pass_on(self, motion: Motion, active: Active) -> Ended[Any]:
-        active.peer.wait_ready(SERVER_LIMIT)
+        if not self._reachable(active):
+            return aborted(motion, ControllerAway(self._app.machine, active.peer.name))
         unseen = self._unseen(active.goal)
         if unseen is not None:
-            return aborted(motion, f"not ready: {unseen}")
+            return aborted(motion, NotReady(unseen))
         refused = self._guard.watch.trouble(time.monotonic())
         if refused is not None:
-            return aborted(motion, f"not ready: {refused.text}")
+            return aborted(motion, NotReady(refused.reason))
         active.goal.on_cancel = lambda: self._app.ros.on_executor(lambda: self._cancel(active))
         self._app.ros.on_executor(lambda: self._send(active))
         self._wait(active, lambda call: call.accepted, ACCEPT_LIMIT)
         if active.stop is None and not (active.call is not None and (active.call.accepted or active.ended())):
-            self._guard.stop(f"{LOST_TEXT}: {active.peer.name} did not answer a goal", Kind.PLAIN)
+            self._guard.stop(ProcessLost(NoGoalAnswer(self._app.machine, active.peer.name)), Kind.PLAIN)
             if active.call is not None:
                 active.peer.doubt(active.call)
         self._watch_motion(motion, active)
@@ -90,13 +113,21 @@ class Gateway:
         if call.outcome is Outcome.SUCCEEDED:
             return Outcome.SUCCEEDED, call.result
         if call.outcome is Outcome.CANCELED:  # nobody asked us: whoever stands in for a gateway that seems lost
-            return aborted(motion, f"{LOST_TEXT}: somebody else cancelled the motion at the machine")
-        text = (
-            reason_of(call.result) or f"the machine's controller ended it: {call.outcome.name if call.outcome else ''}"
-        )
-        return Outcome.ABORTED, call.result if reason_of(call.result) else aborted(motion, text)[1]
+            return aborted(motion, ProcessLost(CancelledElsewhere()))
+        if reason_of(call.result):
+            return Outcome.ABORTED, call.result
+        outcome = call.outcome.name if call.outcome is not None else ""
+        return aborted(motion, ControllerEnded(self._app.machine, outcome))
 
-    def _unseen(self, goal: AnyGoal) -> str | None:
+    def _reachable(self, active: Active) -> bool:
+        deadline = time.monotonic() + SERVER_LIMIT
+        while not active.peer.ready():
+            if time.monotonic() > deadline:
+                return False
+            time.sleep(POLL)
+        return True
+
+    def _unseen(self, goal: AnyGoal) -> Reason | None:
         """What is not heard of the machine: it would be stopped and latched as soon as it moves.
 
         A machine that was switched on just now may be heard here a moment later than where the goal comes from.
@@ -122,7 +153,7 @@ class Gateway:
 
     def _cancel(self, active: Active) -> None:
         if active.stop is None and self._guard.active is active:
-            self._guard.stop_now("cancel", Kind.PLAIN)
+            self._guard.stop_now(Cancelled(), Kind.PLAIN)
 
     def _watch_motion(self, motion: Motion, active: Active) -> None:
         """Until the goal is terminal or a stop has begun."""
@@ -132,28 +163,28 @@ class Gateway:
             self._wait(active, lambda call: call.outcome is not None, LOOK)
             frozen = time.monotonic() - before
             if frozen > FROZEN and active.stop is None:  # its own news of the machine are old, not the machine silent
-                self._guard.stop(f"{LOST_TEXT}: the gateway itself did not run for {frozen:.1f} s", Kind.HOLD)
+                self._guard.stop(ProcessLost(GatewayStood(frozen)), Kind.HOLD)
                 break
             if active.stop is None and active.call is not None and active.call.accepted and active.peer.left():
-                self._guard.stop(f"{LOST_TEXT}: {active.peer.name} went away during its goal", Kind.PLAIN)
+                self._guard.stop(ProcessLost(ControllerLeft(self._app.machine, active.peer.name)), Kind.PLAIN)
                 active.peer.lost()  # ends the goal, which nobody answers any more
                 break
             wrong = self._wrong(motion, active)
             if wrong is not None and active.stop is None:
                 self._guard.stop(*wrong)
             elif time.monotonic() > deadline and active.stop is None:
-                self._guard.stop("the motion takes too long", Kind.PLAIN)
+                self._guard.stop(TooLong(), Kind.PLAIN)
 
-    def _wrong(self, motion: Motion, active: Active) -> tuple[str, Kind] | None:
+    def _wrong(self, motion: Motion, active: Active) -> tuple[Reason, Kind] | None:
         """What makes it stop, and what that means for the next motion."""
         now, watch = time.monotonic(), self._watch
         escaped = limits.escaped(self._model, watch.positions, active.start)
         if escaped is not None:
             return escaped, Kind.LATCH
         if (silent := self._guard.silent()) is not None:
-            return f"{silent} while it moves", Kind.LATCH
+            return WhileMoving(silent), Kind.LATCH
         if (trouble := watch.trouble(now)) is not None:
-            return f"{trouble.text}, while it moves", Kind.HOLD if trouble.passes and active.owner else Kind.LATCH
+            return WhileMoving(trouble.reason), Kind.HOLD if trouble.passes and active.owner else Kind.LATCH
         if active.call is None or not active.call.accepted:
             return None
         if not active.begun:
@@ -163,7 +194,7 @@ class Gateway:
         if (frozen := self._frozen(active, active.follower, now)) is not None:
             return frozen, Kind.LATCH
         wrong = active.follower.look(now, watch.positions)
-        return None if wrong is None else (wrong, Kind.LATCH if wrong.startswith("OFF_PATH") else Kind.PLAIN)
+        return None if wrong is None else (wrong, Kind.LATCH if isinstance(wrong, OffPath) else Kind.PLAIN)
 
     def _begin(self, motion: Motion, active: Active, now: float) -> None:
         """The goal was accepted: from now on the machine should follow."""
@@ -186,7 +217,7 @@ class Gateway:
         found = ways([joint], [(seconds, [angle])], active.start)
         return Follower(found, self._watch.reached, now, self._speed)
 
-    def _frozen(self, active: Active, follower: Follower, now: float) -> str | None:
+    def _frozen(self, active: Active, follower: Follower, now: float) -> Reason | None:
         """Values that are bit for bit the same while the goal should change them."""
         source = self._watch.sources.get(JOINTS)
         if source is None:
@@ -194,7 +225,7 @@ class Gateway:
         same = now - max(source.changed, active.begun + self._watch.reached / self._speed)
         if same <= source.source.frozen_after or not follower.moved(now, same):
             return None
-        return f"FROZEN: {source.label} are the same to the last bit for {same:.1f} s while the machine should move"
+        return Frozen(source.label, same)
 
     def _wait(self, active: Active, enough: Callable[[AnyCall], bool], seconds: float) -> None:
         def over() -> bool:
@@ -207,16 +238,16 @@ class Gateway:
     def _stopped(self, motion: Motion, active: Active) -> Ended[Any]:
         stop = active.stop
         if stop is None:
-            return aborted(motion, "stopped, but nobody saw the end of it")
+            return aborted(motion, NoEnd())
         receipt = stop.wait(self._app.machine)
         if not receipt.confirmed:
-            return aborted(motion, f"stop unconfirmed: {receipt.detail} ({stop.cause})")
-        text = f"stood after {receipt.seconds:.2f} s, {travel_text(receipt)} ({stop.cause})"
+            return aborted(motion, StopUnconfirmed(wire.known(receipt.detail), stop.cause))
+        stood = stood_after(receipt, stop.cause)
         if not active.goal.cancelled.is_set() or self._guard.latch.cause:
-            return aborted(motion, text)
+            return aborted(motion, stood)
         if self._app.stopping.is_set():
-            return Outcome.CANCELED, with_reason(motion, f"{LOST_TEXT}: the gateway was stopped; {text}")
-        return Outcome.CANCELED, with_reason(motion, text, 0)
+            return Outcome.CANCELED, with_reason(motion, ProcessLost(GatewayStopped(stood)))
+        return Outcome.CANCELED, with_reason(motion, stood, 0)
 
 
 def speed_of(app: App) -> float:
@@ -224,10 +255,12 @@ def speed_of(app: App) -> float:
     return app.site.file.sim.speed if app.site.file.backend == "sim" else 1.0
 
 
-def travel_text(receipt: StopReceipt) -> str:
-    """How far it went until it stood."""
-    parts = [f"{receipt.travel_rad:.3f} rad ({receipt.travel_joint})"] if receipt.travel_joint else []
-    return ", ".join([*parts, f"{receipt.travel_m:.2f} m"])
+def stood_after(receipt: StopReceipt, cause: Reason) -> Reason:
+    """How long it took until it stood, and how far it went."""
+    seconds, way = receipt.seconds, receipt.travel_m
+    if not receipt.travel_joint:
+        return StoodWithoutJoints(seconds, way, cause)
+    return Stood(seconds, receipt.travel_rad, receipt.travel_joint, way, cause)
 
 
 def poses_of(request: Any) -> Sequence[PoseStamped]:
@@ -261,16 +294,16 @@ def reason_of(result: Any) -> str:
     return str(getattr(result, "error_string", "") or getattr(result, "error_msg", ""))
 
 
-def with_reason(motion: Motion, text: str, code: int | None = None) -> Any:
+def with_reason(motion: Motion, reason: Reason, code: int | None = None) -> Any:
     """A result of the motion's type that tells as much as the type has room for."""
-    result = motion.type.Result()
+    result, line = motion.type.Result(), to_line(reason)
     if hasattr(result, "error_string"):
-        result.error_code, result.error_string = REFUSED if code is None else code, text
+        result.error_code, result.error_string = REFUSED if code is None else code, line
     elif hasattr(result, "error_msg"):
-        result.error_code, result.error_msg = UNKNOWN if code is None else code, text
+        result.error_code, result.error_msg = UNKNOWN if code is None else code, line
     return result
 
 
-def aborted(motion: Motion, text: str) -> Ended[Any]:
+def aborted(motion: Motion, reason: Reason) -> Ended[Any]:
     """The end of a goal that must not go on."""
-    return Outcome.ABORTED, with_reason(motion, text)
+    return Outcome.ABORTED, with_reason(motion, reason)

@@ -16,17 +16,30 @@ from tms_msg_rc.srv import StopMachine
 
 from tms_machine.border import STOP_PROVEN, Controls
 from tms_machine.permit import NOBODY, Link
+from tms_machine.reasons import DrivenByHand, NoPermit, SoftwareStop, SoftwareStopSaying
 from tms_rc.chain import SCHEDULER, gap, members
 from tms_rc.following import Follower
 from tms_rc.latch import Latch
 from tms_rc.notes import Notes
 from tms_rc.permits import Permits
+from tms_rc.reasons import (
+    LeftStandStill,
+    NotReady,
+    NotSeenToStand,
+    ProcessesLost,
+    Recovering,
+    SchedulerLost,
+    StillMoved,
+    StopUnderWay,
+)
 from tms_rc.standstill import NOTHING, Expected, StandStill
 from tms_rc.stopper import Stop, Stopper
 from tms_rc.vigil import Vigil
+from tms_reason import wire
+from tms_reason.reason import Reason
 from tms_ros.client import AnyCall, AnyPeer
 from tms_ros.fence import Owner
-from tms_ros.goals import LOST_TEXT
+from tms_ros.reasons import ProcessLost
 from tms_ros.server import AnyGoal
 from tms_runtime.app import App
 
@@ -34,8 +47,6 @@ PERMIT_LIMIT = 3.0  # s that a goal may come before the permits behind it: a new
 PRESSED = 1.0  # s that a software stop counts as pressed after its last message
 FRESH = 1.0  # s, older news of the machine make it not ready
 FOREIGN = "a foreign client"
-PROVES = "its last stop is still being proven"
-RECOVERS = "after its start the gateway still proves that the machine stands"
 
 
 class Kind(Enum):
@@ -105,13 +116,13 @@ class Guard:
         self.told: Callable[[], None] = lambda: None  # called when the latch has changed, to tell it at once
         self.permits = Permits(app, self._permit_changed)
 
-    def silent(self) -> str | None:
+    def silent(self) -> Reason | None:
         """What is not heard of the machine."""
         return self.watch.silent(time.monotonic(), FRESH)
 
     # who may move
 
-    def take(self, active: Active) -> str | None:
+    def take(self, active: Active) -> Reason | None:
         """Let a goal move the machine from now on; returns why it must not."""
         wrong = self._wait_for_permit(active.owner)
         if wrong is not None:
@@ -120,7 +131,7 @@ class Guard:
         self.stopper.wait_idle(STOP_PROVEN)
         with self._taking:
             if self.active is not None:
-                return f"{self._app.machine} is still moved by another goal"
+                return StillMoved(self._app.machine)
             wrong = self._kept() or self.latch.refusal(active.owner) or self._noted(active.owner)
             if wrong is None:
                 active.chain = members(active.owner, self.permits.held())
@@ -128,12 +139,16 @@ class Guard:
                 self.vigil.end()
         return wrong
 
-    def _kept(self) -> str | None:
+    def _kept(self) -> Reason | None:
         if self.recovering or self.stopper.busy:
-            return f"not ready: {RECOVERS if self.recovering else PROVES}"
-        return f"{self.by_hand} drives {self._app.machine} by hand: `tms give-back` first" if self.by_hand else None
+            return NotReady(Recovering() if self.recovering else StopUnderWay())
+        return self.driver()
 
-    def _noted(self, owner: Owner | None) -> str | None:
+    def driver(self) -> Reason | None:
+        """Who drives the machine by hand."""
+        return DrivenByHand(wire.known(self.by_hand), self._app.machine) if self.by_hand else None
+
+    def _noted(self, owner: Owner | None) -> Reason | None:
         """Whose goal it is has to be on the disk before it leaves: a power cut must not leave the machine armed."""
         if owner is None:
             return self.notes.hold(FOREIGN, 0)
@@ -148,7 +163,7 @@ class Guard:
             self.stop_now(refusal, Kind.PLAIN)
         elif missing is not None:
             lost = active.owner is not None and not missing.late
-            self.stop_now(f"{LOST_TEXT}: {missing.text}" if lost else missing.text, Kind.HOLD if lost else Kind.PLAIN)
+            self.stop_now(ProcessLost(missing.reason) if lost else missing.reason, Kind.HOLD if lost else Kind.PLAIN)
 
     def release(self) -> None:
         """The goal is over."""
@@ -156,7 +171,7 @@ class Guard:
         if active is not None and active.owner is None and active.stop is None:
             self.notes.release()
 
-    def _wait_for_permit(self, owner: Owner | None) -> str | None:
+    def _wait_for_permit(self, owner: Owner | None) -> Reason | None:
         deadline = time.monotonic() + PERMIT_LIMIT
         with self._news:
             while True:
@@ -166,7 +181,7 @@ class Guard:
                 if found is None:
                     return None
                 if found.late or left <= 0:
-                    return f"no motion permit: {found.text}"
+                    return NoPermit(found.reason)
                 self._news.wait(min(left, 0.1))
 
     def _permit_changed(self, link: Link) -> None:
@@ -181,7 +196,7 @@ class Guard:
         if run is None and self.run is not None and link.goal != NOBODY:
             lost, self.run = self.run, None
             self.latch.run_lost()
-            self.stop_now("tms:ts, the scheduler, was lost during a run", Kind.LATCH, run=lost)
+            self.stop_now(SchedulerLost(), Kind.LATCH, run=lost)
             return
         before, self.run = self.run, None if run is None else run.run
         self.latch.run_is(self.run)
@@ -198,12 +213,14 @@ class Guard:
         held = self.permits.held()
         gone = [name for name, what in active.chain.items() if held.get(name) != what]
         if gone:
-            names = ", ".join(f"{'tms' if name == SCHEDULER else self._app.machine}:{name}" for name in gone)
-            self.stop_now(f"{LOST_TEXT}: {names} was lost during its goal", Kind.HOLD)
+            names = tuple(f"{'tms' if name == SCHEDULER else self._app.machine}:{name}" for name in gone)
+            self.stop_now(ProcessLost(ProcessesLost(names)), Kind.HOLD)
 
     # stop
 
-    def stop_now(self, cause: str, kind: Kind, run: int = 0, expected: Expected = NOTHING, broken: str = "") -> Stop:
+    def stop_now(
+        self, cause: Reason, kind: Kind, run: int = 0, expected: Expected = NOTHING, broken: Reason | None = None
+    ) -> Stop:
         """Stop whoever moves the machine. On the executor thread only; returns at once.
 
         `expected`, `broken`: see `Stopper.begin`; of a goal under way it is known here what it must move.
@@ -244,10 +261,10 @@ class Guard:
 
     def _left_stand_still(self) -> None:
         if self.active is None and not self.stopper.busy:
-            text = "it left stand-still without a goal of its own"
-            self.stop_now(text, Kind.LATCH, broken=text)
+            left = LeftStandStill()
+            self.stop_now(left, Kind.LATCH, broken=left)
 
-    def stop(self, cause: str, kind: Kind) -> Stop:
+    def stop(self, cause: Reason, kind: Kind) -> Stop:
         """`stop_now` from any other thread; waits for the commands to have left, not for the machine."""
         begun: list[Stop] = []
         there = threading.Event()
@@ -270,18 +287,22 @@ class Guard:
         fresh = now - self.pressed > PRESSED
         self.pressed = now
         if fresh or not self.latch.cause:
-            self.stop_now("software stop", Kind.LATCH)
+            self.stop_now(SoftwareStop(), Kind.LATCH)
 
     def stop_service(self, request: StopMachine.Request, response: StopMachine.Response) -> StopMachine.Response:
         """Stop whoever moves the machine, foreign clients too; answers with what was seen."""
-        stop = self.stop(request.cause or "software stop", Kind.PLAIN if request.orderly else Kind.LATCH)
+        cause = wire.of(request.cause) or SoftwareStop()
+        if not request.orderly and cause.find(SoftwareStop) is None:
+            cause = SoftwareStopSaying(cause)
+        stop = self.stop(cause, Kind.PLAIN if request.orderly else Kind.LATCH)
         response.receipt = stop.wait(self._app.machine)
         return response
 
     def _note(self, receipt: StopReceipt) -> None:
         """What a stop has shown, kept before it is told."""
         if not receipt.confirmed:
-            self.latch.close(f"{receipt.cause}: not seen to stand ({receipt.detail})")
+            cause, detail = wire.known(receipt.cause), wire.known(receipt.detail)
+            self.latch.close(NotSeenToStand(cause, detail, self._app.machine))
             self.controls.emergency(True)
             self.told()
         elif self.stood_in and not self.latch.cause:

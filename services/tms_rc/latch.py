@@ -9,6 +9,9 @@ import secrets
 import threading
 from dataclasses import dataclass
 
+from tms_machine.reasons import MachineLatched
+from tms_rc.reasons import Held, ThenSchedulerLost, TokenOld, TokenUnknown
+from tms_reason.reason import Reason
 from tms_ros.fence import Owner
 
 TOKEN_SECONDS = 60.0  # s that a person has between the two steps
@@ -20,7 +23,7 @@ UNKNOWN_RUN = -1  # no run has this number: nobody may leave the hold until it i
 class Hold:
     """A stop that its own run may leave."""
 
-    cause: str
+    cause: Reason
     run: int
     leaf: int
 
@@ -28,47 +31,47 @@ class Hold:
 class Latch:
     """Safe to call from several threads; never waits for anything but its own short lock."""
 
-    def __init__(self, cause: str = "") -> None:
+    def __init__(self, machine: str, cause: Reason | None = None) -> None:
         self._lock = threading.Lock()
-        self._cause = cause
+        self._machine, self._cause = machine, cause
         self._hold: Hold | None = None
         self._token: tuple[str, float] | None = None
 
     @property
-    def cause(self) -> str:
-        """Why the machine is latched, empty if it is not."""
+    def cause(self) -> Reason | None:
+        """Why the machine is latched, None if it is not."""
         return self._cause
 
     @property
-    def hold(self) -> str:
-        """Why the machine is held, empty if it is not."""
+    def hold(self) -> Reason | None:
+        """Why the machine is held, None if it is not."""
         hold = self._hold
-        return hold.cause if hold is not None else ""
+        return hold.cause if hold is not None else None
 
-    def close(self, cause: str) -> None:
+    def close(self, cause: Reason) -> None:
         """Latch. The first cause stays; a token that somebody got before is worth nothing any more."""
         with self._lock:
             self._cause = self._cause or cause
             self._hold = self._token = None
 
-    def keep(self, cause: str, owner: Owner) -> None:
+    def keep(self, cause: Reason, owner: Owner) -> None:
         """Hold the machine for the run that just lost one of its processes."""
         with self._lock:
             if not self._cause:
                 self._hold = Hold(cause, owner.run, owner.leaf)
 
-    def refusal(self, owner: Owner | None) -> str | None:
+    def refusal(self, owner: Owner | None) -> Reason | None:
         """Why a goal may not move the machine; a goal that may leave a hold ends it."""
         with self._lock:
             if self._cause:
-                return f"stopped ({self._cause}): re-arm it first with `tms rearm`"
+                return MachineLatched(self._machine, self._cause)
             hold = self._hold
             if hold is None:
                 return None
             if owner is not None and owner.run == hold.run and owner.leaf != hold.leaf:
                 self._hold = None
                 return None
-            return f"held ({hold.cause}): only a new goal of the same run may move it"
+            return Held(hold.cause)
 
     def run_is(self, run: int | None) -> None:
         """Tell which run holds the machine; its orderly change ends a hold for another one."""
@@ -80,7 +83,7 @@ class Latch:
         """The scheduler behind the hold is gone as well."""
         with self._lock:
             if self._hold is not None:
-                self._cause, self._hold = f"{self._hold.cause}, then the scheduler was lost", None
+                self._cause, self._hold = ThenSchedulerLost(self._hold.cause), None
 
     def request(self, now: float) -> str:
         """First step of re-arming: a token for the second."""
@@ -89,13 +92,13 @@ class Latch:
             self._token = (token, now + TOKEN_SECONDS)
             return token
 
-    def confirm(self, token: str, now: float) -> str | None:
+    def confirm(self, token: str, now: float) -> Reason | None:
         """Second step; returns why it is refused, None when the machine is armed."""
         with self._lock:
             known, self._token = self._token, None
             if known is None or not secrets.compare_digest(known[0].encode(), token.encode()):
-                return "this token is not valid (any more): ask for a new one, look at the machine, and confirm again"
+                return TokenUnknown()
             if now > known[1]:
-                return f"the token is older than {TOKEN_SECONDS:.0f} s: ask for a new one"
-            self._cause, self._hold = "", None
+                return TokenOld(TOKEN_SECONDS)
+            self._cause = self._hold = None
             return None

@@ -5,6 +5,25 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from tms_config.models import MachineModel
+from tms_config.reasons import AboveLimit, BelowLimit
+from tms_machine.reasons import NoSuchJoint
+from tms_rc.reasons import (
+    AtJoint,
+    AtPoint,
+    AtPose,
+    BadQuaternion,
+    Escaped,
+    JointTwice,
+    NoNumber,
+    NoPoints,
+    NoPose,
+    NothingTurns,
+    RestNoNumber,
+    TimeNotAfter,
+    TooFast,
+    WrongLength,
+)
+from tms_reason.reason import Reason
 
 UNIT = 0.01  # how far the length of a quaternion may be from 1
 FASTER = 1.1  # times the limit of speed that a trajectory may ask for
@@ -18,7 +37,7 @@ def problem(
     joints: Sequence[str],
     points: Sequence[Sequence[float]],
     present: Mapping[str, float] | None = None,
-) -> str | None:
+) -> Reason | None:
     """What is wrong with a trajectory (points x joints, rad), with the joint and the bound; None if nothing.
 
     `present` are the joints now [rad]: one that sags beyond its limit must be able to come back, so points that
@@ -26,18 +45,18 @@ def problem(
     """
     unknown = [name for name in joints if name not in model.joints]
     if unknown:
-        return f"joint '{unknown[0]}' is not one of {', '.join(model.joints)}"
+        return NoSuchJoint(unknown[0], tuple(model.joints))
     if len(set(joints)) < len(joints):
-        return f"a joint is named twice: {', '.join(joints)}"
+        return JointTwice(tuple(joints))
     if not points:
-        return "the trajectory has no points"
+        return NoPoints()
     for number, point in enumerate(points):
         if len(point) != len(joints):
-            return f"point {number} has {len(point)} positions for {len(joints)} joints"
+            return AtPoint(number, WrongLength(len(point), len(joints)))
         for name, angle in zip(joints, point, strict=True):
-            broken = "is not a number" if not math.isfinite(angle) else model.joints[name].violation(angle)
+            broken = NoNumber() if not math.isfinite(angle) else model.joints[name].violation(angle)
             if broken and not _inside(model, name, angle, (present or {}).get(name)):
-                return f"{f'point {number}: ' if len(points) > 1 else ''}{name}: {broken}"
+                return _at(number, len(points), AtJoint(name, broken))
     return None
 
 
@@ -56,7 +75,7 @@ def pace_problem(
     points: Sequence[Point],
     present: Mapping[str, float],
     speed: float = 1.0,
-) -> str | None:
+) -> Reason | None:
     """What is wrong with the times of a trajectory whose positions are right; `present` are the joints now [rad].
 
     Between two points a joint may go at most as fast as its limit of speed, and a little more, for planners round.
@@ -64,41 +83,43 @@ def pace_problem(
     """
     before, unheard = Point(0.0, [present.get(name, math.nan) for name in joints], []), UNHEARD * speed
     for number, point in enumerate(points):
-        where = f"point {number}: " if len(points) > 1 else ""
         if not all(map(math.isfinite, point.rest)):
-            return f"{where}a velocity, acceleration or effort is not a number"
+            return _at(number, len(points), RestNoNumber())
         passed = point.time - before.time
         if passed < 0 or (passed == 0 and number > 0):
-            return f"{where}its time {point.time:.3f} s is not after the one before"
+            return _at(number, len(points), TimeNotAfter(point.time))
         for name, old, new in zip(joints, before.positions, point.positions, strict=True):
             allowed = model.joints[name].velocity * (FASTER * passed + unheard) + TINY
             if abs(new - old) > allowed:  # false where nobody knows the joint's place
-                return (
-                    f"{where}{name} would go {abs(new - old):.3f} rad in {passed:.3f} s, "
-                    f"its limit is {model.joints[name].velocity:.3f} rad/s"
-                )
+                fast = TooFast(abs(new - old), passed, model.joints[name].velocity)
+                return _at(number, len(points), AtJoint(name, fast))
         before, unheard = point, 0.0
     return None
 
 
-def angle_problem(model: MachineModel, action: str, angle: float, present: Mapping[str, float]) -> str | None:
+def _at(number: int, count: int, why: Reason) -> Reason:
+    """A trajectory of one point is a target: its number tells nothing."""
+    return AtPoint(number, why) if count > 1 else why
+
+
+def angle_problem(model: MachineModel, action: str, angle: float, present: Mapping[str, float]) -> Reason | None:
     """What is wrong with the angle [rad] of an action that turns one joint."""
     joint = model.turned(action)
     if joint is None:
-        return f"the model has no joint for {action}"
+        return NothingTurns(action)
     return problem(model, [joint], [[angle]], present)
 
 
-def pose_problem(poses: Sequence[tuple[float, ...]]) -> str | None:
+def pose_problem(poses: Sequence[tuple[float, ...]]) -> Reason | None:
     """What is wrong with poses as x, y, z [m], qx, qy, qz, qw; a navigation would go somewhere with it."""
     if not poses:
-        return "there is no pose in the goal"
+        return NoPose()
     for number, pose in enumerate(poses):
         if not all(map(math.isfinite, pose)):
-            return f"pose {number} holds a value that is not a number"
+            return AtPose(number, NoNumber())
         length = math.hypot(*pose[3:])
         if abs(length - 1.0) > UNIT:
-            return f"pose {number}: its quaternion has the length {length:.3f}, not 1"
+            return AtPose(number, BadQuaternion(length))
     return None
 
 
@@ -112,12 +133,12 @@ def _inside(model: MachineModel, name: str, angle: float, present: float | None)
     return joint.max is not None and angle > joint.max and present >= angle - 1e-6
 
 
-def escaped(model: MachineModel, now: Mapping[str, float], start: Mapping[str, float]) -> str | None:
+def escaped(model: MachineModel, now: Mapping[str, float], start: Mapping[str, float]) -> Reason | None:
     """The joint that a running motion has taken out of its limits; `start` is where the motion began."""
     for name, angle in now.items():
         joint, began = model.joints[name], start.get(name, 0.0)
         if joint.min is not None and angle < min(joint.min, began) - MARGIN:
-            return f"{name} is at {angle:.3f} rad, below its limit {joint.min:.3f} rad"
+            return Escaped(name, BelowLimit(angle, joint.min))
         if joint.max is not None and angle > max(joint.max, began) + MARGIN:
-            return f"{name} is at {angle:.3f} rad, above its limit {joint.max:.3f} rad"
+            return Escaped(name, AboveLimit(angle, joint.max))
     return None

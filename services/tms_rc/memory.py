@@ -11,17 +11,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tms_ros.fence import NO_NOTE
+from tms_machine.reasons import NoNote
+from tms_rc.reasons import NoteUnreadable
+from tms_reason import texts, wire
+from tms_reason.reason import Reason
 from tms_runtime import durable
-
-UNREADABLE = "the note of how the machine was left cannot be read: look at it, then re-arm it"
 
 
 @dataclass(frozen=True)
 class Left:
-    """How the machine was left; `latched` is empty when it was armed."""
+    """How the machine was left; `latched` is None when it was armed."""
 
-    latched: str
+    latched: Reason | None
     holder: str = ""  # the run, or the foreign goal, that may have left it moving
     run: int = 0  # fencing number of that run
     taken: str = ""  # who drives it by hand
@@ -42,12 +43,12 @@ class Memory:
         taken = str((_load(self._taken) or {}).get("taken", ""))
         note = _load(self._armed)
         if note is None or note.get("armed") is not True:
-            cause = self._cause() if note is None and not self._armed.exists() else UNREADABLE
+            cause = self._cause() if note is None and not self._armed.exists() else NoteUnreadable()
             return Left(cause, taken=taken, unproven=self._unproven())
         holder, run = note.get("holder"), note.get("run")
         if not isinstance(holder, str) or not isinstance(run, int):
-            return Left(UNREADABLE, taken=taken)
-        return Left("", holder, run, taken)
+            return Left(NoteUnreadable(), taken=taken)
+        return Left(None, holder, run, taken)
 
     def _unproven(self) -> bool:
         receipts = self._latched.with_suffix(".receipts")
@@ -55,9 +56,9 @@ class Memory:
             return False
         return not receipts.exists() or receipts.stat().st_mtime_ns < self._latched.stat().st_mtime_ns
 
-    def _cause(self) -> str:
+    def _cause(self) -> Reason:
         cause = (_load(self._latched) or {}).get("cause")
-        return cause if isinstance(cause, str) and cause else NO_NOTE
+        return wire.known(cause) if isinstance(cause, str) and cause else NoNote()
 
     def arm(self, holder: str = "", run: int = 0) -> None:
         """From now on a restart finds the machine armed, and held by a run where one is named.
@@ -68,7 +69,7 @@ class Memory:
         with self._writing:
             _write(self._armed, {"armed": True, "holder": holder, "run": run})
 
-    def latch(self, cause: str) -> None:
+    def latch(self, cause: Reason) -> None:
         """From now on a restart finds the machine latched; the cause is kept where there is room for it.
 
         Raises:
@@ -79,7 +80,7 @@ class Memory:
             if self._folder.exists():
                 durable.sync_folder(self._folder)
             try:
-                _write(self._latched, {"cause": cause})
+                _write(self._latched, {"cause": wire.to_line(cause), "text": texts.text(cause, "en")})
             except OSError:
                 self._latched.unlink(missing_ok=True)  # an older cause would be a wrong one
 

@@ -14,14 +14,17 @@ from tms_machine.permit import LEASE, Permit
 from tms_rc.arming import Arming
 from tms_rc.claim import Claim
 from tms_rc.gateway import Gateway, speed_of
-from tms_rc.guard import FRESH, RECOVERS, Guard
+from tms_rc.guard import FRESH, Guard
 from tms_rc.latch import Latch
 from tms_rc.memory import Memory
 from tms_rc.notes import Notes
 from tms_rc.presses import Presses
+from tms_rc.reasons import ControllerAway, LooksForRivals, Recovering
 from tms_rc.recovery import Recovery
 from tms_rc.standstill import StandStill
 from tms_rc.view import View
+from tms_reason.reason import Reason
+from tms_reason.wire import to_line
 from tms_ros.client import AnyPeer
 from tms_runtime.app import App
 
@@ -53,14 +56,14 @@ def _begin(app: App, claim: Claim) -> None:
 
 
 def _serve(app: App, claim: Claim) -> None:
-    app.ready_when(lambda: claim.rival or "looks for another gateway")
+    app.ready_when(lambda: claim.rival or LooksForRivals())
     if not claim.serve():
         return
     border, machine = app.site.border(app.machine), app.machine
     watch = StandStill(app.site.model_of(machine), border, speed_of(app))
     memory = Memory(app.site.state, machine)
     left = memory.read()
-    latch = Latch(left.latched)
+    latch = Latch(machine, left.latched)
     view = View(app, watch)
     guard = Guard(app, watch, Controls(app.ros, machine, border), latch, Notes(app, memory, latch))
     recovery = Recovery(app, guard, left)
@@ -126,17 +129,18 @@ class Told:
         self._app, self._guard, self._view, self._claim = app, guard, view, claim
         self.peers: list[AnyPeer] = []
 
-    def unready(self) -> str | None:
+    def unready(self) -> Reason | None:
         """Why the machine cannot be moved now, apart from a stop."""
         if self._claim.rival or self._guard.recovering:
-            return self._claim.rival or RECOVERS
+            return self._claim.rival or Recovering()
         now, watch = time.monotonic(), self._guard.watch
         silent, trouble = watch.silent(now, FRESH), watch.trouble(now)
         if silent is not None:
             return self._view.strange_type() or silent
         if trouble is not None:
-            return trouble.text
-        return next((f"{peer.name} is not there" for peer in self.peers if not peer.ready()), None)
+            return trouble.reason
+        machine = self._app.machine
+        return next((ControllerAway(machine, peer.name) for peer in self.peers if not peer.ready()), None)
 
     def state(self) -> MachineState:
         """What is published."""
@@ -145,8 +149,8 @@ class Told:
         positions, velocities = watch.positions, watch.velocities
         moving, holder, age = watch.moving(), guard.permits.holder(), min(watch.age(now), NEVER)
         PERMIT.set(bool(holder))
-        LATCHED.set(bool(latch.cause))
-        HELD.set(bool(latch.hold))
+        LATCHED.set(latch.cause is not None)
+        HELD.set(latch.hold is not None)
         TAKEN.set(bool(guard.by_hand))
         MOVING.set(moving)
         NEWS_AGE.set(age)
@@ -155,6 +159,6 @@ class Told:
             goal=active.goal.id if active else "", owner=holder,
             joint_names=list(positions), positions=list(positions.values()),
             velocities=[velocities.get(name, 0.0) for name in positions],
-            age=age, reason=reason or "", by_hand=guard.by_hand,
-            armed=not latch.cause and not latch.hold, latch=latch.cause, hold=latch.hold,
+            age=age, reason=to_line(reason), by_hand=guard.by_hand,
+            armed=not latch.cause and not latch.hold, latch=to_line(latch.cause), hold=to_line(latch.hold),
         )  # fmt: skip

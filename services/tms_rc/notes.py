@@ -4,7 +4,9 @@ import threading
 
 from tms_rc.latch import Latch
 from tms_rc.memory import Memory
+from tms_rc.reasons import DriverNotKept, StateNotKept
 from tms_rc.stopper import UNKEPT
+from tms_reason.reason import Reason
 from tms_runtime.app import App
 
 
@@ -14,25 +16,25 @@ class Notes:
     def __init__(self, app: App, memory: Memory, latch: Latch) -> None:
         self._app, self._memory, self._latch = app, memory, latch
         self._writing = threading.Lock()
-        self._kept: tuple[str, str, int] | None = None  # what the disk says
+        self._kept: tuple[Reason | None, str, int] | None = None  # what the disk says
         self._holder, self._run = "", 0  # who may move the machine now
 
-    def keep(self) -> str | None:
+    def keep(self) -> Reason | None:
         """Have what is so now on the disk; why it is not there."""
         with self._writing:
             now = (self._latch.cause, self._holder, self._run)
             if now == self._kept:
                 return None
             try:
-                if self._latch.cause:
-                    self._memory.latch(self._latch.cause)
+                if now[0] is not None:
+                    self._memory.latch(now[0])
                 else:
                     self._memory.arm(self._holder, self._run)
             except OSError as error:
                 self._kept = None
                 UNKEPT.inc()
                 self._app.log.error("note_not_kept", reason=str(error))
-                return f"the note of its state cannot be written ({error.strerror}): make room on the disk of this PC"
+                return StateNotKept(str(error.strerror))
             self._kept = now
         return None
 
@@ -40,7 +42,7 @@ class Notes:
         """`keep`, from the executor thread."""
         threading.Thread(target=self.keep, name="note", daemon=True).start()
 
-    def hold(self, holder: str, run: int) -> str | None:
+    def hold(self, holder: str, run: int) -> Reason | None:
         """Who may move the machine from now on, empty for nobody, has to be on the disk; why it is not there."""
         self._holder, self._run = holder, run
         return self.keep()
@@ -50,11 +52,11 @@ class Notes:
         self._holder, self._run = "", 0
         self.soon()
 
-    def take(self, who: str) -> str | None:
+    def take(self, who: str) -> Reason | None:
         """Who drives by hand; why it is not on the disk."""
         try:
             self._memory.take(who)
         except OSError as error:
             UNKEPT.inc()
-            return f"the note of who drives cannot be written ({error.strerror}): make room on the disk of this PC"
+            return DriverNotKept(str(error.strerror))
         return None

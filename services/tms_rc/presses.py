@@ -11,6 +11,7 @@ from std_msgs.msg import Bool
 
 from tms_machine.border import stood_in
 from tms_rc.guard import Guard, Kind
+from tms_rc.reasons import PressedByOthers
 from tms_runtime.app import App
 
 DEPTH = 10  # presses that may wait
@@ -46,6 +47,6 @@ class Presses:
     def _judge(self, since: float) -> None:
         self._doubted -= 1
         if self._told_at < since and not self._guard.latch.cause:
-            self._guard.stop_now("emg_stop was pressed by somebody else", Kind.LATCH)
+            self._guard.stop_now(PressedByOthers(), Kind.LATCH)
         if not self._doubted:
             self._guard.press_known.set()

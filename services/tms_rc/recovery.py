@@ -5,10 +5,12 @@ import time
 from tms_rc.guard import Guard, Kind
 from tms_rc.latch import ANY_LEAF, UNKNOWN_RUN
 from tms_rc.memory import Left
+from tms_rc.reasons import GatewayRestarted, GatewayRestartedHeld, GatewayRestartedUnproven, NoRunTold, TakenByAnother
 from tms_rc.standstill import UNKNOWN
 from tms_rc.stopper import Stop
+from tms_reason.reason import Reason
 from tms_ros.fence import Owner
-from tms_ros.goals import LOST_TEXT
+from tms_ros.reasons import ProcessLost
 from tms_runtime.app import App
 
 REACHED = 5.0  # s for the machine's servers to be there
@@ -28,14 +30,15 @@ class Recovery:
         guard.run_told = self.claimed
         guard.recovering = bool(left.holder)
         guard.by_hand = left.taken
-        if left.latched:
+        if left.latched is not None:
             guard.vigil.begin()
 
     @property
-    def _cause(self) -> str:
-        held = f" while {self._left.holder} held it" if self._left.holder else ""
-        held = " before a stop of its machine was proven" if self._left.unproven else held
-        return f"{LOST_TEXT}: {self._app.machine}:rc was restarted{held}"
+    def _cause(self) -> Reason:
+        process, left = self._app.process.full, self._left
+        if left.unproven:
+            return ProcessLost(GatewayRestartedUnproven(process))
+        return ProcessLost(GatewayRestartedHeld(process, left.holder) if left.holder else GatewayRestarted(process))
 
     def run(self) -> None:
         """Cancel whatever runs; stop a machine that a run held, or that moves."""
@@ -62,7 +65,7 @@ class Recovery:
     def _command(self) -> None:
         controls = self._guard.controls
         controls.zero()
-        if self._left.latched:
+        if self._left.latched is not None:
             controls.emergency(True)
         controls.cancel_everything()
 
@@ -72,7 +75,7 @@ class Recovery:
             return
         self._open = False
         if self._left.run and run != self._left.run:
-            self._guard.stop_now(f"{self._cause}, and another run took it", Kind.LATCH)
+            self._guard.stop_now(TakenByAnother(self._cause), Kind.LATCH)
             return
         self._guard.latch.keep(self._cause, Owner(run, ANY_LEAF))
         if self._stop is None or self._stop.run != run:
@@ -92,5 +95,5 @@ class Recovery:
         """Whose motion was stopped is known by now, or it was nobody's."""
         known = self._guard.latch.cause or self._guard.active is not None
         if self._open and self._stop is not None and not known:
-            self._guard.stop_now(f"{self._cause}, and no run told of it", Kind.LATCH, expected=UNKNOWN)
+            self._guard.stop_now(NoRunTold(self._cause), Kind.LATCH, expected=UNKNOWN)
         self._open = False

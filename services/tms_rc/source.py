@@ -5,9 +5,25 @@ from dataclasses import dataclass
 
 from tms_config.models import Source
 from tms_rc.channel import Channel, Limits, Place, distance
+from tms_rc.reasons import (
+    Implausible,
+    Imu,
+    JointStates,
+    ManyPublishers,
+    NewClock,
+    Odometry,
+    Old,
+    OldOf,
+    Pose,
+    StampRepeated,
+    TwoPublishers,
+    Unheard,
+    UnheardOf,
+)
 from tms_rc.stamps import StampClock, Verdict
+from tms_reason.reason import Reason
 
-LABELS = {"joint_states": "joint states", "odom": "odometry", "pose": "pose", "imu": "IMU"}
+LABELS: dict[str, Reason] = {"joint_states": JointStates(), "odom": Odometry(), "pose": Pose(), "imu": Imu()}
 PERIODS = 3  # that a stamp may stand still, or nothing come
 SHORTEST = 0.2  # s; the gateway looks 20 times a second, and PCs are busy
 SETTLED = 5.0  # s that a machine must have stood before a new clock of its source is taken for good
@@ -29,7 +45,7 @@ class Sample:
 class Trouble:
     """Why a source cannot be believed; one that `passes` goes away by itself, and its machine is held, not latched."""
 
-    text: str
+    reason: Reason
     passes: bool = False
 
 
@@ -45,7 +61,7 @@ class SourceWatch:
         # Tuples that are replaced, never changed: other threads read them without a lock.
         self._repeats: tuple[float, ...] = ()  # when stamps came that did not advance
         self._number, self._back = 0, tuple[float, ...]()  # last number, and when numbers went back
-        self.new_clock: tuple[float, str] | None = None  # since when, why
+        self.new_clock: tuple[float, Reason] | None = None  # since when, why
         self.fast = False  # its last message showed a motion
         self.publishers: tuple[str, ...] = ()  # nodes, where there is more than one
         self._values: object = None
@@ -66,6 +82,7 @@ class SourceWatch:
             self._repeats = (*self._repeats, sample.received)[-PERIODS:]
             return
         if judged.verdict is Verdict.NEW_CLOCK:
+            assert judged.why is not None, "a new clock has a reason"
             self.new_clock = sample.received, judged.why
             for channel in self.channels.values():
                 channel.clear()
@@ -85,31 +102,32 @@ class SourceWatch:
         last = [channel.last for channel in self.channels.values()]
         return max((float("inf") if one is None else now - one.received for one in last), default=float("inf"))
 
-    def silent(self, now: float, limit: float) -> str | None:
-        """What was not heard for `limit` seconds, in words."""
+    def silent(self, now: float, limit: float) -> Reason | None:
+        """What was not heard for `limit` seconds."""
         for name, channel in self.channels.items():
             last = channel.last
-            part = "" if len(self.channels) == 1 or self._advanced is None else f" of {name}"
+            whole = len(self.channels) == 1 or self._advanced is None
             if last is None:
-                return f"no {self.label}{part} from the machine yet"
-            if now - last.received > limit:
-                return f"{self.label}{part} {now - last.received:.1f} s old"
+                return Unheard(self.label) if whole else UnheardOf(self.label, name)
+            age = now - last.received
+            if age > limit:
+                return Old(self.label, age) if whole else OldOf(self.label, name, age)
         return None
 
     def trouble(self, now: float) -> Trouble | None:
         """Why its word counts for nothing now."""
         publishers, back, repeats, new_clock = self.publishers, self._back, self._repeats, self.new_clock
         if publishers:
-            return Trouble(f"{self.label} come from {len(publishers)} publishers: {', '.join(publishers)}")
+            return Trouble(ManyPublishers(self.label, len(publishers), publishers))
         if len(back) == 2 and now - back[0] < MIXED:
-            return Trouble(f"{self.label} come from two publishers: their numbers go back and forth")
+            return Trouble(TwoPublishers(self.label))
         if len(repeats) == PERIODS and now - repeats[0] < MIXED:
-            return Trouble(f"{self.label} repeat a stamp that does not advance")
+            return Trouble(StampRepeated(self.label))
         for name, channel in self.channels.items():
             if why := channel.disagreement():
-                return Trouble(f"{self.label} are implausible: {name}: {why}")
+                return Trouble(Implausible(self.label, name, why))
         if new_clock is not None:
-            return Trouble(f"{self.label}: {new_clock[1]}", passes=True)
+            return Trouble(NewClock(self.label, new_clock[1]), passes=True)
         return None
 
     def accept_clock(self) -> None:

@@ -4,11 +4,13 @@ from dataclasses import dataclass
 from enum import Enum
 
 from tms_config.models import Stamps
+from tms_rc.reasons import ClockAhead, ClockBack, SimulatorClock, UtcClock
+from tms_reason.reason import Reason
 
 AHEAD = 1.0  # s that a stamp may be ahead of its estimated offset
 BACK = 0.5  # s that a stamp may be before the last one without a new clock behind it
 REMEMBERED = 30.0  # s for which the smallest delay is remembered: clocks drift
-CLOCKS = {"utc": "the clock of the PC that stamps them (UTC)", "since_start": "the simulator's clock"}
+CLOCKS: dict[str, Reason] = {"utc": UtcClock(), "since_start": SimulatorClock()}
 
 
 class Verdict(Enum):
@@ -25,7 +27,7 @@ class Judged:
 
     verdict: Verdict
     measured: float
-    why: str = ""
+    why: Reason | None = None
 
 
 class StampClock:
@@ -44,17 +46,16 @@ class StampClock:
             return Judged(Verdict.NEW, received)
         delay, known = received - stamp, self._offset()
         if known is not None and known - delay > AHEAD:
-            return self._begin(received, stamp, f"their stamps are {known - delay:.1f} s ahead of {CLOCKS[self.kind]}")
+            return self._begin(received, stamp, ClockAhead(known - delay, CLOCKS[self.kind]))
         if self._last is not None and stamp < self._last - BACK:
-            why = f"{CLOCKS[self.kind]} jumped back by {self._last - stamp:.1f} s"
-            return self._begin(received, stamp, why)
+            return self._begin(received, stamp, ClockBack(CLOCKS[self.kind], self._last - stamp))
         if self._last is not None and stamp <= self._last:
             return Judged(Verdict.REPEATED, self._last + (known or 0.0))
         self._last = stamp
         self._learn(received, delay)
         return Judged(Verdict.NEW, stamp + self._known())
 
-    def _begin(self, received: float, stamp: float, why: str) -> Judged:
+    def _begin(self, received: float, stamp: float, why: Reason) -> Judged:
         """A new epoch: nothing that was learnt of the old clock holds."""
         self._last, self._delay, self._delay_before, self._begun = stamp, received - stamp, None, received
         return Judged(Verdict.NEW_CLOCK, received, why)

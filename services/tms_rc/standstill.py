@@ -11,7 +11,9 @@ from dataclasses import dataclass, field
 
 from tms_config.models import DRIVE, Border, MachineModel
 from tms_rc.channel import WORST, Limits, Place
+from tms_rc.reasons import Beyond, Moving, NoSource, NotLongEnough
 from tms_rc.source import LABELS, Sample, SourceWatch, Trouble
+from tms_reason.reason import Reason
 
 JOINTS, ODOM, POSE, IMU = "joint_states", "odom", "pose", "imu"
 PLACE, HEADING, TURNING = "place", "heading", "turning"
@@ -118,7 +120,7 @@ class StandStill:
         return max(drive.velocity / drive.acceleration, drive.turn_velocity / drive.turn_acceleration) + lag
 
     @property
-    def unstamped(self) -> list[str]:
+    def unstamped(self) -> list[Reason]:
         """Sources whose messages are not stamped: for them only the arrival counts."""
         return [one.label for one in self.sources.values() if one.source.stamps == "none"]
 
@@ -154,27 +156,25 @@ class StandStill:
         """Seconds since the last word of the channel that is silent for longest, infinite before the first."""
         return max((source.age(now) for source in self.sources.values()), default=INFINITE)
 
-    def silent(self, now: float, limit: float) -> str | None:
-        """What was not heard for `limit` seconds, in words."""
+    def silent(self, now: float, limit: float) -> Reason | None:
+        """What was not heard for `limit` seconds."""
         if not self.sources:
-            return "the border declares no source that tells of its motion"
+            return NoSource()
         return next(filter(None, (source.silent(now, limit) for source in self.sources.values())), None)
 
     def trouble(self, now: float) -> Trouble | None:
         """Why what is heard cannot be believed; what does not pass comes first."""
         found = [one for source in self.sources.values() if (one := source.trouble(now)) is not None]
-        found += [Trouble(text) for text in [self._beyond()] if text]
+        found += [Trouble(beyond) for beyond in [self._beyond()] if beyond is not None]
         return min(found, key=lambda one: one.passes, default=None)
 
-    def _beyond(self) -> str | None:
+    def _beyond(self) -> Reason | None:
         for name, angle in self.positions.items():
             joint = self._model.joints[name]
             low, high = (joint.min or 0.0) - HARD, (joint.max or 0.0) + HARD
             if (joint.min is not None and angle < low) or (joint.max is not None and angle > high):
                 bound = joint.min if joint.min is not None and angle < low else joint.max
-                return (
-                    f"{LABELS[JOINTS]}: {name} is told at {angle:.3f} rad, where it cannot be (limit {bound:.3f} rad)"
-                )
+                return Beyond(LABELS[JOINTS], name, angle, bound or 0.0)
         return None
 
     # motion
@@ -245,15 +245,15 @@ class StandStill:
     def _surprised(self) -> float:
         return max((source.surprised for source in self.sources.values()), default=-INFINITE)
 
-    def obstacle(self, now: float) -> str:
+    def obstacle(self, now: float) -> Reason:
         """Why a stop is not proven."""
         trouble = self.trouble(now)
         if trouble is not None:
-            return trouble.text
+            return trouble.reason
         for source in self.sources.values():
             if silent := source.silent(now, source.longest):
                 return silent
-        return "still moving" if self.moving() else "not seen to stand for long enough"
+        return Moving() if self.moving() else NotLongEnough()
 
     # travel
 

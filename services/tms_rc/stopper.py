@@ -15,8 +15,12 @@ from prometheus_client import Counter, Histogram
 from tms_msg_rc.msg import StopReceipt
 
 from tms_machine.border import STOP_PROVEN, Controls
+from tms_rc.reasons import ByArrival, GoalOpen, NoEnd, NotOnDisk
 from tms_rc.receipts import Receipts
 from tms_rc.standstill import NOTHING, Expected, Proof, StandStill
+from tms_reason import wire
+from tms_reason.reason import Reason, Several
+from tms_reason.wire import to_line
 from tms_ros.packing import pack, unpack
 from tms_runtime.app import App
 
@@ -36,14 +40,14 @@ UNKEPT = Counter("tms_rc_notes_lost_total", "Latches and receipts that could not
 class Stop:
     """One stop; `receipt` is set before `over`."""
 
-    cause: str
+    cause: Reason
     latched: bool
     run: int
     ended: Callable[[], bool]  # whether the goal that was stopped is terminal
     begun: float  # s, monotonic, and on the wall clock:
     stamp: Time
     proof: Proof
-    broken: str = ""  # why it cannot be confirmed whatever is seen: it had moved without a goal
+    broken: Reason | None = None  # why it cannot be confirmed whatever is seen: it had moved without a goal
     receipt: StopReceipt | None = None
     over: threading.Event = field(default_factory=threading.Event)
 
@@ -51,7 +55,7 @@ class Stop:
         """The receipt; an unconfirmed one when there is none in time."""
         self.over.wait(STOP_PROVEN + 1.0)
         return self.receipt or StopReceipt(
-            machine=machine, cause=self.cause, detail="the gateway did not see the end of it", stamp=self.stamp,
+            machine=machine, cause=to_line(self.cause), detail=to_line(NoEnd()), stamp=self.stamp,
             latched=True, run=self.run,
         )  # fmt: skip
 
@@ -83,8 +87,8 @@ class Stopper:
         return not self.busy
 
     def begin(
-        self, cause: str, begun: float, stamp: Time, *, latched: bool, run: int = 0,
-        ended: Callable[[], bool] = lambda: True, expected: Expected = NOTHING, broken: str = "",
+        self, cause: Reason, begun: float, stamp: Time, *, latched: bool, run: int = 0,
+        ended: Callable[[], bool] = lambda: True, expected: Expected = NOTHING, broken: Reason | None = None,
     ) -> Stop:  # fmt: skip
         """Have a stop watched that was wanted at `begun` [s, monotonic], `stamp`, and has been commanded by now.
 
@@ -136,13 +140,14 @@ class Stopper:
 
     def _receipt(self, stop: Stop, now: float) -> StopReceipt:
         seen, travel = self._seen(stop, now), self._watch.travel()
-        obstacle = stop.broken or ("its goal is still open" if not stop.ended() else self._watch.obstacle(now))
-        confirmed, unstamped = seen and not stop.broken, self._watch.unstamped
+        obstacle = stop.broken or (GoalOpen() if not stop.ended() else self._watch.obstacle(now))
+        confirmed, unstamped = seen and stop.broken is None, self._watch.unstamped
         return StopReceipt(
-            machine=self._app.machine, confirmed=confirmed, seconds=now - stop.begun, cause=stop.cause,
+            machine=self._app.machine, confirmed=confirmed, seconds=now - stop.begun, cause=to_line(stop.cause),
             travel_joint=travel.joint, travel_rad=travel.angle, travel_m=travel.way,
-            detail="" if confirmed else obstacle, stamp=stop.stamp, latched=stop.latched or not confirmed, run=stop.run,
-            evidence=f"by arrival: {', '.join(unstamped)} not stamped" if unstamped else "",
+            detail="" if confirmed else to_line(obstacle), stamp=stop.stamp, latched=stop.latched or not confirmed,
+            run=stop.run,
+            evidence=to_line(ByArrival(tuple(unstamped))) if unstamped else "",
         )  # fmt: skip
 
     def _tell(self, receipt: StopReceipt) -> None:
@@ -153,16 +158,17 @@ class Stopper:
                 self._kept.keep(pack(receipt))
         except OSError as error:  # told all the same, with what is wrong: a run must not wait for a full disk
             UNKEPT.inc()
-            receipt.evidence = "; ".join(filter(None, (receipt.evidence, f"not on the disk: {error.strerror}")))
+            known, lost = wire.of(receipt.evidence), NotOnDisk(str(error.strerror))
+            receipt.evidence = to_line(lost if known is None else Several((known, lost)))
         self._receipts.publish(receipt)
         self._app.log.info(
             "stop",
-            cause=receipt.cause,
+            cause=wire.known(receipt.cause),
             confirmed=receipt.confirmed,
             latched=receipt.latched,
             seconds=round(receipt.seconds, 3),
             joint=receipt.travel_joint,
             rad=round(receipt.travel_rad, 3),
             m=round(receipt.travel_m, 3),
-            detail=receipt.detail,
+            detail=wire.of(receipt.detail) or "",
         )

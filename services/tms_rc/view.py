@@ -11,8 +11,10 @@ from sensor_msgs.msg import Imu, JointState
 
 from tms_config.models import Border
 from tms_rc.channel import Place
+from tms_rc.reasons import StrangeType
 from tms_rc.source import LABELS, Sample
 from tms_rc.standstill import HEADING, IMU, JOINTS, ODOM, PLACE, POSE, TURNING, StandStill, yaw_of
+from tms_reason.reason import Reason
 from tms_ros.topics import Arrival
 from tms_runtime.app import App
 
@@ -59,7 +61,7 @@ class View:
         elif len(source.publishers) != count:
             source.publishers = tuple(node for node, _ in self._app.ros.publishers(topic))
 
-    def strange_type(self) -> str | None:
+    def strange_type(self) -> Reason | None:
         """A source that is published under another type than the border has: nothing of it can be heard."""
         for name, topic in self._topics.items():
             source = self._watch.sources[name]
@@ -68,7 +70,7 @@ class View:
             wanted = _full_name(_type(name, self._app.site.border(self._app.machine)))
             for node, kind in self._app.ros.publishers(topic):
                 if kind != wanted:
-                    return f"{LABELS[name]}: {node} publishes {topic} as {kind}, which is no {wanted}"
+                    return StrangeType(LABELS[name], node, topic, kind, wanted)
         return None
 
     def _reader(self, name: str, border: Border) -> Callable[[Any], Numbers]:

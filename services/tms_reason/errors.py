@@ -64,6 +64,7 @@ class SubtaskFailed(TmsError):
             super().__init__(reason)
         else:
             super().__init__(message or "", reason)
+            self.reason = Foreign(f"{reason}: {message or ''}")
 
     def __str__(self) -> str:
         return f"{self.code}: {self.args[0]}"

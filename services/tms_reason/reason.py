@@ -12,12 +12,13 @@ Every package declares its reasons in a module `reasons.py`, one line a reason.
 
 import re
 from dataclasses import dataclass, fields
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeVar
 
 from typing_extensions import dataclass_transform
 
 from tms_reason.remedies import Remedy
 
+R = TypeVar("R", bound="Reason")
 WORD = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
 
@@ -45,6 +46,14 @@ class Reason:
     def args(self) -> dict[str, Any]:
         """Its arguments by name."""
         return {one.name: getattr(self, one.name) for one in fields(self)}  # type: ignore[arg-type]
+
+    def find(self, kind: type[R]) -> R | None:
+        """This reason, or the first inside it, of a kind: what is decided goes by kinds, never by words."""
+        if isinstance(self, kind):
+            return self
+        inner = [one for value in self.args.values() for one in (value if isinstance(value, tuple) else (value,))]
+        found = (one.find(kind) for one in inner if isinstance(one, Reason))
+        return next((one for one in found if one is not None), None)
 
     def __repr__(self) -> str:
         return f"{self.code}({', '.join(f'{name}={value!r}' for name, value in self.args.items())})"

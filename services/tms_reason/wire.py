@@ -47,6 +47,14 @@ def known(line: str) -> Reason:
     return reason
 
 
+def refusal(error_code: str, error_msg: str) -> Reason:
+    """Why a service refused; the words of another system keep their code."""
+    reason = of(error_msg)
+    if reason is None or isinstance(reason, Foreign):
+        return Foreign(f"{error_code}: {error_msg}")
+    return reason
+
+
 def to_data(reason: Reason) -> dict[str, Any]:
     """For JSON documents: `{"code": ..., "args": {...}}`."""
     return {"code": reason.code, "args": {name: _plain(value) for name, value in reason.args.items()}}

@@ -19,7 +19,9 @@ from unique_identifier_msgs.msg import UUID
 
 from tms_ros.goals import Outcome
 from tms_ros.interface_types import ActionType, F, G, R
+from tms_ros.naming import process_of
 from tms_ros.quality import SERVICE
+from tms_ros.reasons import NoServer
 
 if TYPE_CHECKING:
     from tms_ros.node import Ros
@@ -200,7 +202,7 @@ class Peer(Generic[G, R, F]):
         Raises:
             RosError: it did not come.
         """
-        self._ros.wait_for(self.ready, seconds, f"action server {self.name} is not there")
+        self._ros.wait_for(self.ready, seconds, NoServer(process_of(self.name), self.name, seconds))
 
     def send(
         self,

@@ -8,8 +8,6 @@ import secrets
 from dataclasses import dataclass, replace
 
 MAGIC = b"TMS\x01"  # a random UUID of a foreign client starts like this once in 4 billion
-# Cause of the latch of a machine that was never armed on its PC.
-NO_NOTE = "no note on this PC says how the machine was left: look at it, then re-arm it"
 LEAVES = 0xFFFF  # leaf goals are counted modulo this
 
 

@@ -27,7 +27,9 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Future
 
 from tms_reason.errors import RosError
+from tms_reason.reason import Reason
 from tms_ros.priority import come_first, threads
+from tms_ros.reasons import ExecutorBusy
 
 T = TypeVar("T")
 
@@ -38,7 +40,9 @@ POLL = 0.02  # s between looks at the ROS graph, which has no cheap event in rcl
 class Loop:
     """A node, the thread that runs its callbacks, and what else runs there."""
 
-    def __init__(self, name: str, namespace: str = "/") -> None:
+    def __init__(self, name: str, namespace: str = "/", process: str = "") -> None:
+        """`process` is the name that people know, as `tms ps` lists it."""
+        self.process = process or name
         self._context = Context()
         rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
         with _undisturbed():
@@ -131,7 +135,7 @@ class Loop:
 
         self.on_executor(run)
         if not there.wait(seconds):
-            raise RosError(f"the ROS thread did not answer within {seconds:.0f} s", "BUSY")
+            raise RosError(ExecutorBusy(seconds))
         if errors:
             raise errors[0]
         return results[0]
@@ -167,16 +171,16 @@ class Loop:
         stamp: Time = self.node.get_clock().now().to_msg()
         return stamp
 
-    def wait_for(self, there: Callable[[], bool], seconds: float, otherwise: str) -> None:
+    def wait_for(self, there: Callable[[], bool], seconds: float, otherwise: Reason) -> None:
         """Poll `there` until it holds.
 
         Raises:
-            RosError: it did not hold within `seconds`; the message starts with `otherwise`.
+            RosError: `otherwise`, when it did not hold within `seconds`.
         """
         deadline = time.monotonic() + seconds
         while not there():
             if time.monotonic() > deadline:
-                raise RosError(f"{otherwise} after {seconds:.1f} s: is its process running? See `tms ps`", "NO_SERVER")
+                raise RosError(otherwise)
             time.sleep(POLL)
 
     # times

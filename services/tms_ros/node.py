@@ -16,8 +16,8 @@ LAST_WORDS = 0.1  # s for results and reasons to leave before this process does
 class Ros(Services):
     """One node: its thread and times (loop.py), topics, services, and here its actions."""
 
-    def __init__(self, name: str, namespace: str = "/") -> None:
-        super().__init__(name, namespace)
+    def __init__(self, name: str, namespace: str = "/", process: str = "") -> None:
+        super().__init__(name, namespace, process)
         self._peers: dict[str, AnyPeer] = {}
         self._served = Served(self)
 

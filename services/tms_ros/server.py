@@ -14,10 +14,13 @@ from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 from structlog.contextvars import bind_contextvars
 
+from tms_reason.reason import Reason
+from tms_reason.wire import to_line
 from tms_ros.fence import parse
-from tms_ros.goals import LOST_TEXT, Accept, Ended, Outcome, Rejection
+from tms_ros.goals import Accept, Ended, Outcome
 from tms_ros.interface_types import ActionType, F, G, R
 from tms_ros.quality import SERVICE
+from tms_ros.reasons import BeingStopped, ProcessLost, StoppedMeanwhile
 
 if TYPE_CHECKING:
     from tms_ros.node import Ros
@@ -48,9 +51,9 @@ class Goal(Generic[G, F]):
         if self._handle.is_active:
             self._handle.publish_feedback(feedback)
 
-    def say(self, text: str) -> None:
+    def say(self, reason: Reason) -> None:
         """Send a reason as feedback, where the type of feedback has room for one."""
-        feedback = _saying(self._type, text)
+        feedback = _saying(self._type, reason)
         if feedback is not None:
             self.publish(feedback)
 
@@ -112,12 +115,12 @@ class Served:
             if isinstance(verdict, Awaitable):
                 verdict = await verdict
             if verdict is None and self._leaving:
-                verdict = Rejection(LOST_TEXT, f"{self._ros.node.get_name()} is being stopped")
+                verdict = ProcessLost(BeingStopped(self._ros.process))
             if verdict is None:
                 return GoalResponse.ACCEPT
             GOALS.labels(name, "rejected").inc()
-            self._ros.node.get_logger().debug(f"{name}: {verdict.code}: {verdict.text}")
-            feedback = _saying(action_type, f"{verdict.code}: {verdict.text}")
+            self._ros.node.get_logger().debug(f"{name}: {verdict!r}")
+            feedback = _saying(action_type, verdict)
             if feedback is not None:
                 reasons.publish(telling(goal_id=goal_id, feedback=feedback))
             return GoalResponse.REJECT
@@ -161,7 +164,7 @@ class Served:
     def _deliver(self, name: str, goal: Goal[G, F], outcome: Outcome, result: R) -> None:
         asked = goal._handle.is_cancel_requested
         if self._leaving and outcome is Outcome.CANCELED and not asked:
-            goal.say(f"{LOST_TEXT}: {self._ros.node.get_name()} was stopped during its goal")
+            goal.say(ProcessLost(StoppedMeanwhile(self._ros.process)))
 
         def finish(handle: ServerGoalHandle) -> R:
             if outcome is Outcome.SUCCEEDED:
@@ -176,12 +179,12 @@ class Served:
         goal._handle.execute(finish)
 
 
-def _saying(action_type: ActionType[G, R, F], text: str) -> F | None:
+def _saying(action_type: ActionType[G, R, F], reason: Reason) -> F | None:
     """Feedback that is only a reason; None where its type has no room for one."""
     kind: Any = action_type.Feedback
     known = kind.get_fields_and_field_types()
     field = next((name for name in ("status", "state") if known.get(name) == "string"), None)
-    return None if field is None else kind(**{field: text})
+    return None if field is None else kind(**{field: to_line(reason)})
 
 
 def _never(handle: ServerGoalHandle) -> None:

@@ -9,10 +9,13 @@ from rclpy.exceptions import NameValidationException
 from rclpy.task import Future
 
 from tms_reason.errors import RosError
+from tms_reason.wire import to_line
 from tms_ros import quality
 from tms_ros.answers import send_surely
 from tms_ros.interface_types import Req, Res, ServiceType
 from tms_ros.loop import POLL
+from tms_ros.naming import process_of
+from tms_ros.reasons import BadServiceName, Internal, LostMeanwhile, NoAnswer, NoServer, ProcessLost
 from tms_ros.topics import Topics
 
 LOOK = 0.1  # s between looks whether a server that owes an answer is still there
@@ -21,8 +24,8 @@ LOOK = 0.1  # s between looks whether a server that owes an answer is still ther
 class Services(Topics):
     """The services of a node, beside its topics."""
 
-    def __init__(self, name: str, namespace: str = "/") -> None:
-        super().__init__(name, namespace)
+    def __init__(self, name: str, namespace: str = "/", process: str = "") -> None:
+        super().__init__(name, namespace, process)
         self._clients: dict[tuple[Any, str], Any] = {}  # by type and name
         self._making = threading.Lock()
 
@@ -51,7 +54,7 @@ class Services(Topics):
             done = self.promise()
 
             def work() -> None:
-                filled: Res | None = _failed(response)
+                filled: Res | None = _failed(response, self.process)
                 try:
                     filled = handler(request, service_type.Response())
                 finally:  # a bug is logged by the thread; the caller still gets an answer
@@ -71,7 +74,7 @@ class Services(Topics):
                         service_type, name, qos_profile=quality.SERVICE, callback_group=self.group
                     )
                 except NameValidationException as error:
-                    raise RosError(f"service {name}: {str(error).partition(chr(10))[0]}", "BAD_NAME") from error
+                    raise RosError(BadServiceName(name, str(error).partition("\n")[0])) from error
             return self._clients[key]
 
     def prepare(self, service_type: ServiceType[Req, Res], name: str) -> None:
@@ -91,12 +94,12 @@ class Services(Topics):
         `lost` tells of a server that is known to be gone, so that nobody waits for what it will not say any more.
 
         Raises:
-            RosError: NO_SERVER or NO_ANSWER within `seconds`, or LOST.
+            RosError: NoServer or NoAnswer within `seconds`, or ProcessLost.
         """
         assert threading.current_thread() is not self._thread, "blocking call on the executor thread"
         client = self._service(service_type, name)
         deadline = time.monotonic() + seconds
-        self.wait_for(client.service_is_ready, seconds, f"service {name} is not there")
+        self.wait_for(client.service_is_ready, seconds, NoServer(process_of(name), name, seconds))
         done = threading.Event()
         future = client.call_async(request)
         future.add_done_callback(lambda _: done.set())
@@ -104,8 +107,8 @@ class Services(Topics):
             if lost() or time.monotonic() >= deadline:
                 client.remove_pending_request(future)
                 if lost():
-                    raise RosError(f"the process behind service {name} was lost before it answered", "LOST")
-                raise RosError(f"service {name} did not answer within {seconds:.1f} s", "NO_ANSWER")
+                    raise RosError(ProcessLost(LostMeanwhile(process_of(name), name)))
+                raise RosError(NoAnswer(process_of(name), name, seconds))
         answer: Res = future.result()
         return answer
 
@@ -136,7 +139,7 @@ class Services(Topics):
         """Call a service from a callback on the executor thread; None when it did not answer in time.
 
         Raises:
-            RosError: BAD_NAME.
+            RosError: BadServiceName.
         """
         client = self._service(service_type, name)
         settled = Future(executor=self._executor)
@@ -165,8 +168,9 @@ class Services(Topics):
                 client.remove_pending_request(sent[0])
 
 
-def _failed(response: Any) -> Any:
+def _failed(response: Any, process: str) -> Any:
     """What a caller hears when a handler has a bug."""
     if hasattr(response, "error_code") and isinstance(response.error_code, str):
-        response.error_code, response.error_msg = "INTERNAL", "this is a bug: see the log of the process"
+        bug = Internal(process)
+        response.error_code, response.error_msg = bug.code, to_line(bug)
     return response

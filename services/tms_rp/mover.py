@@ -9,7 +9,9 @@ from tms_machine.border import STOP_PROVEN
 from tms_reason.errors import SubtaskFailed
 from tms_ros.client import Call, Peer
 from tms_ros.fence import derived
-from tms_ros.goals import LOST_TEXT, Outcome
+from tms_ros.goals import Outcome
+from tms_ros.naming import process_of
+from tms_ros.reasons import LostMeanwhile, ProcessLost
 from tms_ros.server import AnyGoal
 from tms_rp.messages import follow
 from tms_rp.trajectory import Trajectory
@@ -98,6 +100,6 @@ def _verdict(goal: AnyGoal, call: Motion, name: str) -> Outcome:
     if goal.cancelled.is_set() and call.outcome not in (Outcome.ABORTED, Outcome.LOST):
         return Outcome.CANCELED  # also when it arrived, or was refused, just before: nothing moves
     if call.outcome is Outcome.LOST:
-        raise SubtaskFailed(LOST_TEXT, f"the process behind {name} was lost during the motion")
+        raise SubtaskFailed(ProcessLost(LostMeanwhile(process_of(name), name)))
     reason = getattr(call.result, "error_string", "") or "no reason given"
     raise SubtaskFailed("MOTION_FAILED", f"{name} {call.outcome.name if call.outcome else 'LOST'}: {reason}")

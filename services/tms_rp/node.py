@@ -13,8 +13,10 @@ from tms_msg_rp.action import TmsRpZx200ChangePose, TmsRpZx200ExcavateSimple, Tm
 from tms_msg_rp.msg import TmsRpErrorCodes
 
 from tms_machine.permit import Permit, watch_server
+from tms_machine.reasons import Busy
 from tms_reason.errors import SubtaskFailed, TmsError
-from tms_ros.goals import Ended, Outcome, Rejection
+from tms_reason.reason import Reason
+from tms_ros.goals import Ended, Outcome
 from tms_ros.server import AnyGoal
 from tms_rp import messages
 from tms_rp.clearance import Clearance
@@ -130,10 +132,10 @@ class Planner:
     def serve(self, action: Action, name: str) -> None:
         """Offer one action under its full name."""
 
-        def accept(_request: Any) -> Rejection | None:
+        def accept(_request: Any) -> Reason | None:
             if action.moves and self._busy:
                 self._app.log.warning("refused", action=action.name, reason="another goal moves the machine")
-                return Rejection("BUSY", f"{self._app.machine} is still moved by another goal")
+                return Busy(self._app.process.full)
             self._busy = self._busy or action.moves
             return None
 

@@ -68,7 +68,7 @@ def _serve(site: Site, row: Process) -> int:
         signal.signal(number, lambda _number, _frame: stop.set())
     if row.module in FIRST:
         come_first(OF_A_MACHINE, threads())
-    ros = Ros(row.full.replace(":", "_"))
+    ros = Ros(row.full.replace(":", "_"), process=row.full)
     app = App(site, row, ros, logger)
     app.pulse.stood_still = lambda silent, waited: _stood_still(logger, silent, waited)
     importlib.import_module(row.module).start(app)

@@ -4,7 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from tms_ros.goals import Ended, Outcome, Rejection
+from tms_reason.reason import Foreign, Reason
+from tms_ros.goals import Ended, Outcome
 from tms_ros.server import AnyGoal
 from tms_runtime.app import App
 from tms_sim.machine import StandIn
@@ -32,7 +33,7 @@ class Server:
     def __init__(self, app: App, machine: StandIn, served: Served) -> None:
         self._log, self._machine, self._served = app.log, machine, served
 
-    def accept(self, request: Any) -> Rejection | None:
+    def accept(self, request: Any) -> Reason | None:
         """Refuse what cannot be done, as the real servers do: without a result, the reason in the log."""
         refused = self._served.refusal(request)
         if self._served.field in self._machine.fault.refuse:
@@ -41,7 +42,7 @@ class Server:
             return None
         code, text = refused if isinstance(refused, tuple) else (0, refused)
         self._log.warning("refused", action=self._served.field, code=code, reason=text)
-        return Rejection(str(code), text)
+        return Foreign(f"{code}: {text}")
 
     def run(self, goal: AnyGoal) -> Ended[Any]:
         """Follow one goal to its end."""

@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 
+from tms_reason.texts import text
 from tms_sim.arm import Arm
 from tms_sim.motion import ABORTED, CANCELED, SUCCEEDED, Motion, Verdict
 
@@ -44,7 +45,7 @@ class Turner:
         if not math.isfinite(angle):
             return f"{joint}: the angle is not a number"
         broken = self.arm.joints[joint].violation(angle)
-        return f"{joint}: {broken}" if broken else None
+        return f"{joint}: {text(broken, 'en')}" if broken else None
 
     def begin(self, joint: str, angle: float) -> Turn:
         """Turn a joint that was not refused; one that turns for ever takes the shorter way."""

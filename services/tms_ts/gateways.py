@@ -10,12 +10,13 @@ from tms_msg_rc.srv import StopMachine
 
 from tms_machine.border import Controls
 from tms_machine.permit import NOBODY, Link, Permit
+from tms_machine.reasons import SoftwareStop
+from tms_reason.wire import to_line
 from tms_ros.fence import Owner
 from tms_runtime.app import App
 
 SETTLE = 0.3  # s from the first word of a new gateway until it has discovered us as well
 SIGNALS = 100  # of all buttons that may wait: no `false` may push out the `true` of another one
-SOFTWARE_STOP = "software stop"
 
 
 @dataclass(frozen=True)
@@ -143,7 +144,7 @@ class Gateways:
     def _signal(self, message: Bool) -> None:
         if message.data:
             for machine, holder in list(self._holders.items()):
-                holder.stopped(machine, SOFTWARE_STOP)
+                holder.stopped(machine, to_line(SoftwareStop()))
 
     def _gateway_changed(self, machine: str, link: Link) -> None:
         """A lost gateway cannot stop its machine: do what it would do. Its successor does the same, but later."""

@@ -12,10 +12,12 @@ from tms_msg_rc.srv import StopMachine
 from tms_msg_ts.action import LeafNodeBase
 
 from tms_machine.border import STOP_PROVEN
+from tms_machine.reasons import NoPermit
 from tms_reason.errors import RosError
 from tms_ros.fence import LEAVES, Owner
-from tms_ros.goals import LOST_TEXT, Outcome
+from tms_ros.goals import Outcome
 from tms_ros.node import Ros
+from tms_ros.reasons import ProcessLost
 from tms_ts.gateways import Gateways
 from tms_ts.hosts import Hosts
 from tms_ts.past import Key
@@ -35,7 +37,7 @@ UNREACHED = (
     "NO_SERVER",
     "REJECTED",
     "NO_JOINT_STATE",
-    "no motion permit",
+    NoPermit.code,
 )  # what a goal ends with while a process comes back
 
 HANDOVER = Histogram(
@@ -125,7 +127,7 @@ class Machines:
             try:
                 answer = self._ros.call(StopMachine, f"/{machine}/rc/stop", request, STOP_LIMIT, lost)
             except RosError as error:
-                if error.code == "LOST" and time.monotonic() < deadline:
+                if isinstance(error.reason, ProcessLost) and time.monotonic() < deadline:
                     continue
                 stamp, why = self._ros.now(), str(error)
                 return StopReceipt(machine=machine, confirmed=False, cause=cause, detail=why, stamp=stamp)
@@ -215,13 +217,13 @@ class Machines:
             self._handed_over = time.monotonic()
         elif call.outcome is Outcome.CANCELED:
             self._end(goal, GoalState.CANCELLED, f"{goal.name} was cancelled")
-        elif goal.feedback.startswith(AWAY) and self._may_wait(goal):
+        elif any(word in goal.feedback for word in AWAY) and self._may_wait(goal):
             goal.reason, goal.state = goal.feedback, GoalState.SENDING
             goal.call, goal.begun, goal.not_before = None, time.monotonic(), time.monotonic() + ASK_AGAIN
         elif self._may_ask_again(goal):
             goal.reason, goal.state = goal.feedback, GoalState.SENDING
             goal.call, goal.begun, goal.not_before = None, time.monotonic(), time.monotonic() + ASK_AGAIN
-        elif LOST_TEXT in goal.feedback:
+        elif ProcessLost.code in goal.feedback:
             self._lost(goal, f"{goal.name}: {goal.feedback}")
         else:
             word = "refused the goal" if call.outcome is Outcome.REJECTED else "gave up"

@@ -14,14 +14,15 @@ from tms_msg_ts.action import ExecuteTask
 from tms_msg_ts.msg import NodeStatus, RunState
 
 from tms_machine.border import STOP_PROVEN
+from tms_machine.reasons import SoftwareStop
 from tms_machine.values import to_parameters
+from tms_reason import wire
 from tms_ros.node import Ros
 from tms_ros.server import Goal
 from tms_runtime.log import Logger
 from tms_ts.bt import IDLE, Node, Status, Tree, TreeError
 from tms_ts.budget import Budget
 from tms_ts.flags import Flags
-from tms_ts.gateways import SOFTWARE_STOP
 from tms_ts.journal import Journal
 from tms_ts.machines import Machines, receipt_text
 from tms_ts.record import Record
@@ -98,7 +99,8 @@ class Run:
 
     def stopped(self, machine: str, cause: str) -> None:
         """A machine was told to stop from outside, and moves no more until somebody re-arms it."""
-        self.cancel("cancelled" if SOFTWARE_STOP in cause else "failure", f"{machine} was told to stop: {cause}")
+        wanted = wire.known(cause).find(SoftwareStop) is not None
+        self.cancel("cancelled" if wanted else "failure", f"{machine} was told to stop: {cause}")
 
     def alive(self) -> bool:
         """Whether the loop that decides about motions still runs."""

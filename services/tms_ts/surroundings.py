@@ -14,6 +14,7 @@ from tms_config.yaml_file import explain
 from tms_machine.subtask import load
 from tms_machine.values import from_parameters
 from tms_reason.errors import RosError
+from tms_reason.texts import text
 from tms_runtime.app import App
 from tms_ts.preflight import Stored
 
@@ -97,7 +98,7 @@ def unfit(model: MachineModel, subtask: str, values: Mapping[str, Any]) -> str:
     except ValidationError as error:
         return explain(error)
     broken = ((name, model.joints[name].violation(angle)) for name, angle in angles.items() if name in model.joints)
-    return next((f"{name}: {text}" for name, text in broken if text), "")
+    return next((f"{name}: {text(why, 'en')}" for name, why in broken if why), "")
 
 
 def _stored(record: Record, now: float) -> Stored:

@@ -13,6 +13,7 @@ import structlog
 from fastapi import FastAPI, Path, Request
 
 from tms_config.config import Site
+from tms_machine.reasons import SoftwareStopBy
 from tms_reason.errors import TmsError
 from tms_reason.reason import Reason
 from tms_ur.access import Person
@@ -136,7 +137,7 @@ def _known(machine: str, names: list[str]) -> str:
 
 
 def _stop_all(client: "SiteClient", machines: list[str], who: str) -> list[Receipt]:
-    cause = f"software stop by {who}"
+    cause = SoftwareStopBy(who)
     with ThreadPoolExecutor(max(1, len(machines)), "stop") as pool:
         return list(pool.map(lambda machine: client.stop(machine, cause), machines))
 

@@ -30,7 +30,7 @@ def start(app: App) -> None:
     app.on_stop(audit.close)
     app.on_stop(server.stop)
     app.on_stop(client.board.close)  # first, so that the streams end
-    app.ready_when(lambda: wire.to_line(server.unready()) or None)
+    app.ready_when(server.unready)
     app.log.info("listening", url=address.url(file), bind=file.bind, access=_who_may(file, access))
 
 

@@ -39,7 +39,7 @@ from tms_ur import messages
 from tms_ur.board import Board
 from tms_ur.data_models import Change, Record, Sensing
 from tms_ur.models import Event, Host, Place, Rearmed, Receipt, Run, Task, TaskText
-from tms_ur.reason_view import of_error, of_line
+from tms_ur.reason_view import of_error, of_line, view
 from tms_ur.reasons import RunNotBegun, StartRefused, UnknownProcess
 
 SCHEDULER = "tms:ts"
@@ -199,15 +199,15 @@ class SiteClient:
 
     # machines
 
-    def stop(self, machine: str, cause: str) -> Receipt:
+    def stop(self, machine: str, cause: Reason) -> Receipt:
         """Stop one machine by the shortest way, straight to its gateway; no answer is a receipt, too."""
         try:
-            request = StopMachine.Request(cause=cause)
+            request = StopMachine.Request(cause=wire.to_line(cause))
             answer = self._ros.call(StopMachine, f"/{machine}/rc/stop", request, STOP_LIMIT)
         except RosError as error:
             return Receipt(
                 machine=machine, confirmed=False, seconds=0.0, travel_joint="", travel_rad=0.0, travel_m=0.0,
-                cause=of_line(cause), detail=of_error(error), evidence=None, latched=False,
+                cause=view(cause), detail=of_error(error), evidence=None, latched=False,
             )  # fmt: skip
         return messages.receipt(answer.receipt)
 

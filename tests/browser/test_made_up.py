@@ -14,6 +14,7 @@ from playwright.sync_api import Page, expect
 
 from conftest import site_data
 from tms_config.config import load_site
+from tms_machine.reasons import SoftwareStop
 from tms_reason.errors import TmsError
 from tms_reason.reason import Reason
 from tms_reason.remedies import REARM, RESUME
@@ -24,7 +25,7 @@ from tms_ur.connections import Listener
 from tms_ur.data_models import Record
 from tms_ur.models import ActiveRun, Event, Host, Machine, Place, Process, Question, Rearmed, Run
 from tms_ur.node import Server
-from tms_ur.reason_view import of_line, view
+from tms_ur.reason_view import view
 from unit.tms_ur.fakes import NOON, FakeAudit, FakeSiteClient
 
 pytestmark = pytest.mark.browser
@@ -103,7 +104,7 @@ def event(number: int, kind: str = "node", **values: Any) -> Event:
 
 
 def test_one_yes_arms_one_machine(page: Page, address: str, yard: Yard) -> None:
-    yard.hear(latch=of_line("software stop"))
+    yard.hear(latch=view(SoftwareStop()))
     page.goto(f"{address}/#run")
     late = page.get_by_role("button", name="Re-arm zx200")
     late.click()

@@ -12,6 +12,9 @@ from tms_msg_rc.msg import MachineState, StopReceipt
 from tms_msg_rc.srv import Rearm
 
 from stand_in_rig import SITE, Rig, client_in, pose
+from tms_rc.reasons import AtPose, Moving, NoNumber, NotSeen, NotStill
+from tms_reason import wire
+from tms_reason.wire import to_line
 from tms_ros.client import Call
 from tms_ros.goals import Outcome
 from tms_ros.node import Ros
@@ -103,10 +106,10 @@ def test_stall_the_goal_fails_and_the_machine_may_go_on(machine: Guarded) -> Non
 def test_goals_outside_the_limits_do_not_leave_the_gateway(machine: Guarded) -> None:
     call = machine.go(SetDumpAngle, "set_dump_angle", target_angle=-2.0)
     assert machine.end(call) is Outcome.ABORTED
-    nowhere = pose(float("nan"), 0.0)
+    nowhere, wanted = pose(float("nan"), 0.0), to_line(AtPose(0, NoNumber()))
     call = machine.go(pose=nowhere)
     assert machine.end(call) is Outcome.ABORTED
-    assert getattr(call.result, "error_msg", "pose 0 holds a value").startswith("pose 0 holds a value")
+    assert getattr(call.result, "error_msg", wanted) == wanted
     assert not machine.latched()
 
 
@@ -141,12 +144,12 @@ def test_drift_is_no_stand_still_so_the_stop_latches(machine: Guarded) -> None:
     machine.until(lambda: machine.fault.get_subscription_count() > 0, "subscription")
     receipt = machine.stop(call)
     assert machine.end(call) is Outcome.ABORTED
-    assert not receipt.confirmed and receipt.latched and receipt.detail == "still moving"
+    assert not receipt.confirmed and receipt.latched and receipt.detail == to_line(Moving())
     machine.until(machine.latched, "a latch")
     refused = machine.go()
     assert machine.end(refused) is Outcome.ABORTED
     again = machine.ros.call(Rearm, f"/{NAME}/rearm", Rearm.Request(), 20.0)
-    assert again.error_code == "CAUSE_PERSISTS" and "stand still" in again.error_msg
+    assert again.error_code == "CAUSE_PERSISTS" and wire.known(again.error_msg).find(NotStill) is not None
 
 
 def test_late_commands_come_late_and_the_receipt_tells_how_late(machine: Guarded) -> None:
@@ -184,7 +187,7 @@ def test_a_dead_machine_is_not_seen_to_stand(machine: Guarded) -> None:
     machine.until(lambda: machine.receipts and not machine.receipts[-1].confirmed, "an unconfirmed stop")
     machine.until(machine.latched, "a latch")
     silent = machine.ros.call(Rearm, f"/{NAME}/rearm", Rearm.Request(), 20.0)
-    assert silent.error_code == "CAUSE_PERSISTS" and "nobody sees whether" in silent.error_msg
+    assert silent.error_code == "CAUSE_PERSISTS" and wire.known(silent.error_msg).find(NotSeen) is not None
     machine.start(f"sim:{NAME}")
     machine.order()
     x, y = machine.place()

@@ -15,6 +15,8 @@ from tms_msg_rc.msg import MachineState, StopReceipt
 
 from conftest import GATEWAYS_ONLY, Mesh, mesh_apart, rearm, wait_until
 from tms_machine.border import MOTIONS, Motion
+from tms_machine.reasons import SoftwareStop
+from tms_reason.wire import to_line
 from tms_ros.goals import Outcome
 from tms_ros.node import Ros
 
@@ -109,7 +111,7 @@ def test_a_software_stop_ends_every_kind_of_motion(small: tuple[Mesh, Ros], watc
     assert call.wait_for(lambda: call.outcome is not None, 30) and call.outcome is Outcome.ABORTED, call.result
     watch.wait(lambda: len(watch.receipts) > before, "a receipt")
     receipt = watch.receipts[-1]
-    assert (receipt.confirmed, receipt.latched, receipt.cause) == (True, True, "software stop")
+    assert (receipt.confirmed, receipt.latched, receipt.cause) == (True, True, to_line(SoftwareStop()))
     watch.wait(lambda: watch.zeros > zeros, "zero velocities")
     late = peer.send(far_away(motion, MOTIONS.index(motion)))  # whoever asks now
     assert late.wait_for(lambda: late.outcome is not None, 30) and late.outcome is not Outcome.SUCCEEDED
@@ -132,7 +134,7 @@ def test_a_release_does_not_push_out_the_stop_before_it(small: tuple[Mesh, Ros],
     finally:
         os.kill(pid, signal.SIGCONT)
     watch.wait(lambda: len(watch.receipts) > before, "a receipt")
-    watch.wait(lambda: watch.state.latch == "software stop", "the latch")
+    watch.wait(lambda: watch.state.latch == to_line(SoftwareStop()), "the latch")
 
 
 def test_a_frozen_process_is_restarted(small: tuple[Mesh, Ros], watch: Watch) -> None:

@@ -21,6 +21,11 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from conftest import GATEWAYS_ONLY, Mesh, mesh_apart, wait_until
 from tms_config.config import load_site
+from tms_machine.reasons import DrivenByHand
+from tms_rc.reasons import LeftStandStill, Rival, Stalled, StrangeType
+from tms_reason import wire
+from tms_reason.reason import Foreign
+from tms_reason.wire import to_line
 from tms_ros.client import Call
 from tms_ros.node import Ros
 
@@ -254,7 +259,7 @@ def test_a_goal_behind_the_gateways_back_is_stopped(machine: Machine) -> None:
     call = calls[-1]
     machine.until(lambda: call.outcome is not None, "the end of the goal")
     receipt = machine.wait_receipt()
-    assert not receipt.confirmed and receipt.detail == "it left stand-still without a goal of its own"
+    assert not receipt.confirmed and receipt.detail == to_line(LeftStandStill())
     assert abs(machine.state.velocities[0]) < SWING and call.outcome is not None and call.outcome.name != "SUCCEEDED"
 
 
@@ -263,7 +268,7 @@ def test_a_stopped_machine_that_creeps_is_stopped_again(machine: Machine) -> Non
     call = machine.swing()
     machine.wait_moving(call)
     machine.gateway.cancel(call)
-    machine.until(lambda: any("left stand-still" in one.detail for one in machine.receipts), "it is noticed")
+    machine.until(lambda: any(one.detail == to_line(LeftStandStill()) for one in machine.receipts), "it is noticed")
     machine.until(lambda: bool(machine.state.latch), "latched")
 
 
@@ -271,7 +276,7 @@ def test_a_person_may_drive_a_machine_that_was_taken(machine: Machine) -> None:
     machine.mesh.tms("take", "zx200", "--by", "mina")
     call = machine.swing()
     machine.until(lambda: call.outcome is not None, "refused")
-    assert "mina drives zx200 by hand" in call.result.error_string
+    assert call.result.error_string == to_line(DrivenByHand(Foreign("mina"), "zx200"))
     call = machine.swing(machine.own, duration=4)
     machine.until(lambda: call.outcome is not None, "its end")
     assert call.outcome is not None and call.outcome.name == "SUCCEEDED"
@@ -284,7 +289,8 @@ def test_a_stall_is_told_at_once(machine: Machine) -> None:
     begun = time.monotonic()
     call = machine.swing(duration=20)
     machine.until(lambda: call.outcome is not None, "its end")
-    assert "STALLED: swing_joint stands at" in call.result.error_string
+    stalled = wire.known(call.result.error_string).find(Stalled)
+    assert stalled is not None and stalled.joint == "swing_joint"
     assert time.monotonic() - begun < 20.0
 
 
@@ -302,10 +308,10 @@ def test_a_second_gateway_does_not_serve(machine: Machine, tmp_path_factory: pyt
 
     second = subprocess.Popen([sys.executable, "-m", "tms_runtime.run", "zx200:rc"], env=env)
     try:
-        machine.until(lambda: "another gateway for zx200 runs (pid" in machine.state.reason, "the first one says so")
+        machine.until(lambda: isinstance(wire.of(machine.state.reason), Rival), "the first one says so")
         row = find(load_site(str(folder / "site.yaml")), "zx200:rc")
         wait_until(
-            lambda: "another gateway for zx200 runs (pid" in (metrics.unready(row.address, row.port) or ""), LIMIT,
+            lambda: isinstance(wire.of(metrics.unready(row.address, row.port) or ""), Rival), LIMIT,
             "the second one says so",
         )  # fmt: skip
         assert "another gateway for zx200" in machine.mesh.tms("status", expect=1).stdout
@@ -322,8 +328,9 @@ def test_a_source_that_returns_under_another_type_is_named(machine: Machine) -> 
     stranger = Ros("stranger")
     stranger.publisher(String, "/zx200/joint_states")
     try:
-        text = "/zx200/joint_states as std_msgs/msg/String, which is no sensor_msgs/msg/JointState"
-        machine.until(lambda: text in machine.state.reason, "the type is named")
+        machine.until(lambda: isinstance(wire.of(machine.state.reason), StrangeType), "the type is named")
+        strange = wire.known(machine.state.reason)
+        assert strange.args["found"] == "std_msgs/msg/String" and strange.args["wanted"] == "sensor_msgs/msg/JointState"
     finally:
         stranger.close()
         machine.mesh.tms("start", "sim:zx200")

@@ -200,7 +200,7 @@ def test_one_motion_at_a_time_but_plans_always(machine: Rig) -> None:
     first = machine.change_pose(2.5, *START[1:])
     machine.until(machine.moving, "motion")
     assert machine.end(machine.change_pose(*START)) is Outcome.REJECTED
-    machine.until(lambda: any(text.startswith("BUSY: ") for text in machine.said), "the reason")
+    machine.until(lambda: any(text.startswith("BUSY ") for text in machine.said), "the reason")
     planned = machine.change_pose(0.3, *START[1:], plan=True)
     assert machine.end(planned) is Outcome.SUCCEEDED
     assert any(text.startswith("PLANNED ") for text in machine.said)
@@ -235,7 +235,7 @@ def test_emergency_stop_ends_a_motion_until_it_is_released(machine: Rig) -> None
     assert machine.end(machine.change_pose(*START)) is Outcome.ABORTED
     machine.stop.publish(Bool(data=False))
     assert machine.end(machine.change_pose(*START)) is Outcome.ABORTED
-    assert "emg_stop was pressed by somebody else" in machine.reason()  # a person looks before it moves again
+    assert "PRESSED_BY_OTHERS" in machine.reason()  # a person looks before it moves again
     machine.until(lambda: rearm(machine.ros, MACHINE), "armed machine")
     machine.until(lambda: machine.end(machine.change_pose(*START)) is Outcome.SUCCEEDED, "motion after the re-arm")
 

@@ -11,8 +11,10 @@ from rclpy.clock_type import ClockType
 from tms_msg_ts.action import LeafNodeBase
 
 from conftest import wait_until
+from tms_reason.wire import to_line
 from tms_ros.goals import Ended, Outcome
 from tms_ros.node import Ros
+from tms_ros.reasons import BeingStopped, ProcessLost
 from tms_ros.server import Goal
 
 pytestmark = pytest.mark.ros
@@ -103,7 +105,7 @@ def test_a_process_that_ends_takes_no_goal_any_more(two_nodes: tuple[Ros, Ros], 
     call = peer.send(LeafNodeBase.Goal(model_name="zx200", record_name="A"))
     wait_until(lambda: call.outcome is not None, LIMIT, "answer")
     assert (call.outcome, begun) == (Outcome.REJECTED, [])
-    assert call.feedback.status == "PROCESS_LOST: server is being stopped"
+    assert call.feedback.status == to_line(ProcessLost(BeingStopped("server")))
 
 
 def test_timers_do_not_stand_still_when_the_time_of_the_pc_is_set_back(two_nodes: tuple[Ros, Ros]) -> None:

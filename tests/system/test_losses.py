@@ -95,7 +95,7 @@ def test_a_stop_gets_through_to_a_tree_that_spins(mesh: Mesh, node: Ros) -> None
         mesh.tms("stop")
         out, _ = client.communicate(timeout=60)
     answer = json.loads(out)
-    assert answer["outcome"] == "cancelled" and "software stop" in answer["error_msg"]
+    assert answer["outcome"] == "cancelled" and "SOFTWARE_STOP" in answer["error_msg"]
     rearm(mesh)
     mesh.tms("task", "rm", task)
 

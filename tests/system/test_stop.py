@@ -18,6 +18,9 @@ from tms_msg_ts.msg import RunStates
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from conftest import Mesh, wait_until
+from tms_machine.reasons import MachineLatched, NoPermit
+from tms_rc.reasons import HeldByAnother, OldRun
+from tms_reason import wire
 from tms_ros.fence import Owner
 from tms_ros.goals import Outcome
 from tms_ros.node import Ros
@@ -50,9 +53,12 @@ def test_after_a_software_stop_nothing_moves_until_somebody_rearms(mesh: Mesh, n
     assert [(row["machine"], row["confirmed"], row["latched"]) for row in receipts] == [("zx200", True, True)]
     answer = json.loads(out)
     assert answer["outcome"] == "cancelled"
-    assert any("software stop" in row["text"] for row in events(mesh, answer["run_id"]))
+    assert any(
+        "software stop" in row["text"] or "SOFTWARE_STOP" in row["text"] for row in events(mesh, answer["run_id"])
+    )
     refused = ask_to_move(node)
-    assert refused.outcome is Outcome.ABORTED and "re-arm" in refused.result.error_string
+    assert refused.outcome is Outcome.ABORTED
+    assert wire.known(refused.result.error_string).find(MachineLatched) is not None
     assert "rearm" in mesh.tms("run", "1", "--wait", expect=1).stderr
     rearm(mesh)
     assert ask_to_move(node).outcome is Outcome.SUCCEEDED
@@ -82,7 +88,7 @@ def test_a_stop_while_a_run_prepares_keeps_it_from_moving(mesh: Mesh, node: Ros)
     client.join(60)
     answer = json.loads(answers[0].stdout)
     assert (answer["outcome"], answer["error_code"]) == ("refused", "NOT_ARMED")
-    assert "software stop" in answer["error_msg"]
+    assert "SOFTWARE_STOP" in answer["error_msg"]
     assert not [row for row in events(mesh, answer["run_id"]) if row["kind"] == "goal"]
     rearm(mesh)
     assert run(mesh, "1")["outcome"] == "success"
@@ -106,13 +112,13 @@ def test_rearming_takes_two_steps_and_is_refused_while_the_stop_is_pressed(mesh:
 
 def test_goals_of_an_abandoned_run_are_refused(mesh: Mesh, node: Ros) -> None:
     refused = ask_to_move(node, Owner(7, 1, 1).goal_id())
-    assert refused.outcome is Outcome.ABORTED and "no motion permit" in refused.result.error_string
+    assert refused.outcome is Outcome.ABORTED and wire.known(refused.result.error_string).find(NoPermit) is not None
     with swinging(mesh, node):
         stale = ask_to_move(node, Owner(7, 1, 1).goal_id())
         foreign = ask_to_move(node)
         mesh.tms("cancel", newest(mesh))
-    assert "abandoned run" in stale.result.error_string
-    assert "held by a run" in foreign.result.error_string
+    assert wire.known(stale.result.error_string).find(OldRun) is not None
+    assert wire.known(foreign.result.error_string).find(HeldByAnother) is not None
 
 
 def test_a_killed_scheduler_leaves_a_run_that_can_be_resumed(mesh: Mesh, node: Ros) -> None:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tms_cli import session
+from tms_cli import session, words
 from tms_cli.commands.runs import MOST, as_dict, find_run, has_ended, history, recent
 from tms_cli.words import say, state
 from tms_reason.errors import TmsError
@@ -79,7 +79,7 @@ def command(ctx: click.Context, run: str, as_json: bool) -> None:
                 "run {run}: {state}{reason}",
                 run=run_id,
                 state=state(ended.state),
-                reason=f" ({ended.reason})" if ended.reason else "",
+                reason=f" ({words.reason(ended.reason)})" if ended.reason else "",
             )
         )
     ctx.exit(0 if ended.state == "cancelled" else 1)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from tms_cli import live, session
+from tms_cli import live, session, words
 from tms_cli.commands.runs import MOST, find_run, has_ended, history, recent
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def _as_dict(event: "Event") -> dict[str, Any]:
         "stamp": live.iso(event.stamp),
         "kind": event.kind,
         "node": event.node,
-        "text": event.text,
+        "text": words.english(event.text),
         "values": from_parameters(event.values),
     }
 
@@ -67,7 +67,9 @@ def _line(event: "Event") -> str:
     clock = when.strftime("%H:%M:%S.") + f"{when.microsecond // 1000:03}" if when else "-" * 12
     kind = click.style(f"{event.kind:<6}", fg=COLOURS.get(event.kind))
     values = "  ".join(f"{name}={value}" for name, value in from_parameters(event.values).items())
-    return "  ".join(part for part in (f"{event.number:>5} {clock} {kind}", event.node, event.text, values) if part)
+    return "  ".join(
+        part for part in (f"{event.number:>5} {clock} {kind}", event.node, words.reason(event.text), values) if part
+    )
 
 
 @click.command()

@@ -4,7 +4,7 @@ import getpass
 
 import click
 
-from tms_cli import session
+from tms_cli import session, words
 from tms_cli.commands import stop
 from tms_cli.words import say
 
@@ -35,5 +35,5 @@ def command(ctx: click.Context, machine: str, who: str, as_json: bool) -> None:
         text = "{machine}: given back, seen to stand after {seconds:.2f} s"
         click.echo(say(text, machine=machine, seconds=receipt.seconds))
     else:
-        click.echo(say("{machine}: STOP UNCONFIRMED: {detail}", machine=machine, detail=receipt.detail))
+        click.echo(say("{machine}: STOP UNCONFIRMED: {detail}", machine=machine, detail=words.reason(receipt.detail)))
     ctx.exit(0 if receipt.confirmed else 1)

@@ -4,10 +4,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from tms_cli import session
+from tms_cli import session, words
 from tms_cli.words import say
+from tms_machine.reasons import NoNote
+from tms_reason import wire
 from tms_reason.errors import TmsError
-from tms_ros.fence import NO_NOTE
 
 if TYPE_CHECKING:
     from tms_msg_rc.msg import MachineState
@@ -31,7 +32,7 @@ def ask(node: "Ros", machine: str, token: str = "") -> "Rearm.Response":
 
 def never_armed(state: "MachineState | None") -> bool:
     """Whether a machine is stopped only because no note of this PC says how it was left."""
-    return state is not None and state.latch == NO_NOTE
+    return state is not None and isinstance(wire.of(state.latch), NoNote)
 
 
 @click.command()
@@ -65,7 +66,7 @@ def _rearm(node: "Ros", machine: str, yes: bool, optional: bool) -> dict[str, An
         if optional and error.code == ARMED:
             return None
         raise
-    click.echo(say("{machine} was stopped: {cause}", machine=machine, cause=first.cause), err=True)
+    click.echo(say("{machine} was stopped: {cause}", machine=machine, cause=words.reason(first.cause)), err=True)
     if not yes:
         click.confirm(say("Is it safe that {machine} moves again?", machine=machine), abort=True, err=True)
     ask(node, machine, first.token)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tms_cli import live, session
+from tms_cli import live, session, words
 from tms_cli.commands.runs import has_ended, recent
 from tms_cli.words import say, state, what_next
 from tms_reason.errors import NOT_STORED, TmsError
@@ -221,7 +221,7 @@ def _why(end: End) -> str:
     if end.outcome == "cancelled":
         return say("run {run} was cancelled and its machines were seen to stand still", run=end.run_id)
     code = f" ({end.error_code})" if end.error_code else ""
-    reason = end.error_msg or say("no reason given: see `tms logs tms:ts`")
+    reason = words.reason(end.error_msg) or say("no reason given: see `tms logs tms:ts`")
     hint = what_next(end.error_code)
     return f"{state(end.outcome)}{code}: {reason}" + (f"\n  {hint}" if hint else "")
 

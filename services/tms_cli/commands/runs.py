@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from tms_cli import live, session
+from tms_cli import live, session, words
 from tms_cli.words import padded, say, state
 from tms_reason.errors import TmsError
 
@@ -60,7 +60,7 @@ def as_dict(run: "Run") -> dict[str, Any]:
         "task_id": run.task_id,
         "description": run.description,
         "state": run.state,
-        "reason": run.reason,
+        "reason": words.english(run.reason),
         "machines": list(run.machines),
         "started_at": live.iso(run.started_at),
         "ended_at": live.iso(run.ended_at),
@@ -79,7 +79,7 @@ def line(run: "Run") -> str:
     """A run as one line of the table."""
     colour = live.OUTCOME_COLOURS.get(run.state, "red")
     word = click.style(padded(state(run.state), 16), fg=colour)
-    note = f"  ({run.reason})" if run.reason else ""
+    note = f"  ({words.reason(run.reason)})" if run.reason else ""
     return (
         f"{run.run_id:<28} {run.task_id:>5}  {word} {live.clock_time(run.started_at)} "
         f"{live.duration(_seconds(run)):>9}  {run.description}{note}"

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from tms_cli import session
+from tms_cli import session, words
 from tms_cli.replay.verb import replay
 from tms_cli.words import Group, say
 from tms_reason.errors import TmsError
@@ -44,7 +44,7 @@ def command(ctx: click.Context, as_json: bool) -> None:
             f"{clock:>8}  {row['topic']}"
         )
         if row["last_refusal"]:
-            click.echo("    " + say("last refused: {reason}", reason=row["last_refusal"]))
+            click.echo("    " + say("last refused: {reason}", reason=words.reason(row["last_refusal"])))
 
 
 command.add_command(replay)

@@ -2,7 +2,7 @@
 
 import click
 
-from tms_cli import mesh, session
+from tms_cli import mesh, session, words
 from tms_cli.words import say
 from tms_config.processes import table
 from tms_host.supervisor import Supervisor
@@ -29,8 +29,14 @@ def command(ctx: click.Context, as_json: bool) -> None:
     }
     bad = {name: reason for name, reason in reasons.items() if reason is not None}
     if as_json:
-        session.show_json({"site": site.name, "ready": not bad, "processes": reasons})
+        session.show_json(
+            {
+                "site": site.name,
+                "ready": not bad,
+                "processes": {name: why and words.english(why) for name, why in reasons.items()},
+            }
+        )
     else:
         for name, reason in reasons.items():
-            click.echo(f"{name:42} {reason or say('ready')}")
+            click.echo(f"{name:42} {words.reason(reason or '') or say('ready')}")
     ctx.exit(1 if bad else 0)

@@ -5,9 +5,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from tms_cli import live, session
+from tms_cli import live, session, words
 from tms_cli.words import say
+from tms_machine.reasons import SoftwareStop
 from tms_reason.errors import ConfigError, RosError
+from tms_reason.wire import to_line
 
 if TYPE_CHECKING:
     from tms_msg_rc.msg import StopReceipt
@@ -15,7 +17,7 @@ if TYPE_CHECKING:
     from tms_ros.node import Ros
 
 ANSWER_LIMIT = 13.0  # s; a gateway gives itself 10 s to see the machine stand
-CAUSE = "software stop by an operator"
+CAUSE = to_line(SoftwareStop())
 
 
 def stop(node: "Ros", machine: str) -> "StopReceipt":
@@ -27,7 +29,7 @@ def stop(node: "Ros", machine: str) -> "StopReceipt":
         request = StopMachine.Request(cause=CAUSE)
         return node.call(StopMachine, f"/{machine}/rc/stop", request, ANSWER_LIMIT).receipt
     except RosError as error:
-        return StopReceipt(machine=machine, confirmed=False, cause=CAUSE, detail=str(error))
+        return StopReceipt(machine=machine, confirmed=False, cause=CAUSE, detail=to_line(error.reason))
 
 
 def stop_all(node: "Ros", machines: list[str]) -> "list[StopReceipt]":
@@ -45,10 +47,10 @@ def as_dict(receipt: "StopReceipt") -> dict[str, Any]:
         "travel_joint": receipt.travel_joint,
         "travel_rad": round(receipt.travel_rad, 4),
         "travel_m": round(receipt.travel_m, 3),
-        "evidence": receipt.evidence,
+        "evidence": words.english(receipt.evidence),
         "latched": receipt.latched,
-        "cause": receipt.cause,
-        "detail": receipt.detail,
+        "cause": words.english(receipt.cause),
+        "detail": words.english(receipt.detail),
         "stamp": live.iso(receipt.stamp),
     }
 
@@ -62,7 +64,7 @@ def _line(receipt: "StopReceipt") -> str:
             angle=receipt.travel_rad,
             way=receipt.travel_m,
         )
-    line = say("{machine}: STOP UNCONFIRMED: {detail}", machine=receipt.machine, detail=receipt.detail)
+    line = say("{machine}: STOP UNCONFIRMED: {detail}", machine=receipt.machine, detail=words.reason(receipt.detail))
     return click.style(line, fg="red", bold=True)
 
 

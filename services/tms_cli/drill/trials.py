@@ -17,9 +17,12 @@ from tms_cli.drill.plan import NONE, TS, How, Stop, Trial
 from tms_cli.drill.record import Recording
 from tms_cli.drill.verdict import AFTER, BY_ITSELF, GOES_ON, HUNG, UNPROVEN, Row, Seen, judge
 from tms_cli.drill.work import Work
+from tms_cli.words import english
 from tms_config.config import Site
+from tms_machine.reasons import SoftwareStop
 from tms_rc.standstill import StandStill
 from tms_reason.errors import TmsError
+from tms_reason.wire import to_line
 from tms_ros.node import Ros
 
 MOVES_LIMIT = 40.0  # s for a run to move its machine
@@ -33,7 +36,7 @@ CREEP_STARTS = 3.0  # s of stand-still after which the fault `creep` moves
 LOOK = 0.5  # s
 PRESSED = 1.0  # s for a stop by hand to begin
 LEAVE = ("creep", "drift")  # faults that move a machine which stood
-CAUSE = "software stop by an operator"
+CAUSE = to_line(SoftwareStop())
 
 
 @dataclass
@@ -76,7 +79,7 @@ class Hand:
             self.work.end()
             self._press()
             time.sleep(PRESSED)
-        raise TmsError(f"its run does not move it: {self.work.reason() or 'nobody says why'}")
+        raise TmsError(f"its run does not move it: {english(self.work.reason()) or 'nobody says why'}")
 
     def moment(self, trial: Trial) -> float:
         """When to hit: at the trial's delay after the begin of a motion."""

@@ -8,6 +8,7 @@ from typing import Any
 
 from tms_cli.drill.plan import IN_ORDER, NONE, How, Trial
 from tms_cli.drill.record import Receipt, Recording, Sample
+from tms_cli.words import english
 
 TOLERANCE = 1.1  # of the limit of standing: the truth is sampled, and rounded by nobody
 FRAME = 0.02  # s, half of the time between samples of the truth
@@ -192,5 +193,5 @@ def _measure(row: Row, seen: Seen) -> None:
 
 def text_of(receipt: Receipt, hit: float) -> str:
     """One receipt in words."""
-    what = "confirmed" if receipt.confirmed else f"UNCONFIRMED: {receipt.detail}"
-    return f"{receipt.begun - hit:+.2f} s, after {receipt.seconds:.2f} s {what} ({receipt.cause})"
+    what = "confirmed" if receipt.confirmed else f"UNCONFIRMED: {english(receipt.detail)}"
+    return f"{receipt.begun - hit:+.2f} s, after {receipt.seconds:.2f} s {what} ({english(receipt.cause)})"

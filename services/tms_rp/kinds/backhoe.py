@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from tms_config.models import MachineModel
 from tms_reason.errors import ConfigError, SubtaskFailed
+from tms_reason.texts import text
 from tms_rp.goals import ChangePose, LinkGoal, TipGoal, finite
 from tms_rp.linkage import Linkage, Pose, Tip, wrap
 
@@ -150,7 +151,7 @@ class Backhoe:
 
     def _broken(self, angles: Iterable[tuple[str, float]]) -> str:
         found = ((name, self.limits[name].violation(angle)) for name, angle in angles)
-        return "; ".join(f"{name} {text}" for name, text in found if text)
+        return "; ".join(f"{name} {text(broken, 'en')}" for name, broken in found if broken)
 
     def _clip(self, name: str, angle: float, notes: list[str]) -> float:
         """The angle [rad] of a clearance move, cut at the joint's limit."""

@@ -15,7 +15,9 @@ from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
 from tms_machine.acting import missed
 from tms_machine.machine import Machine
+from tms_machine.reasons import DrivingThrough, DrivingTo
 from tms_reason.errors import SubtaskFailed
+from tms_reason.reason import Reason
 from tms_ros.client import Call
 from tms_ros.goals import Outcome
 from tms_subtasks.sample_joint import Angle
@@ -54,7 +56,7 @@ def test_missed_waypoints_of_both_distributions() -> None:
 
 def test_a_path_with_missed_waypoints_is_a_failure_that_names_them() -> None:
     Recorded("ic120", waypoints()).follow(print, PATH)
-    with pytest.raises(SubtaskFailed, match=r"MISSED_WAYPOINTS: .* waypoint 1 \(1.00, 0.00\), 2 \(2.00, 0.00\)"):
+    with pytest.raises(SubtaskFailed, match=r"MISSED_WAYPOINTS: .* 1 \(1.00 m, 0.00 m\); 2 \(2.00 m, 0.00 m\)"):
         Recorded("ic120", waypoints(1, 2)).follow(print, PATH)
 
 
@@ -97,12 +99,12 @@ def test_goals_go_through_the_gateway_in_the_map() -> None:
 
 
 def test_feedback_is_passed_on() -> None:
-    said: list[str] = []
+    said: list[Reason | str] = []
     feedback = NavigateThroughPoses.Feedback(distance_remaining=3.25, number_of_poses_remaining=2)
     Recorded("ic120", feedback=feedback).navigate_through(said.append, PATH)
     done = waypoints()
     Recorded("ic120", done, FollowWaypoints.Feedback(current_waypoint=1)).follow(said.append, PATH)
-    assert said == ["DRIVING 3.2 m to go, 2 poses to go", "DRIVING to waypoint 1 of 0..2"]
+    assert said == [DrivingThrough(3.25, 2), DrivingTo(1, 2)]
 
 
 def test_plan_variants_ask_the_servers_that_never_move() -> None:

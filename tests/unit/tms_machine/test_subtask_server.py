@@ -11,6 +11,7 @@ from tms_msg_db.msg import Record
 from tms_msg_db.srv import GetParameter, SetParameter
 from tms_msg_ts.action import LeafNodeBase
 
+from tms_machine.reasons import BadRecord
 from tms_machine.record_lock import FLAG
 from tms_machine.subtask import Params, Progress, Subtask
 from tms_machine.subtask_server import _Server
@@ -125,7 +126,7 @@ def test_a_motion_frees_the_record_however_it_ends() -> None:
     goal = Goal()
     assert accepted(server) is None
     assert server._execute(goal) is Outcome.ABORTED
-    assert goal.said == ["OUT_OF_REACH: too far"]
+    assert goal.said == ['FOREIGN words="OUT_OF_REACH: too far"']
     assert database.lock == [False]
 
 
@@ -134,7 +135,8 @@ def test_a_motion_that_is_refused_for_its_record_frees_it(plan_only: bool, freed
     database = Database("far")
     server, _ = served(database, plan_only)
     refusal = accepted(server)
-    assert refusal.code == "BAD_RECORD" and "record zx200/p: x: Input should be a valid number" in refusal.text
+    assert isinstance(refusal, BadRecord) and refusal.record == "zx200/p"
+    assert "x: Input should be a valid number" in refusal.problem
     assert database.lock == freed
     assert not server._reserved
 

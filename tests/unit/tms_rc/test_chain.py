@@ -1,6 +1,8 @@
 """Who must stand behind a goal before it may move a machine."""
 
 from tms_rc.chain import gap, members
+from tms_rc.reasons import HeldByAnother, NoPlanner, NoScheduler, NoSubtask, OldRun
+from tms_reason.reason import Reason
 from tms_ros.fence import Owner
 
 RUN = Owner(100)
@@ -9,9 +11,9 @@ GOAL = Owner(100, 4, 2)  # sent by the planner
 FULL = {"ts": RUN, "dig": SUBTASK, "rp": PLANNER}
 
 
-def text(owner: Owner | None, held: dict[str, Owner]) -> str:
+def missing(owner: Owner | None, held: dict[str, Owner]) -> Reason | None:
     found = gap(owner, held)
-    return found.text if found is not None else ""
+    return found.reason if found is not None else None
 
 
 def test_a_complete_chain_may_move() -> None:
@@ -20,15 +22,15 @@ def test_a_complete_chain_may_move() -> None:
 
 
 def test_every_missing_member_is_named() -> None:
-    assert "no scheduler" in text(GOAL, {"dig": SUBTASK, "rp": PLANNER})
-    assert "subtask" in text(GOAL, {"ts": RUN, "rp": PLANNER})
-    assert "planner" in text(GOAL, {"ts": RUN, "dig": SUBTASK})
-    assert "planner" in text(GOAL, {**FULL, "rp": Owner(100, 3, 1)})  # at another goal
+    assert missing(GOAL, {"dig": SUBTASK, "rp": PLANNER}) == NoScheduler()
+    assert missing(GOAL, {"ts": RUN, "rp": PLANNER}) == NoSubtask()
+    assert missing(GOAL, {"ts": RUN, "dig": SUBTASK}) == NoPlanner()
+    assert missing(GOAL, {**FULL, "rp": Owner(100, 3, 1)}) == NoPlanner()  # at another goal
 
 
 def test_an_old_fencing_number_is_refused_at_once() -> None:
     found = gap(Owner(99, 4, 2), FULL)
-    assert found is not None and found.late and "abandoned run" in found.text
+    assert found is not None and found.late and found.reason == OldRun(99, 100)
 
 
 def test_a_newer_run_may_still_be_on_its_way() -> None:
@@ -38,5 +40,5 @@ def test_a_newer_run_may_still_be_on_its_way() -> None:
 
 def test_foreign_clients_move_only_what_no_run_holds() -> None:
     assert gap(None, {}) is None
-    assert "held by a run" in text(None, FULL)
+    assert missing(None, FULL) == HeldByAnother()
     assert members(None, FULL) == {}

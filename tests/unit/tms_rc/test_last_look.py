@@ -5,21 +5,26 @@ from typing import Any
 
 import pytest
 
+from tms_machine.reasons import MachineLatched, SoftwareStop
 from tms_rc.gateway import Gateway
 from tms_rc.guard import Active, Guard, Kind
 from tms_rc.latch import Latch
+from tms_rc.reasons import HeldByAnother, NoScheduler, NoSubtask
+from tms_reason.reason import Reason
 from tms_ros.fence import Owner
+from tms_ros.reasons import ProcessLost
 
+Stops = list[tuple[Reason, Kind]]
 RUN = Owner(7)
 GOAL = Owner(7, 1, 1)  # of the subtask; the scheduler and the subtask stand behind it
 HELD = {"ts": RUN, "subtask": Owner(7, 1, 0)}
 
 
-def stops(held: dict[str, Owner], latched: str = "", owner: Owner | None = GOAL) -> list[tuple[str, Kind]]:
+def stops(held: dict[str, Owner], latched: Reason | None = None, owner: Owner | None = GOAL) -> Stops:
     """What is stopped at the last look at a goal."""
-    found: list[tuple[str, Kind]] = []
+    found: Stops = []
     guard: Any = Guard.__new__(Guard)
-    guard.latch, guard.permits = Latch(latched), SimpleNamespace(held=lambda: held)
+    guard.latch, guard.permits = Latch("zx200", latched), SimpleNamespace(held=lambda: held)
     guard.stop_now = lambda cause, kind: found.append((cause, kind))
     guard.last_look(Active(None, owner, None, {}, {}))  # type: ignore[arg-type]
     return found
@@ -30,20 +35,20 @@ def test_a_goal_with_everybody_behind_it_leaves() -> None:
 
 
 def test_a_stop_that_came_meanwhile_keeps_it() -> None:
-    ((cause, kind),) = stops(HELD, "software stop")
-    assert "software stop" in cause and kind is Kind.PLAIN
+    ((cause, kind),) = stops(HELD, SoftwareStop())
+    assert cause == MachineLatched("zx200", SoftwareStop()) and kind is Kind.PLAIN
 
 
 @pytest.mark.parametrize("gone", ["ts", "subtask"])
 def test_a_process_that_was_lost_meanwhile_keeps_it(gone: str) -> None:
     ((cause, kind),) = stops({name: what for name, what in HELD.items() if name != gone})
-    assert cause.startswith("PROCESS_LOST: no") or "does not stand behind it" in cause
+    assert cause == ProcessLost(NoScheduler() if gone == "ts" else NoSubtask())
     assert kind is Kind.HOLD
 
 
 def test_a_run_that_took_the_machine_meanwhile_keeps_a_foreign_goal() -> None:
     ((cause, kind),) = stops(HELD, owner=None)
-    assert "held by a run" in cause and kind is Kind.PLAIN
+    assert cause == HeldByAnother() and kind is Kind.PLAIN
 
 
 @pytest.mark.parametrize(("answered", "sent"), [(False, 1), (True, 0)])

@@ -9,6 +9,9 @@ from tms_config.yaml_file import parse
 from tms_machine.border import MOTIONS
 from tms_rc.gateway import Gateway
 from tms_rc.guard import Active, Kind
+from tms_rc.reasons import ControllerLeft
+from tms_reason.reason import Reason
+from tms_ros.reasons import ProcessLost
 
 MODEL = parse(CONFIGS / "machines" / "ic120.yaml", MachineModel)
 
@@ -30,8 +33,9 @@ class Peer:
 
 
 def test_a_server_that_leaves_during_a_drive_stops_the_machine() -> None:
-    stops: list[tuple[str, Kind]] = []
+    stops: list[tuple[Reason, Kind]] = []
     gateway: Any = Gateway.__new__(Gateway)
+    gateway._app = SimpleNamespace(machine="ic120")
     gateway._model, gateway._watch = MODEL, SimpleNamespace(positions={}, trouble=lambda now: None)
     gateway._begin = lambda motion, active, now: None
     gateway._guard = SimpleNamespace(stop=lambda cause, kind: stops.append((cause, kind)), silent=lambda: None)
@@ -39,5 +43,5 @@ def test_a_server_that_leaves_during_a_drive_stops_the_machine() -> None:
     goal: Any = SimpleNamespace(request=SimpleNamespace())
     active = Active(goal, None, peer, {}, {}, call=SimpleNamespace(accepted=True, outcome=None))  # type: ignore[arg-type]
     gateway._watch_motion(MOTIONS[1], active)
-    assert stops == [("PROCESS_LOST: /ic120/navigate_to_pose went away during its goal", Kind.PLAIN)]
+    assert stops == [(ProcessLost(ControllerLeft("ic120", "/ic120/navigate_to_pose")), Kind.PLAIN)]
     assert peer.given_up == 1

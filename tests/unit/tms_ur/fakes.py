@@ -11,6 +11,7 @@ from fastapi import FastAPI
 
 from tms_config.config import Site, load_site
 from tms_config.site_file import Console, SiteFile
+from tms_machine.reasons import SoftwareStop
 from tms_reason.errors import TmsError
 from tms_reason.reason import Foreign, Reason
 from tms_reason.remedies import EDIT_TASK
@@ -19,7 +20,7 @@ from tms_ur.api import create_app
 from tms_ur.board import Board
 from tms_ur.data_models import Change, Record, Sensing, SensingInput
 from tms_ur.models import Event, Rearmed, Receipt, Run, Task, TaskText
-from tms_ur.reason_view import of_line
+from tms_ur.reason_view import of_line, view
 
 NOON = datetime(2026, 1, 31, 12, tzinfo=timezone.utc)
 HERE = "http://127.0.0.1:8080"
@@ -102,16 +103,16 @@ class FakeSiteClient:
     def answer(self, question: str, yes: bool, by: str) -> None:
         self._called("answer", question, yes, by)
 
-    def stop(self, machine: str, cause: str) -> Receipt:
+    def stop(self, machine: str, cause: Reason) -> Receipt:
         self._called("stop", machine, cause)
         return Receipt(
             machine=machine, confirmed=True, seconds=0.4, travel_joint="swing_joint", travel_rad=0.01, travel_m=0.0,
-            cause=of_line(cause), detail=None, evidence=None, latched=True,
+            cause=view(cause), detail=None, evidence=None, latched=True,
         )  # fmt: skip
 
     def rearm(self, machine: str, token: str) -> Rearmed:
         self._called("rearm", machine, token)
-        return Rearmed(token="" if token else "t-1", cause=of_line("software stop"), armed=bool(token))
+        return Rearmed(token="" if token else "t-1", cause=view(SoftwareStop()), armed=bool(token))
 
     def restart(self, process: str) -> None:
         self._called("restart", process)

@@ -6,6 +6,7 @@ from datetime import datetime, timedelta, timezone
 
 import pytest
 
+from tms_machine.reasons import SoftwareStopBy
 from tms_reason.errors import TmsError
 from tms_reason.reason import Foreign
 from tms_ur.models import ActiveRun, Event, Host, Joint, Machine, Process
@@ -109,7 +110,7 @@ def test_start_a_run(client: Client, site_client: FakeSiteClient) -> None:
 def test_stop_asks_every_machine_and_any_role_may(client: Client, site_client: FakeSiteClient) -> None:
     receipts = client.post("/api/stop", json={}).json()
     assert [(one["machine"], one["confirmed"], one["seconds"]) for one in receipts] == [("zx200", True, 0.4)]
-    assert site_client.calls == [("stop", "zx200", "software stop by local at 127.0.0.1")]
+    assert site_client.calls == [("stop", "zx200", SoftwareStopBy("local at 127.0.0.1"))]
     answer = client.post("/api/stop", json={"machine": "ic120"})
     assert (answer.status_code, answer.json()["code"]) == (404, "NO_MACHINE")
     assert answer.json()["args"] == {"machine": "ic120", "machines": ["zx200"]}

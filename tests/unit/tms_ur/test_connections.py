@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from tms_machine.reasons import SoftwareStopBy
 from tms_ur import connections
 from tms_ur.connections import FULL, GRACE, HEADERS, MAX_CONNECTIONS, MAX_OF_ONE, Gate, Listener
 from tms_ur.room import MAX_OF_ONE as MAX_ASKED
@@ -178,7 +179,7 @@ def test_a_stop_is_answered_when_no_other_request_is() -> None:
             await asyncio.sleep(0)
         assert (await ask("GET", "/api/state", hang, "192.0.2.9"))[0] == 200
         status, body = await ask("POST", "/api/stop", whole)
-        assert (status, site_client.calls) == (200, [("stop", "zx200", "software stop by local at 127.0.0.1")]), body
+        assert (status, site_client.calls) == (200, [("stop", "zx200", SoftwareStopBy("local at 127.0.0.1"))]), body
         assert (await ask("POST", "/api/runs/r-1/cancel", whole))[0] == 202
         assert (await ask("POST", "/api/runs", whole))[0] == 503
         for task in hanging:

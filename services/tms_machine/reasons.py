@@ -1,0 +1,57 @@
+"""Why a machine cannot do, or must not do, what a goal asks; what it does meanwhile; and why machines are stopped."""
+
+from tms_reason.quantities import Metres, Moments, Radians, Seconds
+from tms_reason.reason import Reason
+from tms_reason.remedies import EDIT_CONFIG, GIVE_BACK, LOOK, PROCESSES, REARM, RECORDS
+
+
+# fmt: off
+# stops
+class SoftwareStop(Reason, text="software stop"): pass
+class SoftwareStopBy(SoftwareStop, text="software stop by {person}"): person: str
+class SoftwareStopSaying(SoftwareStop, text="software stop: {why}"): why: Reason
+class NoNote(Reason, text="it is not known on this PC how the machine was left", action=LOOK): pass
+class MachineLatched(Reason, text="{machine} is stopped: {cause}", action=REARM): machine: str; cause: Reason
+class NoPermit(Reason, text="no motion permit: {why}"): why: Reason
+
+# a goal that is refused
+class DrivenByHand(Reason, text="{driver} drives {machine} by hand", action=GIVE_BACK, code="TAKEN"):
+    driver: Reason; machine: str
+class ManualMode(Reason, text="somebody at the machine's own levers"): pass
+class Busy(Reason, text="{process} is still at its last goal"): process: str
+class NoDatabase(Reason, text="{process} did not answer", action=PROCESSES): process: str
+class BadRecord(Reason, text="record {record}: {problem}", action=RECORDS): record: str; problem: str
+class NoSuchJoint(Reason, text="there is no joint '{joint}' (there are {joints})"): joint: str; joints: tuple[str, ...]
+class NoCapability(Reason, text="{machine} has no {what}", action=EDIT_CONFIG,
+    details="see borders: in configs/machines/{model}.yaml"): machine: str; what: str; model: str
+
+# a goal that ended before it was done
+class GoalTimeout(Reason, text="{machine} was not done after {limit}", code="TIMEOUT"): machine: str; limit: Seconds
+class Aborted(Reason, text="{why}", details="{name} aborted the goal"): why: Reason; name: str
+class Rejected(Reason, text="{why}", details="{name} rejected the goal"): why: Reason; name: str
+class Canceled(Reason, text="{why}", details="{name} cancelled the goal"): why: Reason; name: str
+class NoReason(Reason, text="no reason was given"): pass
+class ErrorNumber(Reason, text="error {number}"): number: int
+class Missed(Reason, text="waypoints {waypoints} were missed"): waypoints: tuple[int, ...]
+class MissedWaypoints(Reason, text="{machine} did not reach waypoint {waypoints}"):
+    machine: str; waypoints: tuple[Reason, ...]
+class Waypoint(Reason, text="{number} ({x}, {y})"): number: int; x: Metres; y: Metres
+class NotReached(Reason, text="{machine} says that it did not reach {angle}", details="{what}"):
+    machine: str; angle: Radians; what: str
+class NoJointState(Reason, text="nothing was heard of {joint} of {machine} within {limit}", action=PROCESSES,
+    details="{topic}"): joint: str; machine: str; limit: Seconds; topic: str
+class MotionNotEnded(Reason, text="{machine} did not end its motion", action=LOOK): machine: str
+class WaitingFor(Reason, text="waiting for {process}", action=PROCESSES): process: str
+
+# progress
+class Driving(Reason, text="driving, {left} to go"): left: Metres
+class DrivingThrough(Reason, text="driving, {left} and {poses} poses to go"): left: Metres; poses: int
+class DrivingTo(Reason, text="driving to waypoint {waypoint} of 0 to {last}"): waypoint: int; last: int
+class Turning(Reason, text="turning, {left} to go"): left: Radians
+
+# how far a stop went
+class Stood(Reason, text="stood after {seconds}, {angle} ({joint}) and {way}: {cause}"):
+    seconds: Moments; angle: Radians; joint: str; way: Metres; cause: Reason
+class StoodWithoutJoints(Reason, text="stood after {seconds}, {way}: {cause}"):
+    seconds: Moments; way: Metres; cause: Reason
+class StopUnconfirmed(Reason, text="STOP UNCONFIRMED: {detail} ({cause})", action=LOOK): detail: Reason; cause: Reason

@@ -1,0 +1,18 @@
+"""Which process serves a name of ROS, as `tms ps` lists it: people restart processes, not services."""
+
+OF_GATEWAY = ("rc", "rearm", "take")
+
+
+def process_of(name: str) -> str:
+    """`/tms/db/get_task` -> `tms:db`, `/zx200/rc/stop` -> `zx200:rc`; the machine itself for its own controllers."""
+    parts = name.strip("/").split("/")
+    if len(parts) < 2:
+        return parts[0]
+    owner, first = parts[0], parts[1]
+    if owner == "tms":
+        return f"tms:{first}" if len(parts) > 2 else "tms:ts"
+    if first in OF_GATEWAY:
+        return f"{owner}:rc"
+    if first.startswith("tms_rp_"):
+        return f"{owner}:rp"
+    return f"{owner}:{first}" if len(parts) == 2 else owner
