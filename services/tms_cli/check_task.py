@@ -13,9 +13,10 @@ from tms_msg_ts.srv import CheckTask
 
 from tms_cli import session
 from tms_cli.commands.task import read
-from tms_cli.words import say
+from tms_cli.words import reason, say, sentence
 from tms_reason.errors import RosError, TaskError, TmsError
 from tms_ts import bt
+from tms_ts.bt.reasons import Line, Placed
 from tms_ts.bt.source import parse
 
 if TYPE_CHECKING:
@@ -91,16 +92,17 @@ class Scheduler(AbstractContextManager["Scheduler"]):
                 raise
             found.errors = [str(error)]
         else:
-            found.errors, found.warnings = list(answer.errors), list(answer.warnings)
+            found.errors = list(map(reason, answer.errors))
+            found.warnings = list(map(reason, answer.warnings))
         found.by = "scheduler"
 
 
 def structure(what: str, text: str, folder: Path | None = None) -> Checked:
     report = bt.check(text, folder=folder)
-    warnings = [f"line {line}: {warning}" for line, warning in report.warnings]
+    warnings = [sentence(Placed(Line(line), warning)) for line, warning in report.warnings]
     if report.ok and "<include" in text:
-        warnings += [f"it cannot be stored as a task: {error}" for error in bt.check(text).errors]
-    return Checked(what, report.nodes, report.goals, [str(error) for error in report.errors], warnings)
+        warnings += [f"it cannot be stored as a task: {sentence(error.reason)}" for error in bt.check(text).errors]
+    return Checked(what, report.nodes, report.goals, [sentence(error.reason) for error in report.errors], warnings)
 
 
 def stored(scheduler: Scheduler, task_id: int) -> Checked:

@@ -13,6 +13,7 @@ import click
 from tms_cli.japanese import HEADINGS, NEXT, SAID, STATES
 from tms_cli.japanese_help import HELP
 from tms_reason import texts, wire
+from tms_reason.reason import Reason
 
 
 def japanese() -> bool:
@@ -35,6 +36,17 @@ def reason(line: str) -> str:
     """A reason as a message carries it, in words; empty for none."""
     found = wire.of(line)
     return "" if found is None else texts.text(found, language())
+
+
+def sentence(found: Reason) -> str:
+    """A reason in words."""
+    return texts.text(found, language())
+
+
+def with_advice(line: str) -> str:
+    """As `reason`, and what to do about it."""
+    found = wire.of(line)
+    return "" if found is None else texts.sentence(found, language())
 
 
 def english(line: str) -> str:

@@ -25,7 +25,7 @@ def read_file(path: Path) -> str:
     try:
         if path.stat().st_size > xml_text.MAX_BYTES:
             size = path.stat().st_size / 2**20
-            raise TaskError(f"{path}: is {size:.1f} MB, larger than {xml_text.MAX_BYTES} bytes: {xml_text.TOO_LARGE}")
+            raise TaskError(f"{path}: is {size:.1f} MB, larger than {xml_text.MAX_BYTES} bytes")
         return path.read_bytes().decode("utf-8")
     except OSError as error:
         raise TaskError(f"{path}: cannot be read ({error.strerror}): check the name") from error

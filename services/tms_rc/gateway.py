@@ -6,11 +6,11 @@ from typing import Any
 
 from builtin_interfaces.msg import Duration
 from geometry_msgs.msg import Pose, PoseStamped
-from tms_msg_rc.msg import StopReceipt
 from trajectory_msgs.msg import JointTrajectoryPoint
 
 from tms_machine.border import Motion
-from tms_machine.reasons import Stood, StoodWithoutJoints, StopUnconfirmed
+from tms_machine.reasons import StopUnconfirmed
+from tms_machine.receipts import stood_after
 from tms_rc import limits
 from tms_rc.following import Follower, ways
 from tms_rc.guard import Active, Guard, Kind
@@ -253,14 +253,6 @@ class Gateway:
 def speed_of(app: App) -> float:
     """Seconds of the machine in one second: stand-ins may run faster."""
     return app.site.file.sim.speed if app.site.file.backend == "sim" else 1.0
-
-
-def stood_after(receipt: StopReceipt, cause: Reason) -> Reason:
-    """How long it took until it stood, and how far it went."""
-    seconds, way = receipt.seconds, receipt.travel_m
-    if not receipt.travel_joint:
-        return StoodWithoutJoints(seconds, way, cause)
-    return Stood(seconds, receipt.travel_rad, receipt.travel_joint, way, cause)
 
 
 def poses_of(request: Any) -> Sequence[PoseStamped]:

@@ -11,9 +11,6 @@ TmsError                 code and one line: what is wrong, where, what to do nex
 from tms_reason.reason import Foreign, Reason
 from tms_reason.texts import sentence
 
-# Ends the reason of a run whose end the disk has not taken yet; who shows the result looks for it.
-NOT_STORED = "(not stored yet: the disk of the scheduler's PC is slow or full)"
-
 
 class TmsError(Exception):
     """An error that a person reads: its reason for programs, and the reason's English text for the log."""

@@ -8,12 +8,34 @@ import re
 from lxml import etree
 
 from tms_reason.errors import TaskError
+from tms_reason.reason import Reason
+from tms_runtime.reasons import (
+    CorrectThere,
+    ElementsTooDeep,
+    ExportFromGroot,
+    HasDoctype,
+    ManyAttributes,
+    ManyTags,
+    NotUnicodeCharacter,
+    NotUtf8,
+    NotWellFormed,
+    NulByte,
+    RemoveThem,
+    RightFile,
+    SaveAsUtf8,
+    SaveFromGroot,
+    SplitTask,
+    TaskEmpty,
+    TaskTooLarge,
+    WordTooLong,
+    XmlHint,
+    XmlLine,
+)
 
 MAX_BYTES = 5_000_000
 MAX_TAGS = 200_000  # "<" in the text; bounds the memory that the parser takes
 MAX_DEPTH = 200  # a tree that people drew is a tenth as deep
 MAX_EQUALS = 5000  # "=" in one tag; the parser compares attribute names pairwise
-TOO_LARGE = "a task file has some 10 to 100 kB: is this the right one?"
 
 _PROLOG = re.compile(r"\s+|<\?.*?\?>|<!--.*?-->", re.DOTALL)
 _DECLARATION = re.compile(r"<\?xml\s.*?\?>", re.DOTALL)
@@ -22,10 +44,10 @@ _DECLARATION = re.compile(r"<\?xml\s.*?\?>", re.DOTALL)
 class XmlRefused(TaskError):
     """A text that is no XML, or none that a task may be."""
 
-    def __init__(self, text: str, line: int | None = None, hint: str = "") -> None:
-        place = f"line {line}: " if line else ""
-        super().__init__(f"{place}{text}: {hint}" if hint else f"{place}{text}")
-        self.text, self.line, self.hint = text, line, hint
+    def __init__(self, what: Reason, line: int | None = None, hint: Reason | None = None) -> None:
+        hinted = what if hint is None else XmlHint(what, hint)
+        super().__init__(XmlLine(line, hinted) if line else hinted, self.code)
+        self.what, self.line, self.hint = what, line, hint
 
 
 def decode(data: bytes | str, limit: int = MAX_BYTES) -> str:
@@ -35,22 +57,20 @@ def decode(data: bytes | str, limit: int = MAX_BYTES) -> str:
         XmlRefused: it is too large, empty or no text.
     """
     if len(data) > limit:
-        raise XmlRefused(f"the task is larger than {limit} bytes", hint=TOO_LARGE)
+        raise XmlRefused(TaskTooLarge(limit), hint=RightFile())
     if isinstance(data, bytes):
         raw = data
         try:
             data = raw.decode("utf-8-sig")
         except UnicodeDecodeError as error:
             line = raw.count(b"\n", 0, error.start) + 1
-            raise XmlRefused("the text is not UTF-8", line, "save the file as UTF-8") from error
+            raise XmlRefused(NotUtf8(), line, SaveAsUtf8()) from error
     text = data.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
     zero = text.find("\0")
     if zero >= 0:
-        raise XmlRefused("the text contains a NUL byte", _line(text, zero), "save it again from Groot")
+        raise XmlRefused(NulByte(), _line(text, zero), SaveFromGroot())
     if not text.strip():
-        raise XmlRefused(
-            "the task is empty", hint='export it from Groot; it begins with <root main_tree_to_execute="...">'
-        )
+        raise XmlRefused(TaskEmpty(), hint=ExportFromGroot())
     return text
 
 
@@ -62,16 +82,16 @@ def elements(text: str, comments: bool) -> etree._Element:
     """
     _refuse_dtd(text)
     if text.count("<") > MAX_TAGS:
-        raise XmlRefused(f"the text has more than {MAX_TAGS} tags")
+        raise XmlRefused(ManyTags(MAX_TAGS))
     if max(tag.count("=") for tag in text.split("<")) > MAX_EQUALS:
-        raise XmlRefused("an element has too many attributes")
+        raise XmlRefused(ManyAttributes())
     declaration = _DECLARATION.match(text)
     if declaration is not None:  # its encoding would be believed; keep the lines
         text = "\n" * declaration[0].count("\n") + text[declaration.end() :]
     try:
         root = etree.fromstring(text.encode(), _parser(comments))
     except UnicodeEncodeError as error:
-        raise XmlRefused("a character is no valid Unicode", _line(text, error.start), "save it as UTF-8") from error
+        raise XmlRefused(NotUnicodeCharacter(), _line(text, error.start), SaveAsUtf8()) from error
     except etree.XMLSyntaxError as error:
         raise _refusal(error) from error
     _check_depth(root)
@@ -91,7 +111,7 @@ def _refuse_dtd(text: str) -> None:
     while (found := _PROLOG.match(text, position)) is not None:
         position = found.end()
     if text.startswith("<!DOCTYPE", position):
-        raise XmlRefused("a task must not have a DOCTYPE (DTD) or entities", _line(text, position), "remove them")
+        raise XmlRefused(HasDoctype(), _line(text, position), RemoveThem())
 
 
 def _refusal(error: etree.XMLSyntaxError) -> XmlRefused:
@@ -100,8 +120,8 @@ def _refusal(error: etree.XMLSyntaxError) -> XmlRefused:
     if "depth" in said:  # libxml2's own limit lies a little above ours
         return _too_deep(line)
     if "XML_PARSE_HUGE" in said:
-        return XmlRefused("a name or a value is too long", line)
-    return XmlRefused(f"not well-formed XML ({said})", line, "correct it there")
+        return XmlRefused(WordTooLong(), line)
+    return XmlRefused(NotWellFormed(said), line, CorrectThere())
 
 
 def _check_depth(root: etree._Element) -> None:
@@ -114,7 +134,7 @@ def _check_depth(root: etree._Element) -> None:
 
 
 def _too_deep(line: int) -> XmlRefused:
-    return XmlRefused(f"the elements are nested deeper than {MAX_DEPTH}", line, "split the task into subtrees")
+    return XmlRefused(ElementsTooDeep(MAX_DEPTH), line, SplitTask())
 
 
 def _line(text: str, position: int) -> int:

@@ -5,9 +5,13 @@ from typing import Any, Generic, TypeVar
 
 from tms_msg_db.srv import GetParameter, SetParameter
 
+from tms_machine.reasons import NoDatabase
 from tms_machine.values import from_parameters, to_parameters
+from tms_reason.reason import Reason
+from tms_reason.wire import refusal
 from tms_ros.interface_types import Reply, Req, ServiceType
 from tms_ros.node import Ros
+from tms_ts.reasons import NoField
 from tms_ts.shared_records import SharedRecords
 from tms_ts.world import Value
 
@@ -20,7 +24,7 @@ class Answer(Generic[T]):
 
     def __init__(self) -> None:
         self.done = False
-        self.error: str | None = None
+        self.error: Reason | None = None
         self._value: list[T] = []
 
     @property
@@ -30,7 +34,7 @@ class Answer(Generic[T]):
     def settle(self, value: T) -> None:
         self._value, self.done = [value], True
 
-    def fail(self, error: str) -> None:
+    def fail(self, error: Reason) -> None:
         self.error, self.done = error, True
 
 
@@ -88,9 +92,9 @@ class Flags:
         async def ask() -> None:
             response = await self._ros.ask(service, name, request, LIMIT)
             if response is None:
-                answer.fail("the database does not answer, see `tms ps`")
+                answer.fail(NoDatabase("tms:db"))
             elif response.error_code:
-                answer.fail(response.error_msg)
+                answer.fail(refusal(response.error_code, response.error_msg))
             else:
                 settle(response)
             self._wake()
@@ -102,4 +106,4 @@ def _settle(answer: Answer[Any], record: str, field: str, fields: Mapping[str, A
     if field in fields:
         answer.settle(fields[field])
     else:
-        answer.fail(f"record {record} has no field '{field}'")
+        answer.fail(NoField(record, field))

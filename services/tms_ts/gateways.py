@@ -10,10 +10,12 @@ from tms_msg_rc.srv import StopMachine
 
 from tms_machine.border import Controls
 from tms_machine.permit import NOBODY, Link, Permit
-from tms_machine.reasons import SoftwareStop
-from tms_reason.wire import to_line
+from tms_machine.reasons import DrivenByHand, MachineLatched, NoReason, SoftwareStop
+from tms_reason import wire
+from tms_reason.reason import Reason
 from tms_ros.fence import Owner
 from tms_runtime.app import App
+from tms_ts.reasons import MachineNotReady, ProcessAway
 
 SETTLE = 0.3  # s from the first word of a new gateway until it has discovered us as well
 SIGNALS = 100  # of all buttons that may wait: no `false` may push out the `true` of another one
@@ -25,7 +27,7 @@ class Holder:
 
     number: int  # fencing number
     started: tuple[int, int]  # s and ns of the wall clock
-    stopped: Callable[[str, str], None]  # machine, cause: it was stopped from outside and stays so
+    stopped: Callable[[str, Reason], None]  # machine, cause: it was stopped from outside and stays so
     receipt: Callable[[StopReceipt], None]
     alive: Callable[[], bool]
 
@@ -83,18 +85,25 @@ class Gateways:
 
     # news
 
-    def obstacle(self, machine: str) -> str:
-        """Why a goal would not move the machine now; empty if it would, or if nothing is known of it."""
+    def obstacle(self, machine: str) -> Reason | None:
+        """Why a goal would not move the machine now; None if it would, or if nothing is known of it."""
         link, state = self._links.get(machine), self._states.get(machine)
         if link is None or state is None:
-            return ""
+            return None
         if not link.alive:
-            return f"process {machine}:rc is not there, see `tms logs {machine}:rc`"
-        if state.latch:
-            return f"{machine} is latched ({state.latch})"
-        if state.by_hand:
-            return f"{state.by_hand} drives {machine} by hand"
-        return "" if state.ready else f"{machine} is not ready: {state.reason}"
+            return ProcessAway(f"{machine}:rc")
+        found = self.held_back(machine)
+        if found is not None or state.ready:
+            return found
+        return MachineNotReady(machine, wire.of(state.reason) or NoReason())
+
+    def held_back(self, machine: str) -> Reason | None:
+        """What only a person ends: the machine is latched, or somebody drives it."""
+        latch, state = self.latch(machine), self._states.get(machine)
+        if latch is not None:
+            return MachineLatched(machine, latch)
+        by_hand = wire.of(state.by_hand) if state is not None else None
+        return None if by_hand is None else DrivenByHand(by_hand, machine)
 
     def wait_alive(self, machine: str, seconds: float) -> None:
         """Give a gateway that is being restarted a moment, so that a request to it does not get lost."""
@@ -118,21 +127,16 @@ class Gateways:
         alive = link.alive
         return lambda: link.alive != alive
 
-    def latch(self, machine: str) -> str:
-        """Why the machine is latched until it is re-armed; empty if it is not."""
+    def latch(self, machine: str) -> Reason | None:
+        """Why the machine is latched until it is re-armed; None if it is not."""
         state = self._states.get(machine)
-        return state.latch if state is not None else ""
-
-    def by_hand(self, machine: str) -> str:
-        """Who drives the machine by hand; empty if nobody does."""
-        state = self._states.get(machine)
-        return state.by_hand if state is not None else ""
+        return wire.of(state.latch) if state is not None else None
 
     def _state(self, machine: str, state: MachineState) -> None:
         self._states[machine] = state
         holder = self._holders.get(machine)
         if holder is not None and state.latch:
-            holder.stopped(machine, state.latch)
+            holder.stopped(machine, wire.known(state.latch))
 
     def _receipt(self, receipt: StopReceipt) -> None:
         holder = self._holders.get(receipt.machine)
@@ -144,7 +148,7 @@ class Gateways:
     def _signal(self, message: Bool) -> None:
         if message.data:
             for machine, holder in list(self._holders.items()):
-                holder.stopped(machine, to_line(SoftwareStop()))
+                holder.stopped(machine, SoftwareStop())
 
     def _gateway_changed(self, machine: str, link: Link) -> None:
         """A lost gateway cannot stop its machine: do what it would do. Its successor does the same, but later."""

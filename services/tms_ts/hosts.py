@@ -7,7 +7,10 @@ from tms_msg_host.msg import Process, Processes
 from tms_msg_host.srv import ControlProcess
 
 from tms_reason.errors import RosError
+from tms_reason.reason import Reason
+from tms_reason.wire import refusal
 from tms_ros.node import Ros
+from tms_ts.reasons import CannotStart, ProcessState
 
 START_LIMIT = 10.0  # s
 
@@ -29,22 +32,22 @@ class Hosts:
         found = self._known.get(f"{machine}:{subtask}")
         return None if found is None else int(found[1].pid)
 
-    def fatal(self, machine: str, process: str) -> str:
-        """Why supervisord has given up a process; empty if it has not."""
+    def fatal(self, machine: str, process: str) -> Reason | None:
+        """That supervisord has given up a process."""
         name = f"{machine}:{process}"
         found = self._known.get(name)
-        return f"process {name} is FATAL, see `tms logs {name}`" if found and found[1].state == "FATAL" else ""
+        return ProcessState(name, "FATAL") if found and found[1].state == "FATAL" else None
 
-    def trouble(self, machine: str, subtask: str) -> str:
-        """What is wrong with a subtask's process, for the operator; empty if nothing is known."""
+    def trouble(self, machine: str, subtask: str) -> Reason | None:
+        """What is wrong with a subtask's process; None if nothing is known."""
         name = f"{machine}:{subtask}"
         found = self._known.get(name)
         if found is None or found[1].state == "RUNNING":
-            return ""
-        return f"process {name} is {found[1].state}, see `tms logs {name}`"
+            return None
+        return ProcessState(name, found[1].state)
 
-    def start(self, names: list[str], give_up: Callable[[], bool]) -> str:
-        """Have processes started that do not run; returns what went wrong, or an empty text.
+    def start(self, names: list[str], give_up: Callable[[], bool]) -> Reason | None:
+        """Have processes started that do not run; returns what went wrong.
 
         Processes that no host agent knows are left alone: they may be servers of another system.
         """
@@ -56,12 +59,12 @@ class Hosts:
             try:
                 answer = self._ros.call(ControlProcess, f"/tms/host/{host}/control", request, START_LIMIT)
             except RosError as error:
-                return f"{name} cannot be started: {error}"
+                return CannotStart(name, error.reason)
             if answer.error_code:
-                return f"{name} cannot be started: {answer.error_msg}"
+                return CannotStart(name, refusal(answer.error_code, answer.error_msg))
             if give_up():
-                return "cancelled"
-        return ""
+                break
+        return None
 
     def wait_known(self, seconds: float) -> None:
         """Wait until a host agent has been heard; without one, processes cannot be started on demand."""

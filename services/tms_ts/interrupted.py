@@ -10,13 +10,30 @@ from tms_msg_rc.msg import StopReceipt
 from tms_msg_ts.srv import CancelRun, ResumePlan
 
 from tms_machine.border import STOP_PROVEN
+from tms_reason import wire
 from tms_reason.errors import TaskError
+from tms_reason.reason import Reason
+from tms_reason.wire import to_line
 from tms_runtime.app import App
 from tms_ts.journal import Journal
-from tms_ts.machines import receipt_text
+from tms_ts.machines import told_by
 from tms_ts.past import Header, Key, Over, Past
+from tms_ts.reasons import (
+    GivenUp,
+    MachineUnconfirmed,
+    NoReceipt,
+    NotInterrupted,
+    NotSeenStanding,
+    RunInterrupted,
+    SchedulerWasLost,
+    SeenToStand,
+    StateAbandoned,
+    StateBecause,
+    StateInterrupted,
+)
 from tms_ts.record import Records
 from tms_ts.run import ALARMS
+from tms_ts.run_states import entered
 
 STOP_LIMIT = STOP_PROVEN + 3.0  # s for the gateways to tell how they stopped the machines
 LOOK = 0.05  # s
@@ -67,14 +84,14 @@ class Interrupted:
 
     def _close(self, past: Past, header: Header) -> None:
         record, number, stops = self._records.open(header.run_id), past.last_event, self._stops(past, header)
-        reason, unseen = _what_was_seen(header.machines, stops)
-        texts = [("stop", receipt_text(receipt)) for receipt in stops] + [("alarm", text) for text in unseen]
+        reason, unseen = _what_was_seen(header, stops)
+        told = [("stop", told_by(receipt)) for receipt in stops] + [("alarm", alarm) for alarm in unseen]
         ALARMS.inc(len(unseen))
-        for kind, text in [*texts, ("run", f"interrupted: {reason}")]:
+        for kind, what in [*told, ("run", StateBecause(StateInterrupted(), reason))]:
             number += 1
             record.event(number)
             stamp = self._app.ros.now()
-            self._journal.put(Event(run_id=header.run_id, number=number, stamp=stamp, kind=kind, text=text))
+            self._journal.put(Event(run_id=header.run_id, number=number, stamp=stamp, kind=kind, text=to_line(what)))
         self._journal.put(_row(header, "interrupted", reason, self._app.ros.now()))
         record.interrupted()
         record.close()
@@ -83,9 +100,10 @@ class Interrupted:
     def _complete(self, past: Past, header: Header, over: Over) -> None:
         """The run had ended, but perhaps nobody was told before the power went: tell it, maybe once more."""
         stamp = Time(sec=int(past.last_time), nanosec=int(past.last_time % 1 * 1e9))
-        text = f"{over.outcome}: {over.reason}" if over.reason else over.outcome
+        why = wire.of(over.reason)
+        text = to_line(entered(over.outcome, why))
         self._journal.put(Event(run_id=header.run_id, number=over.event, stamp=stamp, kind="run", text=text))
-        self._journal.put(_row(header, over.outcome, over.reason, stamp))
+        self._journal.put(_row(header, over.outcome, why, stamp))
         self._records.open(header.run_id).remove()
 
     # what a person does about it
@@ -94,7 +112,7 @@ class Interrupted:
         """The run that is to be resumed now.
 
         Raises:
-            TaskError: NO_RUN.
+            TaskError: NotInterrupted.
         """
         with self._choosing:
             past, header = self._find(run_id)
@@ -110,7 +128,7 @@ class Interrupted:
         try:
             past, header = self._find(request.run_id)
         except TaskError as error:
-            response.error_code, response.error_msg = error.code, str(error)
+            response.error_code, response.error_msg = error.code, to_line(error.reason)
             return response
         response.task_id = header.task_id
         response.done = [_words(key) + ("" if succeeded else " (failed)") for key, succeeded in past.ended]
@@ -123,35 +141,36 @@ class Interrupted:
             with self._choosing:
                 self._give_up(*self._find(request.run_id))
         except TaskError as error:
-            response.error_code, response.error_msg = error.code, str(error)
+            response.error_code, response.error_msg = error.code, to_line(error.reason)
         return response
 
     def _give_up(self, past: Past, header: Header) -> None:
         stamp = self._app.ros.now()
-        event = Event(run_id=header.run_id, number=past.last_event + 1, stamp=stamp, kind="run", text="abandoned")
+        text = to_line(StateAbandoned())
+        event = Event(run_id=header.run_id, number=past.last_event + 1, stamp=stamp, kind="run", text=text)
         self._journal.put(event)
-        self._journal.put(_row(header, "abandoned", "given up by an operator after an interruption", stamp))
+        self._journal.put(_row(header, "abandoned", GivenUp(), stamp))
         self._records.open(header.run_id).remove()
 
     def _find(self, run_id: str) -> tuple[Past, Header]:
         past = self._records.find(run_id)
         if past is None or past.header is None or not past.closed or past.header.run_id in self._active:
-            known = ", ".join(p.header.run_id for p in self._records.past() if p.header and p.closed) or "none"
-            raise TaskError(f"no run '{run_id}' is interrupted (interrupted: {known})", "NO_RUN")
+            known = tuple(p.header.run_id for p in self._records.past() if p.header and p.closed)
+            raise TaskError(NotInterrupted(run_id, known), "NO_RUN")
         return past, past.header
 
 
-def _what_was_seen(machines: list[str], stops: list[StopReceipt]) -> tuple[str, list[str]]:
+def _what_was_seen(header: Header, stops: list[StopReceipt]) -> tuple[Reason, list[Reason]]:
     """Why the run is interrupted, with each machine's last receipt or the lack of one; and what to alarm of."""
     last = {receipt.machine: receipt for receipt in stops}
-    stood = [machine for machine in machines if machine in last and last[machine].confirmed]
-    unseen = [machine for machine in machines if machine not in stood]
-    parts = ["the scheduler was lost"]
-    parts += [f"seen to stand: {', '.join(stood)}"] if stood else []
-    parts += [f"not seen to stand: {', '.join(unseen)}"] if unseen else []
-    no_receipt = f"not seen to stand: no receipt of a stop came within {STOP_LIMIT:.0f} s"
-    alarms = [receipt_text(last[name]) if name in last else f"{name}: {no_receipt}" for name in unseen]
-    return "; ".join(parts) + ": `tms resume` or `tms abandon` it", alarms
+    stood = tuple(machine for machine in header.machines if machine in last and last[machine].confirmed)
+    unseen = tuple(machine for machine in header.machines if machine not in stood)
+    seen: list[Reason] = [SchedulerWasLost()]
+    seen += [SeenToStand(stood)] if stood else []
+    seen += [NotSeenStanding(unseen)] if unseen else []
+    none = NoReceipt(STOP_LIMIT)
+    alarms = [told_by(last[name]) if name in last else MachineUnconfirmed(name, none) for name in unseen]
+    return RunInterrupted(tuple(seen), header.run_id), alarms
 
 
 def _words(key: Key) -> str:
@@ -163,9 +182,9 @@ def _seconds(stamp: Time) -> float:
     return float(stamp.sec + stamp.nanosec * 1e-9)
 
 
-def _row(header: Header, state: str, reason: str, ended: Time) -> Run:
+def _row(header: Header, state: str, reason: Reason | None, ended: Time) -> Run:
     return Run(
-        run_id=header.run_id, task_id=header.task_id, description=header.description, state=state, reason=reason,
-        machines=header.machines, records=header.records, ended_at=ended,
+        run_id=header.run_id, task_id=header.task_id, description=header.description, state=state,
+        reason=to_line(reason), machines=header.machines, records=header.records, ended_at=ended,
         started_at=Time(sec=header.started[0], nanosec=header.started[1]),
     )  # fmt: skip

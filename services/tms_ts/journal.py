@@ -16,11 +16,14 @@ from tms_msg_db.msg import Event, Run
 from tms_msg_db.srv import WriteJournal
 
 from tms_reason.errors import DbError, RosError
+from tms_reason.reason import Foreign, Reason
+from tms_reason.wire import refusal
 from tms_ros.node import Ros
 from tms_ros.packing import pack, unpack
 from tms_runtime.group_commit import GroupCommit
 from tms_runtime.log import Logger
 from tms_runtime.spool import Spool
+from tms_ts.reasons import DiskFull, EntryTooLarge, HistoryInMemory, HistoryLost, JournalFull
 
 BATCH = 200
 RETRY = 0.5  # s
@@ -55,28 +58,29 @@ class Journal:
         kind = b"R" if isinstance(entry, Run) else b"E"
         data = pack(entry)
         if len(data) > LARGEST:
-            self._lost(entry, f"an entry of {len(data)} bytes, allowed are {LARGEST}")
+            self._lost(entry, EntryTooLarge(len(data), LARGEST))
             return
         event = "" if isinstance(entry, Run) else entry.kind
         urgent = isinstance(entry, Run) or event == "tree"  # somebody looks at a run that begins or ends
         vital = urgent or event in VITAL
         if self._spool.full():
-            self._lost(entry, f"{self._spool.waiting()} bytes wait already for the database")
+            self._lost(entry, JournalFull(self._spool.waiting()))
         elif not self._disk.put(self._spool, kind + base64.b64encode(data), vital=vital, urgent=urgent):
-            self._lost(entry, self._disk.trouble() or "too much waits for the disk")
+            trouble = self._disk.trouble()
+            self._lost(entry, Foreign(trouble) if trouble else DiskFull())
         elif urgent:
             self._disk.after(self._urgent.set)
 
-    def alarms(self) -> list[str]:
+    def alarms(self) -> list[Reason]:
         """What went wrong with the history since the last call."""
         trouble = self._disk.trouble()
         told, self._trouble = self._trouble, trouble
-        texts = [f"the history is kept in memory only: {trouble}"] if trouble and not told else []
+        found: list[Reason] = [HistoryInMemory(Foreign(trouble))] if trouble and not told else []
         with self._losing:
             lost, self._untold = self._untold, {}
         for run, (count, first, last) in lost.items():
-            texts.append(f"the history of run {run} has lost {count} entries, events {first} to {last}")
-        return texts
+            found.append(HistoryLost(run, count, first, last))
+        return found
 
     def close(self) -> None:
         """Give the last entries a moment to be delivered; the rest waits on disk, which takes nothing more before."""
@@ -100,7 +104,7 @@ class Journal:
                 continue
             if not self._passes(problem):
                 if len(lines) == 1:
-                    self._lost(self._entry(lines[0]), str(problem))
+                    self._lost(self._entry(lines[0]), problem.reason)
                     self._spool.done(end)
                 most = max(1, len(lines) // 2)  # one of them is refused for good: which one?
             self._closing.wait(RETRY)  # also then: a database that is just ending may refuse anything
@@ -117,11 +121,11 @@ class Journal:
         """Whether the same entries can be written later; told once."""
         passes = isinstance(problem, RosError) or problem.code in MAY_PASS
         if passes and not self._away:
-            self._log.warning("journal_waits", reason=str(problem))
+            self._log.warning("journal_waits", reason=problem.reason)
         self._away = passes
         return passes
 
-    def _lost(self, entry: Run | Event | None, reason: str) -> None:
+    def _lost(self, entry: Run | Event | None, reason: Reason) -> None:
         LOST.inc()
         run, number = (entry.run_id, getattr(entry, "number", 0)) if entry is not None else ("", 0)
         self._log.error("journal_lost", run=run, number=number, reason=reason)
@@ -142,7 +146,9 @@ class Journal:
             answer = self._ros.call(WriteJournal, "/tms/db/write_journal", request)
         except RosError as error:
             return error
-        return DbError(answer.error_msg, answer.error_code) if answer.error_code else None
+        if not answer.error_code:
+            return None
+        return DbError(refusal(answer.error_code, answer.error_msg), answer.error_code)
 
     def _entry(self, line: bytes) -> Run | Event | None:
         try:

@@ -12,15 +12,43 @@ from tms_msg_rc.srv import StopMachine
 from tms_msg_ts.action import LeafNodeBase
 
 from tms_machine.border import STOP_PROVEN
-from tms_machine.reasons import NoPermit
+from tms_machine.reasons import MachineLatched, NoDatabase, NoJointState, NoPermit, NoReason, Rejected, StopUnconfirmed
+from tms_machine.receipts import stood_after
+from tms_reason import wire
 from tms_reason.errors import RosError
+from tms_reason.reason import Reason
+from tms_reason.wire import to_line
 from tms_ros.fence import LEAVES, Owner
 from tms_ros.goals import Outcome
 from tms_ros.node import Ros
-from tms_ros.reasons import ProcessLost
+from tms_ros.reasons import LostMeanwhile, NoAnswer, NoServer, ProcessLost
 from tms_ts.gateways import Gateways
 from tms_ts.hosts import Hosts
 from tms_ts.past import Key
+from tms_ts.reasons import (
+    FailedBefore,
+    ForTooLong,
+    GoalAccepted,
+    GoalCancelled,
+    GoalGaveUp,
+    GoalLost,
+    GoalRefused,
+    GoalSent,
+    GoalSucceeded,
+    LastGoalOpen,
+    LostTimes,
+    MachineStood,
+    MachineStoodBy,
+    MachineStopping,
+    MachineUnconfirmed,
+    NotRepeatedDone,
+    NotRepeatedFailed,
+    ProcessAway,
+    ProcessEnded,
+    SentAgain,
+    SentAgainSoon,
+    SentAgainTimes,
+)
 from tms_ts.record import Record
 from tms_ts.replay import Replay
 from tms_ts.sent_goal import ACCEPT_LIMIT, LeafCall, LeafPeer, SentGoal
@@ -31,21 +59,16 @@ STOP_LIMIT = STOP_PROVEN + 3.0  # s for a gateway to answer a stop
 GATEWAY_LIMIT = 3.0  # s for a gateway that was lost to be back
 DATABASE_LIMIT = 15.0  # s that a leaf waits for a database that is away
 ASK_AGAIN = 0.5  # s; also from a failure to the same goal: a loop around a leaf must not flood the history
-AWAY = ("NO_DATABASE", "STORE_DOWN")  # how a subtask begins its refusal when its record cannot be read now
-UNREACHED = (
-    "NO_ANSWER",
-    "NO_SERVER",
-    "REJECTED",
-    "NO_JOINT_STATE",
-    NoPermit.code,
-)  # what a goal ends with while a process comes back
+AWAY = (NoDatabase.code, "STORE_DOWN")  # why a subtask refuses a goal when its record cannot be read now
+# What a goal ends with while a process comes back.
+UNREACHED = (NoAnswer, NoServer, Rejected, NoJointState, NoPermit)
 
 HANDOVER = Histogram(
     "tms_ts_handover_seconds", "From the result of one leaf of a run to the acceptance of the next goal",
     buckets=(0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.5, 1, 5),
 )  # fmt: skip
 
-Tell = Callable[[str, str, str], None]  # kind, node path, text: for the journal
+Tell = Callable[[str, str, Reason], None]  # kind, node path, what: for the journal
 
 
 @dataclass(frozen=True)
@@ -72,7 +95,7 @@ class Machines:
         self._handed_over: float | None = None  # monotonic time of the last result that no acceptance has followed
         self._told: set[tuple[str, int, int]] = set()  # receipts in the journal
         self._failed: dict[Key, float] = {}  # monotonic time of each goal's last failure
-        self._given_up: set[str] = set()  # processes in the journal that supervisord does not start any more
+        self._given_up: set[Reason] = set()  # processes in the journal that supervisord does not start any more
         self._open: list[SentGoal] = []
         self._stopping: set[str] = set()  # machines that are being stopped after a lost goal
 
@@ -85,13 +108,13 @@ class Machines:
         goal = SentGoal(machine, subtask, record, node)
         before = self._replay.take(goal.key)
         if before is not None:
-            goal.state, goal.reason = (GoalState.SUCCEEDED, "") if before else (GoalState.FAILED, "failed before")
-            self._tell("goal", node, f"{goal.name} is not repeated: {goal.state.value} before the interruption")
+            goal.state, goal.reason = (GoalState.SUCCEEDED, None) if before else (GoalState.FAILED, FailedBefore())
+            self._tell("goal", node, NotRepeatedDone(goal.name) if before else NotRepeatedFailed(goal.name))
             return goal
         goal.peer = self.peer(machine, subtask)
         if goal.key in self._failed:
             goal.not_before = self._failed[goal.key] + ASK_AGAIN
-            goal.reason = "it failed just now and is sent again soon"
+            goal.reason = SentAgainSoon()
         self._open.append(goal)
         self._try_send(goal)
         return goal
@@ -115,12 +138,13 @@ class Machines:
         """Names of the goals that have not ended."""
         return [goal.name for goal in self._open]
 
-    def stop(self, machine: str, cause: str) -> StopReceipt:
+    def stop(self, machine: str, cause: Reason) -> StopReceipt:
         """Have the gateway stop the machine and watch it stand. Blocks; never raises.
 
         A gateway that is lost meanwhile has a successor, which is asked again.
         """
-        request, deadline = StopMachine.Request(cause=cause, orderly=True), time.monotonic() + STOP_LIMIT
+        line, deadline = to_line(cause), time.monotonic() + STOP_LIMIT
+        request = StopMachine.Request(cause=line, orderly=True)
         while True:
             self._gateways.wait_alive(machine, GATEWAY_LIMIT)
             lost = self._gateways.loss(machine)
@@ -129,11 +153,11 @@ class Machines:
             except RosError as error:
                 if isinstance(error.reason, ProcessLost) and time.monotonic() < deadline:
                     continue
-                stamp, why = self._ros.now(), str(error)
-                return StopReceipt(machine=machine, confirmed=False, cause=cause, detail=why, stamp=stamp)
+                stamp, why = self._ros.now(), to_line(error.reason)
+                return StopReceipt(machine=machine, confirmed=False, cause=line, detail=why, stamp=stamp)
             return answer.receipt
 
-    def stop_all(self, machines: Sequence[str], cause: str) -> list[StopReceipt]:
+    def stop_all(self, machines: Sequence[str], cause: Reason) -> list[StopReceipt]:
         """`stop` for several machines at the same time."""
         if not machines:
             return []
@@ -145,54 +169,54 @@ class Machines:
         key = (receipt.machine, receipt.stamp.sec, receipt.stamp.nanosec)
         if key not in self._told:
             self._told.add(key)
-            self._tell("stop", "", receipt_text(receipt))
+            self._tell("stop", "", told_by(receipt))
 
     def _try_send(self, goal: SentGoal) -> None:
         assert goal.peer is not None
         if goal.cancelled:  # while it waited to be sent again
-            self._end(goal, GoalState.CANCELLED, f"{goal.name} was cancelled")
+            self._end(goal, GoalState.CANCELLED, GoalCancelled(goal.name))
             return
         if time.monotonic() < goal.not_before:
             return
         goal.reason = self._obstacle(goal)
-        if goal.reason:
+        if goal.reason is not None:
             gone = self._gone_for_good(goal)
-            if gone:
+            if gone is not None:
                 self._end(goal, GoalState.FAILED, gone)
             elif time.monotonic() - goal.begun > SERVER_LIMIT:
-                self._end(goal, GoalState.FAILED, f"{goal.reason}, for {SERVER_LIMIT:.0f} s")
+                self._end(goal, GoalState.FAILED, ForTooLong(goal.reason, SERVER_LIMIT))
             return
         goal.pid = self._hosts.pid(goal.machine, goal.subtask)
         request = LeafNodeBase.Goal(model_name=goal.machine, record_name=goal.record)
         goal.begun = time.monotonic()
-        self._tell("goal", goal.node, f"sent to {goal.name}, record {goal.record}")
+        self._tell("goal", goal.node, GoalSent(goal.name, goal.record))
         self._leaves = self._leaves % LEAVES + 1
         goal_id = Owner(self._number, self._leaves).goal_id()
         self._record.sent(goal.key)
         goal.call = goal.peer.send(request, goal_id=goal_id, on_change=lambda call: self._changed(goal, call))
 
-    def _obstacle(self, goal: SentGoal) -> str:
+    def _obstacle(self, goal: SentGoal) -> Reason | None:
         """Why the goal cannot leave now."""
         if goal.machine in self._stopping:
-            return f"{goal.machine} is being stopped"
+            return MachineStopping(goal.machine)
         before = [other for other in self._open if other.cancelled and other.machine == goal.machine]
         if any(other.call is not None and other.call.outcome is None for other in before):
-            return f"{goal.machine} has not ended its last goal yet"
+            return LastGoalOpen(goal.machine)
         for process in ("rc", "rp", goal.subtask):
             trouble = self._hosts.trouble(goal.machine, process)
             if trouble and (goal.losses or process == goal.subtask):
                 return trouble
         if goal.peer is not None and not goal.peer.ready():
-            return f"{goal.name} is not there"
+            return ProcessAway(goal.name)
         return self._gateways.obstacle(goal.machine)
 
-    def _gone_for_good(self, goal: SentGoal) -> str:
+    def _gone_for_good(self, goal: SentGoal) -> Reason | None:
         """A process that supervisord has given up, or a machine that only a person can arm again."""
         latch = self._gateways.latch(goal.machine)
-        if latch:
-            return f"{goal.machine} is latched ({latch}): re-arm it with `tms rearm {goal.machine}`"
-        fatal = next(filter(None, (self._hosts.fatal(goal.machine, p) for p in ("rc", "rp", goal.subtask))), "")
-        if fatal and fatal not in self._given_up:
+        if latch is not None:
+            return MachineLatched(goal.machine, latch)
+        fatal = next(filter(None, (self._hosts.fatal(goal.machine, p) for p in ("rc", "rp", goal.subtask))), None)
+        if fatal is not None and fatal not in self._given_up:
             self._given_up.add(fatal)
             self._tell("alarm", goal.node, fatal)
         return fatal
@@ -208,37 +232,39 @@ class Machines:
             if self._handed_over is not None:
                 HANDOVER.observe(time.monotonic() - self._handed_over)
                 self._handed_over = None
-            self._tell("goal", goal.node, f"{goal.name} accepted")
+            self._tell("goal", goal.node, GoalAccepted(goal.name))
         self._wake()
 
     def _ended(self, goal: SentGoal, call: LeafCall) -> None:
         if call.outcome is Outcome.SUCCEEDED:
-            self._end(goal, GoalState.SUCCEEDED, "")
+            self._end(goal, GoalState.SUCCEEDED, None)
             self._handed_over = time.monotonic()
         elif call.outcome is Outcome.CANCELED:
-            self._end(goal, GoalState.CANCELLED, f"{goal.name} was cancelled")
-        elif any(word in goal.feedback for word in AWAY) and self._may_wait(goal):
-            goal.reason, goal.state = goal.feedback, GoalState.SENDING
-            goal.call, goal.begun, goal.not_before = None, time.monotonic(), time.monotonic() + ASK_AGAIN
-        elif self._may_ask_again(goal):
-            goal.reason, goal.state = goal.feedback, GoalState.SENDING
-            goal.call, goal.begun, goal.not_before = None, time.monotonic(), time.monotonic() + ASK_AGAIN
-        elif ProcessLost.code in goal.feedback:
-            self._lost(goal, f"{goal.name}: {goal.feedback}")
+            self._end(goal, GoalState.CANCELLED, GoalCancelled(goal.name))
         else:
-            word = "refused the goal" if call.outcome is Outcome.REJECTED else "gave up"
-            self._end(goal, GoalState.FAILED, f"{goal.name} {word}: {goal.feedback or 'no reason given'}")
+            self._failed_with(goal, call, goal.feedback or NoReason())
 
-    def _may_ask_again(self, goal: SentGoal) -> bool:
+    def _failed_with(self, goal: SentGoal, call: LeafCall, why: Reason) -> None:
+        if (why.code in AWAY and self._may_wait(goal)) or self._may_ask_again(goal, why):
+            goal.reason, goal.state = why, GoalState.SENDING
+            goal.call, goal.begun, goal.not_before = None, time.monotonic(), time.monotonic() + ASK_AGAIN
+        elif why.find(ProcessLost) is not None:
+            self._lost(goal, GoalLost(goal.name, why))
+        elif call.outcome is Outcome.REJECTED:
+            self._end(goal, GoalState.FAILED, GoalRefused(goal.name, why))
+        else:
+            self._end(goal, GoalState.FAILED, GoalGaveUp(goal.name, why))
+
+    def _may_ask_again(self, goal: SentGoal, why: Reason) -> bool:
         """Soon after a loss the processes below may not have found each other yet; that is no further loss."""
-        return goal.recovers() and not goal.cancelled and any(word in goal.feedback for word in UNREACHED)
+        return goal.recovers() and not goal.cancelled and any(why.find(kind) is not None for kind in UNREACHED)
 
     def _may_wait(self, goal: SentGoal) -> bool:
         """Whether a subtask that cannot read its record is asked again: the database may be coming back."""
         goal.waits_since = goal.waits_since or time.monotonic()
         return not goal.cancelled and time.monotonic() - goal.waits_since < DATABASE_LIMIT
 
-    def _end(self, goal: SentGoal, state: GoalState, reason: str) -> None:
+    def _end(self, goal: SentGoal, state: GoalState, reason: Reason | None) -> None:
         if state is not GoalState.SUCCEEDED and not goal.cancelled:
             self._failed[goal.key] = time.monotonic()
         if state is not GoalState.CANCELLED and not goal.cancelled:
@@ -246,12 +272,12 @@ class Machines:
                 self._record.gone(key, left)
             self._record.done(goal.key, state is GoalState.SUCCEEDED)
         goal.reason, goal.state = reason, state  # last: the tree may see it now and ask for the next goal
-        self._tell("goal", goal.node, f"{goal.name} {state.value}" + (f": {reason}" if reason else ""))
+        self._tell("goal", goal.node, reason or GoalSucceeded(goal.name))
 
     def _look_for_loss(self, goal: SentGoal, call: LeafCall) -> None:
         """A server that is gone never answers: end the goal, and stop what it may have left moving."""
         why = self._loss(goal)
-        if not why:
+        if why is None:
             return
         final = goal.state.final
         unheard = goal.unheard()
@@ -264,7 +290,7 @@ class Machines:
         if not final:
             self._lost(goal, why, counts=not (unheard and goal.recovers()))
 
-    def _lost(self, goal: SentGoal, why: str, *, counts: bool = True) -> None:
+    def _lost(self, goal: SentGoal, why: Reason, *, counts: bool = True) -> None:
         """A process ended during a goal: have the machine seen to stand, then send the goal again, a few times.
 
         A server that does not answer soon after a loss had not found us yet: that is no further loss.
@@ -276,39 +302,41 @@ class Machines:
         if goal.cancelled:
             self._end(goal, GoalState.CANCELLED, why)
         elif goal.losses > self._retries:
-            self._end(goal, GoalState.FAILED, f"{why} (for the {goal.losses}. time)")
+            self._end(goal, GoalState.FAILED, LostTimes(why, goal.losses))
         else:
             goal.call, goal.state, goal.begun = None, GoalState.SENDING, time.monotonic()
             goal.not_before = goal.begun + ASK_AGAIN * goal.losses
-            goal.reason = f"{why}; sent again when the process is back"
-            self._tell("loss", goal.node, f"{why}; sent again when the process is back ({goal.losses}/{self._retries})")
+            goal.reason = SentAgain(why)
+            self._tell("loss", goal.node, SentAgainTimes(why, goal.losses, self._retries))
         threading.Thread(target=self._stop_after_loss, args=(goal.machine, why), daemon=True).start()
 
-    def _loss(self, goal: SentGoal) -> str:
+    def _loss(self, goal: SentGoal) -> Reason | None:
         if goal.unheard():
-            return f"{goal.name} did not answer the goal within {ACCEPT_LIMIT:.0f} s"
+            return NoAnswer(goal.name, goal.action, ACCEPT_LIMIT)
         if self._replaced(goal):
-            return f"process {goal.machine}:{goal.subtask} ended during its goal, see `tms logs {goal.subtask}`"
+            return ProcessEnded(goal.name)
         gone = goal.peer is not None and not goal.peer.ready()
-        return f"{goal.name} went away during its goal" if gone else ""
+        return LostMeanwhile(goal.name, goal.action) if gone else None
 
     def _replaced(self, goal: SentGoal) -> bool:
         """Whether the subtask is another process now than when the goal was sent."""
         now = self._hosts.pid(goal.machine, goal.subtask)
         return goal.pid is not None and now is not None and now != goal.pid
 
-    def _stop_after_loss(self, machine: str, cause: str) -> None:
+    def _stop_after_loss(self, machine: str, cause: Reason) -> None:
         receipt = self.stop(machine, cause)
         self.receipt(receipt)
         self._stopping.discard(machine)
         self._wake()
 
 
-def receipt_text(receipt: StopReceipt) -> str:
-    """A receipt in one line."""
-    if receipt.confirmed:
-        way = f"{receipt.travel_rad:.3f} rad ({receipt.travel_joint})" if receipt.travel_joint else "0 rad"
-        how = f", {receipt.evidence}" if receipt.evidence else ""
-        what = f"{receipt.seconds:.2f} s, {way} and {receipt.travel_m:.2f} m{how}"
-        return f"{receipt.machine} stood after {what} ({receipt.cause})"
-    return f"{receipt.machine}: STOP UNCONFIRMED: {receipt.detail} ({receipt.cause})"
+def told_by(receipt: StopReceipt) -> Reason:
+    """A receipt as a reason."""
+    cause, evidence = wire.of(receipt.cause) or NoReason(), wire.of(receipt.evidence)
+    if not receipt.confirmed:
+        why = StopUnconfirmed(wire.of(receipt.detail) or NoReason(), cause)
+        return MachineUnconfirmed(receipt.machine, why)
+    stood = stood_after(receipt, cause)
+    return (
+        MachineStood(receipt.machine, stood) if evidence is None else MachineStoodBy(receipt.machine, stood, evidence)
+    )

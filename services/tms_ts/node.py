@@ -15,10 +15,16 @@ from tms_msg_ts.action import ExecuteTask
 from tms_msg_ts.msg import RunStates
 from tms_msg_ts.srv import AnswerQuestion, CancelRun, CheckTask, ResumePlan
 
-from tms_reason.errors import NOT_STORED, TaskError, TmsError
+from tms_machine.reasons import MachineLatched, WaitingFor
+from tms_reason import wire
+from tms_reason.errors import TaskError, TmsError
+from tms_reason.reason import Reason
+from tms_reason.wire import refusal, to_line
 from tms_ros.goals import Ended, Outcome
+from tms_ros.reasons import Internal, NoServer
 from tms_runtime.app import App
 from tms_runtime.group_commit import GroupCommit
+from tms_runtime.reasons import NotStored
 from tms_ts import bt
 from tms_ts.flags import Flags
 from tms_ts.gateways import Gateways, Holder
@@ -29,11 +35,13 @@ from tms_ts.journal import Journal
 from tms_ts.machines import Identity, Machines
 from tms_ts.numbers import Numbers, no_disk
 from tms_ts.past import Header, Past
-from tms_ts.preflight import Findings, machines_of, preflight, processes_of, records_of
+from tms_ts.preflight import Findings, at, machines_of, preflight, processes_of, records_of
 from tms_ts.questions import Clicks, Questions
+from tms_ts.reasons import MachineBusy, NoQuestion, NoRun, Preflight, PreflightMore, Resumed, SchedulerStopped
 from tms_ts.record import Records
 from tms_ts.replay import Replay
 from tms_ts.run import Facts, Run, TaskGoal
+from tms_ts.run_states import STATES as RUN_STATES
 from tms_ts.shared_records import SharedRecords
 from tms_ts.surroundings import Around, Sensing
 from tms_ts.world import World
@@ -90,9 +98,9 @@ class Scheduler:
         self._publisher = app.ros.publisher(RunStates, "/tms/runs", depth=1, latched=True)
         threading.Thread(target=self._tell, name="runs", daemon=True).start()
 
-    def unready(self) -> str | None:
+    def unready(self) -> Reason | None:
         """The scheduler works only with the database."""
-        return None if self._ros.has_service(GetTask, "/tms/db/get_task") else "tms:db is not there"
+        return None if self._ros.has_service(GetTask, "/tms/db/get_task") else WaitingFor("tms:db")
 
     def states(self) -> RunStates:
         """Active runs and open questions."""
@@ -111,18 +119,18 @@ class Scheduler:
     def answer(self, request: AnswerQuestion.Request, response: AnswerQuestion.Response) -> AnswerQuestion.Response:
         """Take an operator's answer to a WaitForClick node."""
         if not self._questions.answer(request.id, request.yes, request.by or "an operator"):
-            response.error_code = "NO_QUESTION"
-            response.error_msg = f"nobody asks '{request.id}' any more: it was answered, timed out or its run has ended"
+            gone = NoQuestion(request.id)
+            response.error_code, response.error_msg = gone.code, to_line(gone)
         return response
 
     def measure(self) -> None:
         """The metrics of the active runs, and whether their history is in danger."""
         with self._lock:
             runs = list(self._runs.values())
-        for text in self._journal.alarms():
-            self._app.log.error("alarm", reason=text)
+        for alarm in self._journal.alarms():
+            self._app.log.error("alarm", reason=alarm)
             for run in runs:
-                run.tell("alarm", "", text)
+                run.tell("alarm", "", alarm)
         for state in STATES:
             ACTIVE.labels(state).set(sum(run.facts.state == state for run in runs))
         counted = Counter(state for run in runs for state in run.states)
@@ -134,7 +142,7 @@ class Scheduler:
         with self._lock:
             runs = list(self._runs.values())
         for run in runs:
-            run.cancel("interrupted", "the scheduler was stopped")
+            run.cancel("interrupted", SchedulerStopped())
         deadline = time.monotonic() + 1.0
         for run in runs:
             run.ended.wait(max(0.0, deadline - time.monotonic()))
@@ -146,10 +154,10 @@ class Scheduler:
         """Ask a run to stop; its end comes with its result."""
         with self._lock:
             run = self._runs.get(request.run_id)
-            active = ", ".join(self._runs) or "none"
+            active = tuple(self._runs)
         if run is None:
-            response.error_code = "NO_RUN"
-            response.error_msg = f"no run '{request.run_id}' is active (active: {active}); `tms runs` lists all"
+            none = NoRun(request.run_id, active)
+            response.error_code, response.error_msg = none.code, to_line(none)
         else:
             run.cancel()
         return response
@@ -161,12 +169,13 @@ class Scheduler:
             report = bt.check(xml)
             if report.ok:
                 found = self._preflight(bt.load(xml, world=None), present=True)
-                response.errors, response.warnings = found.errors, found.warnings
+                response.errors = list(map(to_line, found.errors))
+                response.warnings = list(map(to_line, found.warnings))
             else:
-                response.errors = [str(error) for error in report.errors]
-                response.warnings = [f"line {line}: {text}" for line, text in report.warnings]
+                response.errors = [to_line(error.reason) for error in report.errors]
+                response.warnings = [to_line(at(line, what)) for line, what in report.warnings]
         except TmsError as error:
-            response.error_code, response.error_msg = error.code, str(error)
+            response.error_code, response.error_msg = error.code, to_line(error.reason)
         return response
 
     # a run
@@ -175,7 +184,8 @@ class Scheduler:
         """One ExecuteTask goal, from the database to the machines' stand-still; its end is stored, then told."""
         how, result = self._execute_any(goal)
         if not self._disk.wait(END_STORED):
-            result.error_msg = f"{result.error_msg} {NOT_STORED}".strip()
+            end = wire.of(result.error_msg) or RUN_STATES[result.outcome]
+            result.error_msg = to_line(NotStored(end))
         return how, result
 
     def _execute_any(self, goal: TaskGoal) -> Ended[ExecuteTask.Result]:
@@ -184,7 +194,7 @@ class Scheduler:
         try:
             past, header = self.interrupted.begin(goal.request.resume)
         except TaskError as error:
-            return _refused(goal.request.resume, error.code, str(error))
+            return _refused(goal.request.resume, error)
         try:
             return self._run(goal, past)
         finally:
@@ -194,7 +204,7 @@ class Scheduler:
         try:
             facts = self._facts(goal, past)
         except TaskError as error:
-            return _refused(goal.request.resume, error.code, str(error))
+            return _refused(goal.request.resume, error)
         bind_contextvars(run=facts.run_id)
         run = Run(
             self._ros, self._journal, self._app.log, goal, facts, self._records.open(facts.run_id), self._news.set
@@ -209,11 +219,11 @@ class Scheduler:
         try:
             return self._execute(run, goal, past)
         except TmsError as error:
-            run.refuse(error.code, str(error))
-            return _refused(facts.run_id, error.code, str(error))
+            run.refuse(error.reason)
+            return _refused(facts.run_id, error)
         finally:
             if not run.over:  # a bug; what failed is in the log
-                run.refuse("INTERNAL", "the scheduler failed, this is a bug: see `tms logs tms:ts`")
+                run.refuse(Internal(self._app.process.full))
             if run.flags is not None:
                 run.flags.close()
             self._gateways.drop(self._held_by(facts.run_id))
@@ -255,7 +265,7 @@ class Scheduler:
         started = (facts.started.sec, facts.started.nanosec)
         known = (facts.run_id, facts.number, facts.task_id, facts.description, facts.machines, xml, started)
         run.record.begin(Header(*known, facts.records))
-        run.enter("preparing", "resumed" if past is not None else "")
+        run.enter("preparing", Resumed() if past is not None else None)
         run.tell_tree(tree)
         self._refuse_errors(run, self._preflight(tree), goal.request.ignore_warnings)
         self._hold(run)
@@ -272,11 +282,11 @@ class Scheduler:
         return _ended(facts, outcome)
 
     def _refuse_errors(self, run: Run, found: Findings, ignore_warnings: bool) -> None:
-        for text in found.warnings:
-            run.tell("warning", "", text)
+        for warning in found.warnings:
+            run.tell("warning", "", warning)
         if found.errors:
-            more = f" (and {len(found.errors) - 1} more: `tms task check`)" if len(found.errors) > 1 else ""
-            raise TaskError(found.errors[0] + more, "PREFLIGHT")
+            first, more = found.errors[0], len(found.errors) - 1
+            raise TaskError(PreflightMore(first, more) if more else Preflight(first), Preflight.code)
 
     def _hold(self, run: Run) -> None:
         """One machine in one run at a time."""
@@ -284,17 +294,15 @@ class Scheduler:
             for machine in run.facts.machines:
                 holder = self._holders.get(machine)
                 if holder is not None:
-                    raise TaskError(f"{machine} is in run {holder}: wait or `tms cancel {holder}`", "MACHINE_BUSY")
+                    raise TaskError(MachineBusy(machine, holder))
             self._refuse_latched(run.facts.machines)
             self._holders.update(dict.fromkeys(run.facts.machines, run.facts.run_id))
 
     def _refuse_latched(self, machines: list[str]) -> None:
         for machine in machines:
-            latch = self._gateways.latch(machine)
-            if latch:
-                raise TaskError(f"{machine} is latched ({latch}): re-arm it with `tms rearm {machine}`", "NOT_ARMED")
-            if who := self._gateways.by_hand(machine):
-                raise TaskError(f"{who} drives {machine} by hand: `tms give-back {machine}` first", "TAKEN")
+            found = self._gateways.held_back(machine)
+            if found is not None:
+                raise TaskError(found, "NOT_ARMED" if isinstance(found, MachineLatched) else found.code)
 
     def _held_by(self, run_id: str) -> list[str]:
         with self._lock:
@@ -304,7 +312,7 @@ class Scheduler:
         """Start the subtasks that the tree names and wait until their servers are there."""
         self._hosts.wait_known(3.0)
         problem = self._hosts.start(processes, run.cancelled.is_set)
-        if problem and not run.cancelled.is_set():
+        if problem is not None and not run.cancelled.is_set():
             raise TaskError(problem, "NO_PROCESS")
         waiting = {name: machines.peer(*name.split(":", 1)) for name in processes}
         limit = SERVERS_LIMIT + SERVER_START * len(waiting)
@@ -313,7 +321,7 @@ class Scheduler:
             waiting = {name: peer for name, peer in waiting.items() if not peer.ready()}
             if waiting and time.monotonic() > deadline:
                 name = next(iter(waiting))
-                raise TaskError(f"{name} is not there after {limit:.0f} s: see `tms logs {name}`", "NO_SERVER")
+                raise TaskError(NoServer(name, waiting[name].name, limit))
             run.wake.wait(0.02)
 
     # the database
@@ -321,7 +329,7 @@ class Scheduler:
     def _task(self, task_id: int) -> Task:
         answer = self._ros.call(GetTask, "/tms/db/get_task", GetTask.Request(task_id=task_id), DB_LIMIT)
         if answer.error_code:
-            raise TaskError(answer.error_msg, answer.error_code)
+            raise TaskError(refusal(answer.error_code, answer.error_msg), answer.error_code)
         return answer.task
 
     def _preflight(self, tree: bt.Tree, present: bool = False) -> Findings:
@@ -329,10 +337,10 @@ class Scheduler:
         problem = self._problem if present else _no_problem
         return preflight(tree, self._app.site, Around(self._app, self._sensing, problem, self._written))
 
-    def _problem(self, machine: str) -> str:
+    def _problem(self, machine: str) -> Reason | None:
         with self._lock:
             holder = self._holders.get(machine)
-        return f"{machine} is in run {holder}" if holder is not None else self._gateways.obstacle(machine)
+        return MachineBusy(machine, holder) if holder is not None else self._gateways.obstacle(machine)
 
     def _written(self, record: str, field: str) -> bool:
         """Whether an active run writes a shared value."""
@@ -340,8 +348,8 @@ class Scheduler:
             return any((record, field) in run.facts.writes for run in self._runs.values())
 
 
-def _no_problem(_machine: str) -> str:
-    return ""
+def _no_problem(_machine: str) -> None:
+    return None
 
 
 def _ended(facts: Facts, outcome: str) -> Ended[ExecuteTask.Result]:
@@ -352,11 +360,13 @@ def _ended(facts: Facts, outcome: str) -> Ended[ExecuteTask.Result]:
         "stop_unconfirmed": "STOP_UNCONFIRMED",
         "interrupted": "INTERRUPTED",
     }
-    result = ExecuteTask.Result(run_id=facts.run_id, outcome=outcome, error_code=codes[outcome], error_msg=facts.reason)
+    line = to_line(facts.reason)
+    result = ExecuteTask.Result(run_id=facts.run_id, outcome=outcome, error_code=codes[outcome], error_msg=line)
     how = {"success": Outcome.SUCCEEDED, "cancelled": Outcome.CANCELED}
     return how.get(outcome, Outcome.ABORTED), result
 
 
-def _refused(run_id: str, code: str, text: str) -> Ended[ExecuteTask.Result]:
-    result = ExecuteTask.Result(run_id=run_id, outcome="refused", error_code=code, error_msg=text)
+def _refused(run_id: str, error: TmsError) -> Ended[ExecuteTask.Result]:
+    line = to_line(error.reason)
+    result = ExecuteTask.Result(run_id=run_id, outcome="refused", error_code=error.code, error_msg=line)
     return Outcome.ABORTED, result

@@ -7,8 +7,10 @@ from pathlib import Path
 import structlog
 
 from tms_reason.errors import TaskError
+from tms_reason.reason import Foreign
 from tms_runtime import durable
 from tms_runtime.group_commit import GroupCommit
+from tms_ts.reasons import DiskSlow, NoDisk
 
 LIMIT = 5.0  # s for a number to be on the disk
 log = structlog.stdlib.get_logger(__name__)
@@ -32,7 +34,7 @@ class Numbers:
         other's.
 
         Raises:
-            TaskError: NO_DISK.
+            TaskError: NoDisk.
         """
         with self._giving:
             self._last = number = max(self._last + 1, time.time_ns() // 1_000_000)
@@ -65,5 +67,5 @@ class Numbers:
 
 def no_disk(disk: GroupCommit) -> TaskError:
     """Why no run may begin."""
-    why = disk.trouble() or "it is too slow"
-    return TaskError(f"this PC's disk does not take what must be kept of a run ({why}): free some space", "NO_DISK")
+    trouble = disk.trouble()
+    return TaskError(NoDisk(Foreign(trouble) if trouble else DiskSlow()))

@@ -8,10 +8,12 @@ from dataclasses import dataclass
 from builtin_interfaces.msg import Time
 from tms_msg_ts.msg import Question
 
+from tms_reason.reason import Foreign, Reason
 from tms_ros.node import Ros
 from tms_ts.flags import Answer
+from tms_ts.reasons import AnsweredNo, AnsweredYes, NotAnswered
 
-Tell = Callable[[str, str, str], None]  # kind, node, text
+Tell = Callable[[str, str, Reason], None]  # kind, node, what
 
 
 @dataclass(slots=True)
@@ -48,7 +50,7 @@ class Questions:
         answer: Answer[bool] = Answer()
         with self._lock:
             self._open[name] = Asked(message, answer, clicks)
-        clicks.tell("question", node, text or title)
+        clicks.tell("question", node, Foreign(text or title))
         self._changed()
         return answer
 
@@ -58,8 +60,8 @@ class Questions:
             asked = self._open.pop(name, None)
         if asked is None:
             return False
-        word = "yes" if yes else "no"
-        asked.clicks.tell("answer", asked.message.node, f"{word}, by {by}")
+        what = AnsweredYes(by) if yes else AnsweredNo(by)
+        asked.clicks.tell("answer", asked.message.node, what)
         asked.answer.settle(yes)
         asked.clicks.wake()
         self._changed()
@@ -70,7 +72,7 @@ class Questions:
             gone = [name for name, asked in self._open.items() if asked.answer is answer]
             for name in gone:
                 asked = self._open.pop(name)
-                asked.clicks.tell("answer", asked.message.node, "none: the question was withdrawn or timed out")
+                asked.clicks.tell("answer", asked.message.node, NotAnswered())
         if gone:
             self._changed()
 

@@ -16,7 +16,8 @@ from tms_msg_ts.msg import NodeStatus, RunState
 from tms_machine.border import STOP_PROVEN
 from tms_machine.reasons import SoftwareStop
 from tms_machine.values import to_parameters
-from tms_reason import wire
+from tms_reason.reason import Reason, Several
+from tms_reason.wire import to_line
 from tms_ros.node import Ros
 from tms_ros.server import Goal
 from tms_runtime.log import Logger
@@ -24,8 +25,20 @@ from tms_ts.bt import IDLE, Node, Status, Tree, TreeError
 from tms_ts.budget import Budget
 from tms_ts.flags import Flags
 from tms_ts.journal import Journal
-from tms_ts.machines import Machines, receipt_text
+from tms_ts.machines import Machines, told_by
+from tms_ts.reasons import (
+    GoalNotEnded,
+    HaltedGoalsEnd,
+    LeftOut,
+    NodeChanged,
+    NodeChangedBecause,
+    NodeFailed,
+    NotResumed,
+    ToldToStop,
+    TreeOf,
+)
 from tms_ts.record import Record
+from tms_ts.run_states import STATES, entered
 
 PERIOD = 0.05  # s between ticks when nothing wakes the loop
 FEEDBACK_PERIOD = 0.1  # s between messages to the client
@@ -56,7 +69,7 @@ class Facts:
     records: list[str] = field(default_factory=list)  # that the tree names
     writes: set[tuple[str, str]] = field(default_factory=set)  # shared records and fields that it writes
     state: str = "preparing"
-    reason: str = ""
+    reason: Reason | None = None
     nodes_told: bool = False
     changes: list[NodeStatus] = field(default_factory=list)  # to tell the client, in order
 
@@ -80,27 +93,30 @@ class Run:
         self._resumed = bool(goal.request.resume)
         self.number = 0  # of the last event
         self._numbering = threading.Lock()  # events come from the executor thread too
-        self._failure = ""
+        self._failure: Reason | None = None
         self._next_feedback = 0.0
         self._budget = Budget()
         self._changes_of_tick = self._left_out = 0
         self._flood_told = -FLOOD_TOLD
-        self._ending = ("cancelled", "")  # outcome and reason of a run that is ended from outside
+        self._ending: tuple[str, Reason | None] = (
+            "cancelled",
+            None,
+        )  # how it ends from outside
         self.states = b""  # of every node, for who looks
         self._leaf = ""
         self._ticked: float | None = None  # when the last tick ended; None while nothing ticks
 
-    def cancel(self, outcome: str = "cancelled", reason: str = "") -> None:
+    def cancel(self, outcome: str = "cancelled", reason: Reason | None = None) -> None:
         """Ask the run to stop; returns at once. The first one says why."""
         if not self.cancelled.is_set():
             self._ending = (outcome, reason)
         self.cancelled.set()
         self.wake.set()
 
-    def stopped(self, machine: str, cause: str) -> None:
+    def stopped(self, machine: str, cause: Reason) -> None:
         """A machine was told to stop from outside, and moves no more until somebody re-arms it."""
-        wanted = wire.known(cause).find(SoftwareStop) is not None
-        self.cancel("cancelled" if wanted else "failure", f"{machine} was told to stop: {cause}")
+        wanted = cause.find(SoftwareStop) is not None
+        self.cancel("cancelled" if wanted else "failure", ToldToStop(machine, cause))
 
     def alive(self) -> bool:
         """Whether the loop that decides about motions still runs."""
@@ -109,33 +125,33 @@ class Run:
 
     # what is told
 
-    def tell(self, kind: str, node: str, text: str, values: Mapping[str, Any] | None = None) -> None:
+    def tell(self, kind: str, node: str, what: Reason, values: Mapping[str, Any] | None = None) -> None:
         """One event into the journal and the log."""
         with self._numbering:
             self.number += 1
             self.record.event(self.number)
             event = Event(
-                run_id=self.facts.run_id, number=self.number, stamp=self._ros.now(), kind=kind, node=node, text=text,
-                values=to_parameters(dict(values or {})),
+                run_id=self.facts.run_id, number=self.number, stamp=self._ros.now(), kind=kind, node=node,
+                text=to_line(what),                values=to_parameters(dict(values or {})),
             )  # fmt: skip
             self._journal.put(event)
         if kind == "alarm":
             ALARMS.inc()
         if kind != "node":
-            self._log.info(kind, run=self.facts.run_id, node=node, reason=text)
+            self._log.info(kind, run=self.facts.run_id, node=node, reason=what)
 
-    def enter(self, state: str, reason: str = "", ended: bool = False) -> None:
+    def enter(self, state: str, reason: Reason | None = None, ended: bool = False) -> None:
         """Change the run's state."""
         self.facts.state, self.facts.reason = state, reason
         self._journal.put(self._row(ended))
-        self.tell("run", "", f"{state}: {reason}" if reason else state)
+        self.tell("run", "", entered(state, reason))
         self._changed()
 
     def _row(self, ended: bool) -> RunRow:
         facts = self.facts
         return RunRow(
             run_id=facts.run_id, task_id=facts.task_id, description=facts.description, state=facts.state,
-            reason=facts.reason, machines=facts.machines, records=facts.records, started_at=facts.started,
+            reason=to_line(facts.reason), machines=facts.machines, records=facts.records, started_at=facts.started,
             ended_at=self._ros.now() if ended else Time(),
         )  # fmt: skip
 
@@ -144,7 +160,7 @@ class Run:
         facts = self.facts
         return RunState(
             run_id=facts.run_id, task_id=facts.task_id, state=facts.state, machines=facts.machines,
-            reason=facts.reason, started_at=facts.started, leaf=self._leaf, nodes=self.states,
+            reason=to_line(facts.reason), started_at=facts.started, leaf=self._leaf, nodes=self.states,
         )  # fmt: skip
 
     def tell_tree(self, tree: Tree) -> None:
@@ -157,7 +173,7 @@ class Run:
             "kinds": [node.kind.name.lower() for node in nodes],
             "ports": [" ".join(f'{port}="{text}"' for port, text in node.assigned().items()) for node in nodes],
         }
-        self.tell("tree", "", f"{len(nodes)} nodes", values)
+        self.tell("tree", "", TreeOf(len(nodes)), values)
 
     # the loop
 
@@ -169,8 +185,8 @@ class Run:
         try:
             outcome = self._tick_to_end(tree, machines)
         except TreeError as error:
-            self._failure = str(error)
-            self.tell("error", error.path or "", str(error))
+            self._failure = error.reason
+            self.tell("error", error.path or "", error.reason)
         finally:
             outcome = self._settle(tree, machines, outcome)
         return outcome
@@ -204,21 +220,21 @@ class Run:
         moving, receipts = True, []
         try:
             if outcome != "success":
-                self.enter("stopping", self._failure or outcome)
+                self.enter("stopping", self._failure or STATES[outcome])
             tree.halt()
             self._look(tree)
             self._tell_client(tree, last=True)
             moving = outcome != "success" or not machines.settled()
             if moving and outcome == "success":  # the tree succeeded in the tick that halted a leaf
-                self._failure = ""
-                self.enter("stopping", "the tree has succeeded, and goals that it halted still end")
+                self._failure = None
+                self.enter("stopping", HaltedGoalsEnd())
         finally:  # also when the lines above have a bug
             if moving:
                 # Straight to the gateways, beside the cancels on their way through subtask and planner: a stop takes
                 # the shortest way, and its receipt measures from here.
-                receipts = machines.stop_all(self.facts.machines, outcome)
+                receipts = machines.stop_all(self.facts.machines, STATES[outcome])
         if not moving:
-            return self._end(outcome, "")
+            return self._end(outcome, None)
         for receipt in receipts:
             machines.receipt(receipt)
         deadline = time.monotonic() + SETTLE_LIMIT
@@ -226,19 +242,19 @@ class Run:
             self.wake.wait(PERIOD)
             self.wake.clear()
         reason = self._failure
-        unseen = [receipt_text(receipt) for receipt in receipts if not receipt.confirmed]
-        unseen += [f"{name} has not ended its goal" for name in machines.open_goals()]
-        for text in unseen:
-            self.tell("alarm", "", text)
+        unseen = [told_by(receipt) for receipt in receipts if not receipt.confirmed]
+        unseen += [GoalNotEnded(name) for name in machines.open_goals()]
+        for alarm in unseen:
+            self.tell("alarm", "", alarm)
         if unseen:
-            return self._end("stop_unconfirmed", "; ".join([*unseen, *([reason] if reason else [])]))
+            return self._end("stop_unconfirmed", Several((*unseen, *([reason] if reason is not None else []))))
         return self._end(outcome, reason)
 
-    def _end(self, outcome: str, reason: str) -> str:
+    def _end(self, outcome: str, reason: Reason | None) -> str:
         self.over = True
         self._tell_flood(last=True)
         if outcome != "interrupted":
-            self.record.over(outcome, reason)
+            self.record.over(outcome, to_line(reason))
         self.enter(outcome, reason, ended=True)
         self.close_record(outcome)
         RUNS.labels(outcome).inc()
@@ -252,16 +268,16 @@ class Run:
         else:
             self.record.remove()
 
-    def refuse(self, code: str, reason: str) -> None:
+    def refuse(self, reason: Reason) -> None:
         """End before anything moved."""
         self.over = True
         if self._resumed:  # the run stays what it was: interrupted
-            self.enter("interrupted", f"not resumed: {code}: {reason}", ended=True)
+            self.enter("interrupted", NotResumed(reason), ended=True)
             self.record.interrupted()
             self.record.close()
             return
-        self.record.over("refused", f"{code}: {reason}")
-        self.enter("refused", f"{code}: {reason}", ended=True)
+        self.record.over("refused", to_line(reason))
+        self.enter("refused", reason, ended=True)
         self.record.remove()
         RUNS.labels("refused").inc()
 
@@ -269,7 +285,7 @@ class Run:
 
     def _node_changed(self, node: Node, old: Status, new: Status) -> None:
         if new is Status.FAILURE and node.reason and not node.children:
-            self._failure = f"{node.name} ({node.path}): {node.reason}"
+            self._failure = NodeFailed(node.name, node.reason, node.path)
         self._changes_of_tick += 1
         if self._changes_of_tick > CHANGES_A_TICK:
             self._left_out += 1
@@ -279,21 +295,20 @@ class Run:
         if not self._budget.take(node.path):
             self._left_out += 1
             return
-        text = f"{old.name} -> {new.name}" + (f": {node.reason}" if new is not IDLE and node.reason else "")
-        self.tell("node", node.path, f"{node.name}: {text}")
+        self.tell("node", node.path, _change(node, old, new))
 
     def _tell_flood(self, last: bool = False) -> None:
         """A loop that spins, or waits for hours, must not fill the history with its rounds."""
         now = time.monotonic()
         if self._left_out and (last or now - self._flood_told >= FLOOD_TOLD):
-            self.tell("node", "", f"{self._left_out} further changes are left out: a loop goes round")
+            self.tell("node", "", LeftOut(self._left_out))
             self._left_out, self._flood_told = 0, now
 
     def _look(self, tree: Tree) -> None:
         """Keep what state() tells of the nodes."""
         states = bytes(node.state for node in tree.nodes)
         running = next((node for node in tree.running() if node.reason), None)
-        leaf, reason = (running.path, running.reason) if running is not None else ("", "")
+        leaf, reason = (running.path, running.reason) if running is not None else ("", None)
         if self.facts.state != "running":
             reason = self.facts.reason
         if (states, leaf, reason) != (self.states, self._leaf, self.facts.reason):
@@ -308,10 +323,10 @@ class Run:
         running = [node for node in tree.running() if node.reason]
         if facts.nodes_told and not facts.changes and not running and now < self._next_feedback + 1.0:
             return
-        facts.reason = running[0].reason if running else facts.reason if facts.state == "stopping" else ""
+        facts.reason = running[0].reason if running else facts.reason if facts.state == "stopping" else None
         message = ExecuteTask.Feedback(
             run_id=facts.run_id, state=facts.state, running_leaf=running[0].path if running else "",
-            reason=facts.reason, nodes=self._nodes(tree, running),
+            reason=to_line(facts.reason), nodes=self._nodes(tree, running),
         )  # fmt: skip
         self._goal.publish(message)
         facts.nodes_told, facts.changes, self._next_feedback = True, [], now + FEEDBACK_PERIOD
@@ -323,9 +338,15 @@ class Run:
         return [*self.facts.changes, *(_message(node, node.state) for node in running)]
 
 
+def _change(node: Node, old: Status, new: Status) -> Reason:
+    if new is IDLE or node.reason is None:
+        return NodeChanged(node.name, old.name, new.name)
+    return NodeChangedBecause(node.name, old.name, new.name, node.reason)
+
+
 def _message(node: Node, status: Status) -> NodeStatus:
     return NodeStatus(
         uid=node.uid, parent=node.parent.uid if node.parent is not None else 0, name=node.name,
         type=node.registration_name, status=status,
-        reason=node.reason if status in (Status.RUNNING, Status.FAILURE) else "",
+        reason=to_line(node.reason) if status in (Status.RUNNING, Status.FAILURE) else "",
     )  # fmt: skip

@@ -4,6 +4,8 @@ import time
 
 from tms_msg_ts.action import LeafNodeBase
 
+from tms_reason import wire
+from tms_reason.reason import Reason
 from tms_ros.client import Call, Peer
 from tms_ts.past import Key
 from tms_ts.world import GoalState
@@ -20,9 +22,10 @@ class SentGoal:
 
     def __init__(self, machine: str, subtask: str, record: str, node: str) -> None:
         self.machine, self.subtask, self.record, self.node = machine, subtask, record, node
-        self.name = f"/{machine}/{subtask}"
+        self.name = f"{machine}:{subtask}"  # as `tms ps` lists it
+        self.action = f"/{machine}/{subtask}"
         self.state = GoalState.SENDING
-        self.reason = ""
+        self.reason: Reason | None = None
         self.cancelled = False
         self.begun = time.monotonic()
         self.call: LeafCall | None = None
@@ -39,8 +42,9 @@ class SentGoal:
         return self.node, self.machine, self.subtask, self.record
 
     @property
-    def feedback(self) -> str:
-        return getattr(self.call.feedback, "status", "") if self.call is not None else ""
+    def feedback(self) -> Reason | None:
+        """What the subtask said last."""
+        return wire.of(getattr(self.call.feedback, "status", "")) if self.call is not None else None
 
     def unheard(self) -> bool:
         """Whether the server has had its time to answer and has not."""

@@ -14,9 +14,11 @@ from tms_config.yaml_file import explain
 from tms_machine.subtask import load
 from tms_machine.values import from_parameters
 from tms_reason.errors import RosError
-from tms_reason.texts import text
+from tms_reason.reason import Foreign, Reason
+from tms_reason.wire import refusal
 from tms_runtime.app import App
 from tms_ts.preflight import Stored
+from tms_ts.reasons import JointUnfit
 
 DB_LIMIT = 5.0  # s
 DISCOVERY_LIMIT = 1.5  # s, for one preflight as a whole
@@ -51,12 +53,12 @@ class Around:
     """
 
     def __init__(
-        self, app: App, sensing: Sensing, problem: Callable[[str], str], writers: Callable[[str, str], bool]
+        self, app: App, sensing: Sensing, problem: Callable[[str], Reason | None], writers: Callable[[str, str], bool]
     ) -> None:
         self._app, self._sensing, self.problem, self._writers = app, sensing, problem, writers
         answer = app.ros.call(ListParameters, "/tms/db/list_parameters", ListParameters.Request(), DB_LIMIT)
         if answer.error_code:
-            raise RosError(answer.error_msg, answer.error_code)
+            raise RosError(refusal(answer.error_code, answer.error_msg), answer.error_code)
         now = time.time()
         self._found_by = time.monotonic() + DISCOVERY_LIMIT
         self._records = {(record.model_name, record.record_name): _stored(record, now) for record in answer.records}
@@ -80,25 +82,25 @@ class Around:
     def silent(self, machine: str, record: str) -> str:
         return self._sensing.silent(f"{machine}/{record}")
 
-    def unfit(self, machine: str, subtask: str, values: Mapping[str, Any]) -> str:
+    def unfit(self, machine: str, subtask: str, values: Mapping[str, Any]) -> Reason | None:
         return unfit(self._app.site.model_of(machine), subtask, values)
 
     def oldest(self, machine: str, subtask: str) -> float:
         return self._app.site.model_of(machine).subtask(subtask).max_age
 
 
-def unfit(model: MachineModel, subtask: str, values: Mapping[str, Any]) -> str:
+def unfit(model: MachineModel, subtask: str, values: Mapping[str, Any]) -> Reason | None:
     """Why a subtask of a machine cannot use a record: a field, or an angle beyond the limit of its joint."""
     use = model.subtask(subtask)
     params = load(use.run).params
     if params is None:
-        return ""
+        return None
     try:
         angles = params.model_validate({**values, **use.inputs}).joint_angles()
     except ValidationError as error:
-        return explain(error)
+        return Foreign(explain(error))
     broken = ((name, model.joints[name].violation(angle)) for name, angle in angles.items() if name in model.joints)
-    return next((f"{name}: {text(why, 'en')}" for name, why in broken if why), "")
+    return next((JointUnfit(name, why) for name, why in broken if why is not None), None)
 
 
 def _stored(record: Record, now: float) -> Stored:

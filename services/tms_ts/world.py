@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any, Protocol, TypeVar
 
+from tms_reason.reason import Reason
+
 Value = str | bool | int | float
 T_co = TypeVar("T_co", covariant=True)
 
@@ -31,10 +33,10 @@ class Goal(Protocol):
     def state(self) -> GoalState: ...
 
     @property
-    def reason(self) -> str: ...  # why it waits or ended
+    def reason(self) -> Reason | None: ...  # why it waits or ended
 
     @property
-    def feedback(self) -> str: ...
+    def feedback(self) -> Reason | None: ...  # what the subtask said last
 
     def cancel(self) -> None: ...
 
@@ -55,7 +57,7 @@ class Pending(Protocol[T_co]):
     def value(self) -> T_co: ...  # when done without error
 
     @property
-    def error(self) -> str | None: ...
+    def error(self) -> Reason | None: ...
 
 
 class SharedFlags(Protocol):

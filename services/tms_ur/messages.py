@@ -12,12 +12,13 @@ from tms_msg_sp import msg as sp
 from tms_msg_ts import msg as ts
 
 from tms_machine.values import from_parameters
+from tms_reason import wire
 from tms_reason.reason import Foreign
 from tms_reason.units import unit
 from tms_ur.data_models import Change, Record, SensingInput
 from tms_ur.models import ActiveRun, Event, Joint, Machine, Process, Question, Receipt, Run
 from tms_ur.models import MachineState as Shown
-from tms_ur.reason_view import ReasonView, of_line
+from tms_ur.reason_view import ReasonView, of_line, view
 
 NEVER = 1e8  # s, a larger age means that there was nothing yet
 TYPES = {
@@ -102,9 +103,9 @@ def event(event: db.Event) -> Event:
 
 
 def _reason_in(text: str) -> ReasonView | None:
-    """The reason that a journal's text is; None for words, which are shown as they are."""
-    shown = of_line(text)
-    return None if shown is None or shown.code == Foreign.code else shown
+    """The reason that a journal's text is; None for bare words, which are shown as they are."""
+    reason = wire.of(text)
+    return None if reason is None or reason == Foreign(text) else view(reason)
 
 
 def record(record: db.Record) -> Record:

@@ -1,7 +1,6 @@
 """Endpoints that only show something; every role may ask them."""
 
 import difflib
-import re
 from datetime import datetime, timedelta, timezone
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -11,7 +10,7 @@ from tms_config.config import Site
 from tms_config.names import Name
 from tms_reason import wire
 from tms_reason.errors import TmsError
-from tms_reason.reason import Foreign, Reason
+from tms_reason.reason import Reason
 from tms_ur import export
 from tms_ur.audit_chain import RUN as AUDIT
 from tms_ur.command_models import Xml
@@ -220,11 +219,14 @@ def _audit_after(client: "SiteClient", after: int) -> list[Event]:
 
 
 def _finding(reason: Reason) -> Finding:
-    if isinstance(reason, Foreign):  # of a scheduler that sends words: the console marks the line all the same
-        found = re.match(r"line (\d+)", reason.words)
-        return Finding(line=int(found[1]) if found else None, reason=view(reason))
+    return Finding(line=_line(reason), reason=view(reason))
+
+
+def _line(reason: Reason) -> int | None:
+    """Of the task's text, where the reason or one inside it tells."""
     line = reason.args.get("line")
-    return Finding(line=line if isinstance(line, int) else None, reason=view(reason))
+    inner = (one for one in reason.args.values() if isinstance(one, Reason))
+    return line if isinstance(line, int) else next((found for one in inner if (found := _line(one)) is not None), None)
 
 
 def _site(site: Site) -> SiteInfo:

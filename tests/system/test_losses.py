@@ -58,7 +58,7 @@ def test_a_process_that_ends_again_and_again_fails_its_leaf_and_nothing_else(mes
         out, _ = client.communicate(timeout=150)
     answer = json.loads(out)
     assert answer["outcome"] == "failure"
-    assert f"process {CHANGE_POSE} is FATAL, see `tms logs {CHANGE_POSE}`" in answer["error_msg"]
+    assert f"process {CHANGE_POSE} is FATAL" in answer["error_msg"]
     assert any(row["kind"] == "alarm" and "FATAL" in row["text"] for row in events(mesh, answer["run_id"]))
     assert CHANGE_POSE in mesh.tms("status", expect=1).stdout
     assert {name: row["pid"] for name, row in processes(mesh).items() if name != CHANGE_POSE} == others
@@ -95,7 +95,7 @@ def test_a_stop_gets_through_to_a_tree_that_spins(mesh: Mesh, node: Ros) -> None
         mesh.tms("stop")
         out, _ = client.communicate(timeout=60)
     answer = json.loads(out)
-    assert answer["outcome"] == "cancelled" and "SOFTWARE_STOP" in answer["error_msg"]
+    assert answer["outcome"] == "cancelled" and "software stop" in answer["error_msg"]
     rearm(mesh)
     mesh.tms("task", "rm", task)
 

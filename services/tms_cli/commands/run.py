@@ -11,7 +11,9 @@ import click
 from tms_cli import live, session, words
 from tms_cli.commands.runs import has_ended, recent
 from tms_cli.words import say, state, what_next
-from tms_reason.errors import NOT_STORED, TmsError
+from tms_reason import wire
+from tms_reason.errors import TmsError
+from tms_runtime.reasons import NotStored
 
 if TYPE_CHECKING:
     from tms_msg_db.msg import Run
@@ -198,7 +200,8 @@ def _goals(text: str) -> list[tuple[str, str]]:
 def report(end: End, as_json: bool) -> None:
     """Say how it ended and where to read more."""
     if as_json:
-        session.show_json({key: value for key, value in asdict(end).items() if key != "interrupted"})
+        shown = {key: value for key, value in asdict(end).items() if key != "interrupted"}
+        session.show_json({**shown, "error_msg": words.english(end.error_msg)})
     elif end.outcome == "running":
         click.echo(say("run {run} has begun: `tms events {run} --follow` shows it", run=end.run_id))
         return
@@ -209,7 +212,10 @@ def report(end: End, as_json: bool) -> None:
         )
         if end.run_id:
             click.echo(say("history: tms events {run}", run=end.run_id))
-    if end.outcome in ("success", "cancelled") and end.error_msg.endswith(NOT_STORED):  # others show their reason
+    reason = wire.of(end.error_msg)
+    if (
+        end.outcome in ("success", "cancelled") and reason is not None and reason.find(NotStored) is not None
+    ):  # others show their reason
         note = say("the end of {run} is not stored yet: the disk of the scheduler's PC is slow or full", run=end.run_id)
         click.echo(f"tms: {note}", err=True)
     if end.exit_code:
@@ -221,7 +227,7 @@ def _why(end: End) -> str:
     if end.outcome == "cancelled":
         return say("run {run} was cancelled and its machines were seen to stand still", run=end.run_id)
     code = f" ({end.error_code})" if end.error_code else ""
-    reason = words.reason(end.error_msg) or say("no reason given: see `tms logs tms:ts`")
+    reason = words.with_advice(end.error_msg) or say("no reason given: see `tms logs tms:ts`")
     hint = what_next(end.error_code)
     return f"{state(end.outcome)}{code}: {reason}" + (f"\n  {hint}" if hint else "")
 

@@ -6,10 +6,13 @@ Mostly the places where this engine is kinder than the C++ system, which would h
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
+from tms_reason.reason import Reason
 from tms_ts.bt.blackboard_nodes import SetBlackboard
 from tms_ts.bt.convert import CPP_NAMES, FROM_TEXT, MISSING
 from tms_ts.bt.node import AtOnce, Node
+from tms_ts.bt.reasons import KeyOfTwoTypes, MayHang, PortType, ThrowsWithoutPort
 
 
 def advise(nodes: list[Node]) -> None:
@@ -18,14 +21,24 @@ def advise(nodes: list[Node]) -> None:
     for node in reversed(nodes):  # children before their parents
         at_once[node] = node.at_once([at_once[child] for child in node.children])
     texts = text_keys(nodes)
+    type_changes(nodes)
     for node in nodes:
+        for fault in node.faults():
+            node.context.faults.append((node.line, node.path, fault))
         for note in (*literals(node), *node.preflight(texts)):
             node.warn(note)
         if node.may_hang([at_once[child] for child in node.children]):
-            node.warn(
-                f"{node.registration_name} is endless and what is in it can complete at once: the C++ system can hang "
-                "here; this engine goes on at the next tick"
-            )
+            node.warn(MayHang(node.registration_name))
+
+
+def type_changes(nodes: list[Node]) -> None:
+    """Warn of keys that nodes write with different types; a text that comes first leaves the type open."""
+    first: dict[tuple[int, str], tuple[Any, int]] = {}
+    for node in nodes:
+        for key, kind in node.written():
+            known, line = first.setdefault(node.blackboard.place(key), (kind, node.line))
+            if known is not str and kind is not known:
+                node.warn(KeyOfTwoTypes(key, CPP_NAMES[known], line, CPP_NAMES[kind]))
 
 
 def text_keys(nodes: list[Node]) -> Mapping[str, str]:
@@ -39,12 +52,15 @@ def text_keys(nodes: list[Node]) -> Mapping[str, str]:
     return found
 
 
-def literals(node: Node) -> list[str]:
+def literals(node: Node) -> list[Reason]:
     """Port texts that do not fit the port's type, and ports that the node cannot do without."""
-    notes = [f"{node.registration_name} needs {port!r}, it throws when ticked" for port in node.needs
-             if port not in node.bindings and node.ports[port].default is MISSING]  # fmt: skip
+    notes: list[Reason] = [
+        ThrowsWithoutPort(node.registration_name, port)
+        for port in node.needs
+        if port not in node.bindings and node.ports[port].default is MISSING
+    ]
     for port, bound in node.bindings.items():
         kind = node.ports[port].kind
         if isinstance(bound, str) and FROM_TEXT[kind](bound) is MISSING:
-            notes.append(f"{port}={bound!r} of {node.registration_name} is not of type {CPP_NAMES[kind]}")
+            notes.append(PortType(port, bound, node.registration_name, CPP_NAMES[kind]))
     return notes

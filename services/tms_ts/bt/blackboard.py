@@ -10,6 +10,7 @@ from typing import Any
 
 from tms_ts.bt.convert import CPP_NAMES, FROM_TEXT, MISSING, Missing, kind_of
 from tms_ts.bt.errors import TickError, TreeError
+from tms_ts.bt.reasons import KeyCannotBecome, KeyOfAnotherType, KeysKeepTypes, TextDoesNotFitKey, UseAnotherKey
 
 
 class Entry:
@@ -73,10 +74,12 @@ class Blackboard:
         entry = self.touch(key, kind, has_converter=True)
         if known is None or Any in (entry.kind, kind) or entry.kind in (kind, str):
             return
-        raise TreeError(
-            f"the key {key!r} is of type {CPP_NAMES[entry.kind]} already and is used here as {CPP_NAMES[kind]}",
-            hint="use another key, or the same type at both ports",
-        )
+        raise TreeError(KeyOfAnotherType(key, CPP_NAMES[entry.kind], CPP_NAMES[kind]), hint=UseAnotherKey())
+
+    def place(self, key: str) -> tuple[int, str]:
+        """What tells a key from others of the tree: its name at the far end of all remaps, and where that is."""
+        outer = self._outer(key)
+        return (id(self), key) if outer is None or self._parent is None else self._parent.place(outer)
 
     def get(self, key: str) -> Any:
         entry = self.find(key)
@@ -102,13 +105,10 @@ class Blackboard:
             entry.value = value
             return
         if kind is not str or not entry.has_converter:
-            raise TickError(
-                f"the key {key!r} is of type {CPP_NAMES[entry.kind]} and cannot become {CPP_NAMES[kind]}",
-                hint="once declared, the type of a key does not change",
-            )
+            raise TickError(KeyCannotBecome(key, CPP_NAMES[entry.kind], CPP_NAMES[kind]), hint=KeysKeepTypes())
         converted = FROM_TEXT[entry.kind](value)
         if isinstance(converted, Missing):
-            raise TickError(f"the text {value!r} does not fit the key {key!r}, which is {CPP_NAMES[entry.kind]}")
+            raise TickError(TextDoesNotFitKey(str(value), key, CPP_NAMES[entry.kind]))
         entry.value = converted
 
     def copy(self, source: str, target: str) -> None:

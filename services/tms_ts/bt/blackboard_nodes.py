@@ -10,6 +10,7 @@ from tms_ts.bt.errors import TickError
 from tms_ts.bt.leaf import SyncAction
 from tms_ts.bt.node import AtOnce
 from tms_ts.bt.ports import In, InOut, Pointer
+from tms_ts.bt.reasons import MissingParameter
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, RUNNING, SUCCESS, Status
 
@@ -59,10 +60,10 @@ class SetBlackboard(SyncAction):
         given = self.read("output_key")
         key = MISSING if given is MISSING else convert(given, str)
         if not isinstance(key, str):
-            raise TickError("SetBlackboard: missing parameter 'output_key'")
+            raise TickError(MissingParameter("SetBlackboard", "output_key"))
         source = self.bindings.get("value")
         if source is None:
-            raise TickError("SetBlackboard: missing parameter 'value'")
+            raise TickError(MissingParameter("SetBlackboard", "value"))
         if isinstance(source, Pointer) and source.text != "=":
             self.blackboard.copy(source.key, key)
         else:

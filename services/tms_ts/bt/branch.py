@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import ClassVar
 
+from tms_reason.reason import Reason
 from tms_ts.bt.control import Control
 from tms_ts.bt.convert import MISSING
 from tms_ts.bt.errors import TickError
 from tms_ts.bt.node import AtOnce
 from tms_ts.bt.ports import In
+from tms_ts.bt.reasons import IfThenElseChildren, SwitchChildren, WhileDoElseChildren
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, IDLE, RUNNING, SUCCESS, Status
 
@@ -31,7 +32,7 @@ class IfThenElse(Control):
     def tick(self) -> Status:
         count = len(self.children)
         if count not in (2, 3):
-            raise TickError(f"IfThenElse must have 2 or 3 children, it has {count}")
+            raise TickError(IfThenElseChildren(count))
         self.set_state(RUNNING)
         if self.chosen == 0:
             status = self.children[0].execute_tick()
@@ -58,9 +59,9 @@ class IfThenElse(Control):
         succeeds, fails = chosen_at_once(children)
         return succeeds, fails or (len(children) == 2 and children[0][1])
 
-    def preflight(self, texts: Mapping[str, str]) -> list[str]:
+    def faults(self) -> list[Reason]:
         count = len(self.children)
-        return [] if count in (2, 3) else [f"IfThenElse must have 2 or 3 children, it has {count}: it throws"]
+        return [] if count in (2, 3) else [IfThenElseChildren(count)]
 
 
 @node
@@ -71,7 +72,7 @@ class WhileDoElse(Control):
 
     def tick(self) -> Status:
         if len(self.children) != 3:
-            raise TickError(f"WhileDoElse must have 3 children, it has {len(self.children)}")
+            raise TickError(WhileDoElseChildren(len(self.children)))
         self.set_state(RUNNING)
         condition, do, otherwise = self.children
         status = condition.execute_tick()
@@ -90,9 +91,9 @@ class WhileDoElse(Control):
     def at_once(self, children: list[AtOnce]) -> AtOnce:
         return chosen_at_once(children) if children and any(children[0]) else (False, False)
 
-    def preflight(self, texts: Mapping[str, str]) -> list[str]:
+    def faults(self) -> list[Reason]:
         count = len(self.children)
-        return [] if count == 3 else [f"WhileDoElse must have 3 children, it has {count}: it throws when ticked"]
+        return [] if count == 3 else [WhileDoElseChildren(count)]
 
 
 class Switch(Control):
@@ -115,10 +116,7 @@ class Switch(Control):
 
     def tick(self) -> Status:
         if len(self.children) != self.cases + 1:
-            raise TickError(
-                f"{self.registration_name} must have {self.cases + 1} children (the last one is the default), "
-                f"it has {len(self.children)}"
-            )
+            raise TickError(SwitchChildren(self.registration_name, self.cases + 1, len(self.children)))
         match = self.match()
         if self.running not in (-1, match):
             self.children[self.running].reset()
@@ -137,11 +135,9 @@ class Switch(Control):
     def at_once(self, children: list[AtOnce]) -> AtOnce:
         return any(succeeds for succeeds, _ in children), any(fails for _, fails in children)
 
-    def preflight(self, texts: Mapping[str, str]) -> list[str]:
-        count = len(self.children)
-        if count == self.cases + 1:
-            return []
-        return [f"{self.registration_name} must have {self.cases + 1} children, it has {count}: it throws when ticked"]
+    def faults(self) -> list[Reason]:
+        count, wanted = len(self.children), self.cases + 1
+        return [] if count == wanted else [SwitchChildren(self.registration_name, wanted, count)]
 
 
 @node

@@ -12,6 +12,7 @@ from tms_ts.bt.document import Document, TreeElement, children
 from tms_ts.bt.errors import TreeError
 from tms_ts.bt.node import Birth, Node
 from tms_ts.bt.ports import RESERVED, Direction, Pointer, bind
+from tms_ts.bt.reasons import AdoptedLeaf, ManyNodes, NoTreeOfId, NotTrueOrFalse, TreeInItself, TreeTooDeep
 from tms_ts.bt.source import line_of
 from tms_ts.bt.verify import Rules, Use
 
@@ -48,7 +49,7 @@ class Builder:
     def tree(self, tree: TreeElement, blackboard: Blackboard, path: str, caller: etree._Element) -> Node:
         if tree.id in self.open_trees:
             chain = " -> ".join([*self.open_trees[self.open_trees.index(tree.id) :], tree.id])
-            raise TreeError(f"the tree {tree.id!r} contains itself ({chain})", line=line_of(caller), path=path)
+            raise TreeError(TreeInItself(tree.id, chain), line=line_of(caller), path=path)
         self.open_trees.append(tree.id)
         node = self.node(next(children(tree.element)), tree, blackboard, path)
         self.open_trees.pop()
@@ -57,9 +58,9 @@ class Builder:
     def node(self, element: etree._Element, tree: TreeElement, blackboard: Blackboard, path: str) -> Node:
         line = line_of(element)
         if len(self.nodes) >= MAX_NODES:
-            raise TreeError(f"the tree has more than {MAX_NODES} nodes", line=line, path=path)
+            raise TreeError(ManyNodes(MAX_NODES), line=line, path=path)
         if path.count(".") >= MAX_DEPTH:
-            raise TreeError(f"the tree is deeper than {MAX_DEPTH} nodes", line=line, path=path)
+            raise TreeError(TreeTooDeep(MAX_DEPTH), line=line, path=path)
         use = self.rules.use(element, tree)
         if use.subtree:
             return self.subtree(use, element, tree, blackboard, path)
@@ -69,7 +70,7 @@ class Builder:
         name = use.attributes.get("name", use.id)
         node = use.cls(Birth(use.id, name, self.context, blackboard, bindings, path, line))
         if use.id in self.rules.adopted:
-            node.warn(f"{use.id} is not known here; its entry in TreeNodesModel says that it is a leaf node")
+            node.warn(AdoptedLeaf(use.id))
         self.nodes.append(node)
         for position, child in enumerate(children(element)):
             self.attach(self.node(child, tree, blackboard, f"{path}.{position}"), node)
@@ -89,7 +90,7 @@ class Builder:
                 try:
                     blackboard.declare(bound.key, cls.ports[port].kind)
                 except TreeError as error:
-                    error.line, error.path = line, path
+                    error.place(line, path)
                     raise
 
     # --- subtrees
@@ -97,7 +98,7 @@ class Builder:
     def subtree(self, use: Use, element: etree._Element, tree: TreeElement, blackboard: Blackboard, path: str) -> Node:
         line = line_of(element)
         if use.id not in self.trees:
-            raise TreeError(f"there is no tree {use.id!r}", line=line, path=path)
+            raise TreeError(NoTreeOfId(use.id), line=line, path=path)
         cls = self.rules.registry[use.subtree]
         name = use.attributes.get("name", use.id) if tree.v4 else use.id
         node = cls(Birth(use.subtree, name, self.context, blackboard, {}, path, line))
@@ -105,7 +106,7 @@ class Builder:
         try:
             inner = self.inner_blackboard(use, blackboard, v4=tree.v4)
         except TreeError as error:
-            error.line, error.path = line, path
+            error.place(line, path)
             raise
         self.attach(self.tree(self.trees[use.id], inner, f"{path}.0", element), node)
         return node
@@ -134,5 +135,5 @@ class Builder:
     def flag(use: Use, key: str) -> bool:
         value = text_to_bool(use.attributes.get(key, "false"))
         if isinstance(value, Missing):
-            raise TreeError(f"{key}={use.attributes[key]!r} is not true or false")
+            raise TreeError(NotTrueOrFalse(key, use.attributes[key]))
         return value

@@ -6,7 +6,8 @@ import time
 from collections.abc import Callable
 from typing import Protocol
 
-from tms_ts.bt.errors import MAX_WARNINGS, short
+from tms_reason.reason import Reason
+from tms_ts.bt.errors import MAX_WARNINGS, shortened
 from tms_ts.bt.node import Observer
 from tms_ts.world import World
 
@@ -22,7 +23,18 @@ class Timer(Protocol):
 
 
 class Context:
-    __slots__ = ("_rounds_left", "_told", "_yield_at", "clock", "observers", "quirks", "timers", "warnings", "world")
+    __slots__ = (
+        "_rounds_left",
+        "_told",
+        "_yield_at",
+        "clock",
+        "faults",
+        "observers",
+        "quirks",
+        "timers",
+        "warnings",
+        "world",
+    )
 
     def __init__(self, world: World | None, clock: Callable[[], float] | None = None, *, quirks: bool = False) -> None:
         self.world = world
@@ -30,8 +42,9 @@ class Context:
         self.quirks = quirks
         self.observers: list[Observer] = []
         self.timers: list[Timer] = []  # armed ones
-        self.warnings: list[tuple[int, str]] = []
-        self._told: set[tuple[int, str]] = set()
+        self.warnings: list[tuple[int, Reason]] = []
+        self.faults: list[tuple[int, str, Reason]] = []  # line, path: nodes that throw whenever they are ticked
+        self._told: set[tuple[int, Reason]] = set()
         self._rounds_left = ALL_ROUNDS
         self._yield_at = float("inf")
 
@@ -46,8 +59,8 @@ class Context:
             return False
         return self._rounds_left > 0 and self.clock() < self._yield_at
 
-    def warn(self, line: int, text: str) -> None:
-        note = (line, short(text))
+    def warn(self, line: int, what: Reason) -> None:
+        note = (line, shortened(what))
         if note not in self._told and len(self.warnings) < MAX_WARNINGS:
             self._told.add(note)
             self.warnings.append(note)

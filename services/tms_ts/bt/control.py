@@ -6,6 +6,7 @@ from typing import ClassVar
 
 from tms_ts.bt.errors import TickError
 from tms_ts.bt.node import AtOnce, Node
+from tms_ts.bt.reasons import ChildIdle
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, IDLE, RUNNING, SUCCESS, Kind, Status
 
@@ -25,7 +26,7 @@ class Control(Node):
         self.reset_children()
 
     def never_idle(self, child: Node) -> TickError:
-        return TickError(f"{self.registration_name}: the child {child.name!r} must never return IDLE")
+        return TickError(ChildIdle(self.registration_name, child.name))
 
 
 def in_order(children: list[AtOnce], goes_on: Status) -> AtOnce:

@@ -6,6 +6,7 @@ from typing import ClassVar
 
 from tms_ts.bt.errors import TickError
 from tms_ts.bt.node import AtOnce, Node
+from tms_ts.bt.reasons import ChildIdle
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, IDLE, RUNNING, SUCCESS, Kind, Status
 
@@ -38,7 +39,7 @@ class Decorator(Node):
         return children[0]
 
     def never_idle(self) -> TickError:
-        return TickError(f"{self.registration_name}: the child {self.child.name!r} must never return IDLE")
+        return TickError(ChildIdle(self.registration_name, self.child.name))
 
 
 @node

@@ -8,8 +8,26 @@ from pathlib import Path
 
 from lxml import etree
 
+from tms_reason.reason import Reason
 from tms_runtime.xml_text import MAX_BYTES, MAX_DEPTH
-from tms_ts.bt.errors import MAX_WARNINGS, TreeError, short
+from tms_ts.bt.errors import MAX_WARNINGS, TreeError, shortened
+from tms_ts.bt.reasons import (
+    CannotInclude,
+    IncludeCircle,
+    IncludeNeedsPath,
+    IncludeNoFolder,
+    IncludeOutside,
+    IncludeRosPkg,
+    ManyIncludes,
+    NestedTooDeep,
+    NoBehaviorTree,
+    NoMainTree,
+    NotRoot,
+    OneOf,
+    TwoPalettes,
+    TwoTrees,
+    UsePath,
+)
 from tms_ts.bt.source import Source, line_of, parse, read_file
 
 MAX_FILES = 50
@@ -30,16 +48,16 @@ class Document:
     sources: list[Source] = field(default_factory=list)
     trees: list[TreeElement] = field(default_factory=list)  # all of them, first registered first
     models: dict[str, frozenset[str]] = field(default_factory=dict)  # ID -> ports, by TreeNodesModel
-    warnings: list[tuple[int, str]] = field(default_factory=list)
+    warnings: list[tuple[int, Reason]] = field(default_factory=list)
 
     @property
     def warns(self) -> bool:
         """Whether further warnings are kept."""
         return len(self.warnings) < MAX_WARNINGS
 
-    def warn(self, line: int, text: str) -> None:
+    def warn(self, line: int, what: Reason) -> None:
         if self.warns:
-            self.warnings.append((line, short(text)))
+            self.warnings.append((line, shortened(what)))
 
     def by_id(self) -> dict[str, TreeElement]:
         found: dict[str, TreeElement] = {}
@@ -59,8 +77,8 @@ class Document:
         if wanted is None and len(ids) == 1:
             return ids[0]
         if wanted is None:
-            what = f"one of {', '.join(ids)}" if ids else "there is no <BehaviorTree> in it"
-            raise TreeError("main_tree_to_execute is not given", line=1, hint=what)
+            hint = OneOf(tuple(ids)) if ids else NoBehaviorTree()
+            raise TreeError(NoMainTree(), line=1, hint=hint)
         return wanted
 
 
@@ -87,9 +105,7 @@ class _Reader:
         source = parse(data, file=file, limit=self.limit)
         self.document.sources.append(source)
         if source.root.tag != "root":
-            raise TreeError(
-                f"the outermost element must be <root>, it is <{source.root.tag}>", line=line_of(source.root), file=file
-            )
+            raise TreeError(NotRoot(str(source.root.tag)), line=line_of(source.root), file=file)
         check_depth(source)
         for child in children(source.root):
             if child.tag == "include":
@@ -107,14 +123,14 @@ class _Reader:
             if name is None:
                 name, self.unnamed = f"BehaviorTree_{self.unnamed}", self.unnamed + 1
             if name in known:
-                self.document.warn(line_of(child), f"there are two trees {name!r}; the first one is used")
+                self.document.warn(line_of(child), TwoTrees(name))
             known.add(name)
             self.document.trees.append(TreeElement(name, child, source, v4))
 
     def palette(self, source: Source) -> None:
         models = [child for child in children(source.root) if child.tag == "TreeNodesModel"]
         if len(models) > 1:
-            raise TreeError("there is more than one <TreeNodesModel>", line=line_of(models[1]), file=source.file)
+            raise TreeError(TwoPalettes(), line=line_of(models[1]), file=source.file)
         for element in models[0] if models else ():
             if isinstance(element.tag, str) and (name := element.get("ID")):
                 ports = [port.get("name") for port in children(element) if str(port.tag).endswith("_port")]
@@ -124,23 +140,23 @@ class _Reader:
         given = source.attributes(element)
         line, name = line_of(element), given.get("path", "")
         if "ros_pkg" in given:
-            raise TreeError("include with ros_pkg is not supported", line=line, file=source.file, hint="use a path")
+            raise TreeError(IncludeRosPkg(), line=line, file=source.file, hint=UsePath())
         if not name:
-            raise TreeError("include needs a path", line=line, file=source.file)
+            raise TreeError(IncludeNeedsPath(), line=line, file=source.file)
         if self.folder is None or here is None:
-            raise TreeError(f"cannot include {name!r}: this tree comes from no folder", line=line, file=source.file)
+            raise TreeError(IncludeNoFolder(name), line=line, file=source.file)
         path = (here / name).resolve()
         if Path(name).is_absolute() or not path.is_relative_to(self.folder):
-            raise TreeError(f"include {name!r} is outside the tree's folder", line=line, file=source.file)
+            raise TreeError(IncludeOutside(name), line=line, file=source.file)
         if path in self.open_files:
-            raise TreeError(f"include {name!r} includes itself", line=line, file=source.file)
+            raise TreeError(IncludeCircle(name), line=line, file=source.file)
         if len(self.document.sources) >= MAX_FILES:
-            raise TreeError(f"more than {MAX_FILES} files are included", line=line, file=source.file)
+            raise TreeError(ManyIncludes(MAX_FILES), line=line, file=source.file)
         self.open_files.append(path)
         try:
             data = read_file(path, self.limit)
         except TreeError as error:
-            raise TreeError(f"cannot include {name!r}: {error.message}", line=line, file=source.file) from error
+            raise TreeError(CannotInclude(name, error.what), line=line, file=source.file) from error
         self.read(data, path.parent, name)
         self.open_files.pop()
 
@@ -151,5 +167,4 @@ def check_depth(source: Source) -> None:
     for event, element in etree.iterwalk(source.root, events=("start", "end")):
         depth += 1 if event == "start" else -1
         if depth > MAX_DEPTH:
-            message = f"the elements are nested deeper than {MAX_DEPTH}"
-            raise TreeError(message, line=line_of(element), file=source.file)
+            raise TreeError(NestedTooDeep(MAX_DEPTH), line=line_of(element), file=source.file)

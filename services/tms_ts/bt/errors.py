@@ -8,10 +8,17 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable
+from dataclasses import replace
+from typing import Any, TypeVar
 
 from tms_reason.errors import TaskError
+from tms_reason.reason import Reason
+from tms_reason.texts import text
+from tms_ts.bt.reasons import AtNode, DidYouMean, FileLine, FileLineAt, Hinted, InFile, Line, LineAt, Placed
 
+R = TypeVar("R", bound=Reason)
 MAX_WARNINGS = 500  # of one tree; more than that helps nobody
+MAX_LISTED = 12  # names in one text
 MAX_NAMES = 1000  # to look for a near one among, which takes some 30 ms
 
 
@@ -19,28 +26,29 @@ class TreeError(TaskError):
     """A tree document that is refused, with the place to look at."""
 
     def __init__(
-        self, message: str, *, line: int | None = None, path: str = "", hint: str = "", file: str = ""
+        self,
+        what: Reason,
+        *,
+        line: int | None = None,
+        path: str = "",
+        hint: Reason | None = None,
+        file: str = "",
     ) -> None:
-        message = short(message)
-        super().__init__(message)
-        self.message = message
-        self.line = line
-        self.path = path
-        self.hint = short(hint)
-        self.file = file
+        super().__init__(what, self.code)
+        self.what, self.hint, self.file = shortened(what), hint if hint is None else shortened(hint), file
+        self.line: int | None = None
+        self.path = ""
+        self.place(line, path)
+
+    def place(self, line: int | None, path: str) -> None:
+        """Say where it is."""
+        self.line, self.path = line, path
+        where = _place(self.file, line, short(path, 120))
+        placed = self.what if where is None else Placed(where, self.what)
+        self.reason = placed if self.hint is None else Hinted(placed, self.hint)
 
     def __str__(self) -> str:
-        place = ", ".join(
-            part
-            for part in (
-                self.file,
-                f"line {self.line}" if self.line else "",
-                f"at {short(self.path, 120)}" if self.path else "",
-            )
-            if part
-        )
-        text = f"{place}: {self.message}" if place else self.message
-        return f"{text} ({self.hint})" if self.hint else text
+        return text(self.reason, "en")
 
 
 class TickError(TreeError):
@@ -52,9 +60,33 @@ def short(text: str, length: int = 400) -> str:
     return text if len(text) <= length else text[: length - 3] + "..."
 
 
-def did_you_mean(word: str, known: Iterable[str]) -> str:
+def shortened(reason: R) -> R:
+    """A reason whose texts have lengths that a person reads."""
+    return replace(reason, **{name: _short(value) for name, value in reason.args.items()})  # type: ignore[type-var]
+
+
+def _short(value: Any) -> Any:
+    if isinstance(value, tuple):
+        return (*map(_short, value[:MAX_LISTED]), *(["..."] if len(value) > MAX_LISTED else []))
+    if isinstance(value, Reason):
+        return shortened(value)
+    return short(value, 100) if isinstance(value, str) else value
+
+
+def _place(file: str, line: int | None, path: str) -> Reason | None:
+    if line:
+        if file:
+            return FileLineAt(line, path, file) if path else FileLine(line, file)
+        return LineAt(line, path) if path else Line(line)
+    if file:
+        return InFile(file)
+    return AtNode(path) if path else None
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> Reason | None:
+    """The name that was perhaps meant."""
     names = list(known)
     if len(word) > 100 or len(names) > MAX_NAMES:
-        return ""
+        return None
     near = difflib.get_close_matches(word, names, n=1, cutoff=0.6)
-    return f"did you mean {near[0]!r}?" if near else ""
+    return DidYouMean(near[0]) if near else None

@@ -10,6 +10,7 @@ from tms_ts.bt.convert import MISSING
 from tms_ts.bt.errors import TickError
 from tms_ts.bt.node import AtOnce, Node
 from tms_ts.bt.ports import Pointer
+from tms_ts.bt.reasons import ActionIdle, SyncRunning
 from tms_ts.bt.status import FAILURE, IDLE, RUNNING, SUCCESS, Kind, Status
 
 
@@ -51,7 +52,7 @@ class SyncAction(Leaf):
         status = self.tick()
         self.set_state(status)
         if status is RUNNING:
-            raise TickError(f"{self.registration_name}: a synchronous action must not return RUNNING")
+            raise TickError(SyncRunning(self.registration_name))
         return status
 
 
@@ -94,7 +95,7 @@ class StatefulAction(Leaf):
         else:
             return state
         if status is IDLE:
-            raise TickError(f"{self.registration_name}: an action must not return IDLE")
+            raise TickError(ActionIdle(self.registration_name))
         return status
 
     def halt(self) -> None:

@@ -8,6 +8,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
+from tms_reason.reason import Reason
 from tms_runtime.xml_text import MAX_BYTES
 from tms_ts.bt.advice import advise
 from tms_ts.bt.blackboard import Blackboard
@@ -62,8 +63,8 @@ def _build(document: Document, rules: Rules, context: Context, values: Mapping[s
     builder = Builder(document, rules, context)
     root = builder.build(outermost)
     advise(builder.nodes)
-    for line, text in document.warnings:  # last: what is not used must leave room for what is
-        context.warn(line, text)
+    for line, what in document.warnings:  # last: what is not used must leave room for what is
+        context.warn(line, what)
     return Tree(root, builder.nodes, builder.blackboards, context, document.text, document.main)
 
 
@@ -72,7 +73,7 @@ class Report:
     """What `check` found; nothing was run."""
 
     goals: list[LeafGoal] = field(default_factory=list)
-    warnings: list[tuple[int, str]] = field(default_factory=list)
+    warnings: list[tuple[int, Reason]] = field(default_factory=list)
     errors: list[TreeError] = field(default_factory=list)
     nodes: int = 0
 
@@ -94,6 +95,7 @@ def check(
         if report.ok:
             loaded = _build(document, rules, Context(None), None)
             report.goals, report.warnings = loaded.leaf_goals(), loaded.warnings
+            report.errors.extend(islice(loaded.faults, MAX_ERRORS))
             report.nodes = len(loaded.nodes)
     except TreeError as error:
         report.errors.append(error)

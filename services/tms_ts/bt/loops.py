@@ -12,6 +12,7 @@ from tms_ts.bt.convert import text_to_int
 from tms_ts.bt.decorator import Decorator
 from tms_ts.bt.node import AtOnce, Node
 from tms_ts.bt.ports import In
+from tms_ts.bt.reasons import LoopedInTick
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, IDLE, RUNNING, SUCCESS, Status
 
@@ -31,7 +32,7 @@ class Loop(Decorator):
         rounds = 0
         while limit == -1 or self.count < limit:
             if rounds and not (self.context.may_loop(rounds, endless=limit == -1) and self.may_ask(limit)):
-                self.reason = f"looped {rounds} times in this tick, goes on in the next"
+                self.reason = LoopedInTick(rounds)
                 return RUNNING
             rounds += 1
             status = self.child.execute_tick()

@@ -14,10 +14,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from py_trees.common import BlackBoxLevel
 from py_trees.common import Status as PyTreesStatus
 
+from tms_reason.reason import Reason
+from tms_reason.texts import text
 from tms_ts.bt.blackboard import Blackboard
 from tms_ts.bt.convert import FROM_TEXT, MISSING, convert
 from tms_ts.bt.errors import TickError
 from tms_ts.bt.ports import Direction, Pointer, Port
+from tms_ts.bt.reasons import AddPort, DoesNotFit, KeyChangesType, KeyHasNoValue, MissingParameter, OutputNotConnected
 from tms_ts.bt.status import IDLE, PY_TREES, RUNNING, Kind, Status
 
 if TYPE_CHECKING:
@@ -81,7 +84,7 @@ class Node(Behaviour):
         self.line = birth.line
         self.uid = birth.uid
         self.state: Status = IDLE
-        self.reason = ""  # why it is RUNNING or has failed, for the operator
+        self.reason: Reason | None = None  # why it is RUNNING or has failed, for the operator
         self.parent: Node | None = None
         self.children: list[Node] = []
         self.prepare()
@@ -113,8 +116,8 @@ class Node(Behaviour):
             self.state = new
             for observer in self.context.observers:
                 observer(self, old, new)
-            if new is IDLE and self.reason:
-                self.reason = ""
+            if new is IDLE:
+                self.reason = None
 
     def reset(self) -> None:
         """What parents do to a child: halt it if it is RUNNING, and make it IDLE even if its halt raises."""
@@ -145,21 +148,21 @@ class Node(Behaviour):
     def require(self, port: str) -> Any:
         value = self.read(port)
         if value is MISSING:
-            raise TickError(f"{self.registration_name}: missing parameter {port!r}", hint=self._why_missing(port))
+            raise TickError(MissingParameter(self.registration_name, port), hint=self._why_missing(port))
         return value
 
     def write(self, port: str, value: Any) -> None:
         """Write an output; a port that is bound to plain text uses the text as the key."""
         bound = self.bindings.get(port)
         if bound is None:
-            raise TickError(f"{self.registration_name}: the output {port!r} is not connected")
+            raise TickError(OutputNotConnected(self.registration_name, port))
         key = bound.key if isinstance(bound, Pointer) else bound
         self.blackboard.set(key, value, self.ports[port].kind)
 
     def store(self, key: str, value: Any) -> None:
         """Write a key whose name the node worked out, whatever type it had."""
         if self.blackboard.replace(key, value):
-            self.warn(f"the key {key!r} changes its type; the C++ system throws here")
+            self.warn(KeyChangesType(key))
 
     def literal(self, port: str) -> str | None:
         """The text of a port that does not point at the blackboard."""
@@ -173,21 +176,31 @@ class Node(Behaviour):
         """Port assignments as written in the document."""
         return {port: b.text if isinstance(b, Pointer) else b for port, b in self.bindings.items()}
 
-    def _why_missing(self, port: str) -> str:
+    def _why_missing(self, port: str) -> Reason:
         bound = self.bindings.get(port)
         if bound is None:
-            return f"add {port}=... to line {self.line}"
+            return AddPort(port, self.line)
         if isinstance(bound, Pointer):
-            return f"the key {bound.key!r} has no value that fits"
-        return f"{bound!r} does not fit"
+            return KeyHasNoValue(bound.key)
+        return DoesNotFit(bound)
 
     def inputs(self) -> list[Port]:
         return [port for port in self.ports.values() if port.direction is not Direction.OUTPUT]
 
-    def warn(self, text: str) -> None:
-        self.context.warn(self.line, text)
+    def warn(self, what: Reason) -> None:
+        self.context.warn(self.line, what)
 
     # --- preflight
+
+    def faults(self) -> list[Reason]:
+        """What makes it throw whenever it is ticked."""
+        return []
+
+    def written(self) -> list[tuple[str, Any]]:
+        """Keys that it writes with a type that the document tells, and that type."""
+        outputs = [port for port in self.ports.values() if port.direction is Direction.OUTPUT and port.kind is not Any]
+        bound = [(self.bindings.get(port.name), port.kind) for port in outputs]
+        return [(one.key if isinstance(one, Pointer) else one, kind) for one, kind in bound if one is not None]
 
     def at_once(self, children: list[AtOnce]) -> AtOnce:
         """Whether it may succeed and may fail within one tick in the library, given what its children may."""
@@ -196,7 +209,7 @@ class Node(Behaviour):
     def may_hang(self, children: list[AtOnce]) -> bool:
         return False
 
-    def preflight(self, texts: Mapping[str, str]) -> list[str]:
+    def preflight(self, texts: Mapping[str, str]) -> list[Reason]:
         """What the author should know; `texts` are the keys that SetBlackboard gives a text."""
         return []
 
@@ -216,7 +229,7 @@ class Node(Behaviour):
 
     @property
     def feedback_message(self) -> str:
-        return self.reason
+        return "" if self.reason is None else text(self.reason, "en")
 
     def update(self) -> PyTreesStatus:
         self.execute_tick()

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from tms_reason.reason import Reason
 from tms_ts.bt.control import Control
 from tms_ts.bt.errors import TickError
 from tms_ts.bt.node import AtOnce
 from tms_ts.bt.ports import In
+from tms_ts.bt.reasons import Fail, FewChildren, Succeed
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, IDLE, RUNNING, SUCCESS, Status
 
@@ -26,16 +28,16 @@ class Parallel(Control):
     def prepare(self) -> None:
         self.done: set[int] = set()  # children that completed in this run
 
-    def effective(self, threshold: int, word: str) -> int:
+    def effective(self, threshold: int, end: Reason) -> int:
         count = len(self.children)
         value = threshold if threshold >= 0 else count + threshold + 1
         if not 0 <= value <= count:
-            raise TickError(f"Parallel: {count} children are fewer than the threshold {threshold}, it can never {word}")
+            raise TickError(FewChildren(count, threshold, end))
         return value
 
     def tick(self) -> Status:
-        need = self.effective(self.success_threshold, "succeed")
-        allowed = self.effective(self.failure_threshold, "fail")
+        need = self.effective(self.success_threshold, Succeed())
+        allowed = self.effective(self.failure_threshold, Fail())
         successes = failures = 0
         for index, child in enumerate(self.children):
             status = child.state if index in self.done else child.execute_tick()

@@ -14,6 +14,7 @@ from lxml import etree
 from tms_runtime import xml_text
 from tms_runtime.xml_text import MAX_BYTES
 from tms_ts.bt.errors import TreeError
+from tms_ts.bt.reasons import ChooseGrootFile, FileTooLarge, NoFile, NotXml, TaskFilesAreSmall
 
 _MARKUP = re.compile(
     r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>|<(?:[^<>\"']|\"[^\"]*\"|'[^']*')*>", re.DOTALL
@@ -49,11 +50,11 @@ def line_of(element: etree._Element) -> int:
 
 def read_file(path: Path, limit: int = MAX_BYTES) -> bytes:
     if not path.is_file():
-        raise TreeError(f"there is no file {path}")
+        raise TreeError(NoFile(str(path)))
     with path.open("rb") as file:
         data = file.read(limit + 1)
     if len(data) > limit:
-        raise TreeError(f"{path.name} is larger than {limit} bytes", hint="a task file has some 10 to 100 kB")
+        raise TreeError(FileTooLarge(path.name, limit), hint=TaskFilesAreSmall())
     return data
 
 
@@ -92,12 +93,12 @@ def parse(data: bytes | str, *, file: str = "", limit: int = MAX_BYTES) -> Sourc
     try:
         text = xml_text.decode(data, limit)
         if "<" not in text:
-            raise TreeError("this is not XML", hint="a tree begins with <root ...>: choose a file that Groot saved")
+            raise TreeError(NotXml(), hint=ChooseGrootFile())
         root = xml_text.elements(text, comments=False)  # well-formed from here on, so the patterns take linear time
         marked, marks = _keep_breaks(text)
         if marked is not text:
             root = xml_text.elements(marked, comments=False)
     except xml_text.XmlRefused as refused:
-        raise TreeError(refused.text, line=refused.line, hint=refused.hint, file=file) from refused
+        raise TreeError(refused.what, line=refused.line, hint=refused.hint, file=file) from refused
     _set_lines(root, text)
     return Source(root, text, marks, file)

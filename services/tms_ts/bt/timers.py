@@ -6,6 +6,7 @@ from tms_ts.bt.convert import UInt
 from tms_ts.bt.decorator import Decorator
 from tms_ts.bt.node import AtOnce
 from tms_ts.bt.ports import In
+from tms_ts.bt.reasons import Waits
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, IDLE, RUNNING, Status
 
@@ -52,11 +53,11 @@ class Delay(Timed):
         milliseconds = self.delay_msec
         if self.deadline is None and not self.over:
             self.arm(milliseconds)
-            self.reason = f"waits {milliseconds / 1000:g} s"
+            self.reason = Waits(milliseconds / 1000)
             return RUNNING
         if not self.over:
             return RUNNING
-        self.reason = ""
+        self.reason = None
         status = self.child.execute_tick()
         if status is not RUNNING:
             self.over = False

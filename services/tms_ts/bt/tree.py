@@ -10,11 +10,13 @@ from typing import ClassVar, Protocol, cast, runtime_checkable
 
 from py_trees.behaviour import Behaviour
 
+from tms_reason.reason import Reason
 from tms_ts.bt.blackboard import Blackboard
 from tms_ts.bt.context import Context
 from tms_ts.bt.errors import TickError, TreeError
 from tms_ts.bt.node import Node, Observer
 from tms_ts.bt.parallel import Parallel
+from tms_ts.bt.reasons import NodeError
 from tms_ts.bt.status import IDLE, Status
 
 MAX_UID = 65_535  # 16 bit on Groot's wire
@@ -82,8 +84,13 @@ class Tree:
         return self.context.observers
 
     @property
-    def warnings(self) -> list[tuple[int, str]]:
-        """What this engine does more kindly than the library: (line, text)."""
+    def faults(self) -> list[TreeError]:
+        """Nodes that throw whenever they are ticked: the tree can be loaded, but must not run."""
+        return [TreeError(what, line=line, path=path) for line, path, what in self.context.faults]
+
+    @property
+    def warnings(self) -> list[tuple[int, Reason]]:
+        """What this engine does more kindly than the library: (line, what)."""
         return self.context.warnings
 
     def tick(self) -> Status:
@@ -96,7 +103,7 @@ class Tree:
             _place(error)
             raise
         except Exception as error:
-            found = TickError(f"{type(error).__name__}: {error}").with_traceback(error.__traceback__)
+            found = TickError(NodeError(type(error).__name__, str(error))).with_traceback(error.__traceback__)
             raise _place(found) from error
         if status.completed:
             self.root.set_state(IDLE)
@@ -125,7 +132,7 @@ class Tree:
                 problems.append(error)
         if problems:
             first = problems[0]
-            found = first if isinstance(first, TreeError) else TickError(f"{type(first).__name__}: {first}")
+            found = first if isinstance(first, TreeError) else TickError(NodeError(type(first).__name__, str(first)))
             raise _place(found.with_traceback(first.__traceback__)) from first
 
     def halt_root(self) -> None:
@@ -177,5 +184,5 @@ def _place(error: TreeError) -> TreeError:
             thrower = owner
         trace = trace.tb_next
     if thrower is not None and not error.path:
-        error.path, error.line = thrower.path, thrower.line
+        error.place(thrower.line, thrower.path)
     return error

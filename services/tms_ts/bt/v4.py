@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from tms_reason.reason import Reason
+from tms_ts.bt.reasons import V4Json, V4Node, V4RootBlackboard, V4Script, V4SharedBlackboard
+
 SCRIPTS = frozenset({"_skipIf", "_failureIf", "_successIf", "_while", "_onSuccess", "_onFailure", "_onHalted", "_post"})
 V4_NODES = frozenset({
     "AsyncSequence", "AsyncFallback", "RunOnce", "Precondition", "LoopInt", "LoopDouble", "LoopBool", "LoopString",
@@ -12,20 +15,20 @@ RENAMED_NODES = {"SequenceWithMemory": "SequenceStar"}
 RENAMED_PORTS = {"Parallel": {"success_count": "success_threshold", "failure_count": "failure_threshold"}}
 
 
-def feature(name: str, attributes: dict[str, str], *, v4: bool) -> str:
-    """The v4 feature that an element uses and that has no like here; empty if there is none."""
+def feature(name: str, attributes: dict[str, str], *, v4: bool) -> Reason | None:
+    """The v4 feature that an element uses and that has no like here."""
     if name in V4_NODES and not (v4 and name in RENAMED_NODES):
-        return f"<{name}> is a node of BehaviorTree.CPP v4"
+        return V4Node(name)
     for key, value in attributes.items():
         if key in SCRIPTS:
-            return f"the script attribute {key!r} is a feature of BehaviorTree.CPP v4"
+            return V4Script(key)
         if v4 and value.startswith("{@"):
-            return f"{key}={value!r}: the root blackboard is a feature of BehaviorTree.CPP v4"
+            return V4RootBlackboard(key, value)
         if v4 and value.startswith("json:"):
-            return f"{key}={value!r}: json values are a feature of BehaviorTree.CPP v4"
+            return V4Json(key, value)
     if v4 and "__shared_blackboard" in attributes:
-        return "__shared_blackboard does not exist in a document of BehaviorTree.CPP v4"
-    return ""
+        return V4SharedBlackboard()
+    return None
 
 
 def translated(name: str, attributes: dict[str, str]) -> tuple[str, dict[str, str]]:

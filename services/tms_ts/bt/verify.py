@@ -7,22 +7,50 @@ from dataclasses import dataclass
 
 from lxml import etree
 
+from tms_reason.reason import Reason
 from tms_ts.bt import v4
 from tms_ts.bt.convert import MISSING
 from tms_ts.bt.document import Document, TreeElement, children
 from tms_ts.bt.errors import TreeError, did_you_mean
 from tms_ts.bt.node import Node
 from tms_ts.bt.ports import RESERVED
+from tms_ts.bt.reasons import (
+    AddThirdChild,
+    InSubTreePlus,
+    ItsPorts,
+    LeafWithChildren,
+    NeedsChildren,
+    NeedsId,
+    NoNode,
+    NoPort,
+    NoPorts,
+    NoTerminal,
+    NoTreeOfId,
+    NotUsed,
+    OldSpelling,
+    OneChildInDecorator,
+    OneChildInTree,
+    OnlyV3,
+    PortMissing,
+    SubTreeWithChildren,
+    There,
+    ThereIsNoTree,
+    ThreeChildrenInV4,
+    TreeNotNode,
+    UnknownMainTree,
+    WriteSubTree,
+)
 from tms_ts.bt.registry import Registry
 from tms_ts.bt.source import line_of
 from tms_ts.bt.status import Kind
 
 CATEGORIES = frozenset({"Action", "Condition", "Control", "Decorator"})
 SUBTREES = frozenset({"SubTree", "SubTreePlus"})
+Problem = tuple[Reason, "Reason | None"]  # what is wrong, and a hint
 NEED_CHILDREN = frozenset({"Sequence", "SequenceStar", "Fallback"})
-HINTS = {
-    "ManualSelector": "it asks on a terminal, and this engine has none",
-    "RetryUntilSuccesful": "did you mean 'RetryUntilSuccessful'? (the old spelling is not registered in v3.8)",
+HINTS: dict[str, Reason] = {
+    "ManualSelector": NoTerminal(),
+    "RetryUntilSuccesful": OldSpelling("RetryUntilSuccessful"),
 }
 
 
@@ -81,7 +109,7 @@ class Rules:
         for tree in self.document.trees:
             count = sum(1 for _ in children(tree.element))
             if count != 1:
-                yield self.error(tree, tree.element, f"a BehaviorTree must have exactly one child, it has {count}")
+                yield self.error(tree, tree.element, OneChildInTree(count))
             for child in children(tree.element):
                 yield from self.tree_errors(tree, child, used=id(tree) in used)
         try:
@@ -90,8 +118,9 @@ class Rules:
             yield error
             return
         if main not in self.tree_ids:
-            hint = did_you_mean(main, self.tree_ids) or f"there is {', '.join(sorted(self.tree_ids)) or 'no tree'}"
-            yield TreeError(f"main_tree_to_execute names an unknown tree {main!r}", line=1, hint=hint)
+            others = There(tuple(sorted(self.tree_ids))) if self.tree_ids else ThereIsNoTree()
+            hint = did_you_mean(main, self.tree_ids) or others
+            yield TreeError(UnknownMainTree(main), line=1, hint=hint)
 
     def tree_errors(self, tree: TreeElement, top: etree._Element, *, used: bool) -> Iterator[TreeError]:
         for element in top.iter("*"):
@@ -103,13 +132,12 @@ class Rules:
             problem = broken or self.cannot_be_made(use, count, tree)
             if problem is None:
                 continue
-            unused = f"the tree {tree.id!r} is not used" if not used else ""
-            if ignored(element):
-                unused = "what is inside a SubTreePlus is ignored"
-            if broken or not unused:
+            inside = ignored(element)
+            if broken or (used and not inside):
                 yield self.error(tree, element, *problem)
             else:
-                self.document.warn(line_of(element), f"{unused}, and could not be used: {problem[0]}")
+                why = problem[0]
+                self.document.warn(line_of(element), InSubTreePlus(why) if inside else NotUsed(tree.id, why))
 
     def used_trees(self) -> set[int]:
         """The `id` of the trees that the main tree leads to; of all trees if there is no main tree."""
@@ -130,64 +158,64 @@ class Rules:
             open_ids.extend(use.id for use in uses if use.subtree)
         return found
 
-    def error(self, tree: TreeElement, element: etree._Element, message: str, hint: str = "") -> TreeError:
+    def error(self, tree: TreeElement, element: etree._Element, what: Reason, hint: Reason | None = None) -> TreeError:
         names = [str(element.tag)] + [str(above.tag) for above in element.iterancestors()]
         path = "/".join([tree.id, *reversed(names[: max(len(names) - 2, 0)])])
-        return TreeError(message, line=line_of(element), path=path, hint=hint, file=tree.source.file)
+        return TreeError(what, line=line_of(element), path=path, hint=hint, file=tree.source.file)
 
-    def broken_form(self, use: Use, count: int, tree: TreeElement) -> tuple[str, str] | None:
+    def broken_form(self, use: Use, count: int, tree: TreeElement) -> Problem | None:
         """What the library finds in any tree of a document, used or not."""
         if not use.id:
-            return f"<{use.tag}> needs an ID", ""
+            return NeedsId(use.tag), None
         if use.subtree:
-            return ("a SubTree has no children", "") if count and use.subtree == "SubTree" else None
+            return (SubTreeWithChildren(), None) if count and use.subtree == "SubTree" else None
         if use.cls is not None:
             return self.children_problem(use, use.cls, count)
         return None if use.tag in CATEGORIES else self.v4_feature(use, tree) or self.unknown(use)
 
-    def cannot_be_made(self, use: Use, count: int, tree: TreeElement) -> tuple[str, str] | None:
+    def cannot_be_made(self, use: Use, count: int, tree: TreeElement) -> Problem | None:
         """What the library finds when it makes the nodes."""
         feature = self.v4_feature(use, tree)
         if feature:
             return feature
         if tree.v4 and use.id == "WhileDoElse" and count == 2:
-            return "WhileDoElse with 2 children is a feature of BehaviorTree.CPP v4", "add a third child"
+            return ThreeChildrenInV4(), AddThirdChild()
         if use.subtree:
             known = use.id in self.tree_ids
-            return None if known else (f"there is no tree {use.id!r}", did_you_mean(use.id, self.tree_ids))
+            return None if known else (NoTreeOfId(use.id), did_you_mean(use.id, self.tree_ids))
         return self.unknown(use) if use.cls is None else self.port_problem(use, use.cls)
 
     @staticmethod
-    def v4_feature(use: Use, tree: TreeElement) -> tuple[str, str] | None:
+    def v4_feature(use: Use, tree: TreeElement) -> Problem | None:
         feature = v4.feature(use.tag if use.tag not in CATEGORIES else use.id, use.attributes, v4=tree.v4)
-        return (feature, "this engine runs v3 trees, as Groot 1 writes them") if feature else None
+        return None if feature is None else (feature, OnlyV3())
 
-    def unknown(self, use: Use) -> tuple[str, str]:
+    def unknown(self, use: Use) -> Problem:
         if use.id in self.tree_ids:
-            return f"<{use.tag}> is a tree, not a node", f'write <SubTree ID="{use.id}"/>'
+            return TreeNotNode(use.tag), WriteSubTree(use.id)
         hint = HINTS.get(use.id) or did_you_mean(use.id, [*self.registry, *CATEGORIES, *SUBTREES])
-        return f"there is no node {use.id!r}", hint
+        return NoNode(use.id), hint
 
     @staticmethod
-    def children_problem(use: Use, cls: type[Node], count: int) -> tuple[str, str] | None:
+    def children_problem(use: Use, cls: type[Node], count: int) -> Problem | None:
         if (use.tag == "Decorator" or cls.kind is Kind.DECORATOR) and count != 1:
-            return f"the decorator {use.id} must have exactly one child, it has {count}", ""
+            return OneChildInDecorator(use.id, count), None
         leaf = cls.kind in (Kind.ACTION, Kind.CONDITION)
         if count and (leaf or use.tag in ("Action", "Condition")):
-            return f"{use.id} has no children", ""
+            return LeafWithChildren(use.id), None
         if not count and (use.tag == "Control" or use.tag in NEED_CHILDREN):
-            return f"{use.id} needs at least one child", ""
+            return NeedsChildren(use.id), None
         return None
 
     @staticmethod
-    def port_problem(use: Use, cls: type[Node]) -> tuple[str, str] | None:
+    def port_problem(use: Use, cls: type[Node]) -> Problem | None:
         for key in use.attributes:
             if key not in RESERVED and key not in cls.ports:
-                hint = did_you_mean(key, cls.ports) or f"its ports are: {', '.join(cls.ports) or 'none'}"
-                return f"{use.id} has no port {key!r}, possibly a typo", hint
+                ports = ItsPorts(tuple(cls.ports)) if cls.ports else NoPorts()
+                return NoPort(use.id, key), did_you_mean(key, cls.ports) or ports
         for port in sorted(cls.required):
             if port not in use.attributes and cls.ports[port].default is MISSING:
-                return f"{use.id} needs {port!r}", ""
+                return PortMissing(use.id, port), None
         return None
 
 

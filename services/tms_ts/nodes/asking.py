@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 
 from tms_ts.bt.errors import TickError
 from tms_ts.bt.leaf import PlainAction
+from tms_ts.bt.reasons import NoWorld, WaitsForAnswer
 from tms_ts.bt.status import FAILURE, RUNNING, Status
 from tms_ts.world import Pending, World
 
@@ -24,7 +25,7 @@ class Asking(PlainAction):
     @property
     def world(self) -> World:
         if self.context.world is None:
-            raise TickError(f"{self.registration_name}: this tree was loaded without a world to ask")
+            raise TickError(NoWorld(self.registration_name))
         return self.context.world
 
     def ask(self) -> Pending[Any] | None:
@@ -36,7 +37,7 @@ class Asking(PlainAction):
 
     def tick(self) -> Status:
         if self.pending is None:
-            self.reason = "waits for an answer"
+            self.reason = WaitsForAnswer()
             self.pending = self.ask()
             if self.pending is None:
                 return FAILURE
@@ -46,7 +47,7 @@ class Asking(PlainAction):
         if pending.error is not None:
             self.reason = pending.error
             return FAILURE
-        self.reason = ""
+        self.reason = None
         return self.answered(pending.value)
 
     def halt(self) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, ClassVar
 
 from tms_ts.bt.ports import In
+from tms_ts.bt.reasons import NotPlain
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, SUCCESS, Status
 from tms_ts.nodes.asking import Asking
@@ -34,7 +35,7 @@ class BlackboardValueReaderMongo(Asking):
 
     def answered(self, value: Any) -> Status:
         if not isinstance(value, str | bool | int | float):
-            self.reason = f"{self.mongo_record_name}.{self.mongo_param_name} is not a plain value"
+            self.reason = NotPlain(self.mongo_record_name, self.mongo_param_name)
             return FAILURE
         self.store(self.output_port, value)
         return SUCCESS

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import ClassVar
 
+from tms_reason.reason import Reason
 from tms_ts.bt.convert import MISSING
 from tms_ts.bt.leaf import SyncAction
 from tms_ts.bt.ports import In
+from tms_ts.bt.reasons import AlwaysFails, NoExpression, NumberTooBig, StoredTextFails
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, SUCCESS, Status
 from tms_ts.nodes.expression import TRUTH, Invalid, Scalar, evaluate, names
@@ -20,33 +22,28 @@ class Deciding(SyncAction):
     def lookup(self, key: str) -> Scalar:
         value = self.blackboard.get(key)
         if isinstance(value, int) and not -(2**31) <= value < 2**31:
-            self.warn(f"{key} is too big for 32 bits; the C++ system does not put such a number into an expression")
+            self.warn(NumberTooBig(key))
         return "" if value is MISSING else value
 
     def tick(self) -> Status:
         text = self.read(self.text_port)
         try:
             if not isinstance(text, str):
-                raise Invalid("there is no expression")
+                raise Invalid(NoExpression())
             return SUCCESS if evaluate(text, self.lookup, self.warn) else FAILURE
         except Invalid as error:
-            self.reason = str(error)
+            self.reason = error.why
             return FAILURE
 
-    def preflight(self, texts: Mapping[str, str]) -> list[str]:
+    def preflight(self, texts: Mapping[str, str]) -> list[Reason]:
         text = self.literal(self.text_port)
         if text is None:
             return []
         try:
             keys = names(text)
         except Invalid as error:
-            return [f"{error}, so {self.registration_name} always fails"]
-        return [
-            f"SetBlackboard stores the text {texts[key]!r} in {key!r}: the C++ system fails here, this engine takes it "
-            "as a boolean"
-            for key in sorted(keys & texts.keys())
-            if texts[key] in TRUTH
-        ]
+            return [AlwaysFails(error.why, self.registration_name)]
+        return [StoredTextFails(texts[key], key) for key in sorted(keys & texts.keys()) if texts[key] in TRUTH]
 
 
 @node

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tms_ts.bt.ports import In
+from tms_ts.bt.reasons import KeyIsNumber, NotBooleanKey, TextCountsAsBoolean
 from tms_ts.bt.registry import node
 from tms_ts.nodes.conditional_expression import Deciding
 from tms_ts.nodes.expression import TRUTH, Invalid, Scalar
@@ -25,9 +26,9 @@ class ConditionalExpressionBool(Deciding):
         if isinstance(value, bool):
             return value
         if isinstance(value, int | float):
-            self.warn(f"{key} is a number; the C++ system does not know it in {self.registration_name}")
+            self.warn(KeyIsNumber(key, self.registration_name))
             return value
         if isinstance(value, str) and value in TRUTH:
-            self.warn(f"the text {value!r} of {key!r} counts as a boolean; the C++ system does not know the key here")
+            self.warn(TextCountsAsBoolean(value, key))
             return TRUTH[value]
-        raise Invalid(f"{key} is not a boolean key")
+        raise Invalid(NotBooleanKey(key))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from tms_ts.bt.convert import Missing, text_to_int, to_text
 from tms_ts.bt.leaf import SyncAction
 from tms_ts.bt.ports import In
+from tms_ts.bt.reasons import HoldsNoNumber, NumberNotText
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, SUCCESS, Status
 
@@ -24,10 +25,10 @@ class Counter(SyncAction):
         text = to_text(stored)
         number = text if isinstance(text, Missing) else text_to_int(text)
         if isinstance(number, Missing):
-            self.reason = f"{self.key} holds no number"
+            self.reason = HoldsNoNumber(self.key)
             return FAILURE
         if isinstance(stored, int) and not isinstance(stored, bool):
-            self.warn(f"{self.key} holds a number, not a text; the C++ system throws here if nothing else declares it")
+            self.warn(NumberNotText(self.key))
             self.store(self.key, number + 1)
         else:
             self.store(self.key, str(number + 1))

@@ -17,6 +17,22 @@ from typing import Any
 
 from simpleeval import InvalidExpression, SimpleEval  # type: ignore[import-untyped,unused-ignore]
 
+from tms_reason.reason import Reason
+from tms_reason.texts import text
+from tms_ts.bt.reasons import (
+    ConstantNoNumber,
+    ExpressionInvalid,
+    ExpressionSigns,
+    ExpressionTooLong,
+    ExpressionUnreadable,
+    KeyWithoutValue,
+    NameBeginsWithDigit,
+    OnlyComparisons,
+    OnlyNumbersNegative,
+    TextCompared,
+    TextCountsHere,
+)
+
 MAX_LENGTH = 4000
 MAX_NESTING = 60
 _ALLOWED = re.compile(r"[\w\s()=!<>.\-]*", re.ASCII)
@@ -36,22 +52,26 @@ Scalar = str | bool | int | float
 class Invalid(Exception):
     """The expression cannot be evaluated; for a condition that is a failure."""
 
+    def __init__(self, why: Reason) -> None:
+        super().__init__(text(why, "en"))
+        self.why = why
+
 
 @lru_cache(maxsize=1024)
 def parse(text: str) -> ast.expr:
     """The syntax tree of an expression; Invalid if it is none."""
     if len(text) > MAX_LENGTH or text.count("(") > MAX_NESTING or text.count("-") > MAX_NESTING:
-        raise Invalid("the expression is too long")
+        raise Invalid(ExpressionTooLong())
     if not _ALLOWED.fullmatch(text):
-        raise Invalid("only names, numbers, == != < > <= >= and or ( ) are allowed")
+        raise Invalid(ExpressionSigns())
     flat = _NUMBER.sub(r"\1 \2", " ".join(text.split()))  # 01 is 1, and "1and" is two words, as in C++
     if _NO_NUMBER.search(flat):
-        raise Invalid("a name begins with a digit")
+        raise Invalid(NameBeginsWithDigit())
     named = _IDENTIFIER.sub(lambda word: word[0] if word[0] in _WORDS else _PREFIX + word[0], flat)
     try:
         body = ast.parse(named, mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
-        raise Invalid("the expression cannot be read") from error
+        raise Invalid(ExpressionUnreadable()) from error
     return body
 
 
@@ -65,7 +85,7 @@ class _Evaluator(SimpleEval):  # type: ignore[misc,unused-ignore]
     """simpleeval, reduced to comparisons and logic, with the C++ system's rules for types."""
 
     lookup: Lookup
-    warn: Callable[[str], None]
+    warn: Callable[[Reason], None]
 
     def __init__(self) -> None:
         super().__init__(operators={}, functions={}, names={})
@@ -79,7 +99,7 @@ class _Evaluator(SimpleEval):  # type: ignore[misc,unused-ignore]
 
     def constant(self, node: ast.Constant) -> Scalar:
         if not isinstance(node.value, int | float):
-            raise Invalid(f"{node.value!r} is not a number")
+            raise Invalid(ConstantNoNumber(repr(node.value)))
         return node.value
 
     def name(self, node: ast.Name) -> Scalar:
@@ -92,7 +112,7 @@ class _Evaluator(SimpleEval):  # type: ignore[misc,unused-ignore]
     def minus(self, node: ast.UnaryOp) -> Scalar:
         value: Scalar = self._eval(node.operand)
         if not isinstance(node.op, ast.USub) or isinstance(value, str):
-            raise Invalid("only numbers can be negative")
+            raise Invalid(OnlyNumbersNegative())
         return -value
 
     def logic(self, node: ast.BoolOp) -> bool:
@@ -110,7 +130,7 @@ class _Evaluator(SimpleEval):  # type: ignore[misc,unused-ignore]
             left, right = self.as_bool(left, right), self.as_bool(right, left)
         function = _COMPARISONS.get(type(op))
         if function is None or (isinstance(left, str) and not isinstance(op, ast.Eq | ast.NotEq)):
-            raise Invalid("only == != < > <= >= compare values")
+            raise Invalid(OnlyComparisons())
         return bool(function(left, right))
 
     def as_bool(self, value: Scalar, other: Scalar) -> Scalar:
@@ -118,9 +138,9 @@ class _Evaluator(SimpleEval):  # type: ignore[misc,unused-ignore]
         if not isinstance(value, str):
             return value
         if isinstance(other, bool) and value in TRUTH:
-            self.warn(f"the text {value!r} counts as a boolean here; the C++ system calls the expression invalid")
+            self.warn(TextCountsHere(value))
             return TRUTH[value]
-        raise Invalid(f"the text {value!r} is compared with {other!r}" if value else "a key has no value yet")
+        raise Invalid(TextCompared(value, repr(other)) if value else KeyWithoutValue())
 
     def truth(self, value: Scalar) -> bool:
         return bool(self.as_bool(value, True))
@@ -136,7 +156,7 @@ _COMPARISONS: dict[type[ast.cmpop], Callable[[Any, Any], Any]] = {
 }
 
 
-def evaluate(text: str, lookup: Lookup, warn: Callable[[str], None] = lambda text: None) -> bool:
+def evaluate(text: str, lookup: Lookup, warn: Callable[[Reason], None] = lambda what: None) -> bool:
     """Whether an expression is true; Invalid if that cannot be said."""
     evaluator: _Evaluator | None = getattr(_local, "evaluator", None)
     if evaluator is None:
@@ -145,4 +165,4 @@ def evaluate(text: str, lookup: Lookup, warn: Callable[[str], None] = lambda tex
     try:
         return evaluator.truth(evaluator.eval(text, parse(text)))
     except InvalidExpression as error:
-        raise Invalid(str(error)) from error
+        raise Invalid(ExpressionInvalid(str(error))) from error

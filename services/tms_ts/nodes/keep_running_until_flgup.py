@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from tms_reason.reason import Reason
 from tms_ts.bt.convert import FALSE_WORDS, MISSING, TRUE_WORDS
 from tms_ts.bt.decorator import Decorator
 from tms_ts.bt.errors import TickError
 from tms_ts.bt.ports import In
+from tms_ts.bt.reasons import KeyNotBoolean, RunsUntil, StoredTextThrows, TextAsBoolean
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, IDLE, RUNNING, SUCCESS, Status
 
@@ -30,31 +32,28 @@ class KeepRunningUntilFlgup(Decorator):
         self.set_state(RUNNING)
         status = self.child.execute_tick()
         if status is IDLE:
-            raise TickError(f"KeepRunningUntilFlgup: the child {self.child.name!r} must never return IDLE")
+            raise self.never_idle()
         if status is RUNNING:
             return RUNNING
         self.child.reset()
         if status is FAILURE:
             return FAILURE
-        self.reason = f"runs until {key} is true"
+        self.reason = RunsUntil(key)
         return SUCCESS if self.flag(key) else RUNNING
 
-    def preflight(self, texts: Mapping[str, str]) -> list[str]:
+    def preflight(self, texts: Mapping[str, str]) -> list[Reason]:
         key = self.literal("key")
         if key is None or key not in texts:
             return []
-        return [
-            f"SetBlackboard stores the text {texts[key]!r} in {key!r}: the C++ system throws here, this engine takes "
-            "true and false as booleans (SetLocalBlackboard stores them as such)"
-        ]
+        return [StoredTextThrows(texts[key], key)]
 
     def flag(self, key: str) -> bool:
         value = self.blackboard.get(key)
         if value is MISSING:
             return False
         if isinstance(value, str) and value in TRUE_WORDS | FALSE_WORDS:
-            self.warn(f"{key} holds the text {value!r}, taken as a boolean; the C++ system throws here")
+            self.warn(TextAsBoolean(key, value))
             return value in TRUE_WORDS
         if not isinstance(value, bool):
-            raise TickError(f"KeepRunningUntilFlgup: {key} is {value!r}, not true or false")
+            raise TickError(KeyNotBoolean(key, str(value)))
         return value

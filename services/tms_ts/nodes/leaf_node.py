@@ -9,10 +9,12 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 
+from tms_reason.reason import Reason
 from tms_ts.bt.errors import TickError
 from tms_ts.bt.leaf import PlainAction
 from tms_ts.bt.node import AtOnce
 from tms_ts.bt.ports import In
+from tms_ts.bt.reasons import NoMachines, NoRosName, Sending, Working
 from tms_ts.bt.registry import stand_in
 from tms_ts.bt.status import FAILURE, RUNNING, SUCCESS, Status
 from tms_ts.world import Goal, GoalState
@@ -50,14 +52,14 @@ class LeafNode(PlainAction):
     def start(self) -> Status:
         machine, subtask, record = self.model_name, self.subtask_name, self.record_name
         if self.context.world is None:
-            raise TickError(f"{self.registration_name}: this tree was loaded without machines")
+            raise TickError(NoMachines(self.registration_name))
         self.goal = self.context.world.machines.send(machine, subtask, record, self.path)
         return self.look(self.goal)
 
     def look(self, goal: Goal) -> Status:
         state = goal.state
         if not state.final:
-            self.reason = goal.reason or goal.feedback or state.value
+            self.reason = goal.reason or goal.feedback or (Working() if state is GoalState.RUNNING else Sending())
             return RUNNING
         self.reason = goal.reason
         self.goal = None
@@ -71,10 +73,6 @@ class LeafNode(PlainAction):
     def at_once(self, children: list[AtOnce]) -> AtOnce:
         return False, False
 
-    def preflight(self, texts: Mapping[str, str]) -> list[str]:
+    def preflight(self, texts: Mapping[str, str]) -> list[Reason]:
         names = {port: self.literal(port) or "" for port in ("model_name", "subtask_name")}
-        return [
-            f"{port}={name!r} can be no ROS name"
-            for port, name in names.items()
-            if name and not ROS_NAME.fullmatch(name)
-        ]
+        return [NoRosName(port, name) for port, name in names.items() if name and not ROS_NAME.fullmatch(name)]

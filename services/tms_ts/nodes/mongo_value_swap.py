@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 
 from tms_ts.bt.convert import Missing
 from tms_ts.bt.ports import In
+from tms_ts.bt.reasons import TextIsNoNumber
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import SUCCESS, Status
 from tms_ts.nodes.asking import Asking
@@ -41,7 +42,7 @@ class MongoValueSwap(Asking):
         expected, value = typed(self.expected_value), typed(self.input_value)
         for given, text in ((expected, self.expected_value), (value, self.input_value)):
             if isinstance(given, Missing):
-                self.reason = f"{text!r} is not a number"
+                self.reason = TextIsNoNumber(text)
                 return None
         assert not isinstance(expected, Missing) and not isinstance(value, Missing)
         return self.world.flags.write(self.mongo_record_name, self.mongo_param_name, value, expected)

@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 
 from tms_ts.bt.convert import MISSING, Missing, text_to_double, text_to_int, text_to_integer
 from tms_ts.bt.ports import In
+from tms_ts.bt.reasons import TextIsNoNumber
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import SUCCESS, Status
 from tms_ts.nodes.asking import Asking
@@ -46,7 +47,7 @@ class MongoValueWriter(Asking):
     def ask(self) -> Pending[Any] | None:
         value = typed(self.input_value)
         if isinstance(value, Missing):
-            self.reason = f"{self.input_value!r} is not a number"
+            self.reason = TextIsNoNumber(self.input_value)
             return None
         return self.world.flags.write(self.mongo_record_name, self.mongo_param_name, value)
 

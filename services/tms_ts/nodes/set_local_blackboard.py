@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from tms_ts.bt.convert import MISSING
+from tms_ts.bt.convert import MISSING, kind_of
 from tms_ts.bt.errors import TickError
 from tms_ts.bt.leaf import SyncAction
 from tms_ts.bt.ports import In, InOut, Pointer
+from tms_ts.bt.reasons import MissingParameter
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import SUCCESS, Status
 
@@ -36,12 +37,16 @@ class SetLocalBlackboard(SyncAction):
     def tick(self) -> Status:
         value, key = self.read("value"), self.key_name()
         if value is MISSING:
-            raise TickError("SetLocalBlackboard: missing parameter 'value'")
+            raise TickError(MissingParameter("SetLocalBlackboard", "value"))
         self.store(key, typed(value) if isinstance(value, str) else value)
         return SUCCESS
+
+    def written(self) -> list[tuple[str, Any]]:
+        value, bound = self.literal("value"), self.bindings.get("output_key")
+        return [] if value is None or bound is None else [(self.key_name(), kind_of(typed(value)))]
 
     def key_name(self) -> str:
         bound = self.bindings.get("output_key")
         if bound is None:
-            raise TickError("SetLocalBlackboard: missing parameter 'output_key'")
+            raise TickError(MissingParameter("SetLocalBlackboard", "output_key"))
         return bound.key if isinstance(bound, Pointer) else bound

@@ -7,6 +7,7 @@ import re
 from tms_ts.bt.convert import Missing, to_text
 from tms_ts.bt.leaf import SyncAction
 from tms_ts.bt.ports import In, InOut
+from tms_ts.bt.reasons import NoValue
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, SUCCESS, Status
 
@@ -27,7 +28,7 @@ class SetLocalBlackboardWithCounter(SyncAction):
         text = to_text(self.blackboard.get(self.key))
         counter = to_text(self.blackboard.get(self.counter_key))
         if isinstance(text, Missing) or isinstance(counter, Missing):
-            self.reason = f"{self.key} or {self.counter_key} has no value"
+            self.reason = NoValue(self.key, self.counter_key)
             return FAILURE
         self.store(self.key, re.sub(r"[0-9]+\Z", lambda _: counter, text))
         return SUCCESS

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tms_ts.bt.ports import In
+from tms_ts.bt.reasons import WaitsForOperator
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, SUCCESS, Status
 from tms_ts.bt.timers import Timeout
@@ -24,7 +25,7 @@ class WaitForClick(Asking):
 
     def ask(self) -> Pending[bool]:
         title, text = self.window_title, self.button_info
-        self.reason = f"waits for an operator: {text or title}"
+        self.reason = WaitsForOperator(text or title)
         return self.world.clicks.ask(title, text, self.path, self._seconds())
 
     def _seconds(self) -> float | None:

@@ -13,8 +13,11 @@ from tms_msg_ts.msg import NodeStatus, RunState, RunStates
 from tms_msg_ts.srv import CancelRun
 
 from tms_cli.commands import run
-from tms_reason.errors import NOT_STORED, DbError, RosError
+from tms_reason.errors import DbError, RosError
+from tms_reason.reason import Foreign
+from tms_reason.wire import to_line
 from tms_ros.goals import Outcome
+from tms_runtime.reasons import NotStored
 
 XML = '<root><BehaviorTree ID="T"><AlwaysSuccess/></BehaviorTree></root>'
 
@@ -88,7 +91,9 @@ def test_other_outcomes_are_exit_code_1_with_one_line(task, tms, outcome: str) -
 
 @pytest.mark.parametrize(("outcome", "said"), [("success", 1), ("cancelled", 1), ("failure", 0)])
 def test_a_result_that_is_not_stored_yet_says_so(task, tms, outcome: str, said: int) -> None:
-    task.action = FakeScheduler(feedback(), outcome=Outcome.ABORTED, result=result(outcome, "", f"why {NOT_STORED}"))
+    task.action = FakeScheduler(
+        feedback(), outcome=Outcome.ABORTED, result=result(outcome, "", to_line(NotStored(Foreign("why"))))
+    )
     end = tms(run.command, "1", "--wait")
     assert end.stderr.count("tms: the end of r1 is not stored yet") == said
     assert "not stored yet" in end.stderr

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Generic, TypeVar
 
+from tms_reason.reason import Foreign, Reason
 from tms_ts.world import GoalState, Value, World
 
 T = TypeVar("T")
@@ -16,7 +17,7 @@ class Answer(Generic[T]):
 
     value: Any = None
     done: bool = True
-    error: str | None = None
+    error: Reason | None = None
 
 
 @dataclass
@@ -29,8 +30,8 @@ class FakeGoal:
     node: str
     lasts: int = 3
     end: GoalState = GoalState.SUCCEEDED
-    reason: str = ""
-    feedback: str = "on the way"
+    reason: Reason | None = None
+    feedback: Reason = field(default_factory=lambda: Foreign("on the way"))
     cancels: int = 0
     looks: int = 0
 
@@ -72,7 +73,7 @@ class FakeFlags:
 
     def write(self, record: str, field: str, value: Value, expected: Value | None = None) -> Answer[None]:
         if expected is not None and self.values.get((record, field), False) != expected:
-            return Answer(error="the field holds another value")
+            return Answer(error=Foreign("the field holds another value"))
         if record not in self.missing:
             self.values[record, field] = value
             self.writes.append((record, field, value))

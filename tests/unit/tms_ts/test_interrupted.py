@@ -12,11 +12,14 @@ from builtin_interfaces.msg import Time
 from tms_msg_rc.msg import StopReceipt
 from tms_msg_ts.srv import CancelRun
 
+from tms_reason import wire
 from tms_reason.errors import TaskError
 from tms_runtime.group_commit import GroupCommit
 from tms_ts.interrupted import STOP_LIMIT, Interrupted
 from tms_ts.past import Header, Past
+from tms_ts.reasons import RunInterrupted
 from tms_ts.record import Records
+from words import words
 
 HEADER = Header("run-1", 7, 3, "dig", ["zx200"], "<root/>", (1, 2))
 
@@ -129,19 +132,19 @@ def test_the_history_claims_no_stop_that_nobody_saw(
         receipt("mst110cr", last - 60.0),  # of an earlier stop
     ]
     journal = closed(records, receipts, monkeypatch)
-    assert [(row.kind, row.text) for row in journal[:-2]] == [
-        ("stop", "zx200 stood after 0.50 s, 0 rad and 0.00 m (no scheduler)"),
+    assert [(row.kind, words(row.text)) for row in journal[:-2]] == [
+        ("stop", "zx200 stood after 0.50 s, 0.00 m: no scheduler"),
         ("stop", "ic120: STOP UNCONFIRMED: silent (no scheduler)"),
         ("alarm", "ic120: STOP UNCONFIRMED: silent (no scheduler)"),
-        ("alarm", "zx120: not seen to stand: no receipt of a stop came within 0 s"),
-        ("alarm", "mst110cr: not seen to stand: no receipt of a stop came within 0 s"),
+        ("alarm", "zx120: not seen to stand: no receipt of a stop came within 0.0 s"),
+        ("alarm", "mst110cr: not seen to stand: no receipt of a stop came within 0.0 s"),
     ]
     row = journal[-1]
     assert (row.state, list(row.records)) == ("interrupted", ["zx200/here"])
-    assert row.reason == (
-        "the scheduler was lost; seen to stand: zx200; not seen to stand: ic120, zx120, mst110cr: "
-        "`tms resume` or `tms abandon` it"
+    assert words(row.reason) == (
+        "the scheduler was lost; seen to stand: zx200; not seen to stand: ic120, zx120, mst110cr"
     )
+    assert wire.known(row.reason).find(RunInterrupted).run == "run-1"
     assert [event.number for event in journal[:-1]] == [5, 6, 7, 8, 9, 10]
     assert records.past()[0].closed and STOP_LIMIT > 5.0  # s that the gateways take
 
@@ -154,7 +157,7 @@ def test_a_machine_that_got_a_goal_after_its_stop_was_not_seen_to_stand(
     records.open("run-1").sent(("0.0", "zx200", "dig", "here"))
     last = records.past()[0].last_time
     row = closed(records, [receipt("zx200", last + at) for at in receipts], monkeypatch)[-1]
-    assert ("; seen to stand: zx200" in row.reason) == seen != ("not seen to stand: zx200" in row.reason)
+    assert ("; seen to stand: zx200" in words(row.reason)) == seen != ("not seen to stand: zx200" in words(row.reason))
 
 
 def test_a_run_whose_end_the_power_cut_came_upon_has_ended_and_is_not_interrupted(
@@ -165,6 +168,6 @@ def test_a_run_whose_end_the_power_cut_came_upon_has_ended_and_is_not_interrupte
     record.over("failure", "it rains")
     record.event(5)
     event, row = closed(records, [], monkeypatch)
-    assert (event.number, event.kind, event.text) == (5, "run", "failure: it rains")
-    assert (row.state, row.reason) == ("failure", "it rains") and row.ended_at.sec > 0
+    assert (event.number, event.kind, words(event.text)) == (5, "run", "failure: it rains")
+    assert (row.state, words(row.reason)) == ("failure", "it rains") and row.ended_at.sec > 0
     assert records.past() == []

@@ -18,6 +18,8 @@ from tms_reason.errors import RosError
 from tms_runtime.group_commit import SPARE, GroupCommit
 from tms_ts import journal
 from tms_ts.journal import LOST, Journal
+from tms_ts.reasons import HistoryLost
+from words import words
 
 
 class FakeDb:
@@ -156,8 +158,8 @@ def test_what_memory_cannot_hold_while_the_disk_is_full_is_counted_and_named(
         while not disk.trouble():
             assert not disk.wait(0.01)
         alarms = journal.alarms()
-        assert "memory only: [Errno 28] No space left on device" in alarms[0]
-        assert alarms[1] == "the history of run r has lost 4 entries, events 5 to 8"
+        assert "memory only: [Errno 28] No space left on device" in words(alarms[0])
+        assert alarms[1] == HistoryLost("r", 4, 5, 8)
         assert lost() == before + 4 and db.stored == []
         assert journal.alarms() == []  # told
         full.clear()

@@ -6,14 +6,18 @@ from typing import Any
 import pytest
 from tms_msg_rc.msg import StopReceipt
 
+from tms_reason.reason import Reason
 from tms_ros.client import Call
 from tms_ros.goals import Outcome
+from tms_ros.reasons import NoAnswer
 from tms_ts import machines
 from tms_ts.gateways import Gateways
 from tms_ts.machines import ASK_AGAIN, Identity, Machines
+from tms_ts.reasons import LostTimes, ProcessEnded, ProcessState, SentAgainSoon
 from tms_ts.replay import Replay
 from tms_ts.sent_goal import ACCEPT_LIMIT, RECOVERY, SentGoal
 from tms_ts.world import GoalState
+from words import words
 
 RETRIES = 2
 
@@ -43,13 +47,14 @@ class Site:
         self.now, self.pid, self.peer = 0.0, 1, Peer()
         self.told: list[str] = []
         self.kept: list[tuple[Any, ...]] = []  # what the record has of ends
-        self.fatal, self.trouble = "", ""
+        self.fatal: Reason | None = None
+        self.trouble: Reason | None = None
         monkeypatch.setattr(machines.time, "monotonic", lambda: self.now)
         monkeypatch.setattr(Machines, "_stop_after_loss", lambda one, machine, cause: one._stopping.discard(machine))
         self.peer.lost = lambda: None  # type: ignore[attr-defined]
         ros = SimpleNamespace(peer=lambda *_: self.peer)
         hosts = SimpleNamespace(pid=lambda *_: self.pid, trouble=lambda *_: self.trouble, fatal=lambda *_: self.fatal)
-        gateways = SimpleNamespace(obstacle=lambda _: "", latch=lambda _: "")
+        gateways = SimpleNamespace(obstacle=lambda _: None, latch=lambda _: None)
         self.replay = Replay([(("0.1", "zx200", "dig", "here"), True)])
         record = SimpleNamespace(
             sent=lambda _: None,
@@ -61,7 +66,7 @@ class Site:
             hosts,  # type: ignore[arg-type]
             gateways,  # type: ignore[arg-type]
             lambda: None,
-            lambda kind, _, text: self.told.append(f"{kind}: {text}"),
+            lambda kind, _, what: self.told.append(f"{kind}: {words(what)}"),
             Identity(1, RETRIES, record, self.replay),  # type: ignore[arg-type]
         )
         self.goal: SentGoal = self.machines.send("zx200", "subtask_zx200_change_pose", "pose", "0")
@@ -101,7 +106,8 @@ def test_a_server_that_never_answers_is_a_loss(site: Site) -> None:
         site.pass_time(RETRIES)
     assert site.peer.cancelled == site.peer.calls[:RETRIES]  # should they be accepted after all
     site.pass_time(RECOVERY + ACCEPT_LIMIT)
-    assert "did not answer the goal within 5 s (for the 3. time)" in site.goal.reason
+    name = "zx200:subtask_zx200_change_pose"
+    assert site.goal.reason == LostTimes(NoAnswer(name, site.goal.action, ACCEPT_LIMIT), RETRIES + 1)
     assert site.goal.state.final
 
 
@@ -120,7 +126,7 @@ def test_a_process_that_ends_again_is_a_further_loss_however_soon(site: Site) ->
     assert site.goal.losses == RETRIES
     site.lose()
     assert site.goal.state.final
-    assert "ended during its goal" in site.goal.reason
+    assert site.goal.reason is not None and site.goal.reason.find(ProcessEnded) is not None
 
 
 @pytest.mark.parametrize(("outcome", "again"), [(Outcome.SUCCEEDED, True), (Outcome.CANCELED, False)])
@@ -137,9 +143,7 @@ def test_a_receipt_is_told_once(site: Site) -> None:
     receipt = StopReceipt(machine="zx200", confirmed=True, seconds=0.5, cause="x")
     site.machines.receipt(receipt)
     site.machines.receipt(receipt)
-    assert [text for text in site.told if text.startswith("stop")] == [
-        "stop: zx200 stood after 0.50 s, 0 rad and 0.00 m (x)"
-    ]
+    assert [text for text in site.told if text.startswith("stop")] == ["stop: zx200 stood after 0.50 s, 0.00 m: x"]
 
 
 def test_a_goal_that_is_cancelled_while_it_waits_to_be_sent_again_is_never_sent(site: Site) -> None:
@@ -167,7 +171,7 @@ def test_a_loop_around_a_goal_that_fails_at_once_floods_nothing(site: Site, outc
     site.retry(2.0, outcome)
     assert 3 <= len(site.peer.calls) <= 1 + 2.0 / ASK_AGAIN
     assert len(site.told) < 20
-    assert site.goal.reason == "it failed just now and is sent again soon"
+    assert site.goal.reason == SentAgainSoon()
 
 
 def test_only_the_goal_that_has_failed_waits(site: Site) -> None:
@@ -188,10 +192,10 @@ def test_a_goal_that_the_tree_has_halted_is_sent_again_at_once(site: Site) -> No
 
 def test_a_process_that_is_given_up_is_told_once(site: Site) -> None:
     site.peer.calls[0].end(Outcome.ABORTED)
-    site.trouble = site.fatal = "process zx200:subtask_zx200_change_pose is FATAL"
+    site.trouble = site.fatal = ProcessState("zx200:subtask_zx200_change_pose", "FATAL")
     site.retry(10.0)
     assert len([text for text in site.told if text.startswith("alarm")]) == 1
-    assert site.told.count(f"goal: /zx200/subtask_zx200_change_pose failed: {site.fatal}") >= 10
+    assert site.told.count(f"goal: {words(site.fatal)}") >= 10
     assert len(site.peer.calls) == 1
 
 

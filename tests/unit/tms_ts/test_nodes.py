@@ -7,7 +7,9 @@ from typing import Any
 
 import pytest
 
+from tms_reason.reason import Foreign
 from tms_ts.bt import FAILURE, RUNNING, SUCCESS, Status, TickError
+from tms_ts.bt.reasons import AlwaysFails, KeyChangesType, KeyIsNumber, NoRosName, NumberTooBig
 from tms_ts.nodes.expression import _NUMBER, Invalid, evaluate, names
 from tms_ts.nodes.mongo_value_writer import typed as written_as
 from tms_ts.world import GoalState
@@ -32,7 +34,7 @@ class TestLeafNode:
         fake = FakeWorld(FakeMachines(lasts=100))
         one = tree(leaf(), fake=fake)
         one.tick()
-        assert one.root.reason == "on the way"
+        assert one.root.reason == Foreign("on the way")
         one.halt()
         one.halt()
         assert [goal.cancels for goal in fake.machines.sent] == [1]
@@ -54,7 +56,7 @@ class TestLeafNode:
 
     def test_odd_machine_name_is_a_warning(self) -> None:
         one = tree(leaf().replace('"zx200"', '"zx200＿"'))
-        assert "no ROS name" in one.warnings[0][1]
+        assert isinstance(one.warnings[0][1], NoRosName)
 
 
 READ = '<BlackboardValueReaderMongo mongo_record_name="rec" mongo_param_name="f" output_port="k"/>'
@@ -93,7 +95,7 @@ class TestFlags:
         one.tick()
         fake.flags.values["rec", "f"] = 5
         assert one.tick() is SUCCESS
-        assert "changes its type" in one.warnings[0][1]
+        assert isinstance(one.warnings[0][1], KeyChangesType)
 
     def test_waiting_for_a_flag_does_not_halt_a_moving_machine(self) -> None:
         fake = FakeWorld(FakeMachines(lasts=4), flags=FakeFlags({("rec", "f"): True}))
@@ -208,16 +210,16 @@ class TestExpression:
         assert tree(body.format("k == true or other == false"), blackboard={"k": True}).tick() is FAILURE
         one = tree(body.format("k == false or n == 1"), blackboard={"k": True, "n": 1})
         assert one.tick() is SUCCESS
-        assert "is a number" in one.warnings[0][1]
+        assert isinstance(one.warnings[0][1], KeyIsNumber)
 
     def test_a_number_that_the_cpp_system_leaves_out_is_a_warning(self) -> None:
         one = tree('<ConditionalExpression conditional_expression="k == 2147483648"/>', blackboard={"k": 2**31})
         assert one.tick() is SUCCESS
-        assert "too big for 32 bits" in one.warnings[0][1]
+        assert isinstance(one.warnings[0][1], NumberTooBig)
 
     def test_a_hopeless_expression_is_a_warning(self) -> None:
         one = tree('<ConditionalExpression conditional_expression="k = true"/>')
-        assert "always fails" in one.warnings[0][1]
+        assert isinstance(one.warnings[0][1], AlwaysFails)
 
 
 class TestKeepRunningUntilFlgup:

@@ -5,8 +5,11 @@ from dataclasses import dataclass, field
 import pytest
 from builtin_interfaces.msg import Time
 
+from tms_reason.reason import Foreign
 from tms_ts.bt import FAILURE, RUNNING
+from tms_ts.bt.reasons import WaitsForOperator
 from tms_ts.questions import Clicks, Questions
+from tms_ts.reasons import AnsweredNo, AnsweredYes
 from unit.tms_ts.fakes import FakeClicks, FakeWorld
 from unit.tms_ts.trees import tree
 
@@ -58,7 +61,10 @@ def test_the_first_answer_counts(site: Site, yes: bool) -> None:
     assert not site.questions.answer(shown.id, not yes, "mina")
     assert answer.value is yes
     assert site.questions.messages() == []
-    assert site.told == [("question", "0.1", "clear?"), ("answer", "0.1", f"{'yes' if yes else 'no'}, by ken at pc")]
+    assert site.told == [
+        ("question", "0.1", Foreign("clear?")),
+        ("answer", "0.1", AnsweredYes("ken at pc") if yes else AnsweredNo("ken at pc")),
+    ]
     assert site.changes == 2
 
 
@@ -89,7 +95,7 @@ def test_the_reason_names_the_question() -> None:
     fake = FakeWorld(clicks=FakeClicks(None))
     one = tree('<WaitForClick window_title="Safety" button_info="clear?"/>', fake=fake)
     one.tick()
-    assert one.running()[0].reason == "waits for an operator: clear?"
+    assert one.running()[0].reason == WaitsForOperator("clear?")
 
 
 def test_no_id_comes_again_after_a_restart_or_is_the_beginning_of_another_one() -> None:

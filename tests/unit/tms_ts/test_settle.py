@@ -11,6 +11,10 @@ from builtin_interfaces.msg import Time
 from tms_msg_rc.msg import StopReceipt
 from tms_msg_ts.action import ExecuteTask
 
+from tms_machine.reasons import MachineLatched, SoftwareStop, StopUnconfirmed
+from tms_reason import wire
+from tms_reason.reason import Foreign, Reason
+from tms_reason.wire import to_line
 from tms_ros.goals import Outcome
 from tms_runtime.group_commit import GroupCommit
 from tms_ts import run as module
@@ -18,8 +22,10 @@ from tms_ts.bt import Status
 from tms_ts.budget import AT_ONCE
 from tms_ts.node import END_STORED, Scheduler
 from tms_ts.past import Past
+from tms_ts.reasons import LeftOut
 from tms_ts.record import Records
 from tms_ts.run import PERIOD, Facts, Run
+from words import words
 
 
 class Machines:
@@ -28,10 +34,10 @@ class Machines:
     def __init__(self, *open_goals: str, confirmed: bool = True) -> None:
         self.open, self.stopped, self._confirmed = list(open_goals), list[str](), confirmed
 
-    def stop_all(self, machines: list[str], cause: str) -> list[Any]:
+    def stop_all(self, machines: list[str], cause: Reason) -> list[Any]:
         self.stopped += machines
         self.open.clear()
-        return [StopReceipt(machine=name, confirmed=self._confirmed, cause=cause) for name in machines]
+        return [StopReceipt(machine=name, confirmed=self._confirmed, cause=to_line(cause)) for name in machines]
 
     def receipt(self, receipt: Any) -> None: ...
 
@@ -88,16 +94,16 @@ def test_a_success_that_leaves_nothing_open_stops_nobody(a_run: Run) -> None:
 
 def test_a_tree_that_succeeds_while_a_halted_leaf_still_moves_has_its_machine_seen_to_stop(a_run: Run) -> None:
     machines = Machines("/zx200/st_zx200_swing")
-    a_run._failure = "an earlier leaf failed"
+    a_run._failure = Foreign("an earlier leaf failed")
     assert a_run._settle(tree(), machines, "success") == "success"  # type: ignore[arg-type]
     assert machines.stopped == ["zx200"]
-    assert a_run.facts.reason == ""
+    assert a_run.facts.reason is None
 
 
 def test_a_success_whose_last_motion_was_not_seen_to_end_is_none(a_run: Run) -> None:
     machines = Machines("/zx200/st_zx200_swing", confirmed=False)
     assert a_run._settle(tree(), machines, "success") == "stop_unconfirmed"  # type: ignore[arg-type]
-    assert "STOP UNCONFIRMED" in a_run.facts.reason
+    assert a_run.facts.reason is not None and a_run.facts.reason.find(StopUnconfirmed) is not None
 
 
 def test_the_loop_never_sleeps_longer_than_its_period_after_many_wakes(
@@ -124,7 +130,7 @@ def test_a_run_that_meets_a_bug_is_closed_in_the_history(a_run: Run, rows: list[
     scheduler._facts = lambda goal, past: a_run.facts
     scheduler._execute = lambda *_: broken()
     scheduler._ros = scheduler._journal = scheduler._app = SimpleNamespace(
-        log=structlog.stdlib.get_logger("test"), now=Time, put=rows.append
+        log=structlog.stdlib.get_logger("test"), process=SimpleNamespace(full="tms:ts"), now=Time, put=rows.append
     )
     scheduler._records = SimpleNamespace(open=lambda _: a_run.record)
     scheduler._runs, scheduler._holders = {}, {}
@@ -149,27 +155,25 @@ def test_a_resume_that_is_refused_leaves_its_record_and_no_open_file(a_run: Run,
 
     before = files()
     a_run._resumed, a_run.record = True, Records(tmp_path, disk).open("run")
-    a_run.refuse("NOT_ARMED", "zx200 is latched")
+    a_run.refuse(MachineLatched("zx200", SoftwareStop()))
     disk.close(10)
     assert files() == before
     assert Past(a_run.record.path).closed
 
 
 def test_a_loop_that_waits_is_told_to_whoever_looks_and_in_part_to_the_history(a_run: Run, rows: list[Any]) -> None:
-    node: Any = SimpleNamespace(name="wait", path="0.1", uid=2, parent=None, registration_name="Wait", reason="")
+    node: Any = SimpleNamespace(name="wait", path="0.1", uid=2, parent=None, registration_name="Wait", reason=None)
     for _ in range(AT_ONCE + 300):
         a_run._changes_of_tick = 0
         a_run._node_changed(node, Status.RUNNING, Status.SUCCESS)
         a_run._tell_flood()
     told = [row.text for row in rows if row.kind == "node" and row.node]
     assert AT_ONCE <= len(told) < AT_ONCE + 10
-    assert [row.text for row in rows if row.kind == "node" and not row.node] == [
-        "1 further changes are left out: a loop goes round"
-    ]
+    assert [row.text for row in rows if row.kind == "node" and not row.node] == [to_line(LeftOut(1))]
     assert len(a_run.facts.changes) == AT_ONCE + 300
-    a_run._end("success", "")
+    a_run._end("success", None)
     told_at_end = [row.text for row in rows if hasattr(row, "kind") and row.kind == "node" and not row.node][1:]
-    assert len(told_at_end) == 1 and int(told_at_end[0].split()[0]) > 280
+    assert len(told_at_end) == 1 and wire.known(told_at_end[0]).args["count"] > 280
 
 
 @pytest.mark.parametrize(("stored", "told"), [(True, "it rains"), (False, "it rains (not stored yet: the disk")])
@@ -181,4 +185,5 @@ def test_a_result_is_told_when_its_run_s_end_is_stored_or_with_a_note(stored: bo
     scheduler._disk = SimpleNamespace(wait=lambda seconds: asked.append(seconds) or stored)
     how, result = scheduler.execute(SimpleNamespace(request=SimpleNamespace(resume="")))
     assert (how, asked) == (Outcome.ABORTED, [END_STORED])
-    assert result.error_msg.startswith(told) and stored == (result.error_msg == told)
+    said = words(result.error_msg)
+    assert said.startswith(told) and stored == (said == told)

@@ -1,0 +1,28 @@
+"""The states of a run, as its history tells them."""
+
+from tms_reason.reason import Reason
+from tms_ts.reasons import (
+    StateAbandoned,
+    StateBecause,
+    StateCancelled,
+    StateFailure,
+    StateInterrupted,
+    StatePreparing,
+    StateRefused,
+    StateRunning,
+    StateStopping,
+    StateStopUnconfirmed,
+    StateSuccess,
+)
+
+STATES: dict[str, Reason] = {
+    "preparing": StatePreparing(), "running": StateRunning(), "stopping": StateStopping(),
+    "success": StateSuccess(), "failure": StateFailure(), "cancelled": StateCancelled(),
+    "stop_unconfirmed": StateStopUnconfirmed(), "interrupted": StateInterrupted(), "refused": StateRefused(),
+    "abandoned": StateAbandoned(),
+}  # fmt: skip
+
+
+def entered(state: str, why: Reason | None) -> Reason:
+    """That a run is in a state now."""
+    return STATES[state] if why is None else StateBecause(STATES[state], why)
