@@ -24,8 +24,8 @@ from tms_config.environment import environment
 from tms_config.processes import Process, here
 from tms_host.supervisor import Supervisor, render, runtime_folder
 from tms_reason.errors import ConfigError, TmsError
-from tms_ros.priority import session_first
 from tms_runtime import metrics
+from tms_runtime.priority import session_first
 from tms_ur.address import certificate, users
 
 NEEDED_BYTES = 100 * 2**20  # for logs

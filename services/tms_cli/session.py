@@ -17,6 +17,7 @@ from tms_reason import wire
 from tms_reason.errors import ConfigError, TmsError
 from tms_reason.reason import Foreign
 from tms_ros.interface_types import M, Reply, Req, ServiceType
+from tms_runtime.priority import undisturbed
 
 if TYPE_CHECKING:
     from tms_ros.node import Ros
@@ -38,7 +39,7 @@ def ros() -> Iterator["Ros"]:
     from tms_ros.node import Ros
 
     with state_folder.private():  # it writes a log of its own
-        node = Ros(f"tms_cli_{os.getpid()}")
+        node = Ros(f"tms_cli_{os.getpid()}", creating=undisturbed())
     leaving.callback(node.leave)
     try:
         yield node

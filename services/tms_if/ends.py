@@ -15,7 +15,7 @@ from tms_if.interfaces import interface, short_name
 from tms_if.names import Allowed
 from tms_reason.errors import RosError
 from tms_ros.node import Ros
-from tms_ros.packing import pack, unpack
+from tms_runtime.packing import pack, unpack
 
 ROS_LIMIT = 5.0  # s for the ROS thread to make or remove something
 ANSWER_LIMIT = 30.0  # s for a service to answer, on either side

@@ -22,12 +22,12 @@ from tms_reason import wire
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason, Several
 from tms_ros.client import AnyCall, AnyPeer
-from tms_ros.fence import derived
 from tms_ros.goals import Outcome
 from tms_ros.interface_types import ActionType, F, G, R
 from tms_ros.naming import process_of
 from tms_ros.node import Ros
 from tms_ros.reasons import LostMeanwhile, NoAnswer, ProcessLost
+from tms_runtime.fence import derived
 
 SERVER_LIMIT = 5.0  # s for an action server to appear
 ACCEPT_LIMIT = 3.0  # s for it to answer a goal

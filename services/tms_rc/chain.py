@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from tms_rc.reasons import HeldByAnother, NoPlanner, NoScheduler, NoSubtask, OldRun
 from tms_reason.reason import Reason
-from tms_ros.fence import Owner
+from tms_runtime.fence import Owner
 
 SCHEDULER = "ts"
 

@@ -36,12 +36,12 @@ from tms_reason.errors import RosError
 from tms_reason.reason import Reason
 from tms_reason.wire import to_line
 from tms_ros.client import AnyCall, AnyPeer
-from tms_ros.fence import parse
 from tms_ros.goals import Ended, Outcome
 from tms_ros.loop import POLL
 from tms_ros.reasons import ProcessLost
 from tms_ros.server import AnyGoal
 from tms_runtime.app import App
+from tms_runtime.fence import parse
 
 SERVER_LIMIT = 3.0  # s for the machine's server to be there, and for news of the machine to be heard
 ACCEPT_LIMIT = 3.0  # s for it to answer a goal

@@ -38,10 +38,10 @@ from tms_rc.vigil import Vigil
 from tms_reason import wire
 from tms_reason.reason import Reason
 from tms_ros.client import AnyCall, AnyPeer
-from tms_ros.fence import Owner
 from tms_ros.reasons import ProcessLost
 from tms_ros.server import AnyGoal
 from tms_runtime.app import App
+from tms_runtime.fence import Owner
 
 PERMIT_LIMIT = 3.0  # s that a goal may come before the permits behind it: a new process is discovered late on a busy PC
 PRESSED = 1.0  # s that a software stop counts as pressed after its last message

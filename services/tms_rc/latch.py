@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from tms_machine.reasons import MachineLatched
 from tms_rc.reasons import Held, ThenSchedulerLost, TokenOld, TokenUnknown
 from tms_reason.reason import Reason
-from tms_ros.fence import Owner
+from tms_runtime.fence import Owner
 
 TOKEN_SECONDS = 60.0  # s that a person has between the two steps
 ANY_LEAF = -1  # no leaf has this number: any leaf of the run may leave the hold

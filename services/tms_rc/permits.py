@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 from tms_machine.permit import Link
 from tms_rc.chain import SCHEDULER
-from tms_ros.fence import Owner, parse
 from tms_runtime.app import App
+from tms_runtime.fence import Owner, parse
 
 
 class Permits:

@@ -9,9 +9,9 @@ from tms_rc.reasons import GatewayRestarted, GatewayRestartedHeld, GatewayRestar
 from tms_rc.standstill import UNKNOWN
 from tms_rc.stopper import Stop
 from tms_reason.reason import Reason
-from tms_ros.fence import Owner
 from tms_ros.reasons import ProcessLost
 from tms_runtime.app import App
+from tms_runtime.fence import Owner
 
 REACHED = 5.0  # s for the machine's servers to be there
 LEFT_MOVING = 2.0  # s that a machine that was left armed and idle is watched for a motion

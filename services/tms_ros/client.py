@@ -9,22 +9,20 @@
 import threading
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Generic
+from typing import Any, Generic
 from uuid import uuid4
 
-from rclpy.action import ActionClient
 from rclpy.action.client import ClientGoalHandle
 from rclpy.task import Future
 from unique_identifier_msgs.msg import UUID
 
 from tms_ros.goals import Outcome
 from tms_ros.interface_types import ActionType, F, G, R
+from tms_ros.loop import Loop
 from tms_ros.naming import process_of
+from tms_ros.privates import SureActionClient
 from tms_ros.quality import SERVICE
 from tms_ros.reasons import NoServer
-
-if TYPE_CHECKING:
-    from tms_ros.node import Ros
 
 UNKNOWN_GOAL = 2  # action_msgs/CancelGoal: the server does not know the goal, so it was restarted
 DISCOVERY_LEASE = 6.0  # s after which discovery itself has dropped a dead process (5 s in our DDS profile)
@@ -113,67 +111,20 @@ class Call(Generic[R, F]):
             self.end(Outcome.LOST)
 
 
-class _Client(ActionClient):  # type: ignore[misc]
-    """An action client that takes all waiting feedback before a result or a rejection.
-
-    A server drops its answer when it has not yet discovered a client that has long discovered it; its status, which
-    is kept for late comers, then tells that the goal was accepted.
-    """
-
-    def __init__(self, *args: Any, **settings: Any) -> None:
-        super().__init__(*args, **settings)
-        self._told_by_status: set[int] = set()  # goal requests whose answer may still come
-
-    def take_data(self) -> dict[str, Any]:
-        data: dict[str, Any] = super().take_data()
-        first = data.pop("feedback", None)
-        waiting = [] if first is None else [first]
-        if "goal" in data or "result" in data:
-            while (message := self._client_handle.take_feedback(self._action_type.Impl.FeedbackMessage)) is not None:
-                waiting.append(message)
-        return {"waiting": waiting, **data}
-
-    async def execute(self, taken_data: dict[str, Any]) -> None:
-        for message in taken_data.pop("waiting"):
-            await super().execute({"feedback": message})
-        if "goal" in taken_data and taken_data["goal"][0] in self._told_by_status:
-            self._told_by_status.discard(taken_data.pop("goal")[0])
-        await super().execute(taken_data)
-        for status in taken_data["status"].status_list if "status" in taken_data else ():
-            await self._accepted_by(status)
-
-    async def _accepted_by(self, status: Any) -> None:
-        wanted = bytes(status.goal_info.goal_id.uuid)
-        for number, goal_id in list(self._goal_sequence_number_to_goal_id.items()):
-            if bytes(goal_id.uuid) == wanted and wanted not in self._goal_handles:
-                self._told_by_status.add(number)
-                answer = self._action_type.Impl.SendGoalService.Response(accepted=True, stamp=status.goal_info.stamp)
-                await super().execute({"goal": (number, answer)})
-
-    def forget(self, goal_id: bytes) -> None:
-        """Of a goal that has ended; rclpy itself forgets only those that had a result."""
-        self._feedback_callbacks.pop(goal_id, None)
-
-    def handle_of(self, goal_id: bytes) -> ClientGoalHandle:
-        """A handle for a goal that the server has not answered, to ask whether it has it after all."""
-        answer = self._action_type.Impl.SendGoalService.Response(accepted=True)
-        return ClientGoalHandle(self, UUID(uuid=list(goal_id)), answer)
-
-
 AnyCall = Call[Any, Any]  # of any action
 
 
 class Peer(Generic[G, R, F]):
     """An action server elsewhere, as this process reaches it."""
 
-    def __init__(self, ros: "Ros", action_type: ActionType[G, R, F], name: str) -> None:
-        self._ros, self.name = ros, name
+    def __init__(self, loop: Loop, action_type: ActionType[G, R, F], name: str) -> None:
+        self._loop, self.name = loop, name
         self._open: list[Call[R, F]] = []  # used on the executor thread only
         self._taken_by: frozenset[bytes] = frozenset()  # servers that could have taken the last goal
         self._dead_until = 0.0
         self._dead: frozenset[bytes] = frozenset()  # servers that are known to be gone, though discovery is slower
-        self._client = _Client(
-            ros.node, action_type, name, callback_group=ros.group, goal_service_qos_profile=SERVICE,
+        self._client = SureActionClient(
+            loop.node, action_type, name, callback_group=loop.group, goal_service_qos_profile=SERVICE,
             result_service_qos_profile=SERVICE, cancel_service_qos_profile=SERVICE,
         )  # fmt: skip
 
@@ -193,7 +144,7 @@ class Peer(Generic[G, R, F]):
 
     def _servers(self) -> frozenset[bytes]:
         """The servers of this name; the status topic is the last thing that a new one announces."""
-        found = self._ros.node.get_publishers_info_by_topic(f"{self.name}/_action/status")
+        found = self._loop.node.get_publishers_info_by_topic(f"{self.name}/_action/status")
         return frozenset(bytes(info.endpoint_gid) for info in found)
 
     def wait_ready(self, seconds: float) -> None:
@@ -202,7 +153,7 @@ class Peer(Generic[G, R, F]):
         Raises:
             RosError: it did not come.
         """
-        self._ros.wait_for(self.ready, seconds, NoServer(process_of(self.name), self.name, seconds))
+        self._loop.wait_for(self.ready, seconds, NoServer(process_of(self.name), self.name, seconds))
 
     def send(
         self,
@@ -225,7 +176,7 @@ class Peer(Generic[G, R, F]):
             future.add_done_callback(lambda done: call.answered(done.result()))
             self._taken_by = self._servers()  # takes a while: the goal is on its way meanwhile
 
-        self._ros.on_executor(send)
+        self._loop.on_executor(send)
         return call
 
     def lost(self) -> None:
@@ -235,7 +186,7 @@ class Peer(Generic[G, R, F]):
         successor is there would get lost, so `ready` waits for a server that is not one of the old ones.
         """
         self._dead, self._dead_until = self._taken_by, time.monotonic() + DISCOVERY_LEASE
-        self._ros.on_executor(self._end_open)
+        self._loop.on_executor(self._end_open)
 
     def _end_open(self) -> None:
         for call in self._open:
@@ -244,15 +195,15 @@ class Peer(Generic[G, R, F]):
 
     def ask_again(self, call: Call[R, F]) -> None:
         """Ask for a result that should be there by now. Returns at once."""
-        self._ros.on_executor(call.ask_again)
+        self._loop.on_executor(call.ask_again)
 
     def doubt(self, call: Call[R, F]) -> None:
         """Give up a goal that was not answered in time; it ends as LOST when the server knows nothing of it."""
-        self._ros.on_executor(lambda: call.doubt(self._client.handle_of(call.id)))
+        self._loop.on_executor(lambda: call.doubt(self._client.handle_of(call.id)))
 
     def cancel(self, call: Call[R, F]) -> None:
         """Ask for the end of a goal, also before it was accepted. Returns at once."""
-        self._ros.on_executor(call.cancel_now)
+        self._loop.on_executor(call.cancel_now)
 
 
 AnyPeer = Peer[Any, Any, Any]  # of any action

@@ -6,12 +6,11 @@ Why it is built this way (all measured with the rclpy in use):
   keeps the answer from being delivered. One thread runs them all, so nothing runs at the same time.
 """
 
-import os
 import threading
 import time
 from collections import deque
-from collections.abc import Awaitable, Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Awaitable, Callable
+from contextlib import AbstractContextManager, nullcontext
 from typing import Any, TypeVar
 
 import rclpy
@@ -21,14 +20,14 @@ from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.context import Context
 from rclpy.exceptions import InvalidHandle
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Future
 
 from tms_reason.errors import RosError
 from tms_reason.reason import Reason
-from tms_ros.priority import come_first, threads
+from tms_ros.privates import TimedExecutor
 from tms_ros.reasons import ExecutorBusy
 
 T = TypeVar("T")
@@ -40,18 +39,24 @@ POLL = 0.02  # s between looks at the ROS graph, which has no cheap event in rcl
 class Loop:
     """A node, the thread that runs its callbacks, and what else runs there."""
 
-    def __init__(self, name: str, namespace: str = "/", process: str = "") -> None:
-        """`process` is the name that people know, as `tms ps` lists it."""
+    def __init__(
+        self,
+        name: str,
+        namespace: str = "/",
+        process: str = "",
+        creating: AbstractContextManager[None] | None = None,
+    ) -> None:
+        """`process` is the name that people know, as `tms ps` lists it; the node is made inside of `creating`."""
         self.process = process or name
         self._context = Context()
         rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
-        with _undisturbed():
+        with creating or nullcontext():
             self.node: Node = rclpy.create_node(
                 name, namespace=namespace, context=self._context, start_parameter_services=False, enable_rosout=False
             )
         self.group = ReentrantCallbackGroup()
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)  # a node's own stands still when NTP sets it back
-        self._executor = _Executor(context=self._context)
+        self._executor = TimedExecutor(context=self._context)
         self._executor.add_node(self.node)
         self._coming, self._starting = deque[Callable[[], None]](), deque[Callable[[], Awaitable[None]]]()
         self._asked: float | None = None  # monotonic time since which the executor has not shown itself
@@ -63,6 +68,10 @@ class Loop:
     def busy_since(self) -> float | None:
         """When the present callback of the executor began, monotonic [s]; None while it waits."""
         return self._executor.busy_since
+
+    def is_current(self) -> bool:
+        """Whether this is called on the executor thread."""
+        return threading.current_thread() is self._thread
 
     def thread_number(self) -> int | None:
         """The executor thread's number in the kernel."""
@@ -210,39 +219,3 @@ class Loop:
             step()
 
         timer = self.every(seconds, once)
-
-
-@contextmanager
-def _undisturbed() -> Iterator[None]:
-    """No other process takes this thread's processor, where the system allows it (CAP_SYS_NICE or LimitRTPRIO).
-
-    Fast DDS announces a participant a moment before it listens. On a PC with forty processes, all of them wake up to
-    answer; if they run before the participant listens, it hears of them only with their next announcement: measured
-    2.1 s instead of 0.25 s. It takes 3 ms, in a program that has to load the middleware first 25 ms.
-
-    Threads that are started meanwhile do not come first: theirs are some hundred milliseconds of answers to read, and
-    seven processes that started at once kept everything else on the PC from its two processors for up to 2.8 s.
-    """
-    before = threads()
-    try:
-        os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(1))
-    except OSError:  # not allowed, or not known here
-        yield
-        return
-    try:
-        yield
-    finally:
-        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
-        come_first(os.getpriority(os.PRIO_PROCESS, 0), threads() - before)  # their share was reset as well
-
-
-class _Executor(SingleThreadedExecutor):  # type: ignore[misc]
-    """Knows since when it has been in its present callback."""
-
-    busy_since: float | None = None  # monotonic; None while it waits
-
-    def wait_for_ready_callbacks(self, *args: Any, **settings: Any) -> Any:
-        self.busy_since = None
-        found = super().wait_for_ready_callbacks(*args, **settings)
-        self.busy_since = time.monotonic()
-        return found

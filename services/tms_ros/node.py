@@ -1,31 +1,64 @@
 """A node as this system uses it: calls are safe from any thread."""
 
+import threading
 import time
-from collections.abc import Callable
+from contextlib import AbstractContextManager
 
 from tms_ros.client import AnyPeer, Peer
-from tms_ros.goals import Accept, Ended
 from tms_ros.interface_types import ActionType, F, G, R
-from tms_ros.server import Goal, Served
+from tms_ros.loop import Loop
+from tms_ros.server import Served
 from tms_ros.services import Services
+from tms_ros.topics import Topics
 
 STOP_LIMIT = 1.0  # s for the workers of served goals to stop their motions
 LAST_WORDS = 0.1  # s for results and reasons to leave before this process does
 
 
-class Ros(Services):
-    """One node: its thread and times (loop.py), topics, services, and here its actions."""
+class Ros:
+    """One node, made of its thread and times (loop.py), topics, services and actions; their methods are its own."""
 
-    def __init__(self, name: str, namespace: str = "/", process: str = "") -> None:
-        super().__init__(name, namespace, process)
+    def __init__(
+        self, name: str, namespace: str = "/", process: str = "", creating: AbstractContextManager[None] | None = None
+    ) -> None:
+        """See `Loop`."""
+        self.loop = loop = Loop(name, namespace, process, creating)
+        self.topics = topics = Topics(loop)
+        self.services = services = Services(loop)
+        self._served = Served(loop, topics)
         self._peers: dict[str, AnyPeer] = {}
-        self._served = Served(self)
+        self._making = threading.Lock()
+
+        self.node, self.process, self.failed = loop.node, loop.process, loop.failed
+        self.on_executor, self.do, self.start, self.promise = loop.on_executor, loop.do, loop.start, loop.promise
+        self.every, self.after, self.beside, self.now = loop.every, loop.after, loop.beside, loop.now
+        self.begin, self.on_stop, self.hangs, self.leave = loop.begin, loop.on_stop, loop.hangs, loop.leave
+        self.busy_since, self.thread_number, self.wait_for = loop.busy_since, loop.thread_number, loop.wait_for
+
+        self.publisher, self.delivered, self.subscribe = topics.publisher, topics.delivered, topics.subscribe
+        self.sample, self.sample_arrivals, self.subscribe_raw = (
+            topics.sample, topics.sample_arrivals, topics.subscribe_raw,
+        )  # fmt: skip
+        self.publishers, self.publisher_count = topics.publishers, topics.publisher_count
+        self.lease_publisher, self.lease_subscribe = topics.lease_publisher, topics.lease_subscribe
+        self.mismatches = topics.mismatches
+
+        self.offer, self.offer_slow, self.prepare = services.offer, services.offer_slow, services.prepare
+        self.call, self.ask, self.post, self.request = services.call, services.ask, services.post, services.request
+        self.has_service = services.has_service
+
+        self.serve = self._served.serve
+
+    @property
+    def closing(self) -> bool:
+        """Nothing can be sent any more."""
+        return self.loop.closing
 
     def stop(self) -> None:
-        """Cancel what is served, give its workers a moment, and hear nothing any more."""
+        """Cancel what is served, give its workers a moment, and receive nothing any more."""
         self._served.leave(STOP_LIMIT)
         time.sleep(LAST_WORDS)
-        super().stop()
+        self.loop.stop()
 
     def close(self) -> None:
         """Stop, and leave the graph."""
@@ -36,19 +69,5 @@ class Ros(Services):
         """The action server called `name`; one client is kept for all goals."""
         with self._making:
             if name not in self._peers:
-                self._peers[name] = Peer(self, action_type, name)
+                self._peers[name] = Peer(self.loop, action_type, name)
             return self._peers[name]
-
-    def serve(
-        self,
-        action_type: ActionType[G, R, F],
-        name: str,
-        run: Callable[[Goal[G, F]], Ended[R]],
-        accept: Accept[G] | None = None,
-    ) -> None:
-        """Serve an action: `run` in a worker thread a goal, `accept` on the executor thread before.
-
-        `run` must return soon after `goal.cancelled` is set. When it raises, the goal is aborted and the
-        traceback logged.
-        """
-        self._served.serve(action_type, name, run, accept)

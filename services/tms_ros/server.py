@@ -7,23 +7,22 @@ rclpy in use); so rclpy's execute callback is never used.
 import threading
 import time
 from collections.abc import Awaitable, Callable
-from typing import TYPE_CHECKING, Any, Generic
+from typing import Any, Generic
 
 from prometheus_client import Counter, Histogram
-from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.action import CancelResponse, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 from structlog.contextvars import bind_contextvars
 
 from tms_reason.reason import Reason
 from tms_reason.wire import to_line
-from tms_ros.fence import parse
 from tms_ros.goals import Accept, Ended, Outcome
 from tms_ros.interface_types import ActionType, F, G, R
+from tms_ros.loop import Loop
+from tms_ros.privates import NamingActionServer
 from tms_ros.quality import SERVICE
 from tms_ros.reasons import BeingStopped, ProcessLost, StoppedMeanwhile
-
-if TYPE_CHECKING:
-    from tms_ros.node import Ros
+from tms_ros.topics import Topics
 
 RESULT_KEPT = 10  # s that a server keeps a result; every status message lists all kept goals
 POLL = 0.02  # s
@@ -69,21 +68,11 @@ class Goal(Generic[G, F]):
 AnyGoal = Goal[Any, Any]  # of any action
 
 
-class _Server(ActionServer):  # type: ignore[misc]
-    """An action server that tells its goal callback which goal id is arriving."""
-
-    arriving: Any = None
-
-    async def _execute_goal_request(self, request_header_and_message: Any) -> None:
-        self.arriving = request_header_and_message[1].goal_id
-        await super()._execute_goal_request(request_header_and_message)
-
-
 class Served:
     """The actions that one node serves, and their open goals."""
 
-    def __init__(self, ros: "Ros") -> None:
-        self._ros = ros
+    def __init__(self, loop: Loop, topics: Topics) -> None:
+        self._loop, self._topics = loop, topics
         # By action and id; a goal on its handle would be a cycle, which is freed late.
         self._goals: dict[tuple[str, bytes], AnyGoal] = {}
         self._leaving = False
@@ -104,10 +93,14 @@ class Served:
         run: Callable[[Goal[G, F]], Ended[R]],
         accept: Accept[G] | None = None,
     ) -> None:
-        """See `Ros.serve`."""
+        """Serve an action: `run` in a worker thread a goal, `accept` on the executor thread before.
+
+        `run` must return soon after `goal.cancelled` is set. When it raises, the goal is aborted and the
+        traceback logged.
+        """
         whole: Any = action_type
         telling = whole.Impl.FeedbackMessage
-        reasons = self._ros.publisher(telling, f"{name}/_action/feedback")
+        reasons = self._topics.publisher(telling, f"{name}/_action/feedback")
 
         async def decide(request: G) -> GoalResponse:
             goal_id = server.arriving  # valid until the first await
@@ -115,11 +108,11 @@ class Served:
             if isinstance(verdict, Awaitable):
                 verdict = await verdict
             if verdict is None and self._leaving:
-                verdict = ProcessLost(BeingStopped(self._ros.process))
+                verdict = ProcessLost(BeingStopped(self._loop.process))
             if verdict is None:
                 return GoalResponse.ACCEPT
             GOALS.labels(name, "rejected").inc()
-            self._ros.node.get_logger().debug(f"{name}: {verdict!r}")
+            self._loop.node.get_logger().debug(f"{name}: {verdict!r}")
             feedback = _saying(action_type, verdict)
             if feedback is not None:
                 reasons.publish(telling(goal_id=goal_id, feedback=feedback))
@@ -138,10 +131,10 @@ class Served:
                 goal.cancel()
             return CancelResponse.ACCEPT
 
-        server = _Server(
-            self._ros.node, action_type, name, execute_callback=_never, goal_callback=decide,
+        server = NamingActionServer(
+            self._loop.node, action_type, name, execute_callback=_never, goal_callback=decide,
             handle_accepted_callback=accepted, cancel_callback=cancel, result_timeout=RESULT_KEPT,
-            callback_group=self._ros.group,
+            callback_group=self._loop.group,
             goal_service_qos_profile=SERVICE, result_service_qos_profile=SERVICE,
             cancel_service_qos_profile=SERVICE,
         )  # fmt: skip
@@ -149,8 +142,7 @@ class Served:
     def _work(
         self, action_type: ActionType[G, R, F], run: Callable[[Goal[G, F]], Ended[R]], goal: Goal[G, F], name: str
     ) -> None:
-        owner = parse(goal.uuid)
-        bind_contextvars(goal=goal.id, **({"run_number": owner.run} if owner is not None else {}))
+        bind_contextvars(goal=goal.id)
         begun = time.monotonic()
         ended: Ended[R] = (Outcome.ABORTED, action_type.Result())
         try:
@@ -159,12 +151,12 @@ class Served:
             goal.on_cancel = None  # it refers to what the goal did, and that to the goal
             SECONDS.labels(name).observe(time.monotonic() - begun)
             GOALS.labels(name, ended[0].name.lower()).inc()
-            self._ros.on_executor(lambda: self._deliver(name, goal, *ended))
+            self._loop.on_executor(lambda: self._deliver(name, goal, *ended))
 
     def _deliver(self, name: str, goal: Goal[G, F], outcome: Outcome, result: R) -> None:
         asked = goal._handle.is_cancel_requested
         if self._leaving and outcome is Outcome.CANCELED and not asked:
-            goal.say(ProcessLost(StoppedMeanwhile(self._ros.process)))
+            goal.say(ProcessLost(StoppedMeanwhile(self._loop.process)))
 
         def finish(handle: ServerGoalHandle) -> R:
             if outcome is Outcome.SUCCEEDED:

@@ -11,21 +11,20 @@ from rclpy.task import Future
 from tms_reason.errors import RosError
 from tms_reason.wire import to_line
 from tms_ros import quality
-from tms_ros.answers import send_surely
 from tms_ros.interface_types import Req, Res, ServiceType
-from tms_ros.loop import POLL
+from tms_ros.loop import POLL, Loop
 from tms_ros.naming import process_of
+from tms_ros.privates import send_surely
 from tms_ros.reasons import BadServiceName, Internal, LostMeanwhile, NoAnswer, NoServer, ProcessLost
-from tms_ros.topics import Topics
 
 LOOK = 0.1  # s between looks whether a server that owes an answer is still there
 
 
-class Services(Topics):
-    """The services of a node, beside its topics."""
+class Services:
+    """The services of a node, offered and called."""
 
-    def __init__(self, name: str, namespace: str = "/", process: str = "") -> None:
-        super().__init__(name, namespace, process)
+    def __init__(self, loop: Loop) -> None:
+        self._loop = loop
         self._clients: dict[tuple[Any, str], Any] = {}  # by type and name
         self._making = threading.Lock()
 
@@ -39,10 +38,10 @@ class Services(Topics):
         self._offered(service_type, name, handler)
 
     def _offered(self, service_type: ServiceType[Req, Res], name: str, handler: Callable[..., Any]) -> Any:
-        service = self.node.create_service(
-            service_type, name, handler, qos_profile=quality.SERVICE, callback_group=self.group
+        service = self._loop.node.create_service(
+            service_type, name, handler, qos_profile=quality.SERVICE, callback_group=self._loop.group
         )
-        send_surely(service, self.after)
+        send_surely(service, self._loop.after)
         return service
 
     def offer_slow(
@@ -51,14 +50,14 @@ class Services(Topics):
         """Offer a service whose handler may block: each call runs in a thread of its own; None is no answer at all."""
 
         async def answer(request: Req, response: Res) -> Any:
-            done = self.promise()
+            done = self._loop.promise()
 
             def work() -> None:
-                filled: Res | None = _failed(response, self.process)
+                filled: Res | None = _failed(response, self._loop.process)
                 try:
                     filled = handler(request, service_type.Response())
                 finally:  # a bug is logged by the thread; the caller still gets an answer
-                    self.on_executor(lambda: done.set_result(filled))
+                    self._loop.on_executor(lambda: done.set_result(filled))
 
             threading.Thread(target=work, name=name, daemon=True).start()
             return await done
@@ -70,8 +69,8 @@ class Services(Topics):
         with self._making:
             if key not in self._clients:
                 try:
-                    self._clients[key] = self.node.create_client(
-                        service_type, name, qos_profile=quality.SERVICE, callback_group=self.group
+                    self._clients[key] = self._loop.node.create_client(
+                        service_type, name, qos_profile=quality.SERVICE, callback_group=self._loop.group
                     )
                 except NameValidationException as error:
                     raise RosError(BadServiceName(name, str(error).partition("\n")[0])) from error
@@ -96,10 +95,10 @@ class Services(Topics):
         Raises:
             RosError: NoServer or NoAnswer within `seconds`, or ProcessLost.
         """
-        assert threading.current_thread() is not self._thread, "blocking call on the executor thread"
+        assert not self._loop.is_current(), "blocking call on the executor thread"
         client = self._service(service_type, name)
         deadline = time.monotonic() + seconds
-        self.wait_for(client.service_is_ready, seconds, NoServer(process_of(name), name, seconds))
+        self._loop.wait_for(client.service_is_ready, seconds, NoServer(process_of(name), name, seconds))
         done = threading.Event()
         future = client.call_async(request)
         future.add_done_callback(lambda _: done.set())
@@ -119,7 +118,7 @@ class Services(Topics):
     def post(self, service_type: ServiceType[Req, Res], name: str, request: Req) -> None:
         """Send a service request; nobody waits for its answer, which may never come."""
         client = self._service(service_type, name)
-        self.on_executor(lambda: client.remove_pending_request(client.call_async(request)))
+        self._loop.on_executor(lambda: client.remove_pending_request(client.call_async(request)))
 
     def request(
         self, service_type: ServiceType[Req, Res], name: str, request: Req, answered: Callable[[Res], None]
@@ -142,7 +141,7 @@ class Services(Topics):
             RosError: BadServiceName.
         """
         client = self._service(service_type, name)
-        settled = Future(executor=self._executor)
+        settled = self._loop.promise()
         deadline = time.monotonic() + seconds
         sent: list[Future] = []
 
@@ -158,12 +157,12 @@ class Services(Topics):
                 settled.set_result(value)
 
         look()
-        timer = self.every(seconds if sent else POLL, look)
+        timer = self._loop.every(seconds if sent else POLL, look)
         try:
             answer: Res | None = await settled
             return answer
         finally:
-            self.node.destroy_timer(timer)
+            self._loop.node.destroy_timer(timer)
             if sent and not sent[0].done():
                 client.remove_pending_request(sent[0])
 

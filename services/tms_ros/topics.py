@@ -4,7 +4,6 @@ rclpy's own warnings of ends that do not fit are switched off: they are events t
 topic's cost every wake-up 10 us, three quarters of it all. `mismatches` tells the same when it is asked.
 """
 
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import product
@@ -19,9 +18,9 @@ from rclpy.qos import QoSCompatibility, QoSProfile, qos_check_compatible
 from tms_ros import quality
 from tms_ros.interface_types import M, Message, Publisher
 from tms_ros.loop import Loop
+from tms_ros.privates import Asleep, take
 
 TOLD = 0.1  # s in which the news that a publisher is asserted follows its message, twice
-RCLPYS_OWN = "/parameter_events"
 UNKNOWN = "_NODE_NAME_UNKNOWN_"  # of an end that discovery has found a moment before its node
 
 
@@ -34,8 +33,11 @@ class Arrival(Generic[M]):
     number: int  # of the publisher's messages
 
 
-class Topics(Loop):
+class Topics:
     """The topics of a node."""
+
+    def __init__(self, loop: Loop) -> None:
+        self._loop = loop
 
     def publisher(self, message_type: type[M], topic: str, depth: int = 10, latched: bool = False) -> Publisher[M]:
         """A reliable publisher; `latched` gives the last message to whoever comes later."""
@@ -43,7 +45,9 @@ class Topics(Loop):
 
     def _published(self, message_type: type[M], topic: str, quality_of_service: QoSProfile) -> Publisher[M]:
         quiet = PublisherEventCallbacks(use_default_callbacks=False)
-        made: Publisher[M] = self.node.create_publisher(message_type, topic, quality_of_service, event_callbacks=quiet)
+        made: Publisher[M] = self._loop.node.create_publisher(
+            message_type, topic, quality_of_service, event_callbacks=quiet
+        )
         return made
 
     def _subscribed(
@@ -57,9 +61,9 @@ class Topics(Loop):
         raw: bool = False,
     ) -> Any:
         events = SubscriptionEventCallbacks(liveliness=liveliness, use_default_callbacks=False)
-        return self.node.create_subscription(
-            message_type, topic, heard, quality_of_service, callback_group=group or self.group, event_callbacks=events,
-            raw=raw,
+        return self._loop.node.create_subscription(
+            message_type, topic, heard, quality_of_service, callback_group=group or self._loop.group,
+            event_callbacks=events, raw=raw,
         )  # fmt: skip
 
     def delivered(self, publisher: Publisher[M], seconds: float) -> bool:
@@ -88,12 +92,12 @@ class Topics(Loop):
                 return
             for _ in range(depth - 1):
                 try:
-                    waiting = _take(subscription)
+                    waiting = take(subscription)
                 except InvalidHandle:  # `heard` has ended the subscription
                     return
                 if waiting is None:
                     return
-                heard(waiting)
+                heard(waiting[0])
 
         subscription = self._subscribed(message_type, topic, all_that_wait, quality.topic(depth, latched, best_effort))
         return subscription
@@ -111,7 +115,7 @@ class Topics(Loop):
     ) -> Callable[[], list[Arrival[M]]]:
         """As `sample`, with when each message came and its number; `best_effort`: lost ones are not asked for again."""
         subscription = self._subscribed(
-            message_type, topic, _unheard, quality.topic(depth, False, best_effort=best_effort), _Asleep()
+            message_type, topic, _unheard, quality.topic(depth, False, best_effort=best_effort), Asleep()
         )
 
         def news() -> list[Arrival[M]]:
@@ -124,16 +128,16 @@ class Topics(Loop):
 
     def publishers(self, topic: str) -> list[tuple[str, str]]:
         """Node and type of each publisher of a topic in the whole graph."""
-        found = self.node.get_publishers_info_by_topic(topic)
+        found = self._loop.node.get_publishers_info_by_topic(topic)
         return [(f"{end.node_namespace.rstrip('/')}/{end.node_name}", end.topic_type) for end in found]
 
     def publisher_count(self, topic: str) -> int:
         """How many publishers a topic has in the whole graph."""
-        return int(self.node.count_publishers(topic))
+        return int(self._loop.node.count_publishers(topic))
 
     def subscribe_raw(self, message_type: type[Message], topic: str, heard: Callable[[bytes], None]) -> Any:
         """Call `heard` with each message as it is on the wire, with the QoS of those who publish now."""
-        offered = [info.qos_profile for info in self.node.get_publishers_info_by_topic(topic)]
+        offered = [info.qos_profile for info in self._loop.node.get_publishers_info_by_topic(topic)]
         return self._subscribed(message_type, topic, heard, quality.as_offered(offered), raw=True)
 
     def lease_publisher(self, message_type: type[M], topic: str, seconds: float) -> Publisher[M]:
@@ -158,29 +162,18 @@ class Topics(Loop):
         def heard_first(message: M) -> None:
             if not count.known:
                 # In two steps: what was told meanwhile is handled before the second one.
-                self.after(TOLD, lambda: self.after(TOLD, count.made_up))
+                self._loop.after(TOLD, lambda: self._loop.after(TOLD, count.made_up))
             heard(message)
 
         return self._subscribed(message_type, topic, heard_first, quality.lease(seconds), liveliness=count.told)
 
-    def ends(self) -> tuple[int, int, int]:
-        """Remote readers of our publishers, remote writers of our subscriptions, nodes; on the executor thread."""
-        readers = sum(end.get_subscription_count() for end in list(self.node.publishers))
-        writers = sum(self.node.count_publishers(end.topic_name) for end in list(self.node.subscriptions))
-        return readers, writers, len(self.node.get_node_names())
-
-    def crowds(self) -> dict[str, tuple[int, int]]:
-        """How many publishers and subscriptions each topic of ours has in the whole graph."""
-        topics = {end.topic_name for end in [*self.node.publishers, *self.node.subscriptions]} - {RCLPYS_OWN}
-        return {topic: (self.node.count_publishers(topic), self.node.count_subscribers(topic)) for topic in topics}
-
     def mismatches(self, topic: str) -> set[str] | None:
         """What of others is on a topic of ours but not connected to us, and why; None while one's name is not known."""
-        writers = self.node.get_publishers_info_by_topic(topic)
-        readers = self.node.get_subscriptions_info_by_topic(topic)
+        writers = self._loop.node.get_publishers_info_by_topic(topic)
+        readers = self._loop.node.get_subscriptions_info_by_topic(topic)
         if any(end.node_name == UNKNOWN for end in [*writers, *readers]):
             return None
-        own, found = self.node.get_fully_qualified_name(), set()
+        own, found = self._loop.node.get_fully_qualified_name(), set()
         for writer, reader in product(writers, readers):
             names = [f"{end.node_namespace.rstrip('/')}/{end.node_name}" for end in (writer, reader)]
             if own in names and names[0] != names[1] and (reason := _mismatch(writer, reader)):
@@ -223,34 +216,10 @@ class _Count:
             self._alive(1, 0)
 
 
-class _Asleep(CallbackGroup):  # type: ignore[misc]
-    """Of subscriptions that the executor must not wait for."""
-
-    def can_execute(self, entity: Any) -> bool:
-        return False
-
-    def beginning_execution(self, entity: Any) -> bool:
-        return False
-
-    def ending_execution(self, entity: Any) -> None:
-        raise AssertionError("nothing of this group is executed")
-
-
-def _take(subscription: Any) -> Any:
-    """The oldest message that waits, None without."""
-    arrival = _arrival(subscription)
-    return None if arrival is None else arrival.message
-
-
 def _arrival(subscription: Any) -> Arrival[Any] | None:
     """The oldest message that waits, and how it came."""
-    with subscription.handle:
-        taken = subscription.handle.take_message(subscription.msg_type, False)
-    if taken is None:
-        return None
-    message, way = taken
-    waited = max(0.0, (time.time_ns() - way["received_timestamp"]) * 1e-9)  # the middleware tells wall time
-    return Arrival(message, time.monotonic() - waited, way["publication_sequence_number"])
+    taken = take(subscription)
+    return None if taken is None else Arrival(*taken)
 
 
 def _unheard(message: Message) -> None:

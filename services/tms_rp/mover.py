@@ -8,13 +8,13 @@ from control_msgs.action import FollowJointTrajectory
 from tms_machine.border import STOP_PROVEN
 from tms_reason.errors import SubtaskFailed
 from tms_ros.client import Call, Peer
-from tms_ros.fence import derived
 from tms_ros.goals import Outcome
 from tms_ros.naming import process_of
 from tms_ros.reasons import LostMeanwhile, ProcessLost
 from tms_ros.server import AnyGoal
 from tms_rp.messages import follow
 from tms_rp.trajectory import Trajectory
+from tms_runtime.fence import derived
 
 SERVER_LIMIT = 3.0  # s for the gateway to be there
 ACCEPT_LIMIT = 5.0  # s for it to answer; it asks nobody before it does

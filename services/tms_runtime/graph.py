@@ -5,6 +5,7 @@ from tms_runtime import metrics
 from tms_runtime.log import Logger
 
 PERIOD = 5.0  # s between looks
+RCLPYS_OWN = "/parameter_events"
 TOPICS = 20  # looked at in one go: each takes some 0.3 ms of the executor
 
 
@@ -20,11 +21,11 @@ class Graph:
 
     def look(self) -> None:
         """On the executor thread; also called by itself."""
-        readers, writers, nodes = self._ros.ends()
+        readers, writers, nodes = endpoint_counts(self._ros)
         metrics.ENDPOINTS.labels("readers").set(readers)
         metrics.ENDPOINTS.labels("writers").set(writers)
         metrics.NODES.set(nodes)
-        crowds = self._ros.crowds()
+        crowds = peer_counts(self._ros)
         changed = [topic for topic in sorted(crowds) if crowds[topic] != self._crowds.get(topic)]
         self._changed += [topic for topic in changed if topic not in self._changed]
         self._crowds = crowds
@@ -40,3 +41,18 @@ class Graph:
         for text in sorted(found - self._told.get(topic, set())):
             self._log.warning("not_connected", reason=text)
         self._told[topic] = found
+
+
+def endpoint_counts(ros: Ros) -> tuple[int, int, int]:
+    """Remote readers of our publishers, remote writers of our subscriptions, nodes; on the executor thread."""
+    node = ros.node
+    readers = sum(end.get_subscription_count() for end in list(node.publishers))
+    writers = sum(node.count_publishers(end.topic_name) for end in list(node.subscriptions))
+    return readers, writers, len(node.get_node_names())
+
+
+def peer_counts(ros: Ros) -> dict[str, tuple[int, int]]:
+    """How many publishers and subscriptions each topic of ours has in the whole graph."""
+    node = ros.node
+    topics = {end.topic_name for end in [*node.publishers, *node.subscriptions]} - {RCLPYS_OWN}
+    return {topic: (node.count_publishers(topic), node.count_subscribers(topic)) for topic in topics}

@@ -6,6 +6,7 @@ that it starts do not.
 
 import logging
 import queue
+import re
 import sys
 from collections.abc import Sequence
 from logging.handlers import QueueHandler, QueueListener
@@ -18,9 +19,11 @@ from structlog.typing import EventDict, Processor, WrappedLogger
 from tms_reason.reason import Reason
 from tms_reason.texts import text
 from tms_reason.wire import to_line
+from tms_runtime.fence import parse
 
 Logger = structlog.stdlib.BoundLogger
 
+GOAL_ID = re.compile("[0-9a-f]{32}")
 BREAKS = str.maketrans({"\n": "\\n", "\r": "\\r"})  # an event is one line, whatever its text holds
 FIRST = ("process", "machine", "run", "goal", "event")  # keys, in this order; the others follow as they were given
 WAITING = 10_000  # lines at most that wait for a reader of stdout
@@ -85,6 +88,7 @@ def formatter(fields: dict[str, str], as_json: bool) -> logging.Formatter:
     shared: Sequence[Processor] = (
         structlog.contextvars.merge_contextvars,
         about,
+        _run_of_goal,
         _reasons,
         structlog.processors.TimeStamper(fmt="%Y-%m-%dT%H:%M:%S.%f", utc=False, key="time"),
         structlog.processors.ExceptionRenderer(),
@@ -93,6 +97,13 @@ def formatter(fields: dict[str, str], as_json: bool) -> logging.Formatter:
     return structlog.stdlib.ProcessorFormatter(
         processors=[*shared, structlog.stdlib.ProcessorFormatter.remove_processors_meta, renderer]
     )
+
+
+def _run_of_goal(_logger: WrappedLogger, _method: str, event: EventDict) -> EventDict:
+    """The run that a goal belongs to, as its id tells."""
+    goal = event.get("goal")
+    owner = parse(bytes.fromhex(goal)) if isinstance(goal, str) and GOAL_ID.fullmatch(goal) else None
+    return event if owner is None else {**event, "run_number": owner.run}
 
 
 def _reasons(_logger: WrappedLogger, _method: str, event: EventDict) -> EventDict:

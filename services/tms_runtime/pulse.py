@@ -11,7 +11,7 @@ import time
 from collections.abc import Callable
 from typing import Protocol
 
-from tms_ros.priority import waited
+from tms_runtime.priority import waited
 
 BEAT = 0.05  # s
 LATE = 0.1  # s that a beat may come late before it tells of a PC that is too busy

@@ -13,11 +13,11 @@ from tms_config import discovery, environment, state_folder, store
 from tms_config.config import Site, load_site, version
 from tms_config.processes import Process, find
 from tms_reason.errors import ConfigError
-from tms_ros.priority import come_first, threads
 from tms_runtime import log, metrics
 from tms_runtime.last_resort import LEAVE_LIMIT, end_after
 from tms_runtime.log import Logger
 from tms_runtime.metrics import Health
+from tms_runtime.priority import come_first, threads, undisturbed
 
 LOOK = 0.5  # s
 FORGOTTEN = 3.0  # s; lease of discovery (5 s) less the time since the last announcement (1.5 s at most), 0.5 s to spare
@@ -68,7 +68,7 @@ def _serve(site: Site, row: Process) -> int:
         signal.signal(number, lambda _number, _frame: stop.set())
     if row.module in FIRST:
         come_first(OF_A_MACHINE, threads())
-    ros = Ros(row.full.replace(":", "_"), process=row.full)
+    ros = Ros(row.full.replace(":", "_"), process=row.full, creating=undisturbed())
     app = App(site, row, ros, logger)
     app.pulse.stood_still = lambda silent, waited: _stood_still(logger, silent, waited)
     importlib.import_module(row.module).start(app)

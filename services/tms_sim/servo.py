@@ -3,7 +3,7 @@
 import math
 
 from tms_config.models import Joint, Response
-from tms_machine.control_law import ControlLaw
+from tms_sim.control_law import ControlLaw
 from tms_sim.drive import Drive
 
 SETTLED = 1e-3  # rad and rad/s, then the controller is done with it

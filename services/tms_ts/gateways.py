@@ -13,8 +13,8 @@ from tms_machine.permit import NOBODY, Link, Permit
 from tms_machine.reasons import DrivenByHand, MachineLatched, NoReason, SoftwareStop
 from tms_reason import wire
 from tms_reason.reason import Reason
-from tms_ros.fence import Owner
 from tms_runtime.app import App
+from tms_runtime.fence import Owner
 from tms_ts.reasons import MachineNotReady, ProcessAway
 
 SETTLE = 0.3  # s from the first word of a new gateway until it has discovered us as well

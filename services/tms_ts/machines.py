@@ -18,10 +18,10 @@ from tms_reason import wire
 from tms_reason.errors import RosError
 from tms_reason.reason import Reason
 from tms_reason.wire import to_line
-from tms_ros.fence import LEAVES, Owner
 from tms_ros.goals import Outcome
 from tms_ros.node import Ros
 from tms_ros.reasons import LostMeanwhile, NoAnswer, NoServer, ProcessLost
+from tms_runtime.fence import LEAVES, Owner
 from tms_ts.gateways import Gateways
 from tms_ts.hosts import Hosts
 from tms_ts.past import Key

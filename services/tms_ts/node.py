@@ -23,12 +23,12 @@ from tms_reason.wire import refusal, to_line
 from tms_ros.goals import Ended, Outcome
 from tms_ros.reasons import Internal, NoServer
 from tms_runtime.app import App
-from tms_runtime.group_commit import GroupCommit
 from tms_runtime.reasons import NotStored
 from tms_ts import bt
 from tms_ts.flags import Flags
 from tms_ts.gateways import Gateways, Holder
 from tms_ts.groot.monitor import Monitors
+from tms_ts.group_commit import GroupCommit
 from tms_ts.hosts import Hosts
 from tms_ts.interrupted import Interrupted
 from tms_ts.journal import Journal

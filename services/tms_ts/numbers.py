@@ -9,7 +9,7 @@ import structlog
 from tms_reason.errors import TaskError
 from tms_reason.reason import Foreign
 from tms_runtime import durable
-from tms_runtime.group_commit import GroupCommit
+from tms_ts.group_commit import GroupCommit
 from tms_ts.reasons import DiskSlow, NoDisk
 
 LIMIT = 5.0  # s for a number to be on the disk

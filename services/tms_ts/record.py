@@ -17,7 +17,7 @@ from prometheus_client import Counter
 
 from tms_runtime.append_file import AppendFile
 from tms_runtime.durable import set_aside
-from tms_runtime.group_commit import GroupCommit
+from tms_ts.group_commit import GroupCommit
 from tms_ts.past import Header, Key, Past
 
 READ_LIMIT = 2.0  # s for lines on their way to the disk before it is read

@@ -98,7 +98,7 @@ def _relayed(yard: Yard) -> list[float]:
         answered.append(info["source_timestamp"])
         there.set()
 
-    yard.ros.node.create_subscription(Twist, "/bench/zero", heard, 1, callback_group=yard.ros.group)
+    yard.ros.node.create_subscription(Twist, "/bench/zero", heard, 1, callback_group=yard.ros.loop.group)
     button = yard.ros.publisher(Bool, "/bench/press", depth=1)
     while not there.wait(0.2):  # until both sides have found each other
         button.publish(Bool())

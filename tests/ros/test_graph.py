@@ -9,7 +9,7 @@ from std_msgs.msg import Bool, String
 
 from conftest import wait_until
 from tms_ros.node import Ros
-from tms_runtime.graph import Graph
+from tms_runtime.graph import Graph, peer_counts
 
 pytestmark = pytest.mark.ros
 LIMIT = 20.0  # s for whatever must happen at all
@@ -41,7 +41,7 @@ def test_a_publisher_that_nobody_can_hear_is_told_once(two_nodes: tuple[Ros, Ros
     text = f"{ACTED}: /server does not hear /client: Best effort publisher and reliable subscription"
     wait_until(lambda: any(text in line for line in watched.told()), LIMIT, "told")
     foreign.publisher(Bool, ACTED)  # one that fits: the topic is looked at again
-    wait_until(lambda: here.crowds()[ACTED] == (2, 1), LIMIT, "seen")
+    wait_until(lambda: peer_counts(here)[ACTED] == (2, 1), LIMIT, "seen")
     wait_until(lambda: here.mismatches(ACTED) is not None, LIMIT, "known by name")
     assert len(watched.told()) == 1
 

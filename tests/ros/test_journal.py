@@ -10,7 +10,7 @@ from tms_msg_db.srv import ListEvents
 
 from few_processes import Mesh, bare
 from tms_machine.values import to_parameters
-from tms_runtime.group_commit import GroupCommit
+from tms_ts.group_commit import GroupCommit
 from tms_ts.journal import LOST, Journal
 
 pytestmark = pytest.mark.ros

@@ -12,6 +12,7 @@ from tms_msg_ts.action import LeafNodeBase
 from tms_msg_ts.srv import ResumePlan
 
 from conftest import wait_until
+from tms_reason.reason import Foreign
 from tms_ros.client import Peer
 from tms_ros.goals import Outcome
 from tms_ros.node import Ros
@@ -37,7 +38,7 @@ class Silent:
             (impl.GetResultService, "get_result", self._results),
             (impl.CancelGoalService, "cancel_goal", self._cancel),
         ):
-            ros.node.create_service(kind, f"{prefix}/{name}", handler, callback_group=ros.group)
+            ros.node.create_service(kind, f"{prefix}/{name}", handler, callback_group=ros.loop.group)
         self._feedback = ros.publisher(impl.FeedbackMessage, f"{prefix}/feedback")
         self._status = ros.publisher(GoalStatusArray, f"{prefix}/status", depth=1, latched=True)
 
@@ -99,7 +100,7 @@ def test_a_stop_asked_of_a_gateway_that_is_being_lost_is_asked_of_its_successor(
     gateways = SimpleNamespace(wait_alive=back, loss=lambda machine: lambda: not alive.is_set())
     identity = Identity(1, 3, SimpleNamespace(), Replay([]))  # type: ignore[arg-type]
     machines = Machines(two_nodes[1], None, gateways, lambda: None, lambda *_: None, identity)  # type: ignore[arg-type]
-    assert machines.stop("zx200", "test").confirmed
+    assert machines.stop("zx200", Foreign("test")).confirmed
     assert asked == [True, True]
 
 

@@ -26,7 +26,7 @@ from conftest import PROJECT
 from few_processes import Mesh, bare
 from tms_machine.values import from_parameters, to_parameters
 from tms_reason.errors import RosError
-from tms_ros.packing import pack
+from tms_runtime.packing import pack
 
 pytestmark = [
     pytest.mark.ros,

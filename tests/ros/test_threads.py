@@ -8,8 +8,8 @@ from functools import partial
 import pytest
 
 from conftest import wait_until
-from tms_ros.loop import _undisturbed
 from tms_ros.node import Ros
+from tms_runtime.priority import undisturbed
 from tms_runtime.pulse import Pulse
 
 LIMIT = 30.0  # s
@@ -73,7 +73,7 @@ def test_only_the_thread_that_makes_a_node_comes_before_all_others() -> None:
     go = threading.Event()
     started = threading.Thread(target=go.wait)
     nice = os.getpriority(os.PRIO_PROCESS, 0)
-    with _undisturbed():
+    with undisturbed():
         if os.sched_getscheduler(0) & ~os.SCHED_RESET_ON_FORK != os.SCHED_FIFO:
             pytest.skip("needs CAP_SYS_NICE or an RTPRIO limit")
         started.start()
@@ -93,7 +93,7 @@ def test_threads_keep_the_share_of_their_process(monkeypatch: pytest.MonkeyPatch
     go = threading.Event()
     before, started = threading.Thread(target=go.wait), threading.Thread(target=go.wait)
     before.start()
-    with _undisturbed():
+    with undisturbed():
         started.start()
     assert changed[_native(started)] == -10
     assert _native(before) not in changed

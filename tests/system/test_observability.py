@@ -82,7 +82,9 @@ def test_health_and_readiness_are_two_things(mesh: Mesh) -> None:
                 with error:
                     return f"{error.code} {error.read().decode()}"
 
-        wait_until(lambda: reason().startswith("503 WAITING_FOR process=\"tms:db\""), 30, "the scheduler says what it lacks")
+        wait_until(
+            lambda: reason().startswith('503 WAITING_FOR process="tms:db"'), 30, "the scheduler says what it lacks"
+        )
         assert get(f"http://{address}/healthz") == "ok\n"
     finally:
         mesh.tms("start", "tms:db")

@@ -21,9 +21,9 @@ from conftest import Mesh, wait_until
 from tms_machine.reasons import MachineLatched, NoPermit
 from tms_rc.reasons import HeldByAnother, OldRun
 from tms_reason import wire
-from tms_ros.fence import Owner
 from tms_ros.goals import Outcome
 from tms_ros.node import Ros
+from tms_runtime.fence import Owner
 
 pytestmark = pytest.mark.system
 JOINTS = ["swing_joint", "boom_joint", "arm_joint", "bucket_joint", "bucket_end_joint"]

@@ -16,8 +16,8 @@ from tms_config.config import Site
 from tms_config.processes import find, table
 from tms_host.supervisor import Supervisor
 from tms_reason.errors import TmsError
-from tms_ros.priority import come_first
 from tms_runtime import metrics
+from tms_runtime.priority import come_first
 
 FROZEN = 2.0  # s
 BACK_LIMIT = 40.0  # s

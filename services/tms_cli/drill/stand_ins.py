@@ -8,7 +8,7 @@ from types import TracebackType
 from tms_config import state_folder
 from tms_config.config import Site
 from tms_config.environment import environment
-from tms_ros.priority import come_first, session_first
+from tms_runtime.priority import come_first, session_first
 
 GROUP = "sim"  # of the process table
 END_LIMIT = 5.0  # s

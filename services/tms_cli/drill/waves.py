@@ -17,7 +17,7 @@ from tms_cli.drill.verdict import Row, empty
 from tms_config.config import Site
 from tms_reason.errors import TmsError
 from tms_ros.node import Ros
-from tms_ros.priority import come_first, others, session_first
+from tms_runtime.priority import come_first, others, session_first
 
 T = TypeVar("T")
 

@@ -89,7 +89,7 @@ def main(name: str, subtasks: str, *names: str) -> None:
         for machine in machines:
             machine.tell()
 
-    ros.node.create_subscription(Bool, "/emergency_signal", heard, 1, callback_group=ros.group)
+    ros.node.create_subscription(Bool, "/emergency_signal", heard, 1, callback_group=ros.loop.group)
     ros.every(NEWS, news)
     print("ready", flush=True)
     threading.Event().wait()

@@ -15,8 +15,8 @@ from bench.yard.machines import LIMIT, MODEL, motion, names  # noqa: E402
 from tms_config.config import load_site  # noqa: E402
 from tms_machine.permit import Permit  # noqa: E402
 from tms_ros.client import Call  # noqa: E402
-from tms_ros.fence import Owner  # noqa: E402
 from tms_ros.node import Ros  # noqa: E402
+from tms_runtime.fence import Owner  # noqa: E402
 from tms_runtime.pulse import Pulse  # noqa: E402
 
 AGAIN = 0.5  # s between looks for refused goals: with busy cores not everybody has found everybody yet

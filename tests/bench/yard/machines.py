@@ -98,7 +98,11 @@ class Yard:
         ros = self.ros
         ros.serve(FollowJointTrajectory, f"/{name}/{border.trajectory}", lambda goal: self._run(name, goal))
         ros.node.create_subscription(
-            Twist, f"/{name}/{border.cmd_vel}", lambda _zero, info: self._zero(name, info), 10, callback_group=ros.group
+            Twist,
+            f"/{name}/{border.cmd_vel}",
+            lambda _zero, info: self._zero(name, info),
+            10,
+            callback_group=ros.loop.group,
         )
         joints = ros.publisher(JointState, f"/{name}/{border.joint_states}")
         return joints, ros.publisher(Odometry, f"/{name}/{border.odom}")

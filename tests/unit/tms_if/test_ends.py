@@ -14,7 +14,7 @@ from tms_if.commands import CommandError, Registration
 from tms_if.ends import OPEN_CALLS, Ends
 from tms_if.names import Allowed
 from tms_reason.errors import RosError
-from tms_ros.packing import pack
+from tms_runtime.packing import pack
 
 TOPIC, SPAWN = "zx200/odom", "/spawn"
 ALLOWED = Allowed(

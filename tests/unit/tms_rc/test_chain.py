@@ -3,7 +3,7 @@
 from tms_rc.chain import gap, members
 from tms_rc.reasons import HeldByAnother, NoPlanner, NoScheduler, NoSubtask, OldRun
 from tms_reason.reason import Reason
-from tms_ros.fence import Owner
+from tms_runtime.fence import Owner
 
 RUN = Owner(100)
 SUBTASK, PLANNER = Owner(100, 4, 0), Owner(100, 4, 1)

@@ -11,8 +11,8 @@ from tms_rc.guard import Active, Guard, Kind
 from tms_rc.latch import Latch
 from tms_rc.reasons import HeldByAnother, NoScheduler, NoSubtask
 from tms_reason.reason import Reason
-from tms_ros.fence import Owner
 from tms_ros.reasons import ProcessLost
+from tms_runtime.fence import Owner
 
 Stops = list[tuple[Reason, Kind]]
 RUN = Owner(7)

@@ -5,8 +5,8 @@ import pytest
 from tms_machine.reasons import MachineLatched, NoNote, SoftwareStop
 from tms_rc.latch import ANY_LEAF, TOKEN_SECONDS, UNKNOWN_RUN, Latch
 from tms_rc.reasons import ProcessesLost, ThenSchedulerLost
-from tms_ros.fence import Owner
 from tms_ros.reasons import ProcessLost
+from tms_runtime.fence import Owner
 
 STOP, GONE = SoftwareStop(), ProcessLost(ProcessesLost(("zx200:rp",)))
 LOST = Owner(5, 1, 2)  # the goal during which a process was lost

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import pytest
 import structlog
 
-from tms_runtime.group_commit import GroupCommit
+from tms_ts.group_commit import GroupCommit
 
 
 @pytest.fixture

@@ -14,7 +14,7 @@ from tms_msg_ts.srv import CancelRun
 
 from tms_reason import wire
 from tms_reason.errors import TaskError
-from tms_runtime.group_commit import GroupCommit
+from tms_ts.group_commit import GroupCommit
 from tms_ts.interrupted import STOP_LIMIT, Interrupted
 from tms_ts.past import Header, Past
 from tms_ts.reasons import RunInterrupted

@@ -15,8 +15,8 @@ from tms_msg_db.srv import WriteJournal
 
 from slow_disk import slow_disk
 from tms_reason.errors import RosError
-from tms_runtime.group_commit import SPARE, GroupCommit
 from tms_ts import journal
+from tms_ts.group_commit import SPARE, GroupCommit
 from tms_ts.journal import LOST, Journal
 from tms_ts.reasons import HistoryLost
 from words import words

@@ -10,8 +10,8 @@ import pytest
 from power_cut import own_disk
 from slow_disk import SMALL, slow_disk
 from tms_reason.errors import TaskError
-from tms_runtime.group_commit import GroupCommit
 from tms_ts import numbers as module
+from tms_ts.group_commit import GroupCommit
 from tms_ts.numbers import Numbers
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 import structlog
 
-from tms_runtime.group_commit import GroupCommit
+from tms_ts.group_commit import GroupCommit
 from tms_ts.past import Header, Key, Over, Past
 from tms_ts.record import LOST, Records
 from tms_ts.replay import Replay

@@ -16,10 +16,10 @@ from tms_reason import wire
 from tms_reason.reason import Foreign, Reason
 from tms_reason.wire import to_line
 from tms_ros.goals import Outcome
-from tms_runtime.group_commit import GroupCommit
 from tms_ts import run as module
 from tms_ts.bt import Status
 from tms_ts.budget import AT_ONCE
+from tms_ts.group_commit import GroupCommit
 from tms_ts.node import END_STORED, Scheduler
 from tms_ts.past import Past
 from tms_ts.reasons import LeftOut

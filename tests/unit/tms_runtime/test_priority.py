@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 
 from conftest import wait_until
-from tms_ros.priority import session_first, threads, waited
+from tms_runtime.priority import session_first, threads, waited
 
 
 def test_a_thread_that_shares_its_processor_has_waited_for_it() -> None:

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from tms_runtime import durable
-from tms_runtime import spool as module
-from tms_runtime.spool import PIECE, Spool
+from tms_ts import spool as module
+from tms_ts.spool import PIECE, Spool
 
 
 def opened(folder: Path, largest: int = module.LARGEST) -> Spool:

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from rclpy.exceptions import InvalidHandle
 
-from tms_ros.answers import ATTEMPTS, send_surely
+from tms_ros.privates import ATTEMPTS, send_surely
 
 WARNING = "failed to send response (timeout): client will not receive response"
 

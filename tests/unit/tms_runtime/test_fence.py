@@ -4,7 +4,7 @@ import uuid
 
 import pytest
 
-from tms_ros.fence import Owner, derived, parse
+from tms_runtime.fence import Owner, derived, parse
 
 
 def test_an_owner_survives_the_uuid() -> None:

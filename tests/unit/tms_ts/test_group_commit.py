@@ -10,9 +10,9 @@ import structlog
 
 from power_cut import own_disk
 from slow_disk import SMALL, slow_disk
-from tms_runtime import group_commit
-from tms_runtime.group_commit import SPARE, GroupCommit
-from tms_runtime.spool import Spool
+from tms_ts import group_commit
+from tms_ts.group_commit import SPARE, GroupCommit
+from tms_ts.spool import Spool
 
 LIMIT = 20.0  # s for what must happen at all
 log = structlog.stdlib.get_logger("disk")
