@@ -18,10 +18,11 @@ import psutil
 
 from tms_cli import monitoring
 from tms_cli.words import english, say
-from tms_config import pcs, state_folder, store
+from tms_config import pcs, state_folder
 from tms_config.config import Site
 from tms_config.environment import environment
 from tms_config.processes import Process, here
+from tms_host import store
 from tms_host.supervisor import Supervisor, render, runtime_folder
 from tms_reason.errors import ConfigError, TmsError
 from tms_runtime import metrics

@@ -5,10 +5,10 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
-from tms_config import pcs, store_address
+from tms_config import pcs, reasons, store_address
 from tms_config.models import Backend, Border, MachineModel
 from tms_config.site_file import Bridge, SiteFile
-from tms_config.yaml_file import parse
+from tms_config.yaml_file import located, parse
 from tms_reason.errors import ConfigError
 
 PROJECT = Path(__file__).resolve().parents[2]
@@ -59,7 +59,7 @@ class Site:
         """
         found = self.file.services.get("if")
         if not isinstance(found, Bridge):
-            raise ConfigError(f"{self.path}: services: there is no 'if'")
+            raise ConfigError(located(self.path, reasons.NoService("if", tuple(self.file.services)), "services"))
         return found
 
     def model_of(self, machine: str) -> MachineModel:
@@ -70,8 +70,7 @@ class Site:
         """
         use = self.file.machines.get(machine)
         if use is None:
-            known = ", ".join(self.file.machines) or "none"
-            raise ConfigError(f"{self.path}: no machine '{machine}' under machines: (there: {known})")
+            raise ConfigError(located(self.path, reasons.NoMachine(machine, tuple(self.file.machines)), "machines"))
         return self.models[use.model]
 
     def border(self, machine: str) -> Border:
@@ -93,7 +92,8 @@ def _secret(name: str) -> str | None:
     try:
         return Path(path).read_text(encoding="utf-8").strip()
     except OSError as error:
-        raise ConfigError(f"{name}_FILE: {path}: cannot be read ({error.strerror})") from error
+        problem = reasons.BadFile(path, reasons.CannotBeRead(str(error.strerror)))
+        raise ConfigError(reasons.BadVariable(f"{name}_FILE", problem)) from error
 
 
 def version() -> str:
@@ -137,28 +137,27 @@ def _check_machines(path: Path, file: SiteFile, models: dict[str, MachineModel])
     for machine, use in file.machines.items():
         prefix = models[use.model].borders[file.names].frame_prefix.format(name=machine)
         if prefix in frames:
-            raise ConfigError(
-                f"{path}: {frames[prefix]} and {machine} would share their frames ('{prefix}base_link'): "
-                f"give borders.{file.names}.frame_prefix of configs/machines/{use.model}.yaml a {{name}}"
-            )
+            raise ConfigError(located(path, reasons.SharedFrames(frames[prefix], machine, prefix), "machines", machine))
         frames[prefix] = machine
     for machine in file.sim.faults:
         if machine not in file.machines:
-            raise ConfigError(f"{path}: sim.faults.{machine}: no such machine (there: {', '.join(file.machines)})")
+            raise ConfigError(
+                located(path, reasons.NotUnderMachines(machine, tuple(file.machines)), "sim", "faults", machine)
+            )
 
 
 def _domain(text: str) -> int:
     if not text.isdigit() or int(text) > 101:
-        raise ConfigError(f"ROS_DOMAIN_ID is '{text}': use a number from 0 to 101, or unset it")
+        raise ConfigError(reasons.BadVariable("ROS_DOMAIN_ID", reasons.NoDomain(text)))
     return int(text)
 
 
 def _model(site: Path, machine: str, name: str, backend: Backend) -> MachineModel:
     path = CONFIGS / "machines" / f"{name}.yaml"
     if not path.exists():
-        known = ", ".join(sorted(p.stem for p in path.parent.glob("*.yaml")))
-        raise ConfigError(f"{site}: machines.{machine}.model: no model '{name}' (there: {known})")
+        known = tuple(sorted(p.stem for p in path.parent.glob("*.yaml")))
+        raise ConfigError(located(site, reasons.NoModel(name, known), "machines", machine, "model"))
     model = parse(path, MachineModel)
     if backend not in model.borders:
-        raise ConfigError(f"{path}: borders: nothing for backend '{backend}', which {site} uses")
+        raise ConfigError(located(path, reasons.NoBorder(backend, str(site)), "borders"))
     return model

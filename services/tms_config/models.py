@@ -4,7 +4,8 @@ from typing import Any, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from tms_config.reasons import AboveLimit, BelowLimit
+from tms_config import reasons
+from tms_config.validation import Wrong
 from tms_reason.reason import Reason
 
 Backend = Literal["sim", "opera", "physx"]
@@ -34,9 +35,9 @@ class Joint(Settings):
     def violation(self, angle: float) -> Reason | None:
         """Which bound `angle` [rad] breaks, or None."""
         if self.min is not None and angle < self.min - 1e-6:
-            return BelowLimit(angle, self.min)
+            return reasons.BelowLimit(angle, self.min)
         if self.max is not None and angle > self.max + 1e-6:
-            return AboveLimit(angle, self.max)
+            return reasons.AboveLimit(angle, self.max)
         return None
 
 
@@ -132,9 +133,9 @@ class Border(Settings):
     def _sources_known(self) -> "Border":
         for name in get_args(SourceName):
             if getattr(self, name) and name not in self.sources:
-                raise ValueError(f"{name}: sources.{name} is missing: say its period, stamps and frozen_after")
+                raise Wrong(reasons.NoSourceFacts(), "sources", name)
             if name in self.sources and not getattr(self, name):
-                raise ValueError(f"sources.{name}: the border has no topic '{name}'")
+                raise Wrong(reasons.NoTopic(name), "sources", name)
         return self
 
 
@@ -178,7 +179,7 @@ class MachineModel(Settings):
         strange = [name for name in self.shapes if name not in links]
         strange += [name for name in (*self.initial, *self._border_joints()) if name not in self.joints]
         if strange:
-            raise ValueError(f"'{strange[0]}' is neither a link of geometry: nor a joint of joints:")
+            raise Wrong(reasons.NoSuchLink(strange[0]))
         return self
 
     @model_validator(mode="after")
@@ -187,10 +188,10 @@ class MachineModel(Settings):
         moved = [name for name, joint in self.joints.items() if not joint.passive] + [DRIVE] * (self.drive is not None)
         for name in moved:
             if name not in self.response:
-                raise ValueError(f"response: no dead time and lag for {name}, which moves: no stop could be proven")
+                raise Wrong(reasons.NoResponse(name), "response")
         strange = [name for name in self.response if name not in moved]
         if strange:
-            raise ValueError(f"response: {strange[0]} is no joint that moves, nor '{DRIVE}'")
+            raise Wrong(reasons.NoMover(strange[0]), "response", strange[0])
         return self
 
     @model_validator(mode="after")
@@ -198,7 +199,7 @@ class MachineModel(Settings):
         known = {"base_link"}
         for joint, origin in self.geometry.items():
             if origin.parent not in known:
-                raise ValueError(f"geometry: {joint}: no joint above it has '{origin.parent}' as its child")
+                raise Wrong(reasons.NoParent(origin.parent), "geometry", joint)
             known.add(origin.child)
         return self
 

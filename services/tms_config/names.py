@@ -11,49 +11,66 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, Field
 
+from tms_config.reasons import BadName, BadText, ControlLetter, EmptyName, HiddenLetter, LongName, OuterBlank
+from tms_config.validation import Wrong
+from tms_reason import texts
 from tms_reason.errors import TmsError
+from tms_reason.reason import Reason
 
-LONGEST = 200  # letters
+MAX_LENGTH = 200  # letters
+EXCERPT = 40  # letters of a text in a reason
 CUT = re.compile("[\0\ud800-\udfff]")
 CONTROL = ("Cc", "Cs", "Zl", "Zp")  # Unicode categories: control characters, halves of characters, breaks
 
 
-def control(text: str) -> str | None:
+def control_letter(text: str) -> ControlLetter | None:
     """The first control character, as people write it; None if there is none."""
     found = next((letter for letter in text if unicodedata.category(letter) in CONTROL), None)
-    return None if found is None else f"the control character U+{ord(found):04X}"
+    return None if found is None else ControlLetter(f"U+{ord(found):04X}")
+
+
+def name_flaw(name: str) -> Reason | None:
+    """What is wrong with a name, None if nothing is."""
+    if not name.strip():
+        return EmptyName()
+    if not name.isprintable():
+        return control_letter(name) or HiddenLetter()
+    if name != name.strip():
+        return OuterBlank()
+    return LongName(MAX_LENGTH) if len(name) > MAX_LENGTH else None
+
+
+def control(text: str) -> str | None:
+    """As `control_letter`, in English."""
+    found = control_letter(text)
+    return None if found is None else f"the control character {found.letter}"
 
 
 def flaw(name: str) -> str | None:
-    """What is wrong with a name, None if nothing is."""
-    if not name.strip():
-        return "is empty"
-    if not name.isprintable():
-        return f"holds {control(name) or 'a character that nobody sees'}"
-    if name != name.strip():
-        return "begins or ends with a blank"
-    return f"has more than {LONGEST} letters" if len(name) > LONGEST else None
+    """As `name_flaw`, in English."""
+    found = name_flaw(name)
+    return None if found is None else texts.text(found, "en")
 
 
-def check_text(what: str, text: str) -> None:
+def check_text(field: str, text: str) -> None:
     """Refuse a line for people that holds a control character.
 
     Raises:
         TmsError: BAD_TEXT.
     """
-    if (found := control(text)) is not None:
-        raise TmsError(f"{what} holds {found}: remove it", "BAD_TEXT")
+    if (found := control_letter(text)) is not None:
+        raise TmsError(BadText(field, repr(text[:EXCERPT]), found))
 
 
-def check_sent(what: str, message: Any) -> None:
+def check_sent(service: str, message: Any) -> None:
     """Refuse a ROS message of ours that would not arrive whole: a text is cut at a NUL, half a character has no bytes.
 
     Raises:
         TmsError: BAD_TEXT.
     """
     for field, text in _texts(message):
-        if (found := CUT.search(text)) is not None:
-            raise TmsError(f"{what}: {field} {text[:40]!r} holds {control(found[0])}: remove it", "BAD_TEXT")
+        if (found := CUT.search(text)) is not None and (letter := control_letter(found[0])) is not None:
+            raise TmsError(BadText(f"{service}: {field}", repr(text[:EXCERPT]), letter))
 
 
 def _texts(message: Any) -> Iterator[tuple[str, str]]:
@@ -69,17 +86,17 @@ def _texts(message: Any) -> Iterator[tuple[str, str]]:
 
 
 def _plain_name(name: str) -> str:
-    if (why := flaw(name)) is not None:
-        raise ValueError(f"{name[:40]!r} {why}: write a plain name")
+    if (why := name_flaw(name)) is not None:
+        raise Wrong(BadName(repr(name[:EXCERPT]), why))
     return name
 
 
 def _plain_text(text: str) -> str:
-    if (found := control(text)) is not None:
-        raise ValueError(f"holds {found}: remove it")
+    if (found := control_letter(text)) is not None:
+        raise Wrong(found)
     return text
 
 
 _SHOWN = {"pattern": r"^[^\u0000-\u001f\u007f-\u009f\u2028\u2029]*$"}  # to readers of the API's description
-Name = Annotated[str, AfterValidator(_plain_name), Field(min_length=1, max_length=LONGEST, json_schema_extra=_SHOWN)]
+Name = Annotated[str, AfterValidator(_plain_name), Field(min_length=1, max_length=MAX_LENGTH, json_schema_extra=_SHOWN)]
 Text = Annotated[str, AfterValidator(_plain_text), Field(json_schema_extra=_SHOWN)]

@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Literal
 from pydantic import Field
 
 from tms_config.models import Settings
+from tms_config.reasons import ManyPcsFor, NoAddress, NoCps, NoPcFor, NoRole, NoSuchPc, NotUnderMachines, WhichPc
+from tms_config.yaml_file import located
 from tms_reason.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -57,10 +59,12 @@ def check(path: Path, file: "SiteFile") -> None:
     """
     for name, pc in file.pcs.items():
         if not roles(name, pc):
-            raise ConfigError(f"{path}: pcs.{name}: which roles has it? Add `roles: [{'|'.join(ROLES)}]`")
+            raise ConfigError(located(path, NoRole(ROLES), "pcs", name))
         for machine in pc.machines:
             if machine not in file.machines:
-                raise ConfigError(f"{path}: pcs.{name}.machines: no machine '{machine}' under machines:")
+                raise ConfigError(
+                    located(path, NotUnderMachines(machine, tuple(file.machines)), "pcs", name, "machines")
+                )
 
 
 def place(site: "Site", row: "Process") -> str:
@@ -76,9 +80,8 @@ def place(site: "Site", row: "Process") -> str:
     if not pcs:
         return ""
     if len(fit) != 1:
-        what = f"{row.full} (role {row.role})"
-        who = f"{' and '.join(fit)} would both run {what}" if fit else f"no PC would run {what}"
-        raise ConfigError(f"{site.path}: pcs: {who}: set roles: or machines: of one PC")
+        problem = ManyPcsFor(tuple(fit), row.full, row.role) if fit else NoPcFor(row.full, row.role)
+        raise ConfigError(located(site.path, problem, "pcs"))
     return fit[0]
 
 
@@ -94,7 +97,7 @@ def chosen(path: Path, file: "SiteFile", state: Path) -> str | None:
     if not file.pcs or not name:
         return None
     if name not in file.pcs:
-        raise ConfigError(f"{path}: no PC '{name}' under pcs: (there: {', '.join(file.pcs)})")
+        raise ConfigError(located(path, NoSuchPc(name, tuple(file.pcs)), "pcs"))
     return name
 
 
@@ -105,8 +108,7 @@ def required(site: "Site") -> None:
         ConfigError: says how to tell.
     """
     if site.file.pcs and site.pc is None:
-        choices = ", ".join(site.file.pcs)
-        raise ConfigError(f"site '{site.name}' has several PCs: say which one this is with `tms up --role` ({choices})")
+        raise ConfigError(WhichPc(site.name, tuple(site.file.pcs)))
 
 
 def discovery_server(site: "Site") -> str | None:
@@ -121,7 +123,7 @@ def discovery_server(site: "Site") -> str | None:
         return f"{LOOPBACK}:{site.file.network.port}"
     cps = next((pc.address for name, pc in site.file.pcs.items() if "cps" in roles(name, pc)), None)
     if cps is None:
-        raise ConfigError(f"{site.path}: network.discovery: server needs a PC with the role cps, where it runs")
+        raise ConfigError(located(site.path, NoCps(), "network", "discovery"))
     return f"{resolve(site, cps)}:{site.file.network.port}"
 
 
@@ -138,4 +140,4 @@ def resolve(site: "Site", address: str) -> str:
     try:
         return socket.gethostbyname(address)
     except OSError as error:
-        raise ConfigError(f"{site.path}: pcs: '{address}' cannot be resolved ({error.strerror})") from error
+        raise ConfigError(located(site.path, NoAddress(address, str(error.strerror)), "pcs")) from error

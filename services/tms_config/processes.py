@@ -7,6 +7,8 @@ from tms_config import pcs
 from tms_config.config import CONFIGS, Site
 from tms_config.models import MachineModel
 from tms_config.pcs import Role
+from tms_config.reasons import BadFile, NoProcess, NoService, NoSubtaskFile, ProcessMeant, SameName, SeveralProcesses
+from tms_config.yaml_file import located
 from tms_reason.errors import ConfigError
 
 # package of a service -> what it is for, shown by `tms ps`
@@ -54,7 +56,7 @@ def table(site: Site) -> tuple[Process, ...]:
     numbered = tuple(_placed(site, replace(row, port=base + i)) for i, row in enumerate(rows))
     for row in numbered:
         if sum(other.full == row.full for other in numbered) > 1:
-            raise ConfigError(f"{site.path}: two processes are called '{row.full}'")
+            raise ConfigError(BadFile(str(site.path), SameName(row.full)))
     return numbered
 
 
@@ -85,10 +87,9 @@ def find(site: Site, name: str) -> Process:
     if len(hits) == 1:
         return hits[0]
     if hits:
-        raise ConfigError(f"'{name}' fits {', '.join(row.full for row in hits)}: give the full name")
+        raise ConfigError(SeveralProcesses(name, tuple(row.full for row in hits)))
     close = difflib.get_close_matches(name, [row.full for row in rows], 1, 0.5)
-    hint = f"did you mean {close[0]}?" if close else "`tms ps` lists them"
-    raise ConfigError(f"no process '{name}': {hint}")
+    raise ConfigError(ProcessMeant(name, close[0]) if close else NoProcess(name))
 
 
 def _placed(site: Site, row: Process) -> Process:
@@ -99,13 +100,13 @@ def _placed(site: Site, row: Process) -> Process:
 def _services(site: Site) -> list[Process]:
     rows = []
     if site.embedded_store:
-        rows.append(Process("tms", "store", "cps", "tms_config.store", 0, "embedded store of the demo", ours=False))
+        rows.append(Process("tms", "store", "cps", "tms_host.store", 0, "embedded store of the demo", ours=False))
     if pcs.discovery_server(site) is not None:
         purpose = "lets the PCs' processes find each other"
-        rows.append(Process("tms", "discovery", "cps", "tms_config.discovery", 0, purpose, ours=False))
+        rows.append(Process("tms", "discovery", "cps", "tms_host.discovery", 0, purpose, ours=False))
     for name, service in site.file.services.items():
         if name not in SERVICES:
-            raise ConfigError(f"{site.path}: services.{name}: unknown (there: {', '.join(SERVICES)})")
+            raise ConfigError(located(site.path, NoService(name, tuple(SERVICES)), "services", name))
         if name == "host" and site.file.pcs:
             rows += [_host(pc, pcs.roles(pc, facts)[0]) for pc, facts in site.file.pcs.items()]
         else:
@@ -133,7 +134,7 @@ def _subtask(site: Site, machine: str, model: MachineModel, action: str) -> Proc
     file = model.subtask(action).run
     if not (CONFIGS.parent / "services" / "tms_subtasks" / f"{file}.py").exists():
         where = CONFIGS / "machines" / f"{site.file.machines[machine].model}.yaml"
-        raise ConfigError(f"{where}: subtasks.{action}: no file services/tms_subtasks/{file}.py")
+        raise ConfigError(located(where, NoSubtaskFile(file), "subtasks", action))
     return Process(
         machine, action, site.file.machines[machine].role, "tms_machine.subtask_server", 0,
         f"subtask {file}", machine, action, autostart=False,

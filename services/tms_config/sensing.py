@@ -10,6 +10,8 @@ from pydantic import BeforeValidator, Field, field_validator, model_validator
 from tms_config.config import CONFIGS, Site
 from tms_config.models import NAME, Settings
 from tms_config.names import Name, Text
+from tms_config.reasons import NoField, NotOrdered, NoUnit
+from tms_config.validation import Wrong
 from tms_config.yaml_file import parse
 
 # Unit of a message -> factor to the unit that records use (m, rad, s, m/s, rad/s).
@@ -37,7 +39,7 @@ class FieldRule(Settings):
     @classmethod
     def _known(cls, unit: str | None) -> str | None:
         if unit is not None and unit not in UNITS:
-            raise ValueError(f"no unit '{unit}' (there: {', '.join(UNITS)}); SI values need none")
+            raise Wrong(NoUnit(unit, tuple(UNITS)))
         return unit
 
     @property
@@ -76,14 +78,14 @@ class Input(Settings):
     def _ordered(cls, ranges: dict[str, Limits]) -> dict[str, Limits]:
         for name, (least, most) in ranges.items():
             if not least < most:
-                raise ValueError(f"{name}: [{least}, {most}] must be [least, most]")
+                raise Wrong(NotOrdered(least, most), name)
         return ranges
 
     @model_validator(mode="after")
     def _ranges_of_fields(self) -> "Input":
         for name in self.range:
             if self.fields and name not in self.fields:
-                raise ValueError(f"range.{name}: no such field under fields:")
+                raise Wrong(NoField(), "range", name)
         return self
 
     @property

@@ -8,7 +8,8 @@ from pydantic import Field, ValidationError, field_validator, model_validator
 from tms_config import store_address
 from tms_config.models import NAME, Backend, Settings
 from tms_config.pcs import Network, Pc, Role
-from tms_config.yaml_file import explain
+from tms_config.reasons import HalfALogin, NoUri, PasswordInUri, UserTwice
+from tms_config.validation import Wrong, problems
 
 ServiceName = Annotated[str, Field(pattern=r"^(/[A-Za-z_][A-Za-z0-9_]*)+$", max_length=200)]
 ServiceType = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*/[A-Z][A-Za-z0-9]*$")]  # pkg/Type
@@ -70,13 +71,13 @@ class Store(Settings):
     @model_validator(mode="after")
     def _whole(self) -> "Store":
         if store_address.holds_password(self.uri or ""):
-            raise ValueError("uri holds a password: write user and password_file instead, or use TMS_MONGODB_URI_FILE")
+            raise Wrong(PasswordInUri(), "uri")
         if (self.user is None) != (self.password_file is None):
-            raise ValueError("user and password_file go together: give both or none")
+            raise Wrong(HalfALogin())
         if self.uri is None and (self.user or self.tls_ca or self.tls_certificate):
-            raise ValueError("user, password_file and TLS need the uri of a MongoDB: add it")
+            raise Wrong(NoUri())
         if self.user is not None and "@" in (self.uri or ""):
-            raise ValueError("the user stands in uri and in user: keep the latter")
+            raise Wrong(UserTwice(), "user")
         return self
 
 
@@ -180,7 +181,8 @@ class SiteFile(Settings):
         try:
             return {**services, "if": Bridge.model_validate(services["if"])}
         except ValidationError as error:
-            raise ValueError(f"if.{explain(error)}") from error
+            keys, reason = next(problems(error))
+            raise Wrong(reason, "if", *keys) from error
 
     @property
     def names(self) -> Backend:

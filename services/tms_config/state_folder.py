@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from tms_config.reasons import BadFile, OthersFile
 from tms_reason.errors import ConfigError
 
 UMASK = 0o077
@@ -41,10 +42,7 @@ def tighten(folder: Path) -> int:
             except FileNotFoundError:
                 continue  # it came and went
             except PermissionError as error:
-                raise ConfigError(
-                    f"{path}: belongs to another user, and others may read it: give the state folder to user "
-                    f"{os.getuid()} (`chown -R`), or set TMS_STATE"
-                ) from error
+                raise ConfigError(BadFile(str(path), OthersFile(os.getuid()))) from error
     return closed
 
 

@@ -4,6 +4,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import quote, urlencode
 
+from tms_config.reasons import BadFile, EmptyFile
+from tms_config.yaml_file import located, read_text
 from tms_reason.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -23,7 +25,7 @@ def address(store: "Store", uri: str, site: Path) -> str:
     """
     scheme, _, rest = uri.partition("://")
     if store.user is not None and store.password_file is not None:
-        password = _password(site.parent / store.password_file)
+        password = _password(site, site.parent / store.password_file)
         rest = f"{quote(store.user, safe='')}:{quote(password, safe='')}@{rest}"
     options: dict[str, str] = {}
     if store.tls_ca is not None:
@@ -35,13 +37,12 @@ def address(store: "Store", uri: str, site: Path) -> str:
     return f"{scheme}://{rest}"
 
 
-def _password(path: Path) -> str:
+def _password(site: Path, path: Path) -> str:
+    key = "store", "password_file"
     try:
-        text = path.read_text(encoding="utf-8").rstrip("\r\n")
-    except OSError as error:
-        raise ConfigError(f"store.password_file: {path}: cannot be read ({error.strerror})") from error
-    except UnicodeDecodeError as error:
-        raise ConfigError(f"store.password_file: {path}: is no UTF-8 text") from error
-    if not text:
-        raise ConfigError(f"store.password_file: {path}: is empty: write the password into it")
-    return text
+        found = read_text(path).rstrip("\r\n")
+    except ConfigError as error:
+        raise ConfigError(located(site, error.reason, *key)) from error
+    if not found:
+        raise ConfigError(located(site, BadFile(str(path), EmptyFile()), *key))
+    return found

@@ -1,16 +1,30 @@
-"""Reads a YAML file into a frozen model; whatever is wrong is an error that names file and key."""
+"""Reads a YAML file into a frozen model; whatever is wrong is an error that names file, line and key."""
 
 from collections.abc import Hashable
+from itertools import islice
 from pathlib import Path
 from typing import Any, TypeVar
 
 import yaml
 from pydantic import ValidationError
 
+from tms_config import reasons
 from tms_config.models import Settings
+from tms_config.validation import Keys, dotted, problems
+from tms_reason import texts
 from tms_reason.errors import ConfigError
+from tms_reason.reason import Reason
 
 T = TypeVar("T", bound=Settings)
+MAX_SHOWN = 5  # problems of one file
+
+
+class _BadMapping(yaml.MarkedYAMLError):
+    """A mapping that PyYAML would take, and we do not."""
+
+    def __init__(self, reason: Reason, mark: yaml.Mark) -> None:
+        super().__init__(problem_mark=mark)
+        self.reason = reason
 
 
 class _Loader(yaml.CSafeLoader):
@@ -22,15 +36,28 @@ def _mapping(loader: _Loader, node: yaml.MappingNode) -> dict[Any, Any]:
     for key_node, value_node in node.value:
         key = loader.construct_object(key_node, deep=True)
         if not isinstance(key, Hashable):  # `{{ address }}` is a mapping as key of a mapping
-            problem = "a key is itself a mapping or a list: was a {{ placeholder }} not filled in?"
-            raise yaml.MarkedYAMLError(problem=problem, problem_mark=key_node.start_mark)
+            raise _BadMapping(reasons.NoKey(), key_node.start_mark)
         if key in seen:
-            raise yaml.MarkedYAMLError(problem=f"key '{key}' is there twice", problem_mark=key_node.start_mark)
+            raise _BadMapping(reasons.KeyTwice(str(key)), key_node.start_mark)
         seen[key] = loader.construct_object(value_node, deep=True)
     return seen
 
 
 _Loader.add_constructor(yaml.resolver.BaseResolver.DEFAULT_MAPPING_TAG, _mapping)
+
+
+def read_text(path: Path) -> str:
+    """Content of a text file.
+
+    Raises:
+        ConfigError: it cannot be read, or is no UTF-8.
+    """
+    try:
+        return path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise ConfigError(reasons.BadFile(str(path), reasons.CannotBeRead(str(error.strerror)))) from error
+    except UnicodeDecodeError as error:
+        raise ConfigError(reasons.BadFile(str(path), reasons.NotUtf8())) from error
 
 
 def read_yaml(path: Path) -> Any:
@@ -39,38 +66,62 @@ def read_yaml(path: Path) -> Any:
     Raises:
         ConfigError: it cannot be read or is no YAML.
     """
+    text = read_text(path)
     try:
-        return yaml.load(path.read_text(encoding="utf-8"), _Loader)  # a safe loader
-    except OSError as error:
-        raise ConfigError(f"{path}: cannot be read ({error.strerror})") from error
-    except UnicodeDecodeError as error:
-        raise ConfigError(f"{path}: is not UTF-8 text") from error
+        return yaml.load(text, _Loader)  # a safe loader
     except yaml.MarkedYAMLError as error:
         line = error.problem_mark.line + 1 if error.problem_mark else 0
-        raise ConfigError(f"{path}:{line}: {error.problem}") from error
+        reason = error.reason if isinstance(error, _BadMapping) else reasons.NoYaml(str(error.problem))
+        raise ConfigError(reasons.BadLine(str(path), line, reason)) from error
     except yaml.YAMLError as error:  # a character that no YAML may hold
-        raise ConfigError(f"{path}: {str(error).splitlines()[0]}") from error
+        raise ConfigError(reasons.BadFile(str(path), reasons.NoYaml(str(error).splitlines()[0]))) from error
 
 
 def parse(path: Path, model: type[T]) -> T:
     """A settings file as its model.
 
     Raises:
-        ConfigError: names the file, the key and what is wrong with it.
+        ConfigError: names the file, the keys and what is wrong with them.
     """
     data = read_yaml(path)
     if not isinstance(data, dict):
-        raise ConfigError(f"{path}: must hold keys and values")
+        raise ConfigError(reasons.BadFile(str(path), reasons.NoMapping()))
     try:
         return model.model_validate(data)
     except ValidationError as error:
-        raise ConfigError(f"{path}: {explain(error)}") from error
+        found = [located(path, reason, *keys) for keys, reason in islice(problems(error), MAX_SHOWN)]
+        more = error.error_count() - len(found)
+        if more:
+            found.append(reasons.AndMore(more))
+        raise ConfigError(found[0] if len(found) == 1 else reasons.BadConfig(tuple(found))) from error
+
+
+def located(path: Path, problem: Reason, *keys: int | str) -> Reason:
+    """A problem with the file, the line and the key that it is about."""
+    if not keys:
+        return reasons.BadFile(str(path), problem)
+    return reasons.BadKey(str(path), _line(yaml.compose(read_text(path), _Loader), keys), dotted(keys), problem)
 
 
 def explain(error: ValidationError) -> str:
     """First problem of a validation, as `key: what`; says how many more there are."""
-    first = error.errors()[0]
-    key = ".".join(str(part) for part in first["loc"])
-    message = "unknown key" if first["type"] == "extra_forbidden" else first["msg"].removeprefix("Value error, ")
-    more = error.error_count() - 1
-    return (f"{key}: " if key else "") + message + (f" (and {more} more)" if more else "")
+    keys, reason = next(problems(error))
+    key, more = dotted(keys), error.error_count() - 1
+    return (f"{key}: " if key else "") + texts.text(reason, "en") + (f" (and {more} more)" if more else "")
+
+
+def _line(node: yaml.Node | None, keys: Keys) -> int:
+    """Line of a key, or of the nearest one above it that is there."""
+    line = 1 if node is None else node.start_mark.line + 1
+    for key in keys:
+        if isinstance(node, yaml.SequenceNode) and isinstance(key, int) and key < len(node.value):
+            node = node.value[key]
+            line = node.start_mark.line + 1
+        elif isinstance(node, yaml.MappingNode):
+            found = next(((name, value) for name, value in node.value if name.value == str(key)), None)
+            if found is None:
+                return line
+            line, node = found[0].start_mark.line + 1, found[1]
+        else:
+            return line
+    return line

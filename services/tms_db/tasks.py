@@ -166,7 +166,7 @@ class Tasks:
 
 
 def _wish(text: str, description: str, models: Collection[str]) -> _Wish:
-    check_text("the task's description", description)
+    check_text("description", description)
     essence = task_text.essence(text)
     document = {
         "type": "task",

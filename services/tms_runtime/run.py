@@ -9,7 +9,7 @@ import sys
 import threading
 import time
 
-from tms_config import discovery, environment, state_folder, store
+from tms_config import environment, state_folder
 from tms_config.config import Site, load_site, version
 from tms_config.processes import Process, find
 from tms_reason.errors import ConfigError
@@ -36,10 +36,8 @@ def main(name: str) -> int:
         os.umask(state_folder.UMASK)
         site = load_site()
         row = find(site, name)
-        if row.name == "store":
-            store.become(site)
-        if row.name == "discovery":
-            discovery.become(site)
+        if not row.ours:
+            importlib.import_module(row.module).exec_program(site)
         environment.enter(site)
         return _serve(site, row)
     except ConfigError as error:

@@ -13,6 +13,7 @@ import structlog
 from fastapi import FastAPI, Path, Request
 
 from tms_config.config import Site
+from tms_config.reasons import NoMachine
 from tms_machine.reasons import SoftwareStopBy
 from tms_reason.errors import TmsError
 from tms_reason.reason import Reason
@@ -22,7 +23,7 @@ from tms_ur.data_models import FieldGiven, RecordGiven
 from tms_ur.models import Added, Rearmed, Receipt, RunAsked
 from tms_ur.problems import Admin, Operator, Viewer, problems
 from tms_ur.reading import ProcessName, RunId, TaskId
-from tms_ur.reasons import BadValue, IntTooLong, NoMachine, NotFinite, NotOfType, NotUnicode, Starting
+from tms_ur.reasons import BadValue, IntTooLong, NotFinite, NotOfType, NotUnicode, Starting
 from tms_ur.security import source
 
 if TYPE_CHECKING:

@@ -2,7 +2,7 @@
 
 from tms_reason.quantities import Seconds
 from tms_reason.reason import Reason
-from tms_reason.remedies import CHECK, EDIT_CONFIG, LOGS, PROCESSES, RETRY, RUNS, STATUS
+from tms_reason.remedies import CHECK, EDIT_CONFIG, LOGS, PROCESSES, RETRY, RUNS
 
 
 # fmt: off
@@ -46,8 +46,6 @@ class NotFinite(Reason, text="a double is finite"): pass
 class NotUnicode(Reason, text="a string is valid Unicode without NUL"): pass
 
 # the site
-class NoMachine(Reason, text="the site has no machine '{machine}' (there: {machines})",
-    action=STATUS): machine: str; machines: tuple[str, ...]
 class UnknownProcess(Reason, text="no PC of the site has a process '{process}'", action=PROCESSES): process: str
 class NoTree(Reason, text="the journal of run {run} holds no tree: it was refused, or is an old one",
     action=RUNS): run: str

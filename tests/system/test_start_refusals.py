@@ -63,17 +63,18 @@ def tiny_disk() -> Iterator[Path]:
 
 def test_no_room_for_the_store(other: Mesh, tiny_disk: Path) -> None:
     line = refusal(Mesh(other.site, tiny_disk / "state"), "up")
-    assert "MB free, the store needs 200 MB" in line and "TMS_STATE" in line
+    assert "MB free, 200.0 MB are needed" in line and "TMS_STATE" in line
 
 
 def test_state_folder_that_cannot_be_made(other: Mesh, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    assert "cannot write" in refusal(Mesh(other.site, tmp_path / "file" / "state"), "up")
+    assert "cannot be written" in refusal(Mesh(other.site, tmp_path / "file" / "state"), "up")
 
 
 def test_broken_site_file(other: Mesh) -> None:
-    other.site.write_text(other.site.read_text() + "colour: red\n")
-    assert refusal(other, "up") == f"tms: {other.site}: colour: unknown key"
+    text = other.site.read_text() + "colour: red\n"
+    other.site.write_text(text)
+    assert refusal(other, "up") == f"tms: {other.site}:{text.count(chr(10))}: colour: unknown key; Correct the file"
 
 
 def test_without_a_mesh_every_verb_says_how_to_start_it(other: Mesh) -> None:

@@ -10,7 +10,22 @@ from tms_config import pcs
 from tms_config.config import Site, load_site
 from tms_config.environment import environment
 from tms_config.processes import here, table
+from tms_config.reasons import (
+    BadConfig,
+    BadKey,
+    ManyPcsFor,
+    MissingKey,
+    NoAddress,
+    NoCps,
+    NoPcFor,
+    NoRole,
+    NoSuchPc,
+    NotUnderMachines,
+    UnknownKey,
+    WhichPc,
+)  # fmt: skip
 from tms_reason.errors import ConfigError
+from tms_reason.reason import Reason
 
 PCS = {
     "cps": {"address": "10.9.0.10"},
@@ -91,34 +106,55 @@ def test_a_site_of_one_pc_may_have_one_too(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("changes", "words"),
+    ("changes", "key", "problem"),
     [
-        ({"pcs": {"cps": PCS["cps"], "sim": PCS["sim"]}}, "no PC would run zx200:rc (role machine)"),
-        ({"pcs": {**PCS, "b": {"address": "10.9.0.4", "roles": ["cps"]}}}, "cps and b would both run"),
-        ({"pcs": {**PCS, "spare": {"address": "10.9.0.4"}}}, "pcs.spare: which roles has it?"),
-        ({"pcs": {**PCS, "machine": {"address": "a", "machines": ["zx9"]}}}, "pcs.machine.machines: no machine 'zx9'"),
-        ({"pcs": {**PCS, "cps": {"adress": "10.9.0.4"}}}, "pcs.cps.a"),
+        ({"pcs": {"cps": PCS["cps"], "sim": PCS["sim"]}}, "pcs", NoPcFor("zx200:rc", "machine")),
+        ({"pcs": {**PCS, "b": {"address": "10.9.0.4", "roles": ["cps"]}}}, "pcs",
+         ManyPcsFor(("cps", "b"), "tms:store", "cps")),
+        ({"pcs": {**PCS, "spare": {"address": "10.9.0.4"}}}, "pcs.spare", NoRole(pcs.ROLES)),
+        ({"pcs": {**PCS, "machine": {"address": "a", "machines": ["zx9"]}}}, "pcs.machine.machines",
+         NotUnderMachines("zx9", ("zx200", "ic120_1"))),
+        ({"pcs": {"sim": PCS["sim"]}, "network": {"discovery": "server"}}, "network.discovery", NoCps()),
     ],
-)
-def test_a_mistake_is_named_with_file_and_key(tmp_path: Path, changes: dict[str, Any], words: str) -> None:
-    with pytest.raises(ConfigError, match=r"yard\.yaml") as caught:
+)  # fmt: skip
+def test_a_mistake_is_named_with_file_and_key(
+    tmp_path: Path, changes: dict[str, Any], key: str, problem: Reason
+) -> None:
+    with pytest.raises(ConfigError) as caught:
         table(site(tmp_path, **changes))
-    assert words in str(caught.value)
+    found = caught.value.reason
+    assert isinstance(found, BadKey) and found.file == str(tmp_path / "yard.yaml")
+    assert (found.key, found.problem) == (key, problem)
+
+
+def test_an_address_that_is_misspelt_and_therefore_missing(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError) as caught:
+        site(tmp_path, pcs={**PCS, "cps": {"adress": "10.9.0.4"}})
+    found = caught.value.reason
+    assert isinstance(found, BadConfig)
+    keys = [(one.key, one.problem) for one in found.problems if isinstance(one, BadKey)]
+    assert keys == [("pcs.cps.address", MissingKey()), ("pcs.cps.adress", UnknownKey())]
 
 
 def test_nothing_starts_before_it_is_known_which_pc_this_is(tmp_path: Path) -> None:
-    with pytest.raises(ConfigError, match=r"tms up --role` \(cps, machine, sim\)"):
+    with pytest.raises(ConfigError) as caught:
         here(site(tmp_path))
+    assert caught.value.reason == WhichPc("yard", ("cps", "machine", "sim"))
 
 
 def test_an_unknown_pc_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TMS_PC", "cpss")
-    with pytest.raises(ConfigError, match=r"no PC 'cpss' under pcs: \(there: cps, machine, sim\)"):
+    with pytest.raises(ConfigError) as caught:
         site(tmp_path)
+    found = caught.value.reason
+    assert isinstance(found, BadKey) and found.problem == NoSuchPc("cpss", ("cps", "machine", "sim"))
 
 
 def test_a_name_that_nobody_knows_is_no_address(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TMS_PC", "cps")
     found = site(tmp_path, pcs={**PCS, "cps": {"address": "no-such-pc.invalid"}})
-    with pytest.raises(ConfigError, match=r"'no-such-pc.invalid' cannot be resolved"):
+    with pytest.raises(ConfigError) as caught:
         environment(found)
+    reason = caught.value.reason
+    assert isinstance(reason, BadKey) and isinstance(reason.problem, NoAddress)
+    assert reason.problem.name == "no-such-pc.invalid"

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from tms_config import state_folder
+from tms_config.reasons import BadFile, OthersFile
 from tms_reason.errors import ConfigError
 
 
@@ -56,5 +57,6 @@ def test_a_file_of_another_user_is_told(tmp_path: Path, monkeypatch: pytest.Monk
         raise PermissionError
 
     monkeypatch.setattr(Path, "chmod", refuse)
-    with pytest.raises(ConfigError, match=rf"^{tmp_path}/a: belongs to another user, .*`chown -R`.*TMS_STATE$"):
+    with pytest.raises(ConfigError) as caught:
         state_folder.tighten(tmp_path)
+    assert caught.value.reason == BadFile(str(tmp_path / "a"), OthersFile(os.getuid()))

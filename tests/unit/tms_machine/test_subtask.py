@@ -32,7 +32,7 @@ def test_the_second_argument_needs_params() -> None:
 @pytest.mark.parametrize(
     ("record", "said"),
     [
-        ({}, "target_angle: Field required"),
+        ({}, "target_angle: is missing"),
         ({"target_angle": "1.0"}, "target_angle: Input should be a valid number"),
         ({"target_angle": True}, "target_angle: Input should be a valid number"),
         ({"target_angle": float("nan")}, "target_angle: Input should be a finite number"),

@@ -109,8 +109,12 @@ def test_the_users_file_is_beside_the_site_file(tmp_path: Path) -> None:
     [
         (None, 0, r"is not there: `tms user add NAME --role admin`"),
         ("users: {}\n", 0o644, r"everybody on this PC may read it: `chmod 600 "),
-        ("users: {ken: {role: boss}}\n", 0o600, r"users\.yaml: users\.ken\.role: "),
-        ("users: {ken: {role: viewer}}\n", 0o600, r"users\.ken: needs a password or a token: `tms user add`"),
+        ("users: {ken: {role: boss}}\n", 0o600, r"users\.yaml:1: users\.ken\.role: "),
+        (
+            "users: {ken: {role: viewer}}\n",
+            0o600,
+            r"users\.yaml:1: users\.ken: needs a password or a token: `tms user add`",
+        ),
         ('users: {"k\\0n": {role: viewer, token: $argon2id$x}}\n', 0o600, "holds the control character U\\+0000"),
         ("users: [\n", 0o600, r"users\.yaml:2: "),
     ],

@@ -1,4 +1,4 @@
-"""`tms:discovery`: becomes Fast DDS's discovery server, for sites whose network passes no multicast."""
+"""`tms:discovery`: Fast DDS's discovery server, for sites whose network passes no multicast."""
 
 import os
 import sys
@@ -6,10 +6,11 @@ from pathlib import Path
 
 from tms_config import pcs
 from tms_config.config import Site
+from tms_host.reasons import NoProgram
 from tms_reason.errors import ConfigError
 
 
-def become(site: Site) -> None:
+def exec_program(site: Site) -> None:
     """Replace this process by the server (same pid, so supervisord sees the real one).
 
     Raises:
@@ -18,7 +19,7 @@ def become(site: Site) -> None:
     address = pcs.discovery_server(site)
     program = Path(sys.executable).parent / "fast-discovery-server"
     if address is None or not program.exists():
-        raise ConfigError(f"{site.path}: network.discovery: no server to start ({program})")
+        raise ConfigError(NoProgram(str(program)))
     host, _, port = address.partition(":")
     os.environ.pop("ROS_DISCOVERY_SERVER", None)
     os.execv(program, [str(program), "-i", "0", "-l", host, "-p", port])

@@ -1,4 +1,4 @@
-"""`tms:store`: becomes the embedded store's server, a separate program that our code never imports."""
+"""`tms:store`: the embedded store's server, a separate program that our code never imports."""
 
 import os
 import shutil
@@ -7,6 +7,8 @@ from pathlib import Path
 
 from tms_config import state_folder
 from tms_config.config import PROJECT, Site
+from tms_config.reasons import BadFile, CannotBeWritten, NoRoom
+from tms_host.reasons import NoProgram
 from tms_reason.errors import ConfigError
 
 PROGRAM = PROJECT / ".venv-store" / "bin" / "secantusd-py"
@@ -21,27 +23,28 @@ def check(site: Site) -> Path:
     """
     folder = site.state / "store"
     if not PROGRAM.exists():
-        raise ConfigError(f"the embedded store is not installed ({PROGRAM} is missing): run `make setup`")
+        raise ConfigError(NoProgram(str(PROGRAM)))
     try:
         state_folder.make(site.state)
         folder.mkdir(mode=0o700, exist_ok=True)
         free = shutil.disk_usage(folder).free
     except OSError as error:
-        raise ConfigError(f"{folder}: the store cannot write there ({error.strerror}); set TMS_STATE") from error
+        raise ConfigError(BadFile(str(folder), CannotBeWritten(str(error.strerror)))) from error
     if free < NEEDED_BYTES:
-        raise ConfigError(
-            f"{folder}: only {free / 2**20:.0f} MB free, the store needs {NEEDED_BYTES / 2**20:.0f} MB: "
-            "free some space or set TMS_STATE to another disk"
-        )
+        raise ConfigError(BadFile(str(folder), NoRoom(free / 2**20, NEEDED_BYTES / 2**20)))
     return folder
 
 
-def become(site: Site) -> None:
-    """Replace this process by the store's server (same pid, so supervisord sees the real one)."""
+def exec_program(site: Site) -> None:
+    """Replace this process by the store's server (same pid, so supervisord sees the real one).
+
+    Raises:
+        ConfigError: as `check`.
+    """
     folder = check(site)
     # The ROS wheels' variables would make the other environment load this one's native libraries.
     hidden = ("LD_LIBRARY_PATH", "_ROS_WHEELS_BOOTSTRAP_COMPLETE", "PYTHONPATH")
     clean = {key: value for key, value in os.environ.items() if key not in hidden}
-    words = [str(PROGRAM), "--host", "127.0.0.1", "--port", str(site.file.ports.store)]
+    argv = [str(PROGRAM), "--host", "127.0.0.1", "--port", str(site.file.ports.store)]
     sys.stdout.flush()
-    os.execve(PROGRAM, [*words, "--storage-path", str(folder), "--cache-size", "64M"], clean)
+    os.execve(PROGRAM, [*argv, "--storage-path", str(folder), "--cache-size", "64M"], clean)

@@ -1,0 +1,50 @@
+"""What pydantic finds wrong with data, as reasons: each with the key that it is about."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from pydantic import ValidationError
+
+from tms_config.reasons import BadSetting, BadValueOf, MissingKey, UnknownKey
+from tms_reason.reason import Foreign, Reason
+from tms_reason.texts import sentence
+
+Keys = tuple[int | str, ...]
+PLAIN: dict[str, type[UnknownKey | MissingKey]] = {"extra_forbidden": UnknownKey, "missing": MissingKey}
+SECRET = ("uri", "password")  # parts of keys whose values are never shown
+
+
+class Wrong(ValueError):
+    """What a validator raises: a reason, and the key below the validated value that it is about."""
+
+    def __init__(self, reason: Reason, *key: int | str) -> None:
+        super().__init__(sentence(reason, "en"))
+        self.reason, self.key = reason, key
+
+
+def problems(error: ValidationError) -> Iterator[tuple[Keys, Reason]]:
+    """Key and reason of everything that a validation found, in the order of the data."""
+    for one in error.errors(include_url=False):
+        own = one.get("ctx", {}).get("error")
+        keys = one["loc"]
+        if isinstance(own, Wrong):
+            yield (*keys, *own.key), own.reason
+        elif one["type"] in PLAIN:
+            yield keys, PLAIN[one["type"]]()
+        elif isinstance(own, ValueError):
+            yield keys, BadSetting(Foreign(str(own)))
+        else:
+            yield keys, _refused(keys, one["msg"], one["input"])
+
+
+def dotted(keys: Keys) -> str:
+    """A key as people write it: `machines.zx200.model`."""
+    return ".".join(str(part) for part in keys)
+
+
+def _refused(keys: Keys, words: str, value: Any) -> Reason:
+    """Pydantic's own words, and the value where it is short and no secret."""
+    secret = any(part in str(key) for key in keys for part in SECRET)
+    if secret or not isinstance(value, (str, int, float)):
+        return BadSetting(Foreign(words))
+    return BadValueOf(Foreign(words), repr(value)[:40])
