@@ -12,6 +12,7 @@ from tms_ts.bt.load import Report, check, load
 from tms_ts.bt.node import Node
 from tms_ts.bt.palette import palette
 from tms_ts.bt.ports import Direction, In, InOut, Out, Port
+from tms_ts.bt.py_trees_leaf import PyTreesLeaf
 from tms_ts.bt.registry import Registry, node, registry
 from tms_ts.bt.status import FAILURE, IDLE, RUNNING, SUCCESS, Kind, Status
 from tms_ts.bt.tree import LeafGoal, Tree
@@ -35,6 +36,7 @@ __all__ = [
     "Out",
     "PlainAction",
     "Port",
+    "PyTreesLeaf",
     "Registry",
     "Report",
     "StatefulAction",

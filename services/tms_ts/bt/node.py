@@ -1,36 +1,26 @@
-"""The base of every node: a py_trees behaviour that is ticked by plain recursion.
+"""The base of every node. A tree is ticked by plain recursion: a parent calls `execute_tick` of its child.
 
-py_trees' own tick is a generator per node and visit, some fifty times slower than the C library; here a parent calls
-`execute_tick` of its child. Everything py_trees needs to display a tree (name, children, status) is in place.
+Nodes are no behaviours of py_trees, whose tick is a generator per node and visit, some fifty times slower than the C
+library, and resets finished nodes by other rules. py_trees is at the borders: its behaviours are leaves
+(py_trees_leaf.py), and its displays and visitors see any tree (display.py).
 """
 
 from __future__ import annotations
 
-import uuid
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from py_trees.common import BlackBoxLevel
-from py_trees.common import Status as PyTreesStatus
-
 from tms_reason.reason import Reason
-from tms_reason.texts import text
 from tms_ts.bt.blackboard import Blackboard
 from tms_ts.bt.convert import FROM_TEXT, MISSING, convert
 from tms_ts.bt.errors import TickError
 from tms_ts.bt.ports import Direction, Pointer, Port
 from tms_ts.bt.reasons import AddPort, DoesNotFit, KeyChangesType, KeyHasNoValue, MissingParameter, OutputNotConnected
-from tms_ts.bt.status import IDLE, PY_TREES, RUNNING, Kind, Status
+from tms_ts.bt.status import IDLE, RUNNING, Kind, Status
 
 if TYPE_CHECKING:
     from tms_ts.bt.context import Context
-
-    class Behaviour:
-        """For type checkers only: `tick` and `status` of our nodes are not py_trees' ones."""
-
-else:
-    from py_trees.behaviour import Behaviour
 
 
 @dataclass(slots=True)
@@ -50,8 +40,8 @@ class Birth:
 AtOnce = tuple[bool, bool]  # may succeed, may fail
 
 
-class Node(Behaviour):
-    """A node of a tree; `state` is its stored status, `status` the same in py_trees' words."""
+class Node:
+    """A node of a tree; `state` is its stored status."""
 
     __slots__ = (
         "bindings",
@@ -74,7 +64,7 @@ class Node(Behaviour):
     needs: ClassVar[tuple[str, ...]] = ()  # ports without which it throws
     asking: ClassVar[bool] = False  # RUNNING only because an answer is not there yet
 
-    def __init__(self, birth: Birth) -> None:  # not super().__init__(): its logger and generator cost 2 KB a node
+    def __init__(self, birth: Birth) -> None:
         self.name = birth.name
         self.registration_name = birth.registration_name
         self.context = birth.context
@@ -212,31 +202,6 @@ class Node(Behaviour):
     def preflight(self, texts: Mapping[str, str]) -> list[Reason]:
         """What the author should know; `texts` are the keys that SetBlackboard gives a text."""
         return []
-
-    # --- what py_trees looks at
-
-    @property
-    def status(self) -> PyTreesStatus:
-        return PY_TREES[self.state]
-
-    @property
-    def id(self) -> uuid.UUID:
-        return uuid.UUID(int=self.uid)
-
-    @property
-    def qualified_name(self) -> str:
-        return f"{self.registration_name}/{self.name}"
-
-    @property
-    def feedback_message(self) -> str:
-        return "" if self.reason is None else text(self.reason, "en")
-
-    def update(self) -> PyTreesStatus:
-        self.execute_tick()
-        return self.status
-
-    blackbox_level = BlackBoxLevel.NOT_A_BLACKBOX
-    blackboards: ClassVar[list[Any]] = []
 
 
 Observer = Callable[[Node, Status, Status], None]

@@ -35,3 +35,4 @@ PY_TREES = {
     SUCCESS: PyTreesStatus.SUCCESS,
     FAILURE: PyTreesStatus.FAILURE,
 }
+FROM_PY_TREES = {theirs: ours for ours, theirs in PY_TREES.items()}

@@ -6,9 +6,7 @@ import itertools
 import threading
 from dataclasses import dataclass
 from types import TracebackType
-from typing import ClassVar, Protocol, cast, runtime_checkable
-
-from py_trees.behaviour import Behaviour
+from typing import ClassVar, Protocol, runtime_checkable
 
 from tms_reason.reason import Reason
 from tms_ts.bt.blackboard import Blackboard
@@ -16,6 +14,7 @@ from tms_ts.bt.context import Context
 from tms_ts.bt.errors import TickError, TreeError
 from tms_ts.bt.node import Node, Observer
 from tms_ts.bt.parallel import Parallel
+from tms_ts.bt.py_trees_leaf import PyTreesLeaf, Worker
 from tms_ts.bt.reasons import NodeError
 from tms_ts.bt.status import IDLE, Status
 
@@ -139,10 +138,9 @@ class Tree:
         """What the library's `root.halt()` alone does: the root keeps its own status."""
         self.root.halt()
 
-    @property
-    def py_trees(self) -> Behaviour:
-        """The root for py_trees' displays, e.g. `py_trees.display.unicode_tree(tree.py_trees)`."""
-        return cast(Behaviour, self.root)
+    def workers(self) -> list[Worker]:
+        """Threads and processes of behaviours that were told to end and have not ended."""
+        return [worker for node in self.nodes if isinstance(node, PyTreesLeaf) for worker in node.workers()]
 
     def leaf_goals(self) -> list[LeafGoal]:
         return [

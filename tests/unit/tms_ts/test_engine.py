@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import py_trees
 import pytest
 
 from conformance.scripted import events, scripted_registry
@@ -164,19 +163,6 @@ class TestTimers:
         assert one.tick() is RUNNING
         fake.clock.now = 0.2
         assert one.tick() is FAILURE
-
-
-class TestPyTrees:
-    def test_displays_show_any_tree(self) -> None:
-        one = tree(f"<Sequence name='all'><AlwaysSuccess/>{leaf()}</Sequence>")
-        one.tick()
-        text = py_trees.display.ascii_tree(one.py_trees, show_status=True)
-        assert "all" in text
-        assert "LeafNodeZx200" in text
-        assert "on the way" in text
-        assert "LeafNodeZx200" in py_trees.display.dot_tree(one.py_trees).to_string()
-        assert [found.name for found in one.py_trees.iterate()] == ["AlwaysSuccess", "LeafNodeZx200", "all"]
-        assert one.root.status is py_trees.common.Status.RUNNING  # type: ignore[comparison-overlap]
 
 
 class TestTree:
