@@ -18,7 +18,7 @@ pytestmark = [pytest.mark.system, pytest.mark.timeout(200)]
 GUIDE = (PROJECT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 TABLE = GUIDE.partition("## What it costs to add\n")[2].partition("\n## ")[0]
 ROWS = {name.strip() for name in re.findall(r"^\| ([a-z][^|]*)\|", TABLE, re.MULTILINE)} - {"thing"}
-(SUBTASK,) = re.findall(r"```python\n(.*?)```", GUIDE, re.DOTALL)
+SUBTASK, PAUSE = re.findall(r"```python\n(.*?)```", GUIDE, re.DOTALL)
 (LINE,) = re.findall(r"```yaml\n(  st_zx200_lift: lift\n)```", GUIDE)
 NODE = '''"""Say a word and count how often."""
 
@@ -58,7 +58,7 @@ def command() -> None:
 '''
 SENSING = "\n  height: {topic: /height, type: sensing_msgs/msg/Sample}\n"
 TREE = (
-    '<root main_tree_to_execute="T"><BehaviorTree ID="T"><Sequence><Greet word="good morning"/>'
+    '<root main_tree_to_execute="T"><BehaviorTree ID="T"><Sequence><Greet word="good morning"/><Pause seconds="0.2"/>'
     '<Action ID="LeafNodeZx200" model_name="zx200_2" record_name="high" subtask_name="st_zx200_lift"/>'
     "</Sequence></BehaviorTree></root>"
 )
@@ -84,6 +84,7 @@ def add(project: Path) -> set[str]:
     services, machines = project / "services", project / "configs" / "machines"
     (services / "tms_subtasks" / "lift.py").write_text(SUBTASK)
     (services / "tms_ts" / "nodes" / "greet.py").write_text(NODE)
+    (services / "tms_ts" / "nodes" / "pause.py").write_text(PAUSE)
     (services / "tms_cli" / "commands" / "hello.py").write_text(VERB)
     (machines / "zx210.yaml").write_text((machines / "zx200.yaml").read_text() + LINE)
     with (project / "configs" / "sensing.yaml").open("a") as inputs:
@@ -93,6 +94,7 @@ def add(project: Path) -> set[str]:
         "machine model",
         "machine of a site",
         "node of trees",
+        "behaviour of py_trees",
         "verb of `tms`",
         "metric",
         "sensing input",
@@ -121,7 +123,8 @@ def test_one_of_each_is_added_and_works(copy: Copy, tmp_path: Path) -> None:
     done = copy.tms("run", "1", "--wait", "--json", expect=None)
     assert json.loads(done.stdout)["outcome"] == "success", done.stdout + done.stderr
     assert copy.tms("hello").stdout == "hello\n"
-    assert 'ID="Greet"' in copy.tms("palette").stdout
+    palette = copy.tms("palette").stdout
+    assert 'ID="Greet"' in palette and 'ID="Pause"' in palette
     assert "height" in {row["name"] for row in json.loads(copy.tms("sensing", "--json").stdout)}
     (port,) = [row["port"] for row in json.loads(copy.tms("ps", "--json").stdout) if row["name"] == "tms:ts"]
     with urllib.request.urlopen(f"http://127.0.0.1:{port}/metrics", timeout=10) as page:

@@ -110,32 +110,76 @@ def list_(as_json: bool) -> None:
 
 
 @command.command()
-@task_id_argument
+@click.argument("what", metavar="WHAT")
+@click.option("--ascii", "form", flag_value="ascii", help="The tree as text, one line a node.")
+@click.option("--dot", "form", flag_value="dot", help="The tree as a graph for Graphviz.")
 @session.json_option
-def show(task_id: int, as_json: bool) -> None:
-    """Print a task's XML, for example into a file that Groot can open.
+def show(what: str, form: str | None, as_json: bool) -> None:
+    """Print a stored task's XML (its number), for example into a file that Groot can open; or its tree as a picture.
+
+    The pictures are drawn by py_trees, also of a file: {-} and {o} are Sequence and Fallback, [-] and [o] their
+    reactive kinds, /_/ is Parallel, -^- a decorator or subtree, --> any other node.
 
     \b
-    Example:
+    Examples:
       tms task show 1 > task.xml
+      tms task show 1 --ascii
+      tms task show configs/tasks/one_loading_cycle.xml --dot > tree.dot
     """
-    from tms_msg_db.srv import GetTask
-
-    with session.ros() as node:
-        task = session.call(node, GetTask, "/tms/db/get_task", task_id=task_id).task
+    if form and as_json:
+        raise click.UsageError(f"--{form} and --json: choose one")
+    task = _task(what)
     if as_json:
         session.show_json({**_as_dict(task), "task_sequence": task.task_sequence})
-        return
-    click.echo(
-        say(
-            "task {task}, {model}: {text}",
-            task=task.task_id,
-            model=task.model_name or say("no model"),
-            text=task.description,
-        ),
-        err=True,
-    )
-    click.echo(task.task_sequence.rstrip())
+    elif form:
+        click.echo(_picture(task.task_sequence, None if task.task_id else Path(what).parent, form))
+    else:
+        click.echo(task.task_sequence.rstrip())
+
+
+def number(what: str) -> int | None:
+    """The number that an argument is; None for a file's name.
+
+    Raises:
+        TaskError: no task can have that number.
+    """
+    if not (what.isascii() and what.isdigit()):
+        return None
+    if not 0 < int(what[:20]) < 2**31:
+        raise TaskError(f"there is no task {what}: `tms task list` shows the numbers", "NO_TASK")
+    return int(what)
+
+
+def _task(what: str) -> "Task":
+    """A stored task, named on stderr, or a file as one without a number.
+
+    Raises:
+        TmsError: there is no such task or file.
+    """
+    from tms_msg_db.msg import Task
+    from tms_msg_db.srv import GetTask
+
+    task_id = number(what)
+    if task_id is None:
+        return Task(description=Path(what).name, task_sequence=read(what))
+    with session.ros() as node:
+        task = session.call(node, GetTask, "/tms/db/get_task", task_id=task_id).task
+    model = task.model_name or say("no model")
+    click.echo(say("task {task}, {model}: {text}", task=task.task_id, model=model, text=task.description), err=True)
+    return task
+
+
+def _picture(text: str, folder: Path | None, form: str) -> str:
+    """A tree as py_trees draws it.
+
+    Raises:
+        TreeError: it cannot be loaded.
+    """
+    from tms_ts.bt import load
+    from tms_ts.bt.display import ascii_tree, dot
+
+    tree = load(text, folder=folder)
+    return (dot(tree) if form == "dot" else ascii_tree(tree)).rstrip()
 
 
 @command.command()
@@ -181,8 +225,8 @@ def check(ctx: click.Context, what: str, recursive: bool, as_json: bool) -> None
             right = check_report.show_folder(
                 check_task.folder(scheduler, Path(what), recursive=recursive), as_json=as_json
             )
-        elif what.isascii() and what.isdigit():
-            right = check_report.show_one(check_task.stored(scheduler, int(what)), as_json=as_json)
+        elif (task_id := number(what)) is not None:
+            right = check_report.show_one(check_task.stored(scheduler, task_id), as_json=as_json)
         else:
             right = check_report.show_one(check_task.file(scheduler, Path(what)), as_json=as_json)
     ctx.exit(0 if right else 1)

@@ -18,6 +18,7 @@ from py_trees.composites import Selector
 from py_trees.composites import Sequence as PyTreesSequence
 from py_trees.decorators import Decorator as PyTreesDecorator
 
+from tms_reason.texts import text
 from tms_ts.bt.control import InOrder
 from tms_ts.bt.errors import short
 from tms_ts.bt.node import Node
@@ -72,7 +73,7 @@ def twin(node: Node, named: Callable[[Node], str] | None = None) -> Behaviour:
     made = _bare(node, name, [twin(child, named) for child in node.children])
     made.id = uuid.UUID(int=node.uid)  # the same in every twin of the node, for visitors that compare
     made.status = PY_TREES[node.state]
-    made.feedback_message = node.reason
+    made.feedback_message = "" if node.reason is None else text(node.reason, "en")
     return made
 
 
@@ -94,5 +95,5 @@ def _bare(node: Node, name: str, children: list[Behaviour]) -> Behaviour:
 def label(node: Node) -> str:
     """Name, type where it is another word, and the ports as the document gives them."""
     title = node.name if node.name == node.registration_name else f"{node.name} ({node.registration_name})"
-    ports = [f'{port}="{short(text, LONGEST)}"' for port, text in node.assigned().items()]
+    ports = [f'{port}="{short(given, LONGEST)}"' for port, given in node.assigned().items()]
     return "\n".join(filter(None, [title, " ".join(ports)]))

@@ -22,9 +22,11 @@ import structlog
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status as PyTreesStatus
 
+from tms_reason.reason import Foreign
 from tms_ts.bt.errors import TickError
 from tms_ts.bt.leaf import StatefulAction
 from tms_ts.bt.node import AtOnce
+from tms_ts.bt.reasons import PyTreesBlackboard, UsePorts, WaitsForWorkers
 from tms_ts.bt.status import FROM_PY_TREES, RUNNING, Status
 
 Worker = Thread | BaseProcess
@@ -78,7 +80,7 @@ class PyTreesLeaf(StatefulAction):
     def _waits(self) -> bool:
         if not self.workers():
             return False
-        self.reason = "waits for a thread of its last start to end"
+        self.reason = WaitsForWorkers()
         return True
 
     def _begin(self) -> Status:
@@ -86,8 +88,7 @@ class PyTreesLeaf(StatefulAction):
         for one in made.iterate():
             one.logger = log.bind(node=self.path)  # type: ignore[assignment]  # py_trees' own one prints
             if one.blackboards:
-                raise TickError(f"{self.registration_name}: the blackboard of py_trees is not for use here",
-                                hint="use ports: all runs share that blackboard")  # fmt: skip
+                raise TickError(PyTreesBlackboard(self.registration_name), hint=UsePorts())
         self._live = made
         made.setup_with_descendants()
         return self._tick(made)
@@ -96,7 +97,7 @@ class PyTreesLeaf(StatefulAction):
         live.tick_once()
         status = FROM_PY_TREES[live.status]
         if self.tells:
-            self.reason = live.feedback_message
+            self.reason = Foreign(live.feedback_message) if live.feedback_message else None
         if status.completed:
             self.ended(live)
             self._live = None

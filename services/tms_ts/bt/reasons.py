@@ -133,12 +133,15 @@ class Succeed(Reason, text="succeed"): pass
 class Fail(Reason, text="fail"): pass
 class KeyNotBoolean(Reason, text="KeepRunningUntilFlgup: {key} is '{value}', not true or false"): key: str; value: str
 class NoMachines(Reason, text="{node}: this tree was loaded without machines"): node: str
+class PyTreesBlackboard(Reason, text="{node}: the blackboard of py_trees is not for use here"): node: str
+class UsePorts(Reason, text="use ports: all runs share that blackboard"): pass
 class NoWorld(Reason, text="{node}: this tree was loaded without a world to ask"): node: str
 class NodeError(Reason, text="{error}: {problem}"): error: str; problem: str  # an exception out of a node
 
 # why a node waits or has failed
 class LoopedInTick(Reason, text="looped {rounds} times in this tick, goes on in the next"): rounds: int
 class Waits(Reason, text="waits {seconds}"): seconds: Seconds
+class WaitsForWorkers(Reason, text="waits for a thread of its last start to end"): pass
 class WaitsForAnswer(Reason, text="waits for an answer"): pass
 class WaitsForOperator(Reason, text="waits for an operator: {question}"): question: str
 class RunsUntil(Reason, text="runs until {key} is true"): key: str

@@ -5,6 +5,7 @@ import re
 import shlex
 import sys
 from pathlib import Path
+from types import ModuleType
 
 import click
 import pytest
@@ -12,11 +13,13 @@ import pytest
 from tms_cli.main import tms
 from tms_config.config import PROJECT
 from tms_machine.subtask import Subtask
+from tms_ts.bt import Registry, Status, load, palette
 
 PAGES = {name: (PROJECT / name).read_text(encoding="utf-8") for name in (
     "README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "deploy/CONSOLE.md", "configs/README.md",
 )}  # fmt: skip
 README = "\n".join(PAGES.values())
+SUBTASK, BEHAVIOUR = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
 COMMANDS = sorted(
     {line for block in re.findall(r"```sh\n(.*?)```", README, re.DOTALL) for line in block.splitlines()}
     | set(re.findall(r"`(tms [a-z][^`]*)`", README))
@@ -60,21 +63,32 @@ def test_the_readme_is_short() -> None:
     assert len(PAGES["README.md"].splitlines()) <= 200
 
 
-def test_the_subtask_of_the_guide_is_one(tmp_path: Path) -> None:
-    (code,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
-    (tmp_path / "lift.py").write_text(code)
-    spec = importlib.util.spec_from_file_location("readme_lift", tmp_path / "lift.py")
+def made(code: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    """A module of the guide."""
+    (folder / "made.py").write_text(code)
+    spec = importlib.util.spec_from_file_location("made", folder / "made.py")
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
-    sys.modules["readme_lift"] = module  # its type hints are looked up there
-    try:
-        spec.loader.exec_module(module)
-    finally:
-        del sys.modules["readme_lift"]
-    kind = module.lift.subtask
+    monkeypatch.setitem(sys.modules, "made", module)  # its type hints are looked up there
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_the_subtask_of_the_guide_is_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    kind = made(SUBTASK, tmp_path, monkeypatch).lift.subtask
     assert issubclass(kind, Subtask)
     assert kind.params.model_validate({"boom": -1.0}).boom == -1.0
+
+
+def test_the_behaviour_of_py_trees_of_the_guide_is_a_node(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    nodes = sys.modules[Registry.__module__]
+    monkeypatch.setattr(nodes, "_recorded", dict(nodes._recorded))  # it is a node of this test only
+    made(BEHAVIOUR, tmp_path, monkeypatch)
+    tree = load('<root><BehaviorTree ID="T"><Pause seconds="60"/></BehaviorTree></root>')
+    assert tree.tick() is Status.RUNNING
+    tree.halt()
+    assert 'ID="Pause"' in palette()
 
 
 def test_links_of_the_readme_lead_somewhere() -> None:

@@ -11,6 +11,7 @@ from tms_msg_ts.srv import CheckTask
 from tms_cli import check_task
 from tms_cli.commands import task
 from tms_reason.errors import DbError, TaskError
+from tms_ts.bt import TreeError
 
 GOOD = '<root><BehaviorTree ID="T"><Sequence><AlwaysSuccess/></Sequence></BehaviorTree></root>'
 LEAF = """<root><BehaviorTree ID="T">
@@ -74,6 +75,48 @@ def test_show_prints_the_xml_as_it_was_drawn(mesh, tms) -> None:
     assert end.stdout == f"{GOOD}\n"
     assert end.stderr == "task 1, zx200: d\n"
     assert json.loads(tms(task.command, "show", "1", "--json").stdout)["task_sequence"] == GOOD
+
+
+def test_show_draws_a_stored_task(mesh, tms) -> None:
+    mesh.answers["/tms/db/get_task"] = GetTask.Response(task=Task(task_id=1, model_name="zx200", task_sequence=LEAF))
+    end = tms(task.command, "show", "1", "--ascii")
+    assert end.stdout.splitlines() == [
+        "{-} Sequence",
+        '    --> LeafNodeZx200 record_name="{next}" subtask_name="st_zx200_swing"',
+    ]
+    assert end.stderr == "task 1, zx200: \n"
+    dot = tms(task.command, "show", "1", "--dot").stdout
+    assert dot.startswith("digraph ")
+    assert dot.count("->") == 1
+
+
+def test_show_draws_a_file_with_what_it_includes(mesh, tms, tmp_path: Path) -> None:
+    (tmp_path / "other.xml").write_text(GOOD.replace('"T"', '"Other"'))
+    (tmp_path / "main.xml").write_text(
+        '<root main_tree_to_execute="M"><include path="other.xml"/>'
+        '<BehaviorTree ID="M"><SubTree ID="Other"/></BehaviorTree></root>'
+    )
+    end = tms(task.command, "show", tmp_path / "main.xml", "--ascii")
+    assert [line.strip() for line in end.stdout.splitlines()] == [
+        "-^- Other (SubTree)",
+        "{-} Sequence",
+        "--> AlwaysSuccess",
+    ]
+    assert tms(task.command, "show", tmp_path / "other.xml").stdout.startswith("<root>")
+    assert not mesh.asked
+
+
+def test_show_of_what_cannot_be_drawn(mesh, tms, file: Path) -> None:
+    file.write_text(BAD)
+    error = tms(task.command, "show", file, "--dot").exception
+    assert isinstance(error, TreeError)
+    assert error.line == 3
+    assert tms(task.command, "show", file, "--dot", "--json").exit_code == 2
+    for number in ("0", "99999999999", "9" * 5000):
+        error = tms(task.command, "show", number, "--ascii").exception
+        assert isinstance(error, TaskError)
+        assert error.code == "NO_TASK"
+    assert not mesh.asked
 
 
 def test_list_for_machines(mesh, tms) -> None:

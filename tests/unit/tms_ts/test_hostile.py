@@ -104,10 +104,10 @@ UNUSED = {
 @pytest.mark.parametrize("text", UNUSED.values(), ids=UNUSED)
 def test_warnings_about_what_is_not_used_are_bounded(text: str) -> None:
     """Each of them looks for a near name, which 160 000 times took half a minute."""
-    start = time.monotonic()
+    start = time.process_time()
     loaded = load(text)
     report = check(text)
-    assert time.monotonic() - start < 10  # s, on a busy machine; alone it takes 2
+    assert time.process_time() - start < 20  # s of a core, slowed down by its neighbours; alone it takes 4
     assert len(loaded.warnings) == len(report.warnings) == MAX_WARNINGS
     assert max(len(words(warning)) for _, warning in loaded.warnings) <= 400
 

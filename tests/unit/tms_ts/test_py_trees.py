@@ -15,9 +15,11 @@ from py_trees.common import Status as PyTreesStatus
 from py_trees.composites import Sequence as PyTreesSequence
 from py_trees.timers import Timer
 
+from tms_reason.reason import Foreign
 from tms_ts.bt import FAILURE, IDLE, RUNNING, SUCCESS, In, Out, PyTreesLeaf, TickError, Tree, load, palette, registry
 from tms_ts.bt.display import ascii_tree, dot, twin
 from tms_ts.bt.leaf import SyncAction
+from tms_ts.bt.reasons import ActionIdle, NodeError, PyTreesBlackboard, UsePorts, WaitsForWorkers
 from tms_ts.bt.status import Status
 from unit.tms_ts.fakes import FakeMachines, FakeWorld
 from unit.tms_ts.trees import document, leaf, tree
@@ -128,7 +130,7 @@ class TestBehaviourOfPyTrees:
         monkeypatch.setattr(time, "time", lambda: now[0])
         one = loaded('<Pause seconds="2.5"/>')
         assert [one.tick(), one.tick()] == [RUNNING, RUNNING]
-        assert str(one.root.reason) == "still running"
+        assert one.root.reason == Foreign("still running")
         now[0] = 102.6
         assert one.tick() is SUCCESS
 
@@ -172,13 +174,13 @@ class TestBehaviourOfPyTrees:
         one = loaded("<Made/>", made_by(lambda: StatusQueue("q", [PyTreesStatus.INVALID], None)))
         with pytest.raises(TickError) as caught:
             one.tick()
-        assert caught.value.path == "0"
+        assert (caught.value.path, caught.value.what) == ("0", ActionIdle("Made"))
 
     def test_the_blackboard_that_all_runs_would_share_is_refused(self) -> None:
         shared = SetBlackboardVariable("set", "key", 1, overwrite=True)
         with pytest.raises(TickError) as caught:
             loaded("<Made/>", made_by(lambda: shared)).tick()
-        assert "blackboard" in str(caught.value)
+        assert (caught.value.what, caught.value.hint) == (PyTreesBlackboard("Made"), UsePorts())
 
     def test_what_a_behaviour_logs_does_not_go_to_stdout(self, capsys: pytest.CaptureFixture[str]) -> None:
         class Talks(Running):  # type: ignore[misc, valid-type]
@@ -232,7 +234,7 @@ class TestThreads:
         assert one.workers() == [measuring[0].thread]
         assert [one.tick(), one.tick()] == [RUNNING, RUNNING]
         assert len(measuring) == 1
-        assert one.root.reason
+        assert one.root.reason == WaitsForWorkers()
         measuring[0].released.set()
         assert ended(measuring[0].thread)
         assert one.tick() is RUNNING
@@ -249,8 +251,9 @@ class TestThreads:
 
         monkeypatch.setattr(Measuring, "update", broken)
         one = loaded('<Sequence><Measure result="{r}"/></Sequence>')
-        with pytest.raises(TickError, match="no sensor"):
+        with pytest.raises(TickError) as caught:
             one.tick()
+        assert caught.value.what == NodeError("ValueError", "no sensor")
         one.halt()
         assert ended(measuring[0].thread)
         assert measuring[0].calls[-1] == "shutdown"
@@ -267,8 +270,9 @@ class TestThreads:
         body = f'<Parallel success_threshold="-1"><Measure result="{{r}}"/>{leaf()}</Parallel>'
         one = loaded(body, world=fake.world())
         one.tick()
-        with pytest.raises(TickError, match="link down"):
+        with pytest.raises(TickError) as caught:
             one.halt()
+        assert caught.value.what == NodeError("OSError", "link down")
         assert [goal.cancels for goal in fake.machines.sent] == [1]
         assert measuring[0].calls[-1] == "shutdown"
         assert ended(measuring[0].thread)
