@@ -7,6 +7,7 @@ from prometheus_client import Counter, Histogram
 
 from tms_db.connection import Connection
 from tms_reason.errors import TmsError
+from tms_reason.wire import to_line
 from tms_ros.interface_types import Coded, Reply, Req, ServiceType
 from tms_runtime.app import App
 
@@ -60,8 +61,8 @@ class Answering:
         return answer
 
     def _refused(self, name: str, response: Coded, error: TmsError) -> None:
-        response.error_code, response.error_msg = error.code, str(error)
-        self._app.log.info("refused", service=name, code=error.code, reason=error)
+        response.error_code, response.error_msg = error.code, to_line(error.reason)
+        self._app.log.info("refused", service=name, code=error.code, reason=error.reason)
 
     @staticmethod
     def _count(name: str, response: Coded, begin: float) -> None:

@@ -19,7 +19,26 @@ from bson.errors import BSONError
 from bson.int64 import Int64
 
 from tms_db.crc64 import Crc64
+from tms_db.reasons import (
+    ArchiveChecksum,
+    ArchiveCut,
+    ArchiveDocument,
+    ArchiveEnds,
+    ArchiveFormat,
+    ArchiveMisplaced,
+    ArchiveMissing,
+    ArchiveNoBson,
+    ArchiveNoFile,
+    ArchiveNoName,
+    ArchiveNoRegular,
+    ArchivePacked,
+    ArchiveUnreadable,
+    ArchiveWrong,
+    ArchiveWrongAt,
+    NoArchive,
+)
 from tms_reason.errors import DbError
+from tms_reason.reason import Reason
 
 MAGIC = bytes.fromhex("6de29981")
 GZIP = b"\x1f\x8b"
@@ -31,8 +50,9 @@ LARGEST = 16 * 2**20 + 16 * 2**10  # what a MongoDB server takes at most, with i
 Name = tuple[str, str]  # database and collection
 
 
-def bad(message: str) -> DbError:
-    return DbError(message, "BAD_ARCHIVE")
+def bad(what: Reason) -> DbError:
+    """An archive that cannot be used."""
+    return DbError(what, "BAD_ARCHIVE")
 
 
 class Writer:
@@ -85,11 +105,10 @@ class Reader:
         self._path, self._file, self._plain = path, file, plain
         self._at = 0  # bytes read, after decompression
         if self._bytes(len(MAGIC)) != MAGIC:
-            raise self._wrong("is no archive of mongodump (wrong first bytes): give a file that `tms db backup` "
-                              "or `mongodump --archive=FILE` wrote")  # fmt: skip
+            raise self._wrong(NoArchive())
         self.header = self._decoded(self._document())
         if self.header.get("version") != FORMAT:
-            raise self._wrong(f"has archive format {self.header.get('version')!r}, this program reads {FORMAT}")
+            raise self._wrong(ArchiveFormat(str(self.header.get("version")), str(FORMAT)))
         self.names: list[Name] = []
         while (found := self._document()) is not None:
             self.names.append(self._name(self._decoded(found)))
@@ -102,7 +121,7 @@ class Reader:
             head = self._decoded(found)
             name = self._name(head)
             if name in ended or name not in self.names:
-                raise self._wrong(f"has documents of {'.'.join(name)} where none may be")
+                raise self._wrong(ArchiveMisplaced(".".join(name)))
             crc = sums.setdefault(name, Crc64())
             while (document := self._document()) is not None:
                 self._decoded(document)
@@ -111,10 +130,10 @@ class Reader:
             if head.get("EOF"):
                 ended.add(name)
                 if crc.signed() != head.get("CRC"):
-                    raise self._wrong(f"is damaged: the checksum of {'.'.join(name)} is another one")
+                    raise self._wrong(ArchiveChecksum(".".join(name)))
         missing = [".".join(name) for name in self.names if name not in ended]
         if missing:
-            raise self._wrong(f"ends before {missing[0]} is complete: the file was cut off")
+            raise self._wrong(ArchiveCut(str(missing[0])))
 
     def share(self) -> float:
         """How much of the file has been read, 0 to 1."""
@@ -123,7 +142,7 @@ class Reader:
     def _name(self, document: Mapping[str, Any]) -> Name:
         name = document.get("db"), document.get("collection")
         if not all(isinstance(part, str) and part for part in name):
-            raise self._wrong("names no collection where one must be named")
+            raise self._wrong(ArchiveNoName())
         return cast(Name, name)
 
     def _document(self, may_end: bool = False) -> bytes | None:
@@ -133,29 +152,30 @@ class Reader:
             return None
         (size,) = struct.unpack("<i", first)
         if not SMALLEST <= size <= LARGEST:
-            raise self._wrong(f"is damaged: a document of {size} bytes")
+            raise self._wrong(ArchiveDocument(size))
         return first + self._bytes(size - 4)
 
     def _decoded(self, document: bytes | None) -> dict[str, Any]:
         if document is None:
-            raise self._wrong("is damaged: a document is missing")
+            raise self._wrong(ArchiveMissing())
         try:
             return bson.decode(document)
         except BSONError as error:
-            raise self._wrong("is damaged: what should be a document is no BSON") from error
+            raise self._wrong(ArchiveNoBson()) from error
 
     def _bytes(self, count: int, may_end: bool = False) -> bytes:
         try:
             data = self._file.read(count)
         except (EOFError, gzip.BadGzipFile, zlib.error) as error:
-            raise self._wrong(f"cannot be decompressed ({error}): the file was cut off or damaged") from error
+            raise self._wrong(ArchivePacked(str(error))) from error
         if len(data) < count and (data or not may_end):
-            raise self._wrong("ends in the middle: the file was cut off")
+            raise self._wrong(ArchiveEnds())
         self._at += len(data)
         return data
 
-    def _wrong(self, what: str) -> DbError:
-        return bad(f"{self._path}: {what} (byte {self._at})" if self._at > len(MAGIC) else f"{self._path}: {what}")
+    def _wrong(self, what: Reason) -> DbError:
+        file = str(self._path)
+        return bad(ArchiveWrongAt(file, what, self._at) if self._at > len(MAGIC) else ArchiveWrong(file, what))
 
 
 @contextmanager
@@ -167,11 +187,11 @@ def reading(path: Path) -> Iterator[Reader]:
     """
     try:
         if not path.is_file():
-            raise bad(f"{path}: {'is no regular file' if path.exists() else 'there is no such file'}: give an archive")
+            raise bad(ArchiveWrong(str(path), ArchiveNoRegular() if path.exists() else ArchiveNoFile()))
         with path.open("rb") as plain:
             compressed = plain.read(2) == GZIP
             plain.seek(0)
             file = cast(BinaryIO, gzip.GzipFile(fileobj=plain)) if compressed else plain
             yield Reader(path, file, plain)
     except OSError as error:
-        raise bad(f"{path}: cannot be read ({error.strerror or error})") from error
+        raise bad(ArchiveWrong(str(path), ArchiveUnreadable(str(error.strerror or error)))) from error

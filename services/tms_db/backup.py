@@ -21,6 +21,16 @@ from pymongo.errors import BulkWriteError
 from tms_config.config import version
 from tms_db import archive, schema, store
 from tms_db.archive import Name
+from tms_db.reasons import (
+    FileExists,
+    FileNotWritten,
+    NoDatabaseIn,
+    NoFieldIn,
+    NotEmpty,
+    NotOfTms,
+    ReplacedInPart,
+    RunActive,
+)
 from tms_db.store import Db, errors
 from tms_reason.errors import DbError, TmsError
 
@@ -71,7 +81,7 @@ def backup(db: Db, path: Path, say: Say, *, overwrite: bool = False) -> Report:
         TmsError: the file is there already, or cannot be written.
     """
     if path.exists() and not (overwrite and path.is_file()):
-        raise TmsError(f"{path} is there already: choose another name, or --overwrite", "FILE_EXISTS")
+        raise TmsError(FileExists(str(path)))
     before = look(db)
     try:
         with tempfile.NamedTemporaryFile(dir=path.parent, prefix=f".{path.name}.", delete=False) as file:  # mode 0600
@@ -84,7 +94,7 @@ def backup(db: Db, path: Path, say: Say, *, overwrite: bool = False) -> Report:
             finally:
                 new.unlink(missing_ok=True)
     except OSError as error:
-        raise TmsError(f"{path}: cannot be written ({error.strerror}): choose another place", "NO_FILE") from error
+        raise TmsError(FileNotWritten(str(path), str(error.strerror)), "NO_FILE") from error
     return Report(db.name, counts, before.schema)
 
 
@@ -148,13 +158,11 @@ def restore(db: Db, path: Path, say: Say, *, drop: bool = False) -> Report:
     there = look(db)
     schema.refuse_newer(f"database {db.name}", there.schema)
     if any(there.documents.values()) and not drop:
-        text = f"database {db.name} is not empty ({there.text}): --drop replaces all of it"
-        raise DbError(text, "NOT_EMPTY")
+        raise DbError(NotEmpty(db.name, there.text))
     with errors():
         active = db["run"].find_one({"ended_at": None}, {"run_id": 1}) if "run" in there.documents else None
     if active is not None:
-        text = f"run {active['run_id']} is active in database {db.name}: end it first (`tms cancel`, `tms abandon`)"
-        raise DbError(text, "RUN_ACTIVE")
+        raise DbError(RunActive(str(active["run_id"]), db.name))
     names = [*report.documents, *([schema.COLLECTION] if report.schema else [])]
     try:
         _clear(db)
@@ -167,8 +175,7 @@ def restore(db: Db, path: Path, say: Say, *, drop: bool = False) -> Report:
     try:
         _exchange(db, names)
     except DbError as error:
-        text = f"{error}; database {db.name} is replaced only in part: run the same restore with --drop again"
-        raise DbError(text, error.code) from error
+        raise DbError(ReplacedInPart(error.reason, db.name), error.code) from error
     schema.bring_up(db)
     return report
 
@@ -238,19 +245,17 @@ def _choose(path: Path, names: list[Name], wanted: str) -> str:
     database = wanted if wanted in databases else databases[0] if len(databases) == 1 else ""
     if not database:
         held = ", ".join(databases) or "none"
-        raise DbError(f"{path}: holds no database {wanted} (there: {held}): dump that one alone", "NOT_TMS")
+        raise DbError(NoDatabaseIn(str(path), wanted, held), "NOT_TMS")
     there = sorted(name for of, name in names if of == database)
     if not set(NEEDED) & set(there):
-        text = f"{path}: database {database} is none of TMS, for it has neither task nor parameter"
-        raise DbError(f"{text} (there: {', '.join(there)}): give another archive", "NOT_TMS")
+        raise DbError(NotOfTms(str(path), database, tuple(there)), "NOT_TMS")
     return database
 
 
 def _check(path: Path, collection: str, number: int, document: dict[str, Any]) -> None:
     missing = [field for field in NEEDED[collection] if field not in document]
     if missing:
-        text = f"{path}: document {number} of {collection} has no {missing[0]}, so this is no database of TMS"
-        raise DbError(f"{text}: give another archive", "NOT_TMS")
+        raise DbError(NoFieldIn(str(path), number, collection, missing[0]), "NOT_TMS")
 
 
 def _collections(db: Db) -> list[str]:

@@ -16,6 +16,7 @@ from pymongo.errors import BulkWriteError
 
 from tms_db.connection import Connection
 from tms_db.heads import Key
+from tms_db.reasons import ManyRecordsWait, StoreDown, StoreRefusedUpdate, StoreSlow
 from tms_db.records import Document, Value
 from tms_db.store import Db, errors
 from tms_reason.errors import DbError
@@ -84,7 +85,7 @@ class Batches:
         """
         with self._changed:
             if len(self._waiting) > WAITING:
-                raise DbError("too many records wait for the store: send less, or see `tms ps` for the store", "BUSY")
+                raise DbError(ManyRecordsWait(), "BUSY")
             for key, update in updates.items():
                 self._add(key, update)
             self._callers.append(done)
@@ -115,7 +116,7 @@ class Batches:
             self._hurry |= key in self._waiting
             self._changed.notify_all()
             if not self._changed.wait_for(lambda: not (key in self._waiting or key in self._written), SETTLE_LIMIT):
-                raise DbError("the store does not get done with earlier updates: see `tms ps`", "STORE_DOWN")
+                raise DbError(StoreDown(StoreSlow()))
 
     def _run(self) -> None:
         while True:
@@ -143,7 +144,7 @@ class Batches:
             with SECONDS.time(), self._connection.use(), errors():
                 found = self._records.bulk_write(steps, ordered=False).matched_count
         except BulkWriteError as error:  # a subclass that errors() lets pass as it is
-            return DbError(f"the store refused an update ({error.details}): see the log of tms:db", "STORE_REFUSED")
+            return DbError(StoreRefusedUpdate(str(error.details), "tms:db"), "STORE_REFUSED")
         except DbError as error:
             return error
         if found < len(updates):

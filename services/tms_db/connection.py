@@ -9,6 +9,7 @@ from pymongo.errors import PyMongoError
 
 from tms_db import schema, store
 from tms_reason.errors import DbError
+from tms_reason.reason import Reason
 from tms_runtime.log import Logger
 
 FIRST_WAIT = 0.2  # s after a failed attempt; doubles up to LAST_WAIT
@@ -37,10 +38,10 @@ class Connection:
         self._lost.set()
         self._db.client.close()
 
-    def unready(self) -> str | None:
+    def unready(self) -> Reason | None:
         """Why the store cannot be used now, or None."""
         trouble = self._trouble
-        return str(trouble) if trouble else None
+        return trouble.reason if trouble else None
 
     @contextmanager
     def use(self) -> Iterator[None]:
@@ -50,7 +51,7 @@ class Connection:
             DbError: the store is away, or was lost just now.
         """
         if self._trouble is not None:
-            raise DbError(str(self._trouble), self._trouble.code)
+            raise DbError(self._trouble.reason, self._trouble.code)
         try:
             yield
         except DbError as error:
@@ -101,5 +102,5 @@ class Connection:
             self._log.info("store_up", address=self._address)
             self._told = ""
         elif trouble is not None and trouble.code != self._told:
-            self._log.warning("store_away", code=trouble.code, address=self._address, reason=trouble)
+            self._log.warning("store_away", code=trouble.code, address=self._address, reason=trouble.reason)
             self._told = trouble.code

@@ -34,7 +34,7 @@ class CppServices:
             with self._connection.use():
                 response.task = self._tasks.get(request.task_id).task_sequence
         except TmsError as error:
-            self._app.log.warning("refused", service="tms_db_reader_task", code=error.code, reason=error)
+            self._app.log.warning("refused", service="tms_db_reader_task", code=error.code, reason=error.reason)
         return response
 
     def get_data(self, request: TmsdbGetData.Request, response: TmsdbGetData.Response) -> TmsdbGetData.Response:
@@ -44,7 +44,7 @@ class CppServices:
                 for name in [request.name] if request.name else request.recordnames:
                     response.tmsdbs += self._found(name, request.flgorparam)
         except TmsError as error:
-            self._app.log.warning("refused", service="tms_db_param_reader", code=error.code, reason=error)
+            self._app.log.warning("refused", service="tms_db_param_reader", code=error.code, reason=error.reason)
         return response
 
     def _found(self, name: str, what: str) -> list[Tmsdb]:

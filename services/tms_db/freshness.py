@@ -2,6 +2,7 @@
 
 from datetime import datetime, timezone
 
+from tms_db.reasons import AgeUnknown, FromFuture, TooOld
 from tms_db.records import Document, title
 from tms_machine.record_lock import locked_since
 from tms_reason.errors import DbError
@@ -30,13 +31,11 @@ def check(document: Document, max_age: float, now: datetime | None = None) -> No
     source = document.get("source") or "nobody known"
     updated_at = document.get("updated_at")
     if not isinstance(updated_at, datetime):
-        raise DbError(f"{where} may be {limit:g} s old, but nobody knows its age: let sensing write it", "STALE_RECORD")
+        raise DbError(AgeUnknown(where, limit), "STALE_RECORD")
     asked = (now or datetime.now(timezone.utc)).timestamp()
     if updated_at.timestamp() - asked > limit:  # the clock was set back
-        text = f"{where}: its time lies in the future (last from {source}): let sensing write it"
-        raise DbError(text, "STALE_RECORD")
+        raise DbError(FromFuture(where, source), "STALE_RECORD")
     since = locked_since(document, asked)
     age = (asked if since is None else min(asked, since)) - updated_at.timestamp()
     if age > limit:
-        text = f"{where} is {age:.1f} s old, allowed are {limit:g} s (last from {source}): see `tms sensing`"
-        raise DbError(text, "STALE_RECORD")
+        raise DbError(TooOld(where, age, limit, source), "STALE_RECORD")

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from tms_db.parameters import Parameters
+from tms_db.reasons import NoneOfFields, OtherKind, StaticFromSensing
 from tms_db.records import RESERVED, Document, Value, bad, title
 from tms_reason.errors import DbError
 from tms_ros.node import Ros
@@ -63,10 +64,8 @@ class Head:
             fields = [name for name in self.document if name not in RESERVED and name.lower() in by_name]
             values = {name: by_name[name.lower()] for name in fields}
             if not values:
-                raise bad(f"{where} has none of the fields {', '.join(by_name)}: add them with `tms param set`")
-        return {
-            name: _fitting(f"{where}, field {name}", self.document.get(name), value) for name, value in values.items()
-        }
+                raise bad(NoneOfFields(where, tuple(by_name)))
+        return {name: _fitting(f"{where}.{name}", self.document.get(name), value) for name, value in values.items()}
 
 
 class Heads:
@@ -183,8 +182,7 @@ class Heads:
         """
         head = self.get(key)
         if head.type == "static":
-            text = f"{title(*key)} is static, so sensing does not write it: `tms param set --type dynamic`"
-            raise DbError(text, "STATIC_RECORD")
+            raise DbError(StaticFromSensing(title(*key)), "STATIC_RECORD")
         return head
 
     def forget(self) -> None:
@@ -198,7 +196,7 @@ def _fitting(where: str, stored: Any, value: Value) -> Value:
         return value
     kinds = _kind(stored), _kind(value)
     if kinds[0] != kinds[1]:
-        raise bad(f"{where} holds {kinds[0]}, not {kinds[1]}: send the same kind, or change the record")
+        raise bad(OtherKind(where, *kinds))
     if isinstance(stored, float) and isinstance(value, int):
         return float(value)
     return value

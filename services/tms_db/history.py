@@ -8,9 +8,11 @@ from typing import Any
 from pymongo.errors import BulkWriteError, DuplicateKeyError
 
 from tms_config import names
+from tms_db.reasons import BadRunId, NoEventNumber, RivalScheduler, RunMissing
 from tms_db.records import Value
 from tms_db.store import Db, errors
 from tms_reason.errors import DbError
+from tms_reason.reason import Foreign
 
 RUNS = 50
 EVENTS = 1000
@@ -84,7 +86,7 @@ class History:
             found = self._events.find({"run_id": run_id, "number": {"$gt": after}}, {"_id": 0}).sort("number", 1)
             events = [_event(document) for document in found.limit(min(limit or EVENTS, MOST))]
             if not events and self._runs.find_one({"run_id": run_id}, {"_id": 1}) is None:
-                raise DbError(f"there is no run {run_id!r}: `tms runs` lists them", "RUN_MISSING")
+                raise DbError(RunMissing(run_id))
         return events
 
     def _write_runs(self, runs: Iterable[Run]) -> None:
@@ -128,12 +130,12 @@ class History:
 def _check(event: Event) -> None:
     _check_id(event.run_id)
     if event.number < 1:
-        raise DbError(f"event {event.number} of run {event.run_id}: needs a number from 1", "BAD_JOURNAL")
+        raise DbError(NoEventNumber(event.number, event.run_id), "BAD_JOURNAL")
 
 
 def _check_id(run_id: str) -> None:
     if (why := names.flaw(run_id)) is not None:
-        raise DbError(f"run_id {run_id[:40]!r} {why}: give the run a plain id", "BAD_JOURNAL")
+        raise DbError(BadRunId(run_id[:40], Foreign(why)), "BAD_JOURNAL")
 
 
 def _document(event: Event) -> dict[str, Any]:
@@ -146,7 +148,7 @@ def _event(document: dict[str, Any]) -> Event:
 
 
 def _rival() -> DbError:
-    return DbError("somebody else writes the same journal: only one scheduler may run", "BUSY")
+    return DbError(RivalScheduler(), "BUSY")
 
 
 def _run(document: dict[str, Any]) -> Run:

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from datetime import datetime
 from typing import Any
 
+from tms_db.reasons import NoCollection, StateNoJson, StateNoObject
 from tms_db.records import Document, bad
 from tms_db.store import Db, errors
 
@@ -36,11 +37,11 @@ def envelope(collection: str, machine: str, stamp: datetime, text: str) -> Docum
         DbError: BAD_RECORD; there is no such collection, or the text is no JSON object.
     """
     if collection not in COLLECTIONS:
-        raise bad(f"there is no collection {collection!r} for machine states (there: {', '.join(COLLECTIONS)})")
+        raise bad(NoCollection(collection, tuple(COLLECTIONS)))
     try:
         message: Any = json.loads(text)
     except json.JSONDecodeError as error:
-        raise bad(f"{collection} of {machine}: is no JSON ({error.msg})") from error
+        raise bad(StateNoJson(collection, machine, error.msg)) from error
     if not isinstance(message, dict):
-        raise bad(f"{collection} of {machine}: must be a JSON object")
+        raise bad(StateNoObject(collection, machine))
     return {"time": stamp.isoformat(), "type": collection, "id": MACHINE, "name": machine, "msg": message}

@@ -25,12 +25,14 @@ from tms_db.connection import Connection
 from tms_db.heads import Heads, Key
 from tms_db.parameters import Change, Parameters
 from tms_db.past import Past
+from tms_db.reasons import RecordLocked
 from tms_db.records import Document, check_values, title
 from tms_db.store import Db
 from tms_db.values import from_parameters
 from tms_db.watching import Watching
 from tms_machine.record_lock import FIELDS, holder
 from tms_reason.errors import DbError
+from tms_reason.wire import to_line
 from tms_runtime.app import App
 
 CHANGES_KEPT = 100  # messages for a reader that is slow
@@ -104,7 +106,7 @@ class ParameterServices:
             except DbError as error:
                 if error.code == "STORE_DOWN":
                     raise
-                response.refused.append(Refusal(index=index, code=error.code, text=str(error)))
+                response.refused.append(Refusal(index=index, code=error.code, text=to_line(error.reason)))
         if taken:
             await self._put(taken, hurry=False)
 
@@ -132,7 +134,7 @@ class ParameterServices:
         check_values(where, values)
         head = self._heads.dynamic(key)
         if (owner := holder(head.document, time.time())) is not None:
-            raise DbError(f"{where} is locked by {owner} until the machine has moved with it", "LOCKED_RECORD")
+            raise DbError(RecordLocked(where, owner))
         fitting = head.fit(where, values, wanted.loose)
         fields = {name: value for name, value in fitting.items() if name not in wanted.keep}
         stamp = _now() - timedelta(seconds=max(0.0, wanted.age if wanted.age < OLDEST else OLDEST))
@@ -174,7 +176,7 @@ class ParameterServices:
         problem = await promise
         if problem is not None:
             self._heads.forget()
-            raise DbError(str(problem), problem.code)
+            raise DbError(problem.reason, problem.code)
 
     def _tell(self, keys: Iterable[Key]) -> None:
         """Readers of shared records look again."""

@@ -7,6 +7,7 @@ from typing import Any
 
 from pymongo.errors import DuplicateKeyError
 
+from tms_db.reasons import MadeByOthers, NotChanged, OtherFields, OtherValue, RecordMissing, SetAndRemoved, StaticInUse
 from tms_db.records import (
     Document,
     Record,
@@ -22,6 +23,7 @@ from tms_db.records import (
 )
 from tms_db.store import Db, errors
 from tms_reason.errors import DbError
+from tms_reason.reason import Reason
 
 ATTEMPTS = 20  # somebody creates and removes the record between our steps: does not go on for long
 
@@ -48,7 +50,7 @@ class Change:
         for name in self.remove:
             check_field(where, name)
             if name in self.values:
-                raise bad(f"{where}: field {name} is to be set and removed: choose one")
+                raise bad(SetAndRemoved(where, name))
         check_values(where, self.expected)
         check_max_age(where, self.max_age, self.type)
         check_line(where, "description", self.description)
@@ -134,7 +136,7 @@ class Parameters:
                     raise _missing(model_name, record_name)
                 if self._insert(model_name, record_name, fields):
                     return True
-        raise DbError(f"{where} is being made and removed by others: try again", "BUSY")
+        raise DbError(MadeByOthers(where), "BUSY")
 
     def remove(self, model_name: str, record_name: str) -> None:
         """Take a record away.
@@ -183,9 +185,12 @@ class Parameters:
 
     def _conflict(self, key: Document, where: str, expected: Mapping[str, Value]) -> DbError:
         stored = self._records.find_one(key) or {}
-        other = [f"{name} is {stored.get(name)!r}, not {want!r}" for name, want in expected.items()
-                 if not _same(stored.get(name), want)]  # fmt: skip
-        return DbError(f"{where} was not changed: {', '.join(other) or 'its fields were others'}", "CONFLICT")
+        other: list[Reason] = [
+            OtherValue(name, repr(stored.get(name)), repr(want))
+            for name, want in expected.items()
+            if not _same(stored.get(name), want)
+        ]
+        return DbError(NotChanged(where, tuple(other) or (OtherFields(),)))
 
     def _says(self, record: Record) -> bool:
         with errors():
@@ -224,12 +229,8 @@ def _same(stored: Any, wanted: Any) -> bool:
 
 
 def _missing(model_name: str, record_name: str) -> DbError:
-    return DbError(
-        f"there is no {title(model_name, record_name)}: `tms param list` shows what is stored, "
-        "`tms param set` or `tms param load` makes it",
-        "RECORD_MISSING",
-    )
+    return DbError(RecordMissing(title(model_name, record_name)))
 
 
 def _static(where: str, run: str) -> DbError:
-    return DbError(f"{where} is static and run {run} uses it: wait until the run has ended", "STATIC_RECORD")
+    return DbError(StaticInUse(where, run))

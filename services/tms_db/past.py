@@ -89,7 +89,7 @@ class Past:
                     self._save(self._missing(new) if self._unclear else new)
                 self._unclear = False
         except DbError as error:  # kept in memory until the store is back
-            self._log.info("history_waits", reason=error)
+            self._log.info("history_waits", reason=error.reason)
             self._unclear = True
             with self._lock:
                 for key, later in self._new.items():

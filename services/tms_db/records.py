@@ -9,7 +9,32 @@ from typing import Any
 
 from tms_config import names
 from tms_config.yaml_file import read_yaml
+from tms_db.reasons import (
+    BadFieldName,
+    BadMaxAge,
+    BadName,
+    BadType,
+    CannotBeStored,
+    DollarOrDot,
+    ExponentIsText,
+    HoldsControl,
+    HoldsNul,
+    InFilePlace,
+    KeyIsNoText,
+    MixedArray,
+    NameEmpty,
+    NoFieldName,
+    NoFiniteNumber,
+    NoKeysAndValues,
+    NoRecordList,
+    RecordFileLarge,
+    RecordTwice,
+    ReservedField,
+    StaticWithAge,
+    TooManyBits,
+)
 from tms_reason.errors import DbError
+from tms_reason.reason import Foreign, Reason
 
 Scalar = bool | int | float | str
 Value = Scalar | Sequence[Scalar]
@@ -43,11 +68,12 @@ class Record:
 
 def title(model_name: str, record_name: str) -> str:
     """How messages name a record."""
-    return f"record {model_name}/{record_name}" if model_name else f"shared record {record_name}"
+    return f"{model_name}/{record_name}"
 
 
-def bad(message: str) -> DbError:
-    return DbError(message, "BAD_RECORD")
+def bad(what: Reason) -> DbError:
+    """A record, or a value of one, that is refused."""
+    return DbError(what, "BAD_RECORD")
 
 
 def check_key(model_name: str, record_name: str) -> None:
@@ -57,10 +83,10 @@ def check_key(model_name: str, record_name: str) -> None:
         DbError: BAD_RECORD.
     """
     if not record_name:
-        raise bad("record_name is empty: give the record a name")
+        raise bad(NameEmpty())
     for label, text in (("model_name", model_name), ("record_name", record_name)):
         if text and (why := names.flaw(text)) is not None:
-            raise bad(f"{label} {text[:40]!r} {why}: write a plain name")
+            raise bad(BadName(label, text[:40], Foreign(why)))
 
 
 def check_type(where: str, type_: str) -> None:
@@ -70,7 +96,7 @@ def check_type(where: str, type_: str) -> None:
         DbError: BAD_RECORD.
     """
     if type_ not in TYPES:
-        raise bad(f"{where}: type is '{type_}': write static or dynamic")
+        raise bad(BadType(where, type_))
 
 
 def check_max_age(where: str, max_age: Any, type_: str = "") -> None:
@@ -80,9 +106,9 @@ def check_max_age(where: str, max_age: Any, type_: str = "") -> None:
         DbError: BAD_RECORD.
     """
     if isinstance(max_age, bool) or not isinstance(max_age, (int, float)) or not math.isfinite(max_age):
-        raise bad(f"{where}: max_age is {max_age!r}: write seconds, for example 2.0")
+        raise bad(BadMaxAge(where, repr(max_age)))
     if max_age > 0 and type_ == "static":
-        raise bad(f"{where}: a static record cannot get too old: make it dynamic, or take max_age away")
+        raise bad(StaticWithAge(where))
 
 
 def check_line(where: str, label: str, text: str) -> None:
@@ -92,7 +118,7 @@ def check_line(where: str, label: str, text: str) -> None:
         DbError: BAD_RECORD.
     """
     if (found := names.control(text)) is not None:
-        raise bad(f"{where}: {label} holds {found}: remove it")
+        raise bad(HoldsControl(where, label, Foreign(found)))
 
 
 def check_values(where: str, values: Mapping[str, Any]) -> None:
@@ -105,9 +131,9 @@ def check_values(where: str, values: Mapping[str, Any]) -> None:
         check_field(where, name)
         many = isinstance(value, (list, tuple))
         for part in value if many else [value]:
-            _check_scalar(f"{where}, field {name}", part)
+            _check_scalar(f"{where}.{name}", part)
         if many and len({float if type(part) is int else type(part) for part in value}) > 1:
-            raise bad(f"{where}, field {name}: the array mixes types: use numbers only, or one other type")
+            raise bad(MixedArray(f"{where}.{name}"))
 
 
 def check_field(where: str, name: Any) -> None:
@@ -117,27 +143,27 @@ def check_field(where: str, name: Any) -> None:
         DbError: BAD_RECORD.
     """
     if not isinstance(name, str) or not name.strip():
-        raise bad(f"{where}: a field has no name or a name that is no text ({name!r}): write a name")
+        raise bad(NoFieldName(where, repr(name)))
     if name in RESERVED:
-        raise bad(f"{where}: field '{name}' is reserved: choose another name")
+        raise bad(ReservedField(where, name))
     if name.startswith("$") or "." in name:
-        raise bad(f"{where}: field name {name[:40]!r} must not start with $ or hold dots: choose another name")
+        raise bad(DollarOrDot(where, name[:40]))
     if (why := names.flaw(name)) is not None:
-        raise bad(f"{where}: field name {name[:40]!r} {why}: write a plain name")
+        raise bad(BadFieldName(where, name[:40], Foreign(why)))
 
 
 def _check_scalar(where: str, value: Any) -> None:
     if isinstance(value, (bool, str)):
         if isinstance(value, str) and "\0" in value:
-            raise bad(f"{where}: the text holds a NUL character: remove it")
+            raise bad(HoldsNul(where))
     elif isinstance(value, int):
         if not -INT64 <= value < INT64:
-            raise bad(f"{where}: {value} does not fit into 64 bits: write a smaller number")
+            raise bad(TooManyBits(where, str(value)))
     elif isinstance(value, float):
         if not math.isfinite(value):
-            raise bad(f"{where}: {value} is not a finite number: write a number")
+            raise bad(NoFiniteNumber(where, str(value)))
     else:
-        raise bad(f"{where}: {_kind(value)} cannot be stored: use a number, true/false, text or an array of these")
+        raise bad(CannotBeStored(where, _kind(value)))
 
 
 def _kind(value: Any) -> str:
@@ -156,27 +182,27 @@ def read_file(path: Path) -> list[Record]:
         DbError: BAD_RECORD; names the file, the record and the field.
     """
     if path.is_file() and path.stat().st_size > MAX_FILE:
-        raise bad(f"{path}: is larger than {MAX_FILE // 2**20} MB: is this the right file?")
+        raise bad(RecordFileLarge(str(path), MAX_FILE / 2**20))
     data = read_yaml(path)
     if not isinstance(data, list) or not data:
-        raise bad(f"{path}: must hold a list of records, each starting with '- record_name:'")
+        raise bad(NoRecordList(str(path)))
     records = [_from_file(f"{path}, record {number}", entry) for number, entry in enumerate(data, 1)]
     seen: set[tuple[str, str]] = set()
     for record in records:
         key = (record.model_name, record.record_name)
         if key in seen:
-            raise bad(f"{path}: {record.name} is there twice: remove one")
+            raise bad(RecordTwice(str(path), record.name))
         seen.add(key)
     return records
 
 
 def _from_file(where: str, entry: Any) -> Record:
     if not isinstance(entry, dict):
-        raise bad(f"{where}: must hold keys and values, not {_kind(entry)}")
+        raise bad(NoKeysAndValues(where, _kind(entry)))
     head = {key: entry.get(key, "") for key in ("model_name", "record_name", "type", "description")}
     for key, value in head.items():
         if not isinstance(value, str):
-            raise bad(f"{where}: {key} is {value!r}, not text: put it in quotes")
+            raise bad(KeyIsNoText(where, key, repr(value)))
     max_age = entry.get("max_age", 0.0)
     values = {key: value for key, value in entry.items() if key not in head and key != "max_age"}
     check_max_age(where, max_age, head["type"])
@@ -184,7 +210,7 @@ def _from_file(where: str, entry: Any) -> Record:
     try:
         check_key(record.model_name, record.record_name)
     except DbError as error:
-        raise bad(f"{where}: {error}") from error
+        raise bad(InFilePlace(where, error.reason)) from error
     where = f"{where} ({record.name})"
     check_type(where, record.type)
     check_line(where, "description", record.description)
@@ -192,5 +218,5 @@ def _from_file(where: str, entry: Any) -> Record:
     for name, value in record.values.items():
         for part in value if isinstance(value, list) else [value]:
             if isinstance(part, str) and EXPONENT.fullmatch(part):  # YAML 1.1 wants a dot in it
-                raise bad(f"{where}, field {name}: YAML reads {part} as text: write it with a dot, like 1.0e-3")
+                raise bad(ExponentIsText(f"{where}.{name}", part))
     return record

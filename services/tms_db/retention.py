@@ -14,6 +14,7 @@ from tms_config.site_file import Store
 from tms_db import store
 from tms_db.connection import Connection
 from tms_db.machine_states import COLLECTIONS
+from tms_db.reasons import NoStateTime
 from tms_db.store import Db, errors
 from tms_reason.errors import DbError
 from tms_runtime.log import Logger
@@ -85,7 +86,7 @@ def _date(text: str) -> datetime:
     try:
         return datetime.fromisoformat(text).replace(tzinfo=timezone.utc)
     except ValueError:
-        raise DbError(f"the newest state of a machine has the time {text!r}, which is none", "BAD_RECORD") from None
+        raise DbError(NoStateTime(str(text)), "BAD_RECORD") from None
 
 
 class Retention:
@@ -111,7 +112,7 @@ class Retention:
                     self._look(datetime.now(timezone.utc))
             except DbError as error:
                 if error.code != "STORE_DOWN":  # which the connection tells
-                    self._log.warning("retention_waits", code=error.code, reason=error)
+                    self._log.warning("retention_waits", code=error.code, reason=error.reason)
                 wait = AGAIN
 
     def _look(self, now: datetime) -> None:

@@ -10,6 +10,7 @@ from datetime import datetime, timezone
 
 from tms_config.config import version
 from tms_db import store
+from tms_db.reasons import NewerSchema
 from tms_db.store import Db, errors
 from tms_reason.errors import DbError
 
@@ -76,8 +77,4 @@ def refuse_newer(where: str, number: int) -> None:
         DbError: STORE_NEWER.
     """
     if number > NEWEST:
-        raise DbError(
-            f"{where} has schema {number}, this program ({version()}) knows {NEWEST}: "
-            "install the newer program, or restore a backup from before (`tms db restore`)",
-            "STORE_NEWER",
-        )
+        raise DbError(NewerSchema(where, number, version(), NEWEST))

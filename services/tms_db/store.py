@@ -21,7 +21,28 @@ from pymongo.errors import (
 )
 from pymongo.uri_parser import parse_uri
 
+from tms_db.reasons import (
+    DocumentUnreadable,
+    NoMember,
+    NoPrimary,
+    NoStore,
+    NoVouching,
+    StoreAddress,
+    StoreDown,
+    StoreFailed,
+    StoreFile,
+    StoreFull,
+    StoreLogin,
+    StoreRefused,
+    StoreSilent,
+    StoreUnusable,
+    TlsFails,
+    TooLarge,
+    TwoWithOneKey,
+    WantsCertificate,
+)
 from tms_reason.errors import ConfigError, DbError
+from tms_reason.reason import Reason
 
 Db = Database[dict[str, Any]]
 
@@ -29,13 +50,13 @@ FIND_SERVER_MS = 2000
 ANSWER_MS = 3000
 LONG = 60.0  # s for work on a whole collection: indexes, migrations
 AUTH_CODES = {13, 18, 8000}  # Unauthorized, AuthenticationFailed, Atlas
-HINTS = {  # part of the driver's text -> what is wrong and what to do
-    "certificate verify failed": "store.tls_ca does not vouch for its certificate, or that is for another host name",
-    "alert certificate required": "it wants a certificate of ours: give store.tls_certificate",
-    "SSL handshake failed": "TLS with it fails: see store.tls_ca, and whether it speaks TLS",
-    "No replica set members match": "no member of its replica set is the primary: start more of them",
-    "No primary available for writes": "no member of its replica set is the primary: start more of them",
-    "No replica set members available": "none of its hosts is a member of the replica set that the URI names",
+HINTS: dict[str, Reason] = {  # part of the driver's text -> what is wrong and what to do
+    "certificate verify failed": NoVouching(),
+    "alert certificate required": WantsCertificate(),
+    "SSL handshake failed": TlsFails(),
+    "No replica set members match": NoPrimary(),
+    "No primary available for writes": NoPrimary(),
+    "No replica set members available": NoMember(),
 }
 DISK_CODES = {14031, 28}  # OutOfDiskSpace, ENOSPC passed on by an engine
 SIZE_CODES = {10334, 17419, 17420}  # BSONObjectTooLarge, and what an update would make larger than allowed
@@ -96,13 +117,10 @@ def connect(uri: str, database: str, answer_ms: int = ANSWER_MS) -> Db:
     except (InvalidURI, ConfigurationError, ValueError) as error:
         # pymongo's own text may quote the URI, so neither it nor the exception goes on.
         kind = type(error).__name__
-        raise ConfigError(
-            f"the store's address {redact(uri)} is wrong ({kind}): "
-            "write mongodb://host:port in TMS_MONGODB_URI or store.uri, with % codes for special characters"
-        ) from None
+        raise ConfigError(StoreAddress(redact(uri), kind)) from None
     except OSError as error:  # a file of tlsCAFile or tlsCertificateKeyFile
         file = error.filename or "a file of TLS"
-        raise ConfigError(f"store: {file} cannot be used ({error.strerror}): see store.tls_ca") from None
+        raise ConfigError(StoreFile(str(file), str(error.strerror))) from None
     return client[database]
 
 
@@ -132,11 +150,7 @@ def index(db: Db, collection: str, name: str = "") -> None:
 
 
 def conflict(db: Db, collection: str, key: object) -> DbError:
-    return DbError(
-        f"database {db.name}, collection {collection}: two documents with the same key {key}: "
-        "remove one of them, then start again",
-        "STORE_CONFLICT",
-    )
+    return DbError(TwoWithOneKey(db.name, collection, str(key)))
 
 
 @contextmanager
@@ -156,10 +170,7 @@ def errors() -> Iterator[None]:
     except DuplicateKeyError:
         raise
     except NetworkTimeout as error:  # reached, yet silent: what the embedded store does when its disk is full
-        raise DbError(
-            f"the store gave no answer in {ANSWER_MS / 1000:.0f} s: see whether its disk is full or the PC overloaded",
-            "STORE_DOWN",
-        ) from error
+        raise DbError(StoreDown(StoreSilent(ANSWER_MS / 1000))) from error
     except ConnectionFailure as error:
         raise _unreachable(str(error)) from error
     except DocumentTooLarge as error:
@@ -167,24 +178,20 @@ def errors() -> Iterator[None]:
     except OperationFailure as error:
         raise _refused(error) from error
     except InvalidBSON as error:  # text that is no UTF-8, a date that no calendar has: other systems write here, too
-        text = f"a stored document cannot be read ({_first(error)}): correct or remove it"
-        raise DbError(text, "BAD_RECORD") from error
+        raise DbError(DocumentUnreadable(_first(error)), "BAD_RECORD") from error
     except PyMongoError as error:
-        raise DbError(f"the store could not do it ({type(error).__name__}): see the log of tms:db") from error
+        raise DbError(StoreFailed(type(error).__name__, "tms:db"), "DB_FAILED") from error
 
 
 def down() -> DbError:
-    return DbError(
-        "the store does not answer: start it (`tms start tms:store`, or MongoDB of the site); "
-        "the database module reconnects by itself",
-        "STORE_DOWN",
-    )
+    """That the store does not answer."""
+    return DbError(StoreDown(NoStore()))
 
 
 def _unreachable(text: str) -> DbError:
     """Why there is no connection, as far as the driver knows; its text may be a page long."""
     hint = next((hint for part, hint in HINTS.items() if part in text), None)
-    return DbError(f"the store cannot be used: {hint}", "STORE_DOWN") if hint else down()
+    return DbError(StoreDown(StoreUnusable(hint))) if hint is not None else down()
 
 
 def _first(told: object) -> str:
@@ -193,7 +200,7 @@ def _first(told: object) -> str:
 
 
 def _too_large() -> DbError:
-    return DbError("the document is larger than the store's 16 MB: make it smaller", "TOO_LARGE")
+    return DbError(TooLarge())
 
 
 def _refused(error: OperationFailure) -> DbError:
@@ -204,8 +211,7 @@ def _refused(error: OperationFailure) -> DbError:
     if code in SIZE_CODES or "object to insert too large" in text:  # which MongoDB itself gives a common code
         return _too_large()
     if code in AUTH_CODES:
-        text = "the store refuses our login: check user and password (store.password_file, or TMS_MONGODB_URI)"
-        return DbError(text, "STORE_DOWN")
+        return DbError(StoreDown(StoreLogin()))
     if code in DISK_CODES or "no space" in text.lower():
-        return DbError("the store's disk is full: free some space, then try again", "STORE_FULL")
-    return DbError(f"the store refused the request ({text}): see the log of tms:db", "STORE_REFUSED")
+        return DbError(StoreFull())
+    return DbError(StoreRefused(text, "tms:db"))

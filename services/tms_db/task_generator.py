@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any
 from tms_config import environment
 from tms_config.config import CONFIGS, load_site
 from tms_db import task_text
+from tms_db.reasons import NoFileGiven, NoSuchFile
 from tms_reason.errors import DbError, TaskError, TmsError
+from tms_reason.wire import refusal
 from tms_runtime.last_resort import LEAVE_LIMIT, end_after
 
 if TYPE_CHECKING:
@@ -27,11 +29,11 @@ def find(name: str) -> Path:
         TaskError: there is none.
     """
     if not name:
-        raise TaskError("no file is given: add --ros-args -p bt_tree_xml_file_name:=NAME")
+        raise TaskError(NoFileGiven())
     for path in (Path(name), TASKS / f"{name}.xml", TASKS / name):
         if path.is_file():
             return path
-    raise TaskError(f"no file '{name}' here and no '{name}.xml' in {TASKS}: check bt_tree_xml_file_name")
+    raise TaskError(NoSuchFile(name, str(TASKS)))
 
 
 def main() -> int:
@@ -75,7 +77,7 @@ def _register(ros: "Ros") -> str:
     request = AddTask.Request(task_sequence=text, description=given("description"))
     answer = ros.call(AddTask, "/tms/db/add_task", request, ANSWER)
     if answer.error_code:
-        raise DbError(answer.error_msg, answer.error_code)
+        raise DbError(refusal(answer.error_code, answer.error_msg), answer.error_code)
     return f"task {answer.task_id}" + (" (was stored before)" if answer.already_stored else "")
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from lxml import etree
 
+from tms_db.reasons import FileNotUtf8, NoTreeInRoot, OuterElement, TaskFileLarge, UnreadableFile
 from tms_reason.errors import TaskError
 from tms_runtime import xml_text
 
@@ -25,12 +26,12 @@ def read_file(path: Path) -> str:
     try:
         if path.stat().st_size > xml_text.MAX_BYTES:
             size = path.stat().st_size / 2**20
-            raise TaskError(f"{path}: is {size:.1f} MB, larger than {xml_text.MAX_BYTES} bytes")
+            raise TaskError(TaskFileLarge(str(path), size, xml_text.MAX_BYTES), TaskError.code)
         return path.read_bytes().decode("utf-8")
     except OSError as error:
-        raise TaskError(f"{path}: cannot be read ({error.strerror}): check the name") from error
+        raise TaskError(UnreadableFile(str(path), str(error.strerror)), TaskError.code) from error
     except UnicodeDecodeError as error:
-        raise TaskError(f"{path}: is not UTF-8 text (byte {error.start}): save it as UTF-8") from error
+        raise TaskError(FileNotUtf8(str(path), error.start), TaskError.code) from error
 
 
 def essence(text: str) -> str:
@@ -41,9 +42,9 @@ def essence(text: str) -> str:
     """
     root = xml_text.elements(xml_text.decode(text), comments=True)
     if root.tag != "root":
-        raise TaskError(f"line {root.sourceline}: the outermost element is <{root.tag}>, not <root>: {_EXPORT}")
+        raise TaskError(OuterElement(_line(root), str(root.tag)), TaskError.code)
     if not any(tree.get("ID") or len(tree) for tree in root.iterchildren("BehaviorTree")):
-        raise TaskError(f"line {root.sourceline}: there is no <BehaviorTree> with nodes in <root>: {_EXPORT}")
+        raise TaskError(NoTreeInRoot(_line(root)), TaskError.code)
     for element in root.iter():
         if not (element.text or "").strip():
             element.text = None
@@ -61,4 +62,6 @@ def main_model(text: str, models: Collection[str]) -> str:
     return found.most_common(1)[0][0] if found else ""  # most_common keeps first-seen order among equals
 
 
-_EXPORT = "export the task from Groot (Save tree) and register that file"
+def _line(element: etree._Element) -> int:
+    line: object = element.sourceline
+    return line if isinstance(line, int) else 0

@@ -11,6 +11,7 @@ from pymongo.errors import BulkWriteError
 
 from tms_config.names import check_text
 from tms_db import task_text
+from tms_db.reasons import NoTaskNumber, TaskMissing
 from tms_db.store import Db, errors
 from tms_db.task_numbers import TaskNumbers
 from tms_reason.errors import DbError
@@ -86,7 +87,7 @@ class Tasks:
                     wishes, self._wishes = self._wishes, []
                 self._store(wishes)
         if wish.added is None:
-            raise wish.failure or DbError(f"no free task number after {ATTEMPTS} attempts: try again", "BUSY")
+            raise wish.failure or DbError(NoTaskNumber(ATTEMPTS), "BUSY")
         return wish.added
 
     def _store(self, wishes: list[_Wish]) -> None:
@@ -179,7 +180,7 @@ def _wish(text: str, description: str, models: Collection[str]) -> _Wish:
 
 
 def _missing(task_id: int) -> DbError:
-    return DbError(f"there is no task {task_id}: `tms task list` shows what is stored", "TASK_MISSING")
+    return DbError(TaskMissing(task_id))
 
 
 def _task(document: dict[str, Any]) -> Task:

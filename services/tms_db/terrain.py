@@ -12,9 +12,11 @@ from typing import TYPE_CHECKING, Any
 
 from tms_config import names
 from tms_db import terrain_files
+from tms_db.reasons import BadTerrainName, TerrainExists, TerrainMissing, TerrainNotWhole, TerrainSigns, TerrainSizes
 from tms_db.store import Db, errors, long_work
 from tms_db.terrain_files import IDS, IMAGES, Size, bad
 from tms_reason.errors import DbError
+from tms_reason.reason import Foreign
 
 if TYPE_CHECKING:
     import gridfs
@@ -55,13 +57,12 @@ class Terrain:
             DbError: BAD_TERRAIN, TERRAIN_EXISTS, or the store is away.
         """
         if type_ in IMAGES and size is None:
-            raise bad(f"{path}: a {type_} needs its width, height and elevation in metres")
+            raise bad(TerrainSizes(str(path), type_))
         if size is not None and not (size.width > 0 and size.height > 0 and size.elevation >= 0):
-            raise bad(f"{path}: width and height must be above 0 m and elevation not below: correct them")
+            raise bad(TerrainSigns(str(path)))
         data = terrain_files.read(path, type_)
         if self.find(type_, path.name) is not None:
-            raise DbError(f"terrain {type_} {path.name} is there already: remove it first (`tms terrain rm`)",
-                          "TERRAIN_EXISTS")  # fmt: skip
+            raise DbError(TerrainExists(type_, path.name))
         return self.put(path.name, type_, data, vars(size) if size is not None else {})
 
     def put(self, filename: str, type_: str, data: bytes, more: Mapping[str, Any]) -> Stored:
@@ -71,7 +72,7 @@ class Terrain:
             DbError: the store is away.
         """
         if (why := names.flaw(filename)) is not None:
-            raise bad(f"terrain name {filename[:40]!r} {why}: write a plain name")
+            raise bad(BadTerrainName(filename[:40], Foreign(why)))
         id_, time = IDS[type_], datetime.now(timezone.utc).isoformat()
         with long_work(self._db):
             key = self._grid().put(data, filename=filename, type=type_, id=id_, time=time, **more)
@@ -111,8 +112,7 @@ class Terrain:
             try:
                 data: bytes = self._grid().get(stored.key).read()
             except GridFSError as error:
-                text = f"terrain {stored.filename} is not there, or not whole: store it again"
-                raise DbError(text, "TERRAIN_MISSING") from error
+                raise DbError(TerrainNotWhole(stored.filename), "TERRAIN_MISSING") from error
         return data
 
     def remove(self, filename: str, type_: str = "") -> int:
@@ -139,7 +139,7 @@ class Terrain:
 
 
 def missing(filename: str) -> DbError:
-    return DbError(f"there is no terrain {filename!r}: `tms terrain list` shows what is stored", "TERRAIN_MISSING")
+    return DbError(TerrainMissing(filename))
 
 
 def _stored(document: Mapping[str, Any]) -> Stored:

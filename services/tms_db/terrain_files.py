@@ -5,7 +5,23 @@ import zlib
 from dataclasses import dataclass
 from pathlib import Path
 
+from tms_db.reasons import (
+    ImageDamaged,
+    ImageEnds,
+    ImageNoHeader,
+    ImageSides,
+    NoColourPixels,
+    NoHeightPixels,
+    NoPng,
+    TerrainBegins,
+    TerrainEnding,
+    TerrainLarge,
+    TerrainNoFile,
+    TerrainNoRegular,
+    UnreadableFile,
+)
 from tms_reason.errors import DbError
+from tms_reason.reason import Reason
 
 # What the C++ system calls them, with its ids and file endings. Dynamic clouds come over ROS, not as files.
 IDS = {"static": 3030, "mesh": 3030, "dem": 3030, "dynamic": 3031, "heightmap": 4031, "texture": 4031}
@@ -29,8 +45,9 @@ class Size:
     offset_y: float = 0.0
 
 
-def bad(message: str) -> DbError:
-    return DbError(message, "BAD_TERRAIN")
+def bad(what: Reason) -> DbError:
+    """Terrain that is refused."""
+    return DbError(what, "BAD_TERRAIN")
 
 
 def read(path: Path, type_: str) -> bytes:
@@ -40,36 +57,34 @@ def read(path: Path, type_: str) -> bytes:
         DbError: BAD_TERRAIN; names the file and what is wrong with it.
     """
     if path.suffix.lower() != ENDINGS[type_]:
-        raise bad(f"{path}: a file of type {type_} ends with {ENDINGS[type_]}")
+        raise bad(TerrainEnding(str(path), type_, ENDINGS[type_]))
     if not path.is_file():
-        raise bad(f"{path}: {'is no regular file' if path.exists() else 'there is no such file'}: check the name")
+        raise bad(TerrainNoRegular(str(path)) if path.exists() else TerrainNoFile(str(path)))
     if path.stat().st_size > MAX_FILE:
-        raise bad(
-            f"{path}: is {path.stat().st_size / 2**20:.0f} MB, {MAX_FILE // 2**20} MB are allowed: make it coarser"
-        )
+        raise bad(TerrainLarge(str(path), path.stat().st_size / 2**20, MAX_FILE / 2**20))
     try:
         data = path.read_bytes()
     except OSError as error:
-        raise bad(f"{path}: cannot be read ({error.strerror})") from error
+        raise bad(UnreadableFile(str(path), str(error.strerror))) from error
     if type_ in IMAGES:
         _check_png(path, data, type_)
     elif not data.startswith(FIRST_BYTES[type_]):
-        raise bad(f"{path}: does not begin as a {ENDINGS[type_]} file does: is this the right file?")
+        raise bad(TerrainBegins(str(path), ENDINGS[type_]))
     return data
 
 
 def _check_png(path: Path, data: bytes, type_: str) -> None:
     if not data.startswith(PNG):
-        raise bad(f"{path}: is no PNG image: is this the right file?")
+        raise bad(NoPng(str(path)))
     at, kind = len(PNG), b""
     while kind != b"IEND":
         head = data[at : at + 8]
         size, kind = struct.unpack(">I4s", head) if len(head) == 8 else (0, b"")
         body, end = data[at + 4 : at + 8 + size], data[at + 8 + size : at + 12 + size]
         if len(end) < 4:
-            raise bad(f"{path}: the image ends in the middle: copy it again")
+            raise bad(ImageEnds(str(path)))
         if zlib.crc32(body) != int.from_bytes(end, "big"):
-            raise bad(f"{path}: the image is damaged (checksum at byte {at}): copy it again")
+            raise bad(ImageDamaged(str(path), at))
         if at == len(PNG):
             _check_pixels(path, kind, body[4:], type_)
         at += 12 + size
@@ -77,12 +92,12 @@ def _check_png(path: Path, data: bytes, type_: str) -> None:
 
 def _check_pixels(path: Path, kind: bytes, header: bytes, type_: str) -> None:
     if kind != b"IHDR" or len(header) != 13:
-        raise bad(f"{path}: the image has no header: copy it again")
+        raise bad(ImageNoHeader(str(path)))
     width, height, depth, colour = struct.unpack(">IIBB", header[:10])
     if not (0 < width <= MAX_SIDE and 0 < height <= MAX_SIDE):
-        raise bad(f"{path}: is {width} x {height} pixels, at most {MAX_SIDE} a side are allowed: make it smaller")
+        raise bad(ImageSides(str(path), width, height, MAX_SIDE))
     found = f"{depth}-bit {COLOUR_TYPES.get(colour, 'of an unknown kind')}"
     if type_ == "heightmap" and (colour != 0 or depth not in (8, 16)):
-        raise bad(f"{path}: a heightmap has 8-bit or 16-bit grey pixels, not {found}: convert it")
+        raise bad(NoHeightPixels(str(path), found))
     if type_ == "texture" and (colour not in (0, 2, 6) or depth != 8):
-        raise bad(f"{path}: a texture has 8-bit colour pixels, not {found}: convert it")
+        raise bad(NoColourPixels(str(path), found))

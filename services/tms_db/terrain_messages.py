@@ -6,6 +6,7 @@ from typing import Any
 
 from sensor_msgs.msg import Image, PointCloud2, PointField
 
+from tms_db.reasons import CloudForeign, CloudLarge, CloudSizes, ImageMode, ImageUnreadable
 from tms_db.terrain_files import MAX_SIDE, bad
 
 ENCODINGS = {"L": "mono8", "I;16": "mono16", "RGB": "rgb8", "RGBA": "rgba8"}  # Pillow's modes
@@ -24,12 +25,12 @@ def image(where: str, data: bytes) -> Image:
     try:
         with Pictures.open(io.BytesIO(data), formats=("PNG",)) as picture:
             if max(picture.size) > MAX_SIDE or picture.mode not in ENCODINGS:
-                raise bad(f"{where}: is {picture.size} pixels of mode {picture.mode}: store another image")
+                raise bad(ImageMode(where, str(picture.size), picture.mode))
             pixels = picture.tobytes()
             width, height = picture.size
             encoding = ENCODINGS[picture.mode]
     except (OSError, SyntaxError, ValueError) as error:
-        raise bad(f"{where}: the image cannot be read ({error}): store it again") from error
+        raise bad(ImageUnreadable(where, str(error))) from error
     message = Image(width=width, height=height, encoding=encoding, step=len(pixels) // height)
     message.data.frombytes(pixels)  # the setter would look at each byte
     return message
@@ -42,10 +43,10 @@ def cloud_head(message: PointCloud2) -> dict[str, Any]:
         DbError: BAD_TERRAIN; its sizes contradict each other, or it is too large.
     """
     if len(message.data) > MAX_CLOUD:
-        raise bad(f"a cloud of {len(message.data) / 2**20:.0f} MB, {MAX_CLOUD // 2**20} MB are allowed: thin it out")
+        raise bad(CloudLarge(len(message.data) / 2**20, MAX_CLOUD / 2**20))
     wanted = message.row_step * message.height
     if len(message.data) != wanted or message.row_step < message.point_step * message.width:
-        raise bad(f"a cloud of {len(message.data)} bytes whose sizes say {wanted}: correct its sender")
+        raise bad(CloudSizes(len(message.data), wanted))
     head: dict[str, Any] = {name: getattr(message, name) for name in CLOUD}
     head["frame_id"] = message.header.frame_id
     head["stamp"] = {"sec": message.header.stamp.sec, "nanosec": message.header.stamp.nanosec}
@@ -62,7 +63,7 @@ def cloud(where: str, head: Mapping[str, Any] | None, data: bytes) -> PointCloud
         DbError: BAD_TERRAIN; it was stored by another program.
     """
     if head is None:
-        raise bad(f"{where}: holds no description of its points, so it is not one of ours")
+        raise bad(CloudForeign(where))
     message = PointCloud2(**{name: head[name] for name in CLOUD})
     message.fields = [PointField(**field) for field in head["fields"]]
     message.header.frame_id = head["frame_id"]

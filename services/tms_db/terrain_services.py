@@ -11,6 +11,7 @@ from tms_msg_db.srv import TerrainStaticSrv, TmsdbTerrainImageSrv
 
 from tms_db import store, terrain_messages
 from tms_db.connection import Connection
+from tms_db.reasons import NoImageType, TerrainOverRos
 from tms_db.terrain import Stored, Terrain, missing
 from tms_db.terrain_files import IMAGES, bad
 from tms_reason.errors import TmsError
@@ -52,7 +53,7 @@ class TerrainServices:
         try:
             with self._connection.use():
                 if request.type not in IMAGES:
-                    raise bad(f"terrain type {request.type!r}: an image is one of {', '.join(IMAGES)}")
+                    raise bad(NoImageType(request.type, tuple(IMAGES)))
                 found = self._find(request.type, request.filename, request.id)
                 response.image = terrain_messages.image(found.filename, self._terrain.read(found))
                 response.image.header.stamp = self._app.ros.now()
@@ -105,7 +106,7 @@ class TerrainServices:
 
     def _store(self, name: str, message: TmsdbGridFS) -> None:
         if message.type != "dynamic":
-            raise bad(f"terrain {name} of type {message.type!r} came over ROS: store files with `tms terrain add`")
+            raise bad(TerrainOverRos(name, message.type))
         head = terrain_messages.cloud_head(message.pointcloud2)
         self._terrain.put_dynamic(name, bytes(message.pointcloud2.data), head)
 
@@ -116,4 +117,4 @@ class TerrainServices:
         return found
 
     def _refused(self, service: str, error: TmsError) -> None:
-        self._app.log.warning("refused", service=service, code=error.code, reason=error)
+        self._app.log.warning("refused", service=service, code=error.code, reason=error.reason)

@@ -7,6 +7,7 @@ from typing import Any
 from builtin_interfaces.msg import Time
 from rcl_interfaces.msg import Parameter
 
+from tms_db.reasons import FieldTwice, NoValueGiven
 from tms_db.records import RESERVED, Value, bad
 from tms_machine import values
 
@@ -31,9 +32,9 @@ def from_parameters(where: str, parameters: Iterable[Parameter]) -> dict[str, Va
     for parameter in parameters:
         name, value = parameter.name, values.from_value(parameter.value)
         if name in found:
-            raise bad(f"{where}: field {name} is there twice: send it once")
+            raise bad(FieldTwice(where, name))
         if value is None:
-            raise bad(f"{where}, field {name}: no value, or bytes: use a number, true/false, text or an array of these")
+            raise bad(NoValueGiven(f"{where}.{name}"))
         found[name] = value
     return found
 

@@ -13,7 +13,7 @@ from typing import Any
 from babel.messages.pofile import read_po
 
 from tms_reason.quantities import Unit
-from tms_reason.reason import REGISTRY, Reason
+from tms_reason.reason import REGISTRY, Foreign, Reason
 
 LOCALE = Path(__file__).resolve().parent / "locale"
 LANGUAGES = ("en", "ja")
@@ -83,6 +83,8 @@ def _inside(reason: Reason) -> list[Reason]:
 
 def _filled(reason: Reason, template: str, language: str) -> str:
     units = _units(reason.code)
+    if isinstance(reason, Foreign):  # as it came
+        return reason.words
     shown = {name: _shown(value, units.get(name), language) for name, value in reason.args.items()}
     return FORMATTER.vformat(template, (), shown)
 
@@ -95,7 +97,12 @@ def _shown(value: Any, unit: Unit | None, language: str) -> str:
         return between[language].join(_shown(one, unit, language) for one in value)
     if unit is not None and isinstance(value, (int, float)):
         return unit.show(value)
-    return "" if value is None else str(value)
+    return "" if value is None else _visible(str(value))
+
+
+def _visible(text: str) -> str:
+    """A text that stays in its line, whatever somebody has put into it."""
+    return text if text.isprintable() else "".join(one if one.isprintable() else repr(one)[1:-1] for one in text)
 
 
 @cache

@@ -286,7 +286,7 @@ def test_a_change_may_expect_what_is_there(db: store.Db) -> None:
     parameters = Parameters(db)
     parameters.set("", "ROAD", Change({"TAKEN": False, "BY": ""}, "dynamic"), create=True)
     parameters.set("", "ROAD", Change({"TAKEN": True, "BY": "ic120_1"}, expected={"TAKEN": False}))
-    with pytest.raises(DbError, match="shared record ROAD was not changed: TAKEN is True, not False") as caught:
+    with pytest.raises(DbError, match="record /ROAD was not changed: TAKEN is True, not False") as caught:
         parameters.set("", "ROAD", Change({"BY": "ic120_2"}, expected={"TAKEN": False}))
     assert caught.value.code == "CONFLICT"
     assert parameters.get("", "ROAD")["BY"] == "ic120_1"
@@ -330,12 +330,12 @@ def test_load_makes_changes_and_leaves_alone(db: store.Db) -> None:
     parameters = Parameters(db)
     first = Record("zx200", "a", "static", "d", {"x": 1, "l": [1.0, 2.0]})
     second = Record("zx200", "b", "dynamic", "", {"x": 1.0})
-    assert parameters.load([first, second], "file").created == ["record zx200/a", "record zx200/b"]
+    assert parameters.load([first, second], "file").created == ["zx200/a", "zx200/b"]
     before = parameters.get("zx200", "a")["updated_at"]
     parameters.set("zx200", "b", Change({"sensed": 5}))
     as_double = Record("zx200", "b", "dynamic", "", {"x": 1})  # another type is another value
     done = parameters.load([first, as_double], "file")
-    assert (done.unchanged, done.changed) == (["record zx200/a"], ["record zx200/b"])
+    assert (done.unchanged, done.changed) == (["zx200/a"], ["zx200/b"])
     assert parameters.get("zx200", "a")["updated_at"] == before
     assert isinstance(parameters.get("zx200", "b")["x"], int)
     assert parameters.get("zx200", "b")["sensed"] == 5
@@ -469,8 +469,8 @@ def test_a_change_is_told_once_though_its_write_was_repeated(
     [
         ({"x": 1.0}, {"X": 2}, {"x": 2.0}),
         ({"LOADED_FLG": False}, {"loaded_flg": True, "more": 1}, {"LOADED_FLG": True}),
-        ({"x": [1.0]}, {"x": 2.0}, "field x holds an array, not a number"),
-        ({"x": True}, {"x": 1}, "field x holds true/false, not a number"),
+        ({"x": [1.0]}, {"x": 2.0}, "m/r.x holds an array, not a number"),
+        ({"x": True}, {"x": 1}, "m/r.x holds true/false, not a number"),
         ({"x": 1}, {"y": 1}, "has none of the fields y"),
     ],
 )
@@ -478,9 +478,9 @@ def test_what_a_loose_update_changes(stored: dict[str, Value], sent: dict[str, V
     head = Head({"_id": 1, "record_name": "r", "type": "dynamic", **stored}, 0.0)
     if isinstance(said, str):
         with pytest.raises(DbError, match=said):
-            head.fit("record m/r", sent, loose=True)
+            head.fit("m/r", sent, loose=True)
     else:
-        assert head.fit("record m/r", sent, loose=True) == said
+        assert head.fit("m/r", sent, loose=True) == said
 
 
 def test_stale_records_are_told_with_age_limit_and_source() -> None:
@@ -490,7 +490,7 @@ def test_stale_records_are_told_with_age_limit_and_source() -> None:
     freshness.check(document, 20.0, now)
     freshness.check({**document, "max_age": 2.0}, -1.0, now)
     freshness.check({**document, "type": "static"}, 2.0, now)
-    said = r"record zx200/p is 12.3 s old, allowed are 2 s \(last from sp zed\)"
+    said = r"record zx200/p is 12.3 s old, allowed are 2.0 s \(last from sp zed\)"
     for given, limit in ((document, 2.0), ({**document, "max_age": 2.0}, 0.0)):
         with pytest.raises(DbError, match=said):
             freshness.check(given, limit, now)

@@ -203,7 +203,7 @@ def leave():
     print("leaving", file=sys.stderr, flush=True)
     ctypes.PyDLL(None).sleep(60)  # native code that keeps the interpreter, as DDS does
 
-node.Ros = lambda name: SimpleNamespace(stop=lambda: None, leave=leave)
+node.Ros = lambda name, **_: SimpleNamespace(stop=lambda: None, leave=leave)
 session.call = lambda *_, **__: SimpleNamespace(runs=[])
 main.LEAVE_LIMIT = 0.1
 main.entry()

@@ -136,7 +136,7 @@ def test_load_leaves_alone_what_says_the_same(mesh, tms, tmp_path: Path) -> None
 def test_a_bad_file_writes_nothing(mesh, tms, tmp_path: Path) -> None:
     (tmp_path / "r.yaml").write_text(FILE + "- {model_name: zx200, record_name: last, type: static, a: .nan}\n")
     end = tms(param.command, "load", tmp_path / "r.yaml")
-    assert "record zx200/last" in str(end.exception)
+    assert "(zx200/last).a: nan" in str(end.exception)
     assert not mesh.asked
 
 

@@ -10,6 +10,7 @@ from pymongo.errors import AutoReconnect
 
 from tms_db import connection, schema, store
 from tms_db.connection import Connection
+from tms_db.reasons import NoStore, StoreDown
 from tms_reason.errors import DbError
 
 
@@ -76,7 +77,7 @@ def use(link: Connection, error: DbError | None = None) -> str:
 
 
 def test_away_at_the_start_then_there(fake: Away, link: Connection) -> None:
-    assert "tms start tms:store" in (link.unready() or "")
+    assert link.unready() == StoreDown(NoStore())
     assert use(link) == "STORE_DOWN"
     assert fake.asked.acquire(timeout=5)
     fake.up.set()

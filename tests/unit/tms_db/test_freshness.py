@@ -23,7 +23,7 @@ def locked(ago: float, age: float) -> dict[str, object]:
 
 def test_old_values_are_refused_with_age_and_limit() -> None:
     check(record(1.9), 0.0, NOW)
-    with pytest.raises(DbError, match=r"record zx200/p is 2\.1 s old, allowed are 2 s \(last from sp\)"):
+    with pytest.raises(DbError, match=r"record zx200/p is 2\.1 s old, allowed are 2.0 s \(last from sp\)"):
         check(record(2.1), 0.0, NOW)
     check(record(2.1), 5.0, NOW)
     check(record(99.0), -1.0, NOW)

@@ -31,10 +31,10 @@ def read(tmp_path: Path, text: str) -> list[records.Record]:
         ({"$set": 1}, "must not start with [$]"),
         ({"a.b": 1}, "dots"),
         ({"a\0": 1}, r"holds the control character U\+0000"),
-        ({"x": float("nan")}, "field x: nan is not a finite number"),
-        ({"x": [1.0, float("inf")]}, "field x: inf is not a finite number"),
+        ({"x": float("nan")}, "p.x: nan is not a finite number"),
+        ({"x": [1.0, float("inf")]}, "p.x: inf is not a finite number"),
         ({"x": 2**63}, "does not fit into 64 bits"),
-        ({"x": None}, "field x: an empty value cannot be stored"),
+        ({"x": None}, "p.x: an empty value cannot be stored"),
         ({"x": {"y": 1}}, "a nested mapping cannot be stored"),
         ({"x": [[1]]}, "a nested array cannot be stored"),
         ({"x": b"1"}, "a bytes cannot be stored"),
@@ -45,9 +45,9 @@ def read(tmp_path: Path, text: str) -> list[records.Record]:
 )
 def test_values_that_are_refused(values: dict[Any, Any], says: str) -> None:
     with pytest.raises(DbError, match=says) as caught:
-        records.check_values("record zx200/p", values)
+        records.check_values("zx200/p", values)
     assert caught.value.code == "BAD_RECORD"
-    assert str(caught.value).startswith("record zx200/p")
+    assert str(caught.value).startswith("zx200/p")
 
 
 def test_values_that_are_taken() -> None:
@@ -75,8 +75,8 @@ def test_keys_that_are_refused(key: tuple[str, str], says: str) -> None:
 
 @pytest.mark.parametrize("key", ["description", "source"])
 def test_a_line_about_a_record_holds_no_control_characters(key: str) -> None:
-    with pytest.raises(DbError, match=rf"^record zx200/p: {key} holds the control character U\+000A: remove it$"):
-        Change({"a": 1}, **{key: "two\nlines"}).check("record zx200/p")
+    with pytest.raises(DbError, match=rf"^zx200/p: {key} holds the control character U\+000A: remove it$"):
+        Change({"a": 1}, **{key: "two\nlines"}).check("zx200/p")
 
 
 @pytest.mark.parametrize(
@@ -85,21 +85,21 @@ def test_a_line_about_a_record_holds_no_control_characters(key: str) -> None:
         ("", "must hold a list of records"),
         ("a: 1", "must hold a list of records"),
         ("- 3", "record 1: must hold keys and values"),
-        ("- {record_name: p}", r"record 1 \(shared record p\): type is ''"),
+        ("- {record_name: p}", r"record 1 \(/p\): type is ''"),
         ("- {record_name: p, type: fixed}", "type is 'fixed': write static or dynamic"),
         ("- {model_name: zx200, type: static}", "record 1: record_name is empty"),
         ("- {record_name: 3, type: static}", "record_name is 3, not text"),
         ('- {record_name: "ev\\0il", type: static}', r"record 1: record_name 'ev\\x00il' holds the control character"),
         (
             '- {record_name: p, type: static, description: "a\\0b"}',
-            r"\(shared record p\): description holds the control",
+            r"\(/p\): description holds the control",
         ),
         ('- {record_name: p, type: static, "a\\0b": 1}', r"field name 'a\\x00b' holds the control character U\+0000"),
         ("- {record_name: p, type: static, x: 1e3}", "write it with a dot"),
         ("- {record_name: p, type: static, x: 2024-01-01}", "a date cannot be stored"),
-        ("- {record_name: p, type: static, x: .nan}", "field x: nan is not a finite number"),
-        ("- {record_name: p, type: static, x: }", "field x: an empty value"),
-        ("- {record_name: p, type: static}\n- {record_name: p, type: dynamic}", "shared record p is there twice"),
+        ("- {record_name: p, type: static, x: .nan}", "x: nan is not a finite number"),
+        ("- {record_name: p, type: static, x: }", "x: an empty value"),
+        ("- {record_name: p, type: static}\n- {record_name: p, type: dynamic}", "/p is there twice"),
     ],
 )
 def test_files_that_are_refused(tmp_path: Path, text: str, says: str) -> None:

@@ -73,7 +73,7 @@ def test_writes_wait_for_the_disk_and_retry_only_if_asked(given: str, retries: b
     ("error", "code", "says"),
     [
         (AutoReconnect("x"), "STORE_DOWN", "tms start tms:store"),
-        (NetworkTimeout("x"), "STORE_DOWN", "in 3 s: see whether its disk is full"),
+        (NetworkTimeout("x"), "STORE_DOWN", "in 3.0 s: see whether its disk is full"),
         (ServerSelectionTimeoutError("x"), "STORE_DOWN", "does not answer"),
         (OperationFailure("x", 18), "STORE_DOWN", "TMS_MONGODB_URI"),
         (AutoReconnect("db1: SSL handshake failed: db1:27017"), "STORE_DOWN", "TLS with it fails"),

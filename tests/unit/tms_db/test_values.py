@@ -19,7 +19,7 @@ NOON = datetime(2026, 1, 31, 12, 0, 0, 123000, tzinfo=timezone.utc)
 def there_and_back(values: dict[str, Any]) -> dict[str, Any]:
     parameters, left_out = to_parameters(values)
     assert left_out == []
-    return dict(from_parameters("record r", parameters))
+    return dict(from_parameters("r", parameters))
 
 
 @pytest.mark.parametrize(
@@ -57,13 +57,13 @@ def test_what_cannot_travel_is_named(value: Any) -> None:
 
 @pytest.mark.parametrize("kind", [ParameterType.PARAMETER_NOT_SET, ParameterType.PARAMETER_BYTE_ARRAY, 77])
 def test_values_without_a_type_are_refused(kind: int) -> None:
-    with pytest.raises(DbError, match="record r, field x: no value, or bytes"):
-        from_parameters("record r", [Parameter(name="x", value=ParameterValue(type=kind))])
+    with pytest.raises(DbError, match=r"^r\.x: no value, or bytes"):
+        from_parameters("r", [Parameter(name="x", value=ParameterValue(type=kind))])
 
 
 def test_a_field_twice_is_refused() -> None:
     with pytest.raises(DbError, match="field x is there twice"):
-        from_parameters("record r", [*to_parameters({"x": 1})[0], *to_parameters({"x": 2})[0]])
+        from_parameters("r", [*to_parameters({"x": 1})[0], *to_parameters({"x": 2})[0]])
 
 
 def test_record_message_has_metadata_apart_from_values() -> None:
