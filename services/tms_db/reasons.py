@@ -31,7 +31,7 @@ class OtherValue(Reason, text="{field} is {value}, not {wanted}"): field: str; v
 class OtherFields(Reason, text="its fields were others"): pass
 class MadeByOthers(Reason, text="record {record} is being made and removed by others", action=RETRY): record: str
 class NameEmpty(Reason, text="record_name is empty: give the record a name"): pass
-class BadName(Reason, text="{what} '{name}' {why}: write a plain name"): what: str; name: str; why: Reason
+class BadRecordName(Reason, text="{what} '{name}' {why}: write a plain name"): what: str; name: str; why: Reason
 class BadType(Reason, text="{place}: type is '{type}': write static or dynamic"): place: str; type: str
 class BadMaxAge(Reason, text="{place}: max_age is {value}: write seconds, for example 2.0"): place: str; value: str
 class StaticWithAge(Reason,

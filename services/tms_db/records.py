@@ -12,7 +12,7 @@ from tms_config.yaml_file import read_yaml
 from tms_db.reasons import (
     BadFieldName,
     BadMaxAge,
-    BadName,
+    BadRecordName,
     BadType,
     CannotBeStored,
     DollarOrDot,
@@ -86,7 +86,7 @@ def check_key(model_name: str, record_name: str) -> None:
         raise bad(NameEmpty())
     for label, text in (("model_name", model_name), ("record_name", record_name)):
         if text and (why := names.flaw(text)) is not None:
-            raise bad(BadName(label, text[:40], Foreign(why)))
+            raise bad(BadRecordName(label, text[:40], Foreign(why)))
 
 
 def check_type(where: str, type_: str) -> None:
