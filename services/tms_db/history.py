@@ -12,7 +12,6 @@ from tms_db.reasons import BadRunId, NoEventNumber, RivalScheduler, RunMissing
 from tms_db.records import Value
 from tms_db.store import Db, errors
 from tms_reason.errors import DbError
-from tms_reason.reason import Foreign
 
 RUNS = 50
 EVENTS = 1000
@@ -134,8 +133,8 @@ def _check(event: Event) -> None:
 
 
 def _check_id(run_id: str) -> None:
-    if (why := names.flaw(run_id)) is not None:
-        raise DbError(BadRunId(run_id[:40], Foreign(why)), "BAD_JOURNAL")
+    if (why := names.name_flaw(run_id)) is not None:
+        raise DbError(BadRunId(run_id[:40], why), "BAD_JOURNAL")
 
 
 def _document(event: Event) -> dict[str, Any]:

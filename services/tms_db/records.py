@@ -34,7 +34,7 @@ from tms_db.reasons import (
     TooManyBits,
 )
 from tms_reason.errors import DbError
-from tms_reason.reason import Foreign, Reason
+from tms_reason.reason import Reason
 
 Scalar = bool | int | float | str
 Value = Scalar | Sequence[Scalar]
@@ -85,8 +85,8 @@ def check_key(model_name: str, record_name: str) -> None:
     if not record_name:
         raise bad(NameEmpty())
     for label, text in (("model_name", model_name), ("record_name", record_name)):
-        if text and (why := names.flaw(text)) is not None:
-            raise bad(BadRecordName(label, text[:40], Foreign(why)))
+        if text and (why := names.name_flaw(text)) is not None:
+            raise bad(BadRecordName(label, text[:40], why))
 
 
 def check_type(where: str, type_: str) -> None:
@@ -117,8 +117,8 @@ def check_line(where: str, label: str, text: str) -> None:
     Raises:
         DbError: BAD_RECORD.
     """
-    if (found := names.control(text)) is not None:
-        raise bad(HoldsControl(where, label, Foreign(found)))
+    if (found := names.control_letter(text)) is not None:
+        raise bad(HoldsControl(where, label, found))
 
 
 def check_values(where: str, values: Mapping[str, Any]) -> None:
@@ -148,8 +148,8 @@ def check_field(where: str, name: Any) -> None:
         raise bad(ReservedField(where, name))
     if name.startswith("$") or "." in name:
         raise bad(DollarOrDot(where, name[:40]))
-    if (why := names.flaw(name)) is not None:
-        raise bad(BadFieldName(where, name[:40], Foreign(why)))
+    if (why := names.name_flaw(name)) is not None:
+        raise bad(BadFieldName(where, name[:40], why))
 
 
 def _check_scalar(where: str, value: Any) -> None:

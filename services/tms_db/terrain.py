@@ -16,7 +16,6 @@ from tms_db.reasons import BadTerrainName, TerrainExists, TerrainMissing, Terrai
 from tms_db.store import Db, errors, long_work
 from tms_db.terrain_files import IDS, IMAGES, Size, bad
 from tms_reason.errors import DbError
-from tms_reason.reason import Foreign
 
 if TYPE_CHECKING:
     import gridfs
@@ -71,8 +70,8 @@ class Terrain:
         Raises:
             DbError: the store is away.
         """
-        if (why := names.flaw(filename)) is not None:
-            raise bad(BadTerrainName(filename[:40], Foreign(why)))
+        if (why := names.name_flaw(filename)) is not None:
+            raise bad(BadTerrainName(filename[:40], why))
         id_, time = IDS[type_], datetime.now(timezone.utc).isoformat()
         with long_work(self._db):
             key = self._grid().put(data, filename=filename, type=type_, id=id_, time=time, **more)

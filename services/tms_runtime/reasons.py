@@ -7,7 +7,7 @@ from tms_reason.remedies import EDIT_TASK, STATUS
 # fmt: off
 # XML
 class TaskTooLarge(Reason, text="the task is larger than {limit} bytes"): limit: int
-class NotUtf8(Reason, text="the text is not UTF-8"): pass
+class TextNotUtf8(Reason, text="the text is not UTF-8"): pass
 class NulByte(Reason, text="the text contains a NUL byte"): pass
 class TaskEmpty(Reason, text="the task is empty"): pass
 class ManyTags(Reason, text="the text has more than {limit} tags"): limit: int

@@ -17,7 +17,6 @@ from tms_runtime.reasons import (
     ManyAttributes,
     ManyTags,
     NotUnicodeCharacter,
-    NotUtf8,
     NotWellFormed,
     NulByte,
     RemoveThem,
@@ -27,6 +26,7 @@ from tms_runtime.reasons import (
     SplitTask,
     TaskEmpty,
     TaskTooLarge,
+    TextNotUtf8,
     WordTooLong,
     XmlHint,
     XmlLine,
@@ -64,7 +64,7 @@ def decode(data: bytes | str, limit: int = MAX_BYTES) -> str:
             data = raw.decode("utf-8-sig")
         except UnicodeDecodeError as error:
             line = raw.count(b"\n", 0, error.start) + 1
-            raise XmlRefused(NotUtf8(), line, SaveAsUtf8()) from error
+            raise XmlRefused(TextNotUtf8(), line, SaveAsUtf8()) from error
     text = data.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
     zero = text.find("\0")
     if zero >= 0:

@@ -11,7 +11,7 @@ from tms_reason.reason import Reason
 from tms_reason.wire import refusal
 from tms_ros.interface_types import Reply, Req, ServiceType
 from tms_ros.node import Ros
-from tms_ts.reasons import NoField
+from tms_ts.reasons import NoRecordField
 from tms_ts.shared_records import SharedRecords
 from tms_ts.world import Value
 
@@ -106,4 +106,4 @@ def _settle(answer: Answer[Any], record: str, field: str, fields: Mapping[str, A
     if field in fields:
         answer.settle(fields[field])
     else:
-        answer.fail(NoField(record, field))
+        answer.fail(NoRecordField(record, field))

@@ -123,4 +123,4 @@ class NoSharedField(Reason, text="shared record {record} has no field '{field}'"
 class SharedStatic(Reason, text="shared record {record} is static: a run must not write it"): record: str
 class NobodyWrites(Reason, text="no active task and no sensing input writes {field} of {record}, which is waited for"):
     field: str; record: str
-class NoField(Reason, text="record {record} has no field '{field}'"): record: str; field: str
+class NoRecordField(Reason, text="record {record} has no field '{field}'"): record: str; field: str
