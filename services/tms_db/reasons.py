@@ -31,19 +31,19 @@ class OtherValue(Reason, text="{field} is {value}, not {wanted}"): field: str; v
 class OtherFields(Reason, text="its fields were others"): pass
 class MadeByOthers(Reason, text="record {record} is being made and removed by others", action=RETRY): record: str
 class NameEmpty(Reason, text="record_name is empty: give the record a name"): pass
-class BadRecordName(Reason, text="{what} '{name}' {why}: write a plain name"): what: str; name: str; why: Reason
+class BadRecordName(Reason, text="{what} '{name}' {why}"): what: str; name: str; why: Reason
 class BadType(Reason, text="{place}: type is '{type}': write static or dynamic"): place: str; type: str
 class BadMaxAge(Reason, text="{place}: max_age is {value}: write seconds, for example 2.0"): place: str; value: str
 class StaticWithAge(Reason,
     text="{place}: a static record cannot get too old: make it dynamic, or take max_age away"): place: str
-class HoldsControl(Reason, text="{place}: {what} holds {letter}: remove it"): place: str; what: str; letter: Reason
+class HoldsControl(Reason, text="{place}: {what} {letter}: remove it"): place: str; what: str; letter: Reason
 class NoFieldName(Reason, text="{place}: a field has no name or a name that is no text ({name}): write a name"):
     place: str; name: str
 class ReservedField(Reason, text="{place}: field '{field}' is reserved: choose another name"): place: str; field: str
 class DollarOrDot(Reason,
     text="{place}: field name '{field}' must not start with $ or hold dots: choose another name"):
     place: str; field: str
-class BadFieldName(Reason, text="{place}: field name '{field}' {why}: write a plain name"):
+class BadFieldName(Reason, text="{place}: field name '{field}' {why}"):
     place: str; field: str; why: Reason
 class MixedArray(Reason, text="{place}: the array mixes types: use numbers only, or one other type"): place: str
 class HoldsNul(Reason, text="{place}: the text holds a NUL character: remove it"): place: str
@@ -84,7 +84,7 @@ class StateNoObject(Reason, text="{collection} of {machine}: must be a JSON obje
 class NoStateTime(Reason, text="the newest state of a machine has the time '{time}', which is none"): time: str
 class RunMissing(Reason, text="there is no run '{run}'", action=RUNS): run: str
 class NoEventNumber(Reason, text="event {number} of run {run}: needs a number from 1"): number: int; run: str
-class BadRunId(Reason, text="run_id '{run}' {why}: give the run a plain id"): run: str; why: Reason
+class BadRunId(Reason, text="run_id '{run}' {why}"): run: str; why: Reason
 class RivalScheduler(Reason, text="somebody else writes the same journal: only one scheduler may run",
     action=PROCESSES): pass
 
@@ -112,7 +112,7 @@ class TerrainSizes(Reason,
     file: str; type: str
 class TerrainSigns(Reason, text="{file}: width and height must be above 0 m and elevation not below: correct them"):
     file: str
-class BadTerrainName(Reason, text="terrain name '{name}' {why}: write a plain name"): name: str; why: Reason
+class BadTerrainName(Reason, text="terrain name '{name}' {why}"): name: str; why: Reason
 class TerrainEnding(Reason, text="{file}: a file of type {type} ends with {ending}"): file: str; type: str; ending: str
 class TerrainNoFile(Reason, text="{file}: there is no such file: check the name"): file: str
 class TerrainNoRegular(Reason, text="{file}: is no regular file: check the name"): file: str

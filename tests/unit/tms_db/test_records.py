@@ -62,8 +62,8 @@ def test_values_that_are_taken() -> None:
         (("zx200", ""), "record_name is empty"),
         (("zx200", " "), "record_name ' ' is empty"),
         ((" zx200", "p"), "model_name ' zx200' begins or ends with a blank"),
-        (("zx200", "p\n"), r"record_name 'p\\n' holds the control character U\+000A: write a plain name"),
-        (("zx200", "ev\0il"), r"record_name 'ev\\x00il' holds the control character U\+0000: write a plain name"),
+        (("zx200", "p\n"), r"record_name 'p\\n' holds the control character U\+000A; Write a plain name"),
+        (("zx200", "ev\0il"), r"record_name 'ev\\x00il' holds the control character U\+0000; Write a plain name"),
         (("z\x1b", "p"), r"model_name 'z\\x1b' holds the control character U\+001B"),
         (("z" * 201, "p"), "model_name 'z+' has more than 200 letters"),
     ],
@@ -75,7 +75,9 @@ def test_keys_that_are_refused(key: tuple[str, str], says: str) -> None:
 
 @pytest.mark.parametrize("key", ["description", "source"])
 def test_a_line_about_a_record_holds_no_control_characters(key: str) -> None:
-    with pytest.raises(DbError, match=rf"^zx200/p: {key} holds the control character U\+000A: remove it$"):
+    with pytest.raises(
+        DbError, match=rf"^zx200/p: {key} holds the control character U\+000A: remove it; Write a plain name$"
+    ):
         Change({"a": 1}, **{key: "two\nlines"}).check("zx200/p")
 
 
