@@ -17,19 +17,23 @@ from numpy.typing import NDArray
 
 from tms_config.models import Box, MachineModel, Origin
 from tms_reason.errors import SubtaskFailed
+from tms_reason.reason import Reason
+from tms_rp.reasons import Collision, Part
 from tms_rp.trajectory import Joints, Trajectory
 
 PADDING = 0.1  # m around the bodies that the arm moves
 STEP = 0.03  # rad, of the joint that moves most, between two looks
 
 Matrix = NDArray[np.float64]  # 4 x 4
+Body = str | Reason  # a link of this machine, or the name of an obstacle
+Pair = tuple[Body, Body]
 
 
 @dataclass(frozen=True)
 class Obstacle:
-    """A body that stands: its name, its box, and where its frame is in our base_link."""
+    """A body that stands: its name (as a reason says it), its box, and where its frame is in our base_link."""
 
-    name: str
+    name: Reason
     box: Box
     place: Matrix
 
@@ -42,7 +46,7 @@ class Clearance:
         moved = _moved_links(model)
         self._bodies = {link: _object(box, PADDING if link in moved else 0.0) for link, box in model.shapes.items()}
         self._inner = {link: _box_place(box) for link, box in model.shapes.items()}
-        self._others: dict[tuple[str, Box], Any] = {}  # bodies of other machines: as many as the site has
+        self._others: dict[tuple[Reason, Box], Any] = {}  # bodies of other machines: as many as the site has
         self._looking = threading.Lock()  # over the places of all bodies
         parent = {origin.child: origin.parent for origin in model.geometry.values()}
         self._pairs = [
@@ -54,28 +58,30 @@ class Clearance:
         """Look at the whole trajectory. What touches at its start may part, but must be apart at its end.
 
         Raises:
-            SubtaskFailed: COLLISION, with the two bodies and the time.
+            SubtaskFailed: Collision, with the two bodies and the time.
         """
         with self._looking:
             self._check(made, {one.name: self._fixed(one) for one in obstacles})
 
-    def _check(self, made: Trajectory, fixed: Mapping[str, Any]) -> None:
+    def _check(self, made: Trajectory, fixed: Mapping[Body, Any]) -> None:
         moving = [link for link in self._bodies if link in self._moved]
-        pairs = [*self._pairs, *((link, name) for link in moving for name in fixed)]
+        pairs: list[tuple[str | Reason, str | Reason]] = [
+            *self._pairs,
+            *((link, name) for link in moving for name in fixed),
+        ]
+        bodies: dict[Body, Any] = {}
+        bodies.update(self._bodies)
+        bodies.update(fixed)
         looks = _looks(made)
-        touching: set[tuple[str, str]] = set()
+        touching: set[Pair] = set()
         for number, (seconds, positions) in enumerate(looks):
             self._move(dict(zip(made.names, positions, strict=True)))
-            bodies = {**self._bodies, **fixed}
             now = {pair for pair in pairs if _touch(bodies[pair[0]], bodies[pair[1]])}
             last = number == len(looks) - 1
             bad = now if last else now - touching if number else set()
             if bad:
-                first, second = sorted(bad)[0]
-                raise SubtaskFailed(
-                    "COLLISION",
-                    f"{first} would touch {second} after {seconds:.1f} s: choose another target or move away first",
-                )
+                first, second = sorted(bad, key=str)[0]
+                raise SubtaskFailed(Collision(_part(first), _part(second), seconds))
             touching = now if number == 0 else touching & now
 
     def _fixed(self, obstacle: Obstacle) -> Any:
@@ -92,6 +98,11 @@ class Clearance:
             places[origin.child] = places[origin.parent] @ _step(origin, positions.get(joint, 0.0))
         for link, body in self._bodies.items():
             _place(body, places[link] @ self._inner[link])
+
+
+def _part(body: Body) -> Reason:
+    """A body as a reason names it: of this machine, or an obstacle."""
+    return Part(body) if isinstance(body, str) else body
 
 
 def placed(x: float, y: float, yaw: float) -> Matrix:

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from tms_reason.errors import SubtaskFailed
+from tms_rp.reasons import AnglesUnfit, FieldNotFinite, NamedTwice
 
 
 @dataclass(frozen=True)
@@ -50,22 +51,20 @@ def joint_goal(names: Sequence[str], positions: Sequence[float]) -> dict[str, fl
     """One trajectory point as joint name -> angle [rad].
 
     Raises:
-        SubtaskFailed: BAD_GOAL, the two lists do not fit.
+        SubtaskFailed: the two lists do not fit.
     """
     if len(names) != len(positions):
-        raise SubtaskFailed(
-            "BAD_GOAL", f"trajectory: {len(names)} joint names but {len(positions)} positions: give one for each"
-        )
+        raise SubtaskFailed(AnglesUnfit(len(names), len(positions)))
     if len(set(names)) != len(names):
-        raise SubtaskFailed("BAD_GOAL", f"trajectory: a joint is named twice in {', '.join(names)}")
+        raise SubtaskFailed(NamedTwice(tuple(names)))
     return dict(zip(names, positions, strict=True))
 
 
-def finite(what: str, *values: float) -> None:
+def finite(field: str, *values: float) -> None:
     """Refuse NaN and infinity.
 
     Raises:
-        SubtaskFailed: BAD_GOAL, names `what`.
+        SubtaskFailed: FieldNotFinite, names `field` of the goal.
     """
     if not all(math.isfinite(value) for value in values):
-        raise SubtaskFailed("BAD_GOAL", f"{what}: a value is not a number: send finite numbers")
+        raise SubtaskFailed(FieldNotFinite(field))

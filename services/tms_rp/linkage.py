@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from tms_config.models import Origin
 from tms_reason.errors import SubtaskFailed
+from tms_rp.reasons import Point, TooFar, TooNear, TooNearAxis
 
 Vector = tuple[float, float, float]
 
@@ -85,23 +86,20 @@ class Linkage:
         """Swing angle [rad], in (-pi, pi], that brings the arm's plane over a point of base_link [m].
 
         Raises:
-            SubtaskFailed: OUT_OF_REACH, the point is beside the swing axis, nearer than the plane ever gets.
+            SubtaskFailed: TooNearAxis, the point is beside the swing axis, nearer than the plane ever gets.
         """
         px, py = x - self.axis[0], y - self.axis[1]
         out = _root(px * px + py * py - self.lateral**2)
         if out is None:
             missing = abs(self.lateral) - math.hypot(px, py)
-            raise SubtaskFailed(
-                "OUT_OF_REACH",
-                f"point ({x:.3f}, {y:.3f}) m is {missing:.3f} m too near the swing axis: choose one further out",
-            )
+            raise SubtaskFailed(TooNearAxis(x, y, missing))
         return wrap(math.atan2(py, px) - math.atan2(self.lateral, out))
 
     def joints(self, tip: Tip) -> Pose:
         """Inverse kinematics, elbow up, without joint limits; `tip` is in base_link.
 
         Raises:
-            SubtaskFailed: OUT_OF_REACH, says by how much.
+            SubtaskFailed: TooFar, TooNear, TooNearAxis, with how much is missing.
         """
         swing = self.swing_to(tip.x, tip.y)
         px, py = tip.x - self.axis[0], tip.y - self.axis[1]
@@ -122,9 +120,8 @@ def _within_reach(tip: Tip, far: float, least: float, most: float) -> None:
     """Refuse a bucket pin that is `far` [m] from the boom pin when the arm spans `least` to `most`."""
     if least <= far <= most:
         return
-    missing, word = (far - most, "far: choose a nearer one") if far > most else (least - far, "near: move it away")
-    point = f"point ({tip.x:.3f}, {tip.y:.3f}, {tip.z:.3f}) m with theta_w {tip.theta_w:.2f} rad"
-    raise SubtaskFailed("OUT_OF_REACH", f"{point} is {missing:.3f} m too {word}")
+    point = Point(*tip)
+    raise SubtaskFailed(TooFar(point, far - most) if far > most else TooNear(point, least - far))
 
 
 def _corner(p: float, q: float, opposite: float) -> float:

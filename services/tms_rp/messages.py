@@ -17,7 +17,7 @@ def change_pose(request: TmsRpZx200ChangePose.Goal) -> ChangePose:
     """Goal of a TmsRpZx200ChangePose request.
 
     Raises:
-        SubtaskFailed: BAD_GOAL, lists of the trajectory do not fit.
+        SubtaskFailed: lists of the trajectory do not fit.
     """
     names = request.trajectory.joint_names
     return ChangePose(

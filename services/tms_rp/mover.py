@@ -6,13 +6,17 @@ from collections.abc import Callable
 from control_msgs.action import FollowJointTrajectory
 
 from tms_machine.border import STOP_PROVEN
+from tms_machine.reasons import MotionNotEnded, NoReason
+from tms_reason import wire
 from tms_reason.errors import SubtaskFailed
+from tms_reason.reason import Reason
 from tms_ros.client import Call, Peer
 from tms_ros.goals import Outcome
 from tms_ros.naming import process_of
-from tms_ros.reasons import LostMeanwhile, ProcessLost
+from tms_ros.reasons import LostMeanwhile, NoAnswer, ProcessLost
 from tms_ros.server import AnyGoal
 from tms_rp.messages import follow
+from tms_rp.reasons import MotionFailed, MotionLate, MoveOf
 from tms_rp.trajectory import Trajectory
 from tms_runtime.fence import derived
 
@@ -30,9 +34,10 @@ class Mover:
     """The way to one machine's gateway."""
 
     def __init__(self, peer: Gateway) -> None:
-        self._peer = peer
+        self._peer, self._process = peer, process_of(peer.name)
+        self._machine = self._process.split(":")[0]
 
-    def move(self, goal: AnyGoal, made: Trajectory, say: Callable[[str], None]) -> Outcome:
+    def move(self, goal: AnyGoal, made: Trajectory, say: Callable[[Reason], None]) -> Outcome:
         """Execute `made` for `goal`, saying how far it is; SUCCEEDED, or CANCELED once the machine has stopped.
 
         Raises:
@@ -47,19 +52,19 @@ class Mover:
         call.wait_for(lambda: call.accepted or _over(goal, call), ACCEPT_LIMIT)
         if not call.accepted and not _over(goal, call):
             self._stop(call)
-            raise SubtaskFailed("NO_ANSWER", f"{self._peer.name} did not answer within {ACCEPT_LIMIT:.0f} s")
+            raise SubtaskFailed(NoAnswer(self._process, self._peer.name, ACCEPT_LIMIT))
         lost = self._watch(goal, call, time.monotonic() + made.duration + OVERRUN)
         if call.outcome is None:
             self._stop(call)
-        if lost:
-            raise SubtaskFailed(*lost)
+        if lost is not None:
+            raise SubtaskFailed(lost)
         return _verdict(goal, call, self._peer.name)
 
-    def _watch(self, goal: AnyGoal, call: Motion, deadline: float) -> tuple[str, str] | None:
-        """Wait for the end of the motion or for a cancel; code and reason when neither came."""
+    def _watch(self, goal: AnyGoal, call: Motion, deadline: float) -> Reason | None:
+        """Wait for the end of the motion or for a cancel; the reason when neither came."""
         while not _over(goal, call):
             if time.monotonic() > deadline:
-                return "TIMEOUT", f"{self._peer.name} was not done {OVERRUN:.0f} s after the end of the trajectory"
+                return MotionLate(self._machine, OVERRUN)
             if self._peer.left():
                 self._peer.lost()  # it left in order, but without a result
             call.wait_for(lambda: _over(goal, call), min(LOOK, deadline - time.monotonic()))
@@ -69,14 +74,15 @@ class Mover:
         """Cancel the motion and wait until it has ended."""
         self._peer.cancel(call)
         if not call.wait_for(lambda: call.outcome is not None, STOP_LIMIT):
-            raise SubtaskFailed("NOT_STOPPED", f"{self._peer.name} did not end the motion within {STOP_LIMIT:.0f} s")
+            raise SubtaskFailed(MotionNotEnded(self._machine))
 
 
 class _Progress:
-    """Turns the controller's feedback into texts, each said once."""
+    """Turns the controller's feedback into progress, each said once."""
 
-    def __init__(self, made: Trajectory, say: Callable[[str], None]) -> None:
-        self._made, self._say, self._said = made, say, ""
+    def __init__(self, made: Trajectory, say: Callable[[Reason], None]) -> None:
+        self._made, self._say = made, say
+        self._said: Reason | None = None
         self._begun = time.monotonic()
 
     def __call__(self, feedback: FollowJointTrajectory.Feedback) -> None:
@@ -84,10 +90,10 @@ class _Progress:
         # Not every controller fills in its time; then the clock tells it.
         seconds = at.sec + at.nanosec * 1e-9 or time.monotonic() - self._begun
         number, percent = self._made.progress(seconds)
-        text = f"MOVING {number}/{len(self._made.stops)} {percent} %"
-        if text != self._said:
-            self._said = text
-            self._say(text)
+        progress = MoveOf(number, len(self._made.stops), percent)
+        if progress != self._said:
+            self._said = progress
+            self._say(progress)
 
 
 def _over(goal: AnyGoal, call: Motion) -> bool:
@@ -101,5 +107,5 @@ def _verdict(goal: AnyGoal, call: Motion, name: str) -> Outcome:
         return Outcome.CANCELED  # also when it arrived, or was refused, just before: nothing moves
     if call.outcome is Outcome.LOST:
         raise SubtaskFailed(ProcessLost(LostMeanwhile(process_of(name), name)))
-    reason = getattr(call.result, "error_string", "") or "no reason given"
-    raise SubtaskFailed("MOTION_FAILED", f"{name} {call.outcome.name if call.outcome else 'LOST'}: {reason}")
+    why = wire.of(getattr(call.result, "error_string", "")) or NoReason()
+    raise SubtaskFailed(MotionFailed(why, name, call.outcome.name if call.outcome else "LOST"))

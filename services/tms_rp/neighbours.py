@@ -5,6 +5,7 @@ from tf2_msgs.msg import TFMessage
 
 from tms_machine.frames import Frames
 from tms_rp.clearance import Matrix, Obstacle, placed
+from tms_rp.reasons import PartOf, PlaceUnknown
 from tms_runtime.app import App
 
 LOOK = 0.2  # s; a plan does not look itself, which would cost it some ms: 0.1 to 0.25 for each message
@@ -40,12 +41,11 @@ class Neighbours:
         others = {name: place for name, place in places.items() if place is not None}
         if own is None:
             if others:
-                reason = "/tf does not tell where it is: others are left out"
-                self._log.warning("place_unknown", target=self._own, reason=reason)
+                self._log.warning("place_unknown", target=self._own, reason=PlaceUnknown(self._own))
             return []
         back = np.linalg.inv(own)
         return [
-            Obstacle(f"{part} of {name}", box, back @ place)
+            Obstacle(PartOf(part, name), box, back @ place)
             for name, place in others.items()
             for part, box in self._site.model_of(name).footprint.items()
         ]

@@ -13,10 +13,13 @@ from tms_msg_rp.action import TmsRpZx200ChangePose, TmsRpZx200ExcavateSimple, Tm
 from tms_msg_rp.msg import TmsRpErrorCodes
 
 from tms_machine.permit import Permit, watch_server
-from tms_machine.reasons import Busy
+from tms_machine.reasons import Aborted, Busy
+from tms_reason import wire
 from tms_reason.errors import SubtaskFailed, TmsError
 from tms_reason.reason import Reason
+from tms_reason.texts import text
 from tms_ros.goals import Ended, Outcome
+from tms_ros.naming import process_of
 from tms_ros.server import AnyGoal
 from tms_rp import messages
 from tms_rp.clearance import Clearance
@@ -24,6 +27,16 @@ from tms_rp.kinds.backhoe import NAMES, Backhoe, Moves
 from tms_rp.linkage import Pose
 from tms_rp.mover import Mover
 from tms_rp.neighbours import Neighbours
+from tms_rp.reasons import (
+    Adapted,
+    GatewayAway,
+    JointsOld,
+    JointsUnheard,
+    MotionCancelled,
+    Planned,
+    Planning,
+    Succeeded,
+)
 from tms_rp.trajectory import Trajectory, trajectory
 from tms_runtime.app import App
 
@@ -105,28 +118,28 @@ class Planner:
         if all(map(math.isfinite, angles)):
             self._now = (time.monotonic(), Pose(*angles))
 
-    def unready(self) -> str | None:
+    def unready(self) -> Reason | None:
         """Why no motion can be planned and executed now."""
         try:
             self.joints()
         except SubtaskFailed as error:
-            return str(error)
-        return None if self._rc.ready() else f"{self._rc.name} is not there"
+            return error.reason
+        return None if self._rc.ready() else GatewayAway(process_of(self._rc.name), self._rc.name)
 
     def joints(self) -> Pose:
         """Where the arm is.
 
         Raises:
-            SubtaskFailed: NO_JOINT_STATE, nothing heard, or too long ago.
+            SubtaskFailed: JointsUnheard, JointsOld.
         """
         self.look()
         last = self._now
         topic = f"/{self._app.machine}/{self._app.site.border(self._app.machine).joint_states}"
         if last is None:
-            raise SubtaskFailed("NO_JOINT_STATE", f"nothing on {topic} with {', '.join(NAMES)}: is the machine on?")
+            raise SubtaskFailed(JointsUnheard(self._app.machine, topic, NAMES))
         age = time.monotonic() - last[0]
         if age > FRESH:
-            raise SubtaskFailed("NO_JOINT_STATE", f"last message on {topic} is {age:.1f} s old: is the machine on?")
+            raise SubtaskFailed(JointsOld(self._app.machine, age, topic))
         return last[1]
 
     def serve(self, action: Action, name: str) -> None:
@@ -134,8 +147,9 @@ class Planner:
 
         def accept(_request: Any) -> Reason | None:
             if action.moves and self._busy:
-                self._app.log.warning("refused", action=action.name, reason="another goal moves the machine")
-                return Busy(self._app.process.full)
+                busy = Busy(self._app.process.full)
+                self._app.log.warning("refused", action=action.name, reason=busy)
+                return busy
             self._busy = self._busy or action.moves
             return None
 
@@ -155,27 +169,25 @@ class Planner:
         return outcome, action.type.Result(error_code=TmsRpErrorCodes(val=code))
 
     def _execute(self, action: Action, goal: AnyGoal) -> Outcome:
-        def say(state: str) -> None:
-            goal.publish(action.type.Feedback(state=state))
+        def say(state: Reason, notes: tuple[Reason, ...] = ()) -> None:
+            goal.publish(action.type.Feedback(state=wire.to_line(Adapted(state, notes) if notes else state)))
 
-        say("PLANNING")
+        say(Planning())
         try:
-            made, note = self._plan(action, goal)
-            suffix = f" ({note})" if note else ""
+            made, notes = self._plan(action, goal)
             if not action.moves:
-                say(f"PLANNED {made.duration:.1f} s{suffix}")
+                say(Planned(made.duration), notes)
                 outcome = Outcome.SUCCEEDED
             else:
-                outcome = self._mover.move(goal, made, lambda text: say(text + suffix))
+                outcome = self._mover.move(goal, made, lambda progress: say(progress, notes))
         except TmsError as error:
-            reason = f"{error.code}: {error.args[0]}"
-            self._app.log.warning("failed", action=action.name, goal=goal.id, reason=reason)
-            say(f"ABORTED: {reason}")
+            self._app.log.warning("failed", action=action.name, goal=goal.id, reason=error.reason)
+            say(Aborted(error.reason, action.name))
             return Outcome.ABORTED
-        say(outcome.name)
+        say(Succeeded() if outcome is Outcome.SUCCEEDED else MotionCancelled())
         return outcome
 
-    def _plan(self, action: Action, goal: AnyGoal) -> tuple[Trajectory, str]:
+    def _plan(self, action: Action, goal: AnyGoal) -> tuple[Trajectory, tuple[Reason, ...]]:
         """The trajectory, and what of the goal was changed for it."""
         begun = time.monotonic()
         now = self.joints()
@@ -191,9 +203,9 @@ class Planner:
             moves=len(moves.targets),
             duration=round(made.duration, 2),
             planning=round(seconds, 4),
-            note=moves.note,
+            notes=[text(note, "en") for note in moves.notes],
         )
-        return made, moves.note
+        return made, moves.notes
 
     def _trajectory(self, now: Pose, moves: Moves) -> Trajectory:
         """Through all targets; joints that no kind of goal moves (the tool frame) stay at 0."""

@@ -13,6 +13,7 @@ from ruckig import Trajectory as Profile
 
 from tms_config.models import Joint
 from tms_reason.errors import SubtaskFailed
+from tms_rp.reasons import LimitsLeft, NoTrajectory
 
 STEP = 0.05  # s, at most, between two samples
 ROUNDING = 1e-6  # of the limit: what floating-point arithmetic may add
@@ -63,7 +64,7 @@ def trajectory(
     its bound can come back; it never gets further out.
 
     Raises:
-        SubtaskFailed: PLAN_FAILED, no trajectory keeps the limits.
+        SubtaskFailed: NoTrajectory, LimitsLeft: no trajectory keeps the limits.
     """
     limits = tuple(joints.values())
     samples = [_rest(0.0, tuple(start))]
@@ -108,10 +109,9 @@ def _profile(limits: Sequence[Joint], start: Joints, target: Joints) -> Profile:
     try:
         result = Ruckig(size).calculate(wanted, profile)
     except RuckigError as error:
-        reason = " ".join(str(error).split())
-        raise SubtaskFailed("PLAN_FAILED", f"no trajectory inside the limits: {reason}") from error
+        raise SubtaskFailed(NoTrajectory(" ".join(str(error).split()))) from error
     if result not in (Result.Working, Result.Finished):
-        raise SubtaskFailed("PLAN_FAILED", f"no trajectory inside the limits: the generator says {result.name}")
+        raise SubtaskFailed(NoTrajectory(result.name))
     return profile
 
 
@@ -126,4 +126,4 @@ def _check(joints: dict[str, Joint], samples: Sequence[Sample], targets: Sequenc
             slow = abs(sample.velocities[i]) <= joint.velocity * (1 + ROUNDING)
             gentle = abs(sample.accelerations[i]) <= joint.acceleration * (1 + ROUNDING)
             if not (inside and slow and gentle):
-                raise SubtaskFailed("PLAN_FAILED", f"{name} would leave its limits after {sample.time:.2f} s")
+                raise SubtaskFailed(LimitsLeft(name, sample.time))

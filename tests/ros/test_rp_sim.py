@@ -21,10 +21,16 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from conftest import rearm
 from tms_config import environment
 from tms_config.config import load_site
+from tms_config.reasons import AboveLimit
 from tms_rc.memory import Memory
+from tms_rc.reasons import PressedByOthers
+from tms_reason import wire
+from tms_reason.reason import R
 from tms_ros.client import Call
 from tms_ros.goals import Outcome
 from tms_ros.node import Ros
+from tms_rp.kinds.backhoe import NAMES as ARM
+from tms_rp.reasons import JointBroken, JointsOld, JointsUnheard, MoveOf, OtherAngle, OutOfRange
 
 pytestmark = [
     pytest.mark.ros,
@@ -113,8 +119,9 @@ class Rig:
     def moving(self) -> bool:
         return bool(self.states) and any(abs(v) > 0.05 for v in self.states[-1].velocity)
 
-    def reason(self) -> str:
-        return self.said[-1] if self.said else ""
+    def reason(self, kind: type[R]) -> R | None:
+        """The reason of this kind in what was said last."""
+        return wire.known(self.said[-1]).find(kind) if self.said else None
 
 
 @pytest.fixture(scope="module")
@@ -158,15 +165,14 @@ def test_change_pose_arrives_and_says_how_far_it_is(machine: Rig) -> None:
     assert machine.states[-1].position == pytest.approx((0.6, -0.6, 1.7, START[3], 0.0), abs=0.031)
     assert machine.said[0] == "PLANNING"
     assert machine.said[-1] == "SUCCEEDED"
-    assert any(text.startswith("MOVING 1/1 ") for text in machine.said)
+    assert any(text.startswith("MOVE_OF number=1 count=1 ") for text in machine.said)
 
 
 def test_a_machine_that_fell_silent_is_not_moved(machine: Rig) -> None:
     machine.end_process(f"sim:{MACHINE}")
     heard = len(machine.states)
-    old = f"ABORTED: NO_JOINT_STATE: last message on /{MACHINE}/joint_states is"
     machine.until(
-        lambda: machine.end(machine.change_pose(*START)) is Outcome.ABORTED and machine.reason().startswith(old),
+        lambda: machine.end(machine.change_pose(*START)) is Outcome.ABORTED and machine.reason(JointsOld),
         "refusal for old joint states",
     )
     machine.start(f"sim:{MACHINE}")
@@ -179,7 +185,7 @@ def test_excavate_then_release(machine: Rig) -> None:
     dig = machine.send(TmsRpZx200ExcavateSimple, "tms_rp_zx200_excavate_simple", position_with_angle=soil)
     assert machine.end(dig) is Outcome.SUCCEEDED
     assert machine.states[-1].position[3] == pytest.approx(1.7, abs=0.031)
-    assert any(text.startswith("MOVING 3/3") and "instead of 0.00 rad" in text for text in machine.said)
+    assert any((told := wire.known(text)).find(MoveOf) and told.find(OtherAngle) for text in machine.said)
     opened = machine.send(TmsRpZx200ReleaseSimple, "tms_rp_zx200_release_simple", target_angle=-0.2)
     assert machine.end(opened) is Outcome.SUCCEEDED
     assert machine.states[-1].position[3] == pytest.approx(-0.2, abs=0.031)
@@ -214,8 +220,7 @@ def test_a_plan_never_moves_and_bad_goals_are_refused(machine: Rig) -> None:
     call = machine.change_pose(0.0, 0.5, *START[2:])
     assert machine.end(call) is Outcome.ABORTED
     assert call.result.error_code.val == TmsRpErrorCodes.FAILURE
-    wanted = "ABORTED: OUT_OF_RANGE: boom_joint 0.500 rad is above its limit -0.100 rad"
-    assert machine.reason().startswith(wanted)
+    assert machine.reason(OutOfRange) == OutOfRange((JointBroken("boom_joint", AboveLimit(0.5, -0.1)),))
     heard = len(machine.states)
     machine.until(lambda: len(machine.states) > heard + 10, "joint states")
     assert machine.states[-1].position == pytest.approx(START, abs=0.031)
@@ -230,12 +235,12 @@ def test_emergency_stop_ends_a_motion_until_it_is_released(machine: Rig) -> None
     machine.until(machine.moving, "motion")
     machine.stop.publish(Bool(data=True))
     assert machine.end(call) is Outcome.ABORTED
-    assert "emergency stop" in machine.reason()
+    assert "emergency stop" in machine.said[-1]
     assert not machine.moving()
     assert machine.end(machine.change_pose(*START)) is Outcome.ABORTED
     machine.stop.publish(Bool(data=False))
     assert machine.end(machine.change_pose(*START)) is Outcome.ABORTED
-    assert "PRESSED_BY_OTHERS" in machine.reason()  # a person looks before it moves again
+    assert machine.reason(PressedByOthers)  # a person looks before it moves again
     machine.until(lambda: rearm(machine.ros, MACHINE), "armed machine")
     machine.until(lambda: machine.end(machine.change_pose(*START)) is Outcome.SUCCEEDED, "motion after the re-arm")
 
@@ -255,4 +260,4 @@ def test_a_planner_that_ends_takes_its_motion_with_it(machine: Rig) -> None:
 def test_without_a_machine_there_is_a_reason(rig: Rig) -> None:
     rig.said.clear()
     assert rig.end(rig.change_pose(*START, machine=MUTE)) is Outcome.ABORTED
-    assert rig.reason().startswith(f"ABORTED: NO_JOINT_STATE: nothing on /{MUTE}/joint_states")
+    assert rig.reason(JointsUnheard) == JointsUnheard(MUTE, f"/{MUTE}/joint_states", ARM)

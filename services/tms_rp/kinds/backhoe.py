@@ -5,10 +5,24 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from tms_config.models import MachineModel
+from tms_machine.reasons import NoSuchJoint
 from tms_reason.errors import ConfigError, SubtaskFailed
-from tms_reason.texts import text
+from tms_reason.reason import Reason
 from tms_rp.goals import ChangePose, LinkGoal, TipGoal, finite
 from tms_rp.linkage import Linkage, Pose, Tip, wrap
+from tms_rp.reasons import (
+    ClearanceCut,
+    JointBroken,
+    NoAngleDigs,
+    NoArm,
+    NoOrientation,
+    OneTarget,
+    OtherAngle,
+    OutOfPlane,
+    OutOfRange,
+    Point,
+    PointOutOfRange,
+)
 
 NAMES = ("swing_joint", "boom_joint", "arm_joint", "bucket_joint")
 TOOL = "bucket_end_joint"  # a frame, not a joint: no command moves it
@@ -26,14 +40,13 @@ class Moves:
     """Joint targets one after another, each reached at rest, and what the planner changed in the goal."""
 
     targets: tuple[Pose, ...]
-    note: str = ""
+    notes: tuple[Reason, ...] = ()
 
 
 class Backhoe:
-    """Plans for one excavator model. Methods take the present joints and raise SubtaskFailed with a code.
+    """Plans for one excavator model. Methods take the present joints and raise SubtaskFailed with a reason.
 
-    Codes: BAD_GOAL the goal makes no sense, OUT_OF_REACH the arm is too short or too long for the point,
-    OUT_OF_RANGE a joint would have to leave its limits.
+    The goal makes no sense, the arm is too short or too long for the point, or a joint would leave its limits.
     """
 
     def __init__(self, model: MachineModel) -> None:
@@ -41,7 +54,7 @@ class Backhoe:
         if "base_joint" not in model.geometry:  # fixed, so it is no joint of joints:
             missing.append("base_joint")
         if missing:
-            raise ConfigError(f"a backhoe needs {', '.join(missing)} under joints: and geometry: of its machine file")
+            raise ConfigError(NoArm(tuple(missing)))
         self.limits = {name: model.joints[name] for name in NAMES}
         self.linkage = Linkage.of(model.geometry)
 
@@ -49,10 +62,7 @@ class Backhoe:
         """Go through joint targets, link poses or bucket tips, whichever the goal gives."""
         given = [part for part in (goal.joints, goal.links, goal.tips) if part]
         if len(given) != 1:
-            raise SubtaskFailed(
-                "BAD_GOAL",
-                f"give exactly one of trajectory, pose_sequence and position_with_angle_sequence, not {len(given)}",
-            )
+            raise SubtaskFailed(OneTarget(len(given)))
         targets: list[Pose] = []
         for values in goal.joints:
             targets.append(self._joints(now, targets, values))
@@ -73,19 +83,19 @@ class Backhoe:
         )  # fmt: skip
         found, chosen = self._search(dig)
         reach = _short_way(now, found)
-        notes = [] if chosen == theta_w else [f"theta_w {chosen:.2f} instead of {theta_w:.2f} rad"]
+        notes: list[Reason] = [] if chosen == theta_w else [OtherAngle(chosen, theta_w)]
         arm = self._clip("arm_joint", reach.arm + CLEAR_ARM, notes)
         curl = self._allowed(reach, reach._replace(arm=arm, bucket=CURLED))
-        return Moves((now._replace(swing=reach.swing), reach, curl), "; ".join(notes))
+        return Moves((now._replace(swing=reach.swing), reach, curl), tuple(notes))
 
     def release(self, now: Pose, angle: float) -> Moves:
         """Open the bucket to `angle` [rad] in two moves; the second also brings arm and boom up for clearance."""
         finite("target_angle", angle)
-        notes: list[str] = []
+        notes: list[Reason] = []
         arm = self._clip("arm_joint", now.arm + CLEAR_ARM, notes)
         boom = self._clip("boom_joint", now.boom + CLEAR_BOOM, notes)
         end = self._allowed(now, Pose(now.swing, boom, arm, angle))
-        return Moves((now._replace(bucket=(now.bucket + angle) / 2), end), "; ".join(notes))
+        return Moves((now._replace(bucket=(now.bucket + angle) / 2), end), tuple(notes))
 
     def reach(self, tip: Tip) -> Pose:
         """Joints inside their limits that bring the bucket tip there; swing in (-pi, pi]."""
@@ -96,11 +106,7 @@ class Backhoe:
                 pose = pose._replace(bucket=pose.bucket + turn)
         broken = self._broken(zip(NAMES, pose, strict=True))
         if broken:
-            raise SubtaskFailed(
-                "OUT_OF_RANGE",
-                f"point ({tip.x:.3f}, {tip.y:.3f}, {tip.z:.3f}) m with theta_w {tip.theta_w:.2f} rad needs {broken}: "
-                "choose another point or theta_w",
-            )
+            raise SubtaskFailed(PointOutOfRange(Point(*tip), broken))
         return pose
 
     def _search(self, tip: Tip) -> tuple[Pose, float]:
@@ -111,13 +117,12 @@ class Backhoe:
                 return self.reach(tip._replace(theta_w=theta_w)), theta_w
             except SubtaskFailed as error:
                 refused.append(error)
-        nearest = refused[0]
-        raise SubtaskFailed(nearest.code, f"no bucket angle from 0 to pi digs there: {nearest.args[0]}")
+        raise SubtaskFailed(NoAngleDigs(refused[0].reason))
 
     def _joints(self, now: Pose, before: list[Pose], values: Mapping[str, float]) -> Pose:
         unknown = [name for name in values if name not in (*NAMES, TOOL)]
         if unknown:
-            raise SubtaskFailed("BAD_GOAL", f"trajectory: no joint '{unknown[0]}': use {', '.join(NAMES)}")
+            raise SubtaskFailed(NoSuchJoint(unknown[0], NAMES))
         finite("trajectory", *values.values())
         kept = {name: angle for name, angle in values.items() if name in NAMES and abs(angle) <= math.tau}
         target = Pose(*(kept.get(name, angle) for name, angle in zip(NAMES, now, strict=True)))
@@ -128,17 +133,13 @@ class Backhoe:
         finite("pose_sequence", *vars(link).values())
         norm = math.hypot(link.qx, link.qy, link.qz, link.qw)
         if norm < 1e-3:
-            raise SubtaskFailed("BAD_GOAL", "pose_sequence: the orientation is empty: give a quaternion of length 1")
+            raise SubtaskFailed(NoOrientation(norm))
         qx, qy, qz, qw = (q / norm for q in (link.qx, link.qy, link.qz, link.qw))
         x, y, z = 1 - 2 * (qy * qy + qz * qz), 2 * (qx * qy + qw * qz), 2 * (qx * qz - qw * qy)
         swing = self.linkage.swing_to(link.x, link.y)
         out, aside = x * math.cos(swing) + y * math.sin(swing), y * math.cos(swing) - x * math.sin(swing)
         if abs(aside) > math.sin(OUT_OF_PLANE):
-            raise SubtaskFailed(
-                "BAD_GOAL",
-                f"pose_sequence: the orientation points {math.asin(max(-1.0, min(1.0, aside))):.2f} rad out of the "
-                f"arm's plane: turn it to yaw {swing:.2f} rad",
-            )
+            raise SubtaskFailed(OutOfPlane(math.asin(max(-1.0, min(1.0, aside))), swing))
         return Tip(link.x, link.y, link.z, wrap(math.atan2(-z, out) - self.linkage.level))
 
     def _allowed(self, now: Pose, target: Pose) -> Pose:
@@ -146,20 +147,20 @@ class Backhoe:
         moved = ((n, b) for n, a, b in zip(NAMES, now, target, strict=True) if a != b)
         broken = self._broken(moved)
         if broken:
-            raise SubtaskFailed("OUT_OF_RANGE", f"{broken}: choose a target inside the limits")
+            raise SubtaskFailed(OutOfRange(broken))
         return target
 
-    def _broken(self, angles: Iterable[tuple[str, float]]) -> str:
+    def _broken(self, angles: Iterable[tuple[str, float]]) -> tuple[Reason, ...]:
         found = ((name, self.limits[name].violation(angle)) for name, angle in angles)
-        return "; ".join(f"{name} {text(broken, 'en')}" for name, broken in found if broken)
+        return tuple(JointBroken(name, broken) for name, broken in found if broken)
 
-    def _clip(self, name: str, angle: float, notes: list[str]) -> float:
+    def _clip(self, name: str, angle: float, notes: list[Reason]) -> float:
         """The angle [rad] of a clearance move, cut at the joint's limit."""
         joint = self.limits[name]
         low, high = (-math.inf if joint.min is None else joint.min), (math.inf if joint.max is None else joint.max)
         cut = max(low, min(high, angle))
         if cut != angle:
-            notes.append(f"{name} clearance cut at its limit {cut:.2f} rad")
+            notes.append(ClearanceCut(name, cut))
         return cut
 
 

@@ -15,6 +15,8 @@ from tms_reason.errors import ConfigError, SubtaskFailed
 from tms_rp.goals import ChangePose, LinkGoal, TipGoal, joint_goal
 from tms_rp.kinds.backhoe import Backhoe
 from tms_rp.linkage import Pose
+from tms_rp.reasons import ClearanceCut
+from words import words
 
 BACKHOE = Backhoe(parse(CONFIGS / "machines" / "zx200.yaml", MachineModel))
 NOW = Pose(0.0, -0.6, 1.9, 0.3)
@@ -94,19 +96,19 @@ def test_excavate_finds_the_nearest_bucket_angle_and_says_so() -> None:
     assert swing == NOW._replace(swing=reach.swing)
     assert reach == pytest.approx((-1.565542, -0.228449, 2.256313, -0.617864), abs=1.5e-6)
     assert curl == reach._replace(arm=reach.arm + 0.1, bucket=1.7)
-    assert moves.note == "theta_w 1.41 instead of 0.00 rad"
+    assert words(moves.notes[0]) == "bucket angle 1.410 rad instead of 0.000 rad"
 
 
 def test_excavate_keeps_a_possible_angle_silently() -> None:
     moves = BACKHOE.excavate(NOW, TipGoal(6.0, 0.0, 1.0, 1.2))
-    assert moves.note == ""
+    assert moves.notes == ()
     assert moves.targets[1] == pytest.approx((0.014778, -0.436543, 2.014228, -0.377684), abs=1.5e-6)
 
 
 def test_excavate_takes_a_full_turn_of_theta_w_as_the_same_angle() -> None:
     turned = BACKHOE.excavate(NOW, TipGoal(6.0, 0.0, 1.0, 1.2 + math.tau))
     assert turned.targets[1] == pytest.approx(BACKHOE.excavate(NOW, TipGoal(6.0, 0.0, 1.0, 1.2)).targets[1])
-    assert turned.note == ""
+    assert turned.notes == ()
 
 
 def test_offset_is_along_the_line_from_base_link() -> None:
@@ -120,7 +122,7 @@ def test_excavate_cuts_the_clearance_at_the_limit() -> None:
     x, y, z, theta_w = BACKHOE.linkage.tip(pose)
     moves = BACKHOE.excavate(NOW, TipGoal(x, y, z + 1.0, theta_w))
     assert moves.targets[2].arm == 2.687
-    assert "arm_joint clearance cut at its limit 2.69 rad" in moves.note
+    assert ClearanceCut("arm_joint", 2.687) in moves.notes
 
 
 def test_release_ends_at_the_asked_angle() -> None:
@@ -135,9 +137,7 @@ def test_release_ends_at_the_asked_angle() -> None:
 def test_release_cuts_the_clearance_at_the_limits() -> None:
     moves = BACKHOE.release(Pose(0.0, -1.1, 2.6, 1.7), -0.34)
     assert moves.targets[1][1:3] == (-1.137, 2.687)
-    arm, boom = moves.note.split("; ")
-    assert arm == "arm_joint clearance cut at its limit 2.69 rad"
-    assert boom == "boom_joint clearance cut at its limit -1.14 rad"
+    assert moves.notes == (ClearanceCut("arm_joint", 2.687), ClearanceCut("boom_joint", -1.137))
 
 
 # refusals
@@ -149,38 +149,44 @@ Plan = Callable[[], object]
 @pytest.mark.parametrize(
     ("plan", "text"),
     [
-        (lambda: BACKHOE.change_pose(NOW, ChangePose()), "BAD_GOAL: give exactly one of .* not 0"),
+        (lambda: BACKHOE.change_pose(NOW, ChangePose()), "ONE_TARGET: the goal gives 0 targets: .*; Give exactly one"),
         (
             lambda: BACKHOE.change_pose(NOW, ChangePose(joints=({},), tips=(SOIL,))),
-            "BAD_GOAL: give exactly one of .* not 2",
+            "ONE_TARGET: the goal gives 2 targets: .*; Give exactly one",
         ),
         (
             lambda: BACKHOE.change_pose(NOW, joints(boom=0.0)),
-            "OUT_OF_RANGE: boom_joint 0.000 rad is above its limit -0.100 rad: choose",
+            "OUT_OF_RANGE: boom_joint 0.000 rad is above its limit -0.100 rad; Choose",
         ),
-        (lambda: BACKHOE.change_pose(NOW, joints(hook=0.0)), "BAD_GOAL: trajectory: no joint 'hook_joint': use swing"),
-        (lambda: BACKHOE.change_pose(NOW, joints(arm=NAN)), "BAD_GOAL: trajectory: a value is not a number"),
-        (lambda: joint_goal(["a"], [1.0, 2.0]), "BAD_GOAL: trajectory: 1 joint names but 2 positions"),
-        (lambda: joint_goal(["a", "a"], [1.0, 2.0]), "BAD_GOAL: trajectory: a joint is named twice"),
+        (
+            lambda: BACKHOE.change_pose(NOW, joints(hook=0.0)),
+            r"NO_SUCH_JOINT: there is no joint 'hook_joint' \(there are swing",
+        ),
+        (lambda: BACKHOE.change_pose(NOW, joints(arm=NAN)), "FIELD_NOT_FINITE: a value is not a number"),
+        (lambda: joint_goal(["a"], [1.0, 2.0]), "ANGLES_UNFIT: 2 angles for 1 joints"),
+        (lambda: joint_goal(["a", "a"], [1.0, 2.0]), "NAMED_TWICE: a joint is named twice: a, a"),
         (
             lambda: BACKHOE.change_pose(NOW, tips(SOIL)),
-            r"OUT_OF_RANGE: point \(0.080, -4.738, 0.102\) m with theta_w 0.00 rad needs "
+            r"POINT_OUT_OF_RANGE: point \(0.08 m, -4.74 m, 0.10 m\) with bucket angle 0.000 rad needs "
             "boom_joint 0.138 rad is above its limit -0.100 rad; bucket_joint -2.759 rad is below its limit -0.622 rad",
         ),
-        (lambda: BACKHOE.change_pose(NOW, tips(TipGoal(20, 0, 0, 0))), "OUT_OF_REACH: .* 9.671 m too far"),
-        (lambda: BACKHOE.change_pose(NOW, tips(TipGoal(NAN, 0, 0, 0))), "BAD_GOAL: position_with_angle: a value is"),
+        (
+            lambda: BACKHOE.change_pose(NOW, tips(TipGoal(20, 0, 0, 0))),
+            "OUT_OF_REACH: .* 9.67 m too far; Choose a",
+        ),
+        (lambda: BACKHOE.change_pose(NOW, tips(TipGoal(NAN, 0, 0, 0))), "FIELD_NOT_FINITE: a value is"),
         (
             lambda: BACKHOE.change_pose(NOW, ChangePose(links=(LinkGoal(6, 0, 1, 0, 0, 0, 0),))),
-            "BAD_GOAL: pose_sequence: the orientation is empty",
+            "NO_ORIENTATION: the orientation is empty: its quaternion has the length 0.000",
         ),
         (
             lambda: BACKHOE.change_pose(NOW, ChangePose(links=(pose_of(NOW, yaw=0.4),))),
-            "BAD_GOAL: pose_sequence: the orientation points -?0...? rad out of the arm's plane: turn it to yaw",
+            "OUT_OF_PLANE: the orientation points -?0....? rad out of the arm's plane; turned to ",
         ),
-        (lambda: BACKHOE.excavate(NOW, TipGoal(20, 0, 0, 1.0)), "OUT_OF_REACH: no bucket angle from 0 to pi digs"),
-        (lambda: BACKHOE.excavate(NOW, TipGoal(6, 0, 1, NAN)), "BAD_GOAL: position_with_angle"),
+        (lambda: BACKHOE.excavate(NOW, TipGoal(20, 0, 0, 1.0)), "NO_ANGLE_DIGS: no bucket angle from 0 to pi digs"),
+        (lambda: BACKHOE.excavate(NOW, TipGoal(6, 0, 1, NAN)), "FIELD_NOT_FINITE: a value"),
         (lambda: BACKHOE.release(NOW, -1.0), "OUT_OF_RANGE: bucket_joint -1.000 rad is below its limit -0.622 rad"),
-        (lambda: BACKHOE.release(NOW, NAN), "BAD_GOAL: target_angle"),
+        (lambda: BACKHOE.release(NOW, NAN), "FIELD_NOT_FINITE: a value"),
     ],
 )
 def test_refusals(plan: Plan, text: str) -> None:

@@ -9,6 +9,7 @@ from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
 from tms_reason.errors import SubtaskFailed
 from tms_rp.clearance import Clearance, Obstacle, placed
+from tms_rp.reasons import Collision, Part, PartOf
 from tms_rp.trajectory import Trajectory, trajectory
 
 MODEL = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel)
@@ -22,18 +23,18 @@ LOW_FRONT = (0.0, -0.3, 1.4, 0.5, 0.0)
 def truck(x: float, y: float) -> list[Obstacle]:
     """An ic120 across the front, the middle of its vessel at (x, y)."""
     place = placed(x, y + 1.44, math.pi / 2)
-    return [Obstacle(f"{part} of ic120", box, place) for part, box in TRUCK.footprint.items()]
+    return [Obstacle(PartOf(part, "ic120"), box, place) for part, box in TRUCK.footprint.items()]
 
 
 def move(*poses: tuple[float, ...]) -> Trajectory:
     return trajectory(MODEL.joints, poses[0], poses[1:])
 
 
-def refusal(made: Trajectory, obstacles: list[Obstacle]) -> str:
+def refusal(made: Trajectory, obstacles: list[Obstacle]) -> Collision:
     with pytest.raises(SubtaskFailed) as caught:
         Clearance(MODEL).check(made, obstacles)
-    assert caught.value.code == "COLLISION"
-    return str(caught.value)
+    assert isinstance(caught.value.reason, Collision)
+    return caught.value.reason
 
 
 def test_without_anything_in_the_way_it_passes() -> None:
@@ -43,14 +44,16 @@ def test_without_anything_in_the_way_it_passes() -> None:
 
 def test_a_truck_in_the_way_is_named() -> None:
     said = refusal(move(LOW_RIGHT, LOW_FRONT), truck(6.0, 0.0))
-    assert "_link would touch" in said and "of ic120 after" in said
+    assert isinstance(said.first, Part) and said.first.link.endswith("_link") and said.seconds > 0
+    assert isinstance(said.second, PartOf) and said.second.machine == "ic120"
 
 
 def test_a_truck_that_is_only_swept_is_found_too() -> None:
     """The end is free; without looking on the way it would pass."""
     beyond = (1.571, *LOW_FRONT[1:])
     Clearance(MODEL).check(move(beyond, beyond), truck(6.0, 0.0))
-    assert "of ic120" in refusal(move(LOW_RIGHT, beyond), truck(6.0, 0.0))
+    found = refusal(move(LOW_RIGHT, beyond), truck(6.0, 0.0)).find(PartOf)
+    assert found is not None and found.machine == "ic120"
 
 
 def test_over_the_vessel_it_passes() -> None:
@@ -60,7 +63,7 @@ def test_over_the_vessel_it_passes() -> None:
 
 def test_the_bucket_against_the_own_tracks() -> None:
     said = refusal(move((0.0, -0.3, 2.2, 0.5, 0.0), (0.0, -0.12, 2.687, 0.5, 0.0)), [])
-    assert "would touch" in said and "track_link" in said
+    assert Part("track_link") in (said.first, said.second)
 
 
 def test_what_touches_at_the_start_may_part_but_not_stay() -> None:
@@ -76,5 +79,5 @@ def test_looking_again_makes_no_new_bodies(monkeypatch: pytest.MonkeyPatch) -> N
     clearance.check(made, truck(40.0, 0.0))
     monkeypatch.setattr("tms_rp.clearance.fcl.CollisionObject", None)
     clearance.check(made, truck(50.0, 0.0))
-    with pytest.raises(SubtaskFailed, match="of ic120"):
+    with pytest.raises(SubtaskFailed, match="of ic120 after"):
         clearance.check(move(LOW_RIGHT, LOW_FRONT), truck(8.0, 0.0))

@@ -10,7 +10,9 @@ from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
 from tms_reason.errors import SubtaskFailed
+from tms_reason.reason import Reason
 from tms_rp.linkage import Linkage, Pose, Tip, wrap
+from tms_rp.reasons import TooFar, TooNear, TooNearAxis
 
 LINKAGE = Linkage.of(parse(CONFIGS / "machines" / "zx200.yaml", MachineModel).geometry)
 
@@ -62,24 +64,25 @@ def test_forward_of_inverse_is_the_same_point(x: float, y: float, z: float, thet
     try:
         pose = LINKAGE.joints(asked)
     except SubtaskFailed as error:
-        assert error.code == "OUT_OF_REACH"
+        assert isinstance(error.reason, (TooFar, TooNear, TooNearAxis))
         return
     assert LINKAGE.tip(pose) == pytest.approx(asked, abs=1e-7)
     assert -math.pi < pose.swing <= math.pi
 
 
 @pytest.mark.parametrize(
-    ("tip", "text"),
+    ("tip", "kind", "missing"),
     [
-        (Tip(20.0, 0.0, 1.0, 0.0), "9.590 m too far: choose a nearer one"),
-        (Tip(2.0, 0.0, 2.0, 0.0), "is 2.648 m too near: move it away"),
-        (Tip(0.10787, -0.034301, 2.0, 0.0), "0.053 m too near the swing axis: choose one further out"),
+        (Tip(20.0, 0.0, 1.0, 0.0), TooFar, 9.590),
+        (Tip(2.0, 0.0, 2.0, 0.0), TooNear, 2.648),
+        (Tip(0.10787, -0.034301, 2.0, 0.0), TooNearAxis, 0.053),
     ],
 )
-def test_out_of_reach_says_by_how_much(tip: Tip, text: str) -> None:
-    with pytest.raises(SubtaskFailed, match=text) as caught:
+def test_out_of_reach_says_by_how_much(tip: Tip, kind: type[Reason], missing: float) -> None:
+    with pytest.raises(SubtaskFailed) as caught:
         LINKAGE.joints(tip)
-    assert caught.value.code == "OUT_OF_REACH"
+    assert type(caught.value.reason) is kind
+    assert caught.value.reason.args["missing"] == pytest.approx(missing, abs=5e-4)
 
 
 @given(st.floats(-50, 50))

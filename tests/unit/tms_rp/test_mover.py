@@ -6,16 +6,19 @@ from typing import Any
 
 import pytest
 
+from tms_machine.reasons import Busy
+from tms_reason import wire
 from tms_reason.errors import SubtaskFailed
 from tms_ros.goals import Outcome
+from tms_ros.reasons import ProcessLost
 from tms_rp.mover import _verdict
 
 
-def verdict(outcome: Outcome, cancelled: bool) -> Outcome:
+def verdict(outcome: Outcome, cancelled: bool, told: str = "") -> Outcome:
     goal: Any = SimpleNamespace(cancelled=threading.Event())
     if cancelled:
         goal.cancelled.set()
-    call: Any = SimpleNamespace(outcome=outcome, result=SimpleNamespace(error_string="why"))
+    call: Any = SimpleNamespace(outcome=outcome, result=SimpleNamespace(error_string=told))
     return _verdict(goal, call, "/zx200/rc/follow_joint_trajectory")
 
 
@@ -27,10 +30,12 @@ def test_a_cancelled_motion_that_ended_moves_nothing_any_more() -> None:
 
 @pytest.mark.parametrize("cancelled", [False, True])
 def test_a_gateway_that_is_lost_has_seen_nobody_stand(cancelled: bool) -> None:
-    with pytest.raises(SubtaskFailed, match=r"PROCESS_LOST: zx200:rc was lost"):
+    with pytest.raises(SubtaskFailed) as caught:
         verdict(Outcome.LOST, cancelled)
+    assert isinstance(caught.value.reason, ProcessLost)
 
 
 def test_a_motion_that_was_aborted_says_why_also_after_a_cancel() -> None:
-    with pytest.raises(SubtaskFailed, match="ABORTED: why"):
-        verdict(Outcome.ABORTED, cancelled=True)
+    with pytest.raises(SubtaskFailed) as caught:
+        verdict(Outcome.ABORTED, cancelled=True, told=wire.to_line(Busy("zx200:rc")))
+    assert caught.value.reason.find(Busy) == Busy("zx200:rc")

@@ -9,6 +9,7 @@ from geometry_msgs.msg import TransformStamped
 from tf2_msgs.msg import TFMessage
 
 from tms_rp.neighbours import Neighbours
+from tms_rp.reasons import PartOf
 
 BASES = {"zx200": "base_link", "ic120": "ic120_tf/base_link"}
 
@@ -42,7 +43,7 @@ def test_the_other_is_seen_from_here_also_through_odom() -> None:
     (obstacle,) = neighbours(
         at("odom", 2.0), at("base_link", 1.0, "odom"), at("ic120_tf/base_link", 10.0), at("other", 4.0)
     ).obstacles()
-    assert obstacle.name == "body of ic120"
+    assert obstacle.name == PartOf("body", "ic120")
     assert obstacle.place[0, 3] == pytest.approx(7.0)
 
 

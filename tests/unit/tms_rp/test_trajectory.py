@@ -100,11 +100,11 @@ def test_a_wrong_profile_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     lax = {name: joint.model_copy(update={"velocity": joint.velocity * 1.2}) for name, joint in JOINTS.items()}
     profile = module._profile
     monkeypatch.setattr(module, "_profile", lambda limits, a, b: profile(tuple(lax.values()), a, b))
-    with pytest.raises(SubtaskFailed, match=r"PLAN_FAILED: swing_joint would leave its limits after \d"):
+    with pytest.raises(SubtaskFailed, match=r"LIMITS_LEFT: swing_joint would leave its limits after \d"):
         trajectory(JOINTS, START, [(5.0, *START[1:])])
 
 
 def test_a_limit_that_the_generator_cannot_use() -> None:
     broken = {name: joint.model_copy(update={"velocity": -1.0}) for name, joint in JOINTS.items()}
-    with pytest.raises(SubtaskFailed, match="PLAN_FAILED: no trajectory inside the limits"):
+    with pytest.raises(SubtaskFailed, match="NO_TRAJECTORY: there is no trajectory inside the limits"):
         trajectory(broken, START, [FAR])

@@ -1,0 +1,72 @@
+"""Why a planner makes no trajectory, how far a motion is, and why it ended."""
+
+from tms_reason.quantities import Metres, Moments, Number, Percent, Radians, Seconds
+from tms_reason.reason import Reason
+from tms_reason.remedies import LOOK, PROCESSES, Remedy
+
+ONE_TARGET = Remedy("goal", "", "Give exactly one of the three")
+NEARER = Remedy("goal", "", "Choose a nearer point")
+FURTHER = Remedy("goal", "", "Choose a point further out")
+OTHER_POINT = Remedy("goal", "", "Choose another point or another bucket angle")
+INSIDE = Remedy("goal", "", "Choose a target inside the limits")
+OTHER_TARGET = Remedy("goal", "", "Choose another target, or move away first")
+ADD_JOINTS = Remedy("edit_config", "", "Add them under joints: and geometry: of the machine file")
+
+
+# fmt: off
+# progress
+class Planning(Reason, text="the motion is planned"): pass
+class Planned(Reason, text="planned: it takes {duration}"): duration: Seconds
+class MoveOf(Reason, text="move {number} of {count}, {percent}"): number: int; count: int; percent: Percent
+class Adapted(Reason, text="{progress} ({notes})"): progress: Reason; notes: tuple[Reason, ...]
+class OtherAngle(Reason, text="bucket angle {chosen} instead of {wanted}"): chosen: Radians; wanted: Radians
+class ClearanceCut(Reason, text="{joint} moves clear to its limit {limit} only"): joint: str; limit: Radians
+class Succeeded(Reason, text="done"): pass
+class MotionCancelled(Reason, text="cancelled"): pass
+
+# what a goal asks
+class OneTarget(Reason, text="the goal gives {count} targets: joint angles, poses or bucket positions",
+    action=ONE_TARGET, details="trajectory, pose_sequence, position_with_angle_sequence"): count: int
+class AnglesUnfit(Reason, text="{angles} angles for {joints} joints"): joints: int; angles: int
+class NamedTwice(Reason, text="a joint is named twice: {joints}"): joints: tuple[str, ...]
+class FieldNotFinite(Reason, text="a value is not a number", details="{field}"): field: str
+class NoOrientation(Reason, text="the orientation is empty: its quaternion has the length {length}, not 1"):
+    length: Number
+class OutOfPlane(Reason, text="the orientation points {angle} out of the arm's plane; turned to {yaw} it lies in it"):
+    angle: Radians; yaw: Radians
+
+# what the arm can reach
+class Point(Reason, text="point ({x}, {y}, {z}) with bucket angle {theta_w}"):
+    x: Metres; y: Metres; z: Metres; theta_w: Radians
+class TooFar(Reason, text="{point} is {missing} too far", action=NEARER, code="OUT_OF_REACH"):
+    point: Reason; missing: Metres
+class TooNear(Reason, text="{point} is {missing} too near", action=FURTHER): point: Reason; missing: Metres
+class TooNearAxis(Reason, text="point ({x}, {y}) is {missing} too near the swing axis", action=FURTHER):
+    x: Metres; y: Metres; missing: Metres
+class JointBroken(Reason, text="{joint} {why}"): joint: str; why: Reason
+class OutOfRange(Reason, text="{broken}", action=INSIDE): broken: tuple[Reason, ...]
+class PointOutOfRange(Reason, text="{point} needs {broken}", action=OTHER_POINT):
+    point: Reason; broken: tuple[Reason, ...]
+class NoAngleDigs(Reason, text="no bucket angle from 0 to pi digs there: {why}"): why: Reason
+class Collision(Reason, text="{first} would touch {second} after {seconds}", action=OTHER_TARGET):
+    first: Reason; second: Reason; seconds: Seconds
+class Part(Reason, text="{link}"): link: str
+class PartOf(Reason, text="{link} of {machine}"): link: str; machine: str
+class NoTrajectory(Reason, text="there is no trajectory inside the limits", details="{problem}"): problem: str
+class LimitsLeft(Reason, text="{joint} would leave its limits after {seconds}"): joint: str; seconds: Moments
+
+# the machine
+class JointsUnheard(Reason, text="the joints of {machine} were not heard yet: is the machine on?", action=LOOK,
+    details="{topic} with {joints}"): machine: str; topic: str; joints: tuple[str, ...]
+class JointsOld(Reason, text="the joints of {machine} were heard {age} ago: is the machine on?", action=LOOK,
+    details="{topic}"): machine: str; age: Seconds; topic: str
+class GatewayAway(Reason, text="{process} is not there", details="{name}", action=PROCESSES): process: str; name: str
+class MotionLate(Reason, text="{machine} was not done {seconds} after the end of its trajectory"):
+    machine: str; seconds: Seconds
+class MotionFailed(Reason, text="{why}", details="{name} {outcome}"): why: Reason; name: str; outcome: str
+
+class PlaceUnknown(Reason, text="it is not known where {machine} stands: the other machines are left out",
+    details="nothing on /tf"): machine: str
+
+# configuration
+class NoArm(Reason, text="a backhoe needs {joints}", action=ADD_JOINTS): joints: tuple[str, ...]
