@@ -96,7 +96,7 @@ class Mesh:
         return True
 
     def wait_away(self) -> None:
-        self.until(lambda: self.ready()[0] == 503 and "store does not answer" in self.ready()[1], "/readyz 503")
+        self.until(lambda: self.ready()[0] == 503 and "STORE_DOWN" in self.ready()[1], "/readyz 503")
 
     def until(self, there: Callable[[], bool], what: str) -> None:
         deadline = time.monotonic() + LIMIT
