@@ -3,6 +3,10 @@
 import re
 from collections.abc import Callable, Collection
 
+from tms_config.validation import Wrong
+from tms_reason.reason import Reason
+from tms_sp.reasons import NoArray, NoFieldInside, NoMessageField, NoNames, WrongKind, WrongKindOf
+
 NUMBERS = {"float", "double", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64))}
 PLAIN = {"boolean", "string", "wstring", *NUMBERS}  # an octet comes as bytes, which no record holds
 VALUES = {*PLAIN, *(f"{kind}[]" for kind in PLAIN)}
@@ -22,19 +26,19 @@ class FieldTypes:
     def __init__(self, fields: Fields, fields_of: FieldsOf) -> None:
         self._fields, self._fields_of = fields, fields_of
 
-    def check(self, path: str, allowed: Collection[str], what: str) -> None:
+    def check(self, path: str, allowed: Collection[str], wanted: Reason) -> None:
         """Refuse a path that ends at anything but the `allowed` types.
 
         Raises:
-            ValueError: names the path, its type, and what is inside it.
+            Wrong: names the path, its type, and what is inside it.
         """
         kind = self._at(path)
         if kind in allowed:
             return
         inside = self._inside(kind.removesuffix("[]"))
         stem = f"{path}[0]" if kind.endswith("[]") else path
-        hint = ", ".join(f"{stem}.{name}" for name in inside)
-        raise ValueError(f"{path} is a {kind}, not {what}" + (f"; there is {hint}" if hint else ""))
+        hints = tuple(f"{stem}.{name}" for name in inside)
+        raise Wrong(WrongKindOf(path, kind, wanted, hints) if hints else WrongKind(path, kind, wanted))
 
     def _at(self, path: str) -> str:
         """The type at the end of a path; `kind[]` for an array of whatever length."""
@@ -42,14 +46,13 @@ class FieldTypes:
         for name, index in (found.groups() for found in PART.finditer(path)):
             fields = self._inside(kind) if kind else fields
             if name not in fields:
-                there = ", ".join(fields) or f"none in a {kind}"
-                raise ValueError(f"the message has no field '{path}': no '{name}' (there: {there})")
+                raise Wrong(NoMessageField(path, tuple(fields)) if fields else NoFieldInside(path, name, kind))
             kind = _plain(fields[name])
             if index is not None:
                 if not kind.endswith("[]"):
-                    raise ValueError(f"{path}: {name} is a {kind}, no array")
+                    raise Wrong(NoArray(path, name, kind))
                 if not index.isdecimal() and _plain(fields.get("name", "")) not in NAMES:
-                    raise ValueError(f"{path}: no array of texts called 'name' beside {name}: give a number")
+                    raise Wrong(NoNames(path, name))
                 kind = kind.removesuffix("[]")
         return kind
 

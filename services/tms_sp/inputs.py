@@ -9,10 +9,13 @@ from prometheus_client import Counter, Gauge
 from tms_msg_sp.msg import InputState
 
 from tms_config.sensing import Input
+from tms_reason.reason import Reason
+from tms_reason.wire import to_line
 from tms_ros.interface_types import Message
 from tms_sp.clock import SourceClock
 from tms_sp.mapping import Key, Mapping, Reading, Refused
 from tms_sp.outbox import Counts, Post
+from tms_sp.reasons import ManyRecords, ManyWait, MeasuredEarlier, StampInFuture
 
 MESSAGES = Counter("tms_sp_messages_total", "Messages by what became of them", ["input", "result"])
 OFFSET = Gauge("tms_sp_clock_offset_seconds", "How far our clock is ahead of the source's", ["input"])
@@ -42,22 +45,22 @@ class SensingInput:
             AGE_LIMIT.labels(name).set(SILENT_PERIODS / given.hz)
         OFFSET_LIMIT.set(clock_limit)
         self.accepted = self.refused = 0
-        self.last_refusal = ""
-        self.news = ""  # a refusal that the log has not told
+        self.last_refusal: Reason | None = None
+        self.unlogged: Reason | None = None  # a refusal
 
     def hear(self, message: Message) -> None:
         """One message."""
         try:
             result = self._take(message)
         except Refused as refusal:
-            self.refuse(refusal.code, str(refusal))
+            self.refuse(refusal.code, refusal.reason)
             return
         MESSAGES.labels(self.name, result).inc()
 
-    def refuse(self, code: str, text: str) -> None:
+    def refuse(self, code: str, why: Reason) -> None:
         """Count and remember a refusal."""
         self.refused += 1
-        self.last_refusal = self.news = f"{code}: {text}"
+        self.last_refusal = self.unlogged = why
         MESSAGES.labels(self.name, code).inc()
 
     def _take(self, message: Message) -> str:
@@ -67,9 +70,9 @@ class SensingInput:
         if self.given.max_hz and now - self._taken.get(reading.key, -math.inf) < 1.0 / self.given.max_hz:
             return "thinned"
         if len(self._stamps) > RECORDS_KNOWN and reading.key not in self._stamps:
-            raise Refused("TOO_MANY", f"more than {RECORDS_KNOWN} records: is {self.given.record} right?")
+            raise Refused(ManyRecords(RECORDS_KNOWN, self.given.record))
         if not self._put(Post(self.name, reading.key, reading.values, now - age, reading.keep)):
-            raise Refused("TOO_MANY", "too many records wait for the database")
+            raise Refused(ManyWait())
         self._taken[reading.key] = now
         self._stamps[reading.key] = reading.stamp if reading.stamp is not None else wall
         self._arrivals.append(now)
@@ -80,18 +83,17 @@ class SensingInput:
         """s since the measurement.
 
         Raises:
-            Refused: FUTURE or OLD.
+            Refused: StampInFuture, MeasuredEarlier.
         """
         if reading.stamp is None:
             return 0.0
         ahead = self._clock.ahead(reading.stamp, wall)
         if ahead > 0:
-            text = f"its stamp lies {ahead + self._clock_limit:.1f} s in the future: set the clock of the sensing PC"
-            raise Refused("FUTURE", text)
+            raise Refused(StampInFuture(ahead + self._clock_limit))
         before = self._stamps.get(reading.key)
         set_back = before is not None and self._clock.ahead(before, wall) > 0  # ours: it was no future when it came
         if before is not None and reading.stamp < before and not set_back:
-            raise Refused("OLD", f"it was measured {before - reading.stamp:.3f} s before the one that came earlier")
+            raise Refused(MeasuredEarlier(before - reading.stamp))
         return self._clock.age(reading.stamp, wall)
 
     def judge(self) -> str:
@@ -109,14 +111,14 @@ class SensingInput:
         age = now - self._arrivals[-1] if self._arrivals else -1.0
         offset = self._clock.offset
         OFFSET.labels(self.name).set(math.nan if offset is None else offset)
-        for code, text in self.counts.unwanted:
-            self.refuse(code, text)
+        for code, why in self.counts.unwanted:
+            self.refuse(code, why)
         self.counts.unwanted.clear()
         return InputState(
             name=self.name, topic=self.given.topic, type=self.given.type, hz_expected=self.given.hz, hz=self._rate(now),
             state=self.judge(), age=age, clock_offset=math.nan if offset is None else offset, accepted=self.accepted,
             written=self.counts.written, superseded=self.counts.superseded, refused=self.refused,
-            last_refusal=self.last_refusal, records=[f"{model}/{record}" for model, record in self._told()],
+            last_refusal=to_line(self.last_refusal), records=[f"{model}/{record}" for model, record in self._told()],
         )  # fmt: skip
 
     def _age_now(self) -> float:

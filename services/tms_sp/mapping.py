@@ -6,20 +6,35 @@ from dataclasses import dataclass
 from typing import Any
 
 from tms_config.sensing import FieldRule, Input
+from tms_config.validation import Wrong
+from tms_reason.errors import TmsError
 from tms_sp.field_types import NAMES, PART, PLAIN, STAMPS, VALUES, Fields, FieldsOf, FieldTypes
+from tms_sp.reasons import (
+    ArrayOfTexts,
+    AValue,
+    NamesNoRecord,
+    NoElement,
+    NoMessageField,
+    NothingAt,
+    NoValueOf,
+    NoValues,
+    SizesDiffer,
+    StampNotFinite,
+    TextOrNumber,
+    TimeOrSeconds,
+    ValueNotFinite,
+    ValueOutOfRange,
+    ValueTooLarge,
+    WrongSize,
+)
 
 Key = tuple[str, str]  # model, record
 Getter = Callable[[Any], Any]
 LARGEST = 2**63 - 1  # whole number, on the wire and in the store
-A_VALUE = "a number, text, true/false or an array of these"
 
 
-class Refused(Exception):
-    """A message that must not change anything; `code` is counted, the text is shown."""
-
-    def __init__(self, code: str, text: str) -> None:
-        super().__init__(text)
-        self.code = code
+class Refused(TmsError):
+    """A message that must not change anything; its code is counted."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +54,7 @@ class Mapping:
         """`fields`: names and types of the message's fields; `fields_of`: those of the messages inside it.
 
         Raises:
-            ValueError: the message has no such field, or none that a record can hold; names it.
+            Wrong: the message has no such field, or none that a record can hold; names it.
         """
         self._input = given
         types = FieldTypes(fields, fields_of)
@@ -57,24 +72,23 @@ class Mapping:
         given = self._input
         for text in (given.model, given.record):
             if text.startswith("$"):
-                types.check(text[1:], PLAIN, "a text or a number")
+                types.check(text[1:], PLAIN, TextOrNumber())
         if given.keep:
-            types.check(given.keep, NAMES, "an array of texts")
+            types.check(given.keep, NAMES, ArrayOfTexts())
         if given.stamp:
-            types.check(given.stamp, STAMPS, "a time or a number of seconds")
-        missing = ": name under `fields` what is wanted" if self.loose else ""
+            types.check(given.stamp, STAMPS, TimeOrSeconds())
         for _, rule, _ in self._rules:
-            types.check(rule.path, VALUES, A_VALUE + missing)
+            types.check(rule.path, VALUES, AValue())
 
     def read(self, message: Any) -> Reading:
         """The values of a message.
 
         Raises:
-            Refused: NO_RECORD, NO_FIELD, NOT_FINITE, OUT_OF_RANGE or WRONG_SIZE.
+            Refused: with the reason.
         """
         key = self._model(message), self._record(message)
         if not key[1].strip():
-            raise Refused("NO_RECORD", "the message names no record")
+            raise Refused(NamesNoRecord())
         values = {name: self._value(name, rule, getter, message) for name, rule, getter in self._rules}
         self._check_sizes(values)
         keep = tuple(map(str, self._keep(message))) if self._keep else ()
@@ -86,29 +100,28 @@ class Mapping:
             return self._checked(name, _scaled(value, rule.factor))
         parts = value.tolist() if hasattr(value, "tolist") else value
         if not isinstance(parts, (list, tuple)) or not all(isinstance(one, (bool, int, float, str)) for one in parts):
-            raise Refused("NO_FIELD", f"{rule.path} is a {type(value).__name__}, not {A_VALUE}")
+            raise Refused(NoValueOf(rule.path, type(value).__name__))
         if rule.size is not None and len(parts) != rule.size:
-            raise Refused("WRONG_SIZE", f"{name} has {len(parts)} values, not {rule.size}")
+            raise Refused(WrongSize(name, len(parts), rule.size))
         return [self._checked(name, _scaled(part, rule.factor)) for part in parts]
 
     def _checked(self, name: str, value: Any) -> Any:
         if isinstance(value, float) and not math.isfinite(value):
-            raise Refused("NOT_FINITE", f"{name} is {value}")
+            raise Refused(ValueNotFinite(name, str(value)))
         if isinstance(value, int) and value > LARGEST:  # of a uint64
-            raise Refused("OUT_OF_RANGE", f"{name} is {value}, the largest whole number is {LARGEST}")
+            raise Refused(ValueTooLarge(name, value, LARGEST))
         limits = self._input.range.get(name.lower() if self.loose else name)
         if limits is not None and not isinstance(value, str) and not limits[0] <= value <= limits[1]:
-            raise Refused("OUT_OF_RANGE", f"{name} is {value:g}, not from {limits[0]:g} to {limits[1]:g}")
+            raise Refused(ValueOutOfRange(name, float(value), *map(float, limits)))
         return value
 
     def _check_sizes(self, values: dict[str, Any]) -> None:
         """Arrays of one message belong together: the n-th elements of x, y and z are one point."""
         sizes = {name: len(value) for name, value in values.items() if isinstance(value, list)}
         if len(set(sizes.values())) > 1:
-            told = ", ".join(f"{name} {size}" for name, size in sizes.items())
-            raise Refused("WRONG_SIZE", f"the arrays have different lengths: {told}")
+            raise Refused(SizesDiffer(tuple(f"{name} {size}" for name, size in sizes.items())))
         if 0 in sizes.values():
-            raise Refused("WRONG_SIZE", f"{', '.join(sizes)}: no values")
+            raise Refused(NoValues(tuple(sizes)))
 
 
 def stamp_path(given: Input, fields: dict[str, str]) -> str | None:
@@ -127,17 +140,17 @@ def field_getter(path: str, fields: dict[str, str]) -> Getter:
     """What reads a field by its path.
 
     Raises:
-        ValueError: the message has no such field.
+        Wrong: the message has no such field.
     """
     steps = [found.groups() for found in PART.finditer(path)]
     if steps[0][0] not in fields:
-        raise ValueError(f"the message has no field '{steps[0][0]}' (there: {', '.join(fields)})")
+        raise Wrong(NoMessageField(steps[0][0], tuple(fields)))
 
     def get(message: Any) -> Any:
         found = message
         for name, index in steps:
             if not hasattr(found, name):
-                raise Refused("NO_FIELD", f"{path}: there is no {name}")
+                raise Refused(NothingAt(path, name))
             parent, found = found, getattr(found, name)
             if index is not None:
                 found = _element(path, parent, found, index)
@@ -150,7 +163,7 @@ def _element(path: str, parent: Any, array: Any, index: str) -> Any:
     names = getattr(parent, "name", ())
     number = int(index) if index.isdecimal() else list(names).index(index) if index in names else -1
     if not 0 <= number < len(array):
-        raise Refused("WRONG_SIZE", f"{path}: no such element among {len(array)}")
+        raise Refused(NoElement(path, len(array)))
     value = array[number]
     return value.item() if hasattr(value, "item") else value
 
@@ -162,5 +175,5 @@ def _scaled(value: Any, factor: float) -> Any:
 def _seconds(stamp: Any) -> float:
     seconds = float(stamp) if isinstance(stamp, (int, float)) else float(stamp.sec + stamp.nanosec * 1e-9)
     if not math.isfinite(seconds):
-        raise Refused("NOT_FINITE", f"its stamp is {seconds}")
+        raise Refused(StampNotFinite(str(seconds)))
     return seconds

@@ -10,8 +10,12 @@ from tms_msg_db.srv import UpdateParameters
 from tms_msg_sp.msg import InputState, InputStates
 
 from tms_config.sensing import Input, load_sensing, sensing_path
+from tms_config.validation import Wrong
+from tms_config.yaml_file import located
 from tms_machine.values import to_parameters
 from tms_reason.errors import ConfigError
+from tms_reason.reason import Reason
+from tms_reason.wire import refusal
 from tms_ros.interface_types import Message
 from tms_runtime.app import App
 from tms_sp.field_types import Fields
@@ -19,6 +23,7 @@ from tms_sp.inputs import SensingInput
 from tms_sp.machine_states import MachineStates
 from tms_sp.mapping import Mapping
 from tms_sp.outbox import Outbox, Post
+from tms_sp.reasons import DatabaseAway, DatabaseSilent, NoMessageType
 
 GAP = 0.015  # s between batches; what comes in between goes together
 RETRY = 0.5  # s between attempts while the database or its store is away
@@ -53,14 +58,14 @@ def message_class(name: str) -> type[Message]:
     """The class of `package/msg/Name`.
 
     Raises:
-        LookupError: it is not installed.
+        Wrong: it is not installed.
     """
     package, _, kind = name.split("/")
     try:
         found: type[Message] = getattr(importlib.import_module(f"{package}.msg"), kind)
         return found
     except (ImportError, AttributeError) as error:
-        raise LookupError(f"no message type {name}: is its package built?") from error
+        raise Wrong(NoMessageType(name)) from error
 
 
 def fields_inside(kind: str) -> Fields:
@@ -72,15 +77,15 @@ def _input(app: App, name: str, given: Input, clock_limit: float, sender: "Sende
     try:
         fields = message_class(given.type).get_fields_and_field_types()
         return SensingInput(name, given, Mapping(given, fields, fields_inside), clock_limit, sender.put)
-    except (LookupError, ValueError) as error:
-        raise ConfigError(f"{sensing_path(app.site)}: inputs.{name}: {error}") from error
+    except Wrong as error:
+        raise ConfigError(located(sensing_path(app.site), error.reason, "inputs", name)) from error
 
 
 def _state(app: App, one: SensingInput) -> InputState:
     state = one.state()
-    if one.news:
-        app.log.warning("refused", input=one.name, refused=one.refused, reason=one.news)
-        one.news = ""
+    if one.unlogged is not None:
+        app.log.warning("refused", input=one.name, refused=one.refused, reason=one.unlogged)
+        one.unlogged = None
     return state
 
 
@@ -122,17 +127,17 @@ class Sender:
         self._flights: dict[int, float] = {}  # number -> when it is given up
         self._forget: dict[int, Callable[[], None]] = {}
         self._not_before = 0.0
-        self._trouble = ""
+        self._trouble: Reason | None = None
         self._clock = app.ros.every(GAP, self._send)  # stands while nothing waits
         self._clock.cancel()
         self._retry = app.ros.every(RETRY, self._look)  # so does this one while nothing waits or is on its way
 
-    def unready(self) -> str | None:
+    def unready(self) -> Reason | None:
         """Why values do not reach the database."""
-        if self._trouble:
+        if self._trouble is not None:
             return self._trouble
         there = self._ros.has_service(UpdateParameters, "/tms/db/update_parameters")
-        return None if there else "tms:db is not there"
+        return None if there else DatabaseAway()
 
     def put(self, post: Post) -> bool:
         """Take values to be written soon."""
@@ -155,7 +160,7 @@ class Sender:
             UpdateParameters, "/tms/db/update_parameters", request, lambda answer: self._answered(number, answer)
         )
         if forget is None:
-            self._fail(number, "tms:db is not there")
+            self._fail(number, DatabaseAway())
         else:
             self._forget[number] = forget
 
@@ -171,15 +176,15 @@ class Sender:
         if number not in self._flights:
             return
         if answer.error_code:
-            self._fail(number, answer.error_msg)
+            self._fail(number, refusal(answer.error_code, answer.error_msg))
             return
         del self._flights[number], self._forget[number]
-        self._outbox.stored(number, [(one.index, one.code, one.text) for one in answer.refused])
-        if self._trouble:
+        self._outbox.stored(number, [(one.index, one.code, refusal(one.code, one.text)) for one in answer.refused])
+        if self._trouble is not None:
             self._log.info("database_back")
-            self._trouble = ""
+            self._trouble = None
 
-    def _fail(self, number: int, why: str) -> None:
+    def _fail(self, number: int, why: Reason) -> None:
         """Keep the values and wait a moment."""
         self._flights.pop(number, None)
         forget = self._forget.pop(number, None)
@@ -187,7 +192,7 @@ class Sender:
             forget()
         self._outbox.failed(number)
         self._not_before = time.monotonic() + RETRY
-        if not self._trouble:
+        if self._trouble is None:
             self._log.warning("database_away", reason=why)
         self._trouble = why
 
@@ -195,7 +200,7 @@ class Sender:
         now = time.monotonic()
         for number, limit in list(self._flights.items()):
             if now > limit:
-                self._fail(number, "tms:db does not answer")
+                self._fail(number, DatabaseSilent())
         if self._outbox.ready and now >= self._not_before:
             self._clock.reset()
         if not self._outbox.ready and not self._flights:

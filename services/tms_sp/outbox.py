@@ -5,6 +5,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
+from tms_reason.reason import Reason
+
 RECORDS = 5000  # that may wait at the same time
 BATCH = 200  # updates in one request
 FLIGHTS = 90  # requests without an answer, fewer than a service keeps: a slow store takes a second to acknowledge
@@ -27,7 +29,7 @@ class Counts:
 
     written: int = 0
     superseded: int = 0
-    unwanted: list[tuple[str, str]] = field(default_factory=list)  # code and text of the database's refusals
+    unwanted: list[tuple[str, Reason]] = field(default_factory=list)  # code and reason of the database's refusals
 
 
 Place = tuple[str, str, str]
@@ -66,10 +68,10 @@ class Outbox:
         self._last.update(dict.fromkeys(places, number))
         return number, self._flights[number]
 
-    def stored(self, number: int, refused: Iterable[tuple[int, str, str]]) -> None:
-        """The database has a batch, but for what it refused: (index, code, text)."""
+    def stored(self, number: int, refused: Iterable[tuple[int, str, Reason]]) -> None:
+        """The database has a batch, but for what it refused: index, code and reason."""
         posts = self._flights.pop(number, [])
-        unwanted = {index: (code, text) for index, code, text in refused}
+        unwanted = {index: (code, why) for index, code, why in refused}
         for index, post in enumerate(posts):
             if index in unwanted:
                 self._counts(post.source).unwanted.append(unwanted[index])

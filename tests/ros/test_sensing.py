@@ -138,15 +138,15 @@ def bad_messages_are_told_and_the_last_good_value_stays(sensing: Sensing) -> Non
     before = sensing.values("zx200/target"), sensing.values("zx200/path")
     sensing.set("zx200/fixed", {"x": 1.0}, type="static", create=True)
     for record, x, code in (
-        ("target", float("nan"), "NOT_FINITE"),
+        ("target", float("nan"), "VALUE_NOT_FINITE"),
         ("nowhere", 1.0, "RECORD_MISSING"),
         ("fixed", 1.0, "STATIC_RECORD"),
-        ("", 1.0, "NO_RECORD"),
+        ("", 1.0, "NAMES_NO_RECORD"),
     ):
         dig(ExcavateSimple(model_name="zx200", record_name=record, x=x))
         sensing.refused("excavate_simple", code)
     path(FollowWaypoints(model_name="zx200", record_name="path", x=[1.0, 2.0], y=[1.0], z=[1.0]))
-    sensing.refused("follow_waypoints", "WRONG_SIZE")
+    sensing.refused("follow_waypoints", "SIZES_DIFFER")
     one = {axis: [1.0] for axis in ("x", "y", "z", "qx", "qy", "qz", "qw")}
     path(FollowWaypoints(model_name="zx200", record_name="target", **one))
     sensing.refused("follow_waypoints", "BAD_RECORD")
@@ -182,7 +182,11 @@ def stamps(sensing: Sensing) -> None:
 
     point(1.0, 0.0)
     sensing.until(lambda: sensing.values("zx200/point")["x"] == 1.0, "the point")
-    for x, ahead, code in ((2.0, 60.0, "FUTURE"), (3.0, -60.0, "OLD"), (101.0, 0.0, "OUT_OF_RANGE")):
+    for x, ahead, code in (
+        (2.0, 60.0, "STAMP_IN_FUTURE"),
+        (3.0, -60.0, "MEASURED_EARLIER"),
+        (101.0, 0.0, "VALUE_OUT_OF_RANGE"),
+    ):
         point(x, ahead)
         sensing.refused("point", code)
     assert sensing.values("zx200/point")["x"] == 1.0

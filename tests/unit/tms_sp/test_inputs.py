@@ -8,9 +8,13 @@ import pytest
 from prometheus_client import REGISTRY
 
 from tms_config.sensing import Input
+from tms_reason import wire
+from tms_reason.reason import Foreign
+from tms_reason.wire import to_line
 from tms_sp.inputs import SensingInput
 from tms_sp.mapping import Mapping
 from tms_sp.outbox import Post
+from tms_sp.reasons import MeasuredEarlier
 
 FIELDS = {"header": "std_msgs/Header", "x": "double"}
 
@@ -31,19 +35,23 @@ class Heard:
         """What became of a message."""
         before = self.input.refused
         self.input.hear(Message(header=Message(stamp=Message(sec=int(stamp), nanosec=int(stamp % 1 * 1e9))), x=x))
-        return self.input.last_refusal.split(":")[0] if self.input.refused > before else "accepted"
+        if self.input.refused == before:
+            return "accepted"
+        assert self.input.last_refusal is not None
+        return self.input.last_refusal.code
 
 
 def test_stamps_from_the_future_and_older_ones_are_refused() -> None:
     heard, now = Heard(), time.time()
     assert heard.say(1.0, now) == "accepted"
-    assert heard.say(2.0, now + 60) == "FUTURE"
+    assert heard.say(2.0, now + 60) == "STAMP_IN_FUTURE"
     assert heard.say(3.0, now - 1) == "OLD"
     assert heard.say(4.0, now + 0.1) == "accepted"
     assert [post.values["x"] for post in heard.posts] == [1.0, 4.0]
     state = heard.input.state()
     assert (state.accepted, state.refused, state.state, list(state.records)) == (2, 2, "alive", ["m/r"])
-    assert state.last_refusal.startswith("OLD: it was measured 1.0")
+    found = wire.known(state.last_refusal).find(MeasuredEarlier)
+    assert found is not None and 1.0 <= found.seconds < 1.1
 
 
 def test_a_source_whose_clock_is_behind_is_told_and_its_delay_counts_as_age() -> None:
@@ -67,9 +75,9 @@ def test_waiting_and_too_much() -> None:
     heard = Heard(hz=10.0)
     assert heard.input.state().state == "waiting"
     heard.full = True
-    assert heard.say(1.0, time.time()) == "TOO_MANY"
-    heard.input.counts.unwanted.append(("RECORD_MISSING", "there is no record m/r"))
-    assert heard.input.state().last_refusal == "RECORD_MISSING: there is no record m/r"
+    assert heard.say(1.0, time.time()) == "MANY_WAIT"
+    heard.input.counts.unwanted.append(("RECORD_MISSING", Foreign("there is no record m/r")))
+    assert heard.input.state().last_refusal == to_line(Foreign("there is no record m/r"))
 
 
 def test_the_metrics_tell_the_age_and_when_it_is_too_old() -> None:
@@ -89,7 +97,7 @@ def test_after_our_clock_was_set_back_stamps_are_taken_again(monkeypatch: pytest
     heard, now = Heard(), time.time()
     assert heard.say(1.0, now) == "accepted"
     monkeypatch.setattr(time, "time", lambda: now - 3600)
-    assert heard.say(2.0, now) == "FUTURE"  # the source's clock was not
+    assert heard.say(2.0, now) == "STAMP_IN_FUTURE"  # the source's clock was not
     assert heard.say(3.0, now - 3599.9) == "accepted"
     assert heard.say(4.0, now - 3600.5) == "OLD"
     assert [post.values["x"] for post in heard.posts] == [1.0, 3.0]

@@ -2,6 +2,7 @@
 
 from collections import defaultdict
 
+from tms_reason.reason import Foreign
 from tms_sp.outbox import RECORDS, Counts, Outbox, Post
 
 
@@ -25,9 +26,9 @@ def test_the_newest_of_each_record_is_sent() -> None:
     number, posts = box.take()
     assert values(posts) == {"a": 2.0, "b": 1.0}
     assert not box.ready
-    box.stored(number, [(1, "RECORD_MISSING", "there is no record")])
+    box.stored(number, [(1, "RECORD_MISSING", Foreign("there is no record"))])
     assert (counts.written, counts.superseded) == (1, 1)
-    assert counts.unwanted == [("RECORD_MISSING", "there is no record")]
+    assert counts.unwanted == [("RECORD_MISSING", Foreign("there is no record"))]
 
 
 def test_what_failed_is_sent_again_unless_something_newer_is_there() -> None:

@@ -127,6 +127,12 @@ async function readJournal(id) {
   cut = found.length > MAX_EVENTS;
 }
 
+/** The old and the new state of a node; journals of releases without reasons have them in their text. */
+function changeOf(event) {
+  const states = event.reason?.args ?? {};
+  return states.old in CODES ? states : / (?<old>[A-Z]+) -> (?<new>[A-Z]+)/.exec(` ${event.text}`)?.groups;
+}
+
 /** The tree as it was after event number `index` of the journal. */
 function replay(index) {
   const event = journal[index];
@@ -146,10 +152,10 @@ function replay(index) {
   view.forget();
   let current = "";
   for (const one of journal.slice(0, index + 1)) {
-    const change = one.kind === "node" && / (IDLE|RUNNING|SUCCESS|FAILURE) -> (IDLE|RUNNING|SUCCESS|FAILURE)/.exec(` ${one.text}`);
+    const change = one.kind === "node" ? changeOf(one) : null;
     if (change && numbers.has(one.node)) {
-      states[numbers.get(one.node)] = CODES[change[2]];
-      view.last.set(one.node, CODES[change[2]] || CODES[change[1]]);
+      states[numbers.get(one.node)] = CODES[change.new];
+      view.last.set(one.node, CODES[change.new] || CODES[change.old]);
       current = one.node;
     }
   }
