@@ -45,7 +45,7 @@ def test_stamps_from_the_future_and_older_ones_are_refused() -> None:
     heard, now = Heard(), time.time()
     assert heard.say(1.0, now) == "accepted"
     assert heard.say(2.0, now + 60) == "STAMP_IN_FUTURE"
-    assert heard.say(3.0, now - 1) == "OLD"
+    assert heard.say(3.0, now - 1) == "MEASURED_EARLIER"
     assert heard.say(4.0, now + 0.1) == "accepted"
     assert [post.values["x"] for post in heard.posts] == [1.0, 4.0]
     state = heard.input.state()
@@ -99,5 +99,5 @@ def test_after_our_clock_was_set_back_stamps_are_taken_again(monkeypatch: pytest
     monkeypatch.setattr(time, "time", lambda: now - 3600)
     assert heard.say(2.0, now) == "STAMP_IN_FUTURE"  # the source's clock was not
     assert heard.say(3.0, now - 3599.9) == "accepted"
-    assert heard.say(4.0, now - 3600.5) == "OLD"
+    assert heard.say(4.0, now - 3600.5) == "MEASURED_EARLIER"
     assert [post.values["x"] for post in heard.posts] == [1.0, 3.0]
