@@ -13,6 +13,7 @@ from tms_msg_ts.srv import CheckTask
 
 from tms_cli import session
 from tms_cli.commands.task import read
+from tms_cli.reasons import NoXmlFiles, NoXmlHere
 from tms_cli.words import reason, say, sentence
 from tms_reason.errors import RosError, TaskError, TmsError
 from tms_ts import bt
@@ -149,8 +150,7 @@ def folder(scheduler: Scheduler, path: Path, *, recursive: bool) -> Iterator[Che
     names = path.rglob("*") if recursive else path.iterdir()
     files = sorted(name for name in names if name.suffix.lower() == ".xml" and not name.is_dir())
     if not files:
-        where = "in it or its folders" if recursive else "in it (--recursive looks into its folders, too)"
-        raise TaskError(f"{path}: there are no .xml files {where}")
+        raise TaskError(NoXmlFiles(str(path)) if recursive else NoXmlHere(str(path)), TaskError.code)
     told = time.monotonic()
     for count, name in enumerate(files):
         if time.monotonic() - told >= PROGRESS:

@@ -11,6 +11,7 @@ from typing import NoReturn
 import click
 
 from tms_cli import commands, session, words
+from tms_cli.reasons import FileRefused, SystemSays
 from tms_reason import texts
 from tms_reason.errors import TmsError
 from tms_reason.reason import Foreign
@@ -50,20 +51,12 @@ def tms(ctx: click.Context, site: str | None) -> None:
     ctx.obj = site
 
 
-def _hint(code: str) -> None:
-    text = words.what_next(code)
-    if text is not None:
-        print(f"  {text}", file=sys.stderr)
-
-
 def _as_ours(error: OSError) -> TmsError:
     """What the operating system did not do, and what helps."""
     what = error.strerror or str(error) or type(error).__name__
     if error.filename is None:
-        return TmsError(f"{what} (`tms status` and `tms logs` may tell more)")
-    return TmsError(
-        f"{error.filename}: {what}: choose another place, or a user of this PC who may use this one", "NO_ACCESS"
-    )
+        return TmsError(SystemSays(what))
+    return TmsError(FileRefused(str(error.filename), what), "NO_ACCESS")
 
 
 def _words(error: TmsError) -> str:
@@ -77,7 +70,6 @@ def main() -> None:
         sys.exit(tms(standalone_mode=False, prog_name="tms") or 0)
     except click.UsageError as error:
         error.show()
-        _hint("USAGE")
         sys.exit(2)
     except click.exceptions.Abort as error:
         if isinstance(error.__context__, EOFError):  # and not Ctrl-C, or "no" for an answer
@@ -96,8 +88,6 @@ def main() -> None:
     except (TmsError, OSError) as error:
         ours = error if isinstance(error, TmsError) else _as_ours(error)
         print(f"tms: {_words(ours)}", file=sys.stderr)
-        if ours.reason.remedy is None:
-            _hint(ours.code)
         sys.exit(1)
 
 

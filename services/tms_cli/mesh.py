@@ -17,7 +17,19 @@ from pathlib import Path
 import psutil
 
 from tms_cli import monitoring
-from tms_cli.words import english, say
+from tms_cli.reasons import (
+    DomainTaken,
+    EndsAgain,
+    LittleRoom,
+    NotReadyAfter,
+    NotStarted,
+    PidsLeft,
+    PortInUse,
+    StateNotWritable,
+    SupervisordFailed,
+    SupervisordNotUp,
+)
+from tms_cli.words import say
 from tms_config import pcs, state_folder
 from tms_config.config import Site
 from tms_config.environment import environment
@@ -25,6 +37,7 @@ from tms_config.processes import Process, here
 from tms_host import store
 from tms_host.supervisor import Supervisor, render, runtime_folder
 from tms_reason.errors import ConfigError, TmsError
+from tms_reason.reason import Reason
 from tms_runtime import metrics
 from tms_runtime.priority import session_first
 from tms_ur.address import certificate, users
@@ -71,9 +84,9 @@ def check(site: Site) -> tuple[Process, ...]:
             (site.state / name).mkdir(mode=0o700, exist_ok=True)
         free = shutil.disk_usage(site.state).free
     except OSError as error:
-        raise ConfigError(f"{site.state}: cannot be written ({error.strerror}): set TMS_STATE") from error
+        raise ConfigError(StateNotWritable(str(site.state), str(error.strerror))) from error
     if free < NEEDED_BYTES:
-        raise ConfigError(f"{site.state}: only {free / 2**20:.0f} MB free: free some space or set TMS_STATE")
+        raise ConfigError(LittleRoom(str(site.state), free / 2**20))
     return rows
 
 
@@ -110,7 +123,7 @@ def _up(site: Site, rows: tuple[Process, ...], foreground: bool) -> bool:
             _write(lock, Owner(os.getpid(), psutil.Process().create_time(), str(site.state)))
             _become(site, conf)
         _start(site, conf)
-        _wait(supervisor.alive, START_LIMIT, f"supervisord did not start: see {site.state}/log/supervisord.log")
+        _wait(supervisor.alive, START_LIMIT, SupervisordNotUp(f"{site.state}/log/supervisord.log"))
         pid = supervisor.pid()
         session_first(pid, NICE)
         _write(lock, Owner(pid, psutil.Process(pid).create_time(), str(site.state)))
@@ -134,7 +147,7 @@ def down(site: Site) -> bool:
         process.send_signal(signal.SIGKILL)
     _, left = psutil.wait_procs(left, 2.0)
     if left:
-        raise TmsError(f"pid {', '.join(str(p.pid) for p in left)} did not end: see {site.state}/log")
+        raise TmsError(PidsLeft(tuple(process.pid for process in left), f"{site.state}/log"))
     return True
 
 
@@ -145,7 +158,7 @@ def _start(site: Site, conf: Path) -> None:
     )
     if done.returncode != 0:
         detail = (done.stderr.strip() or done.stdout.strip()).splitlines()
-        raise TmsError(f"supervisord did not start: {detail[-1] if detail else 'no reason given'}")
+        raise TmsError(SupervisordFailed(detail[-1] if detail else ""))
 
 
 def _become(site: Site, conf: Path) -> None:
@@ -159,10 +172,7 @@ def _become(site: Site, conf: Path) -> None:
 def _refuse_other_mesh(site: Site, lock: Path) -> None:
     owner = _read(lock)
     if owner is not None and owner.alive() and owner.state != str(site.state):
-        raise ConfigError(
-            f"ROS domain {site.domain} is used by another mesh on this PC (pid {owner.pid}, state in {owner.state}): "
-            "run `make down` there, or give this one another domain and ports in its site file"
-        )
+        raise ConfigError(DomainTaken(site.domain, owner.pid, owner.state))
 
 
 def _refuse_taken_ports(site: Site, rows: tuple[Process, ...]) -> None:
@@ -178,10 +188,8 @@ def _refuse_taken_ports(site: Site, rows: tuple[Process, ...]) -> None:
             try:
                 probe.bind((address, port))
             except OSError as error:
-                raise ConfigError(
-                    f"port {port} ({purpose}) is taken by {_holder(port)}: stop it, "
-                    f"or change ports: in {site.path} ({error.strerror})"
-                ) from error
+                taken = PortInUse(port, purpose, _holder(port), str(site.path), str(error.strerror))
+                raise ConfigError(taken) from error
 
 
 def _holder(port: int) -> str:
@@ -213,7 +221,7 @@ def _write(path: Path, owner: Owner) -> None:
     path.write_text(json.dumps(owner.__dict__))
 
 
-def _wait(holds: Callable[[], bool], seconds: float, otherwise: str) -> None:
+def _wait(holds: Callable[[], bool], seconds: float, otherwise: Reason) -> None:
     deadline = time.monotonic() + seconds
     while not holds():
         if time.monotonic() > deadline:
@@ -229,10 +237,10 @@ def wait_ready(site: Site, report: Callable[[str], None]) -> None:
     """
     waiting = {row.full: row for row in here(site) if row.autostart and row.ours}
     deadline = time.monotonic() + READY_LIMIT
-    reasons: dict[str, str] = {}
+    reasons: dict[str, Reason] = {}
     while waiting:
         for name, row in list(waiting.items()):
-            reason = unready(row)
+            reason = metrics.unready(row)
             if reason is None:
                 del waiting[name]
                 report(say("{name} ready", name=name))
@@ -240,15 +248,8 @@ def wait_ready(site: Site, report: Callable[[str], None]) -> None:
                 reasons[name] = reason
         if waiting and time.monotonic() > deadline:
             name = next(iter(waiting))
-            raise TmsError(
-                f"{name} is not ready after {READY_LIMIT:.0f} s: {english(reasons[name])}; see `tms logs {name}`"
-            )
+            raise TmsError(NotReadyAfter(name, READY_LIMIT, reasons[name]))
         time.sleep(0.1)
-
-
-def unready(row: Process) -> str | None:
-    """Why a process cannot work now, as it says itself in a reason's line; None when it can."""
-    return metrics.unready(row.address, row.port)
 
 
 def wait_running(site: Site, name: str) -> None:
@@ -262,6 +263,6 @@ def wait_running(site: Site, name: str) -> None:
         return next((row.state for row in supervisor.processes() if row.name == name), "UNKNOWN")
 
     supervisor = Supervisor(site)
-    _wait(lambda: state() in ("RUNNING", "FATAL"), START_LIMIT, f"{name} does not start: see `tms logs {name}`")
+    _wait(lambda: state() in ("RUNNING", "FATAL"), START_LIMIT, NotStarted(name))
     if state() == "FATAL":
-        raise TmsError(f"{name} ends again and again: see `tms logs {name}`")
+        raise TmsError(EndsAgain(name))

@@ -5,6 +5,7 @@ import os
 import re
 from pathlib import Path
 
+from tms_cli.reasons import NoHostPort, NotWritable
 from tms_config import state_folder
 from tms_config.config import PROJECT, Site
 from tms_config.processes import table
@@ -61,16 +62,13 @@ def render(site: Site, folder: Path, alertmanager: str | None = None) -> None:
         for name, text in texts.items():
             _replace(folder / name, text, 0o644 if shared else 0o600)
     except OSError as error:
-        raise ConfigError(f"{folder}: cannot be written ({error.strerror})") from error
+        raise ConfigError(NotWritable(str(folder), str(error.strerror))) from error
 
 
 def _check(alertmanager: str) -> None:
     found = HOST_PORT.fullmatch(alertmanager)
     if found is None or not 0 < int(found[2]) < 65536:
-        raise ConfigError(
-            f"where alerts go is no HOST:PORT: '{alertmanager}': write it like 127.0.0.1:9093 "
-            "(TMS_ALERTS_TO, or `tms prometheus --alertmanager`)"
-        )
+        raise ConfigError(NoHostPort(alertmanager))
 
 
 def _replace(path: Path, text: str, mode: int) -> None:

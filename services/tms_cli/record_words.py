@@ -7,6 +7,8 @@ from typing import Any
 import click
 import yaml
 
+from tms_cli.reasons import FieldValue, NotAFiniteNumber, ValueEmpty, ValueUnreadable
+from tms_config.validation import Wrong
 from tms_reason.errors import TmsError
 
 NOT_FINITE = re.compile(r"[-+]?\.?(nan|inf|infinity)", re.IGNORECASE)
@@ -32,16 +34,16 @@ def parse_value(text: str) -> Any:
     """The value that `field=text` means: number, true/false, array, or text.
 
     Raises:
-        ValueError: it is none of these; says why.
+        Wrong: it is none of these; says why.
     """
     if NOT_FINITE.fullmatch(text):
-        raise ValueError(f"{text} is not a finite number: write a number (or \"'{text}'\" if text is meant)")
+        raise Wrong(NotAFiniteNumber(text))
     try:
         value = yaml.load(text, _Scalars)  # a SafeLoader
     except yaml.YAMLError as error:
-        raise ValueError(f"{text!r} cannot be read: put text with special characters in quotes") from error
+        raise Wrong(ValueUnreadable(repr(text))) from error
     if value is None or (value == "" and not text.strip()):
-        raise ValueError("the value is empty: write \"''\" for an empty text, or use --remove")
+        raise Wrong(ValueEmpty())
     return value
 
 
@@ -63,8 +65,8 @@ def parse_fields(where: str, words: Iterable[str]) -> dict[str, Any]:
             raise click.UsageError(f"field '{name}' is given twice")
         try:
             fields[name] = parse_value(text)
-        except ValueError as error:
-            raise TmsError(f"{where}, field {name}: {error}", "BAD_VALUE") from error
+        except Wrong as error:
+            raise TmsError(FieldValue(where, name, error.reason), "BAD_VALUE") from error
     check_values(where, fields)
     return fields
 

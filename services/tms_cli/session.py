@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from tms_cli.reasons import MachineUnknown
 from tms_config import environment, state_folder
 from tms_config.config import Site, load_site
 from tms_config.names import check_sent
@@ -60,7 +61,7 @@ def machines(names: tuple[str, ...], every: bool) -> list[str]:
         raise click.UsageError("name a machine, or give --all")
     for name in names:
         if name not in known:
-            raise ConfigError(f"the site has no machine '{name}' (there: {', '.join(known) or 'none'})")
+            raise ConfigError(MachineUnknown(name, tuple(known)))
     return list(names)
 
 

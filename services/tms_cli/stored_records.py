@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tms_cli import live, session
+from tms_cli.reasons import BeforeThat
 from tms_cli.words import say
 from tms_reason.errors import TmsError
 
@@ -65,7 +66,7 @@ def load_file(node: "Ros", file: Path) -> dict[str, list[str]]:
             more: dict[str, Any] = {"type": record.type, "description": record.description, "max_age": record.max_age}
             created = write(node, key, record.values, create=True, **more)
         except TmsError as error:
-            raise TmsError(f"{error} (before that: {summary(done)})", error.code) from error
+            raise TmsError(BeforeThat(error.reason, summary(done)), error.code) from error
         done["created" if created else "changed"].append("/".join(key))
     return done
 

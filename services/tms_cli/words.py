@@ -1,7 +1,7 @@
 """What `tms` says to people, in the language of the user's locale (LC_ALL, LC_MESSAGES, LANG: ja*).
 
-The English text in the code is the key, and japanese*.py are the only places for its Japanese. Dropped: gettext, which
-needs compiled catalogues in every installation. JSON output is never translated; reasons have texts of their own.
+The English text in the code is the key of its Japanese in the catalogues (tms_reason/locale/ja/tms_cli*.po). JSON
+output is never translated.
 """
 
 import os
@@ -10,8 +10,6 @@ from typing import Any
 
 import click
 
-from tms_cli.japanese import HEADINGS, NEXT, SAID, STATES
-from tms_cli.japanese_help import HELP
 from tms_reason import texts, wire
 from tms_reason.reason import Reason
 
@@ -24,7 +22,7 @@ def japanese() -> bool:
 
 def say(english: str, **values: Any) -> str:
     """A line for people; `english` is a format string with the values' names."""
-    return (SAID[english] if japanese() else english).format(**values)
+    return texts.translated(english, language()).format(**values)
 
 
 def language() -> str:
@@ -57,7 +55,7 @@ def english(line: str) -> str:
 
 def state(word: str) -> str:
     """The state of a run or a node."""
-    return STATES.get(word, word) if japanese() else word
+    return texts.translated(word, language())
 
 
 def padded(text: str, width: int) -> str:
@@ -65,14 +63,11 @@ def padded(text: str, width: int) -> str:
     return text + " " * (width - columns(text))
 
 
-def what_next(code: str) -> str | None:
-    """In Japanese: what to do about an error. The English messages end with it themselves."""
-    return NEXT.get(code) if japanese() else None
-
-
 def help_text(english: str) -> str:
     """A paragraph or an option's help."""
-    return HELP.get(" ".join(english.split()), english) if japanese() else english
+    folded = " ".join(english.split())
+    shown = texts.translated(folded, language())
+    return english if shown == folded else shown
 
 
 def columns(text: str) -> int:
@@ -121,7 +116,7 @@ def _summary(verb: click.Command) -> str:
 
 
 def _heading(english: str) -> str:
-    return HEADINGS.get(english, english) if japanese() else english
+    return texts.translated(english, language())
 
 
 def _option(english: str) -> str:

@@ -6,7 +6,10 @@ from collections.abc import Callable, Mapping
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
 from tms_config.processes import Process, table
+from tms_host.reasons import NoPulse
 from tms_host.supervisor import Running
+from tms_reason.reason import Reason
+from tms_reason.texts import text
 from tms_runtime import metrics
 from tms_runtime.app import App
 
@@ -24,7 +27,7 @@ class Diagnostics:
         self._app, self._silent = app, silent
         self._table = {row.full: row for row in table(app.site)}
         self._publisher = app.ros.publisher(DiagnosticArray, "/diagnostics")
-        self._reasons: dict[str, str | None] = {}
+        self._reasons: dict[str, Reason | None] = {}
         self._rows: list[Running] = []
         self._restarts: dict[str, int] = {}
         threading.Thread(target=self._tell, name="diagnostics", daemon=True).start()
@@ -47,31 +50,31 @@ class Diagnostics:
             message.header.stamp = self._app.ros.now()
             self._publisher.publish(message)
 
-    def _ask(self, row: Running) -> str | None:
+    def _ask(self, row: Running) -> Reason | None:
         process = self._table.get(row.name)
         if process is None or not process.ours:
             return None
-        return metrics.unready(process.address, process.port, ANSWER)
+        return metrics.unready(process, ANSWER)
 
     def _status(self, row: Running) -> DiagnosticStatus:
-        level, text = judge(row, self._table.get(row.name), self._reasons.get(row.name), self._silent().get(row.name))
+        level, words = judge(row, self._table.get(row.name), self._reasons.get(row.name), self._silent().get(row.name))
         values = {"state": row.state, "pid": row.pid, "restarts": self._restarts.get(row.name, 0),
                   "uptime_seconds": round(row.uptime)}  # fmt: skip
         return DiagnosticStatus(
-            level=bytes([level]), name=f"tms: {row.name}", hardware_id=row.name.partition(":")[0], message=text,
+            level=bytes([level]), name=f"tms: {row.name}", hardware_id=row.name.partition(":")[0], message=words,
             values=[KeyValue(key=key, value=str(value)) for key, value in values.items()],
         )  # fmt: skip
 
 
-def judge(row: Running, process: Process | None, reason: str | None, silent: float | None = None) -> tuple[int, str]:
-    """Level and text of one process; a subtask that nobody has asked for yet is in order.
+def judge(row: Running, process: Process | None, reason: Reason | None, silent: float | None = None) -> tuple[int, str]:
+    """Level and English text of one process; a subtask that nobody has asked for yet is in order.
 
     `silent`: for how long a gateway has given no pulse [s], None while it does.
     """
     if silent is not None:
-        return ERROR, f"no pulse for {silent:.0f} s: the host agent keeps the machine stopped"
+        return ERROR, text(NoPulse(silent, row.name), "en")
     if row.state == "RUNNING":
-        return (OK, "ready") if reason is None else (WARN, reason)
+        return (OK, "ready") if reason is None else (WARN, text(reason, "en"))
     if row.state == "STARTING":
         return WARN, "starting"
     if row.state == "STOPPED":

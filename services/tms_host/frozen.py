@@ -89,7 +89,7 @@ class Watchdog:
             self._app.log.error("frozen", target=row.name, pid=row.pid, action="restarted")
             supervisor.control("restart", row.name)
         except TmsError as error:
-            self._app.log.error("not_restarted", target=row.name, reason=str(error))
+            self._app.log.error("not_restarted", target=row.name, reason=error.reason)
 
     def _watch_gateways(self) -> None:
         """In a thread of its own: the other one waits for answers of whatever else is frozen."""
@@ -104,7 +104,7 @@ class Watchdog:
         try:
             row = supervisor.process(name)
         except TmsError as error:
-            self._app.log.error("not_killed", target=name, reason=str(error))
+            self._app.log.error("not_killed", target=name, reason=error.reason)
             return
         seconds = self._silent().get(name)  # now: the answer may have taken seconds, and it may be back
         if seconds is None:

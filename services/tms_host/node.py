@@ -15,10 +15,12 @@ from tms_msg_host.srv import ControlProcess, ReadLog
 from tms_host.diagnostics import Diagnostics
 from tms_host.facts import Facts
 from tms_host.frozen import Watchdog
+from tms_host.reasons import BadCommand, SupervisordSilent
 from tms_host.stand_in import StandIn
 from tms_host.supervisor import Running, Supervisor, SupervisorDown
 from tms_host.usage import Usage
 from tms_reason.errors import TmsError
+from tms_reason.wire import to_line
 from tms_runtime.app import App
 
 HEARTBEAT = 2.0  # s between messages when nothing changes, so that a dead PC can be told from a quiet one
@@ -35,7 +37,7 @@ def start(app: App) -> None:
     app.ros.offer_slow(ReadLog, f"/tms/host/{host.name}/log", host.log)
     app.on_stop(host.close)
     Watchdog(app, lambda: host.rows, stand_in.silent)
-    app.ready_when(lambda: None if host.seen else "supervisord does not answer")
+    app.ready_when(lambda: None if host.seen else SupervisordSilent())
 
 
 def ros_name(host: str) -> str:
@@ -88,15 +90,14 @@ class Host:
     def control(self, request: ControlProcess.Request, response: ControlProcess.Response) -> ControlProcess.Response:
         """start, stop or restart one process of this PC."""
         if request.command not in ("start", "stop", "restart"):
-            response.error_code = "BAD_COMMAND"
-            response.error_msg = f"'{request.command}' is none of start, stop, restart"
+            response.error_code, response.error_msg = BadCommand.code, to_line(BadCommand(request.command))
             return response
         try:
             with self._calls:
                 self._control.control(request.command, request.name)
             self._app.log.info(request.command, target=request.name)
         except TmsError as error:
-            response.error_code, response.error_msg = error.code, str(error)
+            response.error_code, response.error_msg = error.code, to_line(error.reason)
         return response
 
     def log(self, request: ReadLog.Request, response: ReadLog.Response) -> ReadLog.Response:
@@ -105,7 +106,7 @@ class Host:
             with self._calls:
                 response.text = self._control.log(request.name, min(request.bytes or LOG_BYTES, MOST_LOG_BYTES))
         except TmsError as error:
-            response.error_code, response.error_msg = error.code, str(error)
+            response.error_code, response.error_msg = error.code, to_line(error.reason)
         return response
 
     def _watch(self) -> None:

@@ -15,6 +15,15 @@ from tms_config.config import PROJECT, Site
 from tms_config.environment import environment
 from tms_config.processes import Process, here
 from tms_config.state_folder import UMASK
+from tms_host.reasons import (
+    LogUnreadable,
+    MeshDown,
+    NoProcessHere,
+    NotEnded,
+    NotPrivate,
+    PathQuoted,
+    SupervisordSays,
+)
 from tms_reason.errors import ConfigError, TmsError
 
 START_SECONDS = 1  # a process that ends sooner counts as failed to start
@@ -26,8 +35,6 @@ LOG_SIZE, LOG_FILES = "10MB", 3
 
 class SupervisorDown(TmsError):
     """supervisord does not run or does not answer."""
-
-    code = "MESH_DOWN"
 
 
 @dataclass(frozen=True)
@@ -52,7 +59,7 @@ def runtime_folder() -> Path:
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     facts = folder.stat()
     if facts.st_uid != os.getuid() or facts.st_mode & 0o077:
-        raise ConfigError(f"{folder}: is not private to you: remove it or set XDG_RUNTIME_DIR")
+        raise ConfigError(NotPrivate(str(folder)))
     return folder
 
 
@@ -128,7 +135,7 @@ def _section(row: Process) -> str:
 def _escape(text: str) -> str:
     """supervisord expands %(name)s in values."""
     if '"' in text or "\n" in text:
-        raise ConfigError(f"the path {text!r} holds a quote or a line break: choose another folder")
+        raise ConfigError(PathQuoted(repr(text)))
     return text.replace("%", "%%")
 
 
@@ -147,11 +154,11 @@ class Supervisor:
         try:
             return getattr(self._proxy.supervisor, method)(*words)
         except xmlrpc.client.Fault as fault:
-            raise TmsError(f"supervisord: {fault.faultString} {words}", "SUPERVISOR") from fault
+            raise TmsError(SupervisordSays(fault.faultString, f"{method}{words}")) from fault
         except (OSError, xmlrpc.client.ProtocolError) as error:
             self._proxy("close")()
             self._proxy = self._connect()  # the broken connection of the old one cannot be used again
-            raise SupervisorDown("the mesh does not run here: start it with `make up`") from error
+            raise SupervisorDown(MeshDown()) from error
 
     def close(self) -> None:
         """Free the connection."""
@@ -186,7 +193,7 @@ class Supervisor:
         for row in self.processes():
             if row.name == name:
                 return row
-        raise TmsError(f"no process '{name}' on this PC: `tms ps` lists them", "NO_PROCESS")
+        raise TmsError(NoProcessHere(name), "NO_PROCESS")
 
     def control(self, command: str, name: str) -> None:
         """start, stop or restart one process; already started or stopped is no error.
@@ -212,7 +219,7 @@ class Supervisor:
         deadline = time.monotonic() + END_LIMIT
         while (state := self.process(name).state) == "STOPPING":
             if time.monotonic() > deadline:
-                raise TmsError(f"'{name}' was told to end {END_LIMIT:.0f} s ago and has not: try again", "SUPERVISOR")
+                raise TmsError(NotEnded(name, END_LIMIT))
             time.sleep(LOOK)
         return state
 
@@ -231,7 +238,7 @@ class Supervisor:
                 file.seek(begin)
                 data = file.read(size)
         except OSError as error:
-            raise TmsError(f"{path}: cannot be read ({error.strerror})", "SUPERVISOR") from error
+            raise TmsError(LogUnreadable(name, str(error.strerror), str(path))) from error
         begun = data.find(b"\n") + 1 if begin else 0
         return data[begun:].decode(errors="replace")
 

@@ -20,6 +20,9 @@ class DrivenByHand(Reason, text="{driver} drives {machine} by hand", action=GIVE
 class ManualMode(Reason, text="somebody at the machine's own levers"): pass
 class Busy(Reason, text="{process} is still at its last goal"): process: str
 class NoDatabase(Reason, text="{process} did not answer", action=PROCESSES): process: str
+class OneSubtask(Reason, text="{file}: {count} subtasks in it, there must be one"): file: str; count: int
+class FieldMissing(Reason, text="field '{field}' is missing", action=RECORDS): field: str
+class NoFlag(Reason, text="one of {flags} must be 1", action=RECORDS): flags: tuple[str, ...]
 class BadRecord(Reason, text="record {record}: {problem}", action=RECORDS): record: str; problem: str
 class NoSuchJoint(Reason, text="there is no joint '{joint}' (there are {joints})"): joint: str; joints: tuple[str, ...]
 class NoCapability(Reason, text="{machine} has no {what}", action=EDIT_CONFIG,

@@ -8,6 +8,7 @@ from typing import Any, TypeVar, get_type_hints
 from pydantic import BaseModel, ConfigDict
 
 from tms_machine.machine import Cancelled, Machine, Progress
+from tms_machine.reasons import OneSubtask
 from tms_machine.values import Value
 from tms_reason.errors import ConfigError, SubtaskFailed
 
@@ -95,6 +96,6 @@ def load(file: str) -> type[Subtask]:
     marked = [item.__dict__["subtask"] for item in own if inspect.isfunction(item) and "subtask" in item.__dict__]
     found = classes + marked
     if len(found) != 1:
-        raise ConfigError(f"tms_subtasks/{file}.py: {len(found)} subtasks in it, there must be one")
+        raise ConfigError(OneSubtask(f"tms_subtasks/{file}.py", len(found)))
     chosen: type[Subtask] = found[0]
     return chosen

@@ -40,8 +40,14 @@ def advice(reason: Reason, language: str) -> str:
     if remedy is None:
         return ""
     wanted, shown = remedy
-    words = translated(type(wanted).remedy.text, language)  # type: ignore[union-attr]
+    words = remedy_text(wanted, language)
     return f"{words}: `{shown}`" if shown else words
+
+
+def remedy_text(reason: Reason, language: str) -> str:
+    """The words of a reason's own remedy."""
+    remedy = type(reason).remedy
+    return "" if remedy is None else _filled(reason, translated(remedy.text, language), language)
 
 
 def sentence(reason: Reason, language: str) -> str:

@@ -28,7 +28,7 @@ from rclpy.task import Future
 from tms_reason.errors import RosError
 from tms_reason.reason import Reason
 from tms_ros.privates import TimedExecutor
-from tms_ros.reasons import ExecutorBusy
+from tms_ros.reasons import ExecutorBusy, Hangs
 
 T = TypeVar("T")
 
@@ -149,12 +149,12 @@ class Loop:
             raise errors[0]
         return results[0]
 
-    def hangs(self) -> str | None:
+    def hangs(self) -> Reason | None:
         """Asks the executor to show itself; why it should be restarted when it has not done so since it was asked."""
         asked = self._asked
         if asked is not None:
             seconds = time.monotonic() - asked
-            return f"the ROS thread has not run for {seconds:.0f} s" if seconds > HANGS else None
+            return Hangs(self.process, seconds) if seconds > HANGS else None
         self._asked = time.monotonic()
         self.on_executor(self._shown)
         return None

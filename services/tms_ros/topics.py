@@ -19,6 +19,7 @@ from tms_ros import quality
 from tms_ros.interface_types import M, Message, Publisher
 from tms_ros.loop import Loop
 from tms_ros.privates import Asleep, take
+from tms_ros.reasons import NotConnected
 
 TOLD = 0.1  # s in which the news that a publisher is asserted follows its message, twice
 UNKNOWN = "_NODE_NAME_UNKNOWN_"  # of an end that discovery has found a moment before its node
@@ -167,17 +168,17 @@ class Topics:
 
         return self._subscribed(message_type, topic, heard_first, quality.lease(seconds), liveliness=count.told)
 
-    def mismatches(self, topic: str) -> set[str] | None:
+    def mismatches(self, topic: str) -> set[NotConnected] | None:
         """What of others is on a topic of ours but not connected to us, and why; None while one's name is not known."""
         writers = self._loop.node.get_publishers_info_by_topic(topic)
         readers = self._loop.node.get_subscriptions_info_by_topic(topic)
         if any(end.node_name == UNKNOWN for end in [*writers, *readers]):
             return None
-        own, found = self._loop.node.get_fully_qualified_name(), set()
+        own, found = self._loop.node.get_fully_qualified_name(), set[NotConnected]()
         for writer, reader in product(writers, readers):
             names = [f"{end.node_namespace.rstrip('/')}/{end.node_name}" for end in (writer, reader)]
             if own in names and names[0] != names[1] and (reason := _mismatch(writer, reader)):
-                found.add(f"{topic}: {names[1]} does not hear {names[0]}: {reason}")
+                found.add(NotConnected(topic, names[1], names[0], reason))
         return found
 
 

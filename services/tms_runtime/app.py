@@ -6,10 +6,10 @@ from collections.abc import Callable
 from tms_config.config import Site
 from tms_config.processes import Process
 from tms_reason.reason import Reason
-from tms_reason.wire import to_line
 from tms_ros.node import Ros
 from tms_runtime.log import Logger
 from tms_runtime.pulse import Pulse
+from tms_runtime.reasons import ProcessStarting
 
 
 class App:
@@ -22,7 +22,7 @@ class App:
         self.pulse = Pulse(ros)
         self.log = log
         self.stopping = threading.Event()
-        self._unready: Callable[[], Reason | str | None] = lambda: "starting"
+        self._unready: Callable[[], Reason | None] = ProcessStarting
         self._cleanup: list[Callable[[], None]] = []
 
     @property
@@ -31,14 +31,13 @@ class App:
         assert self.process.machine is not None, f"{self.process.full} belongs to no machine"
         return self.process.machine
 
-    def ready_when(self, unready: Callable[[], Reason | str | None]) -> None:
+    def ready_when(self, unready: Callable[[], Reason | None]) -> None:
         """Say how to tell why this process cannot work now; None means that it can."""
         self._unready = unready
 
-    def unready(self) -> str | None:
-        """Why the process cannot do its job now, as a reason's line, or None."""
-        found = self._unready()
-        return to_line(found) if isinstance(found, Reason) else found
+    def unready(self) -> Reason | None:
+        """Why the process cannot do its job now, or None."""
+        return self._unready()
 
     def on_stop(self, step: Callable[[], None]) -> None:
         """Run `step` when the process stops, last registered first; it must be quick."""

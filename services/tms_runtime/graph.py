@@ -1,6 +1,7 @@
 """What a process sees of the ROS graph: how many ends it is connected to, and which ones it cannot be connected to."""
 
 from tms_ros.node import Ros
+from tms_ros.reasons import NotConnected
 from tms_runtime import metrics
 from tms_runtime.log import Logger
 
@@ -16,7 +17,7 @@ class Graph:
         self._ros, self._log = ros, log
         self._crowds: dict[str, tuple[int, int]] = {}
         self._changed: list[str] = []  # topics that are still to be looked at
-        self._told: dict[str, set[str]] = {}  # by topic
+        self._told: dict[str, set[NotConnected]] = {}  # by topic
         ros.every(PERIOD, self.look)
 
     def look(self) -> None:
@@ -38,8 +39,8 @@ class Graph:
         if found is None:
             self._changed.append(topic)
             return
-        for text in sorted(found - self._told.get(topic, set())):
-            self._log.warning("not_connected", reason=text)
+        for reason in sorted(found - self._told.get(topic, set()), key=repr):
+            self._log.warning("not_connected", reason=reason)
         self._told[topic] = found
 
 

@@ -14,7 +14,11 @@ from http import HTTPStatus
 
 from prometheus_client import CONTENT_TYPE_LATEST, REGISTRY, CollectorRegistry, Counter, Gauge, Info, generate_latest
 
+from tms_config.processes import Process
+from tms_reason import wire
 from tms_reason.errors import ConfigError
+from tms_reason.reason import Reason
+from tms_runtime.reasons import PortSilent, PortTaken
 
 READY = Gauge("tms_process_ready", "1 when the process can do its job")
 BUILD = Info("tms_build", "Version that runs")
@@ -30,21 +34,18 @@ END = b"\r\n\r\n"
 REQUEST = re.compile(rb"([A-Z]{1,20}) (/[!-~]*) HTTP/1\.[0-9]\r\n")
 
 
-SILENT = "it does not answer on its health port"
-
-
-def unready(address: str, port: int, seconds: float = 2.0) -> str | None:
+def unready(row: Process, seconds: float = 2.0) -> Reason | None:
     """Why a process cannot work now, as it says itself on its port; None when it can."""
-    asked = http.client.HTTPConnection(address, port, timeout=seconds)
+    asked = http.client.HTTPConnection(row.address, row.port, timeout=seconds)
     try:
         asked.request("GET", "/readyz")
         answer = asked.getresponse()
         text = answer.read().decode("utf-8", "replace").strip()
     except (OSError, http.client.HTTPException):  # also one that ends while it answers
-        return SILENT
+        return PortSilent(row.full)
     finally:
         asked.close()
-    return None if answer.status == http.HTTPStatus.OK else text
+    return None if answer.status == http.HTTPStatus.OK else wire.known(text)
 
 
 class Health:
@@ -57,18 +58,15 @@ class Health:
         self,
         bind: str,
         port: int,
-        unready: Callable[[], str | None],
-        hangs: Callable[[], str | None] = lambda: None,
+        unready: Callable[[], Reason | None],
+        hangs: Callable[[], Reason | None] = lambda: None,
         registry: CollectorRegistry = REGISTRY,
     ) -> None:
         self._answer = lambda path: _answer(path, unready, hangs, registry)
         try:
             self._socket = socket.create_server((bind, port), backlog=BACKLOG)  # asks no name server
         except OSError as error:
-            raise ConfigError(
-                f"port {port} on {bind} is taken ({error.strerror}): "
-                "stop the other program or change ports.metrics in the site file"
-            ) from error
+            raise ConfigError(PortTaken(port, bind, str(error.strerror))) from error
         self._loop, self._stop = asyncio.new_event_loop(), asyncio.Event()
         self._connections = _Connections()
         self._thread = threading.Thread(target=self._run, name="metrics", daemon=True)
@@ -169,7 +167,7 @@ def _encode(status: int, kind: str, body: bytes) -> bytes:
 
 
 def _answer(
-    path: str, unready: Callable[[], str | None], hangs: Callable[[], str | None], registry: CollectorRegistry
+    path: str, unready: Callable[[], Reason | None], hangs: Callable[[], Reason | None], registry: CollectorRegistry
 ) -> tuple[int, str, bytes]:
     if path == "/metrics":
         READY.set(unready() is None)
@@ -181,5 +179,5 @@ def _answer(
     return 404, "text/plain", b"try /metrics, /healthz or /readyz\n"
 
 
-def _verdict(reason: str | None, good: bytes) -> tuple[int, str, bytes]:
-    return (200, "text/plain", good) if reason is None else (503, "text/plain", f"{reason}\n".encode())
+def _verdict(reason: Reason | None, good: bytes) -> tuple[int, str, bytes]:
+    return (200, "text/plain", good) if reason is None else (503, "text/plain", f"{wire.to_line(reason)}\n".encode())

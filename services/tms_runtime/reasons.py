@@ -1,10 +1,22 @@
-"""Why a text is no task, and what a PC's disk does not take."""
+"""Why a process cannot begin or work, why a text is no task, and what a PC's disk does not take."""
 
+from tms_reason.quantities import Seconds
 from tms_reason.reason import Reason
-from tms_reason.remedies import EDIT_TASK, STATUS
+from tms_reason.remedies import EDIT_TASK, LOGS, RETRY, STATUS, Remedy
+
+OTHER_PORT = Remedy("edit_config", "", "Stop the other program, or change ports.metrics in the site file")
 
 
 # fmt: off
+# processes
+class ProcessStarting(Reason, text="it is starting", action=RETRY): pass
+class PortSilent(Reason, text="{process} does not answer on its health port", action=LOGS): process: str
+class PortTaken(Reason, text="port {port} on {address} is taken ({problem})", action=OTHER_PORT):
+    port: int; address: str; problem: str
+class ParentGone(Reason, text="supervisord ended while this process started"): pass
+class PcBusy(Reason, text="its PC was too busy for {seconds}"): seconds: Seconds
+class LongCallback(Reason, text="a callback took {seconds}, or the process was frozen"): seconds: Seconds
+
 # XML
 class TaskTooLarge(Reason, text="the task is larger than {limit} bytes"): limit: int
 class TextNotUtf8(Reason, text="the text is not UTF-8"): pass

@@ -18,6 +18,7 @@ from tms_runtime.last_resort import LEAVE_LIMIT, end_after
 from tms_runtime.log import Logger
 from tms_runtime.metrics import Health
 from tms_runtime.priority import come_first, threads, undisturbed
+from tms_runtime.reasons import LongCallback, ParentGone, PcBusy, ProcessStarting
 
 LOOK = 0.5  # s
 FORGOTTEN = 3.0  # s; lease of discovery (5 s) less the time since the last announcement (1.5 s at most), 0.5 s to spare
@@ -58,7 +59,7 @@ def _serve(site: Site, row: Process) -> int:
     health = Health(
         row.address,
         row.port,
-        unready=lambda: app_box[0].unready() if app_box else "starting",
+        unready=lambda: app_box[0].unready() if app_box else ProcessStarting(),
         hangs=lambda: app_box[0].ros.hangs() if app_box else None,
     )
     stop = threading.Event()
@@ -91,7 +92,7 @@ def _serve(site: Site, row: Process) -> int:
 def _stood_still(logger: Logger, silent: float, waited: float) -> None:
     """Why others took this process for lost: whoever debugs at night looks into its log."""
     metrics.STOOD_STILL.inc(silent)
-    reason = "its PC was too busy" if waited > silent / 2 else "a long callback, or it was frozen"
+    reason = PcBusy(waited) if waited > silent / 2 else LongCallback(silent)
     logger.warning("stood_still", seconds=round(silent, 2), waited=round(waited, 2), reason=reason)
 
 
@@ -114,7 +115,7 @@ def _die_with_parent() -> None:
     parent = os.getppid()
     ctypes.CDLL(None, use_errno=True).prctl(PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)
     if os.getppid() != parent:
-        raise ConfigError("supervisord ended while this process started")
+        raise ConfigError(ParentGone())
 
 
 if __name__ == "__main__":

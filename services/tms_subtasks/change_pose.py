@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 from geometry_msgs.msg import Point, Pose, Quaternion
 
+from tms_machine.reasons import FieldMissing, NoFlag
 from tms_machine.subtask import Machine, Params, Progress, SubtaskFailed, subtask
 
 ARM = ("swing_joint", "boom_joint", "arm_joint", "bucket_joint", "bucket_end_joint")
@@ -34,7 +35,7 @@ class Target(Params):
         """The fields of these names, all of which must be there."""
         missing = [name for name in names if getattr(self, name) is None]
         if missing:
-            raise SubtaskFailed("BAD_RECORD", f"field '{missing[0]}' is missing; set it with `tms param set`")
+            raise SubtaskFailed(FieldMissing(missing[0]))
         return [getattr(self, name) for name in names]
 
     def joint_angles(self) -> Mapping[str, float]:
@@ -57,4 +58,4 @@ def change_pose(machine: Machine, want: Target, progress: Progress) -> None:
         x, y, z, theta_w = want.numbers("x", "y", "z", "theta_w")
         machine.change_pose(progress, tip=(x, y, z, theta_w), plan_only=want.plan_only)
     else:
-        raise SubtaskFailed("BAD_RECORD", "one of trajectory, pose and position_with_angle must be 1")
+        raise SubtaskFailed(NoFlag(("trajectory", "pose", "position_with_angle")))

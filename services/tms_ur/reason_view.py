@@ -76,7 +76,7 @@ def _action(reason: Reason) -> Action | None:
     wanted, command = found
     remedy = type(wanted).remedy
     assert remedy is not None, "its remedy was found"
-    text = Texts(en=remedy.text, ja=texts.translated(remedy.text, "ja"))
+    text = Texts(en=texts.remedy_text(wanted, "en"), ja=texts.remedy_text(wanted, "ja"))
     return Action(name=remedy.name, command=command, args=_finite(wire.to_data(wanted)["args"]), text=text)
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tms_cli import live, session
+from tms_cli.reasons import ManyQuestions, NobodyAsks, NobodyAsksThis, SchedulerSilent
 from tms_cli.words import say
 from tms_reason.errors import RosError, TmsError
 
@@ -59,7 +60,7 @@ def open_questions(node: "Ros") -> "list[Question]":
 
     heard = session.latched(node, RunStates, "/tms/runs")
     if heard is None:
-        raise RosError("the scheduler (tms:ts) says nothing: see `tms status`", "NO_ANSWER")
+        raise RosError(SchedulerSilent(), "NO_ANSWER")
     return list(heard.questions)
 
 
@@ -67,10 +68,8 @@ def _only(asked: "list[Question]", question: str | None) -> "Question":
     if len(asked) == 1:
         return asked[0]
     if not asked:
-        what = "nobody asks anything" if question is None else f"nobody asks '{question}'"
-        raise TmsError(f"{what}: `tms answer` lists open questions", "NO_QUESTION")
-    names = ", ".join(one.id for one in asked)
-    raise TmsError(f"{len(asked)} questions are open: choose with --question ({names})", "AMBIGUOUS")
+        raise TmsError(NobodyAsks() if question is None else NobodyAsksThis(question), "NO_QUESTION")
+    raise TmsError(ManyQuestions(len(asked), tuple(one.id for one in asked)), "AMBIGUOUS")
 
 
 def _as_dict(one: "Question") -> dict[str, Any]:

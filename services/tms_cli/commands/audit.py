@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tms_cli import live, session
+from tms_cli.reasons import Unreadable
 from tms_cli.words import Group, say
 from tms_reason.errors import TmsError
 
@@ -85,7 +86,7 @@ def _remembered() -> "Place | None":
     try:
         return told(file)
     except sqlite3.Error as error:
-        raise TmsError(f"{file}: cannot be read ({error}): run this as the user of the console") from error
+        raise TmsError(Unreadable(str(file), str(error))) from error
 
 
 def _verdict(node: "Ros", remembered: "Place | None") -> "Verdict":

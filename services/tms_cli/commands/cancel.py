@@ -7,6 +7,7 @@ import click
 
 from tms_cli import session, words
 from tms_cli.commands.runs import MOST, as_dict, find_run, has_ended, history, recent
+from tms_cli.reasons import NoRunActive, NotEndedYet, RunHasEnded
 from tms_cli.words import say, state
 from tms_reason.errors import TmsError
 
@@ -29,10 +30,10 @@ def _which(node: "Ros", word: str) -> str:
         return word
     active = [run for run in runs if not has_ended(run)]
     if word == "last" and not active:
-        raise TmsError("no run is active: `tms runs` shows how they ended", "NO_RUN")
+        raise TmsError(NoRunActive(), "NO_RUN")
     run = find_run(active if word == "last" else runs, word)
     if has_ended(run):
-        raise TmsError(f"run {run.run_id} has ended already: {run.state}", "RUN_ENDED")
+        raise TmsError(RunHasEnded(run.run_id, run.state), "RUN_ENDED")
     return run.run_id
 
 
@@ -44,8 +45,7 @@ def _wait(node: "Ros", run_id: str) -> "Run":
             return run
         time.sleep(LOOK)
     raise TmsError(
-        f"run {run_id} has not ended {END_LIMIT:.0f} s after the cancel: look at the machine, "
-        f"then at `tms events {run_id}`",
+        NotEndedYet(run_id, END_LIMIT),
         "STOP_UNCONFIRMED",
     )
 

@@ -1,5 +1,6 @@
 """`tms drill`: stop simulated machines in every way, and compare each receipt with their true motion."""
 
+import errno
 import os
 import random
 import shutil
@@ -17,6 +18,7 @@ from tms_cli.drill.plan import STOPS, Trial, plan, plan_only
 from tms_cli.drill.report import markdown, text
 from tms_cli.drill.stand_ins import GROUP, StandIns
 from tms_cli.drill.verdict import Row
+from tms_cli.reasons import DrillRuns, NotForDrill, NotWritable
 from tms_config.config import Site
 from tms_host.supervisor import Supervisor
 from tms_reason.errors import ConfigError, TmsError
@@ -31,12 +33,8 @@ def check(site: Site) -> None:
     Raises:
         ConfigError: it is no simulation on one PC, or has no machine.
     """
-    if site.file.backend != "sim":
-        raise ConfigError(f"{site.path}: the drill kills processes on purpose: only for backend 'sim'")
-    if site.file.pcs:
-        raise ConfigError(f"{site.path}: the drill kills the processes of one PC: take a site without pcs:")
-    if not site.file.machines:
-        raise ConfigError(f"{site.path}: the drill needs at least one machine under machines:")
+    if site.file.backend != "sim" or site.file.pcs or not site.file.machines:
+        raise ConfigError(NotForDrill(str(site.path)))
 
 
 def own_state(site: Site) -> None:
@@ -47,7 +45,7 @@ def own_state(site: Site) -> None:
     """
     folder = site.state / FOLDER
     if Supervisor(replace(site, state=folder)).alive():
-        raise TmsError(f"{site.name}: a drill runs already: wait for its end", "DRILL_RUNS")
+        raise TmsError(DrillRuns(site.name))
     shutil.rmtree(folder, ignore_errors=True)
     os.environ["TMS_STATE"] = str(folder)
 
@@ -106,7 +104,7 @@ def command(
       tms --site drill drill --only "kill rc+tms:ts+rp+subtask" --rounds 9
     """
     if report is not None and not os.access(report.absolute().parent, os.W_OK):  # and not after an hour of work
-        raise TmsError(f"{report}: its folder is not there or cannot be written: choose another place", "NO_FILE")
+        raise TmsError(NotWritable(str(report), os.strerror(errno.EACCES)), "NO_FILE")
     if quick and only:
         raise click.UsageError("--quick and --only exclude each other: --quick tries every kind of stop")
     check(session.site())

@@ -5,6 +5,7 @@ import subprocess
 import click
 
 from tms_cli import session
+from tms_cli.reasons import NoLog
 from tms_config.processes import find, table
 from tms_reason.errors import TmsError
 
@@ -26,5 +27,5 @@ def command(process: str | None, lines: int, follow: bool) -> None:
     files = [site.state / "log" / f"{row.group}.{row.name}.log" for row in rows]
     there = [str(file) for file in files if file.exists()]
     if not there:
-        raise TmsError(f"no log in {site.state / 'log'} yet: has it run? See `tms ps`")
+        raise TmsError(NoLog(str(site.state / "log")))
     subprocess.run(["tail", "-n", str(lines), *(["-F"] if follow else []), "--", *there], check=False)

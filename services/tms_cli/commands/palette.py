@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from tms_cli import session
+from tms_cli.reasons import NotWritable
 from tms_reason.errors import TmsError
 
 
@@ -38,4 +39,4 @@ def write(file: Path, text: str) -> None:
     try:
         file.write_text(text, encoding="utf-8")
     except OSError as error:
-        raise TmsError(f"{file}: cannot be written ({error.strerror})") from error
+        raise TmsError(NotWritable(str(file), str(error.strerror))) from error

@@ -6,6 +6,7 @@ import subprocess
 import click
 
 from tms_cli import session
+from tms_cli.reasons import NoBrowser
 from tms_reason.errors import TmsError
 from tms_ur import address
 
@@ -37,5 +38,5 @@ def command(task_id: int, only_url: bool, as_json: bool) -> None:
         return
     browser = next(filter(None, map(shutil.which, BROWSERS)), None)
     if browser is None:
-        raise TmsError(f"there is no chromium on this PC: open {url} in another browser", "NO_BROWSER")
+        raise TmsError(NoBrowser(url))
     subprocess.run([browser, "--kiosk", "--no-first-run", "--disable-background-networking", url], check=False)

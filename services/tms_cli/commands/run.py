@@ -10,9 +10,11 @@ import click
 
 from tms_cli import live, session, words
 from tms_cli.commands.runs import has_ended, recent
-from tms_cli.words import say, state, what_next
+from tms_cli.reasons import SchedulerForgot, SchedulerQuiet
+from tms_cli.words import say, state
 from tms_reason import wire
 from tms_reason.errors import TmsError
+from tms_reason.reason import Reason
 from tms_runtime.reasons import NotStored
 
 if TYPE_CHECKING:
@@ -127,7 +129,7 @@ class Runner:
     def _look_after_scheduler(self) -> None:
         """A scheduler that was killed never sends a result."""
         if time.monotonic() - self._heard_at > SILENT:
-            what = f"has said nothing for {SILENT:.0f} s"
+            lost: Reason = SchedulerQuiet(SILENT, self.view.run_id)
         elif self._heard_at - self._listed_at > FORGOTTEN / 2 and not self._asked_again:
             self._asked_again = True
             self._peer.ask_again(self._call)
@@ -136,14 +138,10 @@ class Runner:
             self._told = self._in_history()
             if self._told is not None:
                 return
-            what = "was restarted and does not know the run any more"
+            lost = SchedulerForgot(self.view.run_id)
         else:
             return
-        raise TmsError(
-            f"the scheduler {what} (run {self.view.run_id or 'without id'}): look at the machine, then at "
-            f"`tms status` and `tms logs tms:ts`",
-            "SCHEDULER_LOST",
-        )
+        raise TmsError(lost, "SCHEDULER_LOST")
 
     def _over(self) -> bool:
         return self._call.outcome is not None or self._told is not None
@@ -228,8 +226,7 @@ def _why(end: End) -> str:
         return say("run {run} was cancelled and its machines were seen to stand still", run=end.run_id)
     code = f" ({end.error_code})" if end.error_code else ""
     reason = words.with_advice(end.error_msg) or say("no reason given: see `tms logs tms:ts`")
-    hint = what_next(end.error_code)
-    return f"{state(end.outcome)}{code}: {reason}" + (f"\n  {hint}" if hint else "")
+    return f"{state(end.outcome)}{code}: {reason}"
 
 
 @click.command()

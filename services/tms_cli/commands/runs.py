@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tms_cli import live, session, words
+from tms_cli.reasons import ManyRuns, RunUnknown
 from tms_cli.words import padded, say, state
 from tms_reason.errors import TmsError
 
@@ -46,10 +47,9 @@ def find_run(runs: "list[Run]", word: str) -> "Run":
     else:
         hits = [run for run in runs if run.run_id == word] or [run for run in runs if run.run_id.startswith(word)]
     if not hits:
-        raise TmsError(f"there is no run '{word}': `tms runs` lists them", "RUN_MISSING")
+        raise TmsError(RunUnknown(word), "RUN_MISSING")
     if len(hits) > 1:
-        some = ", ".join(run.run_id for run in hits[:4])
-        raise TmsError(f"'{word}' fits {len(hits)} runs ({some}...): give more of the id", "RUN_AMBIGUOUS")
+        raise TmsError(ManyRuns(word, len(hits), tuple(run.run_id for run in hits[:4])), "RUN_AMBIGUOUS")
     return hits[0]
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tms_cli import session, words
+from tms_cli.reasons import SensingSilent
 from tms_cli.replay.verb import replay
 from tms_cli.words import Group, say
 from tms_reason.errors import TmsError
@@ -61,8 +62,7 @@ def _inputs() -> "list[InputState]":
     with session.ros() as node:
         heard = session.latched(node, InputStates, "/tms/sp/inputs")
     if heard is None:
-        text = "tms:sp says nothing: is `sp` under services: of the site file, and does `tms ps` show it running?"
-        raise TmsError(text, "NO_ANSWER")
+        raise TmsError(SensingSilent(), "NO_ANSWER")
     return list(heard.inputs)
 
 

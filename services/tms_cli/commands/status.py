@@ -2,10 +2,13 @@
 
 import click
 
-from tms_cli import mesh, session, words
+from tms_cli import session, words
 from tms_cli.words import say
 from tms_config.processes import table
 from tms_host.supervisor import Supervisor
+from tms_reason.reason import Foreign
+from tms_reason.texts import text
+from tms_runtime import metrics
 
 
 @click.command()
@@ -23,7 +26,9 @@ def command(ctx: click.Context, as_json: bool) -> None:
     shown = ("RUNNING", "FATAL")
     rows = [row for row in table(site) if (row.full in states and row.autostart) or states.get(row.full) in shown]
     reasons = {
-        row.full: (mesh.unready(row) if states.get(row.full) == "RUNNING" else states.get(row.full, "UNKNOWN"))
+        row.full: metrics.unready(row)
+        if states.get(row.full) == "RUNNING"
+        else Foreign(states.get(row.full, "UNKNOWN"))
         for row in rows
         if row.ours
     }
@@ -33,10 +38,10 @@ def command(ctx: click.Context, as_json: bool) -> None:
             {
                 "site": site.name,
                 "ready": not bad,
-                "processes": {name: why and words.english(why) for name, why in reasons.items()},
+                "processes": {name: why and text(why, "en") for name, why in reasons.items()},
             }
         )
     else:
         for name, reason in reasons.items():
-            click.echo(f"{name:42} {words.reason(reason or '') or say('ready')}")
+            click.echo(f"{name:42} {say('ready') if reason is None else words.sentence(reason)}")
     ctx.exit(1 if bad else 0)

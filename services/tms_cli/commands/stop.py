@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tms_cli import live, session, words
+from tms_cli.reasons import MachineUnknown
 from tms_cli.words import say
 from tms_machine.reasons import SoftwareStop
 from tms_reason.errors import ConfigError, RosError
@@ -85,7 +86,7 @@ def command(ctx: click.Context, machine: str | None, as_json: bool) -> None:
     """
     machines = list(session.site().file.machines)
     if machine is not None and machine not in machines:
-        raise ConfigError(f"the site has no machine '{machine}' (there: {', '.join(machines) or 'none'})")
+        raise ConfigError(MachineUnknown(machine, tuple(machines)))
     with session.ros() as node:
         receipts = stop_all(node, machines if machine is None else [machine])
     if as_json:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tms_cli import live, session
+from tms_cli.reasons import InTaskFile, NoTaskFile, TaskUnknown
 from tms_cli.words import Group, say
 from tms_reason.errors import TaskError, TmsError
 
@@ -40,7 +41,7 @@ def read(file: str) -> str:
 
     path = Path(file)
     if path.exists() and not path.is_file():
-        raise TaskError(f"{file}: is {'a folder' if path.is_dir() else 'no regular file'}: give a task's XML file")
+        raise TaskError(NoTaskFile(file), TaskError.code)
     return task_text.read_file(path)
 
 
@@ -88,7 +89,7 @@ def store(node: "Ros", file: str, description: str) -> "AddTask.Response":
     except TmsError as error:
         if error.code != TaskError.code:
             raise
-        raise TaskError(f"{file}: {error}") from error
+        raise TaskError(InTaskFile(file, error.reason), TaskError.code) from error
 
 
 @command.command("list")
@@ -146,7 +147,7 @@ def number(what: str) -> int | None:
     if not (what.isascii() and what.isdigit()):
         return None
     if not 0 < int(what[:20]) < 2**31:
-        raise TaskError(f"there is no task {what}: `tms task list` shows the numbers", "NO_TASK")
+        raise TaskError(TaskUnknown(what), "NO_TASK")
     return int(what)
 
 

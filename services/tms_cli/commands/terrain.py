@@ -7,6 +7,7 @@ import click
 
 from tms_cli import session
 from tms_cli.open_store import opened
+from tms_cli.reasons import NameTaken
 from tms_cli.words import Group
 from tms_reason.errors import TmsError
 
@@ -118,7 +119,7 @@ def get(name: str, file: Path, as_json: bool) -> None:
         with file.open("xb") as new:
             new.write(data)
     except OSError as error:
-        raise TmsError(f"{file}: cannot be written ({error.strerror}): choose another name", "NO_FILE") from error
+        raise TmsError(NameTaken(str(file), str(error.strerror)), "NO_FILE") from error
     if as_json:
         session.show_json({**_as_dict(found), "file": str(file)})
     else:

@@ -5,6 +5,7 @@ import os
 import click
 
 from tms_cli import mesh, session
+from tms_cli.reasons import NoPcs
 from tms_cli.words import say
 from tms_config.config import Site
 from tms_config.processes import here
@@ -29,7 +30,7 @@ def command(role: str | None, foreground: bool, no_wait: bool) -> None:
         os.environ["TMS_PC"] = role
     site = session.site()
     if role is not None and not site.file.pcs:
-        raise ConfigError(f"{site.path}: has no pcs:, so this PC runs all of it: leave ROLE away")
+        raise ConfigError(NoPcs(str(site.path)))
     started = mesh.up(site, foreground)
     click.echo(mesh_line(site, started), err=True)
     if not no_wait:

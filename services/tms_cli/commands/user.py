@@ -8,6 +8,7 @@ import click
 import yaml
 
 from tms_cli import session
+from tms_cli.reasons import BadUserName, NoUser, NoUsersKey, ShortPassword
 from tms_cli.words import Group
 from tms_config.yaml_file import parse
 from tms_reason.errors import TmsError
@@ -49,7 +50,7 @@ def add(name: str, role: str, token: bool, file: Path | None, as_json: bool) -> 
     from tms_ur.access import hashed
 
     if not name.replace("_", "").replace("-", "").replace(".", "").isalnum() or len(name) > 64:
-        raise TmsError(f"'{name}' is no user name: letters, digits and _ - . only", "BAD_NAME")
+        raise TmsError(BadUserName(name), "BAD_NAME")
     path = _path(file)
     users = _read(path) if path.exists() else {}
     if token:
@@ -58,7 +59,7 @@ def add(name: str, role: str, token: bool, file: Path | None, as_json: bool) -> 
     else:
         secret = click.prompt("Password", hide_input=True, confirmation_prompt=True, err=True)
         if len(secret) < SHORTEST:
-            raise TmsError(f"a password has {SHORTEST} characters at least", "SHORT_PASSWORD")
+            raise TmsError(ShortPassword(SHORTEST))
         users[name] = {"role": role, "password": hashed(secret)}
     _write(path, users)
     shown = f"{name}:{secret}" if token else None
@@ -106,7 +107,7 @@ def rm(name: str, file: Path | None, as_json: bool) -> None:
     path = _path(file)
     users = _read(path)
     if users.pop(name, None) is None:
-        raise TmsError(f"{path}: there is no user '{name}': `tms user list`", "NO_USER")
+        raise TmsError(NoUser(str(path), name))
     _write(path, users)
     if as_json:
         session.show_json({"removed": name})
@@ -119,7 +120,7 @@ def _path(file: Path | None) -> Path:
         return file
     site = session.site()
     if site.file.console.users is None:
-        raise TmsError(f"{site.path}: console.users names no file: add it, or use --file", "NO_USERS")
+        raise TmsError(NoUsersKey(str(site.path)))
     return site.path.parent / site.file.console.users
 
 

@@ -12,17 +12,18 @@ import psutil
 from tms_cli import mesh
 from tms_cli.drill.plan import RC, RP, SUBTASK, How, Stop
 from tms_cli.drill.stand_ins import GROUP, NICE
+from tms_cli.reasons import NotRunning
 from tms_config.config import Site
 from tms_config.processes import find, table
 from tms_host.supervisor import Supervisor
 from tms_reason.errors import TmsError
 from tms_runtime import metrics
 from tms_runtime.priority import come_first
+from tms_runtime.reasons import PortSilent, ProcessStarting
 
 FROZEN = 2.0  # s
 BACK_LIMIT = 40.0  # s
 LOOK = 0.1  # s
-STARTING = "starting"  # what a process says of itself until it has begun
 
 
 class Hits:
@@ -50,7 +51,7 @@ class Hits:
         running = self._running()
         missing = [name for name in names if not running.get(name)]
         if missing:
-            raise TmsError(f"{', '.join(missing)} does not run: see `tms ps`")
+            raise TmsError(NotRunning(tuple(missing)))
         return {name: running[name] for name in names}
 
     def everything(self) -> list[int]:
@@ -100,8 +101,8 @@ class Hits:
     def _works(self, name: str) -> bool:
         """A machine's process works when it says anything: not the process may be what keeps the machine from it."""
         row = find(self._site, name)
-        reason = mesh.unready(row) if row.ours else None
-        return reason is None or (row.machine is not None and reason not in (metrics.SILENT, STARTING))
+        reason = metrics.unready(row) if row.ours else None
+        return reason is None or (row.machine is not None and reason not in (PortSilent(name), ProcessStarting()))
 
 
 def _signal(number: signal.Signals, pids: Sequence[int]) -> None:

@@ -17,10 +17,11 @@ from tms_cli.drill.plan import NONE, TS, How, Stop, Trial
 from tms_cli.drill.record import Recording
 from tms_cli.drill.verdict import AFTER, BY_ITSELF, GOES_ON, HUNG, UNPROVEN, Row, Seen, judge
 from tms_cli.drill.work import Work
-from tms_cli.words import english
+from tms_cli.reasons import DoesNotMove, NobodySays
 from tms_config.config import Site
 from tms_machine.reasons import SoftwareStop
 from tms_rc.standstill import StandStill
+from tms_reason import wire
 from tms_reason.errors import TmsError
 from tms_reason.wire import to_line
 from tms_ros.node import Ros
@@ -79,7 +80,7 @@ class Hand:
             self.work.end()
             self._press()
             time.sleep(PRESSED)
-        raise TmsError(f"its run does not move it: {english(self.work.reason()) or 'nobody says why'}")
+        raise TmsError(DoesNotMove(wire.of(self.work.reason()) or NobodySays()))
 
     def moment(self, trial: Trial) -> float:
         """When to hit: at the trial's delay after the begin of a motion."""

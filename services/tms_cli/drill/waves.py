@@ -14,6 +14,7 @@ from tms_cli.drill.report import line
 from tms_cli.drill.stand_ins import NICE, StandIns
 from tms_cli.drill.trials import LEAD, Hand, Struck
 from tms_cli.drill.verdict import Row, empty
+from tms_cli.reasons import StandInsEnded
 from tms_config.config import Site
 from tms_reason.errors import TmsError
 from tms_ros.node import Ros
@@ -68,7 +69,7 @@ class Waves:
                 click.echo("too many trials prove nothing, the rest is left out: is this PC busy?", err=True)
                 break
             if dead := self._stand_ins.dead():
-                raise TmsError(f"{', '.join(dead)} has ended: see {self._site.state}/log")
+                raise TmsError(StandInsEnded(tuple(dead), f"{self._site.state}/log"))
         left = [trial for wave in todo for trial in wave]
         proved_nothing = [(row.machine, row.stop, row.fault) for row in self.rows if row.void]
         untried = [trial for trial in left if (trial.machine, trial.stop.name, trial.fault) not in proved_nothing]

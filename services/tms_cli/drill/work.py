@@ -14,6 +14,7 @@ from tms_cli.commands.runs import has_ended, recent
 from tms_cli.drill import tasks
 from tms_cli.drill.plan import fault_of
 from tms_cli.drill.verdict import INTERRUPTED
+from tms_cli.reasons import RunDoesNotEnd
 from tms_config.config import Site
 from tms_reason.errors import TmsError
 from tms_ros.client import Call
@@ -101,7 +102,7 @@ class Work:
         self.cancel()
         while self._call is not None and self.outcome() is None:
             if time.monotonic() > deadline:
-                raise TmsError(f"run {self._run} does not end")
+                raise TmsError(RunDoesNotEnd(str(self._run)))
             time.sleep(LOOK)
         if self._recorded() == INTERRUPTED:
             session.call(self._node, CancelRun, "/tms/abandon_run", run_id=self._run)

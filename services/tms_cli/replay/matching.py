@@ -7,10 +7,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from tms_cli.reasons import EmptyRecording, NoSuchTopic, NothingToPlay
 from tms_cli.replay.recording import Track
 from tms_config.config import Site
 from tms_config.models import Border
 from tms_config.sensing import Input, sensing_path
+from tms_config.validation import Wrong
 from tms_reason.errors import TmsError
 from tms_sp.node import message_class
 
@@ -49,8 +51,8 @@ def match(tracks: Sequence[Track], inputs: Mapping[str, Input], site: Site, want
             text = f"the recording does not tell how {track.type} was laid out: it is read as installed here"
             found.doubts[track.topic] = text
     if not found.played:
-        told = "; ".join(f"{topic}: {why}" for topic, why in found.skipped.items()) or "it holds no topics"
-        raise TmsError(f"nothing to play: {told}", "NOTHING_TO_PLAY")
+        told = tuple(f"{topic}: {why}" for topic, why in found.skipped.items())
+        raise TmsError(NothingToPlay(told) if told else EmptyRecording(), "NOTHING_TO_PLAY")
     return found
 
 
@@ -58,7 +60,7 @@ def _chosen(tracks: Sequence[Track], wanted: Sequence[str]) -> Sequence[Track]:
     there = {track.topic for track in tracks}
     missing = [topic for topic in map(_full, wanted) if topic not in there]
     if missing:
-        raise TmsError(f"no {', '.join(missing)} in the recording (there: {', '.join(sorted(there))})", "BAD_TOPIC")
+        raise TmsError(NoSuchTopic(tuple(missing), tuple(sorted(there))), "BAD_TOPIC")
     return [track for track in tracks if not wanted or track.topic in map(_full, wanted)]
 
 
@@ -71,7 +73,7 @@ def _why_not(track: Track, takers: Sequence[tuple[str, Input]], machines: Mappin
         return f"recorded as {track.type}, but " + ", ".join(f"input {name} takes {one.type}" for name, one in takers)
     try:
         message_class(track.type)
-    except LookupError as error:
+    except Wrong as error:
         return str(error)
     here = built_hash(track.type)
     if track.hash and here and track.hash != here:

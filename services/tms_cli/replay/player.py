@@ -5,6 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from tms_cli.reasons import NobodyListens, TwoSources
 from tms_cli.replay.matching import Matches
 from tms_cli.replay.pace import Pace
 from tms_cli.replay.recording import Recording, Track
@@ -48,13 +49,11 @@ class Player:
         deadline = time.monotonic() + READER_LIMIT
         while deaf := [topic for topic, one in self._publishers.items() if not one.get_subscription_count()]:
             if time.monotonic() > deadline:
-                text = f"tms:sp does not hear {', '.join(deaf)}: does it run (`tms ps`) with this sensing.yaml?"
-                raise TmsError(text, "NO_READER")
+                raise TmsError(NobodyListens(tuple(deaf)), "NO_READER")
             time.sleep(0.02)
         others = [topic for topic in self._publishers if ros.node.count_publishers(topic) > 1]
         if others:
-            text = f"somebody publishes {', '.join(others)} now: stop that, or choose others with --topics"
-            raise TmsError(text, "TWO_SOURCES")
+            raise TmsError(TwoSources(tuple(others)))
 
     def play(
         self, recording: Recording, tracks: list[Track], span: tuple[int, int], pace: Pace, tick: Callable[[int], None]

@@ -13,6 +13,7 @@ from rosbags.rosbag2 import Reader, ReaderError
 from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
 from rosbags.typesys.base import TypesysError
 
+from tms_cli.reasons import BadBag
 from tms_reason.errors import TmsError
 
 # What the reader raises for files that are damaged: it believes the lengths and texts that it finds.
@@ -87,7 +88,7 @@ class Recording:
 
 
 def _bad(text: str) -> TmsError:
-    return TmsError(text, "BAD_BAG")
+    return TmsError(BadBag(text))
 
 
 def _check_kind(path: Path) -> None:

@@ -3,6 +3,7 @@
 import struct
 from typing import Any
 
+from tms_cli.reasons import StampFixed
 from tms_config.sensing import Input
 from tms_reason.errors import TmsError
 from tms_runtime.packing import pack, unpack
@@ -20,7 +21,7 @@ class Stamps:
         """Finds the stamp that the input reads.
 
         Raises:
-            ValueError: the message has no such field.
+            Wrong: the message has no such field.
         """
         fields = message_class.get_fields_and_field_types()
         self.path = stamp_path(given, fields)
@@ -59,7 +60,7 @@ class Stamps:
         else:
             *parents, name = self.path.split(".")
             if "[" in name:
-                raise TmsError(f"the stamp {self.path} cannot be replaced: play with --keep-stamps", "BAD_STAMP")
+                raise TmsError(StampFixed(self.path), "BAD_STAMP")
             owner = message
             for part in parents:
                 owner = getattr(owner, part)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from tms_cli import session
+from tms_cli.reasons import BeginsLate
 from tms_reason.errors import TmsError
 
 if TYPE_CHECKING:
@@ -81,8 +82,7 @@ def _span(recording: "Recording", start: float, duration: float | None) -> tuple
     first, last = recording.span
     begin = first + round(start * SECOND)
     if begin > last:
-        text = f"{recording.path} is {(last - first) / SECOND:.1f} s long, so nothing begins at {start:g} s"
-        raise TmsError(text, "BAD_START")
+        raise TmsError(BeginsLate(str(recording.path), (last - first) / SECOND, start), "BAD_START")
     return begin, last + 1 if duration is None else min(last + 1, begin + round(duration * SECOND))
 
 

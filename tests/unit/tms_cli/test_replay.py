@@ -191,7 +191,7 @@ def test_a_type_that_nobody_knows(replay: Callable[..., Result], tmp_path: Path)
     (tmp_path / "sensing.yaml").write_text(yaml.safe_dump({"inputs": given}))
     rows = [row("/odd", "no_such_msgs/msg/Odd", b"\0\1\0\0")]
     done = replay(record(tmp_path / "bag", rows, StoragePlugin.SQLITE3))
-    assert "no message type no_such_msgs/msg/Odd: is its package built?" in str(done.exception)
+    assert "there is no message type no_such_msgs/msg/Odd" in str(done.exception)
 
 
 def test_a_recording_without_hashes_is_told(tmp_path: Path, replay: Callable[..., Result]) -> None:

@@ -10,6 +10,7 @@ from tms_host import facts
 from tms_host.diagnostics import ERROR, OK, STALE, WARN, judge
 from tms_host.facts import Clock, Facts
 from tms_host.supervisor import Running
+from tms_machine.reasons import WaitingFor
 
 NEVER = 2**22 + 1  # above pid_max
 
@@ -67,10 +68,10 @@ def test_what_diagnostics_say_of_a_process() -> None:
     subtask = Process("zx200", "dig", "machine", "m", 1, "", autostart=False)
     service = Process("tms", "ts", "cps", "m", 1, "")
     assert judge(row("RUNNING"), service, None) == (OK, "ready")
-    assert judge(row("RUNNING"), service, "tms:db is not there") == (WARN, "tms:db is not there")
+    assert judge(row("RUNNING"), service, WaitingFor("tms:db")) == (WARN, "waiting for tms:db")
     assert judge(row("RUNNING"), service, None, 4.2) == (
         ERROR,
-        "no pulse for 4 s: the host agent keeps the machine stopped",
+        "no pulse for 4.2 s: the host agent keeps the machine stopped",
     )
     assert judge(row("STOPPED"), subtask, None)[0] == OK
     assert judge(row("STOPPED"), service, None)[0] == STALE

@@ -113,7 +113,7 @@ def test_a_process_that_does_not_end_is_told(site: Site, monkeypatch: pytest.Mon
     monkeypatch.setattr(module, "LOOK", 0.0)
     monkeypatch.setattr(module, "END_LIMIT", 0.02)
     supervisor = Scripted(site, "STOPPING")
-    with pytest.raises(TmsError, match="'zx200:rc' was told to end"):
+    with pytest.raises(TmsError, match="zx200:rc was told to end"):
         supervisor.control("start", "zx200:rc")
     assert supervisor.did == []
 

@@ -11,16 +11,21 @@ from typing import Any
 import pytest
 from prometheus_client import CollectorRegistry, Gauge
 
+from tms_config.processes import Process
+from tms_machine.reasons import Busy
+from tms_reason import wire
 from tms_reason.errors import ConfigError
 from tms_runtime import metrics
 
 ADDRESS, PORT = "127.0.0.7", 29411
+ROW = Process("tms", "ts", "cps", "m", PORT, "", address=ADDRESS)
+BUSY = Busy("tms:ts")
 WHOLE = b"GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n"
 
 
 @pytest.fixture
 def health() -> Iterator[metrics.Health]:
-    made = metrics.Health(ADDRESS, PORT, unready=lambda: "busy", registry=CollectorRegistry())
+    made = metrics.Health(ADDRESS, PORT, unready=lambda: BUSY, registry=CollectorRegistry())
     yield made
     made.close()
 
@@ -54,16 +59,16 @@ def test_it_opens_without_asking_a_name_server(monkeypatch: pytest.MonkeyPatch) 
 
     for name in ("getfqdn", "gethostbyaddr", "gethostbyname"):
         monkeypatch.setattr(socket, name, ask_name)
-    health = metrics.Health(ADDRESS, PORT, unready=lambda: "busy")
+    health = metrics.Health(ADDRESS, PORT, unready=lambda: BUSY)
     try:
-        assert metrics.unready(ADDRESS, PORT) == "busy"
+        assert metrics.unready(ROW) == BUSY
     finally:
         health.close()
 
 
 def test_what_each_path_answers(health: metrics.Health) -> None:
     assert ask(WHOLE).startswith(b"HTTP/1.0 200 OK\r\nContent-Type: text/plain\r\nContent-Length: 3\r\n\r\nok\n")
-    assert ask(b"GET /readyz HTTP/1.1\r\n\r\n").endswith(b"busy\n")
+    assert ask(b"GET /readyz HTTP/1.1\r\n\r\n").endswith(wire.to_line(BUSY).encode() + b"\n")
     assert b" 404 " in ask(b"GET /other HTTP/1.1\r\n\r\n")
     assert b" 200 OK" in ask(b"GET /metrics HTTP/1.1\r\n\r\n")
 
@@ -77,7 +82,7 @@ def test_it_stays_in_reach_while_others_hang(health: metrics.Health) -> None:
             client.sendall(b"GET /healthz HTT")
         for _ in range(20):
             began = time.monotonic()
-            assert metrics.unready(ADDRESS, PORT, seconds=2.0) == "busy"
+            assert metrics.unready(ROW, seconds=2.0) == BUSY
             assert time.monotonic() - began < 2.0
         assert threading.active_count() == threads
         assert everything(hanging[0]) == b""  # the oldest gave way
@@ -140,7 +145,7 @@ def test_a_broken_request_is_answered_quietly(
     caplog: pytest.LogCaptureFixture,
 ) -> None:  # fmt: skip
     assert ask(data).startswith(answer)
-    assert metrics.unready(ADDRESS, PORT) == "busy"
+    assert metrics.unready(ROW) == BUSY
     assert capfd.readouterr() == ("", "") and not caplog.records
 
 
@@ -158,7 +163,7 @@ def test_a_request_without_end_is_cut(
             pass  # that is what should happen
     with dial() as client:
         client.sendall(b"GET /hea")
-    assert metrics.unready(ADDRESS, PORT) == "busy"
+    assert metrics.unready(ROW) == BUSY
     assert capfd.readouterr() == ("", "") and not caplog.records
 
 

@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from tms_cli.japanese import STATES
 from tms_reason import remedies
+from tms_reason.texts import translated
+from tms_ts.run_states import STATES
 from tms_ur.api import STATIC
 from unit.tms_ur.fakes import Client, FakeSiteClient, app
 
@@ -61,7 +62,7 @@ def test_actions_of_the_console_are_those_of_reasons() -> None:
 
 
 def test_a_run_has_the_states_and_words_of_the_command_line() -> None:
-    wanted = {state: word for state, word in STATES.items() if state != "idle"}  # which none is
+    wanted = {state: translated(state, "ja") for state in STATES}
     words = table()["ja"]
     assert {state: words.get(state) for state in wanted} == wanted
 
