@@ -43,8 +43,8 @@ def test_its_texts(kind: type[Reason]) -> None:
         if re.sub(r"{[a-z_0-9]+}", "", template).strip(" :;,.()"):
             assert japanese != template, f"{kind.code}: no Japanese for {template!r}"
         assert names(japanese) == names(template), f"{kind.code}: {japanese!r} has other arguments than {template!r}"
-    command = kind.remedy.command if kind.remedy else ""
-    used = names(kind.text) | names(kind.details) | names(command)
+    helps = kind.remedy.command + kind.remedy.text if kind.remedy else ""
+    used = names(kind.text) | names(kind.details) | names(helps)
     assert used == arguments(kind), f"{kind.code}: declared {sorted(arguments(kind))}, used {sorted(used)}"
 
 

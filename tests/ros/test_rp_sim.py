@@ -22,6 +22,7 @@ from conftest import rearm
 from tms_config import environment
 from tms_config.config import load_site
 from tms_config.reasons import AboveLimit
+from tms_machine.reasons import MachineLatched
 from tms_rc.memory import Memory
 from tms_rc.reasons import PressedByOthers
 from tms_reason import wire
@@ -150,7 +151,14 @@ def rig(tmp_path_factory: pytest.TempPathFactory, domain: int, first_port: int) 
 @pytest.fixture
 def machine(rig: Rig) -> Rig:
     """The machine in its start pose."""
-    rig.until(lambda: rig.end(rig.change_pose(*START)) is Outcome.SUCCEEDED, "start pose")
+
+    def there() -> bool:
+        outcome = rig.end(rig.change_pose(*START))
+        if rig.reason(MachineLatched):  # the test before this one has failed
+            rearm(rig.ros, MACHINE)
+        return outcome is Outcome.SUCCEEDED
+
+    rig.until(there, "start pose")
     rig.said.clear()
     return rig
 

@@ -98,7 +98,10 @@ class Sensing(Mesh):
         return publisher.publish
 
     def refused(self, name: str, code: str) -> None:
-        self.until(lambda: self.inputs[name].last_refusal.startswith(code), f"{code} of {name}")
+        try:
+            self.until(lambda: self.inputs[name].last_refusal.startswith(code), f"{code} of {name}")
+        except pytest.fail.Exception as error:
+            raise AssertionError(f"it said {self.inputs[name].last_refusal}") from error
 
 
 @pytest.fixture
@@ -140,7 +143,7 @@ def bad_messages_are_told_and_the_last_good_value_stays(sensing: Sensing) -> Non
     for record, x, code in (
         ("target", float("nan"), "VALUE_NOT_FINITE"),
         ("nowhere", 1.0, "RECORD_MISSING"),
-        ("fixed", 1.0, "STATIC_RECORD"),
+        ("fixed", 1.0, "STATIC_FROM_SENSING"),
         ("", 1.0, "NAMES_NO_RECORD"),
     ):
         dig(ExcavateSimple(model_name="zx200", record_name=record, x=x))
@@ -149,7 +152,7 @@ def bad_messages_are_told_and_the_last_good_value_stays(sensing: Sensing) -> Non
     sensing.refused("follow_waypoints", "SIZES_DIFFER")
     one = {axis: [1.0] for axis in ("x", "y", "z", "qx", "qy", "qz", "qw")}
     path(FollowWaypoints(model_name="zx200", record_name="target", **one))
-    sensing.refused("follow_waypoints", "BAD_RECORD")
+    sensing.refused("follow_waypoints", "OTHER_KIND")
     assert (sensing.values("zx200/target"), sensing.values("zx200/path")) == before
 
 

@@ -25,6 +25,7 @@ from tms_msg_ts.srv import CancelRun
 from conftest import PROJECT, Mesh, claimed_domain, node_in, ports_of, running, site_data, wait_until
 from power_cut import Disk, family, own_disk
 from tms_ros.node import Ros
+from words import words
 
 pytestmark = pytest.mark.system
 CUTS = int(os.environ.get("TMS_POWER_CUTS", "3"))
@@ -173,7 +174,7 @@ def latch(mesh: Mesh) -> str:
     folder = Path(mesh.state, "rc")
     if (folder / "zx200.armed").exists():
         return ""
-    return str(json.loads((folder / "zx200.latched").read_text())["cause"])
+    return words(str(json.loads((folder / "zx200.latched").read_text())["cause"]))
 
 
 def test_a_disk_that_stalls_stops_nothing_and_loses_nothing(mesh: Mesh, disk: Disk) -> None:

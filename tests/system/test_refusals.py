@@ -56,7 +56,7 @@ def test_preflight_refuses(mesh: Mesh, tmp_path: Path, text: str, said: str) -> 
     [
         (["trajectory=1", "swing_joint=0.0"], "boom_joint"),
         (["position_with_angle=1", "x='far'", "y=0.0", "z=0.0", "theta_w=1.0"], "x: "),
-        (["position_with_angle=1", "x=50.0", "y=0.0", "z=0.0", "theta_w=1.0"], "OUT_OF_REACH"),
+        (["position_with_angle=1", "x=50.0", "y=0.0", "z=0.0", "theta_w=1.0"], "m too far"),
         (["trajectory=1", "swing_joint=0.0", "boom_joint=0.9", "arm_joint=2.0", "bucket_joint=0.0",
           "bucket_end_joint=0.0"], "boom_joint"),
     ],

@@ -94,7 +94,7 @@ def test_an_unreadable_file_of_the_console(mesh, tms, site) -> None:
     (site / "audit.db").write_bytes(b"no database" * 1000)
     result = tms(audit.verify)
     assert isinstance(result.exception, TmsError)
-    assert "audit.db: cannot be read" in str(result.exception)
+    assert "audit.db cannot be read" in str(result.exception)
 
 
 def test_the_newest_are_listed(mesh, tms) -> None:

@@ -169,15 +169,15 @@ def test_a_report_that_cannot_be_written_is_told_before_anything_is_killed(
 ) -> None:
     monkeypatch.setattr(drill, "drill", lambda *_: pytest.fail("it began"))
     end = tms(drill.command, "--report", ready / "out" / "drill.md")
-    assert "its folder is not there" in str(end.exception)
+    assert "drill.md cannot be written" in str(end.exception)
 
 
 @pytest.mark.parametrize(
     ("change", "told"),
     [
-        ("backend: opera", "only for backend 'sim'"),
-        ("pcs: {cps: {address: 127.0.0.1}}", "take a site without pcs:"),
-        ("machines: {}", "needs at least one machine"),
+        ("backend: opera", "Choose a site with backend 'sim'"),
+        ("pcs: {cps: {address: 127.0.0.1}}", "and no pcs:"),
+        ("machines: {}", "at least one machine"),
     ],
 )
 def test_a_site_that_must_not_be_drilled(

@@ -56,11 +56,15 @@ def test_what_the_system_refuses_is_one_line_and_exit_code_1() -> None:
     end = tms("user", "add", "logger", "--role", "viewer", "--token", "--file", "/proc/users.yaml")  # also as root
     assert (end.returncode, end.stdout) == (1, "")
     (line,) = end.stderr.splitlines()
-    assert line.startswith("tms: /proc/users.new: ") and "choose another place" in line
+    assert line.startswith("tms: /proc/users.new: ") and "Choose another place" in line
 
 
 @pytest.mark.parametrize(
-    ("error", "told"), [(TimeoutError("timed out"), "timed out (`tms status`"), (OSError(), "OSError (`tms status`")]
+    ("error", "told"),
+    [
+        (TimeoutError("timed out"), "timed out; See what is wrong"),
+        (OSError(), "OSError; See what is wrong"),
+    ],
 )
 def test_what_the_system_refuses_without_naming_a_file(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], error: OSError, told: str

@@ -264,7 +264,7 @@ def test_what_is_no_bag(replay: Callable[..., Result], tmp_path: Path) -> None:
 def test_wishes_that_cannot_be_met(replay: Callable[..., Result], ros: FakeRos, tmp_path: Path) -> None:
     bag = record(tmp_path / "bag", [odometry(number) for number in range(10)], StoragePlugin.SQLITE3)
     assert "no /other in the recording (there: /odometry)" in str(replay(bag, "--topics", "other").exception)
-    assert "is 0.9 s long, so nothing begins at 60 s" in str(replay(bag, "--start", "60").exception)
+    assert "is 0.9 s long, so nothing begins at 60.0 s" in str(replay(bag, "--start", "60").exception)
     ros.others = 2
     assert "somebody publishes /odometry now" in str(replay(bag).exception)
     for words in (("--speed", "0"), ("--loop", "0"), ("--duration", "-1"), ("--start", "-1")):
@@ -275,7 +275,7 @@ def test_nobody_hears(replay: Callable[..., Result], tmp_path: Path, monkeypatch
     bag = record(tmp_path / "bag", [odometry(0)], StoragePlugin.SQLITE3)
     monkeypatch.setattr(Publisher, "get_subscription_count", lambda _: 0)
     monkeypatch.setattr(player, "READER_LIMIT", 0.0)
-    assert "tms:sp does not hear /odometry: does it run (`tms ps`)" in str(replay(bag).exception)
+    assert "the sensing module does not listen to /odometry; See whether tms:sp runs" in str(replay(bag).exception)
 
 
 def test_ctrl_c_stops_and_says_how_far_it_came(

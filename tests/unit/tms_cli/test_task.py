@@ -33,7 +33,7 @@ def test_files_that_are_no_task_are_told_in_one_line(tmp_path: Path, mesh, tms) 
         huge.truncate(100 * 2**20)  # sparse: reading it would be noticed
     for name, says in [
         ("missing.xml", "cannot be read"),
-        ("", "is a folder"),
+        ("", "is no file"),
         ("latin.xml", "is not UTF-8"),
         ("huge.xml", "100.0 MB"),
     ]:
@@ -45,7 +45,7 @@ def test_files_that_are_no_task_are_told_in_one_line(tmp_path: Path, mesh, tms) 
 
 
 def test_a_pipe_or_device_is_no_task() -> None:
-    with pytest.raises(TaskError, match="no regular file"):
+    with pytest.raises(TaskError, match="/dev/zero is no file"):
         task.read("/dev/zero")
 
 

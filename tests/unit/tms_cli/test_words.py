@@ -20,7 +20,7 @@ from tms_reason import texts
 from tms_ts.run_states import STATES
 
 SERVICES = Path(words.__file__).parents[1]
-NOT_DAILY = ("drill", "user.py", "palette.py", "panel.py", "prometheus.py", "monitoring.py",
+NOT_DAILY = ("drill", "user.py", "palette.py", "panel.py", "prometheus.py", "monitoring.py", "reasons.py",
              "terrain.py", "replay", "open_store.py")  # fmt: skip
 KEPT = {  # what is stored, what is found in a task (also in JSON), and parts of errors
     "software stop by an operator", "One loading cycle of the zx200",
