@@ -6,6 +6,7 @@ import threading
 from tms_if.client import Client
 from tms_if.ends import Ends
 from tms_if.names import allowed
+from tms_if.reasons import InterfacePortTaken
 from tms_reason.errors import ConfigError
 from tms_runtime.app import App
 
@@ -19,10 +20,7 @@ def start(app: App) -> None:
     try:
         server = socket.create_server((settings.bind, settings.port), backlog=MOST)
     except OSError as error:
-        raise ConfigError(
-            f"{settings.bind}:{settings.port} cannot be listened on ({error.strerror}): stop the other program, "
-            "or change services.if.port or .bind in the site file"
-        ) from error
+        raise ConfigError(InterfacePortTaken(f"{settings.bind}:{settings.port}", str(error.strerror))) from error
     bridge = Endpoint(app, server)
     threading.Thread(target=bridge.accept, name="accept", daemon=True).start()
     app.on_stop(bridge.close)

@@ -17,13 +17,11 @@ class TmsError(Exception):
 
     code = "FAILED"
 
-    def __init__(self, reason: Reason | str, code: str | None = None) -> None:
-        super().__init__(sentence(reason, "en") if isinstance(reason, Reason) else reason)
-        self.reason = reason if isinstance(reason, Reason) else Foreign(reason)
-        if isinstance(reason, Reason):
-            self.code = reason.code
-        if code is not None:
-            self.code = code
+    def __init__(self, reason: Reason, code: str = "") -> None:
+        """`code`: of a service's answer, where it is another one than the reason's."""
+        super().__init__(sentence(reason, "en"))
+        self.reason = reason
+        self.code = code or (type(self).code if isinstance(reason, Foreign) else reason.code)
 
 
 class ConfigError(TmsError):
@@ -51,17 +49,10 @@ class DbError(TmsError):
 
 
 class SubtaskFailed(TmsError):
-    """A subtask cannot do what its goal asks: `SubtaskFailed(reason)`.
+    """A subtask cannot do what its goal asks; a text of its author is shown as it is, in every language."""
 
-    Still written `SubtaskFailed(code, message)` where a subtask has no reasons of its own yet.
-    """
-
-    def __init__(self, reason: Reason | str, message: str | None = None) -> None:
-        if isinstance(reason, Reason):
-            super().__init__(reason)
-        else:
-            super().__init__(message or "", reason)
-            self.reason = Foreign(f"{reason}: {message or ''}")
+    def __init__(self, reason: Reason | str) -> None:
+        super().__init__(Foreign(reason) if isinstance(reason, str) else reason)
 
     def __str__(self) -> str:
         return f"{self.code}: {self.args[0]}"

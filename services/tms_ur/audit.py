@@ -20,6 +20,7 @@ from tms_msg_db.msg import Event
 from tms_msg_db.srv import ListEvents, WriteJournal
 
 from tms_machine.values import from_parameters, to_parameters
+from tms_reason import wire
 from tms_reason.errors import TmsError
 from tms_ros.interface_types import Reply, Req, ServiceType
 from tms_ros.node import Ros
@@ -197,7 +198,7 @@ class Audit:
         request: Req = request_type(**fields)
         answer = self._ros.call(service_type, name, request)
         if answer.error_code:
-            raise TmsError(answer.error_msg, answer.error_code)
+            raise TmsError(wire.refusal(answer.error_code, answer.error_msg), answer.error_code)
         return answer
 
 

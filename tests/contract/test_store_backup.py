@@ -27,6 +27,7 @@ from tms_db.parameters import Change, Parameters
 from tms_db.tasks import Tasks
 from tms_db.terrain import Terrain
 from tms_reason.errors import DbError, TmsError
+from tms_reason.reason import Foreign
 
 BEGIN = datetime(2026, 1, 31, 6, 0, tzinfo=timezone.utc)
 SEQUENCE = '<root><BehaviorTree ID="old"><AlwaysSuccess/></BehaviorTree></root>'
@@ -251,7 +252,7 @@ def test_a_migration_that_was_cut_off_is_done_again(db: store.Db, monkeypatch: p
     def step(db: store.Db) -> None:
         calls.append("step")
         if len(calls) == 1:
-            raise DbError("away", "STORE_DOWN")
+            raise DbError(Foreign("away"), "STORE_DOWN")
 
     monkeypatch.setattr(schema, "MIGRATIONS", (*schema.MIGRATIONS, schema.Migration("next", step)))
     monkeypatch.setattr(schema, "NEWEST", schema.NEWEST + 1)
@@ -365,7 +366,7 @@ def test_a_backup_that_breaks_leaves_no_file(own_server: Any, tmp_path: Path) ->
 
     def die(_: str) -> None:
         own_server.end(kill=True)
-        raise DbError("the store went away", "STORE_DOWN")
+        raise DbError(Foreign("the store went away"), "STORE_DOWN")
 
     assert refusal(lambda: backup.backup(db, tmp_path / "b.archive", die))[0] == "STORE_DOWN"
     assert [path.name for path in tmp_path.iterdir() if path.name != "store"] == []
@@ -382,7 +383,7 @@ def test_a_restore_that_breaks_leaves_the_database_as_it_was(
 
     def say(text: str) -> None:
         if text.startswith("writing"):
-            raise DbError("the store's disk is full", "STORE_FULL")
+            raise DbError(Foreign("the store's disk is full"), "STORE_FULL")
 
     assert refusal(lambda: backup.restore(shared_db, file, say, drop=True))[0] == "STORE_FULL"
     assert content(shared_db) == before

@@ -10,6 +10,7 @@ from click.testing import CliRunner, Result
 
 from tms_cli import session
 from tms_reason.errors import RosError, TmsError
+from tms_reason.reason import Foreign
 
 
 class FakeMesh:
@@ -25,7 +26,7 @@ class FakeMesh:
         self.asked.append((name, fields))
         service_type.Request(**fields)  # fields and their types fit
         if name not in self.answers:
-            raise RosError(f"service {name} is not there", "NO_SERVER")
+            raise RosError(Foreign(f"service {name} is not there"), "NO_SERVER")
         answer = self.answers[name]
         answer = answer(**fields) if isinstance(answer, Callable) else answer
         if isinstance(answer, TmsError):

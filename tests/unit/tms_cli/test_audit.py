@@ -14,6 +14,7 @@ from tms_cli import session
 from tms_cli.commands import audit
 from tms_machine.values import to_parameters
 from tms_reason.errors import TmsError
+from tms_reason.reason import Foreign
 from tms_ur.audit_chain import Note, Place, tied
 from tms_ur.audit_ledger import Ledger
 
@@ -35,7 +36,7 @@ def database(stored: list[Event]) -> Any:
     def list_events(run_id: str, after: int, limit: int) -> Any:
         assert run_id == "audit"
         found = [event for event in stored if event.number > after][:limit]
-        return ListEvents.Response(events=found) if found else TmsError("there is no run 'audit'", "RUN_MISSING")
+        return ListEvents.Response(events=found) if found else TmsError(Foreign("none"), "RUN_MISSING")
 
     return list_events
 

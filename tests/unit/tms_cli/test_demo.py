@@ -8,6 +8,7 @@ from tms_msg_db.srv import AddTask
 from tms_cli import stored_records
 from tms_cli.commands import demo, run
 from tms_reason.errors import TmsError
+from tms_reason.reason import Foreign
 
 
 @pytest.fixture
@@ -55,7 +56,7 @@ def test_the_steps_and_the_exit_code(steps, tms, monkeypatch, outcome: str, code
 
 def test_a_mesh_that_does_not_come_up_ends_the_demo(steps, tms, monkeypatch) -> None:
     def fails(*_: Any) -> None:
-        raise TmsError("tms:db is not ready after 60 s: no store; see `tms logs tms:db`")
+        raise TmsError(Foreign("tms:db is not ready after 60 s: no store; see `tms logs tms:db`"))
 
     monkeypatch.setattr(demo.mesh, "wait_ready", fails)
     assert "tms logs tms:db" in str(tms(demo.command).exception)

@@ -13,6 +13,7 @@ from tms_cli import record_words
 from tms_cli.commands import param
 from tms_machine.values import from_parameters, to_parameters
 from tms_reason.errors import DbError, TmsError
+from tms_reason.reason import Foreign
 
 
 @pytest.mark.parametrize(
@@ -109,7 +110,7 @@ def test_a_record_without_model_is_written_with_a_slash(mesh, tms) -> None:
 
 
 def test_a_missing_record_is_one_error(mesh, tms) -> None:
-    mesh.answers["/tms/db/get_parameter"] = DbError("there is no record zx200/a", "RECORD_MISSING")
+    mesh.answers["/tms/db/get_parameter"] = DbError(Foreign("there is no record zx200/a"), "RECORD_MISSING")
     assert isinstance(tms(param.command, "get", "zx200/a").exception, DbError)
 
 
@@ -144,7 +145,7 @@ def test_a_load_that_is_refused_says_how_far_it_got(mesh, tms, tmp_path: Path) -
     (tmp_path / "r.yaml").write_text(FILE)
     mesh.answers["/tms/db/list_parameters"] = ListParameters.Response()
     mesh.answers["/tms/db/set_parameter"] = lambda **fields: (
-        DbError("in use", "STATIC_RECORD")
+        DbError(Foreign("in use"), "STATIC_RECORD")
         if fields["record_name"] == "other_type"
         else SetParameter.Response(created=True)
     )

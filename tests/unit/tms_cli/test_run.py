@@ -133,7 +133,7 @@ def test_a_goal_that_was_not_taken_is_a_refusal(task, tms, how: Outcome) -> None
 
 
 def test_an_unknown_task_is_told_before_anything_is_sent(mesh, tms) -> None:
-    mesh.answers["/tms/db/get_task"] = DbError("there is no task 9", "TASK_MISSING")
+    mesh.answers["/tms/db/get_task"] = DbError(Foreign("there is no task 9"), "TASK_MISSING")
     mesh.action = FakeScheduler()
     assert str(tms(run.command, "9").exception) == "there is no task 9"
     assert mesh.action.goal is None
@@ -187,7 +187,7 @@ def test_ctrl_c_before_the_run_has_an_id_cancels_the_goal_itself(task, tms, monk
 
 def test_ctrl_c_gets_through_when_the_cancel_service_is_not_there(task, tms, monkeypatch) -> None:
     task.action = FakeScheduler(feedback())
-    task.answers["/tms/cancel_run"] = RosError("no answer")
+    task.answers["/tms/cancel_run"] = RosError(Foreign("no answer"))
     monkeypatch.setattr(run.live, "display", lambda _: PressesCtrlC(1))
     assert tms(run.command, "1", "--wait").exit_code == 130
     assert task.action.cancelled

@@ -11,6 +11,7 @@ from tms_msg_ts.srv import CheckTask
 from tms_cli import check_task
 from tms_cli.commands import task
 from tms_reason.errors import DbError, TaskError
+from tms_reason.reason import Foreign
 from tms_ts.bt import TreeError
 
 GOOD = '<root><BehaviorTree ID="T"><Sequence><AlwaysSuccess/></Sequence></BehaviorTree></root>'
@@ -64,7 +65,7 @@ def test_the_same_file_twice_is_reported_and_no_error(mesh, tms, file: Path) -> 
 
 
 def test_what_the_database_finds_wrong_names_the_file(mesh, tms, file: Path) -> None:
-    mesh.answers["/tms/db/add_task"] = TaskError("line 3: there is no tree")
+    mesh.answers["/tms/db/add_task"] = TaskError(Foreign("line 3: there is no tree"))
     assert str(tms(task.command, "add", file).exception) == f"{file}: line 3: there is no tree"
 
 
@@ -161,9 +162,9 @@ def test_check_asks_the_scheduler_for_records(mesh, tms, file: Path) -> None:
     assert f"{file}: error: no record zx200/a" in end.stdout
     assert f"{file}: warning: careful" in end.stdout
     assert not end.stderr
-    mesh.answers["/tms/check_task"] = TaskError("line 9: newer than this tms")
+    mesh.answers["/tms/check_task"] = TaskError(Foreign("line 9: newer than this tms"))
     assert "error: line 9" in tms(task.command, "check", file).stdout
-    mesh.answers["/tms/check_task"] = DbError("the store is away")
+    mesh.answers["/tms/check_task"] = DbError(Foreign("the store is away"))
     assert isinstance(tms(task.command, "check", file).exception, DbError)
 
 

@@ -12,6 +12,7 @@ from tms_db import connection, schema, store
 from tms_db.connection import Connection
 from tms_db.reasons import NoStore, StoreDown
 from tms_reason.errors import DbError
+from tms_reason.reason import Foreign
 
 
 class Away:
@@ -98,7 +99,7 @@ def test_a_lost_store_is_noticed_by_the_first_who_asks(fake: Away, link: Connect
 def test_a_refusal_is_no_loss(fake: Away, link: Connection) -> None:
     fake.up.set()
     wait_ready(link, True)
-    assert use(link, DbError("no", "TASK_MISSING")) == "TASK_MISSING"
+    assert use(link, DbError(Foreign("no"), "TASK_MISSING")) == "TASK_MISSING"
     assert link.unready() is None
 
 

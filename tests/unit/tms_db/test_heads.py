@@ -10,6 +10,7 @@ import pytest
 from tms_db.heads import KEPT, Heads
 from tms_db.records import Document
 from tms_reason.errors import DbError
+from tms_reason.reason import Foreign
 
 KEY = ("zx200", "p")
 
@@ -48,7 +49,7 @@ class Thread:
             pass
 
 
-@pytest.mark.parametrize("trouble", [DbError("away", "STORE_DOWN"), RuntimeError("the client was closed")])
+@pytest.mark.parametrize("trouble", [DbError(Foreign("away"), "STORE_DOWN"), RuntimeError("the client was closed")])
 def test_a_reading_that_failed_is_tried_again(trouble: Exception, monkeypatch: pytest.MonkeyPatch) -> None:
     clock = [100.0]
     monkeypatch.setattr(time, "monotonic", lambda: clock[0])

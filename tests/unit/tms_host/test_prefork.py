@@ -35,12 +35,13 @@ WAITS = "os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])"
 START = """
 import ctypes
 from tms_runtime import run
+from tms_reason.reason import Foreign
 from tms_reason.errors import ConfigError
 
 def load_site():
     signal = ctypes.c_int()
     ctypes.CDLL(None).prctl(2, ctypes.byref(signal), 0, 0, 0)  # PR_GET_PDEATHSIG
-    raise ConfigError(f"ends with signal {signal.value}")
+    raise ConfigError(Foreign(f"ends with signal {signal.value}"))
 
 run.load_site = load_site
 run.main("tms:db")

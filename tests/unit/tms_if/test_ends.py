@@ -14,6 +14,7 @@ from tms_if.commands import CommandError, Registration
 from tms_if.ends import OPEN_CALLS, Ends
 from tms_if.names import Allowed
 from tms_reason.errors import RosError
+from tms_reason.reason import Foreign
 from tms_runtime.packing import pack
 
 TOPIC, SPAWN = "zx200/odom", "/spawn"
@@ -84,7 +85,7 @@ def ros() -> Ros:
 def test_a_call_that_rclpy_refuses_is_told_and_counts_no_longer(ros: Ros) -> None:
     client = Client(ros, {}, "1.2.3.4:5")
     client.ends.ros_service(Registration(topic="spawn", message_name="std_srvs/Trigger"))
-    ros.trouble = RosError("service /spawn: it must not be that long", "BAD_NAME")
+    ros.trouble = RosError(Foreign("service /spawn: it must not be that long"), "BAD_NAME")
     for _ in range(OPEN_CALLS + 1):
         client.ends.request("spawn", pack(Trigger.Request()), 101)
     assert set(client.said) == {"service /spawn: it must not be that long"}
@@ -165,7 +166,7 @@ def test_who_waits_for_a_topic_gets_it_when_the_first_has_left(ros: Ros) -> None
 def test_a_topic_that_could_not_be_made_is_free(ros: Ros) -> None:
     speakers: dict[str, str] = {}
     client = Client(ros, speakers, "1.2.3.4:5")
-    ros.trouble = RosError("the ROS thread did not answer within 5 s", "BUSY")
+    ros.trouble = RosError(Foreign("the ROS thread did not answer within 5 s"), "BUSY")
     with pytest.raises(CommandError, match="did not answer"):
         client.ends.publish(ODOM)
     assert speakers == {}

@@ -120,13 +120,13 @@ def test_a_motion_frees_the_record_however_it_ends() -> None:
     server, kind = served(database, plan_only=False)
 
     def fails(*_: Any) -> None:
-        raise SubtaskFailed("OUT_OF_REACH", "too far")
+        raise SubtaskFailed("too far")
 
     kind.execute = fails
     goal = Goal()
     assert accepted(server) is None
     assert server._execute(goal) is Outcome.ABORTED
-    assert goal.said == ['FOREIGN words="OUT_OF_REACH: too far"']
+    assert goal.said == ['FOREIGN words="too far"']
     assert database.lock == [False]
 
 

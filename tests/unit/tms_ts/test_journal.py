@@ -15,6 +15,7 @@ from tms_msg_db.srv import WriteJournal
 
 from slow_disk import slow_disk
 from tms_reason.errors import RosError
+from tms_reason.reason import Foreign
 from tms_ts import journal
 from tms_ts.group_commit import SPARE, GroupCommit
 from tms_ts.journal import LOST, Journal
@@ -37,7 +38,7 @@ class FakeDb:
         code = next(filter(None, codes), "")
         self.asked.release()
         if code == "NO_ANSWER":
-            raise RosError("no answer", code)
+            raise RosError(Foreign("no answer"), code)
         if not code:
             self.stored += [event.number for event in request.events]
         return WriteJournal.Response(error_code=code, error_msg=code.lower())

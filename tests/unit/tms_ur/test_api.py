@@ -126,7 +126,7 @@ def test_rearm_has_two_steps(client: Client) -> None:
 def test_answer_a_question(client: Client, site_client: FakeSiteClient) -> None:
     assert client.post("/api/questions/r-1-1", json={"yes": False}).status_code == 200
     assert site_client.calls == [("answer", "r-1-1", False, "local at 127.0.0.1")]
-    site_client.error = TmsError("answered meanwhile", "NO_QUESTION")
+    site_client.error = TmsError(Foreign("answered meanwhile"), "NO_QUESTION")
     assert client.post("/api/questions/r-1-1", json={"yes": True}).status_code == 404
 
 
@@ -281,7 +281,7 @@ def journal(monkeypatch: pytest.MonkeyPatch, site_client: FakeSiteClient, rows: 
         assert run_id == "audit"
         numbers = [number for number in sorted(rows) if number > after][:limit]
         if not numbers:
-            raise TmsError("there is no run 'audit'", "RUN_MISSING")
+            raise TmsError(Foreign("there is no run 'audit'"), "RUN_MISSING")
         return [Event(number=number, stamp=rows[number], kind="stop", node="", text="") for number in numbers]
 
     monkeypatch.setattr(site_client, "events", events)
@@ -359,7 +359,7 @@ def test_cancel_a_run(client: Client, site_client: FakeSiteClient) -> None:
     ],
 )  # fmt: skip
 def test_errors_of_modules(client: Client, site_client: FakeSiteClient, code: str, status: int) -> None:
-    site_client.error = TmsError("what is wrong and what to do", code)
+    site_client.error = TmsError(Foreign("what is wrong and what to do"), code)
     reads = [path for path in READS if code != "RUN_MISSING" or path != "/api/audit"]  # nothing was audited then
     answers = [client.get(path) for path in reads] + [client.post(path, json=body) for path, body in COMMANDS]
     for answer in answers:

@@ -11,6 +11,7 @@ from tms_msg_db.msg import Event
 from tms_msg_db.srv import ListEvents, WriteJournal
 
 from tms_reason.errors import RosError
+from tms_reason.reason import Foreign
 from tms_ur import audit
 from tms_ur.audit_chain import Note, Place, Verdict, tied
 from tms_ur.audit_ledger import Ledger, told
@@ -27,7 +28,7 @@ class FakeRos:
     def call(self, service_type: Any, name: str, request: Any) -> Any:
         if self.away:
             self.away -= 1
-            raise RosError("nobody answers")
+            raise RosError(Foreign("nobody answers"))
         if service_type is ListEvents:
             found = [self.stored[number] for number in sorted(self.stored) if number > request.after]
             return ListEvents.Response(events=found[: request.limit], error_code="" if found else "RUN_MISSING")
@@ -36,7 +37,7 @@ class FakeRos:
             self.stored.setdefault(event.number, event)
         if self.forgets_to_answer:
             self.away = 10**6
-            raise RosError("nobody answers")
+            raise RosError(Foreign("nobody answers"))
         return WriteJournal.Response()
 
     def targets(self) -> list[str]:

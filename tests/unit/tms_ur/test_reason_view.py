@@ -8,7 +8,7 @@ from tms_msg_db.msg import Event
 from tms_reason import wire
 from tms_reason.errors import TmsError
 from tms_reason.quantities import Metres
-from tms_reason.reason import Reason
+from tms_reason.reason import Foreign, Reason
 from tms_reason.remedies import REARM
 from tms_ur import export, messages
 from tms_ur.reason_view import of_error, of_line, view
@@ -57,7 +57,7 @@ def test_words_of_a_service_without_reasons() -> None:
     shown = of_line("zx200 is in run r-1")
     assert shown is not None
     assert shown.text.en == shown.text.ja == "zx200 is in run r-1"
-    assert of_error(TmsError("zx200 is in run r-1", "MACHINE_BUSY")).code == "MACHINE_BUSY"
+    assert of_error(TmsError(Foreign("zx200 is in run r-1"), "MACHINE_BUSY")).code == "MACHINE_BUSY"
     assert of_error(TmsError(NotOfType("int"))).code == "NOT_OF_TYPE"
 
 

@@ -1,0 +1,11 @@
+"""Why the ROS-TCP interface cannot be offered."""
+
+from tms_reason.reason import Reason
+from tms_reason.remedies import Remedy
+
+OTHER_INTERFACE_PORT = Remedy("edit_config", "", "Stop the other program, or change services.if in the site file")
+
+
+# fmt: off
+class InterfacePortTaken(Reason, text="{address} cannot be listened on ({problem})", action=OTHER_INTERFACE_PORT):
+    address: str; problem: str
