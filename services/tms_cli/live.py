@@ -28,7 +28,7 @@ COLOURS = {IDLE: "bright_black", RUNNING: "dark_orange", SUCCESS: "green", FAILU
 OUTCOME_COLOURS = {"success": "green", "running": "yellow", "preparing": "yellow", "stopping": "yellow"}
 DIGITS = re.compile(r"[0-9]+")
 ALL_SUCCEED = frozenset({"Sequence", "SequenceStar", "Repeat", "SubTree", "SubTreePlus"})  # when they do themselves
-MOST_ROWS = 40  # of a tree on the screen; longer ones show the part that works
+MAX_ROWS = 40  # of a tree on the screen; longer ones show the part that works
 
 
 @dataclass
@@ -133,7 +133,7 @@ class View:
             waiting += [(depth + 1, child) for child in reversed(children.get(node.uid, []))]
 
 
-def tree_rows(view: View, most: int = MOST_ROWS) -> list[tuple[int, str]]:
+def tree_rows(view: View, most: int = MAX_ROWS) -> list[tuple[int, str]]:
     """The tree as (status, line); a tree longer than `most` is cut around the first running leaf."""
     rows = list(view.rows())
     if len(rows) > most:

@@ -15,8 +15,8 @@ from pymongo import UpdateOne
 from pymongo.errors import BulkWriteError
 
 from tms_db.connection import Connection
-from tms_db.heads import Key
 from tms_db.reasons import ManyRecordsWait, StoreDown, StoreRefusedUpdate, StoreSlow
+from tms_db.record_cache import Key
 from tms_db.records import Document, Value
 from tms_db.store import Db, errors
 from tms_reason.errors import DbError

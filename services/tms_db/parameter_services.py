@@ -22,10 +22,10 @@ from tms_db import freshness, messages
 from tms_db.answering import Answering
 from tms_db.batches import Batches, Update
 from tms_db.connection import Connection
-from tms_db.heads import Heads, Key
+from tms_db.parameter_history import ParameterHistory
 from tms_db.parameters import Change, Parameters
-from tms_db.past import Past
 from tms_db.reasons import RecordLocked
+from tms_db.record_cache import Key, RecordCache
 from tms_db.records import Document, check_values, title
 from tms_db.store import Db
 from tms_db.values import from_parameters
@@ -47,8 +47,8 @@ class ParameterServices:
         self._parameters = Parameters(db)
         self._batches = Batches(db, connection, app.log)
         self._watching = Watching(db, connection, app.log, lambda identity: self._heads.changed(identity))
-        self._heads = Heads(self._parameters, self._batches.newest, app.ros, self._watching.sure)
-        self._past = Past(db, connection, app.log)
+        self._heads = RecordCache(self._parameters, self._batches.newest, app.ros, self._watching.sure)
+        self._past = ParameterHistory(db, connection, app.log)
         self._changes = app.ros.publisher(RecordChanges, "/tms/db/changes", depth=CHANGES_KEPT)
 
     def offer(self, answering: Answering) -> None:
@@ -164,16 +164,16 @@ class ParameterServices:
         Raises:
             DbError: the store is away.
         """
-        promise = self._ros.promise()
+        settled = self._ros.create_future()
         tell: Callable[[DbError | None], None] = lambda problem: self._ros.on_executor(  # noqa: E731
-            lambda: promise.set_result(problem)
+            lambda: settled.set_result(problem)
         )
         self._batches.put(updates, tell, hurry)
         for key, update in updates.items():
             self._heads.get(key).change(update.stored())
             self._past.note(key, update.updated_at or _now(), update.source, update.fields, often=not hurry)
         self._tell(updates)
-        problem = await promise
+        problem = await settled
         if problem is not None:
             self._heads.forget()
             raise DbError(problem.reason, problem.code)

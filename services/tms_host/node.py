@@ -24,7 +24,7 @@ from tms_reason.wire import to_line
 from tms_runtime.app import App
 
 HEARTBEAT = 2.0  # s between messages when nothing changes, so that a dead PC can be told from a quiet one
-LOG_BYTES, MOST_LOG_BYTES = 16_384, 262_144
+LOG_BYTES, MAX_LOG_BYTES = 16_384, 262_144
 PERIOD = 0.1  # s between looks whether supervisord has other children: its socket has no events
 CHANGING = ("STARTING", "STOPPING", "BACKOFF")  # states that end without a new pid
 
@@ -104,7 +104,7 @@ class Host:
         """The end of a process's log."""
         try:
             with self._calls:
-                response.text = self._control.log(request.name, min(request.bytes or LOG_BYTES, MOST_LOG_BYTES))
+                response.text = self._control.log(request.name, min(request.bytes or LOG_BYTES, MAX_LOG_BYTES))
         except TmsError as error:
             response.error_code, response.error_msg = error.code, to_line(error.reason)
         return response

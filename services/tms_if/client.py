@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 from prometheus_client import Counter, Gauge
 
+from tms_if.client_endpoints import ClientEndpoints
 from tms_if.commands import CommandError, Registration, Removal, ServiceId, command, handshake, parse
-from tms_if.ends import Ends
 from tms_if.framing import Frame, FrameError, Splitter
 from tms_if.outbox import Outbox
 from tms_runtime.log import Logger
@@ -21,17 +21,17 @@ DROPPED = Counter("tms_if_dropped_total", "Messages that a client did not read i
 TROUBLE = Counter("tms_if_troubles_total", "Frames of clients that could not be used")
 CLIENTS = Gauge("tms_if_clients", "Connected clients")
 
-REGISTRATIONS: dict[str, Callable[[Ends, Registration], None]] = {
-    "__publish": Ends.publish,
-    "__subscribe": Ends.subscribe,
-    "__ros_service": Ends.ros_service,
-    "__unity_service": Ends.unity_service,
+REGISTRATIONS: dict[str, Callable[[ClientEndpoints, Registration], None]] = {
+    "__publish": ClientEndpoints.publish,
+    "__subscribe": ClientEndpoints.subscribe,
+    "__ros_service": ClientEndpoints.ros_service,
+    "__unity_service": ClientEndpoints.unity_service,
 }
-REMOVALS: dict[str, Callable[[Ends, str], None]] = {
-    "__remove_publisher": Ends.remove_publisher,
-    "__remove_subscriber": Ends.remove_subscriber,
-    "__remove_ros_service": Ends.remove_ros_service,
-    "__remove_unity_service": Ends.remove_unity_service,
+REMOVALS: dict[str, Callable[[ClientEndpoints, str], None]] = {
+    "__remove_publisher": ClientEndpoints.remove_publisher,
+    "__remove_subscriber": ClientEndpoints.remove_subscriber,
+    "__remove_ros_service": ClientEndpoints.remove_ros_service,
+    "__remove_unity_service": ClientEndpoints.remove_unity_service,
 }
 
 
@@ -44,7 +44,7 @@ class Client:
         name: str,
         log: Logger,
         message_limit: int,
-        ends: Callable[[Callable[[bytes, bool], None], Callable[[str], None]], Ends],
+        ends: Callable[[Callable[[bytes, bool], None], Callable[[str], None]], ClientEndpoints],
     ) -> None:
         self._socket, self._name, self._log = connection, name, log
         self._splitter, self._outbox = Splitter(message_limit), Outbox()

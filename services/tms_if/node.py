@@ -4,7 +4,7 @@ import socket
 import threading
 
 from tms_if.client import Client
-from tms_if.ends import Ends
+from tms_if.client_endpoints import ClientEndpoints
 from tms_if.names import allowed
 from tms_if.reasons import InterfacePortTaken
 from tms_reason.errors import ConfigError
@@ -65,7 +65,7 @@ class Endpoint:
         settings = self._app.site.bridge
         client = Client(
             connection, name, self._app.log, settings.message_limit,
-            lambda send, say: Ends(
+            lambda send, say: ClientEndpoints(
                 self._app.ros, settings.joint_cmd, self._allowed, self._speakers, name, send, say
             ),
         )  # fmt: skip

@@ -132,7 +132,7 @@ class Acting:
         while not (done() or self._cancelled.is_set()) and time.monotonic() < end:
             call.wait_for(lambda: done() or self._cancelled.is_set(), min(LOOK, end - time.monotonic()))
             if call.accepted and call.outcome is None and peer.left():
-                peer.lost()  # it left in order, but without a result
+                peer.mark_lost()  # it left in order, but without a result
         if not done():
             self.check()
             raise SubtaskFailed(NoAnswer(process_of(peer.name), peer.name, limit or 0.0))

@@ -58,8 +58,10 @@ class Link:
     def __init__(self, ros: Ros, pulse: Pulse, machine: str, process: str, changed: Callable[["Link"], None]) -> None:
         self.process, self.goal, self.holder = process, NOBODY, ""
         self._ros, self._pulse, self._changed = ros, pulse, changed
-        self.corpses = 0  # predecessors that discovery has not dropped yet, or the process itself while it is frozen
-        self.left = False  # the last one took leave, in order; a killed one leaves a corpse
+        self.stale_writers = (
+            0  # predecessors that discovery has not dropped yet, or the process itself while it is frozen
+        )
+        self.left = False  # the last one took leave, in order; a killed one leaves a stale writer
         self._heard, self._alive, self._asserted = 0.0, False, 0
         ros.lease_subscribe(Message, topic(machine, process), LEASE, self._on_message, self._on_liveliness)
 
@@ -76,8 +78,8 @@ class Link:
 
     def _on_liveliness(self, alive_count: int, not_alive_count: int) -> None:
         if alive_count > 0 or self._asserted > 0:
-            self.left = alive_count == 0 and not_alive_count <= self.corpses
-        self._asserted, self.corpses = alive_count, not_alive_count
+            self.left = alive_count == 0 and not_alive_count <= self.stale_writers
+        self._asserted, self.stale_writers = alive_count, not_alive_count
         if alive_count > 0:
             self._alive = True
         elif self._pulse.late():  # its assertions may be there, but not handled yet
@@ -102,10 +104,10 @@ def watch_server(ros: Ros, pulse: Pulse, machine: str, process: str) -> Callable
 
     def changed(link: Link) -> None:
         for peer in peers:
-            if link.alive and not link.corpses:  # with one, it is the first sign of a successor
-                peer.found()
+            if link.alive and not link.stale_writers:  # with one, it is the first sign of a successor
+                peer.mark_alive()
             elif not link.alive and link.goal != NOBODY:
-                peer.lost()
+                peer.mark_lost()
 
     def add(peer: AnyPeer) -> None:
         if peer not in peers:

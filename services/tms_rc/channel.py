@@ -12,7 +12,7 @@ KEPT = 1.2  # s of samples
 SPAN = 0.8  # share of WORST that samples must span before positions and velocities are compared
 HIDES = 0.25  # s of the machine between two samples in which a whole motion may be hidden: it begins and ends at rest
 CLEARLY = 2.0  # times the limit: slower motions may be told either way
-FASTER = 1.5  # times its top speed: nothing goes further from one sample to the next
+SPEED_MARGIN = 1.5  # times its top speed: nothing goes further from one sample to the next
 BETWEEN = 0.004  # rad or m that a motion may differ from what the velocities at both its ends allow ...
 JITTER = 0.025  # s, ... and as far as it goes in this time: drivers stamp what they have measured a little earlier
 
@@ -131,7 +131,7 @@ class Channel:
         limits, way = self._limits, self._distance(before.place, place)
         seconds, spare = seconds * limits.scale, limits.resolution + BETWEEN
         spare += JITTER * limits.scale * max(abs(one or 0.0) for one in (speed, before.speed))
-        if way > FASTER * limits.top * seconds + spare:
+        if way > SPEED_MARGIN * limits.top * seconds + spare:
             return True
         if speed is None or before.speed is None or seconds > WORST / 2 * limits.scale:
             return False

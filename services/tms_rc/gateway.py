@@ -105,7 +105,7 @@ class Gateway:
         if active.stop is None and not (active.call is not None and (active.call.accepted or active.ended())):
             self._guard.stop(ProcessLost(NoGoalAnswer(self._app.machine, active.peer.name)), Kind.PLAIN)
             if active.call is not None:
-                active.peer.doubt(active.call)
+                active.peer.resolve_unanswered(active.call)
         self._watch_motion(motion, active)
         call = active.call
         if active.stop is not None or call is None:
@@ -167,7 +167,7 @@ class Gateway:
                 break
             if active.stop is None and active.call is not None and active.call.accepted and active.peer.left():
                 self._guard.stop(ProcessLost(ControllerLeft(self._app.machine, active.peer.name)), Kind.PLAIN)
-                active.peer.lost()  # ends the goal, which nobody answers any more
+                active.peer.mark_lost()  # ends the goal, which nobody answers any more
                 break
             wrong = self._wrong(motion, active)
             if wrong is not None and active.stop is None:

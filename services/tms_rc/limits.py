@@ -25,10 +25,10 @@ from tms_rc.reasons import (
 )
 from tms_reason.reason import Reason
 
-UNIT = 0.01  # how far the length of a quaternion may be from 1
-FASTER = 1.1  # times the limit of speed that a trajectory may ask for
+QUATERNION_TOLERANCE = 0.01  # how far the length of a quaternion may be from 1
+SPEED_MARGIN = 1.1  # times the limit of speed that a trajectory may ask for
 UNHEARD = 0.2  # s; as far as it goes in this time, a joint may be away from where its trajectory begins
-TINY = 1e-4  # rad
+ANGLE_EPSILON = 1e-4  # rad
 MARGIN = 0.05  # rad beyond a limit, and further out than at the start, that a moving joint may be seen
 
 
@@ -89,7 +89,7 @@ def pace_problem(
         if passed < 0 or (passed == 0 and number > 0):
             return _at(number, len(points), TimeNotAfter(point.time))
         for name, old, new in zip(joints, before.positions, point.positions, strict=True):
-            allowed = model.joints[name].velocity * (FASTER * passed + unheard) + TINY
+            allowed = model.joints[name].velocity * (SPEED_MARGIN * passed + unheard) + ANGLE_EPSILON
             if abs(new - old) > allowed:  # false where nobody knows the joint's place
                 fast = TooFast(abs(new - old), passed, model.joints[name].velocity)
                 return _at(number, len(points), AtJoint(name, fast))
@@ -118,7 +118,7 @@ def pose_problem(poses: Sequence[tuple[float, ...]]) -> Reason | None:
         if not all(map(math.isfinite, pose)):
             return AtPose(number, NoNumber())
         length = math.hypot(*pose[3:])
-        if abs(length - 1.0) > UNIT:
+        if abs(length - 1.0) > QUATERNION_TOLERANCE:
             return AtPose(number, BadQuaternion(length))
     return None
 

@@ -16,13 +16,13 @@ from tms_rc.claim import Claim
 from tms_rc.gateway import Gateway, speed_of
 from tms_rc.guard import FRESH, Guard
 from tms_rc.latch import Latch
-from tms_rc.memory import Memory
+from tms_rc.latch_file import LatchFile
+from tms_rc.machine_monitor import MachineMonitor
 from tms_rc.notes import Notes
 from tms_rc.presses import Presses
 from tms_rc.reasons import ControllerAway, LooksForRivals, Recovering
 from tms_rc.recovery import Recovery
 from tms_rc.standstill import StandStill
-from tms_rc.view import View
 from tms_reason.reason import Reason
 from tms_reason.wire import to_line
 from tms_ros.client import AnyPeer
@@ -61,18 +61,18 @@ def _serve(app: App, claim: Claim) -> None:
         return
     border, machine = app.site.border(app.machine), app.machine
     watch = StandStill(app.site.model_of(machine), border, speed_of(app))
-    memory = Memory(app.site.state, machine)
+    memory = LatchFile(app.site.state, machine)
     left = memory.read()
     latch = Latch(machine, left.latched)
-    view = View(app, watch)
+    view = MachineMonitor(app, watch)
     guard = Guard(app, watch, Controls(app.ros, machine, border), latch, Notes(app, memory, latch))
     recovery = Recovery(app, guard, left)
     told = Told(app, guard, view, claim)
     _offer(app, guard, Gateway(app, guard, watch), told)
     publisher = app.ros.publisher(MachineState, f"/{machine}/rc/state", depth=1, latched=True)
-    teller = Teller(guard, watch, lambda: publisher.publish(told.state()))
-    guard.told = teller.tell
-    for step in (view.look, guard.look, teller.look):
+    state_publisher = StatePublisher(guard, watch, lambda: publisher.publish(told.state()))
+    guard.told = state_publisher.tell
+    for step in (view.look, guard.look, state_publisher.look):
         app.pulse.add(step)
     permit = Permit(app.ros, app.pulse, machine, "rc")
     # Not before the lease of a predecessor that was killed has run out: nobody would notice its loss.
@@ -98,7 +98,7 @@ def _offer(app: App, guard: Guard, gateway: Gateway, told: "Told") -> None:
     ros.offer_slow(TakeMachine, f"/{machine}/take", arming.take)
 
 
-class Teller:
+class StatePublisher:
     """When the state is published: by the pulse, since a timer and every reader's callback cost more than the news."""
 
     def __init__(self, guard: Guard, watch: StandStill, publish: Callable[[], None]) -> None:
@@ -125,7 +125,7 @@ class Teller:
 class Told:
     """What a gateway tells of its machine."""
 
-    def __init__(self, app: App, guard: Guard, view: View, claim: Claim) -> None:
+    def __init__(self, app: App, guard: Guard, view: MachineMonitor, claim: Claim) -> None:
         self._app, self._guard, self._view, self._claim = app, guard, view, claim
         self.peers: list[AnyPeer] = []
 

@@ -3,7 +3,7 @@
 import threading
 
 from tms_rc.latch import Latch
-from tms_rc.memory import Memory
+from tms_rc.latch_file import LatchFile
 from tms_rc.reasons import DriverNotKept, StateNotKept
 from tms_rc.stopper import UNKEPT
 from tms_reason.reason import Reason
@@ -13,7 +13,7 @@ from tms_runtime.app import App
 class Notes:
     """Between a machine's latch and its memory."""
 
-    def __init__(self, app: App, memory: Memory, latch: Latch) -> None:
+    def __init__(self, app: App, memory: LatchFile, latch: Latch) -> None:
         self._app, self._memory, self._latch = app, memory, latch
         self._writing = threading.Lock()
         self._kept: tuple[Reason | None, str, int] | None = None  # what the disk says

@@ -4,7 +4,7 @@ import time
 
 from tms_rc.guard import Guard, Kind
 from tms_rc.latch import ANY_LEAF, UNKNOWN_RUN
-from tms_rc.memory import Left
+from tms_rc.latch_file import Left
 from tms_rc.reasons import GatewayRestarted, GatewayRestartedHeld, GatewayRestartedUnproven, NoRunTold, TakenByAnother
 from tms_rc.standstill import UNKNOWN
 from tms_rc.stopper import Stop

@@ -138,7 +138,7 @@ class Peer(Generic[G, R, F]):
         """Whether every server that could have taken the last goal is gone; its successor knows nothing of it."""
         return not self.ready() or (bool(self._taken_by) and not self._taken_by & self._servers())
 
-    def found(self) -> None:
+    def mark_alive(self) -> None:
         """It was not dead, only frozen for a while."""
         self._dead = frozenset()
 
@@ -179,7 +179,7 @@ class Peer(Generic[G, R, F]):
         self._loop.on_executor(send)
         return call
 
-    def lost(self) -> None:
+    def mark_lost(self) -> None:
         """The process behind the server is gone: whatever it had accepted never ends by itself.
 
         Discovery counts it for some seconds more, and its successor has the same name: a goal sent before the
@@ -197,7 +197,7 @@ class Peer(Generic[G, R, F]):
         """Ask for a result that should be there by now. Returns at once."""
         self._loop.on_executor(call.ask_again)
 
-    def doubt(self, call: Call[R, F]) -> None:
+    def resolve_unanswered(self, call: Call[R, F]) -> None:
         """Give up a goal that was not answered in time; it ends as LOST when the server knows nothing of it."""
         self._loop.on_executor(lambda: call.doubt(self._client.handle_of(call.id)))
 

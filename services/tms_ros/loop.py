@@ -171,7 +171,7 @@ class Loop:
         self._starting.append(step)
         self._executor.create_task(oldest)
 
-    def promise(self) -> Future:
+    def create_future(self) -> Future:
         """A result that coroutines on the executor thread await; set it there, see `on_executor`."""
         return Future(executor=self._executor)
 
@@ -198,7 +198,7 @@ class Loop:
         """Call `step` on the executor thread at a fixed rate."""
         return self.node.create_timer(seconds, step, callback_group=self.group, clock=self._steady)
 
-    def beside(self, seconds: float, step: Callable[[], None], name: str) -> None:
+    def poll_in_thread(self, seconds: float, step: Callable[[], None], name: str) -> None:
         """Call `step` at a fixed rate in a thread of its own, for what only samples: it costs a tenth of a timer."""
 
         def sample() -> None:

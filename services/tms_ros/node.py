@@ -30,8 +30,13 @@ class Ros:
         self._making = threading.Lock()
 
         self.node, self.process, self.failed = loop.node, loop.process, loop.failed
-        self.on_executor, self.do, self.start, self.promise = loop.on_executor, loop.do, loop.start, loop.promise
-        self.every, self.after, self.beside, self.now = loop.every, loop.after, loop.beside, loop.now
+        self.on_executor, self.do, self.start, self.create_future = (
+            loop.on_executor,
+            loop.do,
+            loop.start,
+            loop.create_future,
+        )
+        self.every, self.after, self.poll_in_thread, self.now = loop.every, loop.after, loop.poll_in_thread, loop.now
         self.begin, self.on_stop, self.hangs, self.leave = loop.begin, loop.on_stop, loop.hangs, loop.leave
         self.busy_since, self.thread_number, self.wait_for = loop.busy_since, loop.thread_number, loop.wait_for
 

@@ -50,7 +50,7 @@ class Services:
         """Offer a service whose handler may block: each call runs in a thread of its own; None is no answer at all."""
 
         async def answer(request: Req, response: Res) -> Any:
-            done = self._loop.promise()
+            done = self._loop.create_future()
 
             def work() -> None:
                 filled: Res | None = _failed(response, self._loop.process)
@@ -141,7 +141,7 @@ class Services:
             RosError: BadServiceName.
         """
         client = self._service(service_type, name)
-        settled = self._loop.promise()
+        settled = self._loop.create_future()
         deadline = time.monotonic() + seconds
         sent: list[Future] = []
 

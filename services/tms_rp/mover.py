@@ -66,7 +66,7 @@ class Mover:
             if time.monotonic() > deadline:
                 return MotionLate(self._machine, OVERRUN)
             if self._peer.left():
-                self._peer.lost()  # it left in order, but without a result
+                self._peer.mark_lost()  # it left in order, but without a result
             call.wait_for(lambda: _over(goal, call), min(LOOK, deadline - time.monotonic()))
         return None
 

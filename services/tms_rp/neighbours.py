@@ -24,7 +24,7 @@ class Neighbours:
             return  # nobody else is here
         self._news = app.ros.sample(TFMessage, "/tf", DEPTH)
         app.ros.subscribe(TFMessage, "/tf_static", self._frames.hear_fixed, depth=FIXED, latched=True)
-        app.ros.beside(LOOK, self._look, "neighbours")
+        app.ros.poll_in_thread(LOOK, self._look, "neighbours")
 
     def _look(self) -> None:
         for message in self._news():

@@ -82,7 +82,7 @@ ACTIONS = (
 def start(app: App) -> None:
     """Serve `/<machine>/tms_rp_<model>_<action>`."""
     planner, model = Planner(app), app.site.file.machines[app.machine].model
-    app.ros.beside(LOOK, planner.look, "joints")
+    app.ros.poll_in_thread(LOOK, planner.look, "joints")
     for action in ACTIONS:
         planner.serve(action, f"/{app.machine}/tms_rp_{model}_{action.name}")
     app.ready_when(planner.unready)

@@ -15,9 +15,9 @@ from tms_reason.errors import TaskError
 from tms_reason.reason import Reason
 from tms_reason.wire import to_line
 from tms_runtime.app import App
+from tms_ts.interrupted_run import Header, InterruptedRun, Key, Over
 from tms_ts.journal import Journal
 from tms_ts.machines import told_by
-from tms_ts.past import Header, Key, Over, Past
 from tms_ts.reasons import (
     GivenUp,
     MachineUnconfirmed,
@@ -31,8 +31,8 @@ from tms_ts.reasons import (
     StateBecause,
     StateInterrupted,
 )
-from tms_ts.record import Records
 from tms_ts.run import ALARMS
+from tms_ts.run_checkpoint import Records
 from tms_ts.run_states import entered
 
 STOP_LIMIT = STOP_PROVEN + 3.0  # s for the gateways to tell how they stopped the machines
@@ -72,17 +72,17 @@ class Interrupted:
             if past.header is not None and past.header.run_id not in self._active:
                 self._close(past, past.header)
 
-    def _all_told(self, past: Past) -> bool:
+    def _all_told(self, past: InterruptedRun) -> bool:
         return past.header is None or set(past.header.machines) <= {r.machine for r in self._stops(past, past.header)}
 
-    def _stops(self, past: Past, header: Header) -> list[StopReceipt]:
+    def _stops(self, past: InterruptedRun, header: Header) -> list[StopReceipt]:
         """What the gateways have told of the end of this run, in order; a latched receipt may come twice."""
         with self._lock:
             seen = {(_seconds(r.stamp), r.machine): r for r in self._receipts if r.run == header.number}
         begin = {machine: max(past.last_time - 1.0, past.sent_at.get(machine, 0.0)) for machine in header.machines}
         return [r for (at, machine), r in sorted(seen.items()) if machine in begin and at > begin[machine]]
 
-    def _close(self, past: Past, header: Header) -> None:
+    def _close(self, past: InterruptedRun, header: Header) -> None:
         record, number, stops = self._records.open(header.run_id), past.last_event, self._stops(past, header)
         reason, unseen = _what_was_seen(header, stops)
         told = [("stop", told_by(receipt)) for receipt in stops] + [("alarm", alarm) for alarm in unseen]
@@ -97,7 +97,7 @@ class Interrupted:
         record.close()
         self._app.log.warning("interrupted", run=header.run_id)
 
-    def _complete(self, past: Past, header: Header, over: Over) -> None:
+    def _complete(self, past: InterruptedRun, header: Header, over: Over) -> None:
         """The run had ended, but perhaps nobody was told before the power went: tell it, maybe once more."""
         stamp = Time(sec=int(past.last_time), nanosec=int(past.last_time % 1 * 1e9))
         why = wire.of(over.reason)
@@ -108,7 +108,7 @@ class Interrupted:
 
     # what a person does about it
 
-    def begin(self, run_id: str) -> tuple[Past, Header]:
+    def begin(self, run_id: str) -> tuple[InterruptedRun, Header]:
         """The run that is to be resumed now.
 
         Raises:
@@ -144,7 +144,7 @@ class Interrupted:
             response.error_code, response.error_msg = error.code, to_line(error.reason)
         return response
 
-    def _give_up(self, past: Past, header: Header) -> None:
+    def _give_up(self, past: InterruptedRun, header: Header) -> None:
         stamp = self._app.ros.now()
         text = to_line(StateAbandoned())
         event = Event(run_id=header.run_id, number=past.last_event + 1, stamp=stamp, kind="run", text=text)
@@ -152,7 +152,7 @@ class Interrupted:
         self._journal.put(_row(header, "abandoned", GivenUp(), stamp))
         self._records.open(header.run_id).remove()
 
-    def _find(self, run_id: str) -> tuple[Past, Header]:
+    def _find(self, run_id: str) -> tuple[InterruptedRun, Header]:
         past = self._records.find(run_id)
         if past is None or past.header is None or not past.closed or past.header.run_id in self._active:
             known = tuple(p.header.run_id for p in self._records.past() if p.header and p.closed)

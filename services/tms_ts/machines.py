@@ -24,7 +24,7 @@ from tms_ros.reasons import LostMeanwhile, NoAnswer, NoServer, ProcessLost
 from tms_runtime.fence import LEAVES, Owner
 from tms_ts.gateways import Gateways
 from tms_ts.hosts import Hosts
-from tms_ts.past import Key
+from tms_ts.interrupted_run import Key
 from tms_ts.reasons import (
     FailedBefore,
     ForTooLong,
@@ -49,8 +49,8 @@ from tms_ts.reasons import (
     SentAgainSoon,
     SentAgainTimes,
 )
-from tms_ts.record import Record
 from tms_ts.replay import Replay
+from tms_ts.run_checkpoint import RunCheckpoint
 from tms_ts.sent_goal import ACCEPT_LIMIT, LeafCall, LeafPeer, SentGoal
 from tms_ts.world import GoalState
 
@@ -77,7 +77,7 @@ class Identity:
 
     number: int  # fencing number
     retries: int  # times that a goal is sent again after a loss
-    record: Record
+    record: RunCheckpoint
     replay: Replay
 
 
@@ -286,7 +286,7 @@ class Machines:
             goal.peer.cancel(call)  # should it be accepted after all
         call.end(Outcome.LOST)
         if goal.peer is not None and self._replaced(goal):
-            goal.peer.lost()
+            goal.peer.mark_lost()
         if not final:
             self._lost(goal, why, counts=not (unheard and goal.recovers()))
 

@@ -31,19 +31,19 @@ from tms_ts.groot.monitor import Monitors
 from tms_ts.group_commit import GroupCommit
 from tms_ts.hosts import Hosts
 from tms_ts.interrupted import Interrupted
+from tms_ts.interrupted_run import Header, InterruptedRun
 from tms_ts.journal import Journal
 from tms_ts.machines import Identity, Machines
 from tms_ts.numbers import Numbers, no_disk
-from tms_ts.past import Header, Past
 from tms_ts.preflight import Findings, at, machines_of, preflight, processes_of, records_of
 from tms_ts.questions import Clicks, Questions
 from tms_ts.reasons import MachineBusy, NoQuestion, NoRun, Preflight, PreflightMore, Resumed, SchedulerStopped
-from tms_ts.record import Records
 from tms_ts.replay import Replay
 from tms_ts.run import Facts, Run, TaskGoal
+from tms_ts.run_checkpoint import Records
 from tms_ts.run_states import STATES as RUN_STATES
 from tms_ts.shared_records import SharedRecords
-from tms_ts.surroundings import Around, Sensing
+from tms_ts.surroundings import PreflightContext, Sensing
 from tms_ts.world import World
 
 DB_LIMIT = 5.0  # s
@@ -200,7 +200,7 @@ class Scheduler:
         finally:
             self.interrupted.over(header.run_id)
 
-    def _run(self, goal: TaskGoal, past: Past | None) -> Ended[ExecuteTask.Result]:
+    def _run(self, goal: TaskGoal, past: InterruptedRun | None) -> Ended[ExecuteTask.Result]:
         try:
             facts = self._facts(goal, past)
         except TaskError as error:
@@ -234,7 +234,7 @@ class Scheduler:
             self._news.set()
             run.ended.set()
 
-    def _facts(self, goal: TaskGoal, past: Past | None) -> Facts:
+    def _facts(self, goal: TaskGoal, past: InterruptedRun | None) -> Facts:
         number = self._numbers.next()
         if past is not None and past.header is not None:
             old = past.header
@@ -244,7 +244,7 @@ class Scheduler:
         run_id = f"{stamp}-{uuid.uuid4().hex[:4]}"
         return Facts(run_id, number, goal.request.task_id, "", [], self._ros.now())
 
-    def _execute(self, run: Run, goal: TaskGoal, past: Past | None) -> Ended[ExecuteTask.Result]:
+    def _execute(self, run: Run, goal: TaskGoal, past: InterruptedRun | None) -> Ended[ExecuteTask.Result]:
         facts = run.facts
         goal.publish(ExecuteTask.Feedback(run_id=facts.run_id, state=facts.state))  # so that it can be cancelled
         if past is not None and past.header is not None:
@@ -335,7 +335,7 @@ class Scheduler:
     def _preflight(self, tree: bt.Tree, present: bool = False) -> Findings:
         """`present`: also say what keeps the machines from moving now; a run is refused for that later."""
         problem = self._problem if present else _no_problem
-        return preflight(tree, self._app.site, Around(self._app, self._sensing, problem, self._written))
+        return preflight(tree, self._app.site, PreflightContext(self._app, self._sensing, problem, self._written))
 
     def _problem(self, machine: str) -> Reason | None:
         with self._lock:

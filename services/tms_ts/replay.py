@@ -3,7 +3,7 @@
 from collections import defaultdict, deque
 from collections.abc import Callable
 
-from tms_ts.past import Key
+from tms_ts.interrupted_run import Key
 
 
 class Replay:

@@ -37,7 +37,7 @@ from tms_ts.reasons import (
     ToldToStop,
     TreeOf,
 )
-from tms_ts.record import Record
+from tms_ts.run_checkpoint import RunCheckpoint
 from tms_ts.run_states import STATES, entered
 
 PERIOD = 0.05  # s between ticks when nothing wakes the loop
@@ -78,7 +78,7 @@ class Run:
     """Lives as long as its ExecuteTask goal."""
 
     def __init__(
-        self, ros: Ros, journal: Journal, log: Logger, goal: TaskGoal, facts: Facts, record: Record,
+        self, ros: Ros, journal: Journal, log: Logger, goal: TaskGoal, facts: Facts, record: RunCheckpoint,
         changed: Callable[[], None],
     ) -> None:  # fmt: skip
         self.facts = facts

@@ -7,7 +7,7 @@ from tms_msg_ts.action import LeafNodeBase
 from tms_reason import wire
 from tms_reason.reason import Reason
 from tms_ros.client import Call, Peer
-from tms_ts.past import Key
+from tms_ts.interrupted_run import Key
 from tms_ts.world import GoalState
 
 ACCEPT_LIMIT = 5.0  # s for a subtask to take or refuse a goal

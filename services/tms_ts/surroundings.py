@@ -45,7 +45,7 @@ class Sensing:
         return next((one.name for one in self._inputs if record in one.records and one.state in DEAF), "")
 
 
-class Around:
+class PreflightContext:
     """The surroundings of one preflight; reads all records once.
 
     Raises:

@@ -70,7 +70,7 @@ class SiteClient:
         ros.subscribe(InputStates, "/tms/sp/inputs", self._on_inputs, latched=True)
         self._new_frames = ros.sample(TFMessage, "/tf", FRAMES_DEPTH)
         ros.subscribe(TFMessage, "/tf_static", self._frames.hear_fixed, depth=FRAMES_DEPTH, latched=True)
-        ros.beside(FRAMES_PERIOD, self._update_places, "frames")
+        ros.poll_in_thread(FRAMES_PERIOD, self._update_places, "frames")
 
     # topics
 

@@ -11,8 +11,8 @@ from conftest import wait_until
 from stores import Server
 from tms_db import store
 from tms_db.connection import Connection
-from tms_db.heads import Heads
 from tms_db.parameters import Change, Parameters
+from tms_db.record_cache import RecordCache
 from tms_db.watching import Watching
 from tms_reason.errors import DbError
 from tms_ros.node import Ros
@@ -29,14 +29,14 @@ class Executor:
 
 
 class Rig:
-    """Heads on a store, told of changes by hand."""
+    """RecordCache on a store, told of changes by hand."""
 
     def __init__(self, db: store.Db) -> None:
         self.records = db["parameter"]
         self.parameters = Parameters(db)
         self.parameters.set(*KEY, Change({"x": 1.0}, "static"), create=True)
         self.watched = True
-        self.heads = Heads(self.parameters, lambda _: {}, cast(Ros, Executor()), lambda: self.watched)
+        self.heads = RecordCache(self.parameters, lambda _: {}, cast(Ros, Executor()), lambda: self.watched)
 
     def x(self) -> Any:
         return self.heads.document(KEY)["x"]

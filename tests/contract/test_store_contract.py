@@ -20,10 +20,10 @@ from stores import Server
 from tms_db import freshness, store
 from tms_db.batches import Batches, Update
 from tms_db.connection import Connection
-from tms_db.heads import Head
 from tms_db.history import Event, History, Run
+from tms_db.parameter_history import ParameterHistory
 from tms_db.parameters import Change, Parameters
-from tms_db.past import Past
+from tms_db.record_cache import Head
 from tms_db.records import Record, Value
 from tms_db.tasks import Tasks
 from tms_reason.errors import DbError, TaskError, TmsError
@@ -420,7 +420,7 @@ def test_callers_are_told_when_the_store_is_away(own_server: Server) -> None:
 
 def test_the_last_changes_of_a_record(shared_db: store.Db) -> None:
     batched = Batched(shared_db)
-    past = Past(shared_db, batched.connection, structlog.stdlib.get_logger("test"))
+    past = ParameterHistory(shared_db, batched.connection, structlog.stdlib.get_logger("test"))
     for number in range(60):
         past.note(("zx200", "a"), BEGIN + timedelta(seconds=number), "cli", {"x": number})
     past.start()
@@ -439,7 +439,7 @@ def test_a_change_is_told_once_though_its_write_was_repeated(
     shared_db: store.Db, monkeypatch: pytest.MonkeyPatch, done: int
 ) -> None:
     batched = Batched(shared_db)
-    past = Past(shared_db, batched.connection, structlog.stdlib.get_logger("test"))
+    past = ParameterHistory(shared_db, batched.connection, structlog.stdlib.get_logger("test"))
     write, keys = Collection.bulk_write, (("zx200", "a"), ("zx200", "b"))
 
     def lost(self: Collection[Any], steps: list[Any], **more: Any) -> None:

@@ -111,7 +111,7 @@ def test_a_goal_that_the_server_does_not_know_is_lost(two_nodes: tuple[Ros, Ros]
     wait_until(lambda: silent.asked == [call.id], LIMIT, "goal at the server")
     assert not call.accepted
     assert call.outcome is None
-    peer.doubt(call)
+    peer.resolve_unanswered(call)
     wait_until(lambda: call.outcome is Outcome.LOST, LIMIT, "goal known as lost")
     wait_until(lambda: silent.cancelled == [call.id], LIMIT, "cancel, should it come after all")
 

@@ -23,7 +23,7 @@ from tms_config import environment
 from tms_config.config import load_site
 from tms_config.reasons import AboveLimit
 from tms_machine.reasons import MachineLatched
-from tms_rc.memory import Memory
+from tms_rc.latch_file import LatchFile
 from tms_rc.reasons import PressedByOthers
 from tms_reason import wire
 from tms_reason.reason import R
@@ -137,7 +137,7 @@ def rig(tmp_path_factory: pytest.TempPathFactory, domain: int, first_port: int) 
         for key, value in environment.environment(load_site(str(file))).items():
             patch.setenv(key, value)
         made = Rig(folder, file)
-        Memory(load_site(str(file)).state, MACHINE).arm()  # as a person has left it
+        LatchFile(load_site(str(file)).state, MACHINE).arm()  # as a person has left it
         made.start(f"sim:{MACHINE}", f"{MACHINE}:rc", f"{MACHINE}:rp", f"{MUTE}:rp")
         try:
             made.until(lambda: bool(made.states) and bool(made.frames), "joint states and frames")

@@ -24,7 +24,7 @@ def broken() -> None:
     "give",
     [
         lambda ros: Pulse(ros).add(broken),
-        lambda ros: ros.beside(0.1, broken, "looks"),
+        lambda ros: ros.poll_in_thread(0.1, broken, "looks"),
         lambda ros: ros.every(0.1, broken),
     ],
     ids=["pulse", "beside", "executor"],
@@ -41,7 +41,7 @@ def test_a_node_that_is_closed_has_not_failed(own_domain: int, monkeypatch: pyte
     node = Ros("server")
     Pulse(node).add(lambda: None)
     before = set(threading.enumerate())
-    node.beside(0.01, lambda: None, "looks")
+    node.poll_in_thread(0.01, lambda: None, "looks")
     (looks,) = set(threading.enumerate()) - before
     node.close()
     looks.join(LIMIT)

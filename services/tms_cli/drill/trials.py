@@ -11,10 +11,10 @@ import psutil
 from tms_msg_rc.srv import StopMachine
 
 from tms_cli.drill.busy import stood_still
-from tms_cli.drill.eyes import Eyes
 from tms_cli.drill.hits import BACK_LIMIT, Hits
 from tms_cli.drill.plan import NONE, TS, How, Stop, Trial
 from tms_cli.drill.record import Recording
+from tms_cli.drill.stop_observer import StopObserver
 from tms_cli.drill.verdict import AFTER, BY_ITSELF, GOES_ON, HUNG, UNPROVEN, Row, Seen, judge
 from tms_cli.drill.work import Work
 from tms_cli.reasons import DoesNotMove, NobodySays
@@ -54,7 +54,7 @@ class Hand:
     def __init__(self, node: Ros, site: Site, machine: str) -> None:
         self._site, self.machine = site, machine
         self.model = site.file.machines[machine].model
-        self.eyes, self.work, self._node = Eyes(node, site, machine), Work(node, site, machine), node
+        self.eyes, self.work, self._node = StopObserver(node, site, machine), Work(node, site, machine), node
         watch = StandStill(site.model_of(machine), site.border(machine), site.file.sim.speed)
         self._ends = watch.dead_time + watch.braking
         self._hits = Hits(site)

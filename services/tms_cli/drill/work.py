@@ -72,7 +72,7 @@ class Work:
     def scheduler_lost(self) -> None:
         """The client's side of it: nothing more will be heard of this goal."""
         self.lost = True
-        self._peer.lost()
+        self._peer.mark_lost()
 
     def outcome(self) -> str | None:
         """How the run ended; None while it goes on."""

@@ -10,7 +10,7 @@ from tms_ts.bt.context import Context
 from tms_ts.bt.convert import Missing, text_to_bool
 from tms_ts.bt.document import Document, TreeElement, children
 from tms_ts.bt.errors import TreeError
-from tms_ts.bt.node import Birth, Node
+from tms_ts.bt.node import Node, NodeSpec
 from tms_ts.bt.ports import RESERVED, Direction, Pointer, bind
 from tms_ts.bt.reasons import AdoptedLeaf, ManyNodes, NoTreeOfId, NotTrueOrFalse, TreeInItself, TreeTooDeep
 from tms_ts.bt.source import line_of
@@ -68,7 +68,7 @@ class Builder:
         bindings = {k: bind(k, v, v4=tree.v4) for k, v in use.attributes.items() if k not in RESERVED}
         self.declare(use.cls, bindings, blackboard, line, path)
         name = use.attributes.get("name", use.id)
-        node = use.cls(Birth(use.id, name, self.context, blackboard, bindings, path, line))
+        node = use.cls(NodeSpec(use.id, name, self.context, blackboard, bindings, path, line))
         if use.id in self.rules.adopted:
             node.warn(AdoptedLeaf(use.id))
         self.nodes.append(node)
@@ -101,7 +101,7 @@ class Builder:
             raise TreeError(NoTreeOfId(use.id), line=line, path=path)
         cls = self.rules.registry[use.subtree]
         name = use.attributes.get("name", use.id) if tree.v4 else use.id
-        node = cls(Birth(use.subtree, name, self.context, blackboard, {}, path, line))
+        node = cls(NodeSpec(use.subtree, name, self.context, blackboard, {}, path, line))
         self.nodes.append(node)
         try:
             inner = self.inner_blackboard(use, blackboard, v4=tree.v4)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(slots=True)
-class Birth:
+class NodeSpec:
     """What a node is told when it is made."""
 
     registration_name: str
@@ -64,7 +64,7 @@ class Node:
     needs: ClassVar[tuple[str, ...]] = ()  # ports without which it throws
     asking: ClassVar[bool] = False  # RUNNING only because an answer is not there yet
 
-    def __init__(self, birth: Birth) -> None:
+    def __init__(self, birth: NodeSpec) -> None:
         self.name = birth.name
         self.registration_name = birth.registration_name
         self.context = birth.context

@@ -18,9 +18,9 @@ from tms_ts.groot.groot1 import Change, message, tree_reply
 from tms_ts.groot.groot2 import Groot2
 
 STEP = 10  # ports from one run to the next
-MOST_RUNS = 10
+MAX_RUNS = 10
 PERIOD = 0.04  # s between messages: the library's 25 a second
-MOST_CHANGES = 10_000  # kept for one message; a tree that spins makes more than anybody can see
+MAX_CHANGES = 10_000  # kept for one message; a tree that spins makes more than anybody can see
 
 
 class Monitors:
@@ -35,7 +35,7 @@ class Monitors:
     def watch(self, run_id: str, tree: Tree) -> Iterator[None]:
         """Let Groot look at a tree; what goes wrong costs the view, never the run."""
         with self._lock:
-            slot = next((slot for slot in range(MOST_RUNS) if slot not in self._used), None)
+            slot = next((slot for slot in range(MAX_RUNS) if slot not in self._used), None)
             if slot is not None:
                 self._used.add(slot)
         monitor = None
@@ -63,7 +63,7 @@ class Monitor:
 
     def __init__(self, tree: Tree, bind: str, port: int) -> None:
         self._tree = tree
-        self._changes: deque[Change] = deque(maxlen=MOST_CHANGES)
+        self._changes: deque[Change] = deque(maxlen=MAX_CHANGES)
         self._flooded = False
         self._states = {node.uid: int(node.state) for node in tree.nodes}  # at the last message
         self._before: dict[int, int] = {}  # last state that was not idle
@@ -104,7 +104,7 @@ class Monitor:
 
     def _changed(self, node: Node, old: Status, new: Status) -> None:
         """On the run's thread: takes a note, nothing else."""
-        if len(self._changes) == MOST_CHANGES:
+        if len(self._changes) == MAX_CHANGES:
             self._flooded = True
         self._changes.append((time.time(), node.uid, int(old), int(new)))
 
@@ -135,7 +135,7 @@ class Monitor:
 
     def _publish(self, publisher: zmq.Socket[bytes]) -> None:
         changes: list[Change] = []
-        while self._changes and len(changes) < MOST_CHANGES:
+        while self._changes and len(changes) < MAX_CHANGES:
             changes.append(self._changes.popleft())
         if not changes:
             return

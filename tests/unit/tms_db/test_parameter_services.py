@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from tms_db.batches import Update
-from tms_db.heads import Head, Key
 from tms_db.parameter_services import OLDEST, ParameterServices
+from tms_db.record_cache import Head, Key
 from tms_machine.values import to_parameters
 
 

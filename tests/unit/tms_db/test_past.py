@@ -7,7 +7,7 @@ import bson
 import pytest
 import structlog
 
-from tms_db.past import KEPT, ROOM, Past
+from tms_db.parameter_history import KEPT, ROOM, ParameterHistory
 
 NOON = datetime(2026, 1, 31, 12, 0, tzinfo=timezone.utc)
 KEY = ("zx200", "path")
@@ -30,7 +30,7 @@ class Stored:
 
 
 def save(stored: Stored, *sizes: int) -> None:
-    past: Any = Past(stored, None, structlog.stdlib.get_logger("test"))  # type: ignore[arg-type]
+    past: Any = ParameterHistory(stored, None, structlog.stdlib.get_logger("test"))  # type: ignore[arg-type]
     past._save({KEY: [{"stamp": NOON, "source": "sp", "values": {"x": "." * size}} for size in sizes]})
 
 

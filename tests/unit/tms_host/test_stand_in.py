@@ -86,7 +86,7 @@ def test_a_gateway_that_takes_leave_is_no_loss() -> None:
     assert duty.lost_since is None
 
 
-def test_a_corpse_that_discovery_drops_later_is_no_leave() -> None:
+def test_a_stale_writer_that_discovery_drops_later_is_no_leave() -> None:
     duty = Duty()
     duty.look(0.0, THERE)
     acts(duty, 1.0, 0.2, SILENT)

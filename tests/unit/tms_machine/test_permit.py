@@ -64,16 +64,16 @@ def test_it_does_not_wait_for_ever(dds: Dds, link: tuple[Link, list[bool]]) -> N
     assert not link[0].alive and link[1][-1] is False
 
 
-@pytest.mark.parametrize("corpses", [0, 1])  # of predecessors
-def test_who_takes_leave_leaves_no_corpse(dds: Dds, link: tuple[Link, list[bool]], corpses: int) -> None:
-    dds.alive(1, corpses)
-    dds.alive(0, corpses)
+@pytest.mark.parametrize("stale_writers", [0, 1])  # of predecessors
+def test_who_takes_leave_leaves_no_stale_writer(dds: Dds, link: tuple[Link, list[bool]], stale_writers: int) -> None:
+    dds.alive(1, stale_writers)
+    dds.alive(0, stale_writers)
     assert not link[0].alive and link[0].left
-    dds.alive(1, corpses)
+    dds.alive(1, stale_writers)
     assert not link[0].left
-    dds.alive(0, corpses + 1)
+    dds.alive(0, stale_writers + 1)
     assert not link[0].alive and not link[0].left
-    dds.alive(0, 0)  # discovery drops the corpse
+    dds.alive(0, 0)  # discovery drops the stale writer
     assert not link[0].left
 
 
@@ -83,10 +83,10 @@ class Server:
     def __init__(self) -> None:
         self.told: list[str] = []
 
-    def lost(self) -> None:
+    def mark_lost(self) -> None:
         self.told.append("lost")
 
-    def found(self) -> None:
+    def mark_alive(self) -> None:
         self.told.append("found")
 
 

@@ -28,7 +28,7 @@ class Peer:
         self.looks += 1
         return self.looks > 2
 
-    def lost(self) -> None:
+    def mark_lost(self) -> None:
         self.given_up += 1
 
 

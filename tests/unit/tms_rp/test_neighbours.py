@@ -30,7 +30,7 @@ def neighbours(*told: TransformStamped) -> Neighbours:
     )
     ros = SimpleNamespace(
         sample=lambda *_: lambda: [TFMessage(transforms=list(told))],
-        beside=lambda *_: None,
+        poll_in_thread=lambda *_: None,
         subscribe=lambda *_, **__: None,
     )
     made = Neighbours(SimpleNamespace(site=site, machine="zx200", log=structlog.stdlib.get_logger("test"), ros=ros))  # type: ignore[arg-type]

@@ -16,9 +16,9 @@ from tms_reason import wire
 from tms_reason.errors import TaskError
 from tms_ts.group_commit import GroupCommit
 from tms_ts.interrupted import STOP_LIMIT, Interrupted
-from tms_ts.past import Header, Past
+from tms_ts.interrupted_run import Header, InterruptedRun
 from tms_ts.reasons import RunInterrupted
-from tms_ts.record import Records
+from tms_ts.run_checkpoint import Records
 from words import words
 
 HEADER = Header("run-1", 7, 3, "dig", ["zx200"], "<root/>", (1, 2))
@@ -31,7 +31,7 @@ class Slow(Records):
         super().__init__(state, disk)
         self._meet = threading.Barrier(2)
 
-    def find(self, run_id: str) -> Past | None:
+    def find(self, run_id: str) -> InterruptedRun | None:
         found = super().find(run_id)
         try:
             self._meet.wait(0.5)

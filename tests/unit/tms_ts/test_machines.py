@@ -51,7 +51,7 @@ class Site:
         self.trouble: Reason | None = None
         monkeypatch.setattr(machines.time, "monotonic", lambda: self.now)
         monkeypatch.setattr(Machines, "_stop_after_loss", lambda one, machine, cause: one._stopping.discard(machine))
-        self.peer.lost = lambda: None  # type: ignore[attr-defined]
+        self.peer.mark_lost = lambda: None  # type: ignore[attr-defined]
         ros = SimpleNamespace(peer=lambda *_: self.peer)
         hosts = SimpleNamespace(pid=lambda *_: self.pid, trouble=lambda *_: self.trouble, fatal=lambda *_: self.fatal)
         gateways = SimpleNamespace(obstacle=lambda _: None, latch=lambda _: None)

@@ -39,7 +39,7 @@ POSE = {"swing_joint": 0.0, "boom_joint": 0.0, "arm_joint": 0.0, "bucket_joint":
 
 
 @dataclass
-class Around:
+class Context:
     """The surroundings in memory."""
 
     records: dict[tuple[str, str], Stored] = field(default_factory=lambda: {("zx200", "pose"): Stored(POSE)})
@@ -77,7 +77,7 @@ GOOD = ("zx200", "pose", "subtask_zx200_change_pose")
 
 
 def test_a_record_that_is_nearly_there_is_named(site: Site) -> None:
-    found = preflight(tree(("zx200", "poze", "subtask_zx200_change_pose")), site, Around())
+    found = preflight(tree(("zx200", "poze", "subtask_zx200_change_pose")), site, Context())
     assert words(found.errors[0]).startswith(
         "line 2: no record zx200/poze; did you mean 'pose'?: `tms param set zx200/poze --create"
     )
@@ -85,7 +85,7 @@ def test_a_record_that_is_nearly_there_is_named(site: Site) -> None:
 
 def test_a_good_tree(site: Site) -> None:
     loaded = tree(GOOD, GOOD)
-    assert preflight(loaded, site, Around()).errors == []
+    assert preflight(loaded, site, Context()).errors == []
     assert machines_of(loaded) == ["zx200"]
     assert processes_of(loaded, site) == ["zx200:subtask_zx200_change_pose"]
 
@@ -102,14 +102,14 @@ def test_a_good_tree(site: Site) -> None:
     ],
 )
 def test_errors_name_line_and_remedy(site: Site, leaf: tuple[str, str, str], said: str) -> None:
-    found = preflight(tree(GOOD, leaf), site, Around())
+    found = preflight(tree(GOOD, leaf), site, Context())
     assert len(found.errors) == 1
     assert said in words(found.errors[0])
 
 
 def test_what_only_the_run_decides_is_a_warning(site: Site) -> None:
     loaded = tree(("{m}", "pose", "subtask_zx200_change_pose"), ("zx200", "{r}", "subtask_zx200_change_pose"))
-    found = preflight(loaded, site, Around())
+    found = preflight(loaded, site, Context())
     assert found.errors == []
     assert any("line 2" in words(text) for text in found.warnings)
 
@@ -117,20 +117,20 @@ def test_what_only_the_run_decides_is_a_warning(site: Site) -> None:
 @pytest.mark.parametrize(
     ("around", "said"),
     [
-        (Around({GOOD[:2]: Stored(POSE, "dynamic", 12.0, 5.0)}), "line 2: record zx200/pose is 12.0 s old, allowed"),
-        (Around({GOOD[:2]: Stored(POSE, "dynamic", None, 5.0)}), "line 2: record zx200/pose is of unknown age"),
-        (Around(silent_input="digger"), "line 2: sensing input digger should write record zx200/pose and is silent"),
-        (Around(problems={"zx200": MachineLatched("zx200", SoftwareStop())}), "zx200 is stopped: software stop"),
+        (Context({GOOD[:2]: Stored(POSE, "dynamic", 12.0, 5.0)}), "line 2: record zx200/pose is 12.0 s old, allowed"),
+        (Context({GOOD[:2]: Stored(POSE, "dynamic", None, 5.0)}), "line 2: record zx200/pose is of unknown age"),
+        (Context(silent_input="digger"), "line 2: sensing input digger should write record zx200/pose and is silent"),
+        (Context(problems={"zx200": MachineLatched("zx200", SoftwareStop())}), "zx200 is stopped: software stop"),
     ],
 )  # fmt: skip
-def test_what_may_be_right_when_the_leaf_starts_is_a_warning(site: Site, around: Around, said: str) -> None:
+def test_what_may_be_right_when_the_leaf_starts_is_a_warning(site: Site, around: Context, said: str) -> None:
     found = preflight(tree(GOOD), site, around)
     assert found.errors == []
     assert [text for text in found.warnings if said in words(text)], found.warnings
 
 
 def test_a_record_that_does_not_fit_its_subtask_is_an_error(site: Site) -> None:
-    found = preflight(tree(GOOD), site, Around(misfit=Foreign("boom_joint: Field required")))
+    found = preflight(tree(GOOD), site, Context(misfit=Foreign("boom_joint: Field required")))
     unfit = RecordUnfit("zx200/pose", "subtask_zx200_change_pose", Foreign("boom_joint: Field required"))
     assert found.errors == [at(2, unfit)]
 
@@ -169,27 +169,27 @@ def test_an_angle_beyond_the_limit_of_its_joint_does_not_fit(
     found = unfit(parse(CONFIGS / "machines" / f"{machine}.yaml", MachineModel), subtask, values)
     assert said in words(found)
     assert bool(said) == (found is not None)
-    errors = preflight(tree(GOOD), site, Around(misfit=found)).errors
+    errors = preflight(tree(GOOD), site, Context(misfit=found)).errors
     assert len(errors) == bool(said)
 
 
 def test_a_flag_that_is_waited_for_and_that_nobody_writes_is_a_warning(site: Site) -> None:
     reader = flags(READ.format("FREE"))
-    assert at(1, WAITED) in preflight(reader, site, Around(ROAD)).warnings
+    assert at(1, WAITED) in preflight(reader, site, Context(ROAD)).warnings
     others = [
-        preflight(reader, site, Around(ROAD, writers={("ROAD", "FREE")})),
-        preflight(flags(READ.format("FREE") + WRITE.format("FREE")), site, Around(ROAD)),
-        preflight(flags(READ.format("FREE"), "", ""), site, Around(ROAD)),
+        preflight(reader, site, Context(ROAD, writers={("ROAD", "FREE")})),
+        preflight(flags(READ.format("FREE") + WRITE.format("FREE")), site, Context(ROAD)),
+        preflight(flags(READ.format("FREE"), "", ""), site, Context(ROAD)),
     ]
     assert not any(text.find(NobodyWrites) for found in others for text in found.warnings)
 
 
 def test_shared_records_and_fields_should_be_there_and_not_static(site: Site) -> None:
     """Warnings, since trees of the field name records that a branch which is never taken would need."""
-    static = Around({("", "ROAD"): Stored({"FREE": False}, "static")})
+    static = Context({("", "ROAD"): Stored({"FREE": False}, "static")})
     for inner, around, said in (
-        (READ.format("FREE"), Around({}), "no shared record ROAD"),
-        (READ.format("TAKEN"), Around(ROAD), "has no field 'TAKEN'"),
+        (READ.format("FREE"), Context({}), "no shared record ROAD"),
+        (READ.format("TAKEN"), Context(ROAD), "has no field 'TAKEN'"),
         (WRITE.format("FREE"), static, "is static"),
     ):
         found = preflight(flags(inner), site, around)
@@ -205,7 +205,7 @@ def test_the_records_that_a_tree_names(site: Site) -> None:
 
 @pytest.mark.parametrize("name", ["st_zx200_dig ", "st-zx200", "", "st/", "1st", "掘る", "s" * 201])
 def test_a_subtask_that_can_be_no_ros_name_is_refused_before_ros_is_asked(site: Site, name: str) -> None:
-    class Asked(Around):
+    class Asked(Context):
         def served(self, machine: str, subtask: str) -> bool:
             raise ValueError("rclpy takes no such name")
 
@@ -230,9 +230,9 @@ def test_constants_of_a_subtree_are_known_before_the_run(site: Site) -> None:
     assert machines_of(loaded) == ["zx200"]
     assert processes_of(loaded, site) == ["zx200:subtask_zx200_change_pose"]
     assert records_of(loaded) == ["zx200/pose"]
-    assert preflight(loaded, site, Around()).errors == []
-    assert "no record zx200/none" in words(preflight(dig('machine="zx200" pose="none"'), site, Around()).errors[0])
-    assert "no machine 'zx999'" in words(preflight(dig('machine="zx999" pose="pose"'), site, Around()).errors[0])
+    assert preflight(loaded, site, Context()).errors == []
+    assert "no record zx200/none" in words(preflight(dig('machine="zx200" pose="none"'), site, Context()).errors[0])
+    assert "no machine 'zx999'" in words(preflight(dig('machine="zx999" pose="pose"'), site, Context()).errors[0])
 
 
 @pytest.mark.parametrize(
@@ -249,4 +249,4 @@ def test_a_constant_that_a_node_may_write_is_known_only_to_the_run(site: Site, w
     loaded = dig('machine="zx200" pose="pose_0" n="1"', writer)
     assert machines_of(loaded) == ["zx200"]
     assert records_of(loaded)[0] == "zx200/*"
-    assert preflight(loaded, site, Around()).errors == []
+    assert preflight(loaded, site, Context()).errors == []

@@ -6,9 +6,9 @@ import pytest
 import structlog
 
 from tms_ts.group_commit import GroupCommit
-from tms_ts.past import Header, Key, Over, Past
-from tms_ts.record import LOST, Records
+from tms_ts.interrupted_run import Header, InterruptedRun, Key, Over
 from tms_ts.replay import Replay
+from tms_ts.run_checkpoint import LOST, Records
 
 HEADER = Header("run-1", 7, 3, "dig", ["zx200"], "<root/>", (1, 2))
 FIRST: Key = ("0.0", "zx200", "dig", "here")
@@ -119,7 +119,7 @@ def test_a_record_that_is_closed_stays(records: Records) -> None:
     made.close()
     made.event(2)  # late news
     records.past()
-    assert Past(made.path).last_event == 1
+    assert InterruptedRun(made.path).last_event == 1
 
 
 def test_a_record_is_there_until_the_end_of_its_run_is_stored(records: Records, disk: GroupCommit) -> None:
@@ -128,7 +128,7 @@ def test_a_record_is_there_until_the_end_of_its_run_is_stored(records: Records, 
     record.event(4)
     record.over("failure", "it rains")
     record.event(5)
-    disk.after(lambda: seen.append(Past(record.path).over == Over("failure", "it rains", 5)))
+    disk.after(lambda: seen.append(InterruptedRun(record.path).over == Over("failure", "it rains", 5)))
     record.remove()
     assert disk.wait(10)
     assert seen == [True] and not record.path.exists()

@@ -20,11 +20,11 @@ from tms_ts import run as module
 from tms_ts.bt import Status
 from tms_ts.budget import AT_ONCE
 from tms_ts.group_commit import GroupCommit
+from tms_ts.interrupted_run import InterruptedRun
 from tms_ts.node import END_STORED, Scheduler
-from tms_ts.past import Past
 from tms_ts.reasons import LeftOut
-from tms_ts.record import Records
 from tms_ts.run import PERIOD, Facts, Run
+from tms_ts.run_checkpoint import Records
 from words import words
 
 
@@ -158,7 +158,7 @@ def test_a_resume_that_is_refused_leaves_its_record_and_no_open_file(a_run: Run,
     a_run.refuse(MachineLatched("zx200", SoftwareStop()))
     disk.close(10)
     assert files() == before
-    assert Past(a_run.record.path).closed
+    assert InterruptedRun(a_run.record.path).closed
 
 
 def test_a_loop_that_waits_is_told_to_whoever_looks_and_in_part_to_the_history(a_run: Run, rows: list[Any]) -> None:

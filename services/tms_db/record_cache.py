@@ -68,8 +68,8 @@ class Head:
         return {name: _fitting(f"{where}.{name}", self.document.get(name), value) for name, value in values.items()}
 
 
-class Heads:
-    """Heads by key; used on the executor thread, but for the reading again."""
+class RecordCache:
+    """RecordCache by key; used on the executor thread, but for the reading again."""
 
     def __init__(
         self, parameters: Parameters, newest: Callable[[Key], Document], ros: Ros, watched: Callable[[], bool]

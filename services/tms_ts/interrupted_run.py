@@ -32,7 +32,7 @@ class Over:
     event: int  # number of the event that tells
 
 
-class Past:
+class InterruptedRun:
     """A record. Without a header nothing can be done with it."""
 
     def __init__(self, path: Path) -> None:

@@ -37,7 +37,7 @@ class Asked:
     over: threading.Event = field(default_factory=threading.Event)
 
 
-class Ends:
+class ClientEndpoints:
     """`send` takes a frame and whether it may be dropped; `say` takes a trouble that is no one's fault but worth a
     line. What is echoed is keyed as the client writes it, what is published by its full name.
 

@@ -7,38 +7,38 @@ from typing import Any
 import pytest
 
 from tms_machine.reasons import NoNote, SoftwareStop
-from tms_rc.memory import Left, Memory
+from tms_rc.latch_file import LatchFile, Left
 from tms_rc.reasons import NoteUnreadable
 from tms_rc.receipts import Receipts
 from tms_reason.reason import Foreign
 
 
 def test_a_machine_without_a_note_is_latched(tmp_path: Path) -> None:
-    assert Memory(tmp_path, "zx200").read() == Left(NoNote())
+    assert LatchFile(tmp_path, "zx200").read() == Left(NoNote())
 
 
 def test_armed_is_what_the_note_says(tmp_path: Path) -> None:
-    Memory(tmp_path, "zx200").arm()
-    assert Memory(tmp_path, "zx200").read() == Left(None)
-    assert Memory(tmp_path, "ic120").read() == Left(NoNote())
+    LatchFile(tmp_path, "zx200").arm()
+    assert LatchFile(tmp_path, "zx200").read() == Left(None)
+    assert LatchFile(tmp_path, "ic120").read() == Left(NoNote())
 
 
 def test_the_run_that_may_have_left_it_moving_is_told(tmp_path: Path) -> None:
-    Memory(tmp_path, "zx200").arm("20261122-1", 7)
-    assert Memory(tmp_path, "zx200").read() == Left(None, "20261122-1", 7)
+    LatchFile(tmp_path, "zx200").arm("20261122-1", 7)
+    assert LatchFile(tmp_path, "zx200").read() == Left(None, "20261122-1", 7)
 
 
 def test_a_latch_and_its_cause_are_kept(tmp_path: Path) -> None:
-    memory = Memory(tmp_path, "zx200")
+    memory = LatchFile(tmp_path, "zx200")
     memory.arm("20261122-1", 7)
     memory.latch(SoftwareStop())
-    assert Memory(tmp_path, "zx200").read() == Left(SoftwareStop(), unproven=True)
+    assert LatchFile(tmp_path, "zx200").read() == Left(SoftwareStop(), unproven=True)
     memory.arm()
-    assert Memory(tmp_path, "zx200").read() == Left(None)
+    assert LatchFile(tmp_path, "zx200").read() == Left(None)
 
 
 def test_a_latch_whose_receipt_never_came_is_unproven(tmp_path: Path) -> None:
-    memory = Memory(tmp_path, "zx200")
+    memory = LatchFile(tmp_path, "zx200")
     memory.latch(SoftwareStop())
     assert memory.read().unproven
     Receipts(tmp_path, "zx200").keep(b"receipt")
@@ -46,12 +46,12 @@ def test_a_latch_whose_receipt_never_came_is_unproven(tmp_path: Path) -> None:
 
 
 def test_who_drives_by_hand_is_kept(tmp_path: Path) -> None:
-    memory = Memory(tmp_path, "zx200")
+    memory = LatchFile(tmp_path, "zx200")
     memory.arm()
     memory.take("mina")
-    assert Memory(tmp_path, "zx200").read() == Left(None, taken="mina")
+    assert LatchFile(tmp_path, "zx200").read() == Left(None, taken="mina")
     memory.take("")
-    assert Memory(tmp_path, "zx200").read() == Left(None)
+    assert LatchFile(tmp_path, "zx200").read() == Left(None)
 
 
 @pytest.mark.parametrize(
@@ -59,7 +59,7 @@ def test_who_drives_by_hand_is_kept(tmp_path: Path) -> None:
     ["", "{", '{"armed": tr', "[]", '{"armed": 1}', '{"armed": true}', '{"armed": true, "holder": ""}', "\0\0\0"],
 )
 def test_a_torn_note_latches(tmp_path: Path, torn: str) -> None:
-    memory = Memory(tmp_path, "zx200")
+    memory = LatchFile(tmp_path, "zx200")
     memory.arm()
     (tmp_path / "rc" / "zx200.armed").write_text(torn)
     assert memory.read() == Left(NoteUnreadable())
@@ -67,7 +67,7 @@ def test_a_torn_note_latches(tmp_path: Path, torn: str) -> None:
 
 def test_a_note_that_may_not_be_read_latches(tmp_path: Path) -> None:
     (tmp_path / "rc" / "zx200.armed").mkdir(parents=True)
-    assert Memory(tmp_path, "zx200").read() == Left(NoteUnreadable())
+    assert LatchFile(tmp_path, "zx200").read() == Left(NoteUnreadable())
 
 
 def full_disk(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -79,26 +79,26 @@ def full_disk(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_full_disk_latches_all_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The note is taken away; only the cause finds no room."""
-    memory = Memory(tmp_path, "zx200")
+    memory = LatchFile(tmp_path, "zx200")
     memory.arm()
     full_disk(monkeypatch)
     memory.latch(SoftwareStop())
-    assert Memory(tmp_path, "zx200").read() == Left(NoNote())
+    assert LatchFile(tmp_path, "zx200").read() == Left(NoNote())
 
 
 def test_a_full_disk_arms_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    memory = Memory(tmp_path, "zx200")
+    memory = LatchFile(tmp_path, "zx200")
     memory.arm()
     memory.latch(SoftwareStop())
     full_disk(monkeypatch)
     with pytest.raises(OSError, match="No space left"):
         memory.arm()
     monkeypatch.undo()
-    assert Memory(tmp_path, "zx200").read() == Left(SoftwareStop(), unproven=True)
+    assert LatchFile(tmp_path, "zx200").read() == Left(SoftwareStop(), unproven=True)
 
 
 def test_a_crash_while_it_is_written_leaves_the_old_note(tmp_path: Path) -> None:
-    memory = Memory(tmp_path, "zx200")
+    memory = LatchFile(tmp_path, "zx200")
     memory.latch(SoftwareStop())
     (tmp_path / "rc" / "zx200.armed.part").write_text(json.dumps({"armed": True, "holder": "", "run": 0}))
     assert memory.read() == Left(SoftwareStop(), unproven=True)
@@ -107,4 +107,4 @@ def test_a_crash_while_it_is_written_leaves_the_old_note(tmp_path: Path) -> None
 def test_a_note_of_an_earlier_release_keeps_its_words(tmp_path: Path) -> None:
     (tmp_path / "rc").mkdir()
     (tmp_path / "rc" / "zx200.latched").write_text(json.dumps({"cause": "software stop by mina"}))
-    assert Memory(tmp_path, "zx200").read() == Left(Foreign("software stop by mina"), unproven=True)
+    assert LatchFile(tmp_path, "zx200").read() == Left(Foreign("software stop by mina"), unproven=True)

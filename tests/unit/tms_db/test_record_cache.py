@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from tms_db.heads import KEPT, Heads
+from tms_db.record_cache import KEPT, RecordCache
 from tms_db.records import Document
 from tms_reason.errors import DbError
 from tms_reason.reason import Foreign
@@ -55,7 +55,7 @@ def test_a_reading_that_failed_is_tried_again(trouble: Exception, monkeypatch: p
     monkeypatch.setattr(time, "monotonic", lambda: clock[0])
     monkeypatch.setattr(threading, "Thread", Thread)
     stored, ros = Store(), Ros()
-    found = Heads(stored, lambda key: {}, ros, lambda: False)  # type: ignore[arg-type]
+    found = RecordCache(stored, lambda key: {}, ros, lambda: False)  # type: ignore[arg-type]
     found.get(KEY)
     stored.x, stored.trouble = 2, trouble
     clock[0] += KEPT + 0.5

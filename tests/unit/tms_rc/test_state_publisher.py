@@ -7,7 +7,7 @@ import pytest
 
 from tms_rc import node
 from tms_rc.guard import Guard
-from tms_rc.node import TOLD_MOVING, TOLD_STILL, Teller
+from tms_rc.node import TOLD_MOVING, TOLD_STILL, StatePublisher
 from tms_rc.standstill import StandStill
 
 
@@ -23,7 +23,7 @@ class Rig:
             by_hand="",
         )
         watch = SimpleNamespace(moving=lambda: self.moving)
-        self.teller = Teller(cast(Guard, self.guard), cast(StandStill, watch), self._publish)
+        self.state_publisher = StatePublisher(cast(Guard, self.guard), cast(StandStill, watch), self._publish)
 
     def _publish(self) -> None:
         self.told += 1
@@ -32,7 +32,7 @@ class Rig:
         """How often it is told at the next look."""
         self.now += seconds
         before = self.told
-        self.teller.look()
+        self.state_publisher.look()
         return self.told - before
 
 
@@ -40,7 +40,7 @@ class Rig:
 def rig(monkeypatch: pytest.MonkeyPatch) -> Rig:
     made = Rig()
     monkeypatch.setattr(node.time, "monotonic", lambda: made.now)
-    made.teller.look()
+    made.state_publisher.look()
     return made
 
 

@@ -18,7 +18,7 @@ from prometheus_client import Counter
 from tms_runtime.append_file import AppendFile
 from tms_runtime.durable import set_aside
 from tms_ts.group_commit import GroupCommit
-from tms_ts.past import Header, Key, Past
+from tms_ts.interrupted_run import Header, InterruptedRun, Key
 
 READ_LIMIT = 2.0  # s for lines on their way to the disk before it is read
 
@@ -26,7 +26,7 @@ log = structlog.stdlib.get_logger(__name__)
 LOST = Counter("tms_ts_record_lost_total", "Lines of a run's record that could not be kept; it cannot be resumed")
 
 
-class Record:
+class RunCheckpoint:
     """Written by the run.
 
     A line begins with its line break: what a crash has cut off before it spoils no other line.
@@ -111,15 +111,15 @@ class Records:
     def __init__(self, state: Path, disk: GroupCommit) -> None:
         self._folder, self._disk = state / "ts" / "runs", disk
 
-    def open(self, run_id: str) -> Record:
+    def open(self, run_id: str) -> RunCheckpoint:
         """The record of a run, new or continued."""
-        return Record(self._folder / f"{run_id}.jsonl", self._disk)
+        return RunCheckpoint(self._folder / f"{run_id}.jsonl", self._disk)
 
     def check(self) -> None:
         """Before the first run: put aside what cannot be read, tell it, and go on with the others."""
         for path in sorted(self._folder.glob("*.jsonl")):
             try:
-                past = Past(path)
+                past = InterruptedRun(path)
                 problem = "" if past.header is not None else "it does not say which run it is of"
             except OSError as error:
                 problem = str(error)
@@ -128,16 +128,16 @@ class Records:
             elif past.damaged:
                 log.error("record_damaged", file=path, lines=past.damaged)
 
-    def past(self) -> list[Past]:
+    def past(self) -> list[InterruptedRun]:
         """Runs that did not end in order, oldest first. Waits a moment for what is on its way to the disk."""
         self._disk.wait(READ_LIMIT)
         found = []
         for path in sorted(self._folder.glob("*.jsonl")):
             with suppress(OSError):  # told at the start
-                found.append(Past(path))
+                found.append(InterruptedRun(path))
         return [past for past in found if past.header is not None]
 
-    def find(self, run_id: str) -> Past | None:
+    def find(self, run_id: str) -> InterruptedRun | None:
         """The interrupted run called `run_id`; the beginning of the id is enough when only one fits."""
         hits = [past for past in self.past() if past.header and past.header.run_id.startswith(run_id)]
         return hits[0] if len(hits) == 1 and run_id else None

@@ -24,7 +24,7 @@ VOICES = 0.25  # s between looks at who publishes
 Numbers = tuple[Mapping[str, Place], Mapping[str, float]]  # places and speeds by channel
 
 
-class View:
+class MachineMonitor:
     """Takes what the machine has told since the last look, at every beat of the pulse: no callback delays it."""
 
     def __init__(self, app: App, watch: StandStill) -> None:

@@ -10,8 +10,8 @@ from nav_msgs.msg import Odometry
 from std_srvs.srv import Trigger
 
 from tms_if import joint_cmd
+from tms_if.client_endpoints import OPEN_CALLS, ClientEndpoints
 from tms_if.commands import CommandError, Registration
-from tms_if.ends import OPEN_CALLS, Ends
 from tms_if.names import Allowed
 from tms_reason.errors import RosError
 from tms_reason.reason import Foreign
@@ -74,7 +74,7 @@ class Client:
         self.sent: list[bytes] = []
         self.said: list[str] = []
         send, say = (lambda frame, _: self.sent.append(frame)), self.said.append
-        self.ends = Ends(ros, joint_cmd.OURS, ALLOWED, speakers, name, send, say)  # type: ignore[arg-type]
+        self.ends = ClientEndpoints(ros, joint_cmd.OURS, ALLOWED, speakers, name, send, say)  # type: ignore[arg-type]
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ import bson
 from pymongo import UpdateOne
 
 from tms_db.connection import Connection
-from tms_db.heads import Key
+from tms_db.record_cache import Key
 from tms_db.records import Value
 from tms_db.store import Db, errors
 from tms_reason.errors import DbError
@@ -25,7 +25,7 @@ PERIOD = 2.0  # s between writes; what sensing changes in between counts as one 
 Change = dict[str, Any]  # stamp, source, values
 
 
-class Past:
+class ParameterHistory:
     """The `parameter_history` collection: one document a record."""
 
     def __init__(self, db: Db, connection: Connection, log: Logger) -> None:

@@ -23,7 +23,7 @@ LOOK = 0.1  # s
 WAITING = 250  # samples of the truth, ten seconds
 
 
-class Eyes:
+class StopObserver:
     """Callbacks run on the executor thread, looks in that of the pulse, everything else in those of the trials."""
 
     def __init__(self, node: Ros, site: Site, machine: str) -> None:

@@ -12,7 +12,7 @@ from sensor_msgs.msg import Imu, JointState
 
 from tms_config.models import MachineModel, Source
 from tms_config.yaml_file import parse
-from tms_rc import view
+from tms_rc import machine_monitor
 from tms_rc.reasons import ManyPublishers
 from tms_rc.standstill import HEADING, JOINTS, PLACE, TURNING, StandStill
 from tms_ros.topics import Arrival
@@ -22,7 +22,7 @@ SOURCE = Source(period=0.05, stamps="none", frozen_after=2.0, origin="a test")
 
 
 def joints(message: Any) -> Any:
-    made: Any = view.View.__new__(view.View)
+    made: Any = machine_monitor.MachineMonitor.__new__(machine_monitor.MachineMonitor)
     made._names = {"swing_joint": "swing_joint", "hook": "boom_joint"}
     return made._joints(message)
 
@@ -53,23 +53,23 @@ def odometry(**pose: float) -> Odometry:
 
 
 def test_odometry_tells_place_heading_and_speeds() -> None:
-    places, speeds = view._odometry(odometry(x=2.0))
+    places, speeds = machine_monitor._odometry(odometry(x=2.0))
     assert places[PLACE] == (2.0, 0.0) and abs(places[HEADING][0] - 1.5708) < 1e-4
     assert speeds == {PLACE: 0.3, HEADING: -0.1}
 
 
 def test_a_place_that_is_not_a_number_was_not_heard() -> None:
-    assert view._odometry(odometry(x=float("inf")))[0] == {}
+    assert machine_monitor._odometry(odometry(x=float("inf")))[0] == {}
 
 
 def test_the_empty_twist_of_a_global_pose_is_no_speed() -> None:
-    assert view._global_odometry(odometry())[1] == {}
+    assert machine_monitor._global_odometry(odometry())[1] == {}
 
 
 def test_an_imu_tells_how_it_turns() -> None:
     message = Imu()
     message.angular_velocity.x, message.angular_velocity.z = 0.3, 0.4
-    places, speeds = view._imu(message)
+    places, speeds = machine_monitor._imu(message)
     assert places == {TURNING: ()} and abs(speeds[TURNING] - 0.5) < 1e-12
 
 
@@ -100,7 +100,7 @@ def test_a_source_that_speaks_again_is_not_believed_before_its_publishers_were_c
     site: Any = SimpleNamespace(border=lambda _: border, model_of=lambda _: model)
     app: Any = SimpleNamespace(machine="m", site=site, ros=ros)
     watch = StandStill(model, border)
-    seen = view.View(app, watch)
+    seen = machine_monitor.MachineMonitor(app, watch)
 
     def speak() -> None:
         message = JointState(name=list(model.initial), position=list(model.initial.values()))

@@ -29,7 +29,7 @@ class Left:
     unproven: bool = False  # it was latched, and the receipt of that stop never came to the disk
 
 
-class Memory:
+class LatchFile:
     """`<state>/rc/<machine>.armed` and, for people, `.latched` with the cause."""
 
     def __init__(self, folder: Path, machine: str) -> None:
