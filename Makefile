@@ -101,7 +101,7 @@ restart: setup ## restart one process (P=name)
 
 test: setup ## all tests that a laptop can run
 	@DOCKER=$(DOCKER) sh deploy/system-packages.sh test
-	$(PY) -m pytest
+	$(PY) -m pytest -n $(WORKERS) --dist loadfile
 
 test-fast: setup ## unit, contract and conformance tests: no ROS processes, two minutes (WORKERS=2)
 	@DOCKER=$(DOCKER) sh deploy/system-packages.sh test
