@@ -63,8 +63,8 @@ class NotWritable(Reason, text="{file} cannot be written ({problem})", action=OT
 class StateNotWritable(Reason, text="{folder} cannot be written ({problem})", action=STATE_ELSEWHERE):
     folder: str; problem: str
 class LittleRoom(Reason, text="{folder}: only {free} free", action=STATE_ELSEWHERE): folder: str; free: Megabytes
-class DomainTaken(Reason, text="ROS domain {domain} is used by another mesh on this PC", action=OTHER_DOMAIN,
-    details="pid {pid}, state in {folder}"): domain: int; pid: int; folder: str
+class DomainTaken(Reason, text="ROS domain {domain} is used by another mesh on this PC, its state is in {folder}",
+    action=OTHER_DOMAIN, details="pid {pid}"): domain: int; pid: int; folder: str
 class PortInUse(Reason, text="port {port} ({purpose}) is taken by {holder}", action=OTHER_PORTS, details="{problem}"):
     port: int; purpose: str; holder: str; file: str; problem: str
 class SupervisordNotUp(Reason, text="supervisord did not start", action=SUPERVISORD_LOG): log: str

@@ -38,7 +38,7 @@ def test_a_publisher_that_nobody_can_hear_is_told_once(two_nodes: tuple[Ros, Ros
     here, foreign = two_nodes
     here.subscribe(Bool, ACTED, lambda _: None)
     foreign.node.create_publisher(Bool, ACTED, QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT))
-    text = f"{ACTED}: /server does not hear /client: Best effort publisher and reliable subscription"
+    text = f"topic='{ACTED}', reader='/server', writer='/client', problem='Best effort publisher and reliable"
     wait_until(lambda: any(text in line for line in watched.told()), LIMIT, "told")
     foreign.publisher(Bool, ACTED)  # one that fits: the topic is looked at again
     wait_until(lambda: peer_counts(here)[ACTED] == (2, 1), LIMIT, "seen")
@@ -51,7 +51,7 @@ def test_a_subscription_of_another_type_that_comes_later_is_told(two_nodes: tupl
     here.publisher(Bool, ACTED)
     assert watched.told() == []
     foreign.subscribe(String, ACTED, lambda _: None)
-    text = f"{ACTED}: /client does not hear /server: std_msgs/msg/Bool is not std_msgs/msg/String"
+    text = f"topic='{ACTED}', reader='/client', writer='/server', problem='std_msgs/msg/Bool is not std_msgs/msg/String"
     wait_until(lambda: any(text in line for line in watched.told()), LIMIT, "told")
 
 

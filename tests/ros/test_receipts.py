@@ -311,7 +311,7 @@ def test_a_second_gateway_does_not_serve(machine: Machine, tmp_path_factory: pyt
         machine.until(lambda: isinstance(wire.of(machine.state.reason), Rival), "the first one says so")
         row = find(load_site(str(folder / "site.yaml")), "zx200:rc")
         wait_until(
-            lambda: isinstance(wire.of(metrics.unready(row.address, row.port) or ""), Rival), LIMIT,
+            lambda: isinstance(metrics.unready(row), Rival), LIMIT,
             "the second one says so",
         )  # fmt: skip
         assert "another gateway for zx200" in machine.mesh.tms("status", expect=1).stdout

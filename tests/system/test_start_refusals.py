@@ -79,7 +79,7 @@ def test_broken_site_file(other: Mesh) -> None:
 
 def test_without_a_mesh_every_verb_says_how_to_start_it(other: Mesh) -> None:
     for words in (("ps",), ("status",), ("restart", "zx200:rc")):
-        assert "start it with `make up`" in refusal(other, *words)
+        assert "Start it: `make up`" in refusal(other, *words)
 
 
 def test_a_killed_mesh_leaves_no_process_and_starts_again(own_domain: int, tmp_path: Path) -> None:

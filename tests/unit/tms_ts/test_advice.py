@@ -7,7 +7,7 @@ from tms_ts.bt.reasons import IfThenElseChildren, KeyOfTwoTypes, SwitchChildren,
 from unit.tms_ts.trees import document
 
 OK = "<AlwaysSuccess/>"
-NUMBER, TEXT, FLAG = ('<SetLocalBlackboard output_key="k" value="%s"/>' % value for value in ("3", "far", "true"))
+NUMBER, TEXT, FLAG = (f'<SetLocalBlackboard output_key="k" value="{value}"/>' for value in ("3", "far", "true"))
 
 
 @pytest.mark.parametrize(
