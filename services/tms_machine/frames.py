@@ -7,6 +7,8 @@ from typing import NamedTuple
 
 from tf2_msgs.msg import TFMessage
 
+from tms_machine.geometry import yaw_of
+
 MAP = "map"
 
 
@@ -38,12 +40,12 @@ class Frames:
         told = set()
         for one in message.transforms:
             at, q = one.transform.translation, one.transform.rotation
-            if not all(map(math.isfinite, (at.x, at.y, q.x, q.y, q.z, q.w))):
+            turn = (q.x, q.y, q.z, q.w)
+            if not all(map(math.isfinite, (at.x, at.y, *turn))):
                 continue  # a localisation without a fix
             # A fixed one is told only once, maybe before it is wanted.
             if one.child_frame_id in self._wanted or heard == math.inf:
-                yaw = math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
-                self._seen[one.child_frame_id] = one.header.frame_id, Seen(at.x, at.y, yaw, heard)
+                self._seen[one.child_frame_id] = one.header.frame_id, Seen(at.x, at.y, yaw_of(turn), heard)
                 self._wanted.add(one.header.frame_id)
                 told.add(one.child_frame_id)
         return told

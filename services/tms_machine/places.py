@@ -6,11 +6,11 @@ from typing import Literal
 from geometry_msgs.msg import Point, Pose, Quaternion
 from pydantic import model_validator
 
+from tms_machine import geometry
 from tms_machine.subtask import Params
 
 Angles = Literal["quaternion", "degrees"]
 TURN = {"quaternion": ("qx", "qy", "qz", "qw"), "degrees": ("yaw",)}
-LENGTH_ERROR = 0.02  # of a quaternion: records are typed by hand with three decimals
 
 
 class Place(Params):
@@ -87,10 +87,10 @@ def turn(*numbers: float) -> Quaternion:
         ValueError: four numbers that are no quaternion.
     """
     if len(numbers) == 1:
-        half = math.radians(numbers[0]) / 2
-        return Quaternion(z=math.sin(half), w=math.cos(half))
-    length = math.sqrt(sum(number * number for number in numbers))
-    if abs(length - 1) > LENGTH_ERROR:
-        raise ValueError(f"qx, qy, qz, qw have length {length:.3f}, an orientation has 1")
-    x, y, z, w = (number / length for number in numbers)
+        x, y, z, w = geometry.about("z", math.radians(numbers[0]))
+        return Quaternion(x=x, y=y, z=z, w=w)
+    x, y, z, w = numbers
+    if not geometry.is_orientation((x, y, z, w)):
+        raise ValueError(f"qx, qy, qz, qw have length {geometry.length((x, y, z, w)):.3f}, an orientation has 1")
+    x, y, z, w = geometry.unit((x, y, z, w))
     return Quaternion(x=x, y=y, z=z, w=w)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from tms_config.models import MachineModel
 from tms_config.reasons import AboveLimit, BelowLimit
+from tms_machine.geometry import is_orientation, length
 from tms_machine.reasons import NoSuchJoint
 from tms_rc.reasons import (
     AtJoint,
@@ -25,7 +26,6 @@ from tms_rc.reasons import (
 )
 from tms_reason.reason import Reason
 
-QUATERNION_TOLERANCE = 0.01  # how far the length of a quaternion may be from 1
 SPEED_MARGIN = 1.1  # times the limit of speed that a trajectory may ask for
 UNHEARD = 0.2  # s; as far as it goes in this time, a joint may be away from where its trajectory begins
 ANGLE_EPSILON = 1e-4  # rad
@@ -117,9 +117,9 @@ def pose_problem(poses: Sequence[tuple[float, ...]]) -> Reason | None:
     for number, pose in enumerate(poses):
         if not all(map(math.isfinite, pose)):
             return AtPose(number, NoNumber())
-        length = math.hypot(*pose[3:])
-        if abs(length - 1.0) > QUATERNION_TOLERANCE:
-            return AtPose(number, BadQuaternion(length))
+        qx, qy, qz, qw = pose[3:]
+        if not is_orientation((qx, qy, qz, qw)):
+            return AtPose(number, BadQuaternion(length((qx, qy, qz, qw))))
     return None
 
 

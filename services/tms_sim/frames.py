@@ -1,14 +1,12 @@
 """The link frames of a machine, from its place, its joint origins and its joint positions. Pure logic."""
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
 from tms_config.models import Border, MachineModel
 from tms_machine.frames import MAP
-
-Quaternion = tuple[float, float, float, float]  # x, y, z, w
+from tms_machine.geometry import Quaternion, about, product
 
 
 class Frame(NamedTuple):
@@ -33,23 +31,6 @@ class Chain:
         prefix = self.border.frame_prefix
         found = [Frame(MAP, self.border.base_frame, (x, y, 0.0), about("z", yaw))]
         for name, origin in self.model.geometry.items():
-            turn = _times(about("y", origin.pitch), about(origin.axis, positions.get(name, 0.0)))
+            turn = product(about("y", origin.pitch), about(origin.axis, positions.get(name, 0.0)))
             found.append(Frame(prefix + origin.parent, prefix + origin.child, origin.xyz, turn))
         return found
-
-
-def about(axis: str, angle: float) -> Quaternion:
-    """The turn by an angle [rad] about one axis."""
-    s, c = math.sin(angle / 2), math.cos(angle / 2)
-    return (s * (axis == "x"), s * (axis == "y"), s * (axis == "z"), c)
-
-
-def _times(a: Quaternion, b: Quaternion) -> Quaternion:
-    ax, ay, az, aw = a
-    bx, by, bz, bw = b
-    return (
-        aw * bx + ax * bw + ay * bz - az * by,
-        aw * by - ax * bz + ay * bw + az * bx,
-        aw * bz + ax * by - ay * bx + az * bw,
-        aw * bw - ax * bx - ay * by - az * bz,
-    )

@@ -1,6 +1,5 @@
 """The navigation's actions, with the messages of Jazzy or of Humble, whichever are built."""
 
-import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -9,8 +8,8 @@ from geometry_msgs.msg import Pose, PoseStamped
 from nav2_msgs.action import FollowWaypoints, NavigateThroughPoses, NavigateToPose
 
 from tms_machine.frames import MAP
+from tms_machine.geometry import about, yaw_of
 from tms_sim.base import Leg
-from tms_sim.frames import about
 from tms_sim.machine import StandIn
 from tms_sim.motion import Verdict
 from tms_sim.servers import Served
@@ -52,8 +51,7 @@ def _legs(poses: Sequence[PoseStamped], through: bool) -> list[Leg]:
 
 def _leg(pose: Pose, stands: bool) -> Leg:
     q = pose.orientation
-    yaw = math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
-    return Leg(pose.position.x, pose.position.y, yaw if stands else None)
+    return Leg(pose.position.x, pose.position.y, yaw_of((q.x, q.y, q.z, q.w)) if stands else None)
 
 
 def _feedback(action: Any, travel: Travel, trip: Trip) -> Any:

@@ -14,8 +14,8 @@ from sensor_msgs.msg import JointState
 
 from tms_config.models import Border, Source
 from tms_machine.frames import MAP
+from tms_machine.geometry import about
 from tms_ros.node import Ros
-from tms_sim.frames import about
 from tms_sim.report import SECOND, Reading
 
 Fill = Callable[[Any, Reading], None]  # a message from a reading

@@ -7,6 +7,7 @@ from xml.sax.saxutils import quoteattr
 
 from tms_config.config import Site
 from tms_config.models import MachineModel
+from tms_machine.geometry import about
 
 SWING = 1.2  # rad to each side
 TURN = 70.0  # deg, the same of a single joint
@@ -67,7 +68,7 @@ def _tracks(site: Site, machine: str, model: MachineModel) -> tuple[Leaves, Reco
 
 
 def _place(x: float, y: float, yaw: float) -> dict[str, Any]:
-    return {"x": x, "y": y, "z": 0.0, "qx": 0.0, "qy": 0.0, "qz": math.sin(yaw / 2), "qw": math.cos(yaw / 2)}
+    return {"x": x, "y": y, "z": 0.0, **dict(zip(("qx", "qy", "qz", "qw"), about("z", yaw), strict=True))}
 
 
 def _subtask(model: MachineModel, run: str, **inputs: Any) -> str:

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from tms_config.models import MachineModel
+from tms_machine import geometry
 from tms_machine.reasons import NoSuchJoint
 from tms_reason.errors import ConfigError, SubtaskFailed
 from tms_reason.reason import Reason
@@ -32,6 +33,7 @@ SEARCH_STEP = 0.01  # rad, of theta_w
 CURLED = 1.7  # rad, bucket joint that holds the soil
 CLEAR_ARM = 0.1  # rad, arm curls in by this much when the bucket closes or opens
 CLEAR_BOOM = -0.15  # rad, boom rises by this much when the bucket opens
+EMPTY = 1e-3  # length of a quaternion that nobody has filled in; others are brought to 1, as MoveIt does
 OUT_OF_PLANE = 0.05  # rad, how far an orientation may point out of the arm's plane
 
 
@@ -131,11 +133,10 @@ class Backhoe:
     def _link_tip(self, link: LinkGoal) -> Tip:
         """The tip that a pose of bucket_end_link asks for; theta_w is its pitch in the plane of the arm."""
         finite("pose_sequence", *vars(link).values())
-        norm = math.hypot(link.qx, link.qy, link.qz, link.qw)
-        if norm < 1e-3:
-            raise SubtaskFailed(NoOrientation(norm))
-        qx, qy, qz, qw = (q / norm for q in (link.qx, link.qy, link.qz, link.qw))
-        x, y, z = 1 - 2 * (qy * qy + qz * qz), 2 * (qx * qy + qw * qz), 2 * (qx * qz - qw * qy)
+        turn = link.qx, link.qy, link.qz, link.qw
+        if geometry.length(turn) < EMPTY:
+            raise SubtaskFailed(NoOrientation(geometry.length(turn)))
+        x, y, z = geometry.x_axis(geometry.unit(turn))
         swing = self.linkage.swing_to(link.x, link.y)
         out, aside = x * math.cos(swing) + y * math.sin(swing), y * math.cos(swing) - x * math.sin(swing)
         if abs(aside) > math.sin(OUT_OF_PLANE):

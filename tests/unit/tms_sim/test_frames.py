@@ -7,7 +7,8 @@ import pytest
 from tms_config.config import CONFIGS
 from tms_config.models import Border, MachineModel
 from tms_config.yaml_file import parse
-from tms_sim.frames import Chain, Frame, Quaternion, _times
+from tms_machine.geometry import Quaternion, product
+from tms_sim.frames import Chain, Frame
 
 MODEL = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel)
 NAMES = tuple(MODEL.joints)
@@ -15,7 +16,7 @@ NAMES = tuple(MODEL.joints)
 
 def rotate(turn: Quaternion, point: tuple[float, float, float]) -> tuple[float, float, float]:
     x, y, z, w = turn
-    rx, ry, rz, _ = _times(_times(turn, (*point, 0.0)), (-x, -y, -z, w))
+    rx, ry, rz, _ = product(product(turn, (*point, 0.0)), (-x, -y, -z, w))
     return rx, ry, rz
 
 
@@ -27,7 +28,7 @@ def tip(frames: list[Frame]) -> tuple[float, ...]:
         assert frame.parent == before
         moved = rotate(turn, frame.xyz)
         place = (place[0] + moved[0], place[1] + moved[1], place[2] + moved[2])
-        turn, before = _times(turn, frame.turn), frame.child
+        turn, before = product(turn, frame.turn), frame.child
     assert before == "bucket_end_link"
     return place
 
