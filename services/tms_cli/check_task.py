@@ -1,6 +1,5 @@
 """What `tms task check` finds in a task: structure here, records and subtasks by the scheduler if a mesh runs."""
 
-import time
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, ExitStack
 from dataclasses import asdict, dataclass, field
@@ -15,6 +14,7 @@ from tms_cli import session
 from tms_cli.commands.task import read
 from tms_cli.reasons import NoXmlFiles, NoXmlHere
 from tms_cli.words import reason, say, sentence
+from tms_config.clock import monotonic
 from tms_reason.errors import RosError, TaskError, TmsError
 from tms_ts import bt
 from tms_ts.bt.reasons import Line, Placed
@@ -151,10 +151,10 @@ def folder(scheduler: Scheduler, path: Path, *, recursive: bool) -> Iterator[Che
     files = sorted(name for name in names if name.suffix.lower() == ".xml" and not name.is_dir())
     if not files:
         raise TaskError(NoXmlFiles(str(path)) if recursive else NoXmlHere(str(path)), TaskError.code)
-    told = time.monotonic()
+    told = monotonic()
     for count, name in enumerate(files):
-        if time.monotonic() - told >= PROGRESS:
-            told = time.monotonic()
+        if monotonic() - told >= PROGRESS:
+            told = monotonic()
             click.echo(say("{count} of {files} files checked", count=count, files=len(files)), err=True)
         try:
             found = file(scheduler, name)

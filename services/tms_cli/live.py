@@ -3,7 +3,6 @@
 import math
 import re
 import sys
-import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import datetime, timezone
@@ -14,6 +13,7 @@ import click
 
 from tms_cli import words
 from tms_cli.words import padded, say, state
+from tms_config.clock import monotonic
 
 if TYPE_CHECKING:
     from builtin_interfaces.msg import Time
@@ -65,7 +65,7 @@ class View:
     task_id: int
     description: str = ""
     goals: Sequence[tuple[str, str]] = ()  # (node type, goal) of all nodes in document order
-    clock: Callable[[], float] = time.monotonic
+    clock: Callable[[], float] = monotonic
     run_id: str = ""
     state: str = "preparing"
     leaf: str = ""

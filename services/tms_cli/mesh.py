@@ -8,7 +8,6 @@ import signal
 import socket
 import subprocess
 import sys
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -31,6 +30,7 @@ from tms_cli.reasons import (
 )
 from tms_cli.words import say
 from tms_config import pcs, state_folder
+from tms_config.clock import monotonic, sleep
 from tms_config.config import Site
 from tms_config.environment import environment
 from tms_config.processes import Process, here
@@ -222,11 +222,11 @@ def _write(path: Path, owner: Owner) -> None:
 
 
 def _wait(holds: Callable[[], bool], seconds: float, otherwise: Reason) -> None:
-    deadline = time.monotonic() + seconds
+    deadline = monotonic() + seconds
     while not holds():
-        if time.monotonic() > deadline:
+        if monotonic() > deadline:
             raise TmsError(otherwise)
-        time.sleep(0.05)
+        sleep(0.05)
 
 
 def wait_ready(site: Site, report: Callable[[str], None]) -> None:
@@ -236,7 +236,7 @@ def wait_ready(site: Site, report: Callable[[str], None]) -> None:
         TmsError: names the first process that did not get ready, why, and where its log is.
     """
     waiting = {row.full: row for row in here(site) if row.autostart and row.ours}
-    deadline = time.monotonic() + READY_LIMIT
+    deadline = monotonic() + READY_LIMIT
     reasons: dict[str, Reason] = {}
     while waiting:
         for name, row in list(waiting.items()):
@@ -246,10 +246,10 @@ def wait_ready(site: Site, report: Callable[[str], None]) -> None:
                 report(say("{name} ready", name=name))
             else:
                 reasons[name] = reason
-        if waiting and time.monotonic() > deadline:
+        if waiting and monotonic() > deadline:
             name = next(iter(waiting))
             raise TmsError(NotReadyAfter(name, READY_LIMIT, reasons[name]))
-        time.sleep(0.1)
+        sleep(0.1)
 
 
 def wait_running(site: Site, name: str) -> None:

@@ -1,7 +1,6 @@
 """Records as verbs need them: asked of tms:db, written, loaded from a file, and shown."""
 
 import os
-import time
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -9,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from tms_cli import live, session
 from tms_cli.reasons import BeforeThat
 from tms_cli.words import say
+from tms_config.clock import unix_time
 from tms_reason.errors import TmsError
 
 if TYPE_CHECKING:
@@ -107,7 +107,7 @@ def as_dict(record: "Message") -> dict[str, Any]:
         "source": record.source,
         "max_age": record.max_age or None,
         "updated_at": live.iso(record.updated_at),
-        "age": round(time.time() - updated.timestamp(), 3) if updated else None,
+        "age": round(unix_time() - updated.timestamp(), 3) if updated else None,
         "values": from_parameters(record.values),
     }
 
@@ -117,7 +117,7 @@ def age(record: "Message") -> str:
     updated = live.moment(record.updated_at)
     if updated is None:
         return say("age unknown")
-    return say("{age} old", age=live.duration(max(0.0, time.time() - updated.timestamp())))
+    return say("{age} old", age=live.duration(max(0.0, unix_time() - updated.timestamp())))
 
 
 def text(value: Any) -> str:

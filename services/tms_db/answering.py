@@ -1,10 +1,10 @@
 """How every service of tms:db answers: counted, timed, and with errors as code and text."""
 
-import time
 from collections.abc import Awaitable, Callable
 
 from prometheus_client import Counter, Histogram
 
+from tms_config.clock import monotonic
 from tms_db.connection import Connection
 from tms_reason.errors import TmsError
 from tms_reason.wire import to_line
@@ -36,7 +36,7 @@ class Answering:
         """A coroutine on the executor thread: it begins in order, and others are answered while it waits."""
 
         async def answer(request: Req, response: Reply) -> Reply:
-            begin = time.monotonic()
+            begin = monotonic()
             try:
                 with self._connection.use():
                     await handler(request, response)
@@ -49,7 +49,7 @@ class Answering:
 
     def _guard(self, name: str, handler: Handler[Req, Reply]) -> Callable[[Req, Reply], Reply]:
         def answer(request: Req, response: Reply) -> Reply:
-            begin = time.monotonic()
+            begin = monotonic()
             try:
                 with self._connection.use():
                     handler(request, response)
@@ -67,4 +67,4 @@ class Answering:
     @staticmethod
     def _count(name: str, response: Coded, begin: float) -> None:
         REQUESTS.labels(name, response.error_code or "OK").inc()
-        SECONDS.labels(name).observe(time.monotonic() - begin)
+        SECONDS.labels(name).observe(monotonic() - begin)

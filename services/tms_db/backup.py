@@ -8,7 +8,6 @@ import tempfile
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any, BinaryIO, cast
 
@@ -18,6 +17,7 @@ from bson.raw_bson import RawBSONDocument
 from pymongo.collection import Collection
 from pymongo.errors import BulkWriteError
 
+from tms_config.clock import utc_now
 from tms_config.config import version
 from tms_db import archive, schema, store
 from tms_db.archive import Name
@@ -202,7 +202,7 @@ def _abandon(db: Db, names: list[str]) -> None:
     """Close the runs that a backup saw active: nobody goes on with them, and an open one locks records for ever."""
     if "run" not in names:
         return
-    end = {"state": "abandoned", "reason": "restored from a backup", "ended_at": datetime.now(timezone.utc)}
+    end = {"state": "abandoned", "reason": "restored from a backup", "ended_at": utc_now()}
     with errors():
         db[STAGED + "run"].update_many({"ended_at": None}, {"$set": end})
 

@@ -1,7 +1,8 @@
 """Refuses values that are too old: a stale number looks like any other."""
 
-from datetime import datetime, timezone
+from datetime import datetime
 
+from tms_config.clock import utc_now
 from tms_db.reasons import AgeUnknown, FromFuture, TooOld
 from tms_db.records import Document, title
 from tms_machine.record_lock import locked_since
@@ -32,7 +33,7 @@ def check(document: Document, max_age: float, now: datetime | None = None) -> No
     updated_at = document.get("updated_at")
     if not isinstance(updated_at, datetime):
         raise DbError(AgeUnknown(where, limit), "STALE_RECORD")
-    asked = (now or datetime.now(timezone.utc)).timestamp()
+    asked = (now or utc_now()).timestamp()
     if updated_at.timestamp() - asked > limit:  # the clock was set back
         raise DbError(FromFuture(where, source), "STALE_RECORD")
     since = locked_since(document, asked)

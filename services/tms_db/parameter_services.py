@@ -4,9 +4,8 @@ All of them run on the executor thread, which is what keeps their order: a value
 followed by an older one.
 """
 
-import time
 from collections.abc import Callable, Iterable
-from datetime import datetime, timedelta, timezone
+from datetime import datetime, timedelta
 
 from tms_msg_db.msg import Record, RecordChanges, RecordUpdate, Refusal
 from tms_msg_db.srv import (
@@ -18,6 +17,7 @@ from tms_msg_db.srv import (
     UpdateParameters,
 )
 
+from tms_config.clock import unix_time, utc_now
 from tms_db import freshness, messages
 from tms_db.answering import Answering
 from tms_db.batches import Batches, Update
@@ -133,7 +133,7 @@ class ParameterServices:
         values = from_parameters(where, wanted.values)
         check_values(where, values)
         head = self._heads.dynamic(key)
-        if (owner := holder(head.document, time.time())) is not None:
+        if (owner := holder(head.document, unix_time())) is not None:
             raise DbError(RecordLocked(where, owner))
         fitting = head.fit(where, values, wanted.loose)
         fields = {name: value for name, value in fitting.items() if name not in wanted.keep}
@@ -197,4 +197,4 @@ def _key(document: Document) -> Key:
 
 
 def _now() -> datetime:
-    return datetime.now(timezone.utc)
+    return utc_now()

@@ -2,11 +2,11 @@
 
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
-from datetime import datetime, timezone
 from typing import Any
 
 from pymongo.errors import DuplicateKeyError
 
+from tms_config.clock import utc_now
 from tms_db.reasons import MadeByOthers, NotChanged, OtherFields, OtherValue, RecordMissing, SetAndRemoved, StaticInUse
 from tms_db.records import (
     Document,
@@ -63,7 +63,7 @@ class Change:
         return {
             **self.values,
             **{key: value for key, value in kept.items() if value or (key == "max_age" and self.max_age)},
-            "updated_at": datetime.now(timezone.utc),
+            "updated_at": utc_now(),
             "source": self.source,
         }
 

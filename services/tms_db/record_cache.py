@@ -5,11 +5,11 @@ are written here are remembered for a moment; those that are only read until the
 """
 
 import threading
-import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from tms_config.clock import monotonic
 from tms_db.parameters import Parameters
 from tms_db.reasons import NoneOfFields, OtherKind, StaticFromSensing
 from tms_db.records import RESERVED, Document, Value, bad, title
@@ -37,7 +37,7 @@ class Head:
 
     def change(self, fields: Document) -> None:
         """New values that are on their way into the store."""
-        self.written = time.monotonic()
+        self.written = monotonic()
         self.until = min(self.until, self.written + KEPT)
         self.document.update(fields)
         if self.since is not None:
@@ -83,7 +83,7 @@ class RecordCache:
     def known(self, key: Key) -> Head | None:
         """The head of a record that is remembered."""
         head = self._heads.get(key)
-        if head is None or (head.quiet and not self._watched()) or time.monotonic() > head.until + KEPT:
+        if head is None or (head.quiet and not self._watched()) or monotonic() > head.until + KEPT:
             return None
         return head
 
@@ -106,7 +106,7 @@ class RecordCache:
         """The store tells of a change of the record with this _id, of any with None; from any thread."""
         key = self._keys.get(identity)
         head = self._heads.get(key) if key is not None else None
-        if head is not None and time.monotonic() - head.written < KEPT:  # our own, most likely; read again soon anyway
+        if head is not None and monotonic() - head.written < KEPT:  # our own, most likely; read again soon anyway
             return
         # On the executor thread, behind a reading that is under way there.
         self._ros.on_executor(lambda: self.forget() if identity is None else self._drop(identity))
@@ -129,15 +129,15 @@ class RecordCache:
         head = self.known(key)
         if head is None:
             self._heads.pop(key, None)
-            head = Head(self.read(key), time.monotonic() + KEPT)
+            head = Head(self.read(key), monotonic() + KEPT)
             self._keep(key, head)
-        elif time.monotonic() > head.until and not self._reading:
+        elif monotonic() > head.until and not self._reading:
             self._read_again()
         return head
 
     def _read_again(self) -> None:
         """All heads that are due, in the background: others may have changed, made or removed these records."""
-        now = time.monotonic()
+        now = monotonic()
         self._heads = {key: head for key, head in self._heads.items() if now < head.until + KEPT}
         due = {key: head for key, head in self._heads.items() if now > head.until - KEPT / 2}
         for key, head in due.items():
@@ -161,7 +161,7 @@ class RecordCache:
             if found is None or self._heads.get(key) is not head:
                 continue
             if head.id in found:
-                head.document, head.until = {**found[head.id], **since}, time.monotonic() + KEPT
+                head.document, head.until = {**found[head.id], **since}, monotonic() + KEPT
             else:
                 del self._heads[key]
 

@@ -10,6 +10,7 @@ from datetime import datetime, timedelta, timezone
 
 from prometheus_client import Counter
 
+from tms_config.clock import utc_now
 from tms_config.site_file import Store
 from tms_db import store
 from tms_db.connection import Connection
@@ -109,7 +110,7 @@ class Retention:
             wait = PERIOD
             try:
                 with self._connection.use():
-                    self._look(datetime.now(timezone.utc))
+                    self._look(utc_now())
             except DbError as error:
                 if error.code != "STORE_DOWN":  # which the connection tells
                     self._log.warning("retention_waits", code=error.code, reason=error.reason)

@@ -6,8 +6,8 @@ A database without a version is one of the C++ system, or ours from before versi
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from datetime import datetime, timezone
 
+from tms_config.clock import utc_now
 from tms_config.config import version
 from tms_db import store
 from tms_db.reasons import NewerSchema
@@ -47,7 +47,7 @@ def bring_up(db: Db) -> list[str]:
     for number, migration in enumerate(MIGRATIONS[found:], found + 1):
         with store.long_work(db):
             migration.step(db)
-            state = {"version": number, "changed_at": datetime.now(timezone.utc), "by": version()}
+            state = {"version": number, "changed_at": utc_now(), "by": version()}
             db[COLLECTION].update_one(KEY, {"$set": state}, upsert=True)
         done.append(f"schema {number}: {migration.text}")
     store.prepare(db)

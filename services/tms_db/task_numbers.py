@@ -1,11 +1,12 @@
 """Which task numbers are taken, remembered for a moment: to look at every task for each new one takes too long."""
 
-import time
 from collections.abc import Callable, Iterator
 from itertools import count, islice
 from typing import Any
 
 from pymongo.collection import Collection
+
+from tms_config.clock import monotonic
 
 KEPT = 2.0  # s: others may store and remove tasks in the same database
 
@@ -13,7 +14,7 @@ KEPT = 2.0  # s: others may store and remove tasks in the same database
 class TaskNumbers:
     """For one caller at a time. The unique index of the store has the last word."""
 
-    def __init__(self, tasks: Collection[dict[str, Any]], clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, tasks: Collection[dict[str, Any]], clock: Callable[[], float] = monotonic) -> None:
         self._tasks, self._clock = tasks, clock
         self._taken: set[Any] = set()
         self._foreign = False

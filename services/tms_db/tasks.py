@@ -9,6 +9,7 @@ from typing import Any
 
 from pymongo.errors import BulkWriteError
 
+from tms_config.clock import utc_now
 from tms_config.names import check_text
 from tms_db import task_text
 from tms_db.reasons import NoTaskNumber, TaskMissing
@@ -119,7 +120,7 @@ class Tasks:
 
     def _insert(self, wishes: list[_Wish]) -> None:
         """Store them under the lowest free numbers, but for those where somebody else was quicker."""
-        now = datetime.now(timezone.utc)
+        now = utc_now()
         numbers = self._numbers.lowest_free(len(wishes))
         documents = [{"task_id": n, **w.document, "added_at": now} for n, w in zip(numbers, wishes, strict=True)]
         lost: set[int] = set()

@@ -6,11 +6,11 @@ gridfs is imported when it is first used: most sites never store terrain.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from datetime import datetime, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tms_config import names
+from tms_config.clock import utc_now
 from tms_db import terrain_files
 from tms_db.reasons import BadTerrainName, TerrainExists, TerrainMissing, TerrainNotWhole, TerrainSigns, TerrainSizes
 from tms_db.store import Db, errors, long_work
@@ -72,7 +72,7 @@ class Terrain:
         """
         if (why := names.name_flaw(filename)) is not None:
             raise bad(BadTerrainName(filename[:40], why))
-        id_, time = IDS[type_], datetime.now(timezone.utc).isoformat()
+        id_, time = IDS[type_], utc_now().isoformat()
         with long_work(self._db):
             key = self._grid().put(data, filename=filename, type=type_, id=id_, time=time, **more)
         return Stored(key, filename, type_, id_, time, len(data), more)

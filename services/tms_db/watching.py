@@ -5,12 +5,12 @@ embedded store does without); where there is none, records are read from the sto
 """
 
 import threading
-import time
 from collections.abc import Callable
 from typing import Any
 
 from pymongo.errors import OperationFailure, PyMongoError
 
+from tms_config.clock import monotonic
 from tms_db.connection import Connection
 from tms_db.store import Db
 from tms_runtime.log import Logger
@@ -41,7 +41,7 @@ class Watching:
 
     def sure(self) -> bool:
         """Whether every change is told of, but for those of the last moments."""
-        return time.monotonic() - self._heard < SURE
+        return monotonic() - self._heard < SURE
 
     def _keep(self) -> None:
         wait = 0.0
@@ -63,6 +63,6 @@ class Watching:
             self._changed(None)  # whatever happened before
             while stream.alive and not self._stopping.is_set():
                 change = stream.try_next()
-                self._heard = time.monotonic()
+                self._heard = monotonic()
                 if change is not None:
                     self._changed(change.get("documentKey", {}).get("_id"))

@@ -5,7 +5,6 @@ import ctypes.util
 import os
 import shutil
 import threading
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +13,7 @@ import psutil
 from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Metric
 from prometheus_client.registry import Collector
 
+from tms_config.clock import unix_time
 from tms_host.supervisor import Running
 
 UNSYNCHRONISED = 0x40  # STA_UNSYNC of adjtimex(2)
@@ -101,7 +101,7 @@ class Facts(Collector):
         yield GaugeMetricFamily(
             "tms_host_memory_available_bytes", "Memory to be had", psutil.virtual_memory().available
         )
-        yield GaugeMetricFamily("tms_host_clock_seconds", "This PC's clock at the scrape", time.time())
+        yield GaugeMetricFamily("tms_host_clock_seconds", "This PC's clock at the scrape", unix_time())
         facts = self._clock()
         if facts is not None:
             yield GaugeMetricFamily("tms_host_clock_synchronised", "1 while a daemon keeps it", facts.synchronised)

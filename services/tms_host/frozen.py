@@ -10,9 +10,9 @@ import http.client
 import os
 import signal
 import threading
-import time
 from collections.abc import Callable, Mapping, Sequence
 
+from tms_config.clock import monotonic
 from tms_config.processes import here
 from tms_host.supervisor import Running, Supervisor
 from tms_reason.errors import TmsError
@@ -66,7 +66,7 @@ class Watchdog:
             for row in self._running():
                 if row.state != "RUNNING" or row.name not in self._asked:
                     continue
-                if self._times.frozen(row.name, row.pid, self.answers(row.name), time.monotonic()):
+                if self._times.frozen(row.name, row.pid, self.answers(row.name), monotonic()):
                     self._restart(supervisor, row)
 
     def answers(self, name: str) -> bool:

@@ -4,7 +4,6 @@ import os
 import re
 import socket
 import threading
-import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
@@ -12,6 +11,7 @@ from prometheus_client import REGISTRY
 from tms_msg_host.msg import Process, Processes
 from tms_msg_host.srv import ControlProcess, ReadLog
 
+from tms_config.clock import monotonic
 from tms_host.diagnostics import Diagnostics
 from tms_host.facts import Facts
 from tms_host.frozen import Watchdog
@@ -115,7 +115,7 @@ class Host:
         told = 0.0
         while not self._closing.wait(PERIOD):
             changing = any(row.state in CHANGING for row in self.rows)
-            if not (children.changed() or changing or not self.seen or time.monotonic() - told > HEARTBEAT):
+            if not (children.changed() or changing or not self.seen or monotonic() - told > HEARTBEAT):
                 continue
             try:
                 rows = supervisor.processes()
@@ -128,8 +128,8 @@ class Host:
             self._facts.update(rows, self._restarts)
             self._diagnostics.update(rows, self._restarts)
             now = [(row.name, row.state, row.pid) for row in rows]
-            if now != last or time.monotonic() - told > HEARTBEAT:
-                last, told = now, time.monotonic()
+            if now != last or monotonic() - told > HEARTBEAT:
+                last, told = now, monotonic()
                 self._publisher.publish(self._message(rows))
 
     def _count(self, rows: list[Running]) -> None:

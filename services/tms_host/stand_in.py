@@ -12,7 +12,6 @@ The gateway's pulse, the lease of its permit, tells; not that its process exists
 Only a gateway releases `emg_stop`. The commands leave from the pulse's thread, before anything is logged or counted.
 """
 
-import time
 from dataclasses import dataclass
 from enum import Enum
 
@@ -20,6 +19,7 @@ from builtin_interfaces.msg import Time
 from prometheus_client import Counter, Gauge
 from tms_msg_rc.msg import MachineState
 
+from tms_config.clock import monotonic
 from tms_config.processes import here
 from tms_machine.border import Controls, stood_in
 from tms_machine.permit import NOBODY, Link
@@ -171,12 +171,12 @@ class StandIn:
 
     def silent(self) -> dict[str, float]:
         """Gateways that are lost, and for how long [s]; from any thread."""
-        now = time.monotonic()
+        now = monotonic()
         since = {name: post.duty.lost_since for name, post in self._posts.items()}
         return {name: now - at for name, at in since.items() if at is not None}
 
     def _look(self) -> None:
-        now = time.monotonic()
+        now = monotonic()
         for post in self._posts.values():
             post.look(now)
 

@@ -4,13 +4,13 @@ import hashlib
 import os
 import sys
 import tempfile
-import time
 import xmlrpc.client
 from dataclasses import dataclass
 from pathlib import Path
 
 from supervisor.xmlrpc import SupervisorTransport
 
+from tms_config.clock import monotonic, sleep
 from tms_config.config import PROJECT, Site
 from tms_config.environment import environment
 from tms_config.processes import Process, here
@@ -216,11 +216,11 @@ class Supervisor:
         Raises:
             TmsError: there is no such process, or it does not end.
         """
-        deadline = time.monotonic() + END_LIMIT
+        deadline = monotonic() + END_LIMIT
         while (state := self.process(name).state) == "STOPPING":
-            if time.monotonic() > deadline:
+            if monotonic() > deadline:
                 raise TmsError(NotEnded(name, END_LIMIT))
-            time.sleep(LOOK)
+            sleep(LOOK)
         return state
 
     def log(self, name: str, size: int) -> str:

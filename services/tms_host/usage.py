@@ -1,8 +1,8 @@
 """What processes take of this PC, for people who look at the console: processor time and memory."""
 
-import time
-
 import psutil
+
+from tms_config.clock import monotonic
 
 
 class Usage:
@@ -21,7 +21,7 @@ class Usage:
         except (psutil.NoSuchProcess, psutil.AccessDenied):
             self._before.pop(pid, None)
             return 0.0, 0
-        now, used = time.monotonic(), times.user + times.system
+        now, used = monotonic(), times.user + times.system
         then, before = self._before.get(pid, (now, used))
         self._before[pid] = now, used
         return (used - before) / (now - then) * 100 if now > then else 0.0, memory

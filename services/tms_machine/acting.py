@@ -1,10 +1,10 @@
 """A machine's goals: send one, wait for its end with cancel and time-out built in, stop what still runs."""
 
 import threading
-import time
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from tms_config.clock import monotonic
 from tms_config.models import Joint, MachineModel
 from tms_machine.border import STOP_PROVEN
 from tms_machine.reasons import (
@@ -61,7 +61,7 @@ class Acting:
         self.name = name
         self.model = model
         self._ros, self._model_name, self._timeout = ros, model_name, timeout
-        self._deadline = time.monotonic() + timeout
+        self._deadline = monotonic() + timeout
         self._cancelled = threading.Event()
         self._calls: list[tuple[AnyPeer, AnyCall]] = []
 
@@ -90,7 +90,7 @@ class Acting:
         """
         if self._cancelled.is_set():
             raise Cancelled
-        if time.monotonic() > self._deadline:
+        if monotonic() > self._deadline:
             raise SubtaskFailed(GoalTimeout(self.name, self._timeout))
 
     def act(
@@ -128,9 +128,9 @@ class Acting:
         return self.act(action_type, f"rc/{field}", goal, heard)
 
     def _wait(self, peer: AnyPeer, call: AnyCall, done: Callable[[], bool], limit: float | None, action: str) -> None:
-        end = self._deadline if limit is None else min(self._deadline, time.monotonic() + limit)
-        while not (done() or self._cancelled.is_set()) and time.monotonic() < end:
-            call.wait_for(lambda: done() or self._cancelled.is_set(), min(LOOK, end - time.monotonic()))
+        end = self._deadline if limit is None else min(self._deadline, monotonic() + limit)
+        while not (done() or self._cancelled.is_set()) and monotonic() < end:
+            call.wait_for(lambda: done() or self._cancelled.is_set(), min(LOOK, end - monotonic()))
             if call.accepted and call.outcome is None and peer.left():
                 peer.mark_lost()  # it left in order, but without a result
         if not done():
@@ -142,10 +142,10 @@ class Acting:
         running = [(peer, call) for peer, call in self._calls if call.outcome is None]
         for peer, call in running:
             peer.cancel(call)
-        deadline = time.monotonic() + STOP_LIMIT
+        deadline = monotonic() + STOP_LIMIT
         # One that nobody has accepted moves nothing: if it is accepted after all, its cancel follows at once.
         accepted = [call for _, call in running if call.wait_for(_known(call), UNANSWERED_LIMIT) and call.accepted]
-        ended = [call.wait_for(_ended(call), deadline - time.monotonic()) for call in accepted]
+        ended = [call.wait_for(_ended(call), deadline - monotonic()) for call in accepted]
         return all(ended) and not any(call.outcome is Outcome.LOST for call in accepted)
 
 

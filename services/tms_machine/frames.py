@@ -1,12 +1,12 @@
 """Where machines stand in the map, as /tf and /tf_static tell; a machine's Nav2 puts `odom` between the two."""
 
 import math
-import time
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 from tf2_msgs.msg import TFMessage
 
+from tms_config.clock import monotonic
 from tms_machine.geometry import yaw_of
 
 MAP = "map"
@@ -24,7 +24,7 @@ class Seen(NamedTuple):
 class Frames:
     """Keeps the last place of the given frames, and of those between them and the map; nobody needs the others."""
 
-    def __init__(self, frames: Iterable[str], clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, frames: Iterable[str], clock: Callable[[], float] = monotonic) -> None:
         self._wanted, self._clock = set(frames), clock
         self._seen: dict[str, tuple[str, Seen]] = {}  # frame -> its parent, and where it is in that
 

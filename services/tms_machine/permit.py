@@ -5,11 +5,11 @@ asserts that topic as long as it does (MANUAL_BY_TOPIC, lease 500 ms). DDS tells
 out, whether the process was killed, frozen or cut off. A process that works for nothing asserts nothing.
 """
 
-import time
 from collections.abc import Callable
 
 from tms_msg_rc.msg import Permit as Message
 
+from tms_config.clock import monotonic
 from tms_ros.client import AnyPeer
 from tms_ros.node import Ros
 from tms_runtime.pulse import Pulse
@@ -69,10 +69,10 @@ class Link:
     def alive(self) -> bool:
         """Whether the process works for `goal` now."""
         # A message may be handled before the news that its writer lives again.
-        return self.goal != NOBODY and (self._alive or time.monotonic() - self._heard < LEASE)
+        return self.goal != NOBODY and (self._alive or monotonic() - self._heard < LEASE)
 
     def _on_message(self, message: Message) -> None:
-        self._heard = time.monotonic()
+        self._heard = monotonic()
         self.goal, self.holder = bytes(message.goal), message.holder
         self._changed(self)
 

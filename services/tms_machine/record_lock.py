@@ -5,11 +5,11 @@ stand beside it, so that it ends by itself. The `_plan` variant of a subtask tak
 the variant that moves gives it back however it ends.
 """
 
-import time
 from collections.abc import Mapping
 
 from tms_msg_db.srv import SetParameter
 
+from tms_config.clock import unix_time
 from tms_machine.values import Value, to_parameters
 from tms_reason.errors import SubtaskFailed
 from tms_reason.wire import refusal
@@ -62,7 +62,7 @@ class RecordLock:
         Raises:
             SubtaskFailed, RosError: the database refused or did not answer.
         """
-        answer = self._ros.call(SetParameter, SERVICE, self._request(taken(self._owner, time.time())), LIMIT)
+        answer = self._ros.call(SetParameter, SERVICE, self._request(taken(self._owner, unix_time())), LIMIT)
         if answer.error_code:
             raise SubtaskFailed(refusal(answer.error_code, answer.error_msg))
 

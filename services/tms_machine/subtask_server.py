@@ -1,7 +1,6 @@
 """Process of one subtask: the LeafNodeBase action server around one file of tms_subtasks/."""
 
 import threading
-import time
 from collections.abc import Callable
 from typing import Any
 
@@ -9,6 +8,7 @@ from pydantic import ValidationError
 from tms_msg_db.srv import GetParameter
 from tms_msg_ts.action import LeafNodeBase
 
+from tms_config.clock import monotonic
 from tms_config.yaml_file import explain
 from tms_machine.machine import Cancelled, Machine
 from tms_machine.permit import Permit, watch_server
@@ -55,8 +55,8 @@ class _Server:
 
     def offer(self) -> None:
         """Serve once the database is there: the first goal comes as soon as the action is seen."""
-        app, deadline = self._app, time.monotonic() + DB_LIMIT
-        while not app.ros.has_service(GetParameter, "/tms/db/get_parameter") and time.monotonic() < deadline:
+        app, deadline = self._app, monotonic() + DB_LIMIT
+        while not app.ros.has_service(GetParameter, "/tms/db/get_parameter") and monotonic() < deadline:
             app.stopping.wait(0.02)
         app.ros.serve(LeafNodeBase, f"/{app.machine}/{app.process.action}", self.run, self.accept)
         self.offered = True
@@ -191,9 +191,9 @@ class _Feedback:
         self._next = 0.0
 
     def __call__(self, now: Reason | str) -> None:
-        if time.monotonic() >= self._next:
+        if monotonic() >= self._next:
             self.last(Foreign(now) if isinstance(now, str) else now)
 
     def last(self, reason: Reason) -> None:
-        self._next = time.monotonic() + FEEDBACK_GAP
+        self._next = monotonic() + FEEDBACK_GAP
         self._goal.publish(LeafNodeBase.Feedback(status=to_line(reason)))

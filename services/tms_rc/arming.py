@@ -1,11 +1,10 @@
 """What a person does at a stopped machine: re-arm it, take it to drive it by hand, give it back."""
 
-import time
-
 from std_msgs.msg import Bool
 from tms_msg_rc.msg import StopReceipt
 from tms_msg_rc.srv import Rearm, TakeMachine
 
+from tms_config.clock import monotonic
 from tms_machine.reasons import ManualMode
 from tms_rc.guard import PRESSED, Guard, Kind
 from tms_rc.reasons import (
@@ -44,7 +43,7 @@ class Arming:
         """Two steps: without a token the cause and a token, with it the machine is armed. It may wait for the disk."""
         guard = self._guard
         guard.stopper.wait_idle(PROOF_LIMIT)
-        now = time.monotonic()
+        now = monotonic()
         cause = guard.latch.cause or guard.latch.hold
         response.cause = to_line(cause)
         wrong = NotStopped(self._app.machine) if cause is None else self._keeps_from_arming()
@@ -67,13 +66,13 @@ class Arming:
         guard.watch.accept_clocks()
         guard.controls.emergency(False)
         guard.stood_in = False
-        guard.vigil.end(time.monotonic())
+        guard.vigil.end(monotonic())
         self._app.log.info("armed")
         guard.told()
         return None
 
     def _keeps_from_arming(self) -> Reason | None:
-        guard, machine, now = self._guard, self._app.machine, time.monotonic()
+        guard, machine, now = self._guard, self._app.machine, monotonic()
         if guard.active is not None:
             return StillActive(machine)
         if guard.by_hand:

@@ -3,11 +3,11 @@
 import os
 import secrets
 import socket
-import time
 
 from prometheus_client import Gauge
 from tms_msg_rc.msg import GatewayClaim
 
+from tms_config.clock import sleep
 from tms_machine.permit import BEATS, LEASE
 from tms_rc.reasons import Rival
 from tms_reason.reason import Reason
@@ -52,7 +52,7 @@ class Claim:
             if not told:
                 self._app.log.error("second_gateway", other=other.where, action="does not serve")
                 told = True
-            time.sleep(LOOK)
+            sleep(LOOK)
         if self._app.stopping.is_set():
             return False
         self._serving = True

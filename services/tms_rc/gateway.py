@@ -1,6 +1,5 @@
 """Passes goals on to the machine's own action servers, one at a time, and ends them when they must end."""
 
-import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -8,6 +7,7 @@ from builtin_interfaces.msg import Duration
 from geometry_msgs.msg import Pose, PoseStamped
 from trajectory_msgs.msg import JointTrajectoryPoint
 
+from tms_config.clock import monotonic, sleep
 from tms_machine.border import Motion
 from tms_machine.reasons import StopUnconfirmed
 from tms_machine.receipts import stood_after
@@ -96,7 +96,7 @@ class Gateway:
         unseen = self._unseen(active.goal)
         if unseen is not None:
             return aborted(motion, NotReady(unseen))
-        refused = self._guard.watch.trouble(time.monotonic())
+        refused = self._guard.watch.trouble(monotonic())
         if refused is not None:
             return aborted(motion, NotReady(refused.reason))
         active.goal.on_cancel = lambda: self._app.ros.on_executor(lambda: self._cancel(active))
@@ -120,11 +120,11 @@ class Gateway:
         return aborted(motion, ControllerEnded(self._app.machine, outcome))
 
     def _reachable(self, active: Active) -> bool:
-        deadline = time.monotonic() + SERVER_LIMIT
+        deadline = monotonic() + SERVER_LIMIT
         while not active.peer.ready():
-            if time.monotonic() > deadline:
+            if monotonic() > deadline:
                 return False
-            time.sleep(POLL)
+            sleep(POLL)
         return True
 
     def _unseen(self, goal: AnyGoal) -> Reason | None:
@@ -132,8 +132,8 @@ class Gateway:
 
         A machine that was switched on just now may be heard here a moment later than where the goal comes from.
         """
-        deadline = time.monotonic() + SERVER_LIMIT
-        while (silent := self._guard.silent()) is not None and time.monotonic() < deadline:
+        deadline = monotonic() + SERVER_LIMIT
+        while (silent := self._guard.silent()) is not None and monotonic() < deadline:
             if goal.cancelled.wait(LOOK):
                 return None  # the goal ends as cancelled
         return silent
@@ -146,7 +146,7 @@ class Gateway:
         if active.goal.cancelled.is_set():
             self._cancel(active)
         if active.stop is None:
-            active.sent = time.monotonic()
+            active.sent = monotonic()
             active.call = active.peer.send(
                 active.goal.request, on_change=lambda _call: active.wake(), on_feedback=active.goal.publish
             )
@@ -157,11 +157,11 @@ class Gateway:
 
     def _watch_motion(self, motion: Motion, active: Active) -> None:
         """Until the goal is terminal or a stop has begun."""
-        deadline = time.monotonic() + _duration(active.goal.request) + OVERRUN
+        deadline = monotonic() + _duration(active.goal.request) + OVERRUN
         while active.stop is None and not (active.call is not None and active.ended()):
-            before = time.monotonic()
+            before = monotonic()
             self._wait(active, lambda call: call.outcome is not None, LOOK)
-            frozen = time.monotonic() - before
+            frozen = monotonic() - before
             if frozen > FROZEN and active.stop is None:  # its own news of the machine are old, not the machine silent
                 self._guard.stop(ProcessLost(GatewayStood(frozen)), Kind.HOLD)
                 break
@@ -172,12 +172,12 @@ class Gateway:
             wrong = self._wrong(motion, active)
             if wrong is not None and active.stop is None:
                 self._guard.stop(*wrong)
-            elif time.monotonic() > deadline and active.stop is None:
+            elif monotonic() > deadline and active.stop is None:
                 self._guard.stop(TooLong(), Kind.PLAIN)
 
     def _wrong(self, motion: Motion, active: Active) -> tuple[Reason, Kind] | None:
         """What makes it stop, and what that means for the next motion."""
-        now, watch = time.monotonic(), self._watch
+        now, watch = monotonic(), self._watch
         escaped = limits.escaped(self._model, watch.positions, active.start)
         if escaped is not None:
             return escaped, Kind.LATCH

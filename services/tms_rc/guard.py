@@ -5,7 +5,6 @@ it, or does not leave any more.
 """
 
 import threading
-import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
@@ -14,6 +13,7 @@ from std_msgs.msg import Bool
 from tms_msg_rc.msg import StopReceipt
 from tms_msg_rc.srv import StopMachine
 
+from tms_config.clock import monotonic
 from tms_machine.border import STOP_PROVEN, Controls
 from tms_machine.permit import NOBODY, Link
 from tms_machine.reasons import DrivenByHand, NoPermit, SoftwareStop, SoftwareStopSaying
@@ -118,7 +118,7 @@ class Guard:
 
     def silent(self) -> Reason | None:
         """What is not heard of the machine."""
-        return self.watch.silent(time.monotonic(), FRESH)
+        return self.watch.silent(monotonic(), FRESH)
 
     # who may move
 
@@ -172,12 +172,12 @@ class Guard:
             self.notes.release()
 
     def _wait_for_permit(self, owner: Owner | None) -> Reason | None:
-        deadline = time.monotonic() + PERMIT_LIMIT
+        deadline = monotonic() + PERMIT_LIMIT
         with self._news:
             while True:
                 if self.latch.cause:
                     return self.latch.refusal(owner)
-                found, left = gap(owner, self.permits.held()), deadline - time.monotonic()
+                found, left = gap(owner, self.permits.held()), deadline - monotonic()
                 if found is None:
                     return None
                 if found.late or left <= 0:
@@ -225,7 +225,7 @@ class Guard:
 
         `expected`, `broken`: see `Stopper.begin`; of a goal under way it is known here what it must move.
         """
-        active, now, stamp = self.active, time.monotonic(), self._app.ros.now()
+        active, now, stamp = self.active, monotonic(), self._app.ros.now()
         if kind is Kind.LATCH:
             self.latch.close(cause)
         elif kind is Kind.HOLD and active is not None and active.owner is not None:
@@ -252,7 +252,7 @@ class Guard:
 
     def look(self) -> None:
         """At every beat of the pulse: a machine that was stopped must go on standing."""
-        now = time.monotonic()
+        now = monotonic()
         self.watch.settle(now)
         if self.active is not None:
             self.watch.commanded(now)
@@ -280,7 +280,7 @@ class Guard:
 
     def signal(self, message: Bool) -> None:
         """/emergency_signal: true stops and latches, as often as it is repeated; false does not arm anything."""
-        now = time.monotonic()
+        now = monotonic()
         if not message.data:
             self.pressed = 0.0
             return

@@ -1,7 +1,6 @@
 """What is heard of the machine: ROS messages of every source into samples, and who else publishes them."""
 
 import math
-import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -9,6 +8,7 @@ from geometry_msgs.msg import Pose, PoseStamped
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu, JointState
 
+from tms_config.clock import monotonic
 from tms_config.models import Border
 from tms_rc.channel import Place
 from tms_rc.reasons import StrangeType
@@ -40,7 +40,7 @@ class MachineMonitor:
 
     def look(self) -> None:
         """Take what waits."""
-        now = time.monotonic()
+        now = monotonic()
         for name, news, read in self._news:
             source, arrivals = self._watch.sources[name], news()
             if arrivals and source.age(now) > source.longest:
@@ -65,7 +65,7 @@ class MachineMonitor:
         """A source that is published under another type than the border has: nothing of it can be heard."""
         for name, topic in self._topics.items():
             source = self._watch.sources[name]
-            if source.age(time.monotonic()) <= source.longest:
+            if source.age(monotonic()) <= source.longest:
                 continue
             wanted = _full_name(_type(name, self._app.site.border(self._app.machine)))
             for node, kind in self._app.ros.publishers(topic):

@@ -1,7 +1,6 @@
 """Process `<machine>:rc`: the machine's gateway. It depends on no database, no scheduler and no console to stop."""
 
 import threading
-import time
 from collections.abc import Callable
 
 from prometheus_client import Gauge
@@ -9,6 +8,7 @@ from std_msgs.msg import Bool
 from tms_msg_rc.msg import MachineState
 from tms_msg_rc.srv import Rearm, StopMachine, TakeMachine
 
+from tms_config.clock import monotonic
 from tms_machine.border import Controls, motions
 from tms_machine.permit import LEASE, Permit
 from tms_rc.arming import Arming
@@ -112,13 +112,13 @@ class StatePublisher:
         active, latch = guard.active, guard.latch
         now = (moving, active and active.goal.id, latch.cause, latch.hold, guard.permits.holder(), guard.by_hand)
         period = TOLD_MOVING if moving or active is not None else TOLD_STILL
-        if now != self._last or time.monotonic() - self._at >= period:
+        if now != self._last or monotonic() - self._at >= period:
             self._last = now
             self.tell()
 
     def tell(self) -> None:
         """From any thread."""
-        self._at = time.monotonic()
+        self._at = monotonic()
         self._publish()
 
 
@@ -133,7 +133,7 @@ class Told:
         """Why the machine cannot be moved now, apart from a stop."""
         if self._claim.rival or self._guard.recovering:
             return self._claim.rival or Recovering()
-        now, watch = time.monotonic(), self._guard.watch
+        now, watch = monotonic(), self._guard.watch
         silent, trouble = watch.silent(now, FRESH), watch.trouble(now)
         if silent is not None:
             return self._view.strange_type() or silent
@@ -144,7 +144,7 @@ class Told:
 
     def state(self) -> MachineState:
         """What is published."""
-        guard, now, reason = self._guard, time.monotonic(), self.unready()
+        guard, now, reason = self._guard, monotonic(), self.unready()
         active, watch, latch = guard.active, guard.watch, guard.latch
         positions, velocities = watch.positions, watch.velocities
         moving, holder, age = watch.moving(), guard.permits.holder(), min(watch.age(now), NEVER)

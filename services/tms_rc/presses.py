@@ -4,11 +4,10 @@ What the host agent has pressed while this gateway was frozen or away is release
 what somebody else has pressed latches, since only a person's re-arm may release it.
 """
 
-import time
-
 from builtin_interfaces.msg import Time
 from std_msgs.msg import Bool
 
+from tms_config.clock import monotonic
 from tms_machine.border import stood_in
 from tms_rc.guard import Guard, Kind
 from tms_rc.reasons import PressedByOthers
@@ -26,7 +25,7 @@ class Presses:
 
     def __init__(self, app: App, guard: Guard, topic: str) -> None:
         self._app, self._guard = app, guard
-        self._begun = time.monotonic()
+        self._begun = monotonic()
         self._doubted = 0  # presses that were not judged yet
         self._told_at = float("-inf")  # s, monotonic: when the host agent last said that it presses
         app.ros.subscribe(Time, stood_in(app.machine), self._on_stood_in, latched=True)
@@ -34,11 +33,11 @@ class Presses:
 
     def _on_stood_in(self, told: Time) -> None:
         if abs(self._app.ros.now().sec - told.sec) <= OLD:  # of the same PC's clock
-            self._told_at, self._guard.stood_in = time.monotonic(), True
+            self._told_at, self._guard.stood_in = monotonic(), True
 
     def _on_press(self, message: Bool) -> None:
         if message.data and not self._guard.latch.cause:  # latched, this gateway presses it itself
-            now = time.monotonic()
+            now = monotonic()
             doubt = YOUNG_DOUBT if now - self._begun < YOUNG else DOUBT
             self._doubted += 1
             self._guard.press_known.clear()

@@ -1,7 +1,6 @@
 """The start of a gateway: nobody knows what the last one left moving, so it is stopped, proven, and held or latched."""
 
-import time
-
+from tms_config.clock import monotonic
 from tms_rc.guard import Guard, Kind
 from tms_rc.latch import ANY_LEAF, UNKNOWN_RUN
 from tms_rc.latch_file import Left
@@ -26,7 +25,7 @@ class Recovery:
         self._app, self._guard, self._left = app, guard, left
         self._open = True  # whether the last gateway may have left a motion of a run that has not told of itself yet
         self._stop: Stop | None = None
-        self._begun = time.monotonic()
+        self._begun = monotonic()
         guard.run_told = self.claimed
         guard.recovering = bool(left.holder)
         guard.by_hand = left.taken
@@ -43,19 +42,19 @@ class Recovery:
     def run(self) -> None:
         """Cancel whatever runs; stop a machine that a run held, or that moves."""
         guard, app = self._guard, self._app
-        deadline = time.monotonic() + REACHED
+        deadline = monotonic() + REACHED
         self._command()
-        while not guard.controls.reachable() and time.monotonic() < deadline and not app.stopping.wait(LOOK):
+        while not guard.controls.reachable() and monotonic() < deadline and not app.stopping.wait(LOOK):
             pass
         self._command()
         if self._left.holder or self._left.unproven:
             app.ros.on_executor(lambda: self._take_over(self._left.run or UNKNOWN_RUN))
-        deadline = time.monotonic() + (RUN_TOLD if self._left.holder else LEFT_MOVING)
-        while self._open and guard.active is None and time.monotonic() < deadline:
+        deadline = monotonic() + (RUN_TOLD if self._left.holder else LEFT_MOVING)
+        while self._open and guard.active is None and monotonic() < deadline:
             if app.stopping.wait(LOOK):
                 return
             if self._stop is None and guard.watch.moved_at > self._begun:
-                deadline = time.monotonic() + RUN_TOLD
+                deadline = monotonic() + RUN_TOLD
                 app.ros.on_executor(lambda: self._take_over(UNKNOWN_RUN))
         app.ros.on_executor(self._close)
         if self._stop is not None:

@@ -6,7 +6,6 @@ command, proof, note, receipt: what is told is on the disk.
 """
 
 import threading
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -14,6 +13,7 @@ from builtin_interfaces.msg import Time
 from prometheus_client import Counter, Histogram
 from tms_msg_rc.msg import StopReceipt
 
+from tms_config.clock import monotonic, sleep
 from tms_machine.border import STOP_PROVEN, Controls
 from tms_rc.reasons import ByArrival, GoalOpen, NoEnd, NotOnDisk
 from tms_rc.receipts import Receipts
@@ -81,9 +81,9 @@ class Stopper:
 
     def wait_idle(self, seconds: float) -> bool:
         """Wait until no stop is under way; False when the time is over."""
-        deadline = time.monotonic() + seconds
+        deadline = monotonic() + seconds
         for stop in list(self._under_way):
-            stop.over.wait(max(0.0, deadline - time.monotonic()))
+            stop.over.wait(max(0.0, deadline - monotonic()))
         return not self.busy
 
     def begin(
@@ -94,7 +94,7 @@ class Stopper:
 
         `expected`: see `StandStill.proof`.
         """
-        proof = self._watch.proof(time.monotonic(), latched, expected)
+        proof = self._watch.proof(monotonic(), latched, expected)
         for earlier in self._under_way:
             proof = proof.after(earlier.proof)
         stop = Stop(cause, latched, run, ended, begun, stamp, proof, broken)
@@ -122,8 +122,8 @@ class Stopper:
         """Watch until the stop is proven, repeating the commands; then tell."""
         now, again = stop.begun, stop.begun + AGAIN
         while not self._seen(stop, now) and now - stop.begun < STOP_PROVEN:
-            time.sleep(LOOK)
-            now = time.monotonic()
+            sleep(LOOK)
+            now = monotonic()
             if self._app.ros.closing:
                 return  # the successor stops the machine again and writes the receipt
             if now > again:

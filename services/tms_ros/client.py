@@ -7,7 +7,6 @@
 """
 
 import threading
-import time
 from collections.abc import Callable
 from typing import Any, Generic
 from uuid import uuid4
@@ -16,6 +15,7 @@ from rclpy.action.client import ClientGoalHandle
 from rclpy.task import Future
 from unique_identifier_msgs.msg import UUID
 
+from tms_config.clock import monotonic
 from tms_ros.goals import Outcome
 from tms_ros.interface_types import ActionType, F, G, R
 from tms_ros.loop import Loop
@@ -130,7 +130,7 @@ class Peer(Generic[G, R, F]):
 
     def ready(self) -> bool:
         """Whether a server is there and connected in both directions."""
-        if self._dead and (time.monotonic() > self._dead_until or self._servers() - self._dead):
+        if self._dead and (monotonic() > self._dead_until or self._servers() - self._dead):
             self._dead = frozenset()
         return not self._dead and bool(self._client.server_is_ready())
 
@@ -185,7 +185,7 @@ class Peer(Generic[G, R, F]):
         Discovery counts it for some seconds more, and its successor has the same name: a goal sent before the
         successor is there would get lost, so `ready` waits for a server that is not one of the old ones.
         """
-        self._dead, self._dead_until = self._taken_by, time.monotonic() + DISCOVERY_LEASE
+        self._dead, self._dead_until = self._taken_by, monotonic() + DISCOVERY_LEASE
         self._loop.on_executor(self._end_open)
 
     def _end_open(self) -> None:

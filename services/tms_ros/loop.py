@@ -7,7 +7,6 @@ Why it is built this way (all measured with the rclpy in use):
 """
 
 import threading
-import time
 from collections import deque
 from collections.abc import Awaitable, Callable
 from contextlib import AbstractContextManager, nullcontext
@@ -25,6 +24,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Future
 
+from tms_config.clock import monotonic, sleep
 from tms_reason.errors import RosError
 from tms_reason.reason import Reason
 from tms_ros.privates import TimedExecutor
@@ -153,9 +153,9 @@ class Loop:
         """Asks the executor to show itself; why it should be restarted when it has not done so since it was asked."""
         asked = self._asked
         if asked is not None:
-            seconds = time.monotonic() - asked
+            seconds = monotonic() - asked
             return Hangs(self.process, seconds) if seconds > HANGS else None
-        self._asked = time.monotonic()
+        self._asked = monotonic()
         self.on_executor(self._shown)
         return None
 
@@ -186,11 +186,11 @@ class Loop:
         Raises:
             RosError: `otherwise`, when it did not hold within `seconds`.
         """
-        deadline = time.monotonic() + seconds
+        deadline = monotonic() + seconds
         while not there():
-            if time.monotonic() > deadline:
+            if monotonic() > deadline:
                 raise RosError(otherwise)
-            time.sleep(POLL)
+            sleep(POLL)
 
     # times
 
@@ -207,7 +207,7 @@ class Loop:
                     step()
                 except InvalidHandle:  # the node is gone
                     return
-                time.sleep(seconds)
+                sleep(seconds)
 
         self.begin(sample, name)
 

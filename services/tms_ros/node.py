@@ -1,9 +1,9 @@
 """A node as this system uses it: calls are safe from any thread."""
 
 import threading
-import time
 from contextlib import AbstractContextManager
 
+from tms_config.clock import sleep
 from tms_ros.client import AnyPeer, Peer
 from tms_ros.interface_types import ActionType, F, G, R
 from tms_ros.loop import Loop
@@ -62,7 +62,7 @@ class Ros:
     def stop(self) -> None:
         """Cancel what is served, give its workers a moment, and receive nothing any more."""
         self._served.leave(STOP_LIMIT)
-        time.sleep(LAST_WORDS)
+        sleep(LAST_WORDS)
         self.loop.stop()
 
     def close(self) -> None:

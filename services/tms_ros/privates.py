@@ -1,6 +1,5 @@
 """What of rclpy is not public, in one place: a new release of rclpy is checked against tests/ros/test_privates.py."""
 
-import time
 import warnings
 from collections.abc import Callable
 from typing import Any
@@ -11,6 +10,8 @@ from rclpy.callback_groups import CallbackGroup
 from rclpy.exceptions import InvalidHandle
 from rclpy.executors import SingleThreadedExecutor
 from unique_identifier_msgs.msg import UUID
+
+from tms_config.clock import monotonic, unix_ns
 
 DROPPED = "failed to send response"
 AGAIN = 0.5  # s until the next attempt: each may hold the executor for 0.1 s
@@ -50,8 +51,8 @@ def take(subscription: Any) -> tuple[Any, float, int] | None:
     if taken is None:
         return None
     message, way = taken
-    waited = max(0.0, (time.time_ns() - way["received_timestamp"]) * 1e-9)  # the middleware uses wall time
-    return message, time.monotonic() - waited, way["publication_sequence_number"]
+    waited = max(0.0, (unix_ns() - way["received_timestamp"]) * 1e-9)  # the middleware uses wall time
+    return message, monotonic() - waited, way["publication_sequence_number"]
 
 
 class TimedExecutor(SingleThreadedExecutor):  # type: ignore[misc]
@@ -63,7 +64,7 @@ class TimedExecutor(SingleThreadedExecutor):  # type: ignore[misc]
         """Wait, and note when the wait is over."""
         self.busy_since = None
         found = super().wait_for_ready_callbacks(*args, **settings)
-        self.busy_since = time.monotonic()
+        self.busy_since = monotonic()
         return found
 
 

@@ -5,7 +5,6 @@ rclpy in use); so rclpy's execute callback is never used.
 """
 
 import threading
-import time
 from collections.abc import Awaitable, Callable
 from typing import Any, Generic
 
@@ -14,6 +13,7 @@ from rclpy.action import CancelResponse, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 from structlog.contextvars import bind_contextvars
 
+from tms_config.clock import monotonic, sleep
 from tms_reason.reason import Reason
 from tms_reason.wire import to_line
 from tms_ros.goals import Accept, Ended, Outcome
@@ -82,9 +82,9 @@ class Served:
         self._leaving = True
         for goal in list(self._goals.values()):
             goal.cancel()
-        deadline = time.monotonic() + seconds
-        while self._goals and time.monotonic() < deadline:
-            time.sleep(POLL)
+        deadline = monotonic() + seconds
+        while self._goals and monotonic() < deadline:
+            sleep(POLL)
 
     def serve(
         self,
@@ -143,13 +143,13 @@ class Served:
         self, action_type: ActionType[G, R, F], run: Callable[[Goal[G, F]], Ended[R]], goal: Goal[G, F], name: str
     ) -> None:
         bind_contextvars(goal=goal.id)
-        begun = time.monotonic()
+        begun = monotonic()
         ended: Ended[R] = (Outcome.ABORTED, action_type.Result())
         try:
             ended = run(goal)
         finally:
             goal.on_cancel = None  # it refers to what the goal did, and that to the goal
-            SECONDS.labels(name).observe(time.monotonic() - begun)
+            SECONDS.labels(name).observe(monotonic() - begun)
             GOALS.labels(name, ended[0].name.lower()).inc()
             self._loop.on_executor(lambda: self._deliver(name, goal, *ended))
 

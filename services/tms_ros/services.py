@@ -1,13 +1,13 @@
 """Services: offered, called, and asked from callbacks."""
 
 import threading
-import time
 from collections.abc import Awaitable, Callable
 from typing import Any
 
 from rclpy.exceptions import NameValidationException
 from rclpy.task import Future
 
+from tms_config.clock import monotonic
 from tms_reason.errors import RosError
 from tms_reason.wire import to_line
 from tms_ros import quality
@@ -97,13 +97,13 @@ class Services:
         """
         assert not self._loop.is_current(), "blocking call on the executor thread"
         client = self._service(service_type, name)
-        deadline = time.monotonic() + seconds
+        deadline = monotonic() + seconds
         self._loop.wait_for(client.service_is_ready, seconds, NoServer(process_of(name), name, seconds))
         done = threading.Event()
         future = client.call_async(request)
         future.add_done_callback(lambda _: done.set())
-        while not done.wait(min(LOOK, max(0.0, deadline - time.monotonic()))):
-            if lost() or time.monotonic() >= deadline:
+        while not done.wait(min(LOOK, max(0.0, deadline - monotonic()))):
+            if lost() or monotonic() >= deadline:
                 client.remove_pending_request(future)
                 if lost():
                     raise RosError(ProcessLost(LostMeanwhile(process_of(name), name)))
@@ -142,14 +142,14 @@ class Services:
         """
         client = self._service(service_type, name)
         settled = self._loop.create_future()
-        deadline = time.monotonic() + seconds
+        deadline = monotonic() + seconds
         sent: list[Future] = []
 
         def look() -> None:
             if not sent and client.service_is_ready():
                 sent.append(client.call_async(request))
                 sent[0].add_done_callback(lambda future: settle(future.result()))
-            elif time.monotonic() >= deadline:
+            elif monotonic() >= deadline:
                 settle(None)
 
         def settle(value: Res | None) -> None:

@@ -1,10 +1,10 @@
 """Has the machine's gateway execute a trajectory, and watches it to its end."""
 
-import time
 from collections.abc import Callable
 
 from control_msgs.action import FollowJointTrajectory
 
+from tms_config.clock import monotonic
 from tms_machine.border import STOP_PROVEN
 from tms_machine.reasons import MotionNotEnded, NoReason
 from tms_reason import wire
@@ -53,7 +53,7 @@ class Mover:
         if not call.accepted and not _over(goal, call):
             self._stop(call)
             raise SubtaskFailed(NoAnswer(self._process, self._peer.name, ACCEPT_LIMIT))
-        lost = self._watch(goal, call, time.monotonic() + made.duration + OVERRUN)
+        lost = self._watch(goal, call, monotonic() + made.duration + OVERRUN)
         if call.outcome is None:
             self._stop(call)
         if lost is not None:
@@ -63,11 +63,11 @@ class Mover:
     def _watch(self, goal: AnyGoal, call: Motion, deadline: float) -> Reason | None:
         """Wait for the end of the motion or for a cancel; the reason when neither came."""
         while not _over(goal, call):
-            if time.monotonic() > deadline:
+            if monotonic() > deadline:
                 return MotionLate(self._machine, OVERRUN)
             if self._peer.left():
                 self._peer.mark_lost()  # it left in order, but without a result
-            call.wait_for(lambda: _over(goal, call), min(LOOK, deadline - time.monotonic()))
+            call.wait_for(lambda: _over(goal, call), min(LOOK, deadline - monotonic()))
         return None
 
     def _stop(self, call: Motion) -> None:
@@ -83,12 +83,12 @@ class _Progress:
     def __init__(self, made: Trajectory, say: Callable[[Reason], None]) -> None:
         self._made, self._say = made, say
         self._said: Reason | None = None
-        self._begun = time.monotonic()
+        self._begun = monotonic()
 
     def __call__(self, feedback: FollowJointTrajectory.Feedback) -> None:
         at = feedback.desired.time_from_start
         # Not every controller fills in its time; then the clock tells it.
-        seconds = at.sec + at.nanosec * 1e-9 or time.monotonic() - self._begun
+        seconds = at.sec + at.nanosec * 1e-9 or monotonic() - self._begun
         number, percent = self._made.progress(seconds)
         progress = MoveOf(number, len(self._made.stops), percent)
         if progress != self._said:

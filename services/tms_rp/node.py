@@ -1,7 +1,6 @@
 """Process `<machine>:rp`: plans an excavator's motions and has the machine's gateway execute them."""
 
 import math
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -12,6 +11,7 @@ from sensor_msgs.msg import JointState
 from tms_msg_rp.action import TmsRpZx200ChangePose, TmsRpZx200ExcavateSimple, TmsRpZx200ReleaseSimple
 from tms_msg_rp.msg import TmsRpErrorCodes
 
+from tms_config.clock import monotonic
 from tms_machine.permit import Permit, watch_server
 from tms_machine.reasons import Aborted, Busy
 from tms_reason import wire
@@ -116,7 +116,7 @@ class Planner:
         found.update({name: found[own] for name, own in self._renamed.items() if own in found})
         angles = [found.get(name, math.nan) for name in NAMES]
         if all(map(math.isfinite, angles)):
-            self._now = (time.monotonic(), Pose(*angles))
+            self._now = (monotonic(), Pose(*angles))
 
     def unready(self) -> Reason | None:
         """Why no motion can be planned and executed now."""
@@ -137,7 +137,7 @@ class Planner:
         topic = f"/{self._app.machine}/{self._app.site.border(self._app.machine).joint_states}"
         if last is None:
             raise SubtaskFailed(JointsUnheard(self._app.machine, topic, NAMES))
-        age = time.monotonic() - last[0]
+        age = monotonic() - last[0]
         if age > FRESH:
             raise SubtaskFailed(JointsOld(self._app.machine, age, topic))
         return last[1]
@@ -189,12 +189,12 @@ class Planner:
 
     def _plan(self, action: Action, goal: AnyGoal) -> tuple[Trajectory, tuple[Reason, ...]]:
         """The trajectory, and what of the goal was changed for it."""
-        begun = time.monotonic()
+        begun = monotonic()
         now = self.joints()
         moves = action.plan(self._backhoe, now, goal.request)
         made = self._trajectory(now, moves)
         self._clearance.check(made, self._neighbours.obstacles())
-        seconds = time.monotonic() - begun
+        seconds = monotonic() - begun
         PLANNING.observe(seconds)
         self._app.log.info(
             "planned",

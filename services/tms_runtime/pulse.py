@@ -7,10 +7,10 @@ by their silence asks first whether this process itself, or the whole PC, did no
 """
 
 import threading
-import time
 from collections.abc import Callable
 from typing import Protocol
 
+from tms_config.clock import monotonic
 from tms_runtime.priority import waited
 
 BEAT = 0.05  # s
@@ -89,7 +89,7 @@ class Pulse:
         """Call `step` at every beat from now on, in the pulse's thread; it must be quick."""
         with self._changing:
             if not self._steps:
-                self._asked = self._answered = time.monotonic()
+                self._asked = self._answered = monotonic()
             self._steps = (*(other for other in self._steps if other != step), step)
             self._wanted.set()
 
@@ -102,11 +102,11 @@ class Pulse:
 
     def late(self) -> bool:
         """Whether this process, or the whole PC, did not run for a moment just now."""
-        return self._lateness.late(time.monotonic())
+        return self._lateness.late(monotonic())
 
     def works(self) -> bool:
         """Whether the executor is in no long callback, and has answered when it was asked."""
-        now, since, asked = time.monotonic(), self._executor.busy_since(), self._asked
+        now, since, asked = monotonic(), self._executor.busy_since(), self._asked
         answered = self._answered >= asked or now - asked < STUCK
         return answered and (since is None or now - since < STUCK)
 
@@ -122,7 +122,7 @@ class Pulse:
                 self._lateness.pause()
                 self._worked = None
                 self._wanted.wait()
-            now = time.monotonic()
+            now = monotonic()
             self._lateness.beat(now)
             if self.works():
                 self._tell(now)
@@ -149,4 +149,4 @@ class Pulse:
         return waited({number for number in (self._executor.thread_number(), threading.get_native_id()) if number})
 
     def _answer(self) -> None:
-        self._answered = time.monotonic()
+        self._answered = monotonic()

@@ -7,9 +7,9 @@ import platform
 import signal
 import sys
 import threading
-import time
 
 from tms_config import environment, state_folder
+from tms_config.clock import monotonic
 from tms_config.config import Site, load_site, version
 from tms_config.processes import Process, find
 from tms_reason.errors import ConfigError
@@ -102,9 +102,9 @@ def _wait_for_end(stop: threading.Event, failed: threading.Event, logger: Logger
     One that stood still for long has failed: others may have forgotten it, and two of which one has forgotten the other
     may stay deaf to each other for ever. Its successor is found by all.
     """
-    before = time.monotonic()
+    before = monotonic()
     while not stop.wait(LOOK) and not failed.is_set():
-        before, gap = time.monotonic(), time.monotonic() - before
+        before, gap = monotonic(), monotonic() - before
         if gap > FORGOTTEN:  # it may have begun just after a look, or just before the next
             logger.error("forgotten", seconds=round(gap, 1), action="restarted")
             failed.set()

@@ -1,9 +1,9 @@
 """The fault `second_publisher`: somebody else tells that the machine stands where it was when the fault began."""
 
-import time
 from collections.abc import Callable
 from typing import Any
 
+from tms_config.clock import unix_ns
 from tms_ros.node import Ros
 from tms_sim.report import Reading
 from tms_sim.sources import Topic
@@ -34,4 +34,4 @@ class Impostor:
     def _tell(self) -> None:
         assert self._reading is not None
         for topic in self._topics:
-            topic.tell(self._reading._replace(stamp=time.time_ns()))
+            topic.tell(self._reading._replace(stamp=unix_ns()))

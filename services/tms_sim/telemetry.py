@@ -4,12 +4,12 @@
 than real time. The frames are true whatever its sources say: they come from elsewhere.
 """
 
-import time
 from typing import Any
 
 from geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
 from tf2_msgs.msg import TFMessage
 
+from tms_config.clock import monotonic, unix_ns
 from tms_runtime.app import App
 from tms_sim.frames import Chain, Frame
 from tms_sim.impostor import Impostor
@@ -38,7 +38,7 @@ class Telemetry:
         def made() -> list[Topic]:
             return topics(ros, name, border, joints, self._origin, lambda: machine.fault.mute, begun)
 
-        begun = time.time_ns()
+        begun = unix_ns()
         self._topics = made()
         self._report = Report(round(REPLAYED / (PERIOD * self._speed)))
         self._impostor = Impostor(ros, made)
@@ -46,11 +46,11 @@ class Telemetry:
         self._tf = ros.publisher(TFMessage, "/tf")
         self._frames = TFMessage()
         self._told: Any = None  # place and joints of the frames
-        self._stepped, self._ticks = time.monotonic(), 0
+        self._stepped, self._ticks = monotonic(), 0
 
     def tick(self) -> None:
         """One timer call: let the machine's time catch up with ours, and tell."""
-        now = time.monotonic()
+        now = monotonic()
         self._machine.step(min(now - self._stepped, LAG) * self._speed)
         self._stepped = now
         self._truth.tell()
@@ -68,7 +68,7 @@ class Telemetry:
         arm, base = self._machine.arm, self._machine.base
         place = (base.x, base.y, base.yaw) if base else self._origin
         speeds = (base.v + base.leak, base.w) if base else (0.0, 0.0)
-        return Reading(time.time_ns(), tuple(arm.positions), tuple(arm.velocities), place, speeds)
+        return Reading(unix_ns(), tuple(arm.positions), tuple(arm.velocities), place, speeds)
 
     def _tell_frames(self, reading: Reading) -> None:
         now = (reading.place, reading.positions)

@@ -4,10 +4,10 @@ Its time passes in the steps of its telemetry, 0.04 s unless the process was hel
 """
 
 import math
-import time
 
 from sensor_msgs.msg import JointState
 
+from tms_config.clock import unix_ns
 from tms_ros.node import Ros
 from tms_sim.machine import StandIn
 from tms_sim.sources import time_of
@@ -33,6 +33,6 @@ class Truth:
         if base is not None:
             positions += [base.x, base.y, base.yaw]
             velocities += [base.v * math.cos(base.yaw) + base.leak, base.v * math.sin(base.yaw), base.w]
-        message.header.stamp = time_of(time.time_ns())
+        message.header.stamp = time_of(unix_ns())
         message.position, message.velocity = positions, velocities
         self._publisher.publish(message)

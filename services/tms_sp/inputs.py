@@ -1,13 +1,13 @@
 """One sensing input: hears its topic, refuses what must not be written, and knows how it is."""
 
 import math
-import time
 from collections import deque
 from collections.abc import Callable
 
 from prometheus_client import Counter, Gauge
 from tms_msg_sp.msg import InputState
 
+from tms_config.clock import monotonic, unix_time
 from tms_config.sensing import Input
 from tms_reason.reason import Reason
 from tms_reason.wire import to_line
@@ -39,7 +39,7 @@ class SensingInput:
         self._stamps: dict[Key, float] = {}
         self._taken: dict[Key, float] = {}
         self._arrivals: deque[float] = deque(maxlen=ARRIVALS)
-        self._began = time.monotonic()
+        self._began = monotonic()
         AGE.labels(name).set_function(self._age_now)  # told at the scrape, whatever the executor does
         if given.hz:
             AGE_LIMIT.labels(name).set(SILENT_PERIODS / given.hz)
@@ -65,7 +65,7 @@ class SensingInput:
 
     def _take(self, message: Message) -> str:
         reading = self._mapping.read(message)
-        now, wall = time.monotonic(), time.time()
+        now, wall = monotonic(), unix_time()
         age = self._age(reading, wall)
         if self.given.max_hz and now - self._taken.get(reading.key, -math.inf) < 1.0 / self.given.max_hz:
             return "thinned"
@@ -101,13 +101,13 @@ class SensingInput:
         last = self._arrivals[-1] if self._arrivals else None
         if last is None:
             return "waiting"
-        if self.given.hz and time.monotonic() - last > SILENT_PERIODS / self.given.hz:
+        if self.given.hz and monotonic() - last > SILENT_PERIODS / self.given.hz:
             return "silent"
         return "clock" if self._clock.off else "alive"
 
     def state(self) -> InputState:
         """For the topic of input states; also brings the metrics up to date."""
-        now = time.monotonic()
+        now = monotonic()
         age = now - self._arrivals[-1] if self._arrivals else -1.0
         offset = self._clock.offset
         OFFSET.labels(self.name).set(math.nan if offset is None else offset)
@@ -122,7 +122,7 @@ class SensingInput:
         )  # fmt: skip
 
     def _age_now(self) -> float:
-        return time.monotonic() - (self._arrivals[-1] if self._arrivals else self._began)
+        return monotonic() - (self._arrivals[-1] if self._arrivals else self._began)
 
     def _told(self) -> list[Key]:
         return sorted(self._taken)[:RECORDS_TOLD]

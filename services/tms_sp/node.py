@@ -1,7 +1,6 @@
 """`tms:sp`: hears the declared sensing inputs and keeps parameter records up to date; waits for no machine."""
 
 import importlib
-import time
 from collections.abc import Callable
 from typing import Any
 
@@ -9,6 +8,7 @@ from tms_msg_db.msg import RecordUpdate
 from tms_msg_db.srv import UpdateParameters
 from tms_msg_sp.msg import InputState, InputStates
 
+from tms_config.clock import monotonic
 from tms_config.sensing import Input, load_sensing, sensing_path
 from tms_config.validation import Wrong
 from tms_config.yaml_file import located
@@ -142,14 +142,14 @@ class Sender:
     def put(self, post: Post) -> bool:
         """Take values to be written soon."""
         taken = self._outbox.put(post)
-        if self._clock.is_canceled() and time.monotonic() >= self._not_before:
+        if self._clock.is_canceled() and monotonic() >= self._not_before:
             self._clock.reset()
         if self._retry.is_canceled():
             self._retry.reset()
         return taken
 
     def _send(self) -> None:
-        now = time.monotonic()
+        now = monotonic()
         if not self._outbox.ready or now < self._not_before:
             self._clock.cancel()
             return
@@ -191,13 +191,13 @@ class Sender:
         if forget is not None:
             forget()
         self._outbox.failed(number)
-        self._not_before = time.monotonic() + RETRY
+        self._not_before = monotonic() + RETRY
         if self._trouble is None:
             self._log.warning("database_away", reason=why)
         self._trouble = why
 
     def _look(self) -> None:
-        now = time.monotonic()
+        now = monotonic()
         for number, limit in list(self._flights.items()):
             if now > limit:
                 self._fail(number, DatabaseSilent())

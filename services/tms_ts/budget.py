@@ -1,7 +1,8 @@
 """How many changes of a node go into the history. Pure logic."""
 
-import time
 from collections.abc import Callable
+
+from tms_config.clock import monotonic
 
 AT_ONCE = 200  # changes of one node ...
 EVERY = 10.0  # s ... and of a node that has used them up, one in so long: a loop that waits changes 20 times a second
@@ -10,7 +11,7 @@ EVERY = 10.0  # s ... and of a node that has used them up, one in so long: a loo
 class Budget:
     """Enough for nodes that work, and little for those of a loop that only waits, however long."""
 
-    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, clock: Callable[[], float] = monotonic) -> None:
         self._clock = clock
         self._left: dict[str, tuple[float, float]] = {}  # path -> changes left, when they were counted
 

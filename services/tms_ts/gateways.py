@@ -1,6 +1,5 @@
 """The scheduler's side of the gateways: its permits, their states and receipts, and a stop when one is lost."""
 
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -8,6 +7,7 @@ from std_msgs.msg import Bool
 from tms_msg_rc.msg import MachineState, StopReceipt
 from tms_msg_rc.srv import StopMachine
 
+from tms_config.clock import monotonic, sleep
 from tms_machine.border import Controls
 from tms_machine.permit import NOBODY, Link, Permit
 from tms_machine.reasons import DrivenByHand, MachineLatched, NoReason, SoftwareStop
@@ -107,13 +107,13 @@ class Gateways:
 
     def wait_alive(self, machine: str, seconds: float) -> None:
         """Give a gateway that is being restarted a moment, so that a request to it does not get lost."""
-        link, deadline = self._links.get(machine), time.monotonic() + seconds
+        link, deadline = self._links.get(machine), monotonic() + seconds
         if link is None or link.alive:
             return
-        while time.monotonic() < deadline:
-            time.sleep(0.02)
+        while monotonic() < deadline:
+            sleep(0.02)
             if self._links[machine].alive:
-                time.sleep(SETTLE)
+                sleep(SETTLE)
                 return
 
     def loss(self, machine: str) -> Callable[[], bool]:

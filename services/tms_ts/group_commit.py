@@ -7,7 +7,6 @@ what came within the last moment (GATHER): nobody was told that it is stored.
 """
 
 import threading
-import time
 from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
@@ -16,6 +15,7 @@ from typing import Protocol
 
 from prometheus_client import Gauge
 
+from tms_config.clock import monotonic
 from tms_runtime.log import Logger
 
 GATHER = 0.05  # s from the first entry to its writing, so that many share a sync; an urgent one is written at once
@@ -53,7 +53,7 @@ class Entry:
     sink: Sink | None
     data: bytes = b""
     step: Step | None = None
-    at: float = field(default_factory=time.monotonic)
+    at: float = field(default_factory=monotonic)
 
 
 class GroupCommit:
@@ -99,7 +99,7 @@ class GroupCommit:
         with self._changed:
             if self._problem or not self._waiting:
                 return self._problem
-            since = time.monotonic() - self._waiting[0].at
+            since = monotonic() - self._waiting[0].at
         return f"the disk has not answered for {since:.0f} s" if since > SLOW else ""
 
     def close(self, seconds: float) -> None:

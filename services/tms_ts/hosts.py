@@ -1,11 +1,11 @@
 """What runs where, as the host agents tell, and the way to have a process started."""
 
-import time
 from collections.abc import Callable
 
 from tms_msg_host.msg import Process, Processes
 from tms_msg_host.srv import ControlProcess
 
+from tms_config.clock import monotonic, sleep
 from tms_reason.errors import RosError
 from tms_reason.reason import Reason
 from tms_reason.wire import refusal
@@ -68,6 +68,6 @@ class Hosts:
 
     def wait_known(self, seconds: float) -> None:
         """Wait until a host agent has been heard; without one, processes cannot be started on demand."""
-        deadline = time.monotonic() + seconds
-        while not self._known and time.monotonic() < deadline:
-            time.sleep(0.02)
+        deadline = monotonic() + seconds
+        while not self._known and monotonic() < deadline:
+            sleep(0.02)

@@ -1,7 +1,6 @@
 """Runs that a lost scheduler left open: closed as `interrupted` by its successor, then resumed or abandoned."""
 
 import threading
-import time
 from collections import deque
 
 from builtin_interfaces.msg import Time
@@ -9,6 +8,7 @@ from tms_msg_db.msg import Event, Run
 from tms_msg_rc.msg import StopReceipt
 from tms_msg_ts.srv import CancelRun, ResumePlan
 
+from tms_config.clock import monotonic
 from tms_machine.border import STOP_PROVEN
 from tms_reason import wire
 from tms_reason.errors import TaskError
@@ -64,8 +64,8 @@ class Interrupted:
             if past.header is not None and past.over is not None:
                 self._complete(past, past.header, past.over)
         left = [past for past in left if past.over is None]
-        deadline = time.monotonic() + STOP_LIMIT
-        while not all(map(self._all_told, left)) and time.monotonic() < deadline:
+        deadline = monotonic() + STOP_LIMIT
+        while not all(map(self._all_told, left)) and monotonic() < deadline:
             if self._app.stopping.wait(LOOK):
                 return
         for past in left:

@@ -8,13 +8,13 @@ database. An entry that the database will never take is dropped, so that the oth
 
 import base64
 import threading
-import time
 from pathlib import Path
 
 from prometheus_client import Counter, Gauge
 from tms_msg_db.msg import Event, Run
 from tms_msg_db.srv import WriteJournal
 
+from tms_config.clock import monotonic, sleep
 from tms_reason.errors import DbError, RosError
 from tms_reason.reason import Foreign, Reason
 from tms_reason.wire import refusal
@@ -84,9 +84,9 @@ class Journal:
 
     def close(self) -> None:
         """Give the last entries a moment to be delivered; the rest waits on disk, which takes nothing more before."""
-        deadline = time.monotonic() + 0.5
-        while self._spool.waiting() and time.monotonic() < deadline:
-            time.sleep(0.01)
+        deadline = monotonic() + 0.5
+        while self._spool.waiting() and monotonic() < deadline:
+            sleep(0.01)
         self._closing.set()
 
     def _write(self) -> None:

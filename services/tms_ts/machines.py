@@ -1,7 +1,6 @@
 """Leaf nodes' way to the subtasks: goals as action clients, one stopped machine before the next goal."""
 
 import threading
-import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -11,6 +10,7 @@ from tms_msg_rc.msg import StopReceipt
 from tms_msg_rc.srv import StopMachine
 from tms_msg_ts.action import LeafNodeBase
 
+from tms_config.clock import monotonic
 from tms_machine.border import STOP_PROVEN
 from tms_machine.reasons import MachineLatched, NoDatabase, NoJointState, NoPermit, NoReason, Rejected, StopUnconfirmed
 from tms_machine.receipts import stood_after
@@ -143,7 +143,7 @@ class Machines:
 
         A gateway that is lost meanwhile has a successor, which is asked again.
         """
-        line, deadline = to_line(cause), time.monotonic() + STOP_LIMIT
+        line, deadline = to_line(cause), monotonic() + STOP_LIMIT
         request = StopMachine.Request(cause=line, orderly=True)
         while True:
             self._gateways.wait_alive(machine, GATEWAY_LIMIT)
@@ -151,7 +151,7 @@ class Machines:
             try:
                 answer = self._ros.call(StopMachine, f"/{machine}/rc/stop", request, STOP_LIMIT, lost)
             except RosError as error:
-                if isinstance(error.reason, ProcessLost) and time.monotonic() < deadline:
+                if isinstance(error.reason, ProcessLost) and monotonic() < deadline:
                     continue
                 stamp, why = self._ros.now(), to_line(error.reason)
                 return StopReceipt(machine=machine, confirmed=False, cause=line, detail=why, stamp=stamp)
@@ -176,19 +176,19 @@ class Machines:
         if goal.cancelled:  # while it waited to be sent again
             self._end(goal, GoalState.CANCELLED, GoalCancelled(goal.name))
             return
-        if time.monotonic() < goal.not_before:
+        if monotonic() < goal.not_before:
             return
         goal.reason = self._obstacle(goal)
         if goal.reason is not None:
             gone = self._gone_for_good(goal)
             if gone is not None:
                 self._end(goal, GoalState.FAILED, gone)
-            elif time.monotonic() - goal.begun > SERVER_LIMIT:
+            elif monotonic() - goal.begun > SERVER_LIMIT:
                 self._end(goal, GoalState.FAILED, ForTooLong(goal.reason, SERVER_LIMIT))
             return
         goal.pid = self._hosts.pid(goal.machine, goal.subtask)
         request = LeafNodeBase.Goal(model_name=goal.machine, record_name=goal.record)
-        goal.begun = time.monotonic()
+        goal.begun = monotonic()
         self._tell("goal", goal.node, GoalSent(goal.name, goal.record))
         self._leaves = self._leaves % LEAVES + 1
         goal_id = Owner(self._number, self._leaves).goal_id()
@@ -230,7 +230,7 @@ class Machines:
         elif call.accepted and goal.state is GoalState.SENDING:
             goal.state = GoalState.RUNNING
             if self._handed_over is not None:
-                HANDOVER.observe(time.monotonic() - self._handed_over)
+                HANDOVER.observe(monotonic() - self._handed_over)
                 self._handed_over = None
             self._tell("goal", goal.node, GoalAccepted(goal.name))
         self._wake()
@@ -238,7 +238,7 @@ class Machines:
     def _ended(self, goal: SentGoal, call: LeafCall) -> None:
         if call.outcome is Outcome.SUCCEEDED:
             self._end(goal, GoalState.SUCCEEDED, None)
-            self._handed_over = time.monotonic()
+            self._handed_over = monotonic()
         elif call.outcome is Outcome.CANCELED:
             self._end(goal, GoalState.CANCELLED, GoalCancelled(goal.name))
         else:
@@ -247,7 +247,7 @@ class Machines:
     def _failed_with(self, goal: SentGoal, call: LeafCall, why: Reason) -> None:
         if (why.code in AWAY and self._may_wait(goal)) or self._may_ask_again(goal, why):
             goal.reason, goal.state = why, GoalState.SENDING
-            goal.call, goal.begun, goal.not_before = None, time.monotonic(), time.monotonic() + ASK_AGAIN
+            goal.call, goal.begun, goal.not_before = None, monotonic(), monotonic() + ASK_AGAIN
         elif why.find(ProcessLost) is not None:
             self._lost(goal, GoalLost(goal.name, why))
         elif call.outcome is Outcome.REJECTED:
@@ -261,12 +261,12 @@ class Machines:
 
     def _may_wait(self, goal: SentGoal) -> bool:
         """Whether a subtask that cannot read its record is asked again: the database may be coming back."""
-        goal.waits_since = goal.waits_since or time.monotonic()
-        return not goal.cancelled and time.monotonic() - goal.waits_since < DATABASE_LIMIT
+        goal.waits_since = goal.waits_since or monotonic()
+        return not goal.cancelled and monotonic() - goal.waits_since < DATABASE_LIMIT
 
     def _end(self, goal: SentGoal, state: GoalState, reason: Reason | None) -> None:
         if state is not GoalState.SUCCEEDED and not goal.cancelled:
-            self._failed[goal.key] = time.monotonic()
+            self._failed[goal.key] = monotonic()
         if state is not GoalState.CANCELLED and not goal.cancelled:
             for key, left in self._replay.moved_on(goal.node):
                 self._record.gone(key, left)
@@ -297,14 +297,14 @@ class Machines:
         """
         if counts:
             goal.losses += 1
-            goal.lost_at = time.monotonic()
+            goal.lost_at = monotonic()
         self._stopping.add(goal.machine)
         if goal.cancelled:
             self._end(goal, GoalState.CANCELLED, why)
         elif goal.losses > self._retries:
             self._end(goal, GoalState.FAILED, LostTimes(why, goal.losses))
         else:
-            goal.call, goal.state, goal.begun = None, GoalState.SENDING, time.monotonic()
+            goal.call, goal.state, goal.begun = None, GoalState.SENDING, monotonic()
             goal.not_before = goal.begun + ASK_AGAIN * goal.losses
             goal.reason = SentAgain(why)
             self._tell("loss", goal.node, SentAgainTimes(why, goal.losses, self._retries))

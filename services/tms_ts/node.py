@@ -1,10 +1,8 @@
 """Process `tms:ts`: runs stored tasks, one after another and several at once."""
 
 import threading
-import time
 import uuid
 from collections import Counter
-from datetime import datetime, timezone
 
 from builtin_interfaces.msg import Time
 from prometheus_client import Gauge
@@ -15,6 +13,7 @@ from tms_msg_ts.action import ExecuteTask
 from tms_msg_ts.msg import RunStates
 from tms_msg_ts.srv import AnswerQuestion, CancelRun, CheckTask, ResumePlan
 
+from tms_config.clock import monotonic, utc_now
 from tms_machine.reasons import MachineLatched, WaitingFor
 from tms_reason import wire
 from tms_reason.errors import TaskError, TmsError
@@ -143,9 +142,9 @@ class Scheduler:
             runs = list(self._runs.values())
         for run in runs:
             run.cancel("interrupted", SchedulerStopped())
-        deadline = time.monotonic() + 1.0
+        deadline = monotonic() + 1.0
         for run in runs:
-            run.ended.wait(max(0.0, deadline - time.monotonic()))
+            run.ended.wait(max(0.0, deadline - monotonic()))
         self._closing.set()
         self._disk.close(DISK_END)
         self._journal.close()
@@ -240,7 +239,7 @@ class Scheduler:
             old = past.header
             started = Time(sec=old.started[0], nanosec=old.started[1])
             return Facts(old.run_id, number, old.task_id, old.description, old.machines, started)
-        stamp = datetime.now(timezone.utc).strftime("%Y%m%d-%H%M%S")
+        stamp = utc_now().strftime("%Y%m%d-%H%M%S")
         run_id = f"{stamp}-{uuid.uuid4().hex[:4]}"
         return Facts(run_id, number, goal.request.task_id, "", [], self._ros.now())
 
@@ -316,10 +315,10 @@ class Scheduler:
             raise TaskError(problem, "NO_PROCESS")
         waiting = {name: machines.peer(*name.split(":", 1)) for name in processes}
         limit = SERVERS_LIMIT + SERVER_START * len(waiting)
-        deadline = time.monotonic() + limit
+        deadline = monotonic() + limit
         while waiting and not run.cancelled.is_set():
             waiting = {name: peer for name, peer in waiting.items() if not peer.ready()}
-            if waiting and time.monotonic() > deadline:
+            if waiting and monotonic() > deadline:
                 name = next(iter(waiting))
                 raise TaskError(NoServer(name, waiting[name].name, limit))
             run.wake.wait(0.02)

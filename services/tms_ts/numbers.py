@@ -1,11 +1,11 @@
 """Fencing numbers of runs: always growing, also over restarts, power cuts, and when the clock goes back."""
 
 import threading
-import time
 from pathlib import Path
 
 import structlog
 
+from tms_config.clock import unix_ns
 from tms_reason.errors import TaskError
 from tms_reason.reason import Foreign
 from tms_runtime import durable
@@ -37,7 +37,7 @@ class Numbers:
             TaskError: NoDisk.
         """
         with self._giving:
-            self._last = number = max(self._last + 1, time.time_ns() // 1_000_000)
+            self._last = number = max(self._last + 1, unix_ns() // 1_000_000)
             taken = self._disk.put(self, str(number).encode(), vital=True)
         if not taken or not self._disk.wait(LIMIT):
             raise no_disk(self._disk)

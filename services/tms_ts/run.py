@@ -1,7 +1,6 @@
 """One run of a task: ticks its tree, records every change, and ends with every machine seen to stand."""
 
 import threading
-import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -13,6 +12,7 @@ from tms_msg_db.msg import Run as RunRow
 from tms_msg_ts.action import ExecuteTask
 from tms_msg_ts.msg import NodeStatus, RunState
 
+from tms_config.clock import monotonic
 from tms_machine.border import STOP_PROVEN
 from tms_machine.reasons import SoftwareStop
 from tms_machine.values import to_parameters
@@ -121,7 +121,7 @@ class Run:
     def alive(self) -> bool:
         """Whether the loop that decides about motions still runs."""
         ticked = self._ticked
-        return ticked is None or time.monotonic() - ticked < TICK_LIMIT
+        return ticked is None or monotonic() - ticked < TICK_LIMIT
 
     # what is told
 
@@ -192,13 +192,13 @@ class Run:
         return outcome
 
     def _tick_to_end(self, tree: Tree, machines: Machines) -> str:
-        next_tick = self._ticked = time.monotonic()
+        next_tick = self._ticked = monotonic()
         while not self.cancelled.is_set():
             machines.advance()
-            begun = time.monotonic()
+            begun = monotonic()
             self._changes_of_tick = 0
             status = tree.tick()
-            self._ticked = time.monotonic()
+            self._ticked = monotonic()
             took = self._ticked - begun
             self._tell_flood()
             self._look(tree)
@@ -209,7 +209,7 @@ class Run:
             if took > PERIOD:
                 OVERRUNS.inc()
             next_tick = min(max(next_tick + PERIOD, begun), begun + PERIOD)  # however often something woke it
-            self.wake.wait(max(0.0, next_tick - time.monotonic()))
+            self.wake.wait(max(0.0, next_tick - monotonic()))
             self.wake.clear()
         outcome, self._failure = self._ending
         return outcome
@@ -237,8 +237,8 @@ class Run:
             return self._end(outcome, None)
         for receipt in receipts:
             machines.receipt(receipt)
-        deadline = time.monotonic() + SETTLE_LIMIT
-        while not machines.settled() and time.monotonic() < deadline:
+        deadline = monotonic() + SETTLE_LIMIT
+        while not machines.settled() and monotonic() < deadline:
             self.wake.wait(PERIOD)
             self.wake.clear()
         reason = self._failure
@@ -299,7 +299,7 @@ class Run:
 
     def _tell_flood(self, last: bool = False) -> None:
         """A loop that spins, or waits for hours, must not fill the history with its rounds."""
-        now = time.monotonic()
+        now = monotonic()
         if self._left_out and (last or now - self._flood_told >= FLOOD_TOLD):
             self.tell("node", "", LeftOut(self._left_out))
             self._left_out, self._flood_told = 0, now
@@ -316,7 +316,7 @@ class Run:
             self._changed()
 
     def _tell_client(self, tree: Tree, last: bool = False) -> None:
-        now = time.monotonic()
+        now = monotonic()
         if now < self._next_feedback and not last:
             return
         facts = self.facts

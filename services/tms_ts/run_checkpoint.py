@@ -6,7 +6,6 @@ nothing. In each group the records are on the disk before the journal: no event 
 """
 
 import json
-import time
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
@@ -15,6 +14,7 @@ from typing import Any
 import structlog
 from prometheus_client import Counter
 
+from tms_config.clock import unix_time
 from tms_runtime.append_file import AppendFile
 from tms_runtime.durable import set_aside
 from tms_ts.group_commit import GroupCommit
@@ -43,7 +43,7 @@ class RunCheckpoint:
         """`urgent`: what a resume relies on is written at once; a killed process loses what still gathers."""
         if self._ended:
             return  # news of a run that is over
-        if not self._disk.put(self, b"\n" + json.dumps({**data, "t": time.time()}).encode(), vital=True, urgent=urgent):
+        if not self._disk.put(self, b"\n" + json.dumps({**data, "t": unix_time()}).encode(), vital=True, urgent=urgent):
             LOST.inc()
             log.error("record_lost", file=self.path.name, line=next(iter(data)))
 

@@ -1,9 +1,8 @@
 """One goal of one leaf node, from its sending to its end."""
 
-import time
-
 from tms_msg_ts.action import LeafNodeBase
 
+from tms_config.clock import monotonic
 from tms_reason import wire
 from tms_reason.reason import Reason
 from tms_ros.client import Call, Peer
@@ -27,7 +26,7 @@ class SentGoal:
         self.state = GoalState.SENDING
         self.reason: Reason | None = None
         self.cancelled = False
-        self.begun = time.monotonic()
+        self.begun = monotonic()
         self.call: LeafCall | None = None
         self.peer: LeafPeer | None = None
         self.pid: int | None = None  # of the subtask's process when the goal was sent
@@ -48,11 +47,11 @@ class SentGoal:
 
     def unheard(self) -> bool:
         """Whether the server has had its time to answer and has not."""
-        return self.call is not None and not self.call.accepted and time.monotonic() - self.begun > ACCEPT_LIMIT
+        return self.call is not None and not self.call.accepted and monotonic() - self.begun > ACCEPT_LIMIT
 
     def recovers(self) -> bool:
         """Whether, after a loss, the processes below may not have found each other yet."""
-        return self.losses > 0 and time.monotonic() - self.lost_at < RECOVERY
+        return self.losses > 0 and monotonic() - self.lost_at < RECOVERY
 
     def cancel(self) -> None:
         """Ask for the end; `Machines` keeps watching until the goal is terminal."""

@@ -5,13 +5,13 @@ tms:db, and a message may get lost with a process.
 """
 
 import threading
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 from tms_msg_db.msg import RecordChanges
 
+from tms_config.clock import monotonic
 from tms_ros.node import Ros
 
 KEPT = 1.0  # s
@@ -40,7 +40,7 @@ class SharedRecords:
         """The fields of a record, if they are known."""
         with self._lock:
             found = self._kept.get(record)
-            return found.fields if found is not None and time.monotonic() < found.until else None
+            return found.fields if found is not None and monotonic() < found.until else None
 
     def asked(self, record: str) -> int:
         """Before reading a record: what `keep` needs to know whether it has changed meanwhile."""
@@ -51,7 +51,7 @@ class SharedRecords:
         """Remember a record that was just read; one that may get too old is asked for every time."""
         with self._lock:
             if self._changes.get(record, 0) == asked and max_age <= 0:
-                self._kept[record] = Kept(fields, time.monotonic() + KEPT)
+                self._kept[record] = Kept(fields, monotonic() + KEPT)
 
     def forget(self, record: str) -> None:
         """It was changed from here."""

@@ -1,6 +1,5 @@
 """What preflight asks: the records as they are now, the servers, machines, runs and sensing inputs that are there."""
 
-import time
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -9,6 +8,7 @@ from tms_msg_db.msg import Record
 from tms_msg_db.srv import ListParameters
 from tms_msg_sp.msg import InputState, InputStates
 
+from tms_config.clock import monotonic, sleep, unix_time
 from tms_config.models import MachineModel
 from tms_config.yaml_file import explain
 from tms_machine.subtask import load
@@ -59,8 +59,8 @@ class PreflightContext:
         answer = app.ros.call(ListParameters, "/tms/db/list_parameters", ListParameters.Request(), DB_LIMIT)
         if answer.error_code:
             raise RosError(refusal(answer.error_code, answer.error_msg), answer.error_code)
-        now = time.time()
-        self._found_by = time.monotonic() + DISCOVERY_LIMIT
+        now = unix_time()
+        self._found_by = monotonic() + DISCOVERY_LIMIT
         self._records = {(record.model_name, record.record_name): _stored(record, now) for record in answer.records}
 
     def record(self, machine: str, record: str) -> Stored | None:
@@ -72,8 +72,8 @@ class PreflightContext:
     def served(self, machine: str, subtask: str) -> bool:
         """Whether an action server of that name is in the ROS graph, whoever runs it; one may have begun just now."""
         status, count = f"/{machine}/{subtask}/_action/status", self._app.ros.node.count_publishers
-        while not (found := count(status)) and time.monotonic() < self._found_by:
-            time.sleep(LOOK)
+        while not (found := count(status)) and monotonic() < self._found_by:
+            sleep(LOOK)
         return bool(found)
 
     def written(self, record: str, field: str) -> bool:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any, Protocol, TypeVar
 
+from tms_config.clock import monotonic
 from tms_reason.reason import Reason
 
 Value = str | bool | int | float
@@ -85,4 +85,4 @@ class World:
     machines: Machines
     flags: SharedFlags
     clicks: Clicks
-    clock: Callable[[], float] = time.monotonic  # s
+    clock: Callable[[], float] = monotonic  # s

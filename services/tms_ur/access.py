@@ -4,7 +4,6 @@ import hashlib
 import secrets
 import stat
 import threading
-import time
 from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -15,6 +14,7 @@ from argon2 import PasswordHasher
 from argon2.exceptions import InvalidHashError, VerificationError
 from pydantic import Field, model_validator
 
+from tms_config.clock import monotonic
 from tms_config.models import Settings
 from tms_config.names import Name
 from tms_config.yaml_file import parse
@@ -63,7 +63,7 @@ class Person:
 class Access:
     """All that is known of users; thread safe."""
 
-    def __init__(self, file: Path | None, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, file: Path | None, clock: Callable[[], float] = monotonic) -> None:
         """Read the users.
 
         Raises:

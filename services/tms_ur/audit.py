@@ -8,7 +8,6 @@ request; a stop is sent whether or not its entry is on the disk, any other comma
 import queue
 import sqlite3
 import threading
-import time
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -19,6 +18,7 @@ from prometheus_client import Counter
 from tms_msg_db.msg import Event
 from tms_msg_db.srv import ListEvents, WriteJournal
 
+from tms_config.clock import unix_ns
 from tms_machine.values import from_parameters, to_parameters
 from tms_reason import wire
 from tms_reason.errors import TmsError
@@ -56,7 +56,7 @@ class Audit:
         """Take a note; waits for nobody. The event is set once it is on the disk."""
         log.info("command", what=what, target=target, who=who, source=source, times=times)
         kept = threading.Event()
-        note = Note(time.time_ns() // 1_000_000, what, _clean(target), _clean(f"{who} from {source}"), times)
+        note = Note(unix_ns() // 1_000_000, what, _clean(target), _clean(f"{who} from {source}"), times)
         try:
             self._new.put_nowait((note, kept))
         except queue.Full:

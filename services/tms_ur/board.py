@@ -1,10 +1,9 @@
 """The latest of what the site says, with its age: fed by the ROS thread of site_client.py, read by the web server's."""
 
 import threading
-import time
 from collections.abc import Callable, Iterable
-from datetime import datetime, timezone
 
+from tms_config.clock import monotonic, utc_now
 from tms_ur.models import ActiveRun, Host, Machine, Place, Process, Question, Scheduler, State
 from tms_ur.reason_view import view
 from tms_ur.reasons import MachineSilent, MachineUnheard
@@ -17,7 +16,7 @@ HOST_SILENT = 6.0  # s, three periods of a host agent: its PC may have no power
 class Board:
     """Keeps one snapshot's worth of state and tells listeners when its content, not only an age, has changed."""
 
-    def __init__(self, machines: Iterable[str], clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, machines: Iterable[str], clock: Callable[[], float] = monotonic) -> None:
         self._clock = clock
         self._lock = threading.Lock()
         self._machines: dict[str, tuple[Machine, float | None]] = {n: (Machine(name=n), None) for n in machines}
@@ -84,7 +83,7 @@ class Board:
         with self._lock:
             now = self._clock()
             return State(
-                time=datetime.now(timezone.utc),
+                time=utc_now(),
                 machines=[
                     _aged(machine, now, at, self._places.get(name)) for name, (machine, at) in self._machines.items()
                 ],

@@ -7,13 +7,13 @@ Used on the event loop only.
 """
 
 import socket
-import time
 from collections import Counter
 from collections.abc import Callable
 from typing import Any, Protocol
 
 from prometheus_client import Counter as Metric
 
+from tms_config.clock import monotonic
 from tms_ur.callers import caller
 
 MAX_CONNECTIONS = 300  # connections once those that hang are cut
@@ -71,7 +71,7 @@ class Connection:
 class Gate:
     """All connections by their file descriptor, which is free for another one as soon as one is closed."""
 
-    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, clock: Callable[[], float] = monotonic) -> None:
         self._clock = clock
         self._there: dict[int, Connection] = {}
 

@@ -7,11 +7,11 @@ nobody behind the same router, and nobody elsewhere, can lock a person out of th
 
 import hashlib
 import threading
-import time
 from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from tms_config.clock import monotonic
 from tms_reason.errors import TmsError
 from tms_ur.callers import caller
 from tms_ur.reasons import Throttled
@@ -69,7 +69,7 @@ class Failures:
 class LoginThrottle:
     """Every try counts as wrong until it was right, so that tries at the same time are not free; thread safe."""
 
-    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, clock: Callable[[], float] = monotonic) -> None:
         self._pairs, self._addresses, self._accounts = (Failures(one, clock) for one in (PAIR, ADDRESS, ACCOUNT))
         self._familiar: OrderedDict[str, None] = OrderedDict()  # pairs that have logged in
         self._lock = threading.Lock()

@@ -1,11 +1,12 @@
 """Endpoints that only show something; every role may ask them."""
 
 import difflib
-from datetime import datetime, timedelta, timezone
+from datetime import datetime, timedelta
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from fastapi import FastAPI, Path, Query, Request, Response
 
+from tms_config.clock import utc_now
 from tms_config.config import Site
 from tms_config.names import Name
 from tms_reason import wire
@@ -133,7 +134,7 @@ def _audit(app: FastAPI, client: "SiteClient", audit: "Audit") -> None:
     def newest(
         hours: Annotated[float, Query(gt=0, le=24 * 366)] = 24, limit: Annotated[int, Query(ge=1, le=PAGE)] = PAGE
     ) -> list[Event]:
-        since = datetime.now(timezone.utc) - timedelta(hours=hours)
+        since = utc_now() - timedelta(hours=hours)
         return _newest_of_audit(client, audit.number(), since, limit)
 
 

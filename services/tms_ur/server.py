@@ -3,13 +3,13 @@
 import functools
 import socket
 import threading
-import time
 from typing import Any
 
 import h11
 import uvicorn
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
+from tms_config.clock import monotonic
 from tms_config.site_file import Files
 from tms_reason.reason import Reason
 from tms_ur.connections import BODY, HEADERS, SILENCE, Connection, Gate, Listener
@@ -70,7 +70,7 @@ class Watched(H11Protocol):
         super().__init__(**of_uvicorn)
         self._gate = gate
         self._connection: Connection | None = None
-        self._begun = time.monotonic()  # the present request, or the wait for it
+        self._begun = monotonic()  # the present request, or the wait for it
         self._heard = self._begun  # the last piece of it
         self._idle = False  # answered, and nothing of a next request was heard
         self._unread, self._read = 0, self._begun  # bytes of the answer that wait, and when it was seen to go on
@@ -83,13 +83,13 @@ class Watched(H11Protocol):
             transport.abort()
 
     def data_received(self, data: bytes) -> None:
-        self._heard = time.monotonic()
+        self._heard = monotonic()
         if self._idle:
             self._idle, self._begun = False, self._heard
         super().data_received(data)
 
     def on_response_complete(self) -> None:
-        self._idle, self._begun = True, time.monotonic()
+        self._idle, self._begun = True, monotonic()
         if self._connection is not None:
             self._connection.since = self._begun
         super().on_response_complete()

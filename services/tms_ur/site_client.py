@@ -1,6 +1,5 @@
 """What the API asks of ROS: blocking calls for worker threads, and topics that feed the board."""
 
-import time
 from typing import Any
 
 from tf2_msgs.msg import TFMessage
@@ -24,6 +23,7 @@ from tms_msg_ts.action import ExecuteTask
 from tms_msg_ts.msg import RunStates
 from tms_msg_ts.srv import AnswerQuestion, CancelRun, CheckTask
 
+from tms_config.clock import monotonic
 from tms_config.config import Site
 from tms_config.names import check_sent
 from tms_machine.border import STOP_PROVEN
@@ -85,7 +85,7 @@ class SiteClient:
         self.board.put_host(Host(name=message.host, processes=[messages.process(row) for row in message.processes]))
 
     def _on_inputs(self, message: InputStates) -> None:
-        self._inputs = (list(message.inputs), time.monotonic())
+        self._inputs = (list(message.inputs), monotonic())
 
     def _update_places(self) -> None:
         moved = set[str]().union(*map(self._frames.hear, self._new_frames()))
@@ -93,14 +93,14 @@ class SiteClient:
             seen = self._frames.place(frame)
             if seen is not None:
                 place = Place(x=round(seen.x, 2), y=round(seen.y, 2), yaw=round(seen.yaw, 3))
-                self.board.put_place(self._machines[frame], place, max(0.0, time.monotonic() - seen.heard))
+                self.board.put_place(self._machines[frame], place, max(0.0, monotonic() - seen.heard))
 
     def sensing(self) -> Sensing:
         """The sensing inputs as `tms:sp` reported them last."""
         reported = self._inputs
         if reported is None:
             return Sensing(age=None, inputs=[])
-        since = time.monotonic() - reported[1]
+        since = monotonic() - reported[1]
         return Sensing(age=round(since, 1), inputs=[messages.sensing_input(one, since) for one in reported[0]])
 
     # the database

@@ -1,10 +1,10 @@
 """Sums up the refusals of strangers: at most one entry a minute for each address and kind. Pure logic."""
 
 import threading
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from tms_config.clock import monotonic
 from tms_ur.callers import caller
 
 PERIOD = 60.0  # s
@@ -27,7 +27,7 @@ class Refused:
 class Strangers:
     """Thread safe; the memory that it needs does not grow with the number of refusals."""
 
-    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, clock: Callable[[], float] = monotonic) -> None:
         self._clock = clock
         self._open: dict[tuple[str, str, str], Refused] = {}
         self._lock = threading.Lock()

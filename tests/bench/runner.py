@@ -16,9 +16,10 @@ import sys
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
+
+from tms_config.clock import utc_now
 
 HERE = Path(__file__).resolve().parent
 PROJECT = HERE.parents[1]
@@ -95,7 +96,7 @@ def commit() -> str:
 def remember(file: Path, figures: list[tuple[str, Figure]], seconds: dict[str, float]) -> None:
     """Append one line, so that commits can be compared."""
     file.parent.mkdir(parents=True, exist_ok=True)
-    now = datetime.now(timezone.utc).isoformat(timespec="seconds")
+    now = utc_now().isoformat(timespec="seconds")
     rows = [{"group": group, **figure.as_dict()} for group, figure in figures]
     line = {"commit": commit(), "at": now, "seconds": seconds, "figures": rows}
     with file.open("a", encoding="utf-8") as history:

@@ -4,7 +4,7 @@ import re
 import socket
 import threading
 from collections.abc import Iterator
-from datetime import datetime, timedelta, timezone
+from datetime import timedelta
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +13,7 @@ import yaml
 from playwright.sync_api import Page, expect
 
 from conftest import site_data
+from tms_config.clock import utc_now
 from tms_config.config import load_site
 from tms_machine.reasons import SoftwareStop
 from tms_reason.errors import TmsError
@@ -64,7 +65,7 @@ class Yard(FakeSiteClient):
         return self.journals[run_id][after : after + limit] if self.journals else super().events(run_id, after, limit)
 
     def parameters(self, model_name: str) -> list[Record]:
-        written = datetime.now(timezone.utc) - timedelta(seconds=30)
+        written = utc_now() - timedelta(seconds=30)
         facts = {"type": "static", "description": "", "source": "cli", "updated_at": written, "values": {"d": 1.0}}
         return [Record(model_name="zx200", record_name="pose", **facts)]
 
@@ -180,10 +181,10 @@ def test_the_processes_of_a_silent_pc_are_unknown(page: Page, address: str, yard
 
 
 def test_ages_are_told_by_the_clock_of_the_site(page: Page, address: str, yard: Yard) -> None:
-    until = datetime.now(timezone.utc) + timedelta(seconds=300)
+    until = utc_now() + timedelta(seconds=300)
     asked = Question(id="q", run_id="r-1", node="0", title="Safety", text="Clear?", until=until)
     yard.board.put_runs([RUN], [asked])
-    page.clock.install(time=datetime.now(timezone.utc) + timedelta(hours=1))
+    page.clock.install(time=utc_now() + timedelta(hours=1))
     page.goto(f"{address}/#data")
     expect(page.locator("#questions .question")).to_contain_text(re.compile(r"\b[12]\d\d s left"))
     expect(page.locator("#list_records [data-part=age]")).to_have_text(re.compile(r"^\d\d s$"))

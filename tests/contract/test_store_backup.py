@@ -20,6 +20,7 @@ from pymongo.collection import Collection
 from pymongo.errors import AutoReconnect
 
 from tms_cli.commands import db as verb
+from tms_config.clock import utc_now
 from tms_db import archive, backup, schema, store
 from tms_db.crc64 import Crc64
 from tms_db.history import Event, History, Run
@@ -410,7 +411,7 @@ def test_a_run_that_was_active_at_the_backup_is_abandoned_by_the_restore(
     closed = runs["r2"]
     assert (closed.state, closed.reason) == ("abandoned", "restored from a backup")
     assert closed.ended_at is not None
-    assert abs(datetime.now(timezone.utc) - closed.ended_at) < timedelta(minutes=1)
+    assert abs(utc_now() - closed.ended_at) < timedelta(minutes=1)
     assert replace(closed, state="running", reason="", ended_at=None) == active
     Parameters(other_db).set("zx200", "initial_pose", Change({"trajectory": 2}))  # static, and locked by no run
     backup.restore(other_db, file, silent, drop=True)

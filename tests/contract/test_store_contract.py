@@ -17,6 +17,7 @@ from pymongo.collection import Collection
 from pymongo.errors import AutoReconnect
 
 from stores import Server
+from tms_config.clock import utc_now
 from tms_db import freshness, store
 from tms_db.batches import Batches, Update
 from tms_db.connection import Connection
@@ -62,7 +63,7 @@ def test_task_is_stored_as_the_paper_says(db: store.Db) -> None:
     assert document["task_sequence"] == tree()
     task = Tasks(db).get(1)
     assert task.task_sequence == document["task_sequence"]
-    assert abs(datetime.now(timezone.utc) - task.added_at) < timedelta(minutes=1)
+    assert abs(utc_now() - task.added_at) < timedelta(minutes=1)
 
 
 def test_the_same_text_is_reported_not_stored_twice(db: store.Db) -> None:

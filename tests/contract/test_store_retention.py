@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 import structlog
 
+from tms_config.clock import utc_now
 from tms_config.site_file import SiteFile, Store
 from tms_db import retention, store
 from tms_db.connection import Connection
@@ -98,7 +99,7 @@ def test_the_index_is_used(shared_db: store.Db) -> None:
 def test_it_looks_by_itself_once_the_store_is_there(shared_db: store.Db, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(retention, "FIRST", 0.01)
     monkeypatch.setattr(retention, "AGAIN", 0.01)
-    ended = datetime.now(timezone.utc)
+    ended = utc_now()
     runs = [
         Run(name, 1, "", "success", "", (), ended, ended - timedelta(days=days)) for name, days in (("a", 9), ("b", 0))
     ]

@@ -4,7 +4,7 @@ import json
 import re
 import threading
 import urllib.error
-from datetime import datetime, timezone
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +13,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 
 from conftest import PROJECT, Mesh, ports_of, wait_until
 from prometheus_server import get, processes_up, prometheus, query
+from tms_config.clock import utc_now
 from tms_config.config import load_site
 from tms_db import store
 from tms_ros.node import Ros
@@ -122,7 +123,7 @@ def test_where_machines_are_is_stored_once_a_second_with_its_age(mesh: Mesh) -> 
         return list(db[collection].find({"name": "zx200"}).sort("time", -1).limit(4))
 
     def age(row: Any) -> float:
-        return (datetime.now(timezone.utc) - datetime.fromisoformat(row["time"])).total_seconds()
+        return (utc_now() - datetime.fromisoformat(row["time"])).total_seconds()
 
     try:
         for collection in ("machine_pose", "machine_joints"):
@@ -134,6 +135,6 @@ def test_where_machines_are_is_stored_once_a_second_with_its_age(mesh: Mesh) -> 
         joints = newest("machine_joints")[0]["msg"]
         assert len(joints["name"]) == len(joints["position"]) > 3
         stamp = newest("machine_pose")[0]["msg"]["header"]["stamp"]
-        assert abs(datetime.now(timezone.utc).timestamp() - stamp["sec"]) < 10.0, "when it was measured is told, too"
+        assert abs(utc_now().timestamp() - stamp["sec"]) < 10.0, "when it was measured is told, too"
     finally:
         db.client.close()

@@ -1,6 +1,5 @@
 """`tms cancel`: end a run; it has ended when its machines were seen to stand still."""
 
-import time
 from typing import TYPE_CHECKING
 
 import click
@@ -9,6 +8,7 @@ from tms_cli import session, words
 from tms_cli.commands.runs import MOST, as_dict, find_run, has_ended, history, recent
 from tms_cli.reasons import NoRunActive, NotEndedYet, RunHasEnded
 from tms_cli.words import say, state
+from tms_config.clock import monotonic, sleep
 from tms_reason.errors import TmsError
 
 if TYPE_CHECKING:
@@ -38,12 +38,12 @@ def _which(node: "Ros", word: str) -> str:
 
 
 def _wait(node: "Ros", run_id: str) -> "Run":
-    deadline = time.monotonic() + END_LIMIT
-    while time.monotonic() < deadline:
+    deadline = monotonic() + END_LIMIT
+    while monotonic() < deadline:
         run = recent(node, run_id)
         if run is not None and has_ended(run):
             return run
-        time.sleep(LOOK)
+        sleep(LOOK)
     raise TmsError(
         NotEndedYet(run_id, END_LIMIT),
         "STOP_UNCONFIRMED",

@@ -1,6 +1,5 @@
 """`tms db`: backup and restore of the database, and what it holds."""
 
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,6 +9,7 @@ import click
 from tms_cli import session
 from tms_cli.open_store import opened
 from tms_cli.words import Group, say
+from tms_config.clock import monotonic
 
 if TYPE_CHECKING:
     from tms_db.backup import Report
@@ -118,12 +118,12 @@ def _as_dict(report: "Report") -> dict[str, Any]:
 
 def _progress() -> Callable[[str], None]:
     """Says on stderr how far long work is; short work stays silent."""
-    last = time.monotonic()
+    last = monotonic()
 
     def speak(text: str) -> None:
         nonlocal last
-        if time.monotonic() - last >= SPEAK:
-            last = time.monotonic()
+        if monotonic() - last >= SPEAK:
+            last = monotonic()
             click.echo(text, err=True)
 
     return speak

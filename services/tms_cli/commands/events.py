@@ -1,6 +1,5 @@
 """`tms events`: the journal of one run."""
 
-import time
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -8,6 +7,7 @@ import click
 
 from tms_cli import live, session, words
 from tms_cli.commands.runs import MOST, find_run, has_ended, history, recent
+from tms_config.clock import sleep
 
 if TYPE_CHECKING:
     from tms_msg_db.msg import Event
@@ -43,7 +43,7 @@ def _follow(node: "Ros", run_id: str) -> None:
             after = event.number
         if ended:
             return
-        time.sleep(LOOK)
+        sleep(LOOK)
 
 
 def _as_dict(event: "Event") -> dict[str, Any]:

@@ -1,7 +1,6 @@
 """`tms run`: execute a stored task and show how it goes."""
 
 import queue
-import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING
@@ -12,6 +11,7 @@ from tms_cli import live, session, words
 from tms_cli.commands.runs import has_ended, recent
 from tms_cli.reasons import SchedulerForgot, SchedulerQuiet
 from tms_cli.words import say, state
+from tms_config.clock import monotonic
 from tms_reason import wire
 from tms_reason.errors import TmsError
 from tms_reason.reason import Reason
@@ -58,7 +58,7 @@ class Runner:
 
         self._node = node
         self._news: queue.SimpleQueue[ExecuteTask.Feedback] = queue.SimpleQueue()
-        self._heard_at = self._listed_at = time.monotonic()
+        self._heard_at = self._listed_at = monotonic()
         self._asked_again = False
         self._told: Run | None = None  # the run as the history has it, should its result never come
         self.view = _view(node, task_id)
@@ -66,7 +66,7 @@ class Runner:
         self._peer.wait_ready(SERVER_LIMIT)
         goal = ExecuteTask.Goal(task_id=task_id, ignore_warnings=ignore_warnings, resume=resume)
         self._call = self._peer.send(goal, on_feedback=self._news.put)
-        self._heard_at = self._listed_at = time.monotonic()
+        self._heard_at = self._listed_at = monotonic()
         node.subscribe(RunStates, "/tms/runs", self._list_heard, latched=True)
 
     def begin(self) -> End:
@@ -98,7 +98,7 @@ class Runner:
                 self._look_after_scheduler()
                 changed: list[live.Node] = []
             else:
-                self._heard_at = self._listed_at = time.monotonic()
+                self._heard_at = self._listed_at = monotonic()
                 changed = self.view.heard(feedback)
             if display is not None:
                 display.show(self.view, changed)
@@ -120,7 +120,7 @@ class Runner:
 
     def _list_heard(self, message: "RunStates") -> None:
         """The scheduler's active runs; called on ROS's thread."""
-        now = time.monotonic()
+        now = monotonic()
         view = self.view
         if any(run.run_id == view.run_id if view.run_id else run.task_id == view.task_id for run in message.runs):
             self._listed_at = now
@@ -128,7 +128,7 @@ class Runner:
 
     def _look_after_scheduler(self) -> None:
         """A scheduler that was killed never sends a result."""
-        if time.monotonic() - self._heard_at > SILENT:
+        if monotonic() - self._heard_at > SILENT:
             lost: Reason = SchedulerQuiet(SILENT, self.view.run_id)
         elif self._heard_at - self._listed_at > FORGOTTEN / 2 and not self._asked_again:
             self._asked_again = True

@@ -1,6 +1,5 @@
 """`tms runs`: what ran, newest first."""
 
-import time
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -8,6 +7,7 @@ import click
 from tms_cli import live, session, words
 from tms_cli.reasons import ManyRuns, RunUnknown
 from tms_cli.words import padded, say, state
+from tms_config.clock import unix_time
 from tms_reason.errors import TmsError
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def _seconds(run: "Run") -> float:
     begun, ended = live.moment(run.started_at), live.moment(run.ended_at)
     if begun is None:
         return 0.0
-    return (ended.timestamp() if ended else time.time()) - begun.timestamp()
+    return (ended.timestamp() if ended else unix_time()) - begun.timestamp()
 
 
 def line(run: "Run") -> str:

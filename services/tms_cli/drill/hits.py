@@ -4,7 +4,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Mapping, Sequence
 
 import psutil
@@ -13,6 +12,7 @@ from tms_cli import mesh
 from tms_cli.drill.plan import RC, RP, SUBTASK, How, Stop
 from tms_cli.drill.stand_ins import GROUP, NICE
 from tms_cli.reasons import NotRunning
+from tms_config.clock import sleep, unix_time
 from tms_config.config import Site
 from tms_config.processes import find, table
 from tms_host.supervisor import Supervisor
@@ -61,7 +61,7 @@ class Hits:
 
     def hit(self, how: How, pids: Sequence[int]) -> float:
         """Send the signals; when the first one left (s since 1970)."""
-        at = time.time()
+        at = unix_time()
         _signal(signal.SIGSTOP if how is How.FREEZE else signal.SIGKILL, pids)
         if how is How.FREEZE:
             self._thaw = subprocess.Popen(
@@ -76,21 +76,21 @@ class Hits:
         if self._thaw is not None:
             self._thaw.wait()
             self._thaw = None
-        while time.time() - hit < BACK_LIMIT:
+        while unix_time() - hit < BACK_LIMIT:
             running = self._running()
             for name, before in list(waiting.items()):
                 pid = running.get(name, 0)
                 if pid and (how is How.FREEZE or pid != before) and self._works(name):
                     del waiting[name]
             if not waiting:
-                return time.time() - hit
-            time.sleep(LOOK)
+                return unix_time() - hit
+            sleep(LOOK)
         return None
 
     def power_on(self, pids: Sequence[int], hit: float) -> float | None:
         """Start everything again after a power cut, once everything is gone."""
-        while any(map(psutil.pid_exists, pids)) and time.time() - hit < BACK_LIMIT:
-            time.sleep(LOOK)
+        while any(map(psutil.pid_exists, pids)) and unix_time() - hit < BACK_LIMIT:
+            sleep(LOOK)
         mesh.up(self._site, without=GROUP)
         names = [row.full for row in table(self._site) if row.autostart and row.group != GROUP]
         return self.back(How.POWER, dict.fromkeys(names, 0), hit)

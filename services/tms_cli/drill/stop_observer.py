@@ -1,7 +1,6 @@
 """Watches one machine: its true motion, what reaches its own servers, and what its gateway says."""
 
 import threading
-import time
 from collections.abc import Callable
 
 from action_msgs.msg import GoalStatusArray
@@ -11,6 +10,7 @@ from std_msgs.msg import Bool
 from tms_msg_rc.msg import MachineState, StopReceipt
 
 from tms_cli.drill.record import Goal, Receipt, Recording, State, sample_of, time_of
+from tms_config.clock import monotonic, sleep, unix_time
 from tms_config.config import Site
 from tms_machine.border import motions
 from tms_ros.node import Ros
@@ -30,7 +30,7 @@ class StopObserver:
         border, self._still = site.border(machine), site.model_of(machine).still
         self._lock = threading.Lock()
         self._record = Recording()
-        self._forgotten = time.time()
+        self._forgotten = unix_time()
         # Not by callbacks: a hundred and fifty a second would take a busy PC a tenth of a processor.
         self._truth = node.sample_arrivals(JointState, f"/{machine}/sim/truth", WAITING, best_effort=False)
         Pulse(node).add(self._look)
@@ -53,7 +53,7 @@ class StopObserver:
                 self._record = self._record.since(self._forgotten - KEPT)
 
     def _on_receipt(self, message: StopReceipt) -> None:
-        now = time.time()
+        now = unix_time()
         receipt = Receipt(
             time_of(message.stamp), message.seconds, message.confirmed, message.cause, message.detail, now
         )
@@ -64,7 +64,7 @@ class StopObserver:
 
     def _on_state(self, message: MachineState) -> None:
         with self._lock:
-            self._record.states.append(State(time.time(), message.latch, message.hold))
+            self._record.states.append(State(unix_time(), message.latch, message.hold))
 
     def _on_velocity(self, message: Twist) -> None:
         if message.linear.x == 0.0 and message.angular.z == 0.0:
@@ -76,10 +76,10 @@ class StopObserver:
 
     def _commanded(self) -> None:
         with self._lock:
-            self._record.commands.append(time.time())
+            self._record.commands.append(unix_time())
 
     def _on_status(self, message: GoalStatusArray) -> None:
-        now = time.time()
+        now = unix_time()
         with self._lock:
             for one in message.status_list:
                 key, began = bytes(one.goal_info.goal_id.uuid), time_of(one.goal_info.stamp)
@@ -98,11 +98,11 @@ class StopObserver:
 
     def wait(self, holds: Callable[[Recording], bool], since: float, seconds: float) -> bool:
         """Until what was seen since a moment is enough; False when it is not in time."""
-        deadline = time.monotonic() + seconds
+        deadline = monotonic() + seconds
         while not holds(self.since(since)):
-            if time.monotonic() > deadline:
+            if monotonic() > deadline:
                 return False
-            time.sleep(LOOK)
+            sleep(LOOK)
         return True
 
     def open_since(self) -> float | None:

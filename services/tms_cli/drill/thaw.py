@@ -6,12 +6,13 @@ A program of its own: the threads of the drill came up to 3 s late on a busy PC.
 import os
 import signal
 import sys
-import time
+
+from tms_config.clock import sleep, unix_time
 
 
 def main(until: float, pids: list[int]) -> None:
     """Wait, and send the signals; a process that has ended needs none."""
-    time.sleep(max(0.0, until - time.time()))
+    sleep(max(0.0, until - unix_time()))
     for pid in pids:
         try:
             os.kill(pid, signal.SIGCONT)

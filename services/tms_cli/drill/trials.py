@@ -2,7 +2,6 @@
 
 import csv
 import math
-import time
 from concurrent.futures import Future
 from dataclasses import dataclass, field
 from datetime import datetime, timezone
@@ -18,6 +17,7 @@ from tms_cli.drill.stop_observer import StopObserver
 from tms_cli.drill.verdict import AFTER, BY_ITSELF, GOES_ON, HUNG, UNPROVEN, Row, Seen, judge
 from tms_cli.drill.work import Work
 from tms_cli.reasons import DoesNotMove, NobodySays
+from tms_config.clock import sleep, unix_time
 from tms_config.config import Site
 from tms_machine.reasons import SoftwareStop
 from tms_rc.standstill import StandStill
@@ -70,7 +70,7 @@ class Hand:
         """
         for last in (False, True):
             self.work.begin()
-            begun = time.time()
+            begun = unix_time()
             self.eyes.wait(lambda _: self.eyes.open_since() is not None or self.work.ended(), begun, MOVES_LIMIT)
             began = self.eyes.open_since()
             if began is not None:
@@ -79,18 +79,18 @@ class Hand:
                 break
             self.work.end()
             self._press()
-            time.sleep(PRESSED)
+            sleep(PRESSED)
         raise TmsError(DoesNotMove(wire.of(self.work.reason()) or NobodySays()))
 
     def moment(self, trial: Trial) -> float:
         """When to hit: at the trial's delay after the begin of a motion."""
-        deadline = time.time() + MOVES_LIMIT
-        while time.time() < deadline:
+        deadline = unix_time() + MOVES_LIMIT
+        while unix_time() < deadline:
             began = self.eyes.open_since()
-            if began is not None and time.time() - began < FRESH:
+            if began is not None and unix_time() - began < FRESH:
                 break
-            time.sleep(LOOK / 10)
-        return max(time.time(), (began or 0.0) + trial.delay)
+            sleep(LOOK / 10)
+        return max(unix_time(), (began or 0.0) + trial.delay)
 
     def strike(self, stop: Stop, at: float, hands: "list[Hand]", struck: Struck) -> None:
         """Hit these machines at a moment, and tell when what was lost is back. In a thread of its own."""
@@ -104,7 +104,7 @@ class Hand:
     def _strike(self, stop: Stop, at: float, hands: "list[Hand]", struck: Struck) -> None:
         if stop.how in (How.CANCEL, How.SOFTWARE):
             until(at)
-            struck.hit.set_result(time.time())
+            struck.hit.set_result(unix_time())
             self.work.cancel() if stop.how is How.CANCEL else self._press()
             struck.back.set_result(0.0)
         elif stop.how is How.POWER:
@@ -126,7 +126,7 @@ class Hand:
         stop, begun = trial.stop, at
         if trial.fault != NONE:
             until(at + trial.fault_at)
-            begun = time.time()
+            begun = unix_time()
             self.work.be(trial.fault)
         hit = struck.hit.result(MOVES_LIMIT)
         begun, stopped = min(begun, hit), hit
@@ -134,7 +134,7 @@ class Hand:
             self.work.scheduler_lost()
         if not stop.moves:
             until(hit + BESIDE)
-            stopped = time.time()
+            stopped = unix_time()
             self.work.cancel()
         self.eyes.wait(lambda record: self._over(record, stopped), begun, RECEIPT_LIMIT)
         self._look_on(trial, begun)
@@ -164,7 +164,7 @@ class Hand:
         over = stopped + BY_ITSELF
         begun_by_then = [goal for goal in record.goals.values() if goal.began <= over]
         arrived = all(goal.arrived and (goal.ended or 0.0) < over for goal in begun_by_then)
-        return bool(record.receipts) or (arrived and time.time() > over)
+        return bool(record.receipts) or (arrived and unix_time() > over)
 
     def _look_on(self, trial: Trial, begun: float) -> None:
         """For as long as a receipt promises that the machine stands; for one that leaves it, until that is told."""
@@ -183,14 +183,14 @@ class Hand:
     def _outcome(self, trial: Trial, begun: float, stopped: float) -> str:
         """The run goes on, has ended, or waits to be resumed."""
         deadline = stopped + RUN_LIMIT
-        while time.time() < deadline:
+        while unix_time() < deadline:
             if (ended := self.work.outcome()) is not None:
                 return ended
             record = self.eyes.since(begun)
             proven = max((one.at for one in record.receipts), default=stopped)
             if trial.stop.moves and not self.work.lost and record.goal_after(proven) < math.inf:
                 return GOES_ON
-            time.sleep(LOOK)
+            sleep(LOOK)
         return HUNG
 
     def _last_words(self, trial: Trial, begun: float) -> Recording:
@@ -206,4 +206,4 @@ class Hand:
 
 def until(at: float) -> None:
     """Sleep until a moment (s since 1970)."""
-    time.sleep(max(0.0, at - time.time()))
+    sleep(max(0.0, at - unix_time()))

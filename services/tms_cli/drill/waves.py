@@ -1,7 +1,6 @@
 """Waves of trials: all machines are set to work, each is hit, and all are brought to rest again."""
 
 import os
-import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import TypeVar
@@ -15,6 +14,7 @@ from tms_cli.drill.stand_ins import NICE, StandIns
 from tms_cli.drill.trials import LEAD, Hand, Struck
 from tms_cli.drill.verdict import Row, empty
 from tms_cli.reasons import StandInsEnded
+from tms_config.clock import monotonic, unix_time
 from tms_config.config import Site
 from tms_reason.errors import TmsError
 from tms_ros.node import Ros
@@ -53,9 +53,9 @@ class Waves:
         Raises:
             TmsError: a stand-in has ended: there is no machine any more.
         """
-        todo, deadline, again = list(plan), time.monotonic() + seconds, len(plan)
+        todo, deadline, again = list(plan), monotonic() + seconds, len(plan)
         self._total = sum(map(len, plan))
-        while todo and time.monotonic() < deadline:
+        while todo and monotonic() < deadline:
             try:
                 mesh.wait_ready(self._site, lambda _: None)
             except TmsError as error:
@@ -105,7 +105,7 @@ class Waves:
     def _shared(self, wave: list[Trial]) -> list[Row | None]:
         """One hit for all, at the moment of the first trial."""
         hands, struck = [self._hands[trial.machine] for trial in wave], Struck()
-        at = time.time() + LEAD + wave[0].delay
+        at = unix_time() + LEAD + wave[0].delay
         self._pool.submit(hands[0].strike, wave[0].stop, at, hands, struck)
         return self._each(wave, lambda trial: self._watch(trial, at, struck))
 

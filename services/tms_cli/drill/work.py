@@ -1,7 +1,6 @@
 """The run that moves one machine: begun and ended for each trial, and the machine re-armed as a person does it."""
 
 import json
-import time
 
 from std_msgs.msg import String
 from tms_msg_db.srv import AddTask
@@ -15,6 +14,7 @@ from tms_cli.drill import tasks
 from tms_cli.drill.plan import fault_of
 from tms_cli.drill.verdict import INTERRUPTED
 from tms_cli.reasons import RunDoesNotEnd
+from tms_config.clock import monotonic, sleep
 from tms_config.config import Site
 from tms_reason.errors import TmsError
 from tms_ros.client import Call
@@ -98,12 +98,12 @@ class Work:
             TmsError: it does not end.
         """
         self.be("none")
-        deadline = time.monotonic() + END_LIMIT
+        deadline = monotonic() + END_LIMIT
         self.cancel()
         while self._call is not None and self.outcome() is None:
-            if time.monotonic() > deadline:
+            if monotonic() > deadline:
                 raise TmsError(RunDoesNotEnd(str(self._run)))
-            time.sleep(LOOK)
+            sleep(LOOK)
         if self._recorded() == INTERRUPTED:
             session.call(self._node, CancelRun, "/tms/abandon_run", run_id=self._run)
         self._call = None
@@ -128,7 +128,7 @@ class Work:
         Raises:
             TmsError: it cannot be armed.
         """
-        deadline = time.monotonic() + ARM_LIMIT
+        deadline = monotonic() + ARM_LIMIT
         while True:
             try:
                 self._arm_once()
@@ -136,9 +136,9 @@ class Work:
             except TmsError as error:
                 if error.code == rearm.ARMED:
                     return
-                if time.monotonic() > deadline:
+                if monotonic() > deadline:
                     raise
-            time.sleep(LOOK)
+            sleep(LOOK)
 
     def _arm_once(self) -> None:
         rearm.ask(self._node, self.machine, rearm.ask(self._node, self.machine).token)

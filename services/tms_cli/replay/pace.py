@@ -1,7 +1,8 @@
 """When each message of a recording is due, and what its stamp becomes then."""
 
-import time
 from collections.abc import Callable
+
+from tms_config.clock import monotonic, unix_time
 
 LATE = 0.5  # s behind at which the plan moves: what was missed is not made up for in one burst
 SECOND = 1_000_000_000  # ns
@@ -18,8 +19,8 @@ class Pace:
         self,
         first: int,
         speed: float,
-        clock: Callable[[], float] = time.monotonic,
-        wall: Callable[[], float] = time.time,
+        clock: Callable[[], float] = monotonic,
+        wall: Callable[[], float] = unix_time,
     ) -> None:
         self._first, self.speed, self._clock, self._wall = first, speed, clock, wall
         self._stamps: dict[str, int] = {}  # topic -> what is added to a stamp to get a moment of the recording

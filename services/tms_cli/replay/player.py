@@ -1,6 +1,5 @@
 """Publishes the messages of a recording at their moments."""
 
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -10,6 +9,7 @@ from tms_cli.replay.matching import Matches
 from tms_cli.replay.pace import Pace
 from tms_cli.replay.recording import Recording, Track
 from tms_cli.replay.stamps import Stamps
+from tms_config.clock import monotonic, sleep
 from tms_reason.errors import TmsError
 from tms_sp.node import message_class
 
@@ -46,11 +46,11 @@ class Player:
         self._ros, self._keep = ros, keep_stamps
         self._stamps = {t.topic: Stamps(given, message_class(given.type)) for t, given in found.played.items()}
         self._publishers = {t.topic: ros.publisher(message_class(t.type), t.topic, DEPTH) for t in found.played}
-        deadline = time.monotonic() + READER_LIMIT
+        deadline = monotonic() + READER_LIMIT
         while deaf := [topic for topic, one in self._publishers.items() if not one.get_subscription_count()]:
-            if time.monotonic() > deadline:
+            if monotonic() > deadline:
                 raise TmsError(NobodyListens(tuple(deaf)), "NO_READER")
-            time.sleep(0.02)
+            sleep(0.02)
         others = [topic for topic in self._publishers if ros.node.count_publishers(topic) > 1]
         if others:
             raise TmsError(TwoSources(tuple(others)))
@@ -67,7 +67,7 @@ class Player:
             if number % 100 == 0:
                 tick(moment)
             while (seconds := pace.wait(moment)) > 0.0:
-                time.sleep(min(seconds, SLICE))
+                sleep(min(seconds, SLICE))
                 tick(pace.moment())
             self._publish(track.topic, moment, data, pace)
         tick(span[1])

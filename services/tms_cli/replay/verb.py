@@ -1,7 +1,6 @@
 """The command `tms sensing replay`."""
 
 import sys
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
@@ -12,6 +11,7 @@ import click
 
 from tms_cli import session
 from tms_cli.reasons import BeginsLate
+from tms_config.clock import monotonic, sleep
 from tms_reason.errors import TmsError
 
 if TYPE_CHECKING:
@@ -58,19 +58,19 @@ def replay(
         found = match(recording.tracks, load_sensing(session.site()).inputs, session.site(), topics)
         _warn(found)
         player = Player(node, found, keep_stamps=not shift_stamps)
-        pace, begun = Pace(span[0], speed), time.monotonic()
+        pace, begun = Pace(span[0], speed), monotonic()
         try:
             with _progress(span, loop) as tick:
                 for turn in range(loop):
                     if turn:
-                        time.sleep(LOOP_GAP)
+                        sleep(LOOP_GAP)
                         pace.restart()
                     player.play(recording, list(found.played), span, pace, partial(tick, turn))
             player.finish()
         except KeyboardInterrupt:
             click.echo(f"stopped after {player.told.total} messages", err=True)
             raise
-        _show(player.told, found, time.monotonic() - begun, as_json)
+        _show(player.told, found, monotonic() - begun, as_json)
 
 
 def _span(recording: "Recording", start: float, duration: float | None) -> tuple[int, int]:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from typing import Protocol
 
+from tms_config.clock import monotonic
 from tms_reason.reason import Reason
 from tms_ts.bt.errors import MAX_WARNINGS, shortened
 from tms_ts.bt.node import Observer
@@ -38,7 +38,7 @@ class Context:
 
     def __init__(self, world: World | None, clock: Callable[[], float] | None = None, *, quirks: bool = False) -> None:
         self.world = world
-        self.clock = clock or (world.clock if world else time.monotonic)
+        self.clock = clock or (world.clock if world else monotonic)
         self.quirks = quirks
         self.observers: list[Observer] = []
         self.timers: list[Timer] = []  # armed ones

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import threading
-import time
 from collections import deque
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 import zmq
 
+from tms_config.clock import monotonic, unix_time
 from tms_runtime.log import Logger
 from tms_ts.bt.node import Node
 from tms_ts.bt.status import IDLE, Status
@@ -106,7 +106,7 @@ class Monitor:
         """On the run's thread: takes a note, nothing else."""
         if len(self._changes) == MAX_CHANGES:
             self._flooded = True
-        self._changes.append((time.time(), node.uid, int(old), int(new)))
+        self._changes.append((unix_time(), node.uid, int(old), int(new)))
 
     # the thread
 
@@ -115,10 +115,10 @@ class Monitor:
         poller = zmq.Poller()
         poller.register(server1, zmq.POLLIN)
         poller.register(server2, zmq.POLLIN)
-        due = time.monotonic()
+        due = monotonic()
         try:
             while not self._closing.is_set():
-                wait = max(0.0, due - time.monotonic())
+                wait = max(0.0, due - monotonic())
                 ready = dict(poller.poll(round(wait * 1000)))
                 if server1 in ready:
                     server1.recv_multipart()
@@ -126,9 +126,9 @@ class Monitor:
                 if server2 in ready:
                     frames = server2.recv_multipart()
                     server2.send_multipart(self._groot2.answer(frames, self._states, self._before))
-                if time.monotonic() >= due:
+                if monotonic() >= due:
                     self._publish(publisher)
-                    due = time.monotonic() + PERIOD
+                    due = monotonic() + PERIOD
             self._publish(publisher)
         finally:
             self._context.destroy(linger=100)

@@ -1,12 +1,13 @@
 """What an update of sensing says about its age."""
 
 import math
-from datetime import datetime, timedelta, timezone
+from datetime import timedelta
 from types import SimpleNamespace as Message
 from typing import Any
 
 import pytest
 
+from tms_config.clock import utc_now
 from tms_db.batches import Update
 from tms_db.parameter_services import OLDEST, ParameterServices
 from tms_db.record_cache import Head, Key
@@ -23,7 +24,7 @@ def taken(age: float) -> timedelta:
     services._take(updates, ("zx200", "p"), wanted)
     stamp = updates["zx200", "p"].updated_at
     assert stamp is not None
-    return datetime.now(timezone.utc) - stamp
+    return utc_now() - stamp
 
 
 @pytest.mark.parametrize(

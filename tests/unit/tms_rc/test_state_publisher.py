@@ -1,11 +1,11 @@
 """When a gateway tells the state of its machine."""
 
+import time
 from types import SimpleNamespace
 from typing import Any, cast
 
 import pytest
 
-from tms_rc import node
 from tms_rc.guard import Guard
 from tms_rc.node import TOLD_MOVING, TOLD_STILL, StatePublisher
 from tms_rc.standstill import StandStill
@@ -39,7 +39,7 @@ class Rig:
 @pytest.fixture
 def rig(monkeypatch: pytest.MonkeyPatch) -> Rig:
     made = Rig()
-    monkeypatch.setattr(node.time, "monotonic", lambda: made.now)
+    monkeypatch.setattr(time, "monotonic", lambda: made.now)
     made.state_publisher.look()
     return made
 

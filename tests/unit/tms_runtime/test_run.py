@@ -1,6 +1,7 @@
 """When a process ends by itself."""
 
 import threading
+import time
 
 import pytest
 import structlog
@@ -14,7 +15,7 @@ class Stop(threading.Event):
     def __init__(self, patch: pytest.MonkeyPatch, takes: list[float]) -> None:
         super().__init__()
         self.now, self.takes = 100.0, takes
-        patch.setattr(run.time, "monotonic", lambda: self.now)
+        patch.setattr(time, "monotonic", lambda: self.now)
 
     def wait(self, timeout: float | None = None) -> bool:
         if not self.takes:

@@ -1,5 +1,6 @@
 """What counts as a loss of a process, and what is only a server that has not found us yet."""
 
+import time
 from types import SimpleNamespace
 from typing import Any
 
@@ -10,7 +11,6 @@ from tms_reason.reason import Reason
 from tms_ros.client import Call
 from tms_ros.goals import Outcome
 from tms_ros.reasons import NoAnswer
-from tms_ts import machines
 from tms_ts.gateways import Gateways
 from tms_ts.machines import ASK_AGAIN, Identity, Machines
 from tms_ts.reasons import LostTimes, ProcessEnded, ProcessState, SentAgainSoon
@@ -49,7 +49,7 @@ class Site:
         self.kept: list[tuple[Any, ...]] = []  # what the record has of ends
         self.fatal: Reason | None = None
         self.trouble: Reason | None = None
-        monkeypatch.setattr(machines.time, "monotonic", lambda: self.now)
+        monkeypatch.setattr(time, "monotonic", lambda: self.now)
         monkeypatch.setattr(Machines, "_stop_after_loss", lambda one, machine, cause: one._stopping.discard(machine))
         self.peer.mark_lost = lambda: None  # type: ignore[attr-defined]
         ros = SimpleNamespace(peer=lambda *_: self.peer)

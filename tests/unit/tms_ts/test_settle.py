@@ -1,5 +1,6 @@
 """However a run ends, its machines are stopped; and it ticks as long as it lasts."""
 
+import time
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
@@ -16,7 +17,6 @@ from tms_reason import wire
 from tms_reason.reason import Foreign, Reason
 from tms_reason.wire import to_line
 from tms_ros.goals import Outcome
-from tms_ts import run as module
 from tms_ts.bt import Status
 from tms_ts.budget import AT_ONCE
 from tms_ts.group_commit import GroupCommit
@@ -118,7 +118,7 @@ def test_the_loop_never_sleeps_longer_than_its_period_after_many_wakes(
         if len(waits) > 110:
             a_run.cancelled.set()
 
-    monkeypatch.setattr(module.time, "monotonic", lambda: now[0])
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
     monkeypatch.setattr(a_run, "wake", SimpleNamespace(wait=wait, clear=lambda: None))
     a_run._tick_to_end(tree(), Machines())  # type: ignore[arg-type]
     assert max(waits) == pytest.approx(PERIOD)

@@ -2,10 +2,11 @@
 
 import inspect
 from collections.abc import AsyncIterator
-from datetime import datetime, timedelta, timezone
+from datetime import datetime, timedelta
 
 import pytest
 
+from tms_config.clock import utc_now
 from tms_machine.reasons import SoftwareStopBy
 from tms_reason.errors import TmsError
 from tms_reason.reason import Foreign
@@ -294,7 +295,7 @@ def shown(client: Client, query: str = "") -> list[int]:
 
 def test_the_audit_shows_the_newest(site_client: FakeSiteClient, monkeypatch: pytest.MonkeyPatch) -> None:
     """An entry every half minute."""
-    now = datetime.now(timezone.utc)
+    now = utc_now()
     client = journal(monkeypatch, site_client, {n: now - timedelta(seconds=30 * (2500 - n)) for n in range(1, 2500)})
     assert shown(client) == list(range(1500, 2500))
     assert shown(client, "?limit=2") == [2498, 2499]
@@ -305,7 +306,7 @@ def test_the_audit_shows_the_newest(site_client: FakeSiteClient, monkeypatch: py
 def test_the_audit_shows_entries_from_before_that_were_numbered_by_the_clock(
     site_client: FakeSiteClient, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    now = datetime.now(timezone.utc)
+    now = utc_now()
     old = {1_790_000_000 - 3000 * n: now - timedelta(seconds=3000 * n) for n in range(1, 40)}
     client = journal(monkeypatch, site_client, {**old, 1_790_000_001: now})
     assert len(shown(client)) == 29  # of the last 24 h
