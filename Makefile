@@ -101,7 +101,8 @@ restart: setup ## restart one process (P=name)
 
 test: setup ## all tests that a laptop can run
 	@DOCKER=$(DOCKER) sh deploy/system-packages.sh test
-	$(PY) -m pytest -n $(WORKERS) --dist loadfile
+	$(PY) -m pytest -n $(WORKERS) tests/unit tests/contract tests/conformance
+	$(PY) -m pytest tests/ros tests/system tests/browser  # one mesh at a time: two cores carry no more
 
 test-fast: setup ## unit, contract and conformance tests: no ROS processes, two minutes (WORKERS=2)
 	@DOCKER=$(DOCKER) sh deploy/system-packages.sh test

@@ -368,7 +368,7 @@ def test_it_listens_on_loopback_and_says_when_it_cannot(bridge: Bridge, tmp_path
     done = subprocess.run(words, env=env, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 1
     assert f"127.0.0.1:{bridge.port} cannot be listened on" in done.stderr
-    assert "services.if.port" in done.stderr
+    assert "services.if" in done.stderr
     held = Path("/proc/net/tcp").read_text()
     assert f"0100007F:{bridge.port:04X} 00000000:0000 0A" in held  # and on no other address
     assert f"00000000:{bridge.port:04X}" not in held
