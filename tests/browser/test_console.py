@@ -230,9 +230,9 @@ def test_two_consoles_agree_and_one_run_starts(page: Page, chromium: Browser, ad
         tasks = "() => document.getElementById('list_tasks').getBoundingClientRect().y"
         place = page.evaluate(tasks)
         page.get_by_role("button", name=f"Run task {SWINGS}", exact=True).dblclick()
+        expect(page.locator("#message")).to_contain_text("has begun")
         expect(page.locator("#list_active li")).to_have_count(1)
         expect(other.locator("#list_active li")).to_have_count(1)
-        expect(page.locator("#message")).to_contain_text("has begun")
         assert page.evaluate(tasks) == place  # nothing has moved under the finger
         start(other, 1)
         expect(other.locator("#message")).to_contain_text("zx200 is in run")
