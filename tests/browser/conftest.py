@@ -59,9 +59,17 @@ def _tidy(address: str) -> None:
     for run in ask(address, "/api/state")["runs"]:
         ask(address, f"/api/runs/{run['run_id']}/cancel", {})
     wait_until(lambda: not ask(address, "/api/state")["runs"], LIMIT, "no run is active")
-    if ask(address, "/api/state")["machines"][0]["latch"]:
+    wait_until(lambda: _armed(address), LIMIT, "zx200 stands and is armed")
+
+
+def _armed(address: str) -> bool:
+    """Whether the machine can begin a run; re-arms it. A console that was just started does not know it yet."""
+    machine = ask(address, "/api/state")["machines"][0]
+    if machine["latch"]:
         first = ask(address, "/api/machines/zx200/rearm", {})
         ask(address, "/api/machines/zx200/rearm", {"token": first["token"]})
+        return False
+    return bool(machine["state"] == "standing")
 
 
 def ask(address: str, path: str, body: Any = None) -> Any:
