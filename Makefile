@@ -120,7 +120,8 @@ conformance: setup ## replay behaviour-tree cases (CASES=path LEVEL=required|str
 drill: setup ## stop six simulated machines in every way; receipts against the truth (QUICK=1, ROUNDS=4, SEED=7, REPORT=file.md, ONLY="kill rc+tms:ts")
 	@$(VENV)/bin/tms --site $(or $(SITE),drill) drill $(if $(QUICK),--quick) $(if $(ROUNDS),--rounds $(ROUNDS)) $(if $(SEED),--seed $(SEED)) $(if $(ONLY),--only "$(ONLY)") $(if $(REPORT),--report $(REPORT))
 
-nightly: setup ## what takes hours: 30 power cuts while a machine moves (as root), and the drill with four rounds
+nightly: setup ## what takes hours: properties with 400 examples, 30 power cuts while a machine moves (as root), the drill with four rounds
+	$(PY) -m pytest -q -n $(WORKERS) --hypothesis-profile=thorough tests/unit
 	TMS_POWER_CUTS=30 $(PY) -m pytest tests/system/test_power_cut.py
 	@$(MAKE) drill ROUNDS=4
 

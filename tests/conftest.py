@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import pytest
 import structlog
 import yaml
+from hypothesis import settings
 
 if TYPE_CHECKING:
     from tms_ros.node import Ros
@@ -23,6 +24,11 @@ if TYPE_CHECKING:
 PROJECT = Path(__file__).resolve().parents[1]
 SPOILED = pytest.StashKey[bool]()
 DOMAINS = range(43, 101)  # 42 is the demo's
+
+# Found by `--hypothesis-profile=thorough`. No deadline: a busy machine would flip the test.
+settings.register_profile("quick", max_examples=50, deadline=None)
+settings.register_profile("thorough", max_examples=400, deadline=None)
+settings.load_profile("quick")
 
 
 def pytest_configure() -> None:

@@ -22,7 +22,7 @@ def show_one(found: Checked, *, as_json: bool) -> bool:
         if not found.errors:
             right = say("can run") if found.by == "scheduler" else say("its structure is right")
             click.echo(f"{found.what}: {right}")
-    tell_unchecked([found])
+    report_unchecked([found])
     return not found.errors
 
 
@@ -47,14 +47,14 @@ def show_folder(files: Iterable[Checked], *, as_json: bool) -> bool:
     if as_json:
         files_ = [{"file": found.what, "no_task": found.no_task, **found.as_dict()} for found in done]
         session.show_json({"ok": not wrong, "files": files_, "summary": {**counts, "no_task": none}})
-    tell_unchecked(done)
+    report_unchecked(done)
     if not as_json:
         line = "{files} files: {ok} ok, {warnings} with warnings, {errors} with errors, {none} no task"
         click.echo(say(line, **counts, none=none))
     return not wrong
 
 
-def tell_unchecked(done: list[Checked]) -> None:
+def report_unchecked(done: list[Checked]) -> None:
     if any(found.by != "scheduler" and not found.errors and not found.no_task for found in done):
         click.echo(say("no scheduler answers: records and subtasks are unchecked"), err=True)
     elif any(found.by != "scheduler" and found.errors and not found.no_task for found in done):

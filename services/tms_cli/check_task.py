@@ -151,10 +151,10 @@ def folder(scheduler: Scheduler, path: Path, *, recursive: bool) -> Iterator[Che
     files = sorted(name for name in names if name.suffix.lower() == ".xml" and not name.is_dir())
     if not files:
         raise TaskError(NoXmlFiles(str(path)) if recursive else NoXmlHere(str(path)), TaskError.code)
-    told = monotonic()
+    reported = monotonic()
     for count, name in enumerate(files):
-        if monotonic() - told >= PROGRESS:
-            told = monotonic()
+        if monotonic() - reported >= PROGRESS:
+            reported = monotonic()
             click.echo(say("{count} of {files} files checked", count=count, files=len(files)), err=True)
         try:
             found = file(scheduler, name)

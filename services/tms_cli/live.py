@@ -82,7 +82,7 @@ class View:
     def elapsed(self) -> float:
         return self.clock() - self.begun
 
-    def heard(self, feedback: "ExecuteTask.Feedback") -> list[Node]:
+    def received(self, feedback: "ExecuteTask.Feedback") -> list[Node]:
         """Take a feedback; returns the changes of nodes in order."""
         self.run_id, self.state = feedback.run_id or self.run_id, feedback.state or self.state
         self.leaf, self.reason = feedback.running_leaf, words.reason(feedback.reason)
@@ -98,7 +98,7 @@ class View:
         return changed
 
     def close(self, outcome: str) -> list[Node]:
-        """The run has ended. Returns nodes that went idle before their success was heard of, where it is sure."""
+        """The run has ended. Returns nodes that went idle before their success was received of, where it is sure."""
         self.state, self.leaf, self.reason, self.over = outcome, "", "", True
         found, sure = [], {0}  # parents whose success means that their children succeeded
         for _, node in self.rows() if outcome == "success" else ():
@@ -117,7 +117,7 @@ class View:
         for status, goal in zip(statuses, goals, strict=True):
             self.nodes[status.uid] = Node(status.uid, status.parent, status.name, status.type, goal=goal)
 
-    def machine_heard(self, state: "MachineState") -> None:
+    def machine_received(self, state: "MachineState") -> None:
         """Take a tms_msg_rc/MachineState; called on ROS's thread."""
         self.machines[state.machine] = state
 

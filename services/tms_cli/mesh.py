@@ -45,7 +45,7 @@ from tms_ur.address import certificate, users
 NEEDED_BYTES = 100 * 2**20  # for logs
 READY_LIMIT = 60.0  # s for all processes to be able to work
 START_LIMIT = 10.0  # s for supervisord to answer
-STOP_LIMIT = 20.0  # s for everything to end
+MESH_END_LIMIT = 20.0  # s for everything to end
 NICE = -10  # of all processes together, against the other sessions of this PC: one command there could take half of it
 
 
@@ -101,8 +101,8 @@ def up(site: Site, foreground: bool = False, without: str = "") -> bool:
     """
     rows = tuple(row for row in check(site) if row.group != without)
     if closed := state_folder.tighten(site.state):
-        told = say("{folder}: closed {count} files to other users", folder=site.state, count=closed)
-        print(told, file=sys.stderr)
+        reported = say("{folder}: closed {count} files to other users", folder=site.state, count=closed)
+        print(reported, file=sys.stderr)
     monitoring.render(site, monitoring.folder(site), os.environ.get("TMS_ALERTS_TO"))
     with state_folder.private():
         return _up(site, rows, foreground)
@@ -121,7 +121,7 @@ def _up(site: Site, rows: tuple[Process, ...], foreground: bool) -> bool:
         conf.write_text(render(site, rows), encoding="utf-8")
         if foreground:
             _write(lock, Owner(os.getpid(), psutil.Process().create_time(), str(site.state)))
-            _become(site, conf)
+            _exec_entry(site, conf)
         _start(site, conf)
         _wait(supervisor.alive, START_LIMIT, SupervisordNotUp(f"{site.state}/log/supervisord.log"))
         pid = supervisor.pid()
@@ -142,7 +142,7 @@ def down(site: Site) -> bool:
     pid = supervisor.pid()
     ours = [psutil.Process(pid), *psutil.Process(pid).children(recursive=True)]
     supervisor.shutdown()
-    _, left = psutil.wait_procs(ours, STOP_LIMIT)
+    _, left = psutil.wait_procs(ours, MESH_END_LIMIT)
     for process in left:  # children of ours that did not listen to supervisord's own kill
         process.send_signal(signal.SIGKILL)
     _, left = psutil.wait_procs(left, 2.0)
@@ -161,7 +161,7 @@ def _start(site: Site, conf: Path) -> None:
         raise TmsError(SupervisordFailed(detail[-1] if detail else ""))
 
 
-def _become(site: Site, conf: Path) -> None:
+def _exec_entry(site: Site, conf: Path) -> None:
     """Does not return. The lock of the domain is freed by exec: its file closes."""
     words = [sys.executable, "-m", "tms_host.prefork", "--nodaemon", "-c", str(conf)]
     sys.stdout.flush()

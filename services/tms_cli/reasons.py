@@ -8,7 +8,7 @@ QUESTIONS = Remedy("questions", "tms answer", "See which questions are open")
 CHOOSE = Remedy("questions", "tms answer --question ID", "Choose one of them")
 MORE_OF_ID = Remedy("runs", "tms runs", "Give more of the id")
 EVENTS = Remedy("look", "tms events {run}", "Look at the machine, then at what happened")
-LOOK_STATUS = Remedy("look", "tms status", "Look at the machine, then see what is wrong")
+INSPECT_STATUS = Remedy("look", "tms status", "Look at the machine, then see what is wrong")
 AS_CONSOLE = Remedy("account", "", "Run this as the user of the console")
 OTHER_PLACE = Remedy("file", "", "Choose another place")
 OTHER_NAME = Remedy("file", "", "Choose another name")
@@ -46,10 +46,10 @@ class NoRunActive(Reason, text="no run is active", action=RUNS): pass
 class RunHasEnded(Reason, text="run {run} has ended already: {state}", action=RUNS): run: str; state: str
 class NotEndedYet(Reason, text="run {run} has not ended {seconds} after the cancel", action=EVENTS):
     run: str; seconds: Seconds
-class SchedulerQuiet(Reason, text="the scheduler has said nothing for {seconds} (run {run})", action=LOOK_STATUS):
+class SchedulerQuiet(Reason, text="the scheduler has said nothing for {seconds} (run {run})", action=INSPECT_STATUS):
     seconds: Seconds; run: str
 class SchedulerForgot(Reason, text="the scheduler was restarted and does not know the run any more (run {run})",
-    action=LOOK_STATUS): run: str
+    action=INSPECT_STATUS): run: str
 class RunUnknown(Reason, text="there is no run '{run}'", action=RUNS): run: str
 class ManyRuns(Reason, text="'{run}' fits {count} runs ({runs}, ...)", action=MORE_OF_ID):
     run: str; count: int; runs: tuple[str, ...]

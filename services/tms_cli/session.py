@@ -84,15 +84,15 @@ def call(
 
 def latched(node: "Ros", message_type: type[M], topic: str) -> M | None:
     """The state that a module keeps on a latched topic; None if it says nothing."""
-    heard: list[M] = []
+    received: list[M] = []
     there = threading.Event()
 
-    def hear(message: M) -> None:
-        heard.append(message)
+    def receive(message: M) -> None:
+        received.append(message)
         there.set()
 
-    node.subscribe(message_type, topic, hear, latched=True)
-    return heard[-1] if there.wait(LATCHED_LIMIT) else None
+    node.subscribe(message_type, topic, receive, latched=True)
+    return received[-1] if there.wait(LATCHED_LIMIT) else None
 
 
 def show_json(data: Any) -> None:

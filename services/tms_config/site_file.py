@@ -94,13 +94,13 @@ class Fault(Settings):
     refuse: tuple[str, ...] = ()  # actions, by their key under borders:, that take no goal
     drop_feedback: bool = False
     miss: tuple[int, ...] = ()  # waypoints, from 0, that follow_waypoints cannot reach
-    zero_velocity: bool = False  # every velocity is told as 0
+    zero_velocity: bool = False  # every velocity is reported as 0
     frozen_stamp: bool = False  # the last message again and again, with its old stamp
     replay: bool = False  # its last 2 s again and again, with new stamps
     mute: tuple[str, ...] = ()  # joints that are left out
     second_publisher: bool = False  # another publisher says at 60 Hz that the machine stands
-    jump: float = 0.0  # rad, m: every position is told this far off
-    nan: bool = False  # every number is told as NaN
+    jump: float = 0.0  # rad, m: every position is reported this far off
+    nan: bool = False  # every number is reported as NaN
     back_in_time: float = Field(ge=0, default=0.0)  # s that stamps jump back
     coast: float = Field(ge=0, default=0.0)  # s that it goes on as it was after every order to stop
     dead_time: float = Field(ge=0, default=0.0)  # s more than its model has

@@ -50,8 +50,8 @@ class Update:
 
     def after(self, before: "Update") -> "Update":
         """Both in one step."""
-        told = self if self.updated_at is not None else before
-        return Update(self.id, {**before.fields, **self.fields}, told.updated_at, told.source)
+        reported = self if self.updated_at is not None else before
+        return Update(self.id, {**before.fields, **self.fields}, reported.updated_at, reported.source)
 
 
 class Batches:
@@ -78,7 +78,7 @@ class Batches:
         self._thread.join(1.0)
 
     def put(self, updates: dict[Key, Update], done: Done, hurry: bool) -> None:
-        """Take updates; `done` is told when they are stored or why not.
+        """Take updates; `done` is reported when they are stored or why not.
 
         Raises:
             DbError: BUSY; too much waits.

@@ -15,7 +15,7 @@ from tms_runtime.log import Logger
 FIRST_WAIT = 0.2  # s after a failed attempt; doubles up to LAST_WAIT
 LAST_WAIT = 2.0
 UP = Gauge("tms_db_store_up", "1 while the store answers")
-LOOK = 2.0  # s between looks at a store that nobody asks
+IDLE_CHECK_PERIOD = 2.0  # s between looks at a store that nobody asks
 
 
 class Connection:
@@ -24,7 +24,7 @@ class Connection:
     def __init__(self, db: store.Db, address: str, log: Logger) -> None:
         self._db, self._address, self._log = db, address, log
         self._trouble: DbError | None = store.down()  # until the first attempt says otherwise
-        self._told = ""  # code of the trouble that the log has told, so that it tells it once
+        self._reported = ""  # code of the trouble that the log has told, so that it tells it once
         self._lost = threading.Event()
         self._stopping = threading.Event()
         self._thread = threading.Thread(target=self._keep, name="store", daemon=True)
@@ -60,7 +60,7 @@ class Connection:
             raise
 
     def _lose(self, trouble: DbError) -> None:
-        self._tell(trouble)
+        self._report(trouble)
         self._trouble = trouble
         UP.set(False)
         self._lost.set()
@@ -70,12 +70,12 @@ class Connection:
         while not self._stopping.is_set():
             self._lost.clear()
             trouble = self._attempt()
-            self._tell(trouble)
+            self._report(trouble)
             self._trouble = trouble
             UP.set(trouble is None)
             if trouble is None:
                 wait = FIRST_WAIT
-                self._lost.wait(LOOK)
+                self._lost.wait(IDLE_CHECK_PERIOD)
             else:
                 self._stopping.wait(wait)
                 wait = min(2 * wait, LAST_WAIT)
@@ -95,12 +95,12 @@ class Connection:
                 raise
         return None
 
-    def _tell(self, trouble: DbError | None) -> None:
+    def _report(self, trouble: DbError | None) -> None:
         if self._stopping.is_set():
             return
         if trouble is None and self._trouble is not None:
             self._log.info("store_up", address=self._address)
-            self._told = ""
-        elif trouble is not None and trouble.code != self._told:
+            self._reported = ""
+        elif trouble is not None and trouble.code != self._reported:
             self._log.warning("store_away", code=trouble.code, address=self._address, reason=trouble.reason)
-            self._told = trouble.code
+            self._reported = trouble.code

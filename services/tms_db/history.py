@@ -15,7 +15,7 @@ from tms_reason.errors import DbError
 
 RUNS = 50
 EVENTS = 1000
-MOST = 10_000  # of one answer, so that it stays a few MB
+MAX_EVENTS = 10_000  # of one answer, so that it stays a few MB
 ATTEMPTS = 20
 
 
@@ -73,7 +73,7 @@ class History:
         """Runs, newest first."""
         with errors():
             found = self._runs.find({}, {"_id": 0}).sort([("started_at", -1), ("run_id", -1)])
-            return [_run(document) for document in found.limit(min(limit or RUNS, MOST))]
+            return [_run(document) for document in found.limit(min(limit or RUNS, MAX_EVENTS))]
 
     def events(self, run_id: str, after: int = 0, limit: int = 0) -> list[Event]:
         """Events of a run with a number above `after`, in order.
@@ -83,7 +83,7 @@ class History:
         """
         with errors():
             found = self._events.find({"run_id": run_id, "number": {"$gt": after}}, {"_id": 0}).sort("number", 1)
-            events = [_event(document) for document in found.limit(min(limit or EVENTS, MOST))]
+            events = [_event(document) for document in found.limit(min(limit or EVENTS, MAX_EVENTS))]
             if not events and self._runs.find_one({"run_id": run_id}, {"_id": 1}) is None:
                 raise DbError(RunMissing(run_id))
         return events

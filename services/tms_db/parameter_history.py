@@ -20,7 +20,7 @@ from tms_runtime.log import Logger
 
 KEPT = 50  # changes a record
 ROOM = 3 * 2**20  # bytes; the store takes documents of 16 MB, see `_room`
-PERIOD = 2.0  # s between writes; what sensing changes in between counts as one change
+WRITE_PERIOD = 2.0  # s between writes; what sensing changes in between counts as one change
 
 Change = dict[str, Any]  # stamp, source, values
 
@@ -76,7 +76,7 @@ class ParameterHistory:
     def _run(self) -> None:
         ending = False
         while not ending:
-            ending = self._stopping.wait(PERIOD)
+            ending = self._stopping.wait(WRITE_PERIOD)
             with self._storing:
                 self._store_new()
 
@@ -97,7 +97,7 @@ class ParameterHistory:
                 self._new = new
 
     def _missing(self, new: Mapping[Key, list[Change]]) -> dict[Key, list[Change]]:
-        """What an earlier write did not do, for a change that is pushed twice is told twice; a reading for each key."""
+        """What an earlier write left undone: a change pushed twice is reported twice. Reads once for each key."""
         return {key: others for key, changes in new.items() if (others := _others(changes, self._load(key)))}
 
     def _save(self, new: Mapping[Key, list[Change]]) -> None:

@@ -95,7 +95,7 @@ class ParameterServices:
             response.created = self._parameters.set(*key, change, request.create)
             self._heads.forget()
             self._past.note(key, _now(), request.source, change.values)
-            self._tell([key])
+            self._report([key])
 
     async def update(self, request: UpdateParameters.Request, response: UpdateParameters.Response) -> None:
         taken: dict[Key, Update] = {}
@@ -115,7 +115,7 @@ class ParameterServices:
         self._batches.settle(key)
         self._parameters.remove(*key)
         self._heads.forget()
-        self._tell([key])
+        self._report([key])
         self._app.log.info("removed", reason=title(*key))
 
     def history(self, request: ListParameterHistory.Request, response: ListParameterHistory.Response) -> None:
@@ -144,7 +144,7 @@ class ParameterServices:
             self._parameters.set(*key, change)
             self._heads.forget()
             self._past.note(key, stamp, wanted.source, fields, often=True)
-            self._tell([key])
+            self._report([key])
             return
         if key in taken:
             fields = {**taken[key].fields, **fields}
@@ -165,20 +165,20 @@ class ParameterServices:
             DbError: the store is away.
         """
         settled = self._ros.create_future()
-        tell: Callable[[DbError | None], None] = lambda problem: self._ros.on_executor(  # noqa: E731
+        report: Callable[[DbError | None], None] = lambda problem: self._ros.on_executor(  # noqa: E731
             lambda: settled.set_result(problem)
         )
-        self._batches.put(updates, tell, hurry)
+        self._batches.put(updates, report, hurry)
         for key, update in updates.items():
             self._heads.get(key).change(update.stored())
             self._past.note(key, update.updated_at or _now(), update.source, update.fields, often=not hurry)
-        self._tell(updates)
+        self._report(updates)
         problem = await settled
         if problem is not None:
             self._heads.forget()
             raise DbError(problem.reason, problem.code)
 
-    def _tell(self, keys: Iterable[Key]) -> None:
+    def _report(self, keys: Iterable[Key]) -> None:
         """Readers of shared records look again."""
         names = [name for model, name in keys if not model]
         if names:

@@ -96,7 +96,7 @@ class RecordCache:
         head = self.known(key)
         if head is None:
             self._heads.pop(key, None)
-            watched = self._watched()  # before it is read: a change after that is told of
+            watched = self._watched()  # before it is read: a change after that is reported
             head = Head(self.read(key), FOR_EVER)
             if watched:
                 self._keep(key, head)
@@ -149,7 +149,7 @@ class RecordCache:
         found = None
         try:
             found = {document["_id"]: document for document in self._parameters.by_id([h.id for h in due.values()])}
-        except DbError:  # whoever writes next is told
+        except DbError:  # the next writer gets the error
             pass
         finally:
             self._ros.on_executor(lambda: self._read(due, found))

@@ -21,7 +21,7 @@ from tms_reason.errors import DbError
 from tms_runtime.log import Logger
 
 FIRST = 1.0  # s from the start to the first look: the store is there by then, as a rule
-PERIOD = 24 * 3600.0  # s between looks
+RETENTION_PERIOD = 24 * 3600.0  # s between looks
 AGAIN = 60.0  # s after one that the store did not allow, or that comes before the store is there
 ROUND = 100  # runs at a time, so that the store answers others in between
 MANY = 1000  # states at a time
@@ -107,7 +107,7 @@ class Retention:
     def _run(self) -> None:
         wait = FIRST
         while not self._stopping.wait(wait):
-            wait = PERIOD
+            wait = RETENTION_PERIOD
             try:
                 with self._connection.use():
                     self._look(utc_now())

@@ -194,9 +194,9 @@ def _unreachable(text: str) -> DbError:
     return DbError(StoreDown(StoreUnusable(hint))) if hint is not None else down()
 
 
-def _first(told: object) -> str:
+def _first(reported: object) -> str:
     """As much of a text as fits into a message."""
-    return str(told).partition("\n")[0][:200]
+    return str(reported).partition("\n")[0][:200]
 
 
 def _too_large() -> DbError:

@@ -20,7 +20,7 @@ from tms_reason.errors import DbError
 ATTEMPTS = 1000  # each lost race means that somebody else has registered a task
 DUPLICATE = 11000  # MongoDB's code for a key that is there already
 EPOCH = datetime.fromtimestamp(0, timezone.utc)
-MOST = 2**31 - 1  # task_id is int32
+MAX_TASK_ID = 2**31 - 1  # task_id is int32
 LISTED = {"_id": 0, "task_sequence": 0}
 
 
@@ -151,7 +151,7 @@ class Tasks:
     def all(self) -> list[Task]:
         """All tasks by number, without their texts."""
         with errors():
-            found = self._tasks.find({"task_id": {"$gte": 1, "$lte": MOST}}, LISTED).sort("task_id", 1)
+            found = self._tasks.find({"task_id": {"$gte": 1, "$lte": MAX_TASK_ID}}, LISTED).sort("task_id", 1)
             return [_task(document) for document in found]
 
     def remove(self, task_id: int) -> None:

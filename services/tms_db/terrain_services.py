@@ -37,7 +37,7 @@ class TerrainServices:
         ros = self._app.ros
         ros.offer_slow(TmsdbTerrainImageSrv, "/tms/db/terrain_image", self.image)
         ros.offer_slow(TerrainStaticSrv, "/tms/db/terrain_cloud", self.cloud)
-        ros.subscribe(TmsdbGridFS, f"/{TOPIC}", self.heard)
+        ros.subscribe(TmsdbGridFS, f"/{TOPIC}", self.received)
         self._app.on_stop(self.stop)
         self._thread.start()
 
@@ -79,7 +79,7 @@ class TerrainServices:
             self._refused("terrain_cloud", error)
         return response
 
-    def heard(self, message: TmsdbGridFS) -> None:
+    def received(self, message: TmsdbGridFS) -> None:
         """A cloud from sensing; on the executor thread."""
         name = message.filename or message.type
         with self._changed:

@@ -28,7 +28,7 @@ class Watching:
     def __init__(self, db: Db, connection: Connection, log: Logger, changed: Callable[[Any], None]) -> None:
         """`changed` is called in that thread with the _id of a record, or with None: any of them."""
         self._records, self._connection, self._log, self._changed = db["parameter"], connection, log, changed
-        self._heard = float("-inf")  # monotonic; read in other threads
+        self._received = float("-inf")  # monotonic; read in other threads
         self._stopping = threading.Event()
         self._thread = threading.Thread(target=self._keep, name="watching", daemon=True)
 
@@ -40,8 +40,8 @@ class Watching:
         self._stopping.set()
 
     def sure(self) -> bool:
-        """Whether every change is told of, but for those of the last moments."""
-        return monotonic() - self._heard < SURE
+        """Whether every change is reported, but for those of the last moments."""
+        return monotonic() - self._received < SURE
 
     def _keep(self) -> None:
         wait = 0.0
@@ -63,6 +63,6 @@ class Watching:
             self._changed(None)  # whatever happened before
             while stream.alive and not self._stopping.is_set():
                 change = stream.try_next()
-                self._heard = monotonic()
+                self._received = monotonic()
                 if change is not None:
                     self._changed(change.get("documentKey", {}).get("_id"))

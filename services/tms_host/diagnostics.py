@@ -13,8 +13,8 @@ from tms_reason.texts import text
 from tms_runtime import metrics
 from tms_runtime.app import App
 
-PERIOD = 1.0  # s between messages
-LOOK = 5.0  # s between questions to a process whether it is ready: each costs a few milliseconds
+PUBLISH_PERIOD = 1.0  # s between messages
+READY_CHECK_PERIOD = 5.0  # s between questions to a process whether it is ready: each costs a few milliseconds
 ANSWER = 0.5  # s
 OK, WARN, ERROR, STALE = 0, 1, 2, 3
 
@@ -30,20 +30,20 @@ class Diagnostics:
         self._reasons: dict[str, Reason | None] = {}
         self._rows: list[Running] = []
         self._restarts: dict[str, int] = {}
-        threading.Thread(target=self._tell, name="diagnostics", daemon=True).start()
+        threading.Thread(target=self._publish, name="diagnostics", daemon=True).start()
 
     def update(self, rows: list[Running], restarts: dict[str, int]) -> None:
         """From the thread that looks at supervisord."""
         self._rows, self._restarts = rows, dict(restarts)
 
-    def _tell(self) -> None:
+    def _publish(self) -> None:
         looks = 0
-        while not self._app.stopping.wait(PERIOD):
+        while not self._app.stopping.wait(PUBLISH_PERIOD):
             if not self._publisher.get_subscription_count():
-                looks = 0  # whoever comes next is told what is so then
+                looks = 0  # the next reader gets what is so then
                 continue
             rows = self._rows
-            if looks % round(LOOK / PERIOD) == 0:
+            if looks % round(READY_CHECK_PERIOD / PUBLISH_PERIOD) == 0:
                 self._reasons = {row.name: self._ask(row) for row in rows if row.state == "RUNNING"}
             looks += 1
             message = DiagnosticArray(status=[self._status(row) for row in rows])

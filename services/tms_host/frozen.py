@@ -18,7 +18,7 @@ from tms_host.supervisor import Running, Supervisor
 from tms_reason.errors import TmsError
 from tms_runtime.app import App
 
-PERIOD = 2.0  # s between rounds; a question costs about a millisecond of both processes
+ROUND_PERIOD = 2.0  # s between rounds; a question costs about a millisecond of both processes
 ANSWER_LIMIT = 2.0  # s
 PULSE_LIMIT = 3.0  # s without a pulse until a gateway is killed
 PULSE_PERIOD = 0.5  # s between looks
@@ -62,7 +62,7 @@ class Watchdog:
 
     def _watch(self) -> None:
         supervisor = Supervisor(self._app.site)
-        while not self._app.stopping.wait(PERIOD):
+        while not self._app.stopping.wait(ROUND_PERIOD):
             for row in self._running():
                 if row.state != "RUNNING" or row.name not in self._asked:
                     continue

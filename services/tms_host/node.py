@@ -25,7 +25,7 @@ from tms_runtime.app import App
 
 HEARTBEAT = 2.0  # s between messages when nothing changes, so that a dead PC can be told from a quiet one
 LOG_BYTES, MAX_LOG_BYTES = 16_384, 262_144
-PERIOD = 0.1  # s between looks whether supervisord has other children: its socket has no events
+CHILDREN_CHECK_PERIOD = 0.1  # s between looks whether supervisord has other children: its socket has no events
 CHANGING = ("STARTING", "STOPPING", "BACKOFF")  # states that end without a new pid
 
 
@@ -112,10 +112,10 @@ class Host:
     def _watch(self) -> None:
         supervisor, children = Supervisor(self._app.site), Children(os.getppid())
         last: list[tuple[str, str, int]] = []
-        told = 0.0
-        while not self._closing.wait(PERIOD):
+        reported = 0.0
+        while not self._closing.wait(CHILDREN_CHECK_PERIOD):
             changing = any(row.state in CHANGING for row in self.rows)
-            if not (children.changed() or changing or not self.seen or monotonic() - told > HEARTBEAT):
+            if not (children.changed() or changing or not self.seen or monotonic() - reported > HEARTBEAT):
                 continue
             try:
                 rows = supervisor.processes()
@@ -128,8 +128,8 @@ class Host:
             self._facts.update(rows, self._restarts)
             self._diagnostics.update(rows, self._restarts)
             now = [(row.name, row.state, row.pid) for row in rows]
-            if now != last or monotonic() - told > HEARTBEAT:
-                last, told = now, monotonic()
+            if now != last or monotonic() - reported > HEARTBEAT:
+                last, reported = now, monotonic()
                 self._publisher.publish(self._message(rows))
 
     def _count(self, rows: list[Running]) -> None:

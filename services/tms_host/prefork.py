@@ -47,11 +47,11 @@ class Options(ServerOptions):  # type: ignore[misc]
     def execve(self, filename: str, argv: list[str], env: dict[str, str]) -> None:
         """In the child: become the program. Pipes, group and working folder are set by supervisord already."""
         if argv[1:2] == ["-m"] and argv[2:3] == [MODULE]:
-            become(argv, env, self.parent)
+            exec_entry(argv, env, self.parent)
         super().execve(filename, argv, env)
 
 
-def become(argv: list[str], env: dict[str, str], parent: int) -> NoReturn:
+def exec_entry(argv: list[str], env: dict[str, str], parent: int) -> NoReturn:
     """Run `python -m tms_runtime.run NAME` in this fork, and end with its exit code."""
     gc.freeze()  # what supervisord held is never collected here: its file numbers belong to others now
     for number in HANDLED:

@@ -25,7 +25,7 @@ from tms_machine.border import Controls, stood_in
 from tms_machine.permit import NOBODY, Link
 from tms_runtime.app import App
 
-PATIENCE = 0.09  # s more than the lease: a process frozen for 0.4 s may have asserted itself 0.1 s before
+LEASE_MARGIN = 0.09  # s more than the lease: a process frozen for 0.4 s may have asserted itself 0.1 s before
 AGAIN = 0.5  # s between repeated commands
 ESCALATE = 1.0  # s without a gateway until emg_stop
 TOGETHER = 1.0  # s between the losses of scheduler and gateway that count as one
@@ -48,7 +48,7 @@ class Seen:
 
     alive: bool  # it gives its pulse
     left: bool = False  # it gave none because it took leave
-    told: bool = False  # it has told its state since the last look
+    reported: bool = False  # it has told its state since the last look
     busy: bool = False  # the machine was last told to move, or a goal or a run has it
     run_lost: bool = False  # the scheduler behind the machine's run is lost, too
 
@@ -60,7 +60,7 @@ class Duty:
         self.lost_since: float | None = None
         self._watched = False  # a gateway is there, or was a moment ago
         self._silent_since: float | None = None
-        self._told = self._emergency = False
+        self._reported = self._emergency = False
         self._again = 0.0
 
     def look(self, now: float, seen: Seen) -> Act | None:
@@ -79,15 +79,15 @@ class Duty:
             return Act.STOP
         if self._silent_since is None:
             self._silent_since = now
-        if now - self._silent_since < PATIENCE:
+        if now - self._silent_since < LEASE_MARGIN:
             return None
         self.lost_since, self._silent_since, self._again = now, None, now
-        self._told = self._emergency = False
+        self._reported = self._emergency = False
         return self._stand_in(now, now, seen)
 
     def _stand_in(self, now: float, since: float, seen: Seen) -> Act | None:
-        self._told = self._told or seen.told
-        if seen.alive and self._told:
+        self._reported = self._reported or seen.reported
+        if seen.alive and self._reported:
             self.lost_since = None
             return None
         if not self._emergency and (seen.run_lost or (seen.busy and now - since >= ESCALATE)):
@@ -110,7 +110,7 @@ class Post:
         self._now, self._stood_in = ros.now, ros.publisher(Time, stood_in(machine), 1, latched=True)
         self._gateway = Link(ros, app.pulse, machine, "rc", _looked_at)
         self._scheduler = Link(ros, app.pulse, machine, "ts", _looked_at)
-        self._news = ros.sample(MachineState, f"/{machine}/rc/state")
+        self._samples = ros.sample(MachineState, f"/{machine}/rc/state")
         self._state: MachineState | None = None  # the last one of a gateway that is lost
         self._held_at = float("-inf")  # when a run last had the machine
         LOST.labels(machine).set(0)
@@ -121,7 +121,7 @@ class Post:
         act = self.duty.look(now, self._seen(now))
         if act is not None:
             self._command(act)
-        self._tell(act)
+        self._publish(act)
 
     def _seen(self, now: float) -> Seen:
         gateway, scheduler, is_lost = self._gateway, self._scheduler, self.duty.lost_since is not None
@@ -129,13 +129,13 @@ class Post:
             self._held_at = now
         if gateway.alive and not is_lost:
             return Seen(alive=True)
-        told = self._news()
-        if told and not is_lost:  # its last words; a successor knows nothing yet, and says that the machine moves
-            self._state = told[-1]
+        reported = self._samples()
+        if reported and not is_lost:  # its last words; a successor knows nothing yet, and says that the machine moves
+            self._state = reported[-1]
         state = self._state
         run_lost = scheduler.goal != NOBODY and not scheduler.alive and now - self._held_at < TOGETHER
         busy = state is None or state.moving or bool(state.goal or state.owner)
-        return Seen(gateway.alive, gateway.left, bool(told), busy, run_lost)
+        return Seen(gateway.alive, gateway.left, bool(reported), busy, run_lost)
 
     def _command(self, act: Act) -> None:
         self._controls.zero()  # messages leave sooner than requests
@@ -144,7 +144,7 @@ class Post:
             self._stood_in.publish(self._now())
         self._controls.cancel_everything()
 
-    def _tell(self, act: Act | None) -> None:
+    def _publish(self, act: Act | None) -> None:
         lost = self.duty.lost_since is not None
         if lost and act not in (None, self._done):
             if self._done is None:

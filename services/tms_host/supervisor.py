@@ -29,7 +29,7 @@ from tms_reason.errors import ConfigError, TmsError
 START_SECONDS = 1  # a process that ends sooner counts as failed to start
 STOP_SECONDS = 3  # the runtime ends within 2
 END_LIMIT = STOP_SECONDS + 1.0  # s; supervisord kills after STOP_SECONDS
-LOOK = 0.1  # s between looks at a process that is being stopped
+END_CHECK_PERIOD = 0.1  # s between looks at a process that is being stopped
 LOG_SIZE, LOG_FILES = "10MB", 3
 
 
@@ -220,7 +220,7 @@ class Supervisor:
         while (state := self.process(name).state) == "STOPPING":
             if monotonic() > deadline:
                 raise TmsError(NotEnded(name, END_LIMIT))
-            sleep(LOOK)
+            sleep(END_CHECK_PERIOD)
         return state
 
     def log(self, name: str, size: int) -> str:

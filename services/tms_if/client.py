@@ -14,7 +14,7 @@ from tms_runtime.log import Logger
 
 SILENCE = 10.0  # s; the simulator sends a keep-alive every second
 PIECE = 65536  # bytes
-TROUBLES = 50  # different ones that are told; each once
+TROUBLES = 50  # different ones that are reported; each once
 
 FRAMES = Counter("tms_if_frames_total", "Frames by direction", ["direction"])
 DROPPED = Counter("tms_if_dropped_total", "Messages that a client did not read in time")
@@ -50,7 +50,7 @@ class Client:
         self._splitter, self._outbox = Splitter(message_limit), Outbox()
         self._ends = ends(self._send, self._trouble)
         self._expected: tuple[str, int] | None = None  # what the next frame is: __request or __response, and its number
-        self._told: set[str] = set()
+        self._reported: set[str] = set()
         self._why = ""  # why it was closed from our side
 
     def run(self) -> None:
@@ -135,9 +135,9 @@ class Client:
     def _trouble(self, text: str) -> None:
         """Tell client and log, each trouble once: a client that is wrong is so at 50 Hz."""
         TROUBLE.inc()
-        if text in self._told or len(self._told) >= TROUBLES:
+        if text in self._reported or len(self._reported) >= TROUBLES:
             return
-        self._told.add(text)
+        self._reported.add(text)
         self._log.warning("client_trouble", client=self._name, reason=text)
         self._send(command("__error", text=text), False)
 

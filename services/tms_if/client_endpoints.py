@@ -59,7 +59,7 @@ class ClientEndpoints:
         self._published: dict[str, tuple[Any, Any]] = {}  # publisher, type
         self._waiting: dict[str, Registration] = {}  # for another client that publishes the topic
         self._refused: set[str] = set()
-        self._heard: dict[str, Any] = {}
+        self._received: dict[str, Any] = {}
         self._called: dict[str, Any] = {}  # type
         self._offered: dict[str, tuple[Any, Any]] = {}  # service, type
         self._asked: dict[int, Asked] = {}
@@ -97,14 +97,14 @@ class ClientEndpoints:
         kind = interface(wanted.message_name, "msg")
         self.remove_subscriber(wanted.topic)
 
-        def heard(data: bytes) -> None:
+        def received(data: bytes) -> None:
             try:
                 self._send(encode(wanted.topic, self._for_client(kind, bytes(data))), True)
             except joint_cmd.LayoutError as error:
                 self._say(f"{wanted.topic}: {error}")
 
         name = full_name(wanted.topic)
-        self._heard[wanted.topic] = self._on_ros(lambda: self._ros.subscribe_raw(kind, name, heard), wanted)
+        self._received[wanted.topic] = self._on_ros(lambda: self._ros.subscribe_raw(kind, name, received), wanted)
 
     def ros_service(self, wanted: Registration) -> None:
         self._check(self._allowed.calling, wanted)
@@ -130,7 +130,7 @@ class ClientEndpoints:
             del self._speakers[name]  # the next one's publisher is made after this one has gone
 
     def remove_subscriber(self, topic: str) -> None:
-        if (gone := self._heard.pop(topic, None)) is not None:
+        if (gone := self._received.pop(topic, None)) is not None:
             self._drop(lambda: self._ros.node.destroy_subscription(gone))
 
     def remove_ros_service(self, topic: str) -> None:
@@ -146,7 +146,7 @@ class ClientEndpoints:
         for asked in list(self._asked.values()):
             asked.over.set()
         for topics, remove in (
-            (self._published, self.remove_publisher), (self._heard, self.remove_subscriber),
+            (self._published, self.remove_publisher), (self._received, self.remove_subscriber),
             (self._offered, self.remove_unity_service),
         ):  # fmt: skip
             for topic in list(topics):

@@ -17,8 +17,8 @@ FURTHER = (
     "bucket/g2_imu_sim", "base_link/pose", "global_pose", "odom", "odom_pose", "soil_volume",
 )  # fmt: skip
 # What they hear beyond the commands of their borders.
-HEARD = {"track_cmd": "com3_msgs/JointCmd", "unity/drive_params": "std_msgs/Float64MultiArray"}
-HEARD_BY_ALL = {
+RECEIVED = {"track_cmd": "com3_msgs/JointCmd", "unity/drive_params": "std_msgs/Float64MultiArray"}
+RECEIVED_BY_ALL = {
     "/tf": "tf2_msgs/TFMessage", "/move_group/fake_controller_joint_states": "sensor_msgs/JointState",
 }  # fmt: skip
 
@@ -28,7 +28,7 @@ class Allowed:
     """The lists of a site."""
 
     published: Named
-    heard: Named
+    received: Named
     called: Named
     offered: Named
 
@@ -42,7 +42,9 @@ class Allowed:
 
     def hearing(self, name: str, kind: str) -> str | None:
         """Why a client may not hear it."""
-        return _refusal(self.heard, name, kind, "is no command to this site's machines: a client may not listen there")
+        return _refusal(
+            self.received, name, kind, "is no command to this site's machines: a client may not listen there"
+        )
 
     def calling(self, name: str, kind: str) -> str | None:
         """Why a client may not call this service."""
@@ -66,7 +68,7 @@ def allowed(site: Site) -> Allowed:
             **_sensors(site),
             **({CLOCK: _one("rosgraph_msgs/Clock")} if settings.clock else {}),
         },
-        heard={name: _one(kind) for name, kind in {**_commands(site), **HEARD_BY_ALL}.items()},
+        received={name: _one(kind) for name, kind in {**_commands(site), **RECEIVED_BY_ALL}.items()},
         called={name: _one(kind) for name, kind in settings.calls.items()},
         offered={name: _one(kind) for name, kind in settings.offers.items()},
     )
@@ -116,6 +118,6 @@ def _commands(site: Site) -> dict[str, str]:
         topics: dict[str | None, str] = {border.cmd_vel: "geometry_msgs/Twist", border.emg_stop: "std_msgs/Bool"}
         topics[border.joint_cmd] = "com3_msgs/JointCmd"
         topics |= dict.fromkeys(border.joint_angles.values(), "std_msgs/Float64")
-        topics.update(HEARD)
+        topics.update(RECEIVED)
         found |= {f"/{machine}/{topic}": kind for topic, kind in topics.items() if topic}
     return found

@@ -10,7 +10,7 @@ from tms_if.reasons import InterfacePortTaken
 from tms_reason.errors import ConfigError
 from tms_runtime.app import App
 
-MOST = 16  # clients at a time
+MAX_CLIENTS = 16  # clients at a time
 PAUSE = 1.0  # s after the system could not accept a connection
 
 
@@ -18,7 +18,7 @@ def start(app: App) -> None:
     """Listen for simulators."""
     settings = app.site.bridge
     try:
-        server = socket.create_server((settings.bind, settings.port), backlog=MOST)
+        server = socket.create_server((settings.bind, settings.port), backlog=MAX_CLIENTS)
     except OSError as error:
         raise ConfigError(InterfacePortTaken(f"{settings.bind}:{settings.port}", str(error.strerror))) from error
     bridge = Endpoint(app, server)
@@ -47,8 +47,10 @@ class Endpoint:
                     self._app.log.error("not_accepted", reason=error.strerror)
                     self._app.stopping.wait(PAUSE)
                 continue
-            if len(self._clients) >= MOST:
-                self._app.log.warning("client_refused", client=f"{host}:{port}", reason="too many others", others=MOST)
+            if len(self._clients) >= MAX_CLIENTS:
+                self._app.log.warning(
+                    "client_refused", client=f"{host}:{port}", reason="too many others", others=MAX_CLIENTS
+                )
                 connection.close()
                 continue
             threading.Thread(

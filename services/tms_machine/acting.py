@@ -31,8 +31,8 @@ from tms_runtime.fence import derived
 
 SERVER_LIMIT = 5.0  # s for an action server to appear
 ACCEPT_LIMIT = 3.0  # s for it to answer a goal
-STOP_LIMIT = STOP_PROVEN + 2.5  # s for a cancelled motion to end
-LOOK = 0.2  # s between looks whether the server is still there
+MOTION_END_LIMIT = STOP_PROVEN + 2.5  # s for a cancelled motion to end
+SERVER_CHECK_PERIOD = 0.2  # s between looks whether the server is still there
 UNANSWERED_LIMIT = 1.0  # s for a goal to be accepted after all
 
 Progress = Callable[[Reason | str], None]  # words of a subtask's own are shown as they are
@@ -94,7 +94,7 @@ class Acting:
             raise SubtaskFailed(GoalTimeout(self.name, self._timeout))
 
     def act(
-        self, action_type: ActionType[G, R, F], action: str, goal: G, heard: Callable[[F], None] | None = None
+        self, action_type: ActionType[G, R, F], action: str, goal: G, received: Callable[[F], None] | None = None
     ) -> R:
         """Send a goal to an action of this machine and wait for its result.
 
@@ -106,7 +106,7 @@ class Acting:
         self.check()
         if (watch := self._watches.get("rc" if action.startswith("rc/") else "rp")) is not None:
             watch(peer)
-        call = peer.send(goal, goal_id=derived(self._goal_id), on_feedback=heard)
+        call = peer.send(goal, goal_id=derived(self._goal_id), on_feedback=received)
         self._calls.append((peer, call))
         self._wait(peer, call, lambda: call.accepted or call.outcome is not None, ACCEPT_LIMIT, action)
         self._wait(peer, call, lambda: call.outcome is not None, None, action)
@@ -117,7 +117,7 @@ class Acting:
         assert call.result is not None, "a goal that succeeded has a result"
         return call.result
 
-    def guarded(self, field: str, action_type: ActionType[G, R, F], goal: G, heard: Callable[[F], None]) -> R:
+    def guarded(self, field: str, action_type: ActionType[G, R, F], goal: G, received: Callable[[F], None]) -> R:
         """`act` on one of the machine's own motions, by its key under borders:, through the gateway.
 
         Raises:
@@ -125,12 +125,12 @@ class Acting:
         """
         if not any(getattr(border, field) for border in self.model.borders.values()):
             raise SubtaskFailed(NoCapability(self.name, field, self._model_name))
-        return self.act(action_type, f"rc/{field}", goal, heard)
+        return self.act(action_type, f"rc/{field}", goal, received)
 
     def _wait(self, peer: AnyPeer, call: AnyCall, done: Callable[[], bool], limit: float | None, action: str) -> None:
         end = self._deadline if limit is None else min(self._deadline, monotonic() + limit)
         while not (done() or self._cancelled.is_set()) and monotonic() < end:
-            call.wait_for(lambda: done() or self._cancelled.is_set(), min(LOOK, end - monotonic()))
+            call.wait_for(lambda: done() or self._cancelled.is_set(), min(SERVER_CHECK_PERIOD, end - monotonic()))
             if call.accepted and call.outcome is None and peer.left():
                 peer.mark_lost()  # it left in order, but without a result
         if not done():
@@ -142,7 +142,7 @@ class Acting:
         running = [(peer, call) for peer, call in self._calls if call.outcome is None]
         for peer, call in running:
             peer.cancel(call)
-        deadline = monotonic() + STOP_LIMIT
+        deadline = monotonic() + MOTION_END_LIMIT
         # One that nobody has accepted moves nothing: if it is accepted after all, its cancel follows at once.
         accepted = [call for _, call in running if call.wait_for(_known(call), UNANSWERED_LIMIT) and call.accepted]
         ended = [call.wait_for(_ended(call), deadline - monotonic()) for call in accepted]
@@ -165,11 +165,11 @@ def _ended(call: AnyCall) -> Callable[[], bool]:
 def _why(call: AnyCall) -> Reason:
     """The reason that a result or the last feedback gives; results of Humble's Nav2 have none."""
     state = getattr(call.feedback, "state", "") or getattr(call.feedback, "status", "")
-    told = wire.of(getattr(call.result, "error_string", "") or getattr(call.result, "error_msg", "") or state)
+    reported = wire.of(getattr(call.result, "error_string", "") or getattr(call.result, "error_msg", "") or state)
     number, lost = getattr(call.result, "error_code", 0), missed(call.result)
-    if told is None and isinstance(number, int) and number:
-        told = ErrorNumber(number)
+    if reported is None and isinstance(number, int) and number:
+        reported = ErrorNumber(number)
     if lost:
         waypoints = Missed(tuple(lost))
-        return waypoints if told is None else Several((waypoints, told))
-    return told or NoReason()
+        return waypoints if reported is None else Several((waypoints, reported))
+    return reported or NoReason()

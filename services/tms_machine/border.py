@@ -15,6 +15,7 @@ from tms_ros.interface_types import ActionType
 from tms_ros.node import Ros
 
 STOP_PROVEN = 10.0  # s after which a gateway has seen that a machine stands, or says that it has not
+RECEIPT_LIMIT = STOP_PROVEN + 3.0  # s after which a gateway that has sent no receipt of a stop does not answer
 
 
 @dataclass(frozen=True)

@@ -23,11 +23,11 @@ class Driving(Acting):
     def navigate_through(self, progress: Progress, poses: Sequence[Pose]) -> None:
         """Drive through poses without a stop, and stand at the last."""
 
-        def heard(feedback: NavigateThroughPoses.Feedback) -> None:
+        def received(feedback: NavigateThroughPoses.Feedback) -> None:
             progress(DrivingThrough(feedback.distance_remaining, feedback.number_of_poses_remaining))
 
         goal = NavigateThroughPoses.Goal(poses=[self._stamped(pose) for pose in poses])
-        self.guarded("navigate_through_poses", NavigateThroughPoses, goal, heard)
+        self.guarded("navigate_through_poses", NavigateThroughPoses, goal, received)
 
     def follow(self, progress: Progress, poses: Sequence[Pose]) -> None:
         """Drive from one pose to the next, standing at each.
@@ -36,11 +36,11 @@ class Driving(Acting):
             SubtaskFailed: MissedWaypoints, also when the navigation itself calls that a success.
         """
 
-        def heard(feedback: FollowWaypoints.Feedback) -> None:
+        def received(feedback: FollowWaypoints.Feedback) -> None:
             progress(DrivingTo(feedback.current_waypoint, len(poses) - 1))
 
         goal = FollowWaypoints.Goal(poses=[self._stamped(pose) for pose in poses])
-        result = self.guarded("follow_waypoints", FollowWaypoints, goal, heard)
+        result = self.guarded("follow_waypoints", FollowWaypoints, goal, received)
         lost = missed(result)
         if lost:
             places = tuple(Waypoint(i, poses[i].position.x, poses[i].position.y) for i in lost)

@@ -13,12 +13,12 @@ MAP = "map"
 
 
 class Seen(NamedTuple):
-    """Where a frame is in another one, and when that was heard last."""
+    """Where a frame is in another one, and when that was received last."""
 
     x: float  # m
     y: float  # m
     yaw: float  # rad
-    heard: float  # monotonic, s; infinite for what never moves
+    received: float  # monotonic, s; infinite for what never moves
 
 
 class Frames:
@@ -28,31 +28,31 @@ class Frames:
         self._wanted, self._clock = set(frames), clock
         self._seen: dict[str, tuple[str, Seen]] = {}  # frame -> its parent, and where it is in that
 
-    def hear(self, message: TFMessage) -> set[str]:
+    def receive(self, message: TFMessage) -> set[str]:
         """Take a tf2_msgs/TFMessage of /tf; the frames of interest that it told of."""
         return self._take(message, self._clock())
 
-    def hear_fixed(self, message: TFMessage) -> None:
+    def receive_fixed(self, message: TFMessage) -> None:
         """Take one of /tf_static."""
         self._take(message, math.inf)
 
-    def _take(self, message: TFMessage, heard: float) -> set[str]:
-        told = set()
+    def _take(self, message: TFMessage, received: float) -> set[str]:
+        reported = set()
         for one in message.transforms:
             at, q = one.transform.translation, one.transform.rotation
             turn = (q.x, q.y, q.z, q.w)
             if not all(map(math.isfinite, (at.x, at.y, *turn))):
                 continue  # a localisation without a fix
-            # A fixed one is told only once, maybe before it is wanted.
-            if one.child_frame_id in self._wanted or heard == math.inf:
-                self._seen[one.child_frame_id] = one.header.frame_id, Seen(at.x, at.y, yaw_of(turn), heard)
+            # A fixed one is reported only once, maybe before it is wanted.
+            if one.child_frame_id in self._wanted or received == math.inf:
+                self._seen[one.child_frame_id] = one.header.frame_id, Seen(at.x, at.y, yaw_of(turn), received)
                 self._wanted.add(one.header.frame_id)
-                told.add(one.child_frame_id)
-        return told
+                reported.add(one.child_frame_id)
+        return reported
 
     def place(self, frame: str) -> Seen | None:
         """In the map, as old as the oldest of what tells it; None as long as the frames do not lead there."""
-        x, y, yaw, heard = 0.0, 0.0, 0.0, math.inf
+        x, y, yaw, received = 0.0, 0.0, 0.0, math.inf
         passed = set[str]()
         while frame != MAP:
             if frame in passed or frame not in self._seen:
@@ -61,5 +61,5 @@ class Frames:
             frame, step = self._seen[frame]
             cos, sin = math.cos(step.yaw), math.sin(step.yaw)
             x, y, yaw = step.x + x * cos - y * sin, step.y + x * sin + y * cos, yaw + step.yaw
-            heard = min(heard, step.heard)
-        return Seen(x, y, math.remainder(yaw, math.tau), heard)
+            received = min(received, step.received)
+        return Seen(x, y, math.remainder(yaw, math.tau), received)

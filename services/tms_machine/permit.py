@@ -62,17 +62,17 @@ class Link:
             0  # predecessors that discovery has not dropped yet, or the process itself while it is frozen
         )
         self.left = False  # the last one took leave, in order; a killed one leaves a stale writer
-        self._heard, self._alive, self._asserted = 0.0, False, 0
+        self._received, self._alive, self._asserted = 0.0, False, 0
         ros.lease_subscribe(Message, topic(machine, process), LEASE, self._on_message, self._on_liveliness)
 
     @property
     def alive(self) -> bool:
         """Whether the process works for `goal` now."""
         # A message may be handled before the news that its writer lives again.
-        return self.goal != NOBODY and (self._alive or monotonic() - self._heard < LEASE)
+        return self.goal != NOBODY and (self._alive or monotonic() - self._received < LEASE)
 
     def _on_message(self, message: Message) -> None:
-        self._heard = monotonic()
+        self._received = monotonic()
         self.goal, self.holder = bytes(message.goal), message.holder
         self._changed(self)
 
@@ -86,12 +86,12 @@ class Link:
             self._ros.after(GRACE, self._judge)
             return
         else:
-            self._alive, self._heard = False, 0.0
+            self._alive, self._received = False, 0.0
         self._changed(self)
 
     def _judge(self) -> None:
         if self._asserted == 0 and self._alive:
-            self._alive, self._heard = False, 0.0
+            self._alive, self._received = False, 0.0
             self._changed(self)
 
 

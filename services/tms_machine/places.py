@@ -57,8 +57,8 @@ class Path(Params):
     def _fits(self) -> "Path":
         lengths = {name: len(self._list(name)) for name in ("x", "y", "z", *TURN[self.angles])}
         if len(set(lengths.values())) != 1:
-            told = ", ".join(f"{name} {length}" for name, length in lengths.items())
-            raise ValueError(f"the lists differ in length: {told}")
+            reported = ", ".join(f"{name} {length}" for name, length in lengths.items())
+            raise ValueError(f"the lists differ in length: {reported}")
         if not self.x:
             raise ValueError("the path is empty")
         self.poses()

@@ -2,7 +2,7 @@
 
 from tms_reason.quantities import Metres, Moments, Radians, Seconds
 from tms_reason.reason import Reason
-from tms_reason.remedies import EDIT_CONFIG, GIVE_BACK, LOOK, PROCESSES, REARM, RECORDS
+from tms_reason.remedies import EDIT_CONFIG, GIVE_BACK, INSPECT, PROCESSES, REARM, RECORDS
 
 
 # fmt: off
@@ -10,7 +10,7 @@ from tms_reason.remedies import EDIT_CONFIG, GIVE_BACK, LOOK, PROCESSES, REARM, 
 class SoftwareStop(Reason, text="software stop"): pass
 class SoftwareStopBy(SoftwareStop, text="software stop by {person}"): person: str
 class SoftwareStopSaying(SoftwareStop, text="software stop: {why}"): why: Reason
-class NoNote(Reason, text="it is not known on this PC how the machine was left", action=LOOK): pass
+class NoNote(Reason, text="it is not known on this PC how the machine was left", action=INSPECT): pass
 class MachineLatched(Reason, text="{machine} is stopped: {cause}", action=REARM): machine: str; cause: Reason
 class NoPermit(Reason, text="no motion permit: {why}"): why: Reason
 
@@ -43,7 +43,7 @@ class NotReached(Reason, text="{machine} says that it did not reach {angle}", de
     machine: str; angle: Radians; what: str
 class NoJointState(Reason, text="nothing was heard of {joint} of {machine} within {limit}", action=PROCESSES,
     details="{topic}"): joint: str; machine: str; limit: Seconds; topic: str
-class MotionNotEnded(Reason, text="{machine} did not end its motion", action=LOOK): machine: str
+class MotionNotEnded(Reason, text="{machine} did not end its motion", action=INSPECT): machine: str
 class WaitingFor(Reason, text="waiting for {process}", action=PROCESSES): process: str
 
 # progress
@@ -57,4 +57,5 @@ class Stood(Reason, text="stood after {seconds}, {angle} ({joint}) and {way}: {c
     seconds: Moments; angle: Radians; joint: str; way: Metres; cause: Reason
 class StoodWithoutJoints(Reason, text="stood after {seconds}, {way}: {cause}"):
     seconds: Moments; way: Metres; cause: Reason
-class StopUnconfirmed(Reason, text="STOP UNCONFIRMED: {detail} ({cause})", action=LOOK): detail: Reason; cause: Reason
+class StopUnconfirmed(Reason, text="STOP UNCONFIRMED: {detail} ({cause})", action=INSPECT):
+    detail: Reason; cause: Reason

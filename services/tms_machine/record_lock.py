@@ -18,7 +18,7 @@ from tms_ros.node import Ros
 FLAG, OWNER, UNTIL = "LOCK_FLG", "LOCK_OWNER", "LOCK_UNTIL"
 FIELDS = {FLAG, OWNER, UNTIL}
 LEASE = 300.0  # s from planning to the end of the motion
-LIMIT = 2.0  # s for the database
+DATABASE_LIMIT = 2.0  # s for the database
 SERVICE = "/tms/db/set_parameter"
 
 
@@ -62,7 +62,7 @@ class RecordLock:
         Raises:
             SubtaskFailed, RosError: the database refused or did not answer.
         """
-        answer = self._ros.call(SetParameter, SERVICE, self._request(taken(self._owner, unix_time())), LIMIT)
+        answer = self._ros.call(SetParameter, SERVICE, self._request(taken(self._owner, unix_time())), DATABASE_LIMIT)
         if answer.error_code:
             raise SubtaskFailed(refusal(answer.error_code, answer.error_msg))
 

@@ -32,16 +32,16 @@ class Tipping(Acting):
         """
         self.joint(joint)
         found: list[float] = []
-        heard = threading.Event()
+        received = threading.Event()
 
         def look(state: MachineState) -> None:
             if state.ready and joint in state.joint_names:
                 found.append(state.positions[list(state.joint_names).index(joint)])
-                heard.set()
+                received.set()
 
         topic = f"/{self.name}/rc/state"
         subscription = self._ros.subscribe(MachineState, topic, look, latched=True)
-        there = heard.wait(STATE_LIMIT)
+        there = received.wait(STATE_LIMIT)
         self._ros.on_executor(lambda: self._ros.node.destroy_subscription(subscription))
         self.check()
         if not there:
@@ -49,9 +49,9 @@ class Tipping(Acting):
         return found[0]
 
     def _turn(self, field: str, action_type: Any, angle: float, progress: Progress) -> None:
-        def heard(feedback: Any) -> None:
+        def received(feedback: Any) -> None:
             progress(Turning(feedback.current_error))
 
-        result = self.guarded(field, action_type, action_type.Goal(target_angle=angle), heard)
+        result = self.guarded(field, action_type, action_type.Goal(target_angle=angle), received)
         if not result.success:
             raise SubtaskFailed(NotReached(self.name, angle, field))

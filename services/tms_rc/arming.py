@@ -68,7 +68,7 @@ class Arming:
         guard.stood_in = False
         guard.vigil.end(monotonic())
         self._app.log.info("armed")
-        guard.told()
+        guard.reported()
         return None
 
     def _keeps_from_arming(self) -> Reason | None:
@@ -105,7 +105,7 @@ class Arming:
         elif wrong is None:
             self._guard.by_hand = request.who
             self._app.log.warning("taken", who=request.who)
-            self._guard.told()
+            self._guard.reported()
         _fill(response, wrong)
         return response
 
@@ -140,7 +140,7 @@ class Arming:
         elif not on and guard.by_hand == MANUAL:
             guard.by_hand = ""
             guard.stop_now(ManualOff(), Kind.PLAIN)
-        guard.told()
+        guard.reported()
 
 
 def _fill(response: Rearm.Response | TakeMachine.Response, wrong: Reason | None) -> None:

@@ -16,7 +16,7 @@ SPEED_MARGIN = 1.5  # times its top speed: nothing goes further from one sample 
 BETWEEN = 0.004  # rad or m that a motion may differ from what the velocities at both its ends allow ...
 JITTER = 0.025  # s, ... and as far as it goes in this time: drivers stamp what they have measured a little earlier
 
-Place = tuple[float, ...]  # rad, or m; empty where only a speed is told
+Place = tuple[float, ...]  # rad, or m; empty where only a speed is reported
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class Channel:
         self._seen = (*kept, Seen(received, stamped, place, speed, fast))
 
     def clear(self) -> None:
-        """Forget everything: what was heard belongs to another clock."""
+        """Forget everything: what was received belongs to another clock."""
         self._seen = ()
 
     def moving(self) -> bool:
@@ -97,8 +97,8 @@ class Channel:
         recent = self._recent()
         if not recent or not recent[0].place or recent[-1].received - recent[0].received < SPAN * WORST:
             return None
-        told = [abs(one.speed) for one in recent if one.speed is not None]
-        if len(told) < len(recent):
+        reported = [abs(one.speed) for one in recent if one.speed is not None]
+        if len(reported) < len(recent):
             return None
         first, last, limit = recent[0], recent[-1], self._limits.speed
         seconds = last.stamped - first.stamped
@@ -106,9 +106,9 @@ class Channel:
             return None
         away = max(0.0, self._distance(first.place, last.place) - self._limits.resolution)
         mean = away / (seconds * self._limits.scale)
-        if mean > CLEARLY * limit and max(told) < limit:
+        if mean > CLEARLY * limit and max(reported) < limit:
             return PositionsMove()
-        if min(told) > CLEARLY * limit and mean < limit:
+        if min(reported) > CLEARLY * limit and mean < limit:
             return VelocitiesMove()
         return None
 

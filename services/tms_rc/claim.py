@@ -13,8 +13,8 @@ from tms_rc.reasons import Rival
 from tms_reason.reason import Reason
 from tms_runtime.app import App
 
-SETTLE = 0.4  # s for gateways to find each other; one that is found later is told then
-LOOK = 0.1  # s
+SETTLE = 0.4  # s for gateways to find each other; one that is found later is reported then
+CLAIM_CHECK_PERIOD = 0.1  # s
 GATEWAYS = Gauge("tms_rc_gateways", "Gateways of this machine, this one included; more than one is a mistake")
 
 
@@ -32,7 +32,7 @@ class Claim:
         app.ros.on_executor(
             lambda: app.ros.lease_subscribe(GatewayClaim, topic, LEASE, self._on_claim, self._on_liveliness)
         )
-        self._tell()
+        self._publish()
         app.pulse.add(self._beat)
 
     @property
@@ -44,26 +44,26 @@ class Claim:
     def serve(self) -> bool:
         """Wait until no other gateway is at work, then say that this one is; False when the process ends before."""
         self._app.stopping.wait(SETTLE)
-        told = False
+        reported = False
         while not self._app.stopping.is_set():
             other = self._other()
             if other is None or not (other.serving or other.id < self._id):
                 break
-            if not told:
+            if not reported:
                 self._app.log.error("second_gateway", other=other.where, action="does not serve")
-                told = True
-            sleep(LOOK)
+                reported = True
+            sleep(CLAIM_CHECK_PERIOD)
         if self._app.stopping.is_set():
             return False
         self._serving = True
-        self._tell()
+        self._publish()
         return True
 
     def _other(self) -> GatewayClaim | None:
         others = list(self._others.values())
         return others[-1] if others and self._alive > 1 else None
 
-    def _tell(self) -> None:
+    def _publish(self) -> None:
         self._publisher.publish(GatewayClaim(id=self._id, serving=self._serving, where=self._where))
 
     def _beat(self) -> None:

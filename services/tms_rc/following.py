@@ -1,4 +1,4 @@
-"""Whether the machine does what it was told: joints that do not follow, or go the wrong way, are told at once. Pure.
+"""Whether the machine does what it was commanded: joints that do not follow, or go the wrong way. Pure.
 
 Controllers differ in how far they run behind their reference, so nothing is compared with the reference of this moment
 but with what must have been reached after dead time and lag, and with the way as a whole.
@@ -17,7 +17,7 @@ QUIET = 0.8  # s for which a joint that is behind must not have moved at all
 QUIET_ANGLE = 0.005  # rad that count as no motion
 BEHIND = 0.05  # rad
 OFF_PATH = 0.2  # rad outside of everything the reference has been through
-AHEAD = 1.0  # s that a controller may have begun before its acceptance was heard here
+AHEAD = 1.0  # s that a controller may have begun before its acceptance was received here
 SMALLEST = 0.0005  # rad of a reference that must show as motion: from stand-still it is faster than the limit by then
 
 
@@ -92,7 +92,7 @@ class Follower:
         return found
 
     def moved(self, now: float, seconds: float) -> bool:
-        """Whether the reference has moved within the last seconds, so that what is heard must have changed."""
+        """Whether the reference has moved within the last seconds, so that what is received must have changed."""
         return any(self._went(way, now, seconds) > BEHIND for way in self._ways.values())
 
     def _went(self, way: Way, now: float, seconds: float) -> float:

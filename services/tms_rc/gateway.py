@@ -47,7 +47,7 @@ SERVER_LIMIT = 3.0  # s for the machine's server to be there, and for news of th
 ACCEPT_LIMIT = 3.0  # s for it to answer a goal
 OVERRUN = 10.0  # s that a trajectory may last beyond its own duration
 FROZEN = 0.65  # s that a look may take: a gateway that stood still for 0.7 s stops its machine
-LOOK = 0.1  # s between looks at limits and sensors while it moves
+LIMIT_CHECK_PERIOD = 0.1  # s between looks at limits and sensors while it moves
 REFUSED = -1  # control_msgs INVALID_GOAL
 UNKNOWN = 600  # nav2_msgs, where a result has an unsigned code
 
@@ -134,7 +134,7 @@ class Gateway:
         """
         deadline = monotonic() + SERVER_LIMIT
         while (silent := self._guard.silent()) is not None and monotonic() < deadline:
-            if goal.cancelled.wait(LOOK):
+            if goal.cancelled.wait(LIMIT_CHECK_PERIOD):
                 return None  # the goal ends as cancelled
         return silent
 
@@ -160,7 +160,7 @@ class Gateway:
         deadline = monotonic() + _duration(active.goal.request) + OVERRUN
         while active.stop is None and not (active.call is not None and active.ended()):
             before = monotonic()
-            self._wait(active, lambda call: call.outcome is not None, LOOK)
+            self._wait(active, lambda call: call.outcome is not None, LIMIT_CHECK_PERIOD)
             frozen = monotonic() - before
             if frozen > FROZEN and active.stop is None:  # its own news of the machine are old, not the machine silent
                 self._guard.stop(ProcessLost(GatewayStood(frozen)), Kind.HOLD)

@@ -67,7 +67,7 @@ class Active:
     chain: dict[str, Owner]
     start: dict[str, float]  # rad, joints when it began
     sent: float = 0.0  # s, monotonic: when it left for the machine; 0 before
-    begun: float = 0.0  # s, monotonic: when it was heard that it was accepted; 0 before
+    begun: float = 0.0  # s, monotonic: when it was received that it was accepted; 0 before
     follower: Follower | None = None  # of a trajectory, once it was accepted
     call: AnyCall | None = None
     stop: Stop | None = None
@@ -102,10 +102,10 @@ class Guard:
         self.latch, self.notes = latch, notes
         self.stopper = Stopper(app, controls, watch, self._note)
         self.vigil = Vigil()
-        self._news = threading.Condition()  # of permits
+        self._changed = threading.Condition()  # of permits
         self._taking = threading.Lock()
         self.run: int | None = None  # that holds the machine
-        self.run_told: Callable[[int], None] = lambda run: None  # called with each run that takes the machine
+        self.run_reported: Callable[[int], None] = lambda run: None  # called with each run that takes the machine
         self.pressed = 0.0  # monotonic time of the last software stop message
         self.by_hand = ""  # who drives it by hand
         self.stood_in = False  # the host agent has pressed `emg_stop` in place of this gateway
@@ -113,7 +113,7 @@ class Guard:
         self.press_known.set()
         self.recovering = False  # what the last gateway may have left moving is being stopped
         self.active: Active | None = None
-        self.told: Callable[[], None] = lambda: None  # called when the latch has changed, to tell it at once
+        self.reported: Callable[[], None] = lambda: None  # called when the latch has changed, to tell it at once
         self.permits = Permits(app, self._permit_changed)
 
     def silent(self) -> Reason | None:
@@ -173,7 +173,7 @@ class Guard:
 
     def _wait_for_permit(self, owner: Owner | None) -> Reason | None:
         deadline = monotonic() + PERMIT_LIMIT
-        with self._news:
+        with self._changed:
             while True:
                 if self.latch.cause:
                     return self.latch.refusal(owner)
@@ -182,14 +182,14 @@ class Guard:
                     return None
                 if found.late or left <= 0:
                     return NoPermit(found.reason)
-                self._news.wait(min(left, 0.1))
+                self._changed.wait(min(left, 0.1))
 
     def _permit_changed(self, link: Link) -> None:
         if link.process == SCHEDULER:
             self._scheduler_changed(link)
         self.check_chain()
-        with self._news:
-            self._news.notify_all()
+        with self._changed:
+            self._changed.notify_all()
 
     def _scheduler_changed(self, link: Link) -> None:
         run = self.permits.held().get(SCHEDULER)
@@ -201,7 +201,7 @@ class Guard:
         before, self.run = self.run, None if run is None else run.run
         self.latch.run_is(self.run)
         if self.run is not None:
-            self.run_told(self.run)
+            self.run_reported(self.run)
         elif before is not None:
             self.notes.release()
 
@@ -247,7 +247,7 @@ class Guard:
             active.stop = active.stop or stop
             active.wake()
         self.vigil.begin()
-        self.told()
+        self.reported()
         return stop
 
     def look(self) -> None:
@@ -299,12 +299,12 @@ class Guard:
         return response
 
     def _note(self, receipt: StopReceipt) -> None:
-        """What a stop has shown, kept before it is told."""
+        """What a stop has shown, kept before it is reported."""
         if not receipt.confirmed:
             cause, detail = wire.known(receipt.cause), wire.known(receipt.detail)
             self.latch.close(NotSeenToStand(cause, detail, self._app.machine))
             self.controls.emergency(True)
-            self.told()
+            self.reported()
         elif self.stood_in and not self.latch.cause:
             self.stood_in = False
             self.controls.emergency(False)

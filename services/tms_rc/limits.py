@@ -81,7 +81,7 @@ def pace_problem(
     Between two points a joint may go at most as fast as its limit of speed, and a little more, for planners round.
     `speed` is that of a simulated machine: one that has just moved was last heard `speed` times further away.
     """
-    before, unheard = Point(0.0, [present.get(name, math.nan) for name in joints], []), UNHEARD * speed
+    before, unreceived = Point(0.0, [present.get(name, math.nan) for name in joints], []), UNHEARD * speed
     for number, point in enumerate(points):
         if not all(map(math.isfinite, point.rest)):
             return _at(number, len(points), RestNoNumber())
@@ -89,11 +89,11 @@ def pace_problem(
         if passed < 0 or (passed == 0 and number > 0):
             return _at(number, len(points), TimeNotAfter(point.time))
         for name, old, new in zip(joints, before.positions, point.positions, strict=True):
-            allowed = model.joints[name].velocity * (SPEED_MARGIN * passed + unheard) + ANGLE_EPSILON
+            allowed = model.joints[name].velocity * (SPEED_MARGIN * passed + unreceived) + ANGLE_EPSILON
             if abs(new - old) > allowed:  # false where nobody knows the joint's place
                 fast = TooFast(abs(new - old), passed, model.joints[name].velocity)
                 return _at(number, len(points), AtJoint(name, fast))
-        before, unheard = point, 0.0
+        before, unreceived = point, 0.0
     return None
 
 

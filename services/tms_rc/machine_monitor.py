@@ -1,4 +1,4 @@
-"""What is heard of the machine: ROS messages of every source into samples, and who else publishes them."""
+"""What is received of the machine: ROS messages of every source into samples, and who else publishes them."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -32,7 +32,7 @@ class MachineMonitor:
         border = app.site.border(app.machine)
         self._names = {border.joints.get(name, name): name for name in app.site.model_of(app.machine).joints}
         self._topics: dict[str, str] = {name: f"/{app.machine}/{getattr(border, name)}" for name in border.sources}
-        self._news = [
+        self._inputs = [
             (name, app.ros.sample_arrivals(_type(name, border), topic, DEPTH), self._reader(name, border))
             for name, topic in self._topics.items()
         ]
@@ -41,8 +41,8 @@ class MachineMonitor:
     def look(self) -> None:
         """Take what waits."""
         now = monotonic()
-        for name, news, read in self._news:
-            source, arrivals = self._watch.sources[name], news()
+        for name, take_new, read in self._inputs:
+            source, arrivals = self._watch.sources[name], take_new()
             if arrivals and source.age(now) > source.longest:
                 self._count(name)  # before its word counts: whoever speaks now may not be the only one
             for arrival in arrivals:

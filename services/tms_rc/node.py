@@ -28,14 +28,14 @@ from tms_reason.wire import to_line
 from tms_ros.client import AnyPeer
 from tms_runtime.app import App
 
-TOLD_MOVING, TOLD_STILL = 0.2, 0.5  # s between messages about the machine; a change is told at once
+MOVING_PERIOD, STILL_PERIOD = 0.2, 0.5  # s between messages about the machine; a change is reported at once
 SIGNALS = 100  # of all buttons that may wait: no `false` may push out the `true` of another one
 PERMIT = Gauge("tms_rc_permit", "1 while a run stands behind the machine's motions")
 LATCHED = Gauge("tms_rc_latched", "1 while the machine is stopped until a person re-arms it")
 HELD = Gauge("tms_rc_held", "1 while only the run that lost a process may move the machine")
 TAKEN = Gauge("tms_rc_taken", "1 while a person drives the machine by hand")
 MOVING = Gauge("tms_rc_moving", "1 while the machine is seen to move")
-NEWS_AGE = Gauge("tms_rc_machine_news_age_seconds", "Age of the oldest of joint states and odometry")
+STATE_AGE = Gauge("tms_rc_machine_news_age_seconds", "Age of the oldest of joint states and odometry")
 NEVER = 1e9  # s
 GATEWAY = bytes([255]) * 16  # what the gateway's own permit stands behind: the machine itself
 
@@ -67,25 +67,25 @@ def _serve(app: App, claim: Claim) -> None:
     view = MachineMonitor(app, watch)
     guard = Guard(app, watch, Controls(app.ros, machine, border), latch, Notes(app, memory, latch))
     recovery = Recovery(app, guard, left)
-    told = Told(app, guard, view, claim)
-    _offer(app, guard, Gateway(app, guard, watch), told)
+    reported = StateTopic(app, guard, view, claim)
+    _offer(app, guard, Gateway(app, guard, watch), reported)
     publisher = app.ros.publisher(MachineState, f"/{machine}/rc/state", depth=1, latched=True)
-    state_publisher = StatePublisher(guard, watch, lambda: publisher.publish(told.state()))
-    guard.told = state_publisher.tell
+    state_publisher = StatePublisher(guard, watch, lambda: publisher.publish(reported.state()))
+    guard.reported = state_publisher.publish_now
     for step in (view.look, guard.look, state_publisher.look):
         app.pulse.add(step)
     permit = Permit(app.ros, app.pulse, machine, "rc")
     # Not before the lease of a predecessor that was killed has run out: nobody would notice its loss.
     app.ros.on_executor(lambda: app.ros.after(LEASE, lambda: permit.hold(GATEWAY)))
-    app.ready_when(told.unready)
+    app.ready_when(reported.unready)
     recovery.run()
 
 
-def _offer(app: App, guard: Guard, gateway: Gateway, told: "Told") -> None:
+def _offer(app: App, guard: Guard, gateway: Gateway, reported: "StateTopic") -> None:
     border, machine, ros, arming = app.site.border(app.machine), app.machine, app.ros, Arming(app, guard)
     for motion in motions(border):
         peer = ros.peer(motion.type, f"/{machine}/{getattr(border, motion.field)}")
-        told.peers.append(peer)
+        reported.peers.append(peer)
         gateway.serve(motion, peer)
     ros.subscribe(Bool, "/emergency_signal", guard.signal, depth=SIGNALS)
     if border.emg_stop:
@@ -111,18 +111,18 @@ class StatePublisher:
         guard, moving = self._guard, self._watch.moving()
         active, latch = guard.active, guard.latch
         now = (moving, active and active.goal.id, latch.cause, latch.hold, guard.permits.holder(), guard.by_hand)
-        period = TOLD_MOVING if moving or active is not None else TOLD_STILL
+        period = MOVING_PERIOD if moving or active is not None else STILL_PERIOD
         if now != self._last or monotonic() - self._at >= period:
             self._last = now
-            self.tell()
+            self.publish_now()
 
-    def tell(self) -> None:
+    def publish_now(self) -> None:
         """From any thread."""
         self._at = monotonic()
         self._publish()
 
 
-class Told:
+class StateTopic:
     """What a gateway tells of its machine."""
 
     def __init__(self, app: App, guard: Guard, view: MachineMonitor, claim: Claim) -> None:
@@ -153,7 +153,7 @@ class Told:
         HELD.set(latch.hold is not None)
         TAKEN.set(bool(guard.by_hand))
         MOVING.set(moving)
-        NEWS_AGE.set(age)
+        STATE_AGE.set(age)
         return MachineState(
             machine=self._app.machine, ready=reason is None, moving=moving,
             goal=active.goal.id if active else "", owner=holder,

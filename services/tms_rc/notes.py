@@ -1,4 +1,4 @@
-"""Keeps on disk what the latch is: the last word counts, what cannot be kept is told."""
+"""Keeps on disk what the latch is: the last word counts, what cannot be kept is reported."""
 
 import threading
 

@@ -27,13 +27,13 @@ class Presses:
         self._app, self._guard = app, guard
         self._begun = monotonic()
         self._doubted = 0  # presses that were not judged yet
-        self._told_at = float("-inf")  # s, monotonic: when the host agent last said that it presses
+        self._reported_at = float("-inf")  # s, monotonic: when the host agent last said that it presses
         app.ros.subscribe(Time, stood_in(app.machine), self._on_stood_in, latched=True)
         app.ros.subscribe(Bool, topic, self._on_press, depth=DEPTH)
 
-    def _on_stood_in(self, told: Time) -> None:
-        if abs(self._app.ros.now().sec - told.sec) <= OLD:  # of the same PC's clock
-            self._told_at, self._guard.stood_in = monotonic(), True
+    def _on_stood_in(self, reported: Time) -> None:
+        if abs(self._app.ros.now().sec - reported.sec) <= OLD:  # of the same PC's clock
+            self._reported_at, self._guard.stood_in = monotonic(), True
 
     def _on_press(self, message: Bool) -> None:
         if message.data and not self._guard.latch.cause:  # latched, this gateway presses it itself
@@ -45,7 +45,7 @@ class Presses:
 
     def _judge(self, since: float) -> None:
         self._doubted -= 1
-        if self._told_at < since and not self._guard.latch.cause:
+        if self._reported_at < since and not self._guard.latch.cause:
             self._guard.stop_now(PressedByOthers(), Kind.LATCH)
         if not self._doubted:
             self._guard.press_known.set()

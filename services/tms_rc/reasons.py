@@ -2,7 +2,7 @@
 
 from tms_reason.quantities import Moments, Number, Radians, RadiansPerSecond, Seconds
 from tms_reason.reason import Reason
-from tms_reason.remedies import CANCEL, EDIT_CONFIG, LOOK, PROCESSES, REARM, RELEASE_STOP, RETRY, STATUS
+from tms_reason.remedies import CANCEL, EDIT_CONFIG, INSPECT, PROCESSES, REARM, RELEASE_STOP, RETRY, STATUS
 
 
 # fmt: off
@@ -73,15 +73,15 @@ class OffPath(Reason, text="{joint} is at {angle}, its way has been between {low
 class GivenBack(Reason, text="given back by {person}"): person: str
 class ManualOn(Reason, text="the machine's own manual mode was switched on"): pass
 class ManualOff(Reason, text="the machine's own manual mode was switched off"): pass
-class NoEnd(Reason, text="stopped, but the gateway did not see the end of it", action=LOOK): pass
+class NoEnd(Reason, text="stopped, but the gateway did not see the end of it", action=INSPECT): pass
 
 # what the machine tells of itself
 class JointStates(Reason, text="joint states"): pass
 class Odometry(Reason, text="odometry"): pass
 class Pose(Reason, text="pose"): pass
 class Imu(Reason, text="IMU"): pass
-class Unheard(Reason, text="no {source} from the machine yet", action=LOOK): source: Reason
-class UnheardOf(Reason, text="no {source} of {part} from the machine yet", action=LOOK): source: Reason; part: str
+class Unheard(Reason, text="no {source} from the machine yet", action=INSPECT): source: Reason
+class UnheardOf(Reason, text="no {source} of {part} from the machine yet", action=INSPECT): source: Reason; part: str
 class Old(Reason, text="{source} {age} old"): source: Reason; age: Seconds
 class OldOf(Reason, text="{source} of {part} {age} old"): source: Reason; part: str; age: Seconds
 class NoSource(Reason, text="the border declares no source that tells of its motion", action=EDIT_CONFIG): pass
@@ -114,8 +114,9 @@ class StillActive(Reason, text="{machine} still has an open goal", action=STATUS
 class CausePersists(Reason, text="{why}"): why: Reason
 class StillPressed(Reason, text="the software stop is still pressed", action=RELEASE_STOP,
     details="false on /emergency_signal"): pass
-class NotSeen(Reason, text="nobody sees whether {machine} stands: {why}", action=LOOK): machine: str; why: Reason
-class NotBelieved(Reason, text="what {machine} tells cannot be believed: {why}", action=LOOK): machine: str; why: Reason
+class NotSeen(Reason, text="nobody sees whether {machine} stands: {why}", action=INSPECT): machine: str; why: Reason
+class NotBelieved(Reason, text="what {machine} tells cannot be believed: {why}", action=INSPECT):
+    machine: str; why: Reason
 class StillProven(Reason, text="a stop of {machine} is still being proven", action=RETRY): machine: str
 class NotStill(Reason, text="{machine} does not stand still yet", action=RETRY): machine: str
 class BadToken(Reason, text="{why}"): why: Reason
@@ -127,7 +128,7 @@ class StateNotKept(Reason, text="the note of its state cannot be written: make r
     details="{problem}"): problem: str
 class DriverNotKept(Reason, text="the note of who drives cannot be written: make room on the disk of this PC",
     details="{problem}"): problem: str
-class NoteUnreadable(Reason, text="the note of how the machine was left cannot be read", action=LOOK): pass
+class NoteUnreadable(Reason, text="the note of how the machine was left cannot be read", action=INSPECT): pass
 class Nameless(Reason, text="say who drives"): pass
 class HeldByRun(Reason, text="run {run} holds {machine}", action=CANCEL): run: str; machine: str
 class NotTaken(Reason, text="nobody has taken {machine}", action=STATUS): machine: str

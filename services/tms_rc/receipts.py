@@ -1,4 +1,4 @@
-"""The last receipts of a machine, on the disk before they are told, and told again after a restart. Pure logic."""
+"""The last receipts of a machine, on the disk before they are reported, and sent again after a restart. Pure logic."""
 
 import base64
 import os

@@ -14,8 +14,8 @@ from tms_runtime.fence import Owner
 
 REACHED = 5.0  # s for the machine's servers to be there
 LEFT_MOVING = 2.0  # s that a machine that was left armed and idle is watched for a motion
-RUN_TOLD = 3.0  # s to hear of the run whose machine was stopped, before it is latched
-LOOK = 0.02  # s
+RUN_KNOWN_LIMIT = 3.0  # s to hear of the run whose machine was stopped, before it is latched
+RECOVERY_CHECK_PERIOD = 0.02  # s
 
 
 class Recovery:
@@ -26,7 +26,7 @@ class Recovery:
         self._open = True  # whether the last gateway may have left a motion of a run that has not told of itself yet
         self._stop: Stop | None = None
         self._begun = monotonic()
-        guard.run_told = self.claimed
+        guard.run_reported = self.claimed
         guard.recovering = bool(left.holder)
         guard.by_hand = left.taken
         if left.latched is not None:
@@ -44,17 +44,19 @@ class Recovery:
         guard, app = self._guard, self._app
         deadline = monotonic() + REACHED
         self._command()
-        while not guard.controls.reachable() and monotonic() < deadline and not app.stopping.wait(LOOK):
+        while (
+            not guard.controls.reachable() and monotonic() < deadline and not app.stopping.wait(RECOVERY_CHECK_PERIOD)
+        ):
             pass
         self._command()
         if self._left.holder or self._left.unproven:
             app.ros.on_executor(lambda: self._take_over(self._left.run or UNKNOWN_RUN))
-        deadline = monotonic() + (RUN_TOLD if self._left.holder else LEFT_MOVING)
+        deadline = monotonic() + (RUN_KNOWN_LIMIT if self._left.holder else LEFT_MOVING)
         while self._open and guard.active is None and monotonic() < deadline:
-            if app.stopping.wait(LOOK):
+            if app.stopping.wait(RECOVERY_CHECK_PERIOD):
                 return
             if self._stop is None and guard.watch.moved_at > self._begun:
-                deadline = monotonic() + RUN_TOLD
+                deadline = monotonic() + RUN_KNOWN_LIMIT
                 app.ros.on_executor(lambda: self._take_over(UNKNOWN_RUN))
         app.ros.on_executor(self._close)
         if self._stop is not None:

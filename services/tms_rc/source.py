@@ -98,7 +98,7 @@ class SourceWatch:
             self.fast = self.fast or (channel.last is not None and channel.last.fast)
 
     def age(self, now: float) -> float:
-        """Seconds since the channel that was silent for longest was heard; infinite before the first word of it."""
+        """Seconds since the channel that was silent for longest was received; infinite before the first word of it."""
         last = [channel.last for channel in self.channels.values()]
         return max((float("inf") if one is None else now - one.received for one in last), default=float("inf"))
 

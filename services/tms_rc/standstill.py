@@ -34,7 +34,7 @@ class Travel:
 
 @dataclass(frozen=True)
 class Expected:
-    """The motion that must be seen, or must have been, for what is heard to be believed."""
+    """The motion that must be seen, or must have been, for what is received to be believed."""
 
     since: float | None = None  # s, monotonic, when it began; None: nothing was to move
     to_come: Mapping[str, float] = field(default_factory=dict)  # joint -> rad that were commanded and not seen yet
@@ -54,11 +54,11 @@ class Proof:
     unseen: float  # s, ... and later than this, where the expected motion was never seen
     expected: Expected
     seconds: float  # s of standing
-    at_once: bool = False  # the stop takes back what is on its way
+    immediate: bool = False  # the stop takes back what is on its way
 
     def after(self, other: "Proof") -> "Proof":
         """What must be seen if another stop was commanded before: what that one waits for may still come."""
-        if self.at_once:
+        if self.immediate:
             return self
         since = [one for one in (self.expected.since, other.expected.since) if one is not None]
         mine, others = self.expected.to_come, other.expected.to_come
@@ -147,7 +147,7 @@ class StandStill:
 
     @property
     def velocities(self) -> dict[str, float]:
-        """Last velocity of each joint, where it is told [rad/s]."""
+        """Last velocity of each joint, where it is reported [rad/s]."""
         joints = self.sources.get(JOINTS)
         last = {name: one.last for name, one in joints.channels.items()} if joints else {}
         return {name: seen.speed for name, seen in last.items() if seen is not None and seen.speed is not None}
@@ -163,7 +163,7 @@ class StandStill:
         return next(filter(None, (source.silent(now, limit) for source in self.sources.values())), None)
 
     def trouble(self, now: float) -> Trouble | None:
-        """Why what is heard cannot be believed; what does not pass comes first."""
+        """Why what is received cannot be believed; what does not pass comes first."""
         found = [one for source in self.sources.values() if (one := source.trouble(now)) is not None]
         found += [Trouble(beyond) for beyond in [self._beyond()] if beyond is not None]
         return min(found, key=lambda one: one.passes, default=None)
@@ -220,15 +220,15 @@ class StandStill:
 
         A strongest stop that acts at once (`emg_stop_at_once`) needs no dead time if it can be seen to act: the machine
         moves, or nothing is on its way. Else one that ignores it would be believed to stand.
-        An expected motion that was never seen makes what is heard doubtful, as a replayed record is: then nothing
+        An expected motion that was never seen makes what is received doubtful, as a replayed record is: then nothing
         counts before every motion must have ended, also that of a machine which goes on for a while.
         """
         visible = self._motion_at > begun - WORST or begun - self._quiet_since > self.dead_time
-        at_once = strongest and self._at_once and visible
-        wait, coming = (0.0, {}) if at_once else (self.dead_time, expected.to_come)
+        immediate = strongest and self._at_once and visible
+        wait, coming = (0.0, {}) if immediate else (self.dead_time, expected.to_come)
         expected = Expected(expected.since, {name: way for name, way in coming.items() if way > SEEN})
         unseen = begun + self.dead_time + self.braking + OBEYS
-        return Proof(begun + wait, unseen, expected, self._model.still.seconds, at_once)
+        return Proof(begun + wait, unseen, expected, self._model.still.seconds, immediate)
 
     def proven(self, proof: Proof, now: float) -> bool:
         """Whether it was seen."""

@@ -2,7 +2,7 @@
 
 The commands leave in the caller's thread, which is the executor thread for software stops and lost permits: nothing
 here waits for a database, a scheduler, a console, a disk or a lock that one of those holds. The order of a stop is
-command, proof, note, receipt: what is told is on the disk.
+command, proof, note, receipt: what is reported is on the disk.
 """
 
 import threading
@@ -25,7 +25,7 @@ from tms_runtime.app import App
 from tms_runtime.packing import pack, unpack
 
 AGAIN = 0.5  # s between repeated commands while it is not proven
-LOOK = 0.01  # s
+STANDSTILL_CHECK_PERIOD = 0.01  # s
 
 STOPS = Counter("tms_rc_stops_total", "Stops by whether the machine was seen to stand", ["confirmed"])
 for _answer in ("yes", "no"):  # a series that only appears with its first stop has no increase to alert on
@@ -64,7 +64,7 @@ class Stopper:
     """Of one machine; several stops may be under way."""
 
     def __init__(self, app: App, controls: Controls, watch: StandStill, note: Callable[[StopReceipt], None]) -> None:
-        """`note` is called in the stop's own thread with the receipt, before that is told; it may wait for the disk."""
+        """`note` is called in the stop's own thread with the receipt, before it is sent, and may wait for the disk."""
         self._note = note
         self._app, self._controls, self._watch = app, controls, watch
         self._under_way: list[Stop] = []
@@ -122,7 +122,7 @@ class Stopper:
         """Watch until the stop is proven, repeating the commands; then tell."""
         now, again = stop.begun, stop.begun + AGAIN
         while not self._seen(stop, now) and now - stop.begun < STOP_PROVEN:
-            sleep(LOOK)
+            sleep(STANDSTILL_CHECK_PERIOD)
             now = monotonic()
             if self._app.ros.closing:
                 return  # the successor stops the machine again and writes the receipt
@@ -131,7 +131,7 @@ class Stopper:
                 self.command(stop.latched)
         stop.receipt = self._receipt(stop, now)
         self._note(stop.receipt)
-        self._tell(stop.receipt)
+        self._publish(stop.receipt)
         self._under_way.remove(stop)
         stop.over.set()
 
@@ -150,7 +150,7 @@ class Stopper:
             evidence=to_line(ByArrival(tuple(unstamped))) if unstamped else "",
         )  # fmt: skip
 
-    def _tell(self, receipt: StopReceipt) -> None:
+    def _publish(self, receipt: StopReceipt) -> None:
         STOPS.labels("yes" if receipt.confirmed else "no").inc()
         STOP_SECONDS.observe(receipt.seconds)
         try:

@@ -64,7 +64,7 @@ class Call(Generic[R, F]):
             self.outcome = outcome
             self.changed()
 
-    def heard(self, message: Any) -> None:
+    def received(self, message: Any) -> None:
         self.feedback = message.feedback
         if self._on_feedback is not None:
             self._on_feedback(message.feedback)
@@ -172,7 +172,7 @@ class Peer(Generic[G, R, F]):
                     self._client.forget(other.id)
             self._open = [other for other in self._open if other.outcome is None] + [call]
             goal_id = UUID(uuid=list(call.id))
-            future = self._client.send_goal_async(goal, feedback_callback=call.heard, goal_uuid=goal_id)
+            future = self._client.send_goal_async(goal, feedback_callback=call.received, goal_uuid=goal_id)
             future.add_done_callback(lambda done: call.answered(done.result()))
             self._taken_by = self._servers()  # takes a while: the goal is on its way meanwhile
 

@@ -49,7 +49,7 @@ class ServiceType(Protocol[Req, Res]):
 
 
 class ActionType(Protocol[G, R, F]):
-    """An action: what is wanted, how it ended, what is told meanwhile."""
+    """An action: what is wanted, how it ended, what is reported meanwhile."""
 
     def Goal(self) -> G: ...
     def Result(self) -> R: ...

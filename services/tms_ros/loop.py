@@ -105,7 +105,7 @@ class Loop:
                 raise
 
     def stop(self) -> None:
-        """End the thread: nothing is heard any more."""
+        """End the thread: nothing is received any more."""
         self.closing = True
         for step in self._ends:
             step()

@@ -11,7 +11,7 @@ from tms_ros.server import Served
 from tms_ros.services import Services
 from tms_ros.topics import Topics
 
-STOP_LIMIT = 1.0  # s for the workers of served goals to stop their motions
+WORKERS_LIMIT = 1.0  # s for the workers of served goals to stop their motions
 LAST_WORDS = 0.1  # s for results and reasons to leave before this process does
 
 
@@ -61,7 +61,7 @@ class Ros:
 
     def stop(self) -> None:
         """Cancel what is served, give its workers a moment, and receive nothing any more."""
-        self._served.leave(STOP_LIMIT)
+        self._served.leave(WORKERS_LIMIT)
         sleep(LAST_WORDS)
         self.loop.stop()
 

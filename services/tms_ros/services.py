@@ -17,7 +17,7 @@ from tms_ros.naming import process_of
 from tms_ros.privates import send_surely
 from tms_ros.reasons import BadServiceName, Internal, LostMeanwhile, NoAnswer, NoServer, ProcessLost
 
-LOOK = 0.1  # s between looks whether a server that owes an answer is still there
+SERVER_CHECK_PERIOD = 0.1  # s between looks whether a server that owes an answer is still there
 
 
 class Services:
@@ -102,7 +102,7 @@ class Services:
         done = threading.Event()
         future = client.call_async(request)
         future.add_done_callback(lambda _: done.set())
-        while not done.wait(min(LOOK, max(0.0, deadline - monotonic()))):
+        while not done.wait(min(SERVER_CHECK_PERIOD, max(0.0, deadline - monotonic()))):
             if lost() or monotonic() >= deadline:
                 client.remove_pending_request(future)
                 if lost():

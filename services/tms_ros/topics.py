@@ -21,7 +21,7 @@ from tms_ros.loop import Loop
 from tms_ros.privates import Asleep, take
 from tms_ros.reasons import NotConnected
 
-TOLD = 0.1  # s in which the news that a publisher is asserted follows its message, twice
+ASSERTED = 0.1  # s in which the news that a publisher is asserted follows its message, twice
 UNKNOWN = "_NODE_NAME_UNKNOWN_"  # of an end that discovery has found a moment before its node
 
 
@@ -55,7 +55,7 @@ class Topics:
         self,
         message_type: type[Message],
         topic: str,
-        heard: Callable[[Any], None],
+        on_message: Callable[[Any], None],
         quality_of_service: QoSProfile,
         group: CallbackGroup | None = None,
         liveliness: Callable[[Any], None] | None = None,
@@ -63,7 +63,7 @@ class Topics:
     ) -> Any:
         events = SubscriptionEventCallbacks(liveliness=liveliness, use_default_callbacks=False)
         return self._loop.node.create_subscription(
-            message_type, topic, heard, quality_of_service, callback_group=group or self._loop.group,
+            message_type, topic, on_message, quality_of_service, callback_group=group or self._loop.group,
             event_callbacks=events, raw=raw,
         )  # fmt: skip
 
@@ -75,7 +75,7 @@ class Topics:
         self,
         message_type: type[M],
         topic: str,
-        heard: Callable[[M], None],
+        on_message: Callable[[M], None],
         depth: int = 1,
         latched: bool = False,
         best_effort: bool = False,
@@ -83,12 +83,12 @@ class Topics:
         """Call `heard` on the executor thread; depth 1 means that only the latest counts.
 
         A best-effort subscription also hears reliable publishers, a reliable one hears no best-effort publisher.
-        What waits is heard in one go: for each message of its own, the executor does four times the work of a callback.
+        What waits is handled in one go: a turn of the executor for each message costs four times a callback's work.
         """
         subscription: Any = None
 
         def all_that_wait(message: M) -> None:
-            heard(message)
+            on_message(message)
             if subscription is None:  # this one came before the assignment below
                 return
             for _ in range(depth - 1):
@@ -98,7 +98,7 @@ class Topics:
                     return
                 if waiting is None:
                     return
-                heard(waiting[0])
+                on_message(waiting[0])
 
         subscription = self._subscribed(message_type, topic, all_that_wait, quality.topic(depth, latched, best_effort))
         return subscription
@@ -119,13 +119,13 @@ class Topics:
             message_type, topic, _unheard, quality.topic(depth, False, best_effort=best_effort), Asleep()
         )
 
-        def news() -> list[Arrival[M]]:
+        def take_new() -> list[Arrival[M]]:
             found: list[Arrival[M]] = []
             while len(found) < depth and (arrival := _arrival(subscription)) is not None:
                 found.append(arrival)
             return found
 
-        return news
+        return take_new
 
     def publishers(self, topic: str) -> list[tuple[str, str]]:
         """Node and type of each publisher of a topic in the whole graph."""
@@ -136,10 +136,10 @@ class Topics:
         """How many publishers a topic has in the whole graph."""
         return int(self._loop.node.count_publishers(topic))
 
-    def subscribe_raw(self, message_type: type[Message], topic: str, heard: Callable[[bytes], None]) -> Any:
+    def subscribe_raw(self, message_type: type[Message], topic: str, on_message: Callable[[bytes], None]) -> Any:
         """Call `heard` with each message as it is on the wire, with the QoS of those who publish now."""
         offered = [info.qos_profile for info in self._loop.node.get_publishers_info_by_topic(topic)]
-        return self._subscribed(message_type, topic, heard, quality.as_offered(offered), raw=True)
+        return self._subscribed(message_type, topic, on_message, quality.as_offered(offered), raw=True)
 
     def lease_publisher(self, message_type: type[M], topic: str, seconds: float) -> Publisher[M]:
         """A latched publisher whose readers are told when it was not asserted for `seconds`."""
@@ -150,7 +150,7 @@ class Topics:
         message_type: type[M],
         topic: str,
         seconds: float,
-        heard: Callable[[M], None],
+        on_message: Callable[[M], None],
         alive: Callable[[int, int], None],
     ) -> Any:
         """Call `heard` with messages and `alive` with the numbers of publishers that are, and are not, asserted.
@@ -160,13 +160,13 @@ class Topics:
 
         count = _Count(alive)
 
-        def heard_first(message: M) -> None:
+        def received_first(message: M) -> None:
             if not count.known:
-                # In two steps: what was told meanwhile is handled before the second one.
-                self._loop.after(TOLD, lambda: self._loop.after(TOLD, count.made_up))
-            heard(message)
+                # In two steps: what was reported meanwhile is handled before the second one.
+                self._loop.after(ASSERTED, lambda: self._loop.after(ASSERTED, count.made_up))
+            on_message(message)
 
-        return self._subscribed(message_type, topic, heard_first, quality.lease(seconds), liveliness=count.told)
+        return self._subscribed(message_type, topic, received_first, quality.lease(seconds), liveliness=count.reported)
 
     def mismatches(self, topic: str) -> set[NotConnected] | None:
         """What of others is on a topic of ours but not connected to us, and why; None while one's name is not known."""
@@ -200,9 +200,9 @@ class _Count:
 
     def __init__(self, alive: Callable[[int, int], None]) -> None:
         self._alive, self._missed = alive, 0
-        self.known = False  # whether anything was told
+        self.known = False  # whether anything was reported
 
-    def told(self, event: Any) -> None:
+    def reported(self, event: Any) -> None:
         """By DDS."""
         self.known = True
         self._missed = max(self._missed, -event.alive_count)
@@ -211,7 +211,7 @@ class _Count:
         self._alive(max(0, event.alive_count + self._missed), max(0, event.not_alive_count))
 
     def made_up(self) -> None:
-        """A message came, and nothing was told."""
+        """A message came, and nothing was reported."""
         if not self.known:
             self.known, self._missed = True, 1
             self._alive(1, 0)

@@ -23,8 +23,8 @@ from tms_runtime.fence import derived
 SERVER_LIMIT = 3.0  # s for the gateway to be there
 ACCEPT_LIMIT = 5.0  # s for it to answer; it asks nobody before it does
 OVERRUN = 20.0  # s beyond the trajectory's own duration: the gateway gives up after 10 s and needs 5 s to stop
-STOP_LIMIT = STOP_PROVEN + 2.0  # s for a cancelled motion to have ended
-LOOK = 0.5  # s between looks whether the gateway is still there
+MOTION_END_LIMIT = STOP_PROVEN + 2.0  # s for a cancelled motion to have ended
+GATEWAY_CHECK_PERIOD = 0.5  # s between looks whether the gateway is still there
 
 Gateway = Peer[FollowJointTrajectory.Goal, FollowJointTrajectory.Result, FollowJointTrajectory.Feedback]
 Motion = Call[FollowJointTrajectory.Result, FollowJointTrajectory.Feedback]
@@ -67,13 +67,13 @@ class Mover:
                 return MotionLate(self._machine, OVERRUN)
             if self._peer.left():
                 self._peer.mark_lost()  # it left in order, but without a result
-            call.wait_for(lambda: _over(goal, call), min(LOOK, deadline - monotonic()))
+            call.wait_for(lambda: _over(goal, call), min(GATEWAY_CHECK_PERIOD, deadline - monotonic()))
         return None
 
     def _stop(self, call: Motion) -> None:
         """Cancel the motion and wait until it has ended."""
         self._peer.cancel(call)
-        if not call.wait_for(lambda: call.outcome is not None, STOP_LIMIT):
+        if not call.wait_for(lambda: call.outcome is not None, MOTION_END_LIMIT):
             raise SubtaskFailed(MotionNotEnded(self._machine))
 
 

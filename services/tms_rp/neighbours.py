@@ -8,9 +8,9 @@ from tms_rp.clearance import Matrix, Obstacle, placed
 from tms_rp.reasons import PartOf, PlaceUnknown
 from tms_runtime.app import App
 
-LOOK = 0.2  # s; a plan does not look itself, which would cost it some ms: 0.1 to 0.25 for each message
+FRAMES_PERIOD = 0.2  # s; a plan does not look itself, which would cost it some ms: 0.1 to 0.25 for each message
 DEPTH = 200  # messages a look: what ten machines with joints and navigation tell meanwhile
-FIXED = 100  # messages that are told once, by as many processes
+FIXED = 100  # messages that are reported once, by as many processes
 
 
 class Neighbours:
@@ -22,13 +22,13 @@ class Neighbours:
         self._frames = Frames(self._bases.values())
         if len(self._bases) == 1:
             return  # nobody else is here
-        self._news = app.ros.sample(TFMessage, "/tf", DEPTH)
-        app.ros.subscribe(TFMessage, "/tf_static", self._frames.hear_fixed, depth=FIXED, latched=True)
-        app.ros.poll_in_thread(LOOK, self._look, "neighbours")
+        self._samples = app.ros.sample(TFMessage, "/tf", DEPTH)
+        app.ros.subscribe(TFMessage, "/tf_static", self._frames.receive_fixed, depth=FIXED, latched=True)
+        app.ros.poll_in_thread(FRAMES_PERIOD, self._look, "neighbours")
 
     def _look(self) -> None:
-        for message in self._news():
-            self._frames.hear(message)
+        for message in self._samples():
+            self._frames.receive(message)
 
     def _place(self, name: str) -> Matrix | None:
         found = self._frames.place(self._bases[name])

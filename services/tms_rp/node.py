@@ -41,7 +41,7 @@ from tms_rp.trajectory import Trajectory, trajectory
 from tms_runtime.app import App
 
 FRESH = 1.0  # s, older joint states are no start for a motion
-LOOK = 0.25  # s between looks at joint states, to know their age
+JOINTS_PERIOD = 0.25  # s between looks at joint states, to know their age
 
 PLANNING = Histogram("tms_rp_planning_seconds", "From goal to trajectory", buckets=(0.001, 0.005, 0.02, 0.05, 0.2, 1))
 
@@ -82,7 +82,7 @@ ACTIONS = (
 def start(app: App) -> None:
     """Serve `/<machine>/tms_rp_<model>_<action>`."""
     planner, model = Planner(app), app.site.file.machines[app.machine].model
-    app.ros.poll_in_thread(LOOK, planner.look, "joints")
+    app.ros.poll_in_thread(JOINTS_PERIOD, planner.look, "joints")
     for action in ACTIONS:
         planner.serve(action, f"/{app.machine}/tms_rp_{model}_{action.name}")
     app.ready_when(planner.unready)
@@ -103,14 +103,14 @@ class Planner:
         self._renamed = app.site.border(app.machine).joints
         self._busy = False  # set on the executor thread, which accepts one goal after another
         self._now: tuple[float, Pose] | None = None  # monotonic time [s], joints
-        self._news = app.ros.sample(JointState, f"/{app.machine}/{app.site.border(app.machine).joint_states}")
+        self._samples = app.ros.sample(JointState, f"/{app.machine}/{app.site.border(app.machine).joint_states}")
 
     def look(self) -> None:
         """Take the newest joint state."""
-        for message in self._news():
-            self._heard(message)
+        for message in self._samples():
+            self._received(message)
 
-    def _heard(self, message: JointState) -> None:
+    def _received(self, message: JointState) -> None:
         """Joint states are matched by name: backends order them differently."""
         found = dict(zip(message.name, message.position, strict=False))
         found.update({name: found[own] for name, own in self._renamed.items() if own in found})

@@ -5,20 +5,20 @@ from tms_ros.reasons import NotConnected
 from tms_runtime import metrics
 from tms_runtime.log import Logger
 
-PERIOD = 5.0  # s between looks
+GRAPH_CHECK_PERIOD = 5.0  # s between looks
 RCLPYS_OWN = "/parameter_events"
 TOPICS = 20  # looked at in one go: each takes some 0.3 ms of the executor
 
 
 class Graph:
-    """Looks from time to time; an end that does not fit is told in the log when it is seen first."""
+    """Looks from time to time; an end that does not fit is reported in the log when it is seen first."""
 
     def __init__(self, ros: Ros, log: Logger) -> None:
         self._ros, self._log = ros, log
-        self._crowds: dict[str, tuple[int, int]] = {}
+        self._peers: dict[str, tuple[int, int]] = {}
         self._changed: list[str] = []  # topics that are still to be looked at
-        self._told: dict[str, set[NotConnected]] = {}  # by topic
-        ros.every(PERIOD, self.look)
+        self._reported: dict[str, set[NotConnected]] = {}  # by topic
+        ros.every(GRAPH_CHECK_PERIOD, self.look)
 
     def look(self) -> None:
         """On the executor thread; also called by itself."""
@@ -26,22 +26,22 @@ class Graph:
         metrics.ENDPOINTS.labels("readers").set(readers)
         metrics.ENDPOINTS.labels("writers").set(writers)
         metrics.NODES.set(nodes)
-        crowds = peer_counts(self._ros)
-        changed = [topic for topic in sorted(crowds) if crowds[topic] != self._crowds.get(topic)]
+        counts = peer_counts(self._ros)
+        changed = [topic for topic in sorted(counts) if counts[topic] != self._peers.get(topic)]
         self._changed += [topic for topic in changed if topic not in self._changed]
-        self._crowds = crowds
+        self._peers = counts
         now, self._changed = self._changed[:TOPICS], self._changed[TOPICS:]
         for topic in now:
-            self._tell(topic)
+            self._publish(topic)
 
-    def _tell(self, topic: str) -> None:
+    def _publish(self, topic: str) -> None:
         found = self._ros.mismatches(topic)
         if found is None:
             self._changed.append(topic)
             return
-        for reason in sorted(found - self._told.get(topic, set()), key=repr):
+        for reason in sorted(found - self._reported.get(topic, set()), key=repr):
             self._log.warning("not_connected", reason=reason)
-        self._told[topic] = found
+        self._reported[topic] = found
 
 
 def endpoint_counts(ros: Ros) -> tuple[int, int, int]:

@@ -1,6 +1,6 @@
 """Metrics and health of a process on its own port: /metrics, /healthz (alive), /readyz (can work).
 
-Which process, machine and role a figure belongs to is told by the scrape target's labels, not by every metric.
+Which process, machine and role a figure belongs to is reported by the scrape target's labels, not by every metric.
 Labels in a metric take their values from the code or from the process table, never from data.
 """
 
@@ -26,9 +26,9 @@ ENDPOINTS = Gauge("tms_ros_matched_endpoints", "Remote ends that this process is
 NODES = Gauge("tms_ros_nodes", "Nodes that this process sees in its domain")
 STOOD_STILL = Counter("tms_stood_still_seconds", "Time in which this PC did not run the process, or it was frozen")
 
-MOST = 64  # connections; the oldest that has asked nothing yet gives way
+MAX_CONNECTIONS = 64  # connections; the oldest that has asked nothing yet gives way
 BACKLOG = 512  # connections that wait to be taken; beyond it the system keeps them waiting for a second and more
-LIMIT = 5.0  # s for a request to be there, and again for its answer to be taken
+REQUEST_LIMIT = 5.0  # s for a request to be there, and again for its answer to be taken
 LONGEST = 8192  # bytes of a request's line and headers
 END = b"\r\n\r\n"
 REQUEST = re.compile(rb"([A-Z]{1,20}) (/[!-~]*) HTTP/1\.[0-9]\r\n")
@@ -98,7 +98,7 @@ class _Connections:
     """Those that are open, in the order in which they came, or were answered."""
 
     def __init__(self) -> None:
-        self.limit = MOST
+        self.limit = MAX_CONNECTIONS
         self._open: dict[asyncio.Transport, None] = {}
 
     def add(self, one: asyncio.Transport) -> None:
@@ -148,7 +148,7 @@ class _Connection(asyncio.Protocol):
         self._connections.remove(self._transport)
 
     def _limit_time(self) -> None:
-        self._time = asyncio.get_running_loop().call_later(LIMIT, self._transport.abort)
+        self._time = asyncio.get_running_loop().call_later(REQUEST_LIMIT, self._transport.abort)
 
     def _response(self) -> bytes:
         if len(self._request) > LONGEST:

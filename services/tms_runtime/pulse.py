@@ -15,7 +15,7 @@ from tms_runtime.priority import waited
 
 BEAT = 0.05  # s
 LATE = 0.1  # s that a beat may come late before it tells of a PC that is too busy
-STOOD_STILL = 0.3  # s without an assertion that are told: with the lease of 0.5 s, others are about to take it for lost
+STOOD_STILL = 0.3  # s without an assertion that are reported: others take it for lost after 0.5 s
 REMEMBERED = 1.0  # s for which a late beat is remembered
 ASK = 1.0  # s between questions to the executor whether it runs: each wakes it
 STUCK = 0.18  # s in one callback, or without an answer, after which nothing is asserted; with the lease below 0.7 s
@@ -125,7 +125,7 @@ class Pulse:
             now = monotonic()
             self._lateness.beat(now)
             if self.works():
-                self._tell(now)
+                self._publish(now)
             self._ask(now)
             for step in self._steps:
                 step()
@@ -136,7 +136,7 @@ class Pulse:
             self._asked, self._waited = now, self._waits()
             self._executor.on_executor(self._answer)
 
-    def _tell(self, now: float) -> None:
+    def _publish(self, now: float) -> None:
         """Of a long time in which nothing was asserted [s], and for how much of it a processor was waited for [s]."""
         silent = now - (self._worked or now) - BEAT
         self._worked = now

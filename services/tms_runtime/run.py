@@ -20,7 +20,7 @@ from tms_runtime.metrics import Health
 from tms_runtime.priority import come_first, threads, undisturbed
 from tms_runtime.reasons import LongCallback, ParentGone, PcBusy, ProcessStarting
 
-LOOK = 0.5  # s
+END_CHECK_PERIOD = 0.5  # s
 FORGOTTEN = 3.0  # s; lease of discovery (5 s) less the time since the last announcement (1.5 s at most), 0.5 s to spare
 EXIT_LIMIT = 2.0  # s from SIGTERM to the end, whatever hangs
 PR_SET_PDEATHSIG = 1
@@ -103,7 +103,7 @@ def _wait_for_end(stop: threading.Event, failed: threading.Event, logger: Logger
     may stay deaf to each other for ever. Its successor is found by all.
     """
     before = monotonic()
-    while not stop.wait(LOOK) and not failed.is_set():
+    while not stop.wait(END_CHECK_PERIOD) and not failed.is_set():
         before, gap = monotonic(), monotonic() - before
         if gap > FORGOTTEN:  # it may have begun just after a look, or just before the next
             logger.error("forgotten", seconds=round(gap, 1), action="restarted")

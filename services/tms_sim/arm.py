@@ -26,7 +26,7 @@ class Arm:
         self.elapsed = 0.0  # s since the present path began; below 0: it waits for the longest dead time
         self.more_dead_time = 0.0  # s, which the controllers do not know of
         self.targets: dict[str, float] = {}  # rad, of joints that turn by themselves while there is no path
-        self.speeds: dict[str, float] = {}  # rad/s, of joints that turn until they are told something else
+        self.speeds: dict[str, float] = {}  # rad/s, of joints that turn until they are commanded something else
         self.lock = threading.RLock()  # of whoever gives goals, and of the time
         self._longest = max((servo.ahead for servo in self.servos.values()), default=0.0)
         self._path: Path | None = None
@@ -45,7 +45,7 @@ class Arm:
 
     @property
     def driven(self) -> bool:
-        """Whether anything moves because it was told to."""
+        """Whether anything moves because it was commanded to."""
         return any(servo.driven for servo in self.servos.values())
 
     @property
@@ -94,13 +94,13 @@ class Arm:
         self.targets.pop(name, None)
         self.servos[name].brake(self.now)
 
-    def halt(self, at_once: bool) -> None:
+    def halt(self, immediately: bool) -> None:
         """Emergency stop, with or without the dead time."""
         self._path = None
         self.targets.clear()
         self.speeds.clear()
         for servo in self.servos.values():
-            servo.halt(self.now, at_once, self.more_dead_time)
+            servo.halt(self.now, immediately, self.more_dead_time)
 
     def leak(self, velocity: float, seconds: float) -> None:
         """The first joint moves [rad/s] without being told."""

@@ -48,10 +48,10 @@ class Base(Tracks):
         self.go(())
         self.send(0.0, 0.0)
 
-    def halt(self, at_once: bool) -> None:
+    def halt(self, immediately: bool) -> None:
         """Emergency stop, with or without the dead time."""
         self.hold()
-        if at_once:
+        if immediately:
             self.brake_at_once()
 
     def left(self) -> float:

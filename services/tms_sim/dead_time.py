@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import Generic, TypeVar
 
 T = TypeVar("T")
-MOST = 10_000  # commands under way; older ones are lost beyond it
+MAX_COMMANDS = 10_000  # commands under way; older ones are lost beyond it
 EARLY = 1e-6  # s, a command that is due within this is due
 
 
@@ -14,7 +14,7 @@ class DeadTime(Generic[T]):
 
     def __init__(self, seconds: float) -> None:
         self._seconds = seconds
-        self._under_way: deque[tuple[float, T]] = deque(maxlen=MOST)
+        self._under_way: deque[tuple[float, T]] = deque(maxlen=MAX_COMMANDS)
 
     def __len__(self) -> int:
         return len(self._under_way)

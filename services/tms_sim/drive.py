@@ -39,9 +39,9 @@ class Drive:
         """Bring it to an angle [rad], as far as the end stops let it; `more` [s] lengthens the dead time."""
         self._commands.put(now, angle, more)
 
-    def halt(self, now: float, at_once: bool, more: float = 0.0) -> None:
+    def halt(self, now: float, immediately: bool, more: float = 0.0) -> None:
         """Emergency stop: hold where it is when the stop takes effect. At once: what is under way is dropped."""
-        if at_once:
+        if immediately:
             self._commands.clear()
             self._target = self.position
         else:

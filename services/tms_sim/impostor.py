@@ -8,7 +8,7 @@ from tms_ros.node import Ros
 from tms_sim.report import Reading
 from tms_sim.sources import Topic
 
-PERIOD = 1 / 60  # s
+PUBLISH_PERIOD = 1 / 60  # s
 
 
 class Impostor:
@@ -20,18 +20,18 @@ class Impostor:
         self._timer: Any = None
         self._reading: Reading | None = None
 
-    def look(self, told: Reading, on: bool) -> None:
+    def look(self, reported: Reading, on: bool) -> None:
         """Begin or end, on the executor thread."""
         if on and self._timer is None:
-            self._reading, self._topics = told.standing(), self._made()
-            self._timer = self._ros.every(PERIOD, self._tell)
+            self._reading, self._topics = reported.standing(), self._made()
+            self._timer = self._ros.every(PUBLISH_PERIOD, self._publish)
         elif not on and self._timer is not None:
             self._ros.node.destroy_timer(self._timer)
             for topic in self._topics:
                 self._ros.node.destroy_publisher(topic.publisher)
             self._timer, self._topics = None, []
 
-    def _tell(self) -> None:
+    def _publish(self) -> None:
         assert self._reading is not None
         for topic in self._topics:
-            topic.tell(self._reading._replace(stamp=unix_ns()))
+            topic.publish(self._reading._replace(stamp=unix_ns()))

@@ -13,7 +13,7 @@ from tms_sim.tracks import ZERO
 from tms_sim.travel import Travel
 from tms_sim.turner import Turner
 
-MOST = 0.04  # s, step: goals end and faults strike as exactly at any time scale
+MAX_STEP = 0.04  # s, step: goals end and faults strike as exactly at any time scale
 CREEPS = 3.0  # s of stand-still after which the fault `creep` begins
 
 
@@ -123,7 +123,7 @@ class StandIn:
             if self._sleeps():
                 self.time, self._stood, self._in_motion = self.time + seconds, self._stood + seconds, 0.0
                 return
-            part = min(seconds, MOST)
+            part = min(seconds, MAX_STEP)
             self._step(part)
             seconds -= part
 

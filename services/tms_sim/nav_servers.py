@@ -62,22 +62,22 @@ def _feedback(action: Any, travel: Travel, trip: Trip) -> Any:
     now.header.frame_id = MAP
     now.pose.position.x, now.pose.position.y = base.x, base.y
     _, _, now.pose.orientation.z, now.pose.orientation.w = about("z", base.yaw)
-    told = action.Feedback(
+    reported = action.Feedback(
         current_pose=now, navigation_time=_duration(trip.seconds), distance_remaining=away,
         estimated_time_remaining=_duration(away / base.drive.velocity),
     )  # fmt: skip
     if action is NavigateThroughPoses:
-        told.number_of_poses_remaining = len(base.legs)
-    return told
+        reported.number_of_poses_remaining = len(base.legs)
+    return reported
 
 
 def _result(action: Any, trip: Trip, verdict: Verdict) -> Any:
-    told = action.Result()
-    if hasattr(told, "error_code"):  # Humble's results tell no reason
-        told.error_code, told.error_msg = verdict.code, verdict.text
+    reported = action.Result()
+    if hasattr(reported, "error_code"):  # Humble's results tell no reason
+        reported.error_code, reported.error_msg = verdict.code, verdict.text
     if action is FollowWaypoints and trip.missed:
-        told.missed_waypoints = _missed(trip.missed)
-    return told
+        reported.missed_waypoints = _missed(trip.missed)
+    return reported
 
 
 def _missed(numbers: Sequence[int]) -> Any:

@@ -17,7 +17,7 @@ from tms_sim.joint_commands import POSITION
 from tms_sim.machine import StandIn
 from tms_sim.nav_servers import nav_servers
 from tms_sim.servers import Served, Server
-from tms_sim.telemetry import PERIOD, Telemetry
+from tms_sim.telemetry import STEP_PERIOD, Telemetry
 from tms_sim.turn_server import TYPES, turn_server
 
 
@@ -44,7 +44,7 @@ def start(app: App) -> None:
     for joint, topic in border.joint_angles.items():
         app.ros.subscribe(Float64, f"/{name}/{topic}", _angle_of(machine, joint), depth=10)
     app.ros.subscribe(String, f"/{name}/sim/fault", lambda m: _break(app, machine, m.data), depth=10)
-    app.ros.every(PERIOD, Telemetry(app, machine, name).tick)
+    app.ros.every(STEP_PERIOD, Telemetry(app, machine, name).tick)
     app.ready_when(lambda: None)
 
 

@@ -38,15 +38,15 @@ class Reading(NamedTuple):
 
 
 class Report:
-    """Readings in, what is told out."""
+    """Readings in, what is reported out."""
 
     def __init__(self, kept: int) -> None:
         """`kept` readings are repeated by the fault `replay`."""
         self._last: deque[Reading] = deque(maxlen=max(1, kept))
         self._frozen: Reading | None = None
 
-    def tell(self, true: Reading, fault: Fault) -> Reading:
-        """What is told at the time of a reading."""
+    def apply(self, true: Reading, fault: Fault) -> Reading:
+        """What is reported at the time of a reading."""
         if fault.frozen_stamp:
             if self._frozen is None:
                 self._frozen = self._last[-1] if self._last else true
@@ -54,20 +54,20 @@ class Report:
         self._frozen = None
         if fault.replay and self._last:
             self._last.rotate(-1)
-            told = self._last[-1]._replace(stamp=true.stamp)
+            reported = self._last[-1]._replace(stamp=true.stamp)
         else:
-            told = true
+            reported = true
             self._last.append(true)
-        return _lie(told, fault)
+        return _lie(reported, fault)
 
 
-def _lie(told: Reading, fault: Fault) -> Reading:
+def _lie(reported: Reading, fault: Fault) -> Reading:
     if fault.zero_velocity:
-        told = told.standing()
+        reported = reported.standing()
     if fault.jump:
-        told = told.displaced(fault.jump)
+        reported = reported.displaced(fault.jump)
     if fault.nan:
-        told = told.each(lambda _: math.nan)
+        reported = reported.each(lambda _: math.nan)
     if fault.back_in_time:
-        told = told._replace(stamp=told.stamp - int(fault.back_in_time * SECOND))
-    return told
+        reported = reported._replace(stamp=reported.stamp - int(fault.back_in_time * SECOND))
+    return reported

@@ -40,7 +40,7 @@ class Servo:
 
     @property
     def driven(self) -> bool:
-        """Whether it moves because it was told to."""
+        """Whether it moves because it was commanded to."""
         return (self._drive.velocity if self._drive else self.rate) != 0.0
 
     @property
@@ -87,10 +87,10 @@ class Servo:
             self.rate = max(-most, min(most, law.predicted_velocity(now, drive.position)))
             self.setpoint, self._braking = law.predicted(now, drive.position), True
 
-    def halt(self, now: float, at_once: bool, more: float) -> None:
+    def halt(self, now: float, immediately: bool, more: float) -> None:
         """Emergency stop."""
         if self._drive is not None and self._law is not None:
-            self._drive.halt(now, at_once, more)
+            self._drive.halt(now, immediately, more)
             self._law.rest()
             self.led, self.rate, self._halted = False, 0.0, True
 

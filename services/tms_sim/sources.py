@@ -30,11 +30,11 @@ class Topic:
         self._message, self._fill, self._source, self._begun = message, fill, source, begun
 
     def due(self, tick: int, period: float) -> bool:
-        """Whether it is told at this tick, where a tick comes every `period` [s]: as often as declared at most."""
+        """Whether it is reported at this tick, where a tick comes every `period` [s]: as often as declared at most."""
         share = period / self._source.period
         return share >= 1 or int(tick * share + 1e-6) != int((tick - 1) * share + 1e-6)
 
-    def tell(self, reading: Reading) -> None:
+    def publish(self, reading: Reading) -> None:
         """Publish it."""
         self._message.header.stamp = self._stamp(reading.stamp)
         self._fill(self._message, reading)
@@ -77,10 +77,10 @@ def _joint_states(border: Border, joints: Sequence[str], muted: Callable[[], Col
 
     def fill(state: JointState, reading: Reading) -> None:
         silent = muted()
-        heard = [i for i, joint in enumerate(joints) if joint not in silent]
-        state.name, state.effort = [names[i] for i in heard], [0.0] * len(heard)
-        state.position = [reading.positions[i] for i in heard]
-        state.velocity = [reading.velocities[i] for i in heard]
+        received = [i for i, joint in enumerate(joints) if joint not in silent]
+        state.name, state.effort = [names[i] for i in received], [0.0] * len(received)
+        state.position = [reading.positions[i] for i in received]
+        state.velocity = [reading.velocities[i] for i in received]
 
     return fill
 

@@ -18,7 +18,7 @@ from tms_sim.report import Reading, Report
 from tms_sim.sources import Topic, time_of, topics
 from tms_sim.truth import Truth
 
-PERIOD = 0.04  # s
+STEP_PERIOD = 0.04  # s
 TF_EVERY = 2  # periods a set of frames while something moves
 TF_STILL = 10  # and while nothing does: every listener pays for each
 LAG = 0.5  # s at most that are caught up after the process was held up
@@ -40,12 +40,12 @@ class Telemetry:
 
         begun = unix_ns()
         self._topics = made()
-        self._report = Report(round(REPLAYED / (PERIOD * self._speed)))
+        self._report = Report(round(REPLAYED / (STEP_PERIOD * self._speed)))
         self._impostor = Impostor(ros, made)
         self._truth = Truth(ros, name, machine)
         self._tf = ros.publisher(TFMessage, "/tf")
         self._frames = TFMessage()
-        self._told: Any = None  # place and joints of the frames
+        self._reported: Any = None  # place and joints of the frames
         self._stepped, self._ticks = monotonic(), 0
 
     def tick(self) -> None:
@@ -53,16 +53,16 @@ class Telemetry:
         now = monotonic()
         self._machine.step(min(now - self._stepped, LAG) * self._speed)
         self._stepped = now
-        self._truth.tell()
+        self._truth.publish()
         self._ticks += 1
         reading = self._look()
-        told = self._report.tell(reading, self._machine.fault)
+        reported = self._report.apply(reading, self._machine.fault)
         for topic in self._topics:
-            if topic.due(self._ticks, PERIOD):
-                topic.tell(told)
-        self._impostor.look(told, self._machine.fault.second_publisher)
+            if topic.due(self._ticks, STEP_PERIOD):
+                topic.publish(reported)
+        self._impostor.look(reported, self._machine.fault.second_publisher)
         if self._ticks % TF_EVERY == 0:
-            self._tell_frames(reading)
+            self._publish_frames(reading)
 
     def _look(self) -> Reading:
         arm, base = self._machine.arm, self._machine.base
@@ -70,14 +70,14 @@ class Telemetry:
         speeds = (base.v + base.leak, base.w) if base else (0.0, 0.0)
         return Reading(unix_ns(), tuple(arm.positions), tuple(arm.velocities), place, speeds)
 
-    def _tell_frames(self, reading: Reading) -> None:
+    def _publish_frames(self, reading: Reading) -> None:
         now = (reading.place, reading.positions)
-        if now == self._told and self._ticks % TF_STILL:
+        if now == self._reported and self._ticks % TF_STILL:
             return
-        if now != self._told:
+        if now != self._reported:
             joints = dict(zip(self._machine.arm.joints, reading.positions, strict=True))
             frames = self._chain.frames(reading.place, joints)
-            self._frames, self._told = TFMessage(transforms=[_transform(frame) for frame in frames]), now
+            self._frames, self._reported = TFMessage(transforms=[_transform(frame) for frame in frames]), now
         stamp = time_of(reading.stamp)
         for transform in self._frames.transforms:
             transform.header.stamp = stamp

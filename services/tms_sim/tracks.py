@@ -27,7 +27,7 @@ class Tracks:
 
     @property
     def still(self) -> bool:
-        """Whether nothing moves or will move, as far as it is told to."""
+        """Whether nothing moves or will move, as far as it is commanded to."""
         return self.v == 0.0 and self.w == 0.0 and all(map(_brakes, (self._command, *self._commands.under_way)))
 
     def send(self, v: float, w: float) -> None:

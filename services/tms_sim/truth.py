@@ -1,6 +1,6 @@
 """The true motion of a stand-in on a way of its own, /<machine>/sim/truth, which no fault changes. For drills.
 
-Its time passes in the steps of its telemetry, 0.04 s unless the process was held up, and each is told.
+Its time passes in the steps of its telemetry, 0.04 s unless the process was held up, and each is reported.
 """
 
 import math
@@ -24,7 +24,7 @@ class Truth:
         self._publisher = ros.publisher(JointState, f"/{name}/sim/truth", KEPT)
         self._message = JointState(name=[*machine.arm.joints, *(TRACKS if machine.base else [])])
 
-    def tell(self) -> None:
+    def publish(self) -> None:
         """After every step."""
         if not self._publisher.get_subscription_count():
             return

@@ -24,7 +24,7 @@ AGE = Gauge("tms_sp_input_age_seconds", "Time since the last accepted message, o
 AGE_LIMIT = Gauge("tms_sp_input_age_limit_seconds", "Age at which an input with a declared rate is silent", ["input"])
 SILENT_PERIODS = 10  # of the declared rate
 ARRIVALS = 50  # for the rate
-RECORDS_TOLD = 20
+MAX_RECORDS = 20
 RECORDS_KNOWN = 5000  # whose stamps are remembered
 
 
@@ -48,7 +48,7 @@ class SensingInput:
         self.last_refusal: Reason | None = None
         self.unlogged: Reason | None = None  # a refusal
 
-    def hear(self, message: Message) -> None:
+    def receive(self, message: Message) -> None:
         """One message."""
         try:
             result = self._take(message)
@@ -118,14 +118,14 @@ class SensingInput:
             name=self.name, topic=self.given.topic, type=self.given.type, hz_expected=self.given.hz, hz=self._rate(now),
             state=self.judge(), age=age, clock_offset=math.nan if offset is None else offset, accepted=self.accepted,
             written=self.counts.written, superseded=self.counts.superseded, refused=self.refused,
-            last_refusal=to_line(self.last_refusal), records=[f"{model}/{record}" for model, record in self._told()],
+            last_refusal=to_line(self.last_refusal), records=[f"{model}/{record}" for model, record in self._records()],
         )  # fmt: skip
 
     def _age_now(self) -> float:
         return monotonic() - (self._arrivals[-1] if self._arrivals else self._began)
 
-    def _told(self) -> list[Key]:
-        return sorted(self._taken)[:RECORDS_TOLD]
+    def _records(self) -> list[Key]:
+        return sorted(self._taken)[:MAX_RECORDS]
 
     def _rate(self, now: float) -> float:
         """Messages a second over the last ones, and over the silence since."""

@@ -36,8 +36,8 @@ class MachineStates:
             return
         states = [
             MachineState(collection=collection, machine=machine, stamp=self._ros.now(), msg=json.dumps(plain(message)))
-            for collection, machine, news in self._topics
-            for message in news()
+            for collection, machine, take in self._topics
+            for message in take()
         ]
         if states:
             request = WriteMachineStates.Request(states=states)

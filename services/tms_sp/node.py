@@ -29,7 +29,7 @@ GAP = 0.015  # s between batches; what comes in between goes together
 RETRY = 0.5  # s between attempts while the database or its store is away
 ANSWER_LIMIT = 5.0  # s for the database to answer a batch
 STATE_PERIOD = 1.0  # s between messages about the inputs
-LOOK = 0.5  # s between looks at who publishes a topic that several inputs share
+PUBLISHERS_CHECK_PERIOD = 0.5  # s between looks at who publishes a topic that several inputs share
 
 
 def start(app: App) -> None:
@@ -90,29 +90,33 @@ def _state(app: App, one: SensingInput) -> InputState:
 
 
 class Listener:
-    """The subscription of one topic. Inputs that share a topic have different types: the one that comes is heard."""
+    """The subscription of one topic. Inputs that share a topic have different types: the one that comes is received."""
 
     def __init__(self, app: App, topic: str, inputs: list[SensingInput]) -> None:
         self._ros, self._log, self._topic, self._inputs = app.ros, app.log, topic, inputs
-        self._heard: SensingInput | None = None
+        self._received: SensingInput | None = None
         self._subscription: Any = None
         if len(inputs) == 1:
-            self._hear(inputs[0])
+            self._receive(inputs[0])
         else:
-            app.ros.every(LOOK, self._look)
+            app.ros.every(PUBLISHERS_CHECK_PERIOD, self._look)
 
     def _look(self) -> None:
         types = {info.topic_type for info in self._ros.node.get_publishers_info_by_topic(self._topic)}
         there = [one for one in self._inputs if one.given.type in types]
-        if there and self._heard not in there:
-            self._hear(there[0])
+        if there and self._received not in there:
+            self._receive(there[0])
 
-    def _hear(self, one: SensingInput) -> None:
+    def _receive(self, one: SensingInput) -> None:
         if self._subscription is not None:
             self._ros.node.destroy_subscription(self._subscription)
-        given, self._heard = one.given, one
+        given, self._received = one.given, one
         self._subscription = self._ros.subscribe(
-            message_class(given.type), given.topic, one.hear, given.depth, best_effort=given.reliability != "reliable"
+            message_class(given.type),
+            given.topic,
+            one.receive,
+            given.depth,
+            best_effort=given.reliability != "reliable",
         )
         self._log.info("listening", input=one.name, topic=given.topic, type=given.type)
 

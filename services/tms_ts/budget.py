@@ -4,8 +4,9 @@ from collections.abc import Callable
 
 from tms_config.clock import monotonic
 
-AT_ONCE = 200  # changes of one node ...
-EVERY = 10.0  # s ... and of a node that has used them up, one in so long: a loop that waits changes 20 times a second
+MAX_BURST = 200  # changes of one node at a time
+# s; a node that has used them up gets one more in so long: a loop that waits changes 20 times a second
+REFILL_PERIOD = 10.0
 
 
 class Budget:
@@ -16,10 +17,10 @@ class Budget:
         self._left: dict[str, tuple[float, float]] = {}  # path -> changes left, when they were counted
 
     def take(self, path: str) -> bool:
-        """Whether the change of a node is told."""
+        """Whether the change of a node is reported."""
         now = self._clock()
-        left, counted = self._left.get(path, (float(AT_ONCE), now))
-        left = min(float(AT_ONCE), left + (now - counted) / EVERY)
-        told = left >= 1.0
-        self._left[path] = (left - told, now)
-        return told
+        left, counted = self._left.get(path, (float(MAX_BURST), now))
+        left = min(float(MAX_BURST), left + (now - counted) / REFILL_PERIOD)
+        reported = left >= 1.0
+        self._left[path] = (left - reported, now)
+        return reported

@@ -16,7 +16,7 @@ from tms_ts.shared_records import SharedRecords
 from tms_ts.world import Value
 
 T = TypeVar("T")
-LIMIT = 5.0  # s for the database to answer
+DATABASE_LIMIT = 5.0  # s for the database to answer
 
 
 class Answer(Generic[T]):
@@ -90,7 +90,7 @@ class Flags:
         settle: Callable[[Reply], None],
     ) -> None:
         async def ask() -> None:
-            response = await self._ros.ask(service, name, request, LIMIT)
+            response = await self._ros.ask(service, name, request, DATABASE_LIMIT)
             if response is None:
                 answer.fail(NoDatabase("tms:db"))
             elif response.error_code:

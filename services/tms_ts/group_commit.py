@@ -21,9 +21,9 @@ from tms_runtime.log import Logger
 GATHER = 0.05  # s from the first entry to its writing, so that many share a sync; an urgent one is written at once
 RETRY = 0.5  # s between attempts at a disk that is full
 GROUP = 2000  # entries of one group
-MOST = 32 * 2**20  # bytes that may wait ...
+MAX_WAITING = 32 * 2**20  # bytes that may wait ...
 SPARE = 4 * 2**20  # bytes, ... of which so many are kept for vital entries
-SLOW = 5.0  # s without an answer of the disk that are told
+SLOW = 5.0  # s without an answer of the disk that are reported
 
 WAITING = Gauge("tms_unstored_bytes", "Entries in memory that are not on the disk yet")
 
@@ -59,7 +59,7 @@ class Entry:
 class GroupCommit:
     """The queue and its writing thread; one a process."""
 
-    def __init__(self, log: Logger, most: int = MOST) -> None:
+    def __init__(self, log: Logger, most: int = MAX_WAITING) -> None:
         self._log, self._most = log, most
         self._changed = threading.Condition()  # over the next four; held for moments only
         self._waiting: deque[Entry] = deque()

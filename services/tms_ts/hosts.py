@@ -21,9 +21,9 @@ class Hosts:
     def __init__(self, ros: Ros) -> None:
         self._ros = ros
         self._known: dict[str, tuple[str, Process]] = {}  # process name -> host, row
-        ros.subscribe(Processes, "/tms/host/processes", self._heard, depth=10, latched=True)
+        ros.subscribe(Processes, "/tms/host/processes", self._received, depth=10, latched=True)
 
-    def _heard(self, message: Processes) -> None:
+    def _received(self, message: Processes) -> None:
         others = {name: row for name, row in self._known.items() if row[0] != message.host}
         self._known = {**others, **{row.name: (message.host, row) for row in message.processes}}
 

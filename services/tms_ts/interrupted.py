@@ -9,7 +9,7 @@ from tms_msg_rc.msg import StopReceipt
 from tms_msg_ts.srv import CancelRun, ResumePlan
 
 from tms_config.clock import monotonic
-from tms_machine.border import STOP_PROVEN
+from tms_machine.border import RECEIPT_LIMIT
 from tms_reason import wire
 from tms_reason.errors import TaskError
 from tms_reason.reason import Reason
@@ -17,7 +17,7 @@ from tms_reason.wire import to_line
 from tms_runtime.app import App
 from tms_ts.interrupted_run import Header, InterruptedRun, Key, Over
 from tms_ts.journal import Journal
-from tms_ts.machines import told_by
+from tms_ts.machines import reported_by
 from tms_ts.reasons import (
     GivenUp,
     MachineUnconfirmed,
@@ -35,8 +35,7 @@ from tms_ts.run import ALARMS
 from tms_ts.run_checkpoint import Records
 from tms_ts.run_states import entered
 
-STOP_LIMIT = STOP_PROVEN + 3.0  # s for the gateways to tell how they stopped the machines
-LOOK = 0.05  # s
+RECEIPT_CHECK_PERIOD = 0.05  # s
 RECEIPTS = 1000  # every gateway keeps its last 20 for late comers
 
 
@@ -64,15 +63,15 @@ class Interrupted:
             if past.header is not None and past.over is not None:
                 self._complete(past, past.header, past.over)
         left = [past for past in left if past.over is None]
-        deadline = monotonic() + STOP_LIMIT
-        while not all(map(self._all_told, left)) and monotonic() < deadline:
-            if self._app.stopping.wait(LOOK):
+        deadline = monotonic() + RECEIPT_LIMIT
+        while not all(map(self._all_reported, left)) and monotonic() < deadline:
+            if self._app.stopping.wait(RECEIPT_CHECK_PERIOD):
                 return
         for past in left:
             if past.header is not None and past.header.run_id not in self._active:
                 self._close(past, past.header)
 
-    def _all_told(self, past: InterruptedRun) -> bool:
+    def _all_reported(self, past: InterruptedRun) -> bool:
         return past.header is None or set(past.header.machines) <= {r.machine for r in self._stops(past, past.header)}
 
     def _stops(self, past: InterruptedRun, header: Header) -> list[StopReceipt]:
@@ -85,9 +84,9 @@ class Interrupted:
     def _close(self, past: InterruptedRun, header: Header) -> None:
         record, number, stops = self._records.open(header.run_id), past.last_event, self._stops(past, header)
         reason, unseen = _what_was_seen(header, stops)
-        told = [("stop", told_by(receipt)) for receipt in stops] + [("alarm", alarm) for alarm in unseen]
+        reported = [("stop", reported_by(receipt)) for receipt in stops] + [("alarm", alarm) for alarm in unseen]
         ALARMS.inc(len(unseen))
-        for kind, what in [*told, ("run", StateBecause(StateInterrupted(), reason))]:
+        for kind, what in [*reported, ("run", StateBecause(StateInterrupted(), reason))]:
             number += 1
             record.event(number)
             stamp = self._app.ros.now()
@@ -98,7 +97,7 @@ class Interrupted:
         self._app.log.warning("interrupted", run=header.run_id)
 
     def _complete(self, past: InterruptedRun, header: Header, over: Over) -> None:
-        """The run had ended, but perhaps nobody was told before the power went: tell it, maybe once more."""
+        """The run had ended, but perhaps nobody was told before the power went: report it, maybe once more."""
         stamp = Time(sec=int(past.last_time), nanosec=int(past.last_time % 1 * 1e9))
         why = wire.of(over.reason)
         text = to_line(entered(over.outcome, why))
@@ -168,8 +167,8 @@ def _what_was_seen(header: Header, stops: list[StopReceipt]) -> tuple[Reason, li
     seen: list[Reason] = [SchedulerWasLost()]
     seen += [SeenToStand(stood)] if stood else []
     seen += [NotSeenStanding(unseen)] if unseen else []
-    none = NoReceipt(STOP_LIMIT)
-    alarms = [told_by(last[name]) if name in last else MachineUnconfirmed(name, none) for name in unseen]
+    none = NoReceipt(RECEIPT_LIMIT)
+    alarms = [reported_by(last[name]) if name in last else MachineUnconfirmed(name, none) for name in unseen]
     return RunInterrupted(tuple(seen), header.run_id), alarms
 
 

@@ -2,7 +2,7 @@
 
 A tick waits for neither, and nothing is lost while the database is away: what was not delivered is delivered in order
 later, if need be by the next process. The database, and so everybody who asks for the history, gets an entry only when
-it is on this disk: what was told once is there after a power cut, too. Writing an entry twice changes nothing in the
+it is on this disk: what was reported is there after a power cut, too. Writing an entry twice changes nothing in the
 database. An entry that the database will never take is dropped, so that the others do not wait for it.
 """
 
@@ -43,13 +43,13 @@ class Journal:
 
     def __init__(self, ros: Ros, log: Logger, disk: GroupCommit, state: Path) -> None:
         self._ros, self._log, self._disk = ros, log, disk
-        self._news, self._urgent = threading.Event(), threading.Event()
-        self._spool = Spool(state / "ts" / "journal", self._news.set)
+        self._changed, self._urgent = threading.Event(), threading.Event()
+        self._spool = Spool(state / "ts" / "journal", self._changed.set)
         self._closing = threading.Event()
         self._away = False  # the database; told
         self._trouble = ""  # of the disk; told
         self._losing = threading.Lock()  # over the next
-        self._untold: dict[str, tuple[int, int, int]] = {}  # run -> entries lost, and the first and last number
+        self._unreported: dict[str, tuple[int, int, int]] = {}  # run -> entries lost, and the first and last number
         self._thread = threading.Thread(target=self._write, name="journal", daemon=True)
         self._thread.start()
 
@@ -74,10 +74,10 @@ class Journal:
     def alarms(self) -> list[Reason]:
         """What went wrong with the history since the last call."""
         trouble = self._disk.trouble()
-        told, self._trouble = self._trouble, trouble
-        found: list[Reason] = [HistoryInMemory(Foreign(trouble))] if trouble and not told else []
+        reported, self._trouble = self._trouble, trouble
+        found: list[Reason] = [HistoryInMemory(Foreign(trouble))] if trouble and not reported else []
         with self._losing:
-            lost, self._untold = self._untold, {}
+            lost, self._unreported = self._unreported, {}
         for run, (count, first, last) in lost.items():
             found.append(HistoryLost(run, count, first, last))
         return found
@@ -112,8 +112,8 @@ class Journal:
 
     def _gather(self) -> None:
         """Wait for news, and a moment longer for what comes right after."""
-        if self._news.wait(0.2):
-            self._news.clear()
+        if self._changed.wait(0.2):
+            self._changed.clear()
             self._urgent.wait(GATHER)
             self._urgent.clear()
 
@@ -130,8 +130,8 @@ class Journal:
         run, number = (entry.run_id, getattr(entry, "number", 0)) if entry is not None else ("", 0)
         self._log.error("journal_lost", run=run, number=number, reason=reason)
         with self._losing:
-            count, first, _ = self._untold.get(run, (0, number, number))
-            self._untold[run] = (count + 1, first, number)
+            count, first, _ = self._unreported.get(run, (0, number, number))
+            self._unreported[run] = (count + 1, first, number)
 
     def _deliver(self, lines: list[bytes]) -> DbError | RosError | None:
         """Write a batch; returns why it could not be written."""

@@ -11,7 +11,7 @@ from tms_msg_rc.srv import StopMachine
 from tms_msg_ts.action import LeafNodeBase
 
 from tms_config.clock import monotonic
-from tms_machine.border import STOP_PROVEN
+from tms_machine.border import RECEIPT_LIMIT
 from tms_machine.reasons import MachineLatched, NoDatabase, NoJointState, NoPermit, NoReason, Rejected, StopUnconfirmed
 from tms_machine.receipts import stood_after
 from tms_reason import wire
@@ -55,7 +55,6 @@ from tms_ts.sent_goal import ACCEPT_LIMIT, LeafCall, LeafPeer, SentGoal
 from tms_ts.world import GoalState
 
 SERVER_LIMIT = 10.0  # s for a subtask's server to be there
-STOP_LIMIT = STOP_PROVEN + 3.0  # s for a gateway to answer a stop
 GATEWAY_LIMIT = 3.0  # s for a gateway that was lost to be back
 DATABASE_LIMIT = 15.0  # s that a leaf waits for a database that is away
 ASK_AGAIN = 0.5  # s; also from a failure to the same goal: a loop around a leaf must not flood the history
@@ -68,7 +67,7 @@ HANDOVER = Histogram(
     buckets=(0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.5, 1, 5),
 )  # fmt: skip
 
-Tell = Callable[[str, str, Reason], None]  # kind, node path, what: for the journal
+LogEvent = Callable[[str, str, Reason], None]  # kind, node path, what: for the journal
 
 
 @dataclass(frozen=True)
@@ -85,15 +84,21 @@ class Machines:
     """The goals of one run. Called by the run's thread; answers come on the executor thread and wake it."""
 
     def __init__(
-        self, ros: Ros, hosts: Hosts, gateways: Gateways, wake: Callable[[], None], tell: Tell, identity: Identity
+        self,
+        ros: Ros,
+        hosts: Hosts,
+        gateways: Gateways,
+        wake: Callable[[], None],
+        log_event: LogEvent,
+        identity: Identity,
     ) -> None:
         self._ros, self._hosts, self._gateways = ros, hosts, gateways
-        self._wake, self._tell = wake, tell
+        self._wake, self._log_event = wake, log_event
         self._number, self._retries = identity.number, identity.retries
         self._record, self._replay = identity.record, identity.replay
         self._leaves = 0  # goals sent so far
         self._handed_over: float | None = None  # monotonic time of the last result that no acceptance has followed
-        self._told: set[tuple[str, int, int]] = set()  # receipts in the journal
+        self._reported: set[tuple[str, int, int]] = set()  # receipts in the journal
         self._failed: dict[Key, float] = {}  # monotonic time of each goal's last failure
         self._given_up: set[Reason] = set()  # processes in the journal that supervisord does not start any more
         self._open: list[SentGoal] = []
@@ -109,7 +114,7 @@ class Machines:
         before = self._replay.take(goal.key)
         if before is not None:
             goal.state, goal.reason = (GoalState.SUCCEEDED, None) if before else (GoalState.FAILED, FailedBefore())
-            self._tell("goal", node, NotRepeatedDone(goal.name) if before else NotRepeatedFailed(goal.name))
+            self._log_event("goal", node, NotRepeatedDone(goal.name) if before else NotRepeatedFailed(goal.name))
             return goal
         goal.peer = self.peer(machine, subtask)
         if goal.key in self._failed:
@@ -143,13 +148,13 @@ class Machines:
 
         A gateway that is lost meanwhile has a successor, which is asked again.
         """
-        line, deadline = to_line(cause), monotonic() + STOP_LIMIT
+        line, deadline = to_line(cause), monotonic() + RECEIPT_LIMIT
         request = StopMachine.Request(cause=line, orderly=True)
         while True:
             self._gateways.wait_alive(machine, GATEWAY_LIMIT)
             lost = self._gateways.loss(machine)
             try:
-                answer = self._ros.call(StopMachine, f"/{machine}/rc/stop", request, STOP_LIMIT, lost)
+                answer = self._ros.call(StopMachine, f"/{machine}/rc/stop", request, RECEIPT_LIMIT, lost)
             except RosError as error:
                 if isinstance(error.reason, ProcessLost) and monotonic() < deadline:
                     continue
@@ -165,11 +170,11 @@ class Machines:
             return list(pool.map(lambda machine: self.stop(machine, cause), machines))
 
     def receipt(self, receipt: StopReceipt) -> None:
-        """A stop into the journal, once, from wherever it is heard first."""
+        """A stop into the journal, once, from wherever it is received first."""
         key = (receipt.machine, receipt.stamp.sec, receipt.stamp.nanosec)
-        if key not in self._told:
-            self._told.add(key)
-            self._tell("stop", "", told_by(receipt))
+        if key not in self._reported:
+            self._reported.add(key)
+            self._log_event("stop", "", reported_by(receipt))
 
     def _try_send(self, goal: SentGoal) -> None:
         assert goal.peer is not None
@@ -189,7 +194,7 @@ class Machines:
         goal.pid = self._hosts.pid(goal.machine, goal.subtask)
         request = LeafNodeBase.Goal(model_name=goal.machine, record_name=goal.record)
         goal.begun = monotonic()
-        self._tell("goal", goal.node, GoalSent(goal.name, goal.record))
+        self._log_event("goal", goal.node, GoalSent(goal.name, goal.record))
         self._leaves = self._leaves % LEAVES + 1
         goal_id = Owner(self._number, self._leaves).goal_id()
         self._record.sent(goal.key)
@@ -218,7 +223,7 @@ class Machines:
         fatal = next(filter(None, (self._hosts.fatal(goal.machine, p) for p in ("rc", "rp", goal.subtask))), None)
         if fatal is not None and fatal not in self._given_up:
             self._given_up.add(fatal)
-            self._tell("alarm", goal.node, fatal)
+            self._log_event("alarm", goal.node, fatal)
         return fatal
 
     def _changed(self, goal: SentGoal, call: LeafCall) -> None:
@@ -232,7 +237,7 @@ class Machines:
             if self._handed_over is not None:
                 HANDOVER.observe(monotonic() - self._handed_over)
                 self._handed_over = None
-            self._tell("goal", goal.node, GoalAccepted(goal.name))
+            self._log_event("goal", goal.node, GoalAccepted(goal.name))
         self._wake()
 
     def _ended(self, goal: SentGoal, call: LeafCall) -> None:
@@ -272,7 +277,7 @@ class Machines:
                 self._record.gone(key, left)
             self._record.done(goal.key, state is GoalState.SUCCEEDED)
         goal.reason, goal.state = reason, state  # last: the tree may see it now and ask for the next goal
-        self._tell("goal", goal.node, reason or GoalSucceeded(goal.name))
+        self._log_event("goal", goal.node, reason or GoalSucceeded(goal.name))
 
     def _look_for_loss(self, goal: SentGoal, call: LeafCall) -> None:
         """A server that is gone never answers: end the goal, and stop what it may have left moving."""
@@ -280,15 +285,15 @@ class Machines:
         if why is None:
             return
         final = goal.state.final
-        unheard = goal.unheard()
+        unreceived = goal.unreceived()
         goal.call = None if not final else call
-        if unheard and goal.peer is not None:
+        if unreceived and goal.peer is not None:
             goal.peer.cancel(call)  # should it be accepted after all
         call.end(Outcome.LOST)
         if goal.peer is not None and self._replaced(goal):
             goal.peer.mark_lost()
         if not final:
-            self._lost(goal, why, counts=not (unheard and goal.recovers()))
+            self._lost(goal, why, counts=not (unreceived and goal.recovers()))
 
     def _lost(self, goal: SentGoal, why: Reason, *, counts: bool = True) -> None:
         """A process ended during a goal: have the machine seen to stand, then send the goal again, a few times.
@@ -307,11 +312,11 @@ class Machines:
             goal.call, goal.state, goal.begun = None, GoalState.SENDING, monotonic()
             goal.not_before = goal.begun + ASK_AGAIN * goal.losses
             goal.reason = SentAgain(why)
-            self._tell("loss", goal.node, SentAgainTimes(why, goal.losses, self._retries))
+            self._log_event("loss", goal.node, SentAgainTimes(why, goal.losses, self._retries))
         threading.Thread(target=self._stop_after_loss, args=(goal.machine, why), daemon=True).start()
 
     def _loss(self, goal: SentGoal) -> Reason | None:
-        if goal.unheard():
+        if goal.unreceived():
             return NoAnswer(goal.name, goal.action, ACCEPT_LIMIT)
         if self._replaced(goal):
             return ProcessEnded(goal.name)
@@ -330,7 +335,7 @@ class Machines:
         self._wake()
 
 
-def told_by(receipt: StopReceipt) -> Reason:
+def reported_by(receipt: StopReceipt) -> Reason:
     """A receipt as a reason."""
     cause, evidence = wire.of(receipt.cause) or NoReason(), wire.of(receipt.evidence)
     if not receipt.confirmed:

@@ -47,7 +47,7 @@ from tms_ts.world import World
 
 DB_LIMIT = 5.0  # s
 BEGIN_STORED = 5.0  # s for what is known of a run to be on the disk before it moves anything
-END_STORED = 5.0  # s for its end, before it is told without
+END_STORED = 5.0  # s for its end, before it is reported without
 DISK_END = 0.2  # s for the last entries when the process ends
 SERVERS_LIMIT = 15.0  # s for the subtasks' servers to be there after their start ...
 SERVER_START = 3.0  # s, ... and this for each of them: many starting at once share the cores
@@ -92,10 +92,10 @@ class Scheduler:
         self._runs: dict[str, Run] = {}
         self._holders: dict[str, str] = {}  # machine -> run that moves it
         self._lock = threading.Lock()  # over the two above; held for moments only
-        self._news, self._closing = threading.Event(), threading.Event()
-        self._questions = Questions(app.ros, self._news.set)
+        self._changed, self._closing = threading.Event(), threading.Event()
+        self._questions = Questions(app.ros, self._changed.set)
         self._publisher = app.ros.publisher(RunStates, "/tms/runs", depth=1, latched=True)
-        threading.Thread(target=self._tell, name="runs", daemon=True).start()
+        threading.Thread(target=self._report, name="runs", daemon=True).start()
 
     def unready(self) -> Reason | None:
         """The scheduler works only with the database."""
@@ -107,11 +107,11 @@ class Scheduler:
             runs = [run.state() for run in self._runs.values()]
         return RunStates(runs=runs, questions=self._questions.messages())
 
-    def _tell(self) -> None:
+    def _report(self) -> None:
         """Publish what changed at once, but not more often than anybody can see."""
         while not self._closing.wait(RUNS_SHORTEST):
-            self._news.wait(RUNS_LONGEST - RUNS_SHORTEST)
-            self._news.clear()
+            self._changed.wait(RUNS_LONGEST - RUNS_SHORTEST)
+            self._changed.clear()
             if not self._closing.is_set():
                 self._publisher.publish(self.states())
 
@@ -129,7 +129,7 @@ class Scheduler:
         for alarm in self._journal.alarms():
             self._app.log.error("alarm", reason=alarm)
             for run in runs:
-                run.tell("alarm", "", alarm)
+                run.log_event("alarm", "", alarm)
         for state in STATES:
             ACTIVE.labels(state).set(sum(run.facts.state == state for run in runs))
         counted = Counter(state for run in runs for state in run.states)
@@ -206,7 +206,7 @@ class Scheduler:
             return _refused(goal.request.resume, error)
         bind_contextvars(run=facts.run_id)
         run = Run(
-            self._ros, self._journal, self._app.log, goal, facts, self._records.open(facts.run_id), self._news.set
+            self._ros, self._journal, self._app.log, goal, facts, self._records.open(facts.run_id), self._changed.set
         )
         run.number = past.last_event if past is not None else 0
         goal.publish(ExecuteTask.Feedback(run_id=facts.run_id, state=facts.state))  # the client can ask for it now
@@ -230,7 +230,7 @@ class Scheduler:
                 del self._runs[facts.run_id]
                 for machine in [name for name, holder in self._holders.items() if holder == facts.run_id]:
                     del self._holders[machine]
-            self._news.set()
+            self._changed.set()
             run.ended.set()
 
     def _facts(self, goal: TaskGoal, past: InterruptedRun | None) -> Facts:
@@ -253,9 +253,9 @@ class Scheduler:
             facts.description, xml = task.description, task.task_sequence
         replay = Replay(past.ended if past is not None else [])
         identity = Identity(facts.number, self._app.site.file.on_loss.retries, run.record, replay)
-        machines = Machines(self._ros, self._hosts, self._gateways, run.wake.set, run.tell, identity)
+        machines = Machines(self._ros, self._hosts, self._gateways, run.wake.set, run.log_event, identity)
         run.flags = Flags(self._ros, self._shared, run.wake.set, facts.run_id)
-        clicks = Clicks(self._questions, facts.run_id, run.wake.set, run.tell)
+        clicks = Clicks(self._questions, facts.run_id, run.wake.set, run.log_event)
         world = World(machines, run.flags, clicks)
         tree = bt.load(xml, world=world)
         replay.beside = tree.beside
@@ -265,7 +265,7 @@ class Scheduler:
         known = (facts.run_id, facts.number, facts.task_id, facts.description, facts.machines, xml, started)
         run.record.begin(Header(*known, facts.records))
         run.enter("preparing", Resumed() if past is not None else None)
-        run.tell_tree(tree)
+        run.publish_tree(tree)
         self._refuse_errors(run, self._preflight(tree), goal.request.ignore_warnings)
         self._hold(run)
         self._prepare(run, processes_of(tree, self._app.site), machines)
@@ -282,7 +282,7 @@ class Scheduler:
 
     def _refuse_errors(self, run: Run, found: Findings, ignore_warnings: bool) -> None:
         for warning in found.warnings:
-            run.tell("warning", "", warning)
+            run.log_event("warning", "", warning)
         if found.errors:
             first, more = found.errors[0], len(found.errors) - 1
             raise TaskError(PreflightMore(first, more) if more else Preflight(first), Preflight.code)

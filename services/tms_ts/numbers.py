@@ -12,7 +12,7 @@ from tms_runtime import durable
 from tms_ts.group_commit import GroupCommit
 from tms_ts.reasons import DiskSlow, NoDisk
 
-LIMIT = 5.0  # s for a number to be on the disk
+DISK_LIMIT = 5.0  # s for a number to be on the disk
 log = structlog.stdlib.get_logger(__name__)
 
 
@@ -39,7 +39,7 @@ class Numbers:
         with self._giving:
             self._last = number = max(self._last + 1, unix_ns() // 1_000_000)
             taken = self._disk.put(self, str(number).encode(), vital=True)
-        if not taken or not self._disk.wait(LIMIT):
+        if not taken or not self._disk.wait(DISK_LIMIT):
             raise no_disk(self._disk)
         return number
 

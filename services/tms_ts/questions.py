@@ -13,7 +13,7 @@ from tms_ros.node import Ros
 from tms_ts.flags import Answer
 from tms_ts.reasons import AnsweredNo, AnsweredYes, NotAnswered
 
-Tell = Callable[[str, str, Reason], None]  # kind, node, what
+LogEvent = Callable[[str, str, Reason], None]  # kind, node, what
 
 
 @dataclass(slots=True)
@@ -50,7 +50,7 @@ class Questions:
         answer: Answer[bool] = Answer()
         with self._lock:
             self._open[name] = Asked(message, answer, clicks)
-        clicks.tell("question", node, Foreign(text or title))
+        clicks.log_event("question", node, Foreign(text or title))
         self._changed()
         return answer
 
@@ -61,7 +61,7 @@ class Questions:
         if asked is None:
             return False
         what = AnsweredYes(by) if yes else AnsweredNo(by)
-        asked.clicks.tell("answer", asked.message.node, what)
+        asked.clicks.log_event("answer", asked.message.node, what)
         asked.answer.settle(yes)
         asked.clicks.wake()
         self._changed()
@@ -72,7 +72,7 @@ class Questions:
             gone = [name for name, asked in self._open.items() if asked.answer is answer]
             for name in gone:
                 asked = self._open.pop(name)
-                asked.clicks.tell("answer", asked.message.node, NotAnswered())
+                asked.clicks.log_event("answer", asked.message.node, NotAnswered())
         if gone:
             self._changed()
 
@@ -80,8 +80,8 @@ class Questions:
 class Clicks:
     """What the nodes of one run see of it."""
 
-    def __init__(self, questions: Questions, run_id: str, wake: Callable[[], None], tell: Tell) -> None:
-        self.run_id, self.wake, self.tell = run_id, wake, tell
+    def __init__(self, questions: Questions, run_id: str, wake: Callable[[], None], log_event: LogEvent) -> None:
+        self.run_id, self.wake, self.log_event = run_id, wake, log_event
         self._questions = questions
 
     def ask(self, title: str, text: str, node: str, seconds: float | None) -> Answer[bool]:

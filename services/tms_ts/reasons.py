@@ -20,7 +20,7 @@ class StateAbandoned(Reason, text="abandoned"): pass
 class StateBecause(Reason, text="{state}: {why}"): state: Reason; why: Reason
 
 # why a run ends, or is refused
-class ToldToStop(Reason, text="{machine} was told to stop: {cause}"): machine: str; cause: Reason
+class StopRequested(Reason, text="{machine} was told to stop: {cause}"): machine: str; cause: Reason
 class SchedulerStopped(Reason, text="the scheduler was stopped"): pass
 class SchedulerWasLost(Reason, text="the scheduler was lost"): pass
 class SeenToStand(Reason, text="seen to stand: {machines}"): machines: tuple[str, ...]

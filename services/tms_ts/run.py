@@ -25,7 +25,7 @@ from tms_ts.bt import IDLE, Node, Status, Tree, TreeError
 from tms_ts.budget import Budget
 from tms_ts.flags import Flags
 from tms_ts.journal import Journal
-from tms_ts.machines import Machines, told_by
+from tms_ts.machines import Machines, reported_by
 from tms_ts.reasons import (
     GoalNotEnded,
     HaltedGoalsEnd,
@@ -34,16 +34,16 @@ from tms_ts.reasons import (
     NodeChangedBecause,
     NodeFailed,
     NotResumed,
-    ToldToStop,
+    StopRequested,
     TreeOf,
 )
 from tms_ts.run_checkpoint import RunCheckpoint
 from tms_ts.run_states import STATES, entered
 
-PERIOD = 0.05  # s between ticks when nothing wakes the loop
+TICK_PERIOD = 0.05  # s between ticks when nothing wakes the loop
 FEEDBACK_PERIOD = 0.1  # s between messages to the client
 CHANGES_A_TICK = 200  # node changes recorded of one tick; an endless loop makes thousands
-FLOOD_TOLD = 10.0  # s between notes that changes are left out
+FLOOD_REPORTED = 10.0  # s between notes that changes are left out
 CHANGES_A_MESSAGE = 1000
 TICK_LIMIT = 0.4  # s without a tick after which the scheduler does not stand behind its motions any more
 SETTLE_LIMIT = STOP_PROVEN + 7.0  # s for goals to become terminal after a halt
@@ -58,7 +58,7 @@ TaskGoal = Goal[ExecuteTask.Goal, ExecuteTask.Feedback]
 
 @dataclass
 class Facts:
-    """What is told of a run; changed by its own thread only."""
+    """What is reported a run; changed by its own thread only."""
 
     run_id: str
     number: int  # fencing number
@@ -70,7 +70,7 @@ class Facts:
     writes: set[tuple[str, str]] = field(default_factory=set)  # shared records and fields that it writes
     state: str = "preparing"
     reason: Reason | None = None
-    nodes_told: bool = False
+    nodes_reported: bool = False
     changes: list[NodeStatus] = field(default_factory=list)  # to tell the client, in order
 
 
@@ -97,7 +97,7 @@ class Run:
         self._next_feedback = 0.0
         self._budget = Budget()
         self._changes_of_tick = self._left_out = 0
-        self._flood_told = -FLOOD_TOLD
+        self._flood_reported = -FLOOD_REPORTED
         self._ending: tuple[str, Reason | None] = (
             "cancelled",
             None,
@@ -114,18 +114,18 @@ class Run:
         self.wake.set()
 
     def stopped(self, machine: str, cause: Reason) -> None:
-        """A machine was told to stop from outside, and moves no more until somebody re-arms it."""
+        """A machine was reported to stop from outside, and moves no more until somebody re-arms it."""
         wanted = cause.find(SoftwareStop) is not None
-        self.cancel("cancelled" if wanted else "failure", ToldToStop(machine, cause))
+        self.cancel("cancelled" if wanted else "failure", StopRequested(machine, cause))
 
     def alive(self) -> bool:
         """Whether the loop that decides about motions still runs."""
         ticked = self._ticked
         return ticked is None or monotonic() - ticked < TICK_LIMIT
 
-    # what is told
+    # what is reported
 
-    def tell(self, kind: str, node: str, what: Reason, values: Mapping[str, Any] | None = None) -> None:
+    def log_event(self, kind: str, node: str, what: Reason, values: Mapping[str, Any] | None = None) -> None:
         """One event into the journal and the log."""
         with self._numbering:
             self.number += 1
@@ -144,7 +144,7 @@ class Run:
         """Change the run's state."""
         self.facts.state, self.facts.reason = state, reason
         self._journal.put(self._row(ended))
-        self.tell("run", "", entered(state, reason))
+        self.log_event("run", "", entered(state, reason))
         self._changed()
 
     def _row(self, ended: bool) -> RunRow:
@@ -163,7 +163,7 @@ class Run:
             reason=to_line(facts.reason), started_at=facts.started, leaf=self._leaf, nodes=self.states,
         )  # fmt: skip
 
-    def tell_tree(self, tree: Tree) -> None:
+    def publish_tree(self, tree: Tree) -> None:
         """The shape of the tree, once: what shows states later, live or from the history, draws them on it."""
         nodes = tree.nodes
         values = {
@@ -173,7 +173,7 @@ class Run:
             "kinds": [node.kind.name.lower() for node in nodes],
             "ports": [" ".join(f'{port}="{text}"' for port, text in node.assigned().items()) for node in nodes],
         }
-        self.tell("tree", "", TreeOf(len(nodes)), values)
+        self.log_event("tree", "", TreeOf(len(nodes)), values)
 
     # the loop
 
@@ -186,7 +186,7 @@ class Run:
             outcome = self._tick_to_end(tree, machines)
         except TreeError as error:
             self._failure = error.reason
-            self.tell("error", error.path or "", error.reason)
+            self.log_event("error", error.path or "", error.reason)
         finally:
             outcome = self._settle(tree, machines, outcome)
         return outcome
@@ -200,15 +200,15 @@ class Run:
             status = tree.tick()
             self._ticked = monotonic()
             took = self._ticked - begun
-            self._tell_flood()
+            self._report_flood()
             self._look(tree)
             TICKS.observe(took)
-            self._tell_client(tree)
+            self._report_to_client(tree)
             if status.completed:
                 return "success" if status is Status.SUCCESS else "failure"
-            if took > PERIOD:
+            if took > TICK_PERIOD:
                 OVERRUNS.inc()
-            next_tick = min(max(next_tick + PERIOD, begun), begun + PERIOD)  # however often something woke it
+            next_tick = min(max(next_tick + TICK_PERIOD, begun), begun + TICK_PERIOD)  # however often something woke it
             self.wake.wait(max(0.0, next_tick - monotonic()))
             self.wake.clear()
         outcome, self._failure = self._ending
@@ -223,7 +223,7 @@ class Run:
                 self.enter("stopping", self._failure or STATES[outcome])
             tree.halt()
             self._look(tree)
-            self._tell_client(tree, last=True)
+            self._report_to_client(tree, last=True)
             moving = outcome != "success" or not machines.settled()
             if moving and outcome == "success":  # the tree succeeded in the tick that halted a leaf
                 self._failure = None
@@ -239,20 +239,20 @@ class Run:
             machines.receipt(receipt)
         deadline = monotonic() + SETTLE_LIMIT
         while not machines.settled() and monotonic() < deadline:
-            self.wake.wait(PERIOD)
+            self.wake.wait(TICK_PERIOD)
             self.wake.clear()
         reason = self._failure
-        unseen = [told_by(receipt) for receipt in receipts if not receipt.confirmed]
+        unseen = [reported_by(receipt) for receipt in receipts if not receipt.confirmed]
         unseen += [GoalNotEnded(name) for name in machines.open_goals()]
         for alarm in unseen:
-            self.tell("alarm", "", alarm)
+            self.log_event("alarm", "", alarm)
         if unseen:
             return self._end("stop_unconfirmed", Several((*unseen, *([reason] if reason is not None else []))))
         return self._end(outcome, reason)
 
     def _end(self, outcome: str, reason: Reason | None) -> str:
         self.over = True
-        self._tell_flood(last=True)
+        self._report_flood(last=True)
         if outcome != "interrupted":
             self.record.over(outcome, to_line(reason))
         self.enter(outcome, reason, ended=True)
@@ -289,20 +289,20 @@ class Run:
         self._changes_of_tick += 1
         if self._changes_of_tick > CHANGES_A_TICK:
             self._left_out += 1
-            self.facts.nodes_told = False  # the client gets the state of every node instead
+            self.facts.nodes_reported = False  # the client gets the state of every node instead
             return
         self.facts.changes.append(_message(node, new))
         if not self._budget.take(node.path):
             self._left_out += 1
             return
-        self.tell("node", node.path, _change(node, old, new))
+        self.log_event("node", node.path, _change(node, old, new))
 
-    def _tell_flood(self, last: bool = False) -> None:
+    def _report_flood(self, last: bool = False) -> None:
         """A loop that spins, or waits for hours, must not fill the history with its rounds."""
         now = monotonic()
-        if self._left_out and (last or now - self._flood_told >= FLOOD_TOLD):
-            self.tell("node", "", LeftOut(self._left_out))
-            self._left_out, self._flood_told = 0, now
+        if self._left_out and (last or now - self._flood_reported >= FLOOD_REPORTED):
+            self.log_event("node", "", LeftOut(self._left_out))
+            self._left_out, self._flood_reported = 0, now
 
     def _look(self, tree: Tree) -> None:
         """Keep what state() tells of the nodes."""
@@ -315,13 +315,13 @@ class Run:
             self.states, self._leaf, self.facts.reason = states, leaf, reason
             self._changed()
 
-    def _tell_client(self, tree: Tree, last: bool = False) -> None:
+    def _report_to_client(self, tree: Tree, last: bool = False) -> None:
         now = monotonic()
         if now < self._next_feedback and not last:
             return
         facts = self.facts
         running = [node for node in tree.running() if node.reason]
-        if facts.nodes_told and not facts.changes and not running and now < self._next_feedback + 1.0:
+        if facts.nodes_reported and not facts.changes and not running and now < self._next_feedback + 1.0:
             return
         facts.reason = running[0].reason if running else facts.reason if facts.state == "stopping" else None
         message = ExecuteTask.Feedback(
@@ -329,11 +329,11 @@ class Run:
             reason=to_line(facts.reason), nodes=self._nodes(tree, running),
         )  # fmt: skip
         self._goal.publish(message)
-        facts.nodes_told, facts.changes, self._next_feedback = True, [], now + FEEDBACK_PERIOD
+        facts.nodes_reported, facts.changes, self._next_feedback = True, [], now + FEEDBACK_PERIOD
 
     def _nodes(self, tree: Tree, running: list[Node]) -> list[NodeStatus]:
         """Every node in the first message; later the changes in their order, and what the running leaves say."""
-        if not self.facts.nodes_told or len(self.facts.changes) > CHANGES_A_MESSAGE:
+        if not self.facts.nodes_reported or len(self.facts.changes) > CHANGES_A_MESSAGE:
             return [_message(node, node.state) for node in tree.nodes]
         return [*self.facts.changes, *(_message(node, node.state) for node in running)]
 

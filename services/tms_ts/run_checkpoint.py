@@ -2,7 +2,7 @@
 
 One file a run, one JSON object a line: first the run, then every event's number and every leaf goal that was sent
 or has ended. A run that ended in order leaves no file. Lines are written by group commit: whoever adds one waits for
-nothing. In each group the records are on the disk before the journal: no event is told whose number is not known here.
+nothing. In each group the records are on the disk before the journal: no event is reported with a number unknown here.
 """
 
 import json

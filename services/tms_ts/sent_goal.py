@@ -45,7 +45,7 @@ class SentGoal:
         """What the subtask said last."""
         return wire.of(getattr(self.call.feedback, "status", "")) if self.call is not None else None
 
-    def unheard(self) -> bool:
+    def unreceived(self) -> bool:
         """Whether the server has had its time to answer and has not."""
         return self.call is not None and not self.call.accepted and monotonic() - self.begun > ACCEPT_LIMIT
 

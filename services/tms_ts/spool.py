@@ -16,7 +16,7 @@ OLD = 16 * 2**20  # bytes that are done before a queue that never gets empty is 
 class Spool:
     """Lines come by group commit and are taken by one thread; a line is forgotten only when it is said to be `done`."""
 
-    order = 1  # what is taken from here is told: the records of the same group come first
+    order = 1  # what is taken from here is reported: the records of the same group come first
 
     def __init__(self, path: Path, stored: Callable[[], None], largest: int = LARGEST) -> None:
         """`stored` is called when there are new lines to take."""

@@ -22,7 +22,7 @@ from tms_ts.reasons import JointUnfit
 
 DB_LIMIT = 5.0  # s
 DISCOVERY_LIMIT = 1.5  # s, for one preflight as a whole
-LOOK = 0.05  # s
+CHECK_PERIOD = 0.05  # s
 DEAF = ("silent", "waiting")  # states of an input that writes nothing
 
 
@@ -31,9 +31,9 @@ class Sensing:
 
     def __init__(self, app: App) -> None:
         self._inputs: list[InputState] = []
-        app.ros.subscribe(InputStates, "/tms/sp/inputs", self._heard, latched=True)
+        app.ros.subscribe(InputStates, "/tms/sp/inputs", self._received, latched=True)
 
-    def _heard(self, message: InputStates) -> None:
+    def _received(self, message: InputStates) -> None:
         self._inputs = list(message.inputs)
 
     def writes(self, record: str) -> bool:
@@ -73,7 +73,7 @@ class PreflightContext:
         """Whether an action server of that name is in the ROS graph, whoever runs it; one may have begun just now."""
         status, count = f"/{machine}/{subtask}/_action/status", self._app.ros.node.count_publishers
         while not (found := count(status)) and monotonic() < self._found_by:
-            sleep(LOOK)
+            sleep(CHECK_PERIOD)
         return bool(found)
 
     def written(self, record: str, field: str) -> bool:

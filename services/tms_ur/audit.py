@@ -30,7 +30,7 @@ from tms_ur.strangers import Strangers
 
 MAX_NEW = 1000  # notes that wait for the disk
 BATCH = 100  # notes in one request to the database, which a crash may leave half done
-LOOK = 1.0  # s between looks at what strangers did
+STRANGERS_PERIOD = 1.0  # s between looks at what strangers did
 RETRY = 1.0  # s
 LONGEST = 600  # characters of a text
 LOST = Counter("tms_ur_audit_lost_total", "Commands that are in the log only: the disk failed or was full")
@@ -46,7 +46,7 @@ class Audit:
         self._new: queue.Queue[tuple[Note, threading.Event] | None] = queue.Queue(MAX_NEW)
         self._ledger: Ledger | None = None
         self._number = 0
-        self._news, self._closing = threading.Event(), threading.Event()
+        self._changed, self._closing = threading.Event(), threading.Event()
         self._keeper = threading.Thread(target=self._keep, name="audit_disk", daemon=True)
         self._sender = threading.Thread(target=self._send, name="audit", daemon=True)
         self._keeper.start()
@@ -64,7 +64,7 @@ class Audit:
         return kept
 
     def refused(self, who: str, source: str, what: str, why: str) -> None:
-        """Take a note of a stranger; a minute's are told together."""
+        """Take a note of a stranger; a minute's are reported together."""
         if self._strangers.add(who, source, what, why):
             self.put(who, source, what, why)
 
@@ -77,7 +77,7 @@ class Audit:
         for refused in self._strangers.due(everything=True):
             self.put(refused.who, refused.source, refused.what, refused.why, refused.times)
         self._closing.set()
-        self._news.set()
+        self._changed.set()
         with suppress(queue.Full):  # then it has something to wake up for
             self._new.put_nowait(None)
         self._keeper.join(0.5)
@@ -90,7 +90,7 @@ class Audit:
             self._open()
             if self._ledger is None and self._closing.wait(RETRY):
                 return
-        self._news.set()
+        self._changed.set()
         while not (self._closing.is_set() and self._new.empty()):
             for refused in self._strangers.due():
                 self.put(refused.who, refused.source, refused.what, refused.why, refused.times)
@@ -112,7 +112,7 @@ class Audit:
         found: list[tuple[Note, threading.Event]] = []
         try:
             while len(found) < MAX_NEW:
-                one = self._new.get(timeout=LOOK) if not found else self._new.get_nowait()
+                one = self._new.get(timeout=STRANGERS_PERIOD) if not found else self._new.get_nowait()
                 if one is None:
                     break
                 found.append(one)
@@ -132,13 +132,13 @@ class Audit:
             return False
         for _, kept in found:
             kept.set()
-        self._news.set()
+        self._changed.set()
         return True
 
     # to the database
 
     def _send(self) -> None:
-        self._news.wait()
+        self._changed.wait()
         placed = False
         while not self._closing.is_set():
             try:
@@ -146,10 +146,10 @@ class Audit:
                 if not placed:
                     self._take_place(self._ledger)
                     placed = True
-                self._news.clear()
+                self._changed.clear()
                 while self._sent(self._ledger) and not self._closing.is_set():
                     pass
-                self._news.wait()
+                self._changed.wait()
             except TmsError:  # the database is away, which others tell
                 self._closing.wait(RETRY)
             except (sqlite3.Error, OSError) as error:

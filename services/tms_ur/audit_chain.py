@@ -127,12 +127,12 @@ class Verdict:
             self._compare(one)
         self.last = Place(one.number, one.hash)
 
-    def end(self, told: Place) -> None:
+    def end(self, reported: Place) -> None:
         """What the console remembers of its last entry that was stored."""
-        if told.number > self.last.number:
-            self._fault(self.last.number + 1, "missing", told.number)
-        elif told.number == self.last.number and told.hash != self.last.hash:
-            self._fault(told.number, "changed")
+        if reported.number > self.last.number:
+            self._fault(self.last.number + 1, "missing", reported.number)
+        elif reported.number == self.last.number and reported.hash != self.last.hash:
+            self._fault(reported.number, "changed")
 
     def _compare(self, one: Entry) -> None:
         self.chained += 1

@@ -87,7 +87,7 @@ def opened(file: Path) -> tuple[Ledger, bool]:
         return Ledger(file), True
 
 
-def told(file: Path) -> Place | None:
+def reported(file: Path) -> Place | None:
     """What the console of this PC remembers of its last stored entry; None if it has run elsewhere."""
     if not file.exists():
         return None

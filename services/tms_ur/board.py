@@ -36,7 +36,7 @@ class Board:
             before, _ = self._machines.get(machine.name, (None, None))
             self._machines[machine.name] = (machine, self._clock())
         if before is None or _content(before) != _content(machine):
-            self._tell()
+            self._publish()
 
     def put_place(self, name: str, place: Place, age: float = 0.0) -> None:
         """Where a machine stood `age` seconds ago."""
@@ -44,7 +44,7 @@ class Board:
             before, _ = self._places.get(name, (None, None))
             self._places[name] = (place, self._clock() - age)
         if before != place:
-            self._tell()
+            self._publish()
 
     def put_runs(self, runs: list[ActiveRun], questions: list[Question] | None = None) -> None:
         """The scheduler's whole lists."""
@@ -53,18 +53,18 @@ class Board:
             changed = runs != self._runs or asked != self._questions or self._runs_at is None
             self._runs, self._questions, self._runs_at = runs, asked, self._clock()
         if changed:
-            self._tell()
+            self._publish()
 
     def put_host(self, host: Host) -> None:
         """All processes of one PC; its agent tells of changes at once, and every 2 s without one."""
         with self._lock:
             self._hosts[host.name] = (host, self._clock())
-        self._tell()
+        self._publish()
 
     def close(self) -> None:
         """No more news: listeners let their clients go."""
         self.closed = True
-        self._tell()
+        self._publish()
 
     def host_of(self, process: str) -> str | None:
         """The PC that a process runs on."""
@@ -93,7 +93,7 @@ class Board:
                 hosts=[_host(host, now - at) for _, (host, at) in sorted(self._hosts.items())],
             )
 
-    def _tell(self) -> None:
+    def _publish(self) -> None:
         for listener in self._listeners:
             listener()
 

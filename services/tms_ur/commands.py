@@ -55,7 +55,7 @@ class _Note:
         self._audit = audit
 
     def __call__(self, request: Request, person: Person, what: str, target: object) -> str:
-        """Of a command: what is told as done is on the disk. Not on the event loop."""
+        """Of a command: what is reported as done is on the disk. Not on the event loop."""
         where = source(request.scope)
         if not self._audit.put(person.name, where, what, str(target)).wait(KEPT_LIMIT):
             log.warning("audit_late", what=what, reason="the disk is slow; the command is in the log")
@@ -159,8 +159,8 @@ def _stored(app: FastAPI, client: "SiteClient", note: _Note) -> None:
     @app.post("/api/parameters", summary="Set fields of a record in one step", responses=ANSWERS)
     def set_parameter(request: Request, given: RecordGiven, person: Admin) -> Nothing:
         values = {field.name: _typed(field) for field in given.fields}
-        told = ", ".join(f"{name}={value}" for name, value in values.items())
-        who = note(request, person, "set_parameter", f"{given.model_name}/{given.record_name} {told}"[:500])
+        reported = ", ".join(f"{name}={value}" for name, value in values.items())
+        who = note(request, person, "set_parameter", f"{given.model_name}/{given.record_name} {reported}"[:500])
         client.set_parameter(given.model_name, given.record_name, values, who, given.create, given.type)
         return Nothing()
 

@@ -15,9 +15,9 @@ from tms_reason.reason import Reason
 from tms_ur.connections import BODY, HEADERS, SILENCE, Connection, Gate, Listener
 from tms_ur.reasons import ServerEnded, ServerStarting
 
-STOP_LIMIT = 0.8  # s for open requests to end; the runtime ends the process within 2
+REQUESTS_END_LIMIT = 0.8  # s for open requests to end; the runtime ends the process within 2
 KEEP_ALIVE = 15  # s for the next request of a connection
-EVERY = 2  # ticks of uvicorn (0.1 s) between looks at the connections
+CONNECTIONS_CHECK_TICKS = 2  # ticks of uvicorn (0.1 s) between looks at the connections
 
 
 class Server:
@@ -45,7 +45,7 @@ class Server:
     def stop(self) -> None:
         """Let open requests end for a moment, then leave them."""
         self._server.should_exit = True
-        self._thread.join(STOP_LIMIT)
+        self._thread.join(REQUESTS_END_LIMIT)
         self._server.force_exit = True
         self._thread.join(0.2)
 
@@ -58,7 +58,7 @@ class _Looking(uvicorn.Server):
         self._gate = gate
 
     async def on_tick(self, counter: int) -> bool:
-        if counter % EVERY == 0:
+        if counter % CONNECTIONS_CHECK_TICKS == 0:
             self._gate.look()
         return await super().on_tick(counter)
 
@@ -71,8 +71,8 @@ class Watched(H11Protocol):
         self._gate = gate
         self._connection: Connection | None = None
         self._begun = monotonic()  # the present request, or the wait for it
-        self._heard = self._begun  # the last piece of it
-        self._idle = False  # answered, and nothing of a next request was heard
+        self._received = self._begun  # the last piece of it
+        self._idle = False  # answered, and nothing of a next request was received
         self._unread, self._read = 0, self._begun  # bytes of the answer that wait, and when it was seen to go on
 
     def connection_made(self, transport: Any) -> None:
@@ -83,9 +83,9 @@ class Watched(H11Protocol):
             transport.abort()
 
     def data_received(self, data: bytes) -> None:
-        self._heard = monotonic()
+        self._received = monotonic()
         if self._idle:
-            self._idle, self._begun = False, self._heard
+            self._idle, self._begun = False, self._received
         super().data_received(data)
 
     def on_response_complete(self) -> None:
@@ -104,7 +104,7 @@ class Watched(H11Protocol):
             return "slow_reader"
         if self._answered():  # an idle one is uvicorn's to close
             return "headers" if not self._idle and now - self._begun > HEADERS else ""
-        if self.conn.their_state is h11.SEND_BODY and (now - self._heard > SILENCE or now - self._begun > BODY):
+        if self.conn.their_state is h11.SEND_BODY and (now - self._received > SILENCE or now - self._begun > BODY):
             return "body"
         return ""
 

@@ -26,7 +26,7 @@ from tms_msg_ts.srv import AnswerQuestion, CancelRun, CheckTask
 from tms_config.clock import monotonic
 from tms_config.config import Site
 from tms_config.names import check_sent
-from tms_machine.border import STOP_PROVEN
+from tms_machine.border import RECEIPT_LIMIT
 from tms_machine.frames import Frames
 from tms_machine.values import to_parameters
 from tms_reason import wire
@@ -44,7 +44,6 @@ from tms_ur.reasons import RunNotBegun, StartRefused, UnknownProcess
 
 SCHEDULER = "tms:ts"
 CALL_LIMIT = 4.0  # s for an answer of a module
-STOP_LIMIT = STOP_PROVEN + 3.0  # s for the receipt of a stop
 START_LIMIT = 30.0  # s for a run to begin: the scheduler may start its subtasks first
 PROCESS_LIMIT = 15.0  # s for a process to end and to be started
 FRAMES_PERIOD = 0.2  # s between looks at /tf: to be woken by each of its messages costs most of an idle console
@@ -69,7 +68,7 @@ class SiteClient:
         ros.subscribe(Processes, "/tms/host/processes", self._on_processes, depth=10, latched=True)
         ros.subscribe(InputStates, "/tms/sp/inputs", self._on_inputs, latched=True)
         self._new_frames = ros.sample(TFMessage, "/tf", FRAMES_DEPTH)
-        ros.subscribe(TFMessage, "/tf_static", self._frames.hear_fixed, depth=FRAMES_DEPTH, latched=True)
+        ros.subscribe(TFMessage, "/tf_static", self._frames.receive_fixed, depth=FRAMES_DEPTH, latched=True)
         ros.poll_in_thread(FRAMES_PERIOD, self._update_places, "frames")
 
     # topics
@@ -88,12 +87,12 @@ class SiteClient:
         self._inputs = (list(message.inputs), monotonic())
 
     def _update_places(self) -> None:
-        moved = set[str]().union(*map(self._frames.hear, self._new_frames()))
+        moved = set[str]().union(*map(self._frames.receive, self._new_frames()))
         for frame in moved & self._machines.keys():
             seen = self._frames.place(frame)
             if seen is not None:
                 place = Place(x=round(seen.x, 2), y=round(seen.y, 2), yaw=round(seen.yaw, 3))
-                self.board.put_place(self._machines[frame], place, max(0.0, monotonic() - seen.heard))
+                self.board.put_place(self._machines[frame], place, max(0.0, monotonic() - seen.received))
 
     def sensing(self) -> Sensing:
         """The sensing inputs as `tms:sp` reported them last."""
@@ -172,14 +171,14 @@ class SiteClient:
         call.wait_for(lambda: _begun(call) or call.outcome is not None, START_LIMIT)
         if call.outcome is None and call.feedback is not None:  # it runs, or goes on preparing for long
             return str(call.feedback.run_id)
-        if call.outcome is None:  # whoever is told "no" must not see it start later
+        if call.outcome is None:  # whoever is reported "no" must not see it start later
             self._scheduler.cancel(call)
             raise RosError(RunNotBegun(START_LIMIT, SCHEDULER))
         if call.result is None:
             raise TmsError(StartRefused(SCHEDULER))
         if call.result.outcome == "refused":
             raise _error(call.result)
-        return str(call.result.run_id)  # it was over before anything was told of it
+        return str(call.result.run_id)  # it was over before anything was reported of it
 
     def cancel_run(self, run_id: str) -> None:
         """Ask a run to stop; its state tells when it has.
@@ -203,7 +202,7 @@ class SiteClient:
         """Stop one machine by the shortest way, straight to its gateway; no answer is a receipt, too."""
         try:
             request = StopMachine.Request(cause=wire.to_line(cause))
-            answer = self._ros.call(StopMachine, f"/{machine}/rc/stop", request, STOP_LIMIT)
+            answer = self._ros.call(StopMachine, f"/{machine}/rc/stop", request, RECEIPT_LIMIT)
         except RosError as error:
             return Receipt(
                 machine=machine, confirmed=False, seconds=0.0, travel_joint="", travel_rad=0.0, travel_m=0.0,

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from tms_config.clock import monotonic
 from tms_ur.callers import caller
 
-PERIOD = 60.0  # s
+COUNTING_PERIOD = 60.0  # s
 MAX_KINDS = 200  # addresses with kinds; those beyond are counted together
 MANY = "many addresses"
 
 
 @dataclass
 class Refused:
-    """Refusals that are told together."""
+    """Refusals that are reported together."""
 
     who: str  # the last name that was given
     source: str
@@ -49,7 +49,7 @@ class Strangers:
         """What was counted since the last entry of its kind, if that is a minute ago."""
         with self._lock:
             now = self._clock()
-            over = {key: one for key, one in self._open.items() if everything or now - one.since >= PERIOD}
+            over = {key: one for key, one in self._open.items() if everything or now - one.since >= COUNTING_PERIOD}
             for key, one in over.items():
                 if one.times:
                     self._open[key] = Refused(one.who, one.source, one.what, one.why, now)

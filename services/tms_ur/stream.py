@@ -32,22 +32,22 @@ class Client:
     """The slot of one client; used on the event loop only."""
 
     def __init__(self) -> None:
-        self._news = asyncio.Event()
+        self._pending = asyncio.Event()
         self._text: bytes = b""
         self._ended = False
 
     def put(self, text: bytes) -> None:
         self._text = text
-        self._news.set()
+        self._pending.set()
 
     def end(self) -> None:
         self._ended = True
-        self._news.set()
+        self._pending.set()
 
     async def next(self) -> bytes | None:
         """The newest snapshot once there is one that was not sent yet; None at the end."""
-        await self._news.wait()
-        self._news.clear()
+        await self._pending.wait()
+        self._pending.clear()
         return None if self._ended else self._text
 
 

@@ -129,10 +129,10 @@ def _journal(address: str, run: str) -> list[tuple[str, float]]:
             for event in changes]  # fmt: skip
 
 
-def _delays(seen: list[tuple[str, float]], told: list[tuple[str, float]]) -> Iterator[float]:
+def _delays(seen: list[tuple[str, float]], reported: list[tuple[str, float]]) -> Iterator[float]:
     """From the last change of that node before it was seen; nodes change twice a second, so none is mistaken."""
     for path, at in seen:
-        before = [stamp for node, stamp in told if node == path and stamp <= at]
+        before = [stamp for node, stamp in reported if node == path and stamp <= at]
         if before:
             yield at - before[-1]
 

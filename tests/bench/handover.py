@@ -40,9 +40,9 @@ class Watch:
     def __init__(self, ros: Ros, action: str) -> None:
         self.accepted: dict[bytes, float] = {}
         self.ended: dict[bytes, float] = {}
-        ros.subscribe(GoalStatusArray, f"{action}/_action/status", self._heard, depth=100, latched=True)
+        ros.subscribe(GoalStatusArray, f"{action}/_action/status", self._received, depth=100, latched=True)
 
-    def _heard(self, message: GoalStatusArray) -> None:
+    def _received(self, message: GoalStatusArray) -> None:
         now = time.perf_counter()
         for each in message.status_list:
             goal = bytes(each.goal_info.goal_id.uuid)

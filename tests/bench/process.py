@@ -83,16 +83,16 @@ def _costs(own: Rig, rows: list[Process], bare: int, hearing: int) -> Iterable[F
     wanted = {pids[row.full]: row for row in rows if row.group != "sim"}
     time.sleep(SETTLE)
     idle = _idle([*wanted, bare, hearing], rows)
-    floor, heard = max(idle.pop(bare), 0.01), idle.pop(hearing)
+    floor, received = max(idle.pop(bare), 0.01), idle.pop(hearing)
     memory, bare_memory = {pid: _pss(pid) for pid in wanted}, _pss(bare)
     largest, hungriest = (max(found, key=lambda pid: found[pid]) for found in (memory, idle))
     count, total, weight = len(wanted), sum(idle.values()), sum(memory.values())
     yield Figure("memory (PSS), largest process", "MB", memory[largest], 60.0, bare_memory, note=wanted[largest].full)
     yield Figure("memory (PSS), mean", "MB", weight / count, 60.0, bare_memory)
-    yield Figure("idle, hungriest process", "% core", idle[hungriest], 1.0, heard, note=_shares(idle, wanted))
+    yield Figure("idle, hungriest process", "% core", idle[hungriest], 1.0, received, note=_shares(idle, wanted))
     subtasks = sorted(idle[pid] for pid, row in wanted.items() if row.action)
     yield Figure("idle, a subtask (p50)", "% core", at(0.5, subtasks), 1.0, floor)
-    least = floor * count + heard * 2 * len(MACHINES)  # each machine is heard by its gateway and by tms:sp
+    least = floor * count + received * 2 * len(MACHINES)  # each machine is heard by its gateway and by tms:sp
     yield Figure(f"idle, all {count} together", "% core", total, 10.0 * count / 40, least)
 
 

@@ -48,7 +48,7 @@ class Cost:
 
     late: float  # % of the ticks
     handed_over: float  # ms, mean
-    heard: float  # ms from the press to the last machine
+    received: float  # ms from the press to the last machine
     cancelled: float  # ms from the press to the last goal that was asked to end
     left: int  # runs that have not ended END_LIMIT after the stop
     cpu: float  # % of a core, the scheduler's
@@ -64,7 +64,7 @@ def measure() -> Iterable[Figure]:
         note = f"hand-over {cost.handed_over:.1f} ms"
         yield Figure(f"{name}: late ticks", "%", cost.late, 1.0, max(least.late, 0.01), note=note)
         yield Figure("  processor time of tms:ts", "% core", cost.cpu, 80.0, least.cpu)
-        yield Figure("  stop heard by the last machine", "ms", cost.heard, 50.0, least.heard, usual_floor=10.0)
+        yield Figure("  stop heard by the last machine", "ms", cost.received, 50.0, least.received, usual_floor=10.0)
         yield Figure("  stop until the last goal ends", "ms", cost.cancelled, 700.0, least.cancelled)
         yield Figure(f"  runs left after {END_LIMIT:.0f} s", "", float(cost.left), 0.5, 1.0)
         yield Figure("  memory (PSS) of tms:ts", "MB", cost.memory, 120.0, least.memory)
@@ -89,19 +89,19 @@ def _cost(size: int) -> Cost:
         time.sleep(SETTLE)
         late, handed_over, cpu = _watched(own, pid)
         memory = psutil.Process(pid).memory_full_info().pss / 1e6
-        heard, cancelled = _press(ros, crowds)
-        return Cost(late, handed_over, heard, cancelled, _left(calls), cpu, memory)
+        received, cancelled = _press(ros, crowds)
+        return Cost(late, handed_over, received, cancelled, _left(calls), cpu, memory)
 
 
 @contextmanager
 def _process(own: Rig, *words: str) -> Iterator[subprocess.Popen[str]]:
     log = Path(own.mesh.state) / "bench.log"
     log.parent.mkdir(parents=True, exist_ok=True)
-    told = words[0] == str(CROWD)  # what nobody reads must not go into a pipe: a full one blocks whoever logs
+    reported = words[0] == str(CROWD)  # what nobody reads must not go into a pipe: a full one blocks whoever logs
     with (
         log.open("a") as errors,
         subprocess.Popen(
-            [sys.executable, *words], text=True, stdout=subprocess.PIPE if told else errors, stderr=errors
+            [sys.executable, *words], text=True, stdout=subprocess.PIPE if reported else errors, stderr=errors
         ) as running,
     ):
         try:
@@ -198,6 +198,6 @@ def _press(ros: Ros, crowds: list[subprocess.Popen[str]]) -> tuple[float, float]
     for crowd in crowds:
         assert crowd.stdout is not None
         stamps += json.loads(crowd.stdout.readline())
-    heard, ended = ([(stamp - begun) / 1e6 for stamp in column if stamp] for column in zip(*stamps, strict=True))
-    assert len(heard) == len(stamps), "a machine has not heard the stop"
-    return max(heard), max(ended, default=0.0)
+    received, ended = ([(stamp - begun) / 1e6 for stamp in column if stamp] for column in zip(*stamps, strict=True))
+    assert len(received) == len(stamps), "a machine has not heard the stop"
+    return max(received), max(ended, default=0.0)

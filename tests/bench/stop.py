@@ -94,11 +94,11 @@ def _relayed(yard: Yard) -> list[float]:
     answered: list[int] = []
     there = threading.Event()
 
-    def heard(_zero: Twist, info: dict[str, int]) -> None:
+    def received(_zero: Twist, info: dict[str, int]) -> None:
         answered.append(info["source_timestamp"])
         there.set()
 
-    yard.ros.node.create_subscription(Twist, "/bench/zero", heard, 1, callback_group=yard.ros.loop.group)
+    yard.ros.node.create_subscription(Twist, "/bench/zero", received, 1, callback_group=yard.ros.loop.group)
     button = yard.ros.publisher(Bool, "/bench/press", depth=1)
     while not there.wait(0.2):  # until both sides have found each other
         button.publish(Bool())

@@ -150,12 +150,12 @@ def test_a_session_that_ends_shows_the_login_and_a_panel_comes_back(secure_page:
 
 
 @pytest.mark.parametrize(
-    ("path", "heard"), [("", "#list_machines article"), ("/panel.html?task=1", "#state:not(:empty)")]
+    ("path", "received"), [("", "#list_machines article"), ("/panel.html?task=1", "#state:not(:empty)")]
 )
 def test_a_stop_that_a_lost_session_has_swallowed_is_told(
-    secure_page: Page, server: Server, path: str, heard: str
+    secure_page: Page, server: Server, path: str, received: str
 ) -> None:
-    page, report, state = secure_page, secure_page.locator("#stop_report"), secure_page.locator(heard)
+    page, report, state = secure_page, secure_page.locator("#stop_report"), secure_page.locator(received)
     page.goto(server.url + path)
     login(page, "operator", PASSWORD)
     expect(state).to_be_visible()

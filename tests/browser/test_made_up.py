@@ -46,7 +46,7 @@ class Yard(FakeSiteClient):
         self.slow = threading.Event()  # until then zx200 does not answer
         self.journals: dict[str, list[Event]] = {}
 
-    def hear(self, **facts: Any) -> None:
+    def receive(self, **facts: Any) -> None:
         """Both machines and the scheduler."""
         for name in MACHINES:
             self.board.put_machine(Machine(name=name, state="standing", joint_age=0.1, **facts))
@@ -82,7 +82,7 @@ class PageInterruption(Reason, text="run {run} was interrupted", action=RESUME):
 @pytest.fixture
 def yard() -> Yard:
     yard = Yard()
-    yard.hear()
+    yard.receive()
     return yard
 
 
@@ -105,7 +105,7 @@ def event(number: int, kind: str = "node", **values: Any) -> Event:
 
 
 def test_one_yes_arms_one_machine(page: Page, address: str, yard: Yard) -> None:
-    yard.hear(latch=view(SoftwareStop()))
+    yard.receive(latch=view(SoftwareStop()))
     page.goto(f"{address}/#run")
     late = page.get_by_role("button", name="Re-arm zx200")
     late.click()
@@ -151,7 +151,7 @@ def test_a_silent_scheduler_is_told_on_panel_and_tree(page: Page, address: str, 
     page.goto(f"{address}/#tree")
     expect(page.locator("#tree_reason")).to_contain_text(silent)
     expect(page.locator("#tree_state")).to_contain_text("Unknown")
-    yard.hear()
+    yard.receive()
     expect(page.locator("#tree_reason")).to_have_text("It moves on.")
     yard.board.put_runs([])
     yard.now += 6
@@ -166,7 +166,7 @@ def test_an_old_place_is_marked(page: Page, address: str, yard: Yard) -> None:
     expect(mark).to_have_attribute("class", "machine standing")
     expect(page.locator("#unplaced li")).to_have_text(["zx200: no position has been heard."])
     yard.now += 7
-    yard.hear()  # its joints go on
+    yard.receive()  # its joints go on
     expect(mark).to_have_attribute("class", "machine silent")
     expect(page.locator("#unplaced li").last).to_have_text("ic120: no position for 7.0 s; the map shows the last one.")
 

@@ -92,20 +92,20 @@ def test_a_record_that_was_removed_is_missing(rig: Rig) -> None:
 
 
 def test_the_store_tells_of_changes_by_anybody(server: Server, shared_db: store.Db) -> None:
-    told: queue.Queue[Any] = queue.Queue()
+    reported: queue.Queue[Any] = queue.Queue()
     own = store.connect(server.uri, shared_db.name)
     connection = Connection(own, "the store", LOG)
-    watching = Watching(own, connection, LOG, told.put)
+    watching = Watching(own, connection, LOG, reported.put)
     records = shared_db["parameter"]
     connection.start()
     watching.start()
     try:
-        assert told.get(timeout=20) is None  # from now on
+        assert reported.get(timeout=20) is None  # from now on
         wait_until(watching.sure, 20, "the stream is there")
         made = records.insert_one({"model_name": "m", "record_name": "r"}).inserted_id
         records.update_one({"_id": made}, {"$set": {"x": 1}})
         records.delete_one({"_id": made})
-        assert [told.get(timeout=20) for _ in range(3)] == [made] * 3
+        assert [reported.get(timeout=20) for _ in range(3)] == [made] * 3
     finally:
         watching.stop()
         connection.stop()

@@ -362,11 +362,11 @@ class Batched:
         while self.connection.unready() and time.monotonic() < deadline:
             time.sleep(0.01)
         self.parameters, self.batches = Parameters(db), Batches(db, self.connection, log)
-        self.told: queue.Queue[DbError | None] = queue.Queue()
+        self.reported: queue.Queue[DbError | None] = queue.Queue()
 
     def put(self, name: str, hurry: bool = False, **fields: Value) -> None:
         update = Update(self.parameters.get("zx200", name)["_id"], fields, BEGIN, "test")
-        self.batches.put({("zx200", name): update}, self.told.put, hurry)
+        self.batches.put({("zx200", name): update}, self.reported.put, hurry)
 
 
 @pytest.fixture
@@ -387,7 +387,7 @@ def test_updates_are_readable_at_once_and_stored_before_they_are_acknowledged(ba
     assert (newest["x"], newest["y"], newest["source"]) == (2, 5, "test")
     assert batched.parameters.get("zx200", "a")["x"] == 0
     batched.batches.start()
-    assert [batched.told.get(timeout=20) for _ in range(3)] == [None, None, None]
+    assert [batched.reported.get(timeout=20) for _ in range(3)] == [None, None, None]
     stored = batched.parameters.get("zx200", "a")
     assert (stored["x"], stored["y"], stored["updated_at"]) == (2, 5, BEGIN)
     assert batched.parameters.get("zx200", "b")["x"] == 3
@@ -401,7 +401,7 @@ def test_updates_of_a_record_that_is_gone_are_noticed(batched: Batched) -> None:
     batched.put("a", hurry=True, x=1)
     batched.parameters.remove("zx200", "a")
     batched.batches.start()
-    assert batched.told.get(timeout=20) is None
+    assert batched.reported.get(timeout=20) is None
     assert batched.batches.gone.is_set()
 
 
@@ -411,9 +411,9 @@ def test_callers_are_told_when_the_store_is_away(own_server: Server) -> None:
     batched.put("a", hurry=True, x=1)
     own_server.end(kill=True)
     batched.batches.start()
-    told = batched.told.get(timeout=30)
-    assert told is not None
-    assert told.code == "STORE_DOWN"
+    reported = batched.reported.get(timeout=30)
+    assert reported is not None
+    assert reported.code == "STORE_DOWN"
     assert batched.batches.newest(("zx200", "a")) == {}
     batched.batches.stop()
     batched.connection.stop()

@@ -19,8 +19,8 @@ from conftest import PROJECT
 @pytest.fixture(scope="session")
 def image() -> None:
     """The image with the embedded store, of this checkout."""
-    words = ["sh", str(PROJECT / "deploy/image.sh"), IMAGE, "demo"]
-    done = subprocess.run(words, env={**os.environ, "DOCKER": DOCKER}, capture_output=True, text=True, check=False)
+    argv = ["sh", str(PROJECT / "deploy/image.sh"), IMAGE, "demo"]
+    done = subprocess.run(argv, env={**os.environ, "DOCKER": DOCKER}, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr[-2000:]
 
 

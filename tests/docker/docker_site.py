@@ -25,17 +25,17 @@ LOOK = 0.2  # s between looks that cost the processes something
 RANGE = "172.31.0.0/16"  # where the networks of the tests are
 
 
-def docker(*words: str, limit: float = 60, expect: int | None = 0) -> subprocess.CompletedProcess[str]:
-    done = subprocess.run([DOCKER, *words], capture_output=True, text=True, timeout=limit, check=False)
+def docker(*argv: str, limit: float = 60, expect: int | None = 0) -> subprocess.CompletedProcess[str]:
+    done = subprocess.run([DOCKER, *argv], capture_output=True, text=True, timeout=limit, check=False)
     if expect is not None:
-        assert done.returncode == expect, f"docker {' '.join(words)}: {done.returncode}\n{done.stdout}\n{done.stderr}"
+        assert done.returncode == expect, f"docker {' '.join(argv)}: {done.returncode}\n{done.stdout}\n{done.stderr}"
     return done
 
 
-def host(*words: str) -> None:
+def host(*argv: str) -> None:
     """A command on the PC that the containers run on."""
-    done = subprocess.run(words, capture_output=True, text=True, timeout=20, check=False)
-    assert done.returncode == 0, f"{words}: {done.stderr}"
+    done = subprocess.run(argv, capture_output=True, text=True, timeout=20, check=False)
+    assert done.returncode == 0, f"{argv}: {done.stderr}"
 
 
 class Yard:
@@ -126,13 +126,13 @@ class Yard:
             print(docker("logs", "--tail", "30", self.name(pc)).stdout, waiting)
             raise
 
-    def tms(self, pc: str, *words: str, limit: float = 120, expect: int | None = 0) -> subprocess.CompletedProcess[str]:
-        return docker("exec", self.name(pc), "tms", *words, limit=limit, expect=expect)
+    def tms(self, pc: str, *argv: str, limit: float = 120, expect: int | None = 0) -> subprocess.CompletedProcess[str]:
+        return docker("exec", self.name(pc), "tms", *argv, limit=limit, expect=expect)
 
     def begin(self, task: str) -> subprocess.Popen[str]:
         """`tms run --wait` in the background."""
-        words = [DOCKER, "exec", self.name("cps"), "tms", "run", task, "--wait", "--json"]
-        return subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        argv = [DOCKER, "exec", self.name("cps"), "tms", "run", task, "--wait", "--json"]
+        return subprocess.Popen(argv, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
     def run(self, task: str) -> dict[str, Any]:
         done = self.tms("cps", "run", task, "--wait", "--json", expect=None)
@@ -169,10 +169,10 @@ class Yard:
         return float(found[0].rsplit(" ", 1)[1]) if found else None
 
 
-def in_network_of(pid: int, *words: str) -> subprocess.CompletedProcess[str]:
+def in_network_of(pid: int, *argv: str) -> subprocess.CompletedProcess[str]:
     """A command of this PC in the network namespace of a container: what somebody does to its cable."""
-    words = ("nsenter", "--target", str(pid), "--net", *words)
-    return subprocess.run(words, capture_output=True, text=True, timeout=20, check=False)
+    argv = ("nsenter", "--target", str(pid), "--net", *argv)
+    return subprocess.run(argv, capture_output=True, text=True, timeout=20, check=False)
 
 
 def cable(pid: int, *, out: bool) -> None:

@@ -15,13 +15,13 @@ PCS = ("cps", "machine", "sensing", "sim")
 
 
 def make(target: str) -> None:
-    words = ["make", target, "SITE=trial", "ROLE=trial", "RUNTIME=docker", f"DOCKER={DOCKER}"]
-    done = subprocess.run(words, cwd=PROJECT, env=os.environ, capture_output=True, text=True, check=False)
+    argv = ["make", target, "SITE=trial", "ROLE=trial", "RUNTIME=docker", f"DOCKER={DOCKER}"]
+    done = subprocess.run(argv, cwd=PROJECT, env=os.environ, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-def tms(pc: str, *words: str) -> subprocess.CompletedProcess[str]:
-    return docker("exec", f"tms-trial-{pc}", "tms", *words, limit=120, expect=None)
+def tms(pc: str, *argv: str) -> subprocess.CompletedProcess[str]:
+    return docker("exec", f"tms-trial-{pc}", "tms", *argv, limit=120, expect=None)
 
 
 @pytest.fixture(scope="module")
@@ -40,11 +40,11 @@ def trial(image: None) -> Iterator[None]:
 def test_the_trial_of_the_guide_runs_a_task(trial: None) -> None:
     for pc in PCS:
         wait_until(lambda pc=pc: tms(pc, "status").returncode == 0, 120, f"{pc} is ready", 2.0)  # type: ignore[misc]
-    for words in (
+    for argv in (
         ("rearm", "zx200", "--yes"),
         ("param", "load", "configs/parameters/zx200.yaml"),
         ("task", "add", "configs/tasks/one_loading_cycle.xml"),
     ):
-        assert tms("cps", *words).returncode == 0
+        assert tms("cps", *argv).returncode == 0
     done = tms("cps", "run", "1", "--wait", "--json")
     assert json.loads(done.stdout)["outcome"] == "success", done.stderr

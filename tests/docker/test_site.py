@@ -87,8 +87,8 @@ def test_a_frozen_process_is_restarted_inside_its_container(yard: Yard) -> None:
 
 def test_the_software_stop_reaches_the_machine_pc_in_time(yard: Yard) -> None:
     with Lateness().watched() as late:
-        told = docker("exec", yard.name("cps"), "python3", "/tools/press.py", "zx200", "20").stdout
-    waits = json.loads(told)
+        reported = docker("exec", yard.name("cps"), "python3", "/tools/press.py", "zx200", "20").stdout
+    waits = json.loads(reported)
     print(f"press -> stop commanded: median {statistics.median(waits):.4f} s, most {max(waits):.4f} s")
     assert max(waits) < PRESS + late.most
     recovered(yard)
@@ -140,9 +140,9 @@ def test_a_bad_cable_stops_no_work(yard: Yard) -> None:
 
 def spoilt(pid: int) -> tuple[Callable[[], object], str]:
     """Spoil the cable of a PC: how to mend it, and what was done."""
-    words = "tc qdisc add dev eth0 root netem delay 40ms 10ms loss 5%".split()
-    if (tried := in_network_of(pid, *words)).returncode == 0:
-        return lambda: in_network_of(pid, "tc", "qdisc", "del", "dev", "eth0", "root"), " ".join(words[-5:])
+    argv = "tc qdisc add dev eth0 root netem delay 40ms 10ms loss 5%".split()
+    if (tried := in_network_of(pid, *argv)).returncode == 0:
+        return lambda: in_network_of(pid, "tc", "qdisc", "del", "dev", "eth0", "root"), " ".join(argv[-5:])
     made = in_network_of(pid, "nft", LOSSY)
     if made.returncode:
         pytest.skip(f"the kernel has neither netem ({tried.stderr.strip()}) nor numgen ({made.stderr.strip()})")

@@ -31,12 +31,12 @@ class Guarded(Rig):
     """A carrier behind its gateway."""
 
     def __init__(self, ros: Ros, folder: Path, site: str) -> None:
-        self.told: list[Any] = []
+        self.reported: list[Any] = []
         self.receipts: list[Any] = []
-        ros.subscribe(MachineState, f"/{NAME}/rc/state", self.told.append, latched=True)
+        ros.subscribe(MachineState, f"/{NAME}/rc/state", self.reported.append, latched=True)
         ros.subscribe(StopReceipt, f"/{NAME}/rc/receipts", self.receipts.append, depth=20)
         super().__init__(ros, folder, NAME, site, ("sim:{}", "{}:rc"))
-        self.until(lambda: self.told and self.told[-1].ready, "a gateway that is ready")
+        self.until(lambda: self.reported and self.reported[-1].ready, "a gateway that is ready")
 
     def go(self, action: Any = NavigateToPose, field: str = "navigate_to_pose", **goal: Any) -> Call:
         """A goal through the gateway: far ahead, unless told otherwise."""
@@ -60,7 +60,7 @@ class Guarded(Rig):
         return self.receipts[-1]
 
     def latched(self) -> str:
-        return str(self.told[-1].latch) if self.told else ""
+        return str(self.reported[-1].latch) if self.reported else ""
 
     def order(self) -> None:
         """Put the machine in order and re-arm it, as a person does in two steps."""
@@ -71,7 +71,7 @@ class Guarded(Rig):
         self.be()
         first = self.ros.call(Rearm, f"/{NAME}/rearm", Rearm.Request(), 20.0)
         if first.error_code == "NOT_STOPPED":
-            self.until(lambda: self.told[-1].armed, "news that it is armed")
+            self.until(lambda: self.reported[-1].armed, "news that it is armed")
             return True
         return bool(first.token) and self.ros.call(
             Rearm, f"/{NAME}/rearm", Rearm.Request(token=first.token), 20.0
@@ -197,11 +197,11 @@ def test_a_dead_machine_is_not_seen_to_stand(machine: Guarded) -> None:
 def test_a_machine_that_nobody_sees_is_not_moved_and_not_latched(machine: Guarded) -> None:
     machine.process.kill()
     machine.process.wait()
-    machine.until(lambda: not machine.told[-1].ready, "a gateway that is not ready")
+    machine.until(lambda: not machine.reported[-1].ready, "a gateway that is not ready")
     call = machine.go()
     assert machine.end(call) is Outcome.ABORTED
     machine.start(f"sim:{NAME}")
-    machine.until(lambda: machine.told[-1].ready, "a gateway that is ready")
+    machine.until(lambda: machine.reported[-1].ready, "a gateway that is ready")
     assert not machine.latched()
     x, y = machine.place()
     assert machine.end(machine.go(pose=pose(x, y + 2, 1.5708))) is Outcome.SUCCEEDED

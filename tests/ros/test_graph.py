@@ -24,7 +24,7 @@ class Watched:
         caplog.set_level(logging.WARNING)
         self._graph = Graph(ros, structlog.stdlib.get_logger("test"))
 
-    def told(self) -> list[str]:
+    def reported(self) -> list[str]:
         self._ros.do(self._graph.look, LIMIT)
         return [record.getMessage() for record in self._caplog.records if record.name == "test"]
 
@@ -39,32 +39,32 @@ def test_a_publisher_that_nobody_can_hear_is_told_once(two_nodes: tuple[Ros, Ros
     here.subscribe(Bool, ACTED, lambda _: None)
     foreign.node.create_publisher(Bool, ACTED, QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT))
     text = f"topic='{ACTED}', reader='/server', writer='/client', problem='Best effort publisher and reliable"
-    wait_until(lambda: any(text in line for line in watched.told()), LIMIT, "told")
+    wait_until(lambda: any(text in line for line in watched.reported()), LIMIT, "told")
     foreign.publisher(Bool, ACTED)  # one that fits: the topic is looked at again
     wait_until(lambda: peer_counts(here)[ACTED] == (2, 1), LIMIT, "seen")
     wait_until(lambda: here.mismatches(ACTED) is not None, LIMIT, "known by name")
-    assert len(watched.told()) == 1
+    assert len(watched.reported()) == 1
 
 
 def test_a_subscription_of_another_type_that_comes_later_is_told(two_nodes: tuple[Ros, Ros], watched: Watched) -> None:
     here, foreign = two_nodes
     here.publisher(Bool, ACTED)
-    assert watched.told() == []
+    assert watched.reported() == []
     foreign.subscribe(String, ACTED, lambda _: None)
     text = f"topic='{ACTED}', reader='/client', writer='/server', problem='std_msgs/msg/Bool is not std_msgs/msg/String"
-    wait_until(lambda: any(text in line for line in watched.told()), LIMIT, "told")
+    wait_until(lambda: any(text in line for line in watched.reported()), LIMIT, "told")
 
 
 def test_ends_that_fit_are_not_told(two_nodes: tuple[Ros, Ros], watched: Watched) -> None:
     here, foreign = two_nodes
-    heard: list[Bool] = []
-    foreign.subscribe(Bool, ACTED, heard.append, best_effort=True)
+    received: list[Bool] = []
+    foreign.subscribe(Bool, ACTED, received.append, best_effort=True)
     publisher = here.publisher(Bool, ACTED, latched=True)
 
     def arrives() -> bool:
         publisher.publish(Bool(data=True))
-        return bool(heard)
+        return bool(received)
 
     wait_until(arrives, LIMIT, "heard")
     wait_until(lambda: here.mismatches(ACTED) is not None, LIMIT, "known by name")
-    assert watched.told() == []
+    assert watched.reported() == []

@@ -81,7 +81,7 @@ class Bridge:
     def until(self, there: Callable[[], Any], what: str) -> None:
         wait_until(lambda: bool(there()), LIMIT, what)
 
-    def heard(self, kind: Any, topic: str) -> list[Any]:
+    def received(self, kind: Any, topic: str) -> list[Any]:
         found: list[Any] = []
         self.ros.subscribe(kind, topic, found.append, depth=10)
         return found
@@ -126,37 +126,37 @@ def unity(bridge: Bridge) -> Iterator[Unity]:
 
 def test_the_handshake_comes_first(unity: Unity) -> None:
     name, payload = unity.frames[0]
-    told = json.loads(payload)
+    reported = json.loads(payload)
     assert name == "__handshake"
-    assert told["version"].startswith("v0.7")
-    assert json.loads(told["metadata"]) == {"protocol": "ROS2"}
+    assert reported["version"].startswith("v0.7")
+    assert json.loads(reported["metadata"]) == {"protocol": "ROS2"}
 
 
 def test_what_unity_publishes_arrives(bridge: Bridge, unity: Unity) -> None:
-    heard = bridge.heard(JointState, f"/{MACHINE}/joint_state")
+    received = bridge.received(JointState, f"/{MACHINE}/joint_state")
     topic = f"{MACHINE}/joint_state"
     unity.command("__publish", topic=topic, message_name="sensor_msgs/JointState", queue_size=10, latch=False)
     state = JointState(name=["swing_joint", "boom_joint"], position=[0.5, -0.25], effort=[0.0, 0.0])
     state.header.frame_id = "world"
 
-    def told() -> bool:
+    def reported() -> bool:
         unity.message(topic, pack(state))
-        return bool(heard)
+        return bool(received)
 
-    bridge.until(told, "a joint state")
-    assert heard[0] == state
+    bridge.until(reported, "a joint state")
+    assert received[0] == state
 
 
 def test_the_clock_is_a_bare_time(bridge: Bridge, unity: Unity) -> None:
-    heard = bridge.heard(Clock, "/clock")
+    received = bridge.received(Clock, "/clock")
     unity.command("__publish", topic="clock", message_name="rosgraph_msgs/Clock", queue_size=10, latch=False)
 
-    def told() -> bool:
+    def reported() -> bool:
         unity.message("clock", b"\0\1\0\0" + struct.pack("<iI", 7, 500))
-        return bool(heard)
+        return bool(received)
 
-    bridge.until(told, "a time")
-    assert (heard[0].clock.sec, heard[0].clock.nanosec) == (7, 500)
+    bridge.until(reported, "a time")
+    assert (received[0].clock.sec, received[0].clock.nanosec) == (7, 500)
 
 
 def test_what_unity_hears_is_the_frame_of_the_protocol(bridge: Bridge, unity: Unity) -> None:
@@ -279,15 +279,15 @@ def test_what_cannot_be_done_is_said_once_and_the_rest_goes_on(bridge: Bridge, u
     unity.command("__publish", topic=f"{MACHINE}/joint_state", message_name="sensor_msgs/JointState", queue_size=1)
     unity.command("__topic_list")
     unity.until(lambda: unity.got("__topic_list"), "the topics")
-    told = json.loads(unity.got("__topic_list")[0])
-    types = dict(zip(told["topics"], told["types"], strict=True))
+    reported = json.loads(unity.got("__topic_list")[0])
+    types = dict(zip(reported["topics"], reported["types"], strict=True))
     assert types[f"/{MACHINE}/joint_state"] == "sensor_msgs/JointState"
 
 
 def test_one_client_a_topic(bridge: Bridge) -> None:
     topic = f"{MACHINE}/odom"
     odometry = {"topic": topic, "message_name": "nav_msgs/Odometry", "queue_size": 10, "latch": False}
-    heard = bridge.heard(Odometry, f"/{topic}")
+    received = bridge.received(Odometry, f"/{topic}")
     first, second = bridge.unity(), bridge.unity()
     first.command("__publish", **odometry)
     first.command("__publish", **odometry)  # as the simulator does on its first connect
@@ -297,17 +297,17 @@ def test_one_client_a_topic(bridge: Bridge) -> None:
     host, port = first.socket.getsockname()
     assert second.errors() == [f"/{topic} is published by {host}:{port}: the messages of a second client are left out"]
 
-    def told(client: Unity, frame_id: str) -> bool:
+    def reported(client: Unity, frame_id: str) -> bool:
         message = Odometry()
         message.header.frame_id = frame_id
         client.message(topic, pack(message))
-        return any(one.header.frame_id == frame_id for one in heard)
+        return any(one.header.frame_id == frame_id for one in received)
 
     second.message(topic, pack(Odometry()))
-    bridge.until(lambda: told(first, "first"), "what the first tells")
+    bridge.until(lambda: reported(first, "first"), "what the first tells")
     first.close()
-    bridge.until(lambda: told(second, "second"), "what the second tells, once the first has left")
-    assert {one.header.frame_id for one in heard} == {"first", "second"}
+    bridge.until(lambda: reported(second, "second"), "what the second tells, once the first has left")
+    assert {one.header.frame_id for one in received} == {"first", "second"}
     assert first.errors() == []
     second.close()
 

@@ -18,12 +18,12 @@ class Reader:
     """What one subscription knows."""
 
     def __init__(self, ros: Ros) -> None:
-        self.changed, self.numbers, self.heard = threading.Condition(), (0, 0), 0
+        self.changed, self.numbers, self.received = threading.Condition(), (0, 0), 0
         ros.on_executor(lambda: ros.lease_subscribe(Message, TOPIC, LEASE, self._on_message, self._on_liveliness))
 
     def _on_message(self, _message: Any) -> None:
         with self.changed:
-            self.heard += 1
+            self.received += 1
             self.changed.notify_all()
 
     def _on_liveliness(self, *numbers: int) -> None:
@@ -47,7 +47,7 @@ def test_a_reader_that_comes_second_knows_that_a_publisher_lives(two_nodes: tupl
     readers[0].wait(1, 0)
     readers.append(Reader(client))
     readers[1].wait(1, 0)
-    assert readers[1].heard == 1
+    assert readers[1].received == 1
     pulse.remove(beat)
     for reader in readers:
         reader.wait(0, 1)

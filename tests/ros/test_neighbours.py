@@ -16,7 +16,7 @@ pytestmark = pytest.mark.ros
 MACHINES = ("zx200", "ic120")
 
 
-def told(*frames: str, x: float) -> TFMessage:
+def reported(*frames: str, x: float) -> TFMessage:
     """The same place of some frames in the map."""
     message = TFMessage(transforms=[TransformStamped(child_frame_id=frame) for frame in frames])
     for one in message.transforms:
@@ -35,8 +35,10 @@ def test_a_place_that_is_told_now_and_then_is_heard_among_all_the_joints(two_nod
     neighbours = Neighbours(app)
     say = nav.publisher(TFMessage, "/tf", depth=200)
     places = lambda: [one.place[0, 3] for one in neighbours.obstacles()]  # noqa: E731
-    wait_until(lambda: say.publish(told("zx200/base", "ic120/base", x=0.0)) or places() == [0.0], 30, "both are heard")
-    say.publish(told("ic120/base", x=7.0))
+    wait_until(
+        lambda: say.publish(reported("zx200/base", "ic120/base", x=0.0)) or places() == [0.0], 30, "both are heard"
+    )
+    say.publish(reported("ic120/base", x=7.0))
     for number in range(150):
-        say.publish(told(f"joint_{number}", x=0.0))
+        say.publish(reported(f"joint_{number}", x=0.0))
     wait_until(lambda: places() == [7.0], 20, "the truck is seen to have gone on")

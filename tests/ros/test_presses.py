@@ -27,7 +27,7 @@ class Gateway:
         self.stood_in = False
         self.press_known = threading.Event()
         self.latch = SimpleNamespace(cause="")
-        self.heard = self.judged = 0
+        self.received = self.judged = 0
         app: Any = SimpleNamespace(ros=ros, machine="zx200")
         guard: Any = self
         self._presses = Presses(app, guard, TOPIC)
@@ -35,10 +35,10 @@ class Gateway:
         self._ros = ros
 
     def _press(self, _: Any) -> None:
-        self.heard += 1
-        self._ros.after(presses.YOUNG_DOUBT + 0.2, self._told)
+        self.received += 1
+        self._ros.after(presses.YOUNG_DOUBT + 0.2, self._reported)
 
-    def _told(self) -> None:
+    def _reported(self) -> None:
         self.judged += 1
 
     def stop_now(self, cause: str, kind: Kind) -> None:
@@ -56,7 +56,7 @@ def test_the_host_agents_word_before_a_gateway_was_there_counts(
     gateway = Gateway(ros)
 
     def judged() -> bool:
-        if not gateway.heard:
+        if not gateway.received:
             press.publish(Bool(data=True))
         return gateway.judged > 0
 
@@ -70,7 +70,7 @@ def test_the_host_agents_word_before_a_gateway_was_there_counts(
 def test_a_press_without_a_word_latches_and_a_release_does_not(two_nodes: tuple[Ros, Ros]) -> None:
     host, ros = two_nodes
     press, gateway = host.publisher(Bool, TOPIC), Gateway(ros)
-    wait_until(lambda: gateway.heard > 0 or press.publish(Bool(data=False)), 30, "the topic is heard")
+    wait_until(lambda: gateway.received > 0 or press.publish(Bool(data=False)), 30, "the topic is heard")
     assert not gateway.stops
     gateway.press_known.set()
     press.publish(Bool(data=True))

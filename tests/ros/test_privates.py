@@ -25,10 +25,12 @@ LIMIT = 20.0  # s
 def test_messages_are_taken_with_their_number_and_wake_no_executor(two_nodes: tuple[Ros, Ros]) -> None:
     here, there = two_nodes
 
-    def unheard(_: String) -> None:
+    def unreceived(_: String) -> None:
         raise AssertionError("a callback of a group that sleeps")
 
-    subscription = here.node.create_subscription(String, "/taken", unheard, topic(10, False), callback_group=Asleep())
+    subscription = here.node.create_subscription(
+        String, "/taken", unreceived, topic(10, False), callback_group=Asleep()
+    )
     publisher = there.publisher(String, "/taken")
     wait_until(lambda: publisher.get_subscription_count() == 1, LIMIT, "a reader")
     before = time.monotonic()

@@ -52,7 +52,7 @@ class Machine:
         self.truth: list[tuple[float, float]] = []  # s since 1970, fastest joint rad/s
         self.reported = 0.0  # s since 1970, stamp of the last joint states
         self.state: Any = None
-        self.told = 0  # states so far
+        self.seen = 0  # states so far
         self.receipts: list[Any] = []
         ros.subscribe(JointState, "/zx200/sim/truth", self._on_truth, depth=50)
         ros.subscribe(JointState, "/zx200/joint_states", self._on_report, depth=5)
@@ -78,7 +78,7 @@ class Machine:
 
     def _on_state(self, state: Any) -> None:
         with self.changed:
-            self.state, self.told = state, self.told + 1
+            self.state, self.seen = state, self.seen + 1
             self.changed.notify_all()
 
     def _on_receipt(self, receipt: Any) -> None:
@@ -98,8 +98,8 @@ class Machine:
         self.button.publish(Bool(data=False))
         self.be()
         self.until(lambda: abs(self.truth[-1][0] - self.reported) < 1.0, "reports by the clock of the truth")
-        told = self.told + 2
-        self.until(lambda: self.told >= told, "what the gateway makes of them")
+        seen = self.seen + 2
+        self.until(lambda: self.seen >= seen, "what the gateway makes of them")
 
         def armed() -> bool:
             first = self.ros.call(Rearm, "/zx200/rearm", Rearm.Request(), 30)

@@ -178,13 +178,13 @@ def test_change_pose_arrives_and_says_how_far_it_is(machine: Rig) -> None:
 
 def test_a_machine_that_fell_silent_is_not_moved(machine: Rig) -> None:
     machine.end_process(f"sim:{MACHINE}")
-    heard = len(machine.states)
+    received = len(machine.states)
     machine.until(
         lambda: machine.end(machine.change_pose(*START)) is Outcome.ABORTED and machine.reason(JointsOld),
         "refusal for old joint states",
     )
     machine.start(f"sim:{MACHINE}")
-    machine.until(lambda: len(machine.states) > heard, "joint states of the new simulator")
+    machine.until(lambda: len(machine.states) > received, "joint states of the new simulator")
     machine.until(lambda: machine.end(machine.change_pose(*START)) is Outcome.SUCCEEDED, "motion afterwards")
 
 
@@ -193,7 +193,7 @@ def test_excavate_then_release(machine: Rig) -> None:
     dig = machine.send(TmsRpZx200ExcavateSimple, "tms_rp_zx200_excavate_simple", position_with_angle=soil)
     assert machine.end(dig) is Outcome.SUCCEEDED
     assert machine.states[-1].position[3] == pytest.approx(1.7, abs=0.031)
-    assert any((told := wire.known(text)).find(MoveOf) and told.find(OtherAngle) for text in machine.said)
+    assert any((reported := wire.known(text)).find(MoveOf) and reported.find(OtherAngle) for text in machine.said)
     opened = machine.send(TmsRpZx200ReleaseSimple, "tms_rp_zx200_release_simple", target_angle=-0.2)
     assert machine.end(opened) is Outcome.SUCCEEDED
     assert machine.states[-1].position[3] == pytest.approx(-0.2, abs=0.031)
@@ -229,8 +229,8 @@ def test_a_plan_never_moves_and_bad_goals_are_refused(machine: Rig) -> None:
     assert machine.end(call) is Outcome.ABORTED
     assert call.result.error_code.val == TmsRpErrorCodes.FAILURE
     assert machine.reason(OutOfRange) == OutOfRange((JointBroken("boom_joint", AboveLimit(0.5, -0.1)),))
-    heard = len(machine.states)
-    machine.until(lambda: len(machine.states) > heard + 10, "joint states")
+    received = len(machine.states)
+    machine.until(lambda: len(machine.states) > received + 10, "joint states")
     assert machine.states[-1].position == pytest.approx(START, abs=0.031)
     wrong = JointTrajectory(joint_names=["swing_joint"], points=[JointTrajectoryPoint(positions=[0.0])])
     controller = "upper_arm_controller/follow_joint_trajectory"

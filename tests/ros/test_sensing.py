@@ -70,13 +70,13 @@ class Sensing(Mesh):
         self.wait_ready()
         self.inputs: dict[str, Any] = {}
         self.changed: list[str] = []
-        self.ros.subscribe(InputStates, "/tms/sp/inputs", self._heard, latched=True)
+        self.ros.subscribe(InputStates, "/tms/sp/inputs", self._received, latched=True)
         self.ros.subscribe(RecordChanges, "/tms/db/changes", lambda m: self.changed.extend(m.record_names), depth=100)
         for key, fields in START.items():
             self.set(key, fields, type="dynamic", create=True)
         self.until(lambda: bool(self.inputs), "the state of the inputs")
 
-    def _heard(self, message: Any) -> None:
+    def _received(self, message: Any) -> None:
         self.inputs = {one.name: one for one in message.inputs}
 
     def set(self, key: str, fields: dict[str, Any], **more: Any) -> Any:
@@ -255,20 +255,20 @@ def a_recording_is_played(sensing: Sensing, folder: Path) -> None:
 
 
 def what_waits_is_heard_in_one_go(sensing: Sensing) -> None:
-    ros, heard = sensing.ros, list[float]()
-    subscription = ros.subscribe(Float64, "/waiting", lambda message: hear(message.data), depth=100)
+    ros, received = sensing.ros, list[float]()
+    subscription = ros.subscribe(Float64, "/waiting", lambda message: receive(message.data), depth=100)
     publisher = ros.publisher(Float64, "/waiting", depth=100)
     sensing.until(lambda: publisher.get_subscription_count() > 0, "a reader of /waiting")
 
-    def hear(value: float) -> None:
-        heard.append(value)
+    def receive(value: float) -> None:
+        received.append(value)
         if value == 0.0:
             ros.start(another_turn)
         if value == 49.0:  # in the midst of what waits
             ros.node.destroy_subscription(subscription)
 
     async def another_turn() -> None:
-        heard.append(-1.0)
+        received.append(-1.0)
 
     def send() -> None:  # the executor hears nothing meanwhile
         for number in range(60):
@@ -276,8 +276,8 @@ def what_waits_is_heard_in_one_go(sensing: Sensing) -> None:
         assert ros.delivered(publisher, 5.0)
 
     ros.do(send, 10.0)
-    sensing.until(lambda: -1.0 in heard, "what waited")
-    assert heard == [*map(float, range(50)), -1.0]
+    sensing.until(lambda: -1.0 in received, "what waited")
+    assert received == [*map(float, range(50)), -1.0]
 
 
 def test_the_newest_value_is_written_when_the_store_returns(sensing: Sensing) -> None:

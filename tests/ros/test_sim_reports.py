@@ -43,12 +43,12 @@ class Said:
 
     def __init__(self, ros: Ros) -> None:
         self.ros = ros
-        self.heard: dict[str, list[Any]] = {"joint_states": [], "odom": [], "pose": [], "truth": []}
+        self.received: dict[str, list[Any]] = {"joint_states": [], "odom": [], "pose": [], "truth": []}
         for kind, key, topic in (
             (JointState, "joint_states", "joint_states"), (Odometry, "odom", "odom"),
             (PoseStamped, "pose", "base_link/pose"), (JointState, "truth", "sim/truth"),
         ):  # fmt: skip
-            ros.subscribe(kind, f"/{NAME}/{topic}", self.heard[key].append, depth=20)
+            ros.subscribe(kind, f"/{NAME}/{topic}", self.received[key].append, depth=20)
         self._fault = ros.publisher(String, f"/{NAME}/sim/fault")
         self._drive = ros.publisher(Twist, f"/{NAME}/tracks/cmd_vel")
         self._swing = ros.publisher(Float64, f"/{NAME}/swing/cmd")
@@ -61,9 +61,9 @@ class Said:
 
     def more(self, key: str, count: int = 10) -> list[Any]:
         """Messages from now on."""
-        begun = len(self.heard[key])
-        self.until(lambda: len(self.heard[key]) >= begun + count, f"{count} more of {key}")
-        return self.heard[key][begun:]
+        begun = len(self.received[key])
+        self.until(lambda: len(self.received[key]) >= begun + count, f"{count} more of {key}")
+        return self.received[key][begun:]
 
     def be(self, **fault: object) -> None:
         self._fault.publish(String(data=json.dumps(fault)))
@@ -72,16 +72,16 @@ class Said:
         twist = Twist()
         twist.linear.x = v
         self._drive.publish(twist)
-        here = self.heard["truth"][-1].position[0] if self.heard["truth"] else 0.0
+        here = self.received["truth"][-1].position[0] if self.received["truth"] else 0.0
         self._swing.publish(Float64(data=here + 10.0 * v))
 
     def true(self, key: str) -> float:
-        return float(self.heard["truth"][-1].velocity[[*JOINTS, "x", "y", "yaw"].index(key)])
+        return float(self.received["truth"][-1].velocity[[*JOINTS, "x", "y", "yaw"].index(key)])
 
     def moving(self) -> None:
         def moves() -> bool:
             self.drive(0.3)
-            return bool(self.heard["truth"]) and self.true("x") > 0.2 and self.true("swing_joint") > 0.2
+            return bool(self.received["truth"]) and self.true("x") > 0.2 and self.true("swing_joint") > 0.2
 
         self.until(moves, "true motion")
 
@@ -96,7 +96,7 @@ def stand_in(tmp_path_factory: pytest.TempPathFactory, domain: int, first_port: 
         env = {**os.environ, **environment.environment(load_site(str(file)))}
         process = subprocess.Popen([sys.executable, "-m", "tms_runtime.run", f"sim:{NAME}"], env=env)
         try:
-            said.until(lambda: all(said.heard.values()), "telemetry")
+            said.until(lambda: all(said.received.values()), "telemetry")
             yield said
         finally:
             process.terminate()
@@ -110,7 +110,7 @@ def said(stand_in: Said) -> Said:
     def in_order() -> bool:
         stand_in.be()
         state = stand_in.more("joint_states", 2)[-1]
-        truth = stand_in.heard["truth"][-1]
+        truth = stand_in.received["truth"][-1]
         return len(state.name) == len(JOINTS) and state.position[0] == pytest.approx(truth.position[0], abs=0.1)
 
     stand_in.until(in_order, "order")
@@ -129,8 +129,8 @@ def test_sources_as_the_border_declares_them(said: Said) -> None:
     assert sum(gaps) / len(gaps) == pytest.approx(0.06, rel=0.2)  # as the border says, though its timer has 0.04 s
     assert 0.0 < stamps(pose)[0] < 3600.0  # since it started, not Unix time
     assert abs(stamps(said.more("truth"))[-1] - time.time()) < 5.0
-    assert said.heard["joint_states"][-1].name == JOINTS
-    truth = said.heard["truth"][-1]
+    assert said.received["joint_states"][-1].name == JOINTS
+    truth = said.received["truth"][-1]
     assert truth.name == [*JOINTS, "x", "y", "yaw"]
     assert pose[-1].pose.position.x == pytest.approx(truth.position[5], abs=0.5)
 
@@ -186,7 +186,7 @@ def test_mute(said: Said) -> None:
 
 def test_jump(said: Said) -> None:
     def displaced(messages: list[Any]) -> bool:
-        return bool(messages[-1].pose.position.x - said.heard["truth"][-1].position[5] > 3.0)
+        return bool(messages[-1].pose.position.x - said.received["truth"][-1].position[5] > 3.0)
 
     fault_seen(said, "pose", displaced, jump=5.0)
 
@@ -194,7 +194,7 @@ def test_jump(said: Said) -> None:
 def test_nan(said: Said) -> None:
     fault_seen(said, "joint_states", lambda m: all(map(math.isnan, [*m[-1].position, *m[-1].velocity])), nan=True)
     fault_seen(said, "odom", lambda m: math.isnan(m[-1].pose.pose.position.x), nan=True)
-    assert not math.isnan(said.heard["truth"][-1].position[5])
+    assert not math.isnan(said.received["truth"][-1].position[5])
 
 
 def test_back_in_time(said: Said) -> None:
@@ -221,9 +221,9 @@ def test_a_second_publisher_says_that_it_stands(said: Said) -> None:
 
 def test_creep_is_told_and_true(said: Said) -> None:
     said.drive(0.0)
-    said.until(lambda: not any(said.heard["truth"][-1].velocity), "stand-still")
+    said.until(lambda: not any(said.received["truth"][-1].velocity), "stand-still")
     said.be(creep=0.05)
     said.until(lambda: said.true("x") == pytest.approx(0.05), "true creeping")
-    said.until(lambda: said.heard["odom"][-1].twist.twist.linear.x == pytest.approx(0.05), "creeping that is told")
+    said.until(lambda: said.received["odom"][-1].twist.twist.linear.x == pytest.approx(0.05), "creeping that is told")
     said.be()
     said.until(lambda: said.true("x") == 0.0, "its end")

@@ -76,7 +76,7 @@ class Small:
     def log(self) -> str:
         return (self.mesh.state / "log" / "tms.host.log").read_text()
 
-    def told(self, event: str, begin: int) -> bool:
+    def reported(self, event: str, begin: int) -> bool:
         """Whether the host agent's log has an event behind `begin` characters."""
         return re.search(rf"machine=zx200 event={event}\b", self.log()[begin:]) is not None
 
@@ -124,8 +124,8 @@ def test_a_killed_gateway_is_stood_in_for(small: Small, capsys: pytest.CaptureFi
         small.wait(lambda: statuses[-1] in STOPPED, "the controller is told to stop")
         with capsys.disabled():
             print(f"\nkill to stop: {time.monotonic() - at:.2f} s")
-    wait_until(lambda: small.told("gateway_lost", begin), 30, "the host agent tells of it")
-    wait_until(lambda: small.told("gateway_back", begin), 60, "its successor is there")
+    wait_until(lambda: small.reported("gateway_lost", begin), 30, "the host agent tells of it")
+    wait_until(lambda: small.reported("gateway_back", begin), 60, "its successor is there")
 
 
 def test_a_frozen_gateway_is_stood_in_for_and_replaced(small: Small, capsys: pytest.CaptureFixture[str]) -> None:
@@ -141,7 +141,7 @@ def test_a_frozen_gateway_is_stood_in_for_and_replaced(small: Small, capsys: pyt
         small.wait(lambda: small.emergencies > before, "emg_stop")
     wait_until(lambda: small.pid() not in (0, pid), 60, "the frozen gateway is replaced")
     assert f"event=frozen target=zx200:rc pid={pid} action=killed" in small.log()[begin:]
-    wait_until(lambda: small.told("gateway_back", begin), 60, "its successor is there")
+    wait_until(lambda: small.reported("gateway_back", begin), 60, "its successor is there")
 
 
 def test_a_freeze_of_less_than_half_a_second_stops_nothing(small: Small) -> None:
@@ -154,7 +154,7 @@ def test_a_freeze_of_less_than_half_a_second_stops_nothing(small: Small) -> None
             threading.Event().wait(0.6 + 0.017 * i)  # at different times between two beats
         assert call.wait_for(lambda: call.outcome is not None, 60) and call.outcome is Outcome.SUCCEEDED, call.result
     assert statuses[-1] == GoalStatus.STATUS_SUCCEEDED
-    assert not small.told("gateway_lost", begin)
+    assert not small.reported("gateway_lost", begin)
 
 
 def frozen_for_a_moment(pid: int) -> float:
@@ -170,8 +170,8 @@ def test_an_idle_machine_whose_gateway_is_frozen_gets_no_emg_stop(small: Small) 
     small.wait_armed()
     begin, before = len(small.log()), small.emergencies
     os.kill(small.pid(), signal.SIGSTOP)
-    wait_until(lambda: small.told("gateway_lost", begin), 30, "the host agent tells of it")
-    wait_until(lambda: small.told("gateway_back", begin), 60, "its successor is there")
+    wait_until(lambda: small.reported("gateway_lost", begin), 30, "the host agent tells of it")
+    wait_until(lambda: small.reported("gateway_back", begin), 60, "its successor is there")
     assert small.emergencies == before
 
 
@@ -179,6 +179,6 @@ def test_a_restart_by_hand_is_no_loss(small: Small) -> None:
     small.wait_armed()
     begin, old = len(small.log()), small.pid()
     small.mesh.tms("restart", "zx200:rc")
-    wait_until(lambda: small.told("gateway_left", begin), 30, "the host agent has seen it leave")
+    wait_until(lambda: small.reported("gateway_left", begin), 30, "the host agent has seen it leave")
     wait_until(lambda: small.pid() not in (0, old), 60, "the gateway is there again")
-    assert not small.told("gateway_lost", begin)
+    assert not small.reported("gateway_lost", begin)

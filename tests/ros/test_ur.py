@@ -65,12 +65,12 @@ def test_state_shows_what_is_published(console: Console, ros: Ros) -> None:
     for name in ("pc1", "pc2"):
         hosts.publish(Processes(host=name, processes=[Process(name="tms:ts", state="RUNNING", pid=7, uptime=3.0)]))
 
-    def heard() -> bool:
+    def received() -> bool:
         machine.publish(moving)  # again and again: it counts as silent 2 s after its last word
         state = console.get("/api/state")
         return state["machines"][0]["state"] == "moving" and bool(state["runs"]) and len(state["hosts"]) == 2
 
-    until(heard, "everything published is in the state")
+    until(received, "everything published is in the state")
     state = console.get("/api/state")
     assert state["machines"][0]["joints"] == [{"name": "swing_joint", "position": -1.5, "velocity": 0.25}]
     assert state["scheduler"]["alive"]

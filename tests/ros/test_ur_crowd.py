@@ -28,15 +28,15 @@ SOON = 5.0  # s for a stop; 1 s is wanted, and measured by `make bench ONLY=cons
 @pytest.fixture
 def stops(ros: Ros) -> list[str]:
     """Causes of the stops that reached the machine's gateway."""
-    heard: list[str] = []
+    received: list[str] = []
 
     def stop(request: Any, response: Any) -> Any:
-        heard.append(request.cause)
+        received.append(request.cause)
         response.receipt = StopReceipt(machine="zx200", confirmed=True, cause=request.cause)
         return response
 
     ros.offer(StopMachine, "/zx200/rc/stop", stop)
-    return heard
+    return received
 
 
 @pytest.mark.parametrize("source", ["127.0.0.1", "127.0.0.9"])

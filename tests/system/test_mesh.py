@@ -85,7 +85,7 @@ def test_a_killed_subtask_comes_back_and_the_next_run_works(mesh: Mesh) -> None:
 def swinging(mesh: Mesh, node: Ros, task: str = "3") -> Iterator["subprocess.Popen[str]"]:
     """A client that runs the swings, or another task; inside, the machine is moving."""
     moving = threading.Event()
-    heard = node.subscribe(
+    received = node.subscribe(
         MachineState, "/zx200/rc/state", lambda state: state.moving and state.goal and moving.set(), latched=True
     )
     command = [sys.executable, "-m", "tms_cli.main", "run", task, "--wait", "--json"]
@@ -99,7 +99,7 @@ def swinging(mesh: Mesh, node: Ros, task: str = "3") -> Iterator["subprocess.Pop
             yield client
         finally:
             client.kill()
-            node.node.destroy_subscription(heard)
+            node.node.destroy_subscription(received)
 
 
 def newest(mesh: Mesh) -> str:

@@ -95,22 +95,22 @@ def test_health_and_readiness_are_two_things(mesh: Mesh) -> None:
 def test_the_log_of_a_goal_names_process_machine_run_and_goal(mesh: Mesh) -> None:
     mesh.tms("run", "1", "--wait", "--json")
     lines = (mesh.state / "log" / "tms.ts.log").read_text(encoding="utf-8").splitlines()
-    told = [line for line in lines if "event=run" in line and "success" in line]
-    assert told and all(re.search(r"process=tms:ts run=\S+ goal=[0-9a-f]{32} event=run", line) for line in told), told[
-        -1:
-    ]
+    reported = [line for line in lines if "event=run" in line and "success" in line]
+    assert reported and all(
+        re.search(r"process=tms:ts run=\S+ goal=[0-9a-f]{32} event=run", line) for line in reported
+    ), reported[-1:]
 
 
 def test_diagnostics_tell_every_process(mesh: Mesh, node: Ros) -> None:
-    heard = threading.Event()
+    received = threading.Event()
     names: set[str] = set()
 
-    def hear(message: Any) -> None:
+    def receive(message: Any) -> None:
         names.update(status.name for status in message.status)
-        heard.set()
+        received.set()
 
-    node.subscribe(DiagnosticArray, "/diagnostics", hear, depth=10)
-    assert heard.wait(15)
+    node.subscribe(DiagnosticArray, "/diagnostics", receive, depth=10)
+    assert received.wait(15)
     assert {"tms: tms:ts", "tms: zx200:rc", "tms: zx200:rp"} <= names
 
 

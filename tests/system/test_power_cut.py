@@ -103,7 +103,7 @@ class Reader:
 
     def __init__(self, mesh: Mesh, run_id: str) -> None:
         self._mesh, self._run_id = mesh, run_id
-        self.told: list[dict[str, Any]] = []
+        self.reported: list[dict[str, Any]] = []
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._read)
         self._thread.start()
@@ -113,7 +113,7 @@ class Reader:
             done = self._mesh.tms("events", self._run_id, "--json", expect=None)
             if done.returncode:
                 return
-            self.told = json.loads(done.stdout)
+            self.reported = json.loads(done.stdout)
 
     def close(self) -> None:
         self._closing.set()
@@ -123,10 +123,10 @@ class Reader:
 @pytest.mark.timeout(240 * CUTS)
 def test_after_a_power_cut_everything_that_was_told_is_there_and_nothing_is_claimed(mesh: Mesh, disk: Disk) -> None:
     for moment in range(CUTS):
-        before, told, run_id = cut(mesh, disk, 1 + moment % 5)
+        before, reported, run_id = cut(mesh, disk, 1 + moment % 5)
         mesh.tms("up")
         mesh.wait_ready()
-        closed_as_told(mesh, before, told, run_id)
+        closed_as_told(mesh, before, reported, run_id)
         wait_latched(mesh, run_id)
         mesh.tms("abandon", run_id)
         rearm(mesh)
@@ -138,22 +138,22 @@ def cut(mesh: Mesh, disk: Disk, leaves: int) -> tuple[History, list[dict[str, An
     with swinging(mesh, leaves):
         before, run_id = history(mesh), newest(mesh)
         reader = Reader(mesh, run_id)
-        wait_until(lambda: bool(reader.told), 60, "the reader has begun")
+        wait_until(lambda: bool(reader.reported), 60, "the reader has begun")
         disk.cut(family(int((mesh.state / "supervisord.pid").read_text())))
         reader.close()
-    return before, reader.told, run_id
+    return before, reader.reported, run_id
 
 
-def closed_as_told(mesh: Mesh, before: History, told: list[dict[str, Any]], run_id: str) -> None:
+def closed_as_told(mesh: Mesh, before: History, reported: list[dict[str, Any]], run_id: str) -> None:
     wait_until(lambda: state_of(mesh, run_id) == "interrupted", 60, "the run is closed as interrupted")
     after = history(mesh)
     for known, (row, rows) in before.items():
         assert after[known][1][: len(rows)] == rows
         assert known == run_id or after[known][0] == row
     kept = after[run_id][1]
-    assert len(told) >= len(before[run_id][1]) and kept[: len(told)] == told
+    assert len(reported) >= len(before[run_id][1]) and kept[: len(reported)] == reported
     assert [row["number"] for row in kept] == sorted({row["number"] for row in kept})
-    claims_what_receipts_say(after[run_id][0]["reason"], kept[len(told) :])
+    claims_what_receipts_say(after[run_id][0]["reason"], kept[len(reported) :])
 
 
 def claims_what_receipts_say(reason: str, new: list[dict[str, Any]]) -> None:
@@ -197,21 +197,21 @@ def test_a_disk_that_stalls_stops_nothing_and_loses_nothing(mesh: Mesh, disk: Di
 
 def test_a_run_is_stopped_while_the_disk_stalls(mesh: Mesh, disk: Disk, node: Ros) -> None:
     """Its receipt comes when the gateway could note on the disk how the machine was left; it stands long before."""
-    heard: deque[tuple[float, bool]] = deque(maxlen=1000)  # monotonic time, whether it moved
+    received: deque[tuple[float, bool]] = deque(maxlen=1000)  # monotonic time, whether it moved
 
     def stands() -> bool:
         now = time.monotonic()
-        last = [moved for at, moved in heard if now - at < STANDING]
-        return len(last) > 1 and not any(last) and now - heard[0][0] > STANDING
+        last = [moved for at, moved in received if now - at < STANDING]
+        return len(last) > 1 and not any(last) and now - received[0][0] > STANDING
 
     with swinging(mesh) as client:
         run_id = newest(mesh)
-        hear = lambda state: heard.append((time.monotonic(), state.moving))  # noqa: E731
-        listening = node.subscribe(MachineState, "/zx200/rc/state", hear, latched=True)
+        receive = lambda state: received.append((time.monotonic(), state.moving))  # noqa: E731
+        listening = node.subscribe(MachineState, "/zx200/rc/state", receive, latched=True)
         try:
             with disk.stalled():
                 node.call(CancelRun, "/tms/cancel_run", CancelRun.Request(run_id=run_id))
-                heard.clear()
+                received.clear()
                 wait_until(stands, 20, "the machine stands")
         finally:
             node.node.destroy_subscription(listening)

@@ -64,11 +64,11 @@ def test_after_a_software_stop_nothing_moves_until_somebody_rearms(mesh: Mesh, n
 
 def test_a_stop_while_a_run_prepares_keeps_it_from_moving(mesh: Mesh, node: Ros) -> None:
     """The scheduler stands behind a run when its processes are there; a machine stopped before stays stopped."""
-    host, told = processes(mesh)["tms:host"]["pid"], dict[str, str]()
-    hear = lambda message: told.update((row.name, row.state) for row in message.processes)  # noqa: E731
-    heard = node.subscribe(Processes, "/tms/host/processes", hear, depth=10, latched=True)
+    host, reported = processes(mesh)["tms:host"]["pid"], dict[str, str]()
+    receive = lambda message: reported.update((row.name, row.state) for row in message.processes)  # noqa: E731
+    received = node.subscribe(Processes, "/tms/host/processes", receive, depth=10, latched=True)
     mesh.tms("stop-process", CHANGE_POSE)
-    wait_until(lambda: told.get(CHANGE_POSE) == "STOPPED", 60, "the scheduler is told, too")
+    wait_until(lambda: reported.get(CHANGE_POSE) == "STOPPED", 60, "the scheduler is told, too")
     prepares = threading.Event()
     look = lambda message: any(one.state == "preparing" for one in message.runs) and prepares.set()  # noqa: E731
     seen = node.subscribe(RunStates, "/tms/runs", look, latched=True)
@@ -81,7 +81,7 @@ def test_a_stop_while_a_run_prepares_keeps_it_from_moving(mesh: Mesh, node: Ros)
         mesh.tms("stop")
     finally:
         os.kill(host, signal.SIGCONT)
-        node.node.destroy_subscription(heard)
+        node.node.destroy_subscription(received)
         node.node.destroy_subscription(seen)
     client.join(60)
     answer = json.loads(answers[0].stdout)
@@ -94,7 +94,9 @@ def test_a_stop_while_a_run_prepares_keeps_it_from_moving(mesh: Mesh, node: Ros)
 
 def test_rearming_takes_two_steps_and_is_refused_while_the_stop_is_pressed(mesh: Mesh, node: Ros) -> None:
     latched = threading.Event()
-    heard = node.subscribe(MachineState, "/zx200/rc/state", lambda state: state.latch and latched.set(), latched=True)
+    received = node.subscribe(
+        MachineState, "/zx200/rc/state", lambda state: state.latch and latched.set(), latched=True
+    )
     button = node.publisher(Bool, "/emergency_signal")
     timer = node.every(0.01, lambda: button.publish(Bool(data=True)))  # as the C++ button does
     try:
@@ -103,7 +105,7 @@ def test_rearming_takes_two_steps_and_is_refused_while_the_stop_is_pressed(mesh:
     finally:
         node.node.destroy_timer(timer)
         button.publish(Bool(data=False))
-        node.node.destroy_subscription(heard)
+        node.node.destroy_subscription(received)
     rearm(mesh)
     assert "nothing to do" in mesh.tms("rearm", "zx200", "--yes", expect=1).stderr
 

@@ -58,10 +58,10 @@ def open_questions(node: "Ros") -> "list[Question]":
     """
     from tms_msg_ts.msg import RunStates
 
-    heard = session.latched(node, RunStates, "/tms/runs")
-    if heard is None:
+    received = session.latched(node, RunStates, "/tms/runs")
+    if received is None:
         raise RosError(SchedulerSilent(), "NO_ANSWER")
-    return list(heard.questions)
+    return list(received.questions)
 
 
 def _only(asked: "list[Question]", question: str | None) -> "Question":

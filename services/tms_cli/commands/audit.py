@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from tms_ur.audit_chain import Entry, Fault, Place, Verdict
 
 PAGE = 1000
-MOST = 10_000
+MAX_ENTRIES = 10_000
 
 
 @click.group(cls=Group)
@@ -33,7 +33,7 @@ def command() -> None:
 
 
 @command.command("list")
-@click.option("--limit", default=50, show_default=True, type=click.IntRange(1, MOST), help="How many.")
+@click.option("--limit", default=50, show_default=True, type=click.IntRange(1, MAX_ENTRIES), help="How many.")
 @session.json_option
 def list_(limit: int, as_json: bool) -> None:
     """List the last commands, oldest first.
@@ -73,18 +73,18 @@ def verify(as_json: bool) -> None:
     if as_json:
         session.show_json(_report(verdict, remembered is not None))
     else:
-        _tell(verdict, remembered is not None)
+        _show(verdict, remembered is not None)
     if not verdict.intact:
         click.get_current_context().exit(1)
 
 
 def _remembered() -> "Place | None":
     """What the console of this PC knows to be stored. Asked before the entries, which may become more meanwhile."""
-    from tms_ur.audit_ledger import told
+    from tms_ur.audit_ledger import reported
 
     file = session.site().state / "audit.db"
     try:
-        return told(file)
+        return reported(file)
     except sqlite3.Error as error:
         raise TmsError(Unreadable(str(file), str(error))) from error
 
@@ -167,7 +167,7 @@ def _report(verdict: "Verdict", compared: bool) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _tell(verdict: "Verdict", compared: bool) -> None:
+def _show(verdict: "Verdict", compared: bool) -> None:
     if verdict.older:
         click.echo(say("{count} entries are from before there was a chain: not checked", count=verdict.older))
     if verdict.cut:
@@ -189,9 +189,9 @@ def _tell(verdict: "Verdict", compared: bool) -> None:
 def _fault(fault: "Fault") -> str:
     if fault.what == "missing":
         return say("entries {first} to {last} are missing", first=fault.number, last=fault.until)
-    told = {
+    reported = {
         "changed": say("entry {number} was changed", number=fault.number),
         "out_of_order": say("entry {number} does not follow the one before", number=fault.number),
         "no_hash": say("entry {number} has no hash: it was not written by this console", number=fault.number),
     }
-    return told[fault.what]
+    return reported[fault.what]

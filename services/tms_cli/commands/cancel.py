@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import click
 
 from tms_cli import session, words
-from tms_cli.commands.runs import MOST, as_dict, find_run, has_ended, history, recent
+from tms_cli.commands.runs import MAX_RUNS, as_dict, find_run, has_ended, history, recent
 from tms_cli.reasons import NoRunActive, NotEndedYet, RunHasEnded
 from tms_cli.words import say, state
 from tms_config.clock import monotonic, sleep
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
     from tms_ros.node import Ros
 
 END_LIMIT = 30.0  # s for the machines to stand still
-LOOK = 0.2  # s
+CHECK_PERIOD = 0.2  # s
 
 
 def _which(node: "Ros", word: str) -> str:
     """The id that is meant; without the database, whatever was given: a cancel must not depend on it."""
     try:
-        runs = history(node, MOST)
+        runs = history(node, MAX_RUNS)
     except TmsError:
         if word == "last":
             raise
@@ -43,7 +43,7 @@ def _wait(node: "Ros", run_id: str) -> "Run":
         run = recent(node, run_id)
         if run is not None and has_ended(run):
             return run
-        sleep(LOOK)
+        sleep(CHECK_PERIOD)
     raise TmsError(
         NotEndedYet(run_id, END_LIMIT),
         "STOP_UNCONFIRMED",

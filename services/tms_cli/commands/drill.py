@@ -115,11 +115,11 @@ def command(
     click.echo(f"seed {chosen}, {sum(map(len, waves))} trials, logs in {site.state}/log", err=True)
     rows = drill(site, waves, QUICK_LIMIT if quick else LIMIT * rounds)
     figures = drill_figures.summary(rows, chosen)
-    _tell(figures, rows, site, report, as_json)
+    _report(figures, rows, site, report, as_json)
     ctx.exit(1 if any(figures[bad] for bad in drill_figures.BAD) else 0)
 
 
-def _tell(figures: dict[str, Any], rows: list[Row], site: Site, report: Path | None, as_json: bool) -> None:
+def _report(figures: dict[str, Any], rows: list[Row], site: Site, report: Path | None, as_json: bool) -> None:
     if as_json:
         session.show_json(figures)
     else:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tms_cli import live, session, words
-from tms_cli.commands.runs import MOST, find_run, has_ended, history, recent
+from tms_cli.commands.runs import MAX_RUNS, find_run, has_ended, history, recent
 from tms_config.clock import sleep
 
 if TYPE_CHECKING:
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from tms_ros.node import Ros
 
 PAGE = 1000
-LOOK = 0.5  # s between looks with --follow
+CHECK_PERIOD = 0.5  # s between looks with --follow
 COLOURS = {"run": "cyan", "goal": "yellow", "stop": "red"}
 
 
@@ -43,7 +43,7 @@ def _follow(node: "Ros", run_id: str) -> None:
             after = event.number
         if ended:
             return
-        sleep(LOOK)
+        sleep(CHECK_PERIOD)
 
 
 def _as_dict(event: "Event") -> dict[str, Any]:
@@ -89,7 +89,7 @@ def command(run: str, follow: bool, as_json: bool) -> None:
     if follow and as_json:
         raise click.UsageError("--follow and --json do not go together: --json is one finished document")
     with session.ros() as node:
-        run_id = find_run(history(node, MOST), run).run_id
+        run_id = find_run(history(node, MAX_RUNS), run).run_id
         if follow:
             _follow(node, run_id)
             return

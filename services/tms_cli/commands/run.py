@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 ACTION = "/tms/execute_task"
 SERVER_LIMIT = 5.0  # s
-LOOK = 0.1  # s between looks
+CHECK_PERIOD = 0.1  # s between looks
 SILENT = 10.0  # s without a word of the scheduler, which lists its runs twice a second
 FORGOTTEN = 5.0  # s of lists without this run: it was another scheduler process that began it
 INTERRUPTED = 130
@@ -57,17 +57,17 @@ class Runner:
         from tms_msg_ts.msg import RunStates
 
         self._node = node
-        self._news: queue.SimpleQueue[ExecuteTask.Feedback] = queue.SimpleQueue()
-        self._heard_at = self._listed_at = monotonic()
+        self._feedback: queue.SimpleQueue[ExecuteTask.Feedback] = queue.SimpleQueue()
+        self._received_at = self._listed_at = monotonic()
         self._asked_again = False
-        self._told: Run | None = None  # the run as the history has it, should its result never come
+        self._reported: Run | None = None  # the run as the history has it, should its result never come
         self.view = _view(node, task_id)
         self._peer = node.peer(ExecuteTask, ACTION)
         self._peer.wait_ready(SERVER_LIMIT)
         goal = ExecuteTask.Goal(task_id=task_id, ignore_warnings=ignore_warnings, resume=resume)
-        self._call = self._peer.send(goal, on_feedback=self._news.put)
-        self._heard_at = self._listed_at = monotonic()
-        node.subscribe(RunStates, "/tms/runs", self._list_heard, latched=True)
+        self._call = self._peer.send(goal, on_feedback=self._feedback.put)
+        self._received_at = self._listed_at = monotonic()
+        node.subscribe(RunStates, "/tms/runs", self._list_received, latched=True)
 
     def begin(self) -> End:
         """Return when the run has begun or was refused. Ctrl-C asks for its cancel."""
@@ -91,15 +91,15 @@ class Runner:
         return self._end(interrupted)
 
     def _follow(self, display: live.Display | None, enough: Callable[[], bool]) -> None:
-        while not (self._over() and self._news.empty()) and not enough():
+        while not (self._over() and self._feedback.empty()) and not enough():
             try:
-                feedback = self._news.get(timeout=LOOK)
+                feedback = self._feedback.get(timeout=CHECK_PERIOD)
             except queue.Empty:
                 self._look_after_scheduler()
                 changed: list[live.Node] = []
             else:
-                self._heard_at = self._listed_at = monotonic()
-                changed = self.view.heard(feedback)
+                self._received_at = self._listed_at = monotonic()
+                changed = self.view.received(feedback)
             if display is not None:
                 display.show(self.view, changed)
 
@@ -118,25 +118,25 @@ class Runner:
             )
             self._peer.cancel(self._call)
 
-    def _list_heard(self, message: "RunStates") -> None:
+    def _list_received(self, message: "RunStates") -> None:
         """The scheduler's active runs; called on ROS's thread."""
         now = monotonic()
         view = self.view
         if any(run.run_id == view.run_id if view.run_id else run.task_id == view.task_id for run in message.runs):
             self._listed_at = now
-        self._heard_at = now
+        self._received_at = now
 
     def _look_after_scheduler(self) -> None:
         """A scheduler that was killed never sends a result."""
-        if monotonic() - self._heard_at > SILENT:
+        if monotonic() - self._received_at > SILENT:
             lost: Reason = SchedulerQuiet(SILENT, self.view.run_id)
-        elif self._heard_at - self._listed_at > FORGOTTEN / 2 and not self._asked_again:
+        elif self._received_at - self._listed_at > FORGOTTEN / 2 and not self._asked_again:
             self._asked_again = True
             self._peer.ask_again(self._call)
             return
-        elif self._heard_at - self._listed_at > FORGOTTEN:
-            self._told = self._in_history()
-            if self._told is not None:
+        elif self._received_at - self._listed_at > FORGOTTEN:
+            self._reported = self._in_history()
+            if self._reported is not None:
                 return
             lost = SchedulerForgot(self.view.run_id)
         else:
@@ -144,7 +144,7 @@ class Runner:
         raise TmsError(lost, "SCHEDULER_LOST")
 
     def _over(self) -> bool:
-        return self._call.outcome is not None or self._told is not None
+        return self._call.outcome is not None or self._reported is not None
 
     def _in_history(self) -> "Run | None":
         """The run there, when it has ended."""
@@ -158,9 +158,9 @@ class Runner:
         from tms_ros.goals import Outcome
 
         result, view = self._call.result, self.view
-        if self._call.outcome is None and self._told is not None:
-            code = "" if self._told.state == "success" else "FAILED"
-            return End(view.run_id, self._told.state, code, self._told.reason, view.elapsed, interrupted)
+        if self._call.outcome is None and self._reported is not None:
+            code = "" if self._reported.state == "success" else "FAILED"
+            return End(view.run_id, self._reported.state, code, self._reported.reason, view.elapsed, interrupted)
         if self._call.outcome is None:
             return End(view.run_id, view.state, "", "", view.elapsed, interrupted)
         if self._call.outcome in (Outcome.REJECTED, Outcome.LOST) or result is None:
@@ -179,7 +179,7 @@ def _view(node: "Ros", task_id: int) -> live.View:
     view = live.View(task_id, task.description, _goals(task.task_sequence))
     for machine in session.site().file.machines:
         if f'"{machine}"' in task.task_sequence:
-            node.subscribe(MachineState, f"/{machine}/rc/state", view.machine_heard, latched=True)
+            node.subscribe(MachineState, f"/{machine}/rc/state", view.machine_received, latched=True)
     return view
 
 

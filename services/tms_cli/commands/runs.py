@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from tms_ros.node import Ros
 
 RECENT = 100
-MOST = 10_000  # runs that the database lists at most
+MAX_RUNS = 10_000  # runs that the database lists at most
 
 
 def history(node: "Ros", limit: int) -> "list[Run]":
@@ -87,7 +87,7 @@ def line(run: "Run") -> str:
 
 
 @click.command()
-@click.option("--limit", default=20, show_default=True, type=click.IntRange(1, MOST), help="How many.")
+@click.option("--limit", default=20, show_default=True, type=click.IntRange(1, MAX_RUNS), help="How many.")
 @session.json_option
 def command(limit: int, as_json: bool) -> None:
     """List runs of tasks, newest first.

@@ -60,10 +60,10 @@ def _inputs() -> "list[InputState]":
     from tms_msg_sp.msg import InputStates
 
     with session.ros() as node:
-        heard = session.latched(node, InputStates, "/tms/sp/inputs")
-    if heard is None:
+        received = session.latched(node, InputStates, "/tms/sp/inputs")
+    if received is None:
         raise TmsError(SensingSilent(), "NO_ANSWER")
-    return list(heard.inputs)
+    return list(received.inputs)
 
 
 def _row(one: "InputState") -> dict[str, Any]:

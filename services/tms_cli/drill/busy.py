@@ -19,7 +19,7 @@ def stood_still(site: Site, machine: str, stops: Iterable[float]) -> str:
     """Which process stood still about when a stop began (s since 1970); empty if none did."""
     names = [row.full for row in table(site) if row.group == machine or row.full == "tms:ts"]
     lines = [line for name in names for line in _lines(site, name)]
-    return next((told for at in stops for line in lines if (told := _near(line, at))), "")
+    return next((reported for at in stops for line in lines if (reported := _near(line, at))), "")
 
 
 def _lines(site: Site, name: str) -> list[str]:

@@ -20,7 +20,7 @@ def summary(rows: Sequence[Row], seed: int) -> dict[str, Any]:
     """The document of --json."""
     tried = [row for row in rows if row.outcome != LEFT_OUT and not row.void]
     left_out = [row for row in rows if row.outcome == LEFT_OUT]
-    told = [row.told_s for row in tried if row.told_s is not None]
+    reported = [row.reported_s for row in tried if row.reported_s is not None]
     stood = [row.stood_s for row in tried if row.stood_s is not None and measured(row)]
     backs = [row.back_s for row in tried if row.back_s is not None]
     return {
@@ -39,9 +39,9 @@ def summary(rows: Sequence[Row], seed: int) -> dict[str, Any]:
         "not_back": sum(row.back_s is None for row in tried),
         "stop_p50_s": _rounded(percentile(stood, 0.5)),
         "stop_p99_s": _rounded(percentile(stood, 0.99)),
-        "kill_to_stop_p50_s": _rounded(percentile(told, 0.5)),
-        "kill_to_stop_p99_s": _rounded(percentile(told, 0.99)),
-        "kill_to_stop_max_s": _rounded(max(told, default=None)),
+        "kill_to_stop_p50_s": _rounded(percentile(reported, 0.5)),
+        "kill_to_stop_p99_s": _rounded(percentile(reported, 0.99)),
+        "kill_to_stop_max_s": _rounded(max(reported, default=None)),
         "back_max_s": _rounded(max(backs, default=None)),
         "stops": stops(tried),
         "rows": [row.as_dict() for row in rows],

@@ -23,7 +23,7 @@ from tms_runtime.reasons import PortSilent, ProcessStarting
 
 FROZEN = 2.0  # s
 BACK_LIMIT = 40.0  # s
-LOOK = 0.1  # s
+CHECK_PERIOD = 0.1  # s
 
 
 class Hits:
@@ -84,13 +84,13 @@ class Hits:
                     del waiting[name]
             if not waiting:
                 return unix_time() - hit
-            sleep(LOOK)
+            sleep(CHECK_PERIOD)
         return None
 
     def power_on(self, pids: Sequence[int], hit: float) -> float | None:
         """Start everything again after a power cut, once everything is gone."""
         while any(map(psutil.pid_exists, pids)) and unix_time() - hit < BACK_LIMIT:
-            sleep(LOOK)
+            sleep(CHECK_PERIOD)
         mesh.up(self._site, without=GROUP)
         names = [row.full for row in table(self._site) if row.autostart and row.group != GROUP]
         return self.back(How.POWER, dict.fromkeys(names, 0), hit)

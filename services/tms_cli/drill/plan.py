@@ -94,7 +94,7 @@ COASTING: Mapping[str, Mapping[str, Any]] = {  # they have fooled receipts
     f"coast+{name}": {"coast": COAST, **lie} for name, lie in LIES.items()
 }
 FAULTS: Mapping[str, Mapping[str, Any]] = {NONE: {}, **LIES, **UNKIND, **COASTING}
-IN_ORDER = (NONE, *LIES)  # the machine does what it is told
+IN_ORDER = (NONE, *LIES)  # the machine does what it is commanded
 OFTEN = 3  # times that each stop is tried without a fault for once with each
 
 

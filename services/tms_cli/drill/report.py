@@ -39,14 +39,14 @@ def line(row: Row) -> str:
         return f"{row.machine}: {row.stop}, {row.fault}: proves nothing: {row.void}"
     seen = "confirmed" if row.confirmed else ", ".join(verdicts)
     what = ", ".join(dict.fromkeys([*filter(None, [seen]), *verdicts])) or row.outcome
-    told = (
+    reported = (
         f"; hit at {datetime.fromtimestamp(row.at, timezone.utc):%H:%M:%S.%f}: {'; '.join(row.receipts)}"
         if verdicts
         else ""
     )
     return (
         f"{row.machine}: {row.stop}, {row.fault}: {what}; stood after {_text(row.stood_s)} s, "
-        f"{row.travel_rad:.3f} rad, {row.travel_m:.2f} m; {row.outcome}{told}"
+        f"{row.travel_rad:.3f} rad, {row.travel_m:.2f} m; {row.outcome}{reported}"
     )
 
 
@@ -86,7 +86,7 @@ def _cells(row: Row) -> list[str]:
     wrong += ["unconfirmed"] if row.unconfirmed else []
     wrong += [f"void: {row.void}"] if row.void else []
     return [
-        row.machine, row.stop, row.fault, _text(row.told_s), _text(row.stood_s), _text(row.travel_rad),
+        row.machine, row.stop, row.fault, _text(row.reported_s), _text(row.stood_s), _text(row.travel_rad),
         _text(row.travel_m), _text(row.back_s), row.outcome, "; ".join(row.receipts).replace("|", "/"),
         ", ".join([*wrong, *filter(None, [row.false_receipt])]),
     ]  # fmt: skip

@@ -19,7 +19,7 @@ from tms_runtime.pulse import Pulse
 CANCELING, SUCCEEDED, CANCELED, ABORTED = 3, 4, 5, 6  # action_msgs/GoalStatus
 KEPT = 120.0  # s, longer than any trial
 ROUND = 10.0  # s between looks at what is too old
-LOOK = 0.1  # s
+CHECK_PERIOD = 0.1  # s
 WAITING = 250  # samples of the truth, ten seconds
 
 
@@ -102,7 +102,7 @@ class StopObserver:
         while not holds(self.since(since)):
             if monotonic() > deadline:
                 return False
-            sleep(LOOK)
+            sleep(CHECK_PERIOD)
         return True
 
     def open_since(self) -> float | None:

@@ -34,7 +34,7 @@ RECEIPT_LIMIT = 25.0  # s
 RUN_LIMIT = 40.0  # s from the hit for the run to go on, end, or be interrupted
 LATCH_LIMIT = 5.0  # s for a latch to be told after everything is back
 CREEP_STARTS = 3.0  # s of stand-still after which the fault `creep` moves
-LOOK = 0.5  # s
+CHECK_PERIOD = 0.5  # s
 PRESSED = 1.0  # s for a stop by hand to begin
 LEAVE = ("creep", "drift")  # faults that move a machine which stood
 CAUSE = to_line(SoftwareStop())
@@ -89,7 +89,7 @@ class Hand:
             began = self.eyes.open_since()
             if began is not None and unix_time() - began < FRESH:
                 break
-            sleep(LOOK / 10)
+            sleep(CHECK_PERIOD / 10)
         return max(unix_time(), (began or 0.0) + trial.delay)
 
     def strike(self, stop: Stop, at: float, hands: "list[Hand]", struck: Struck) -> None:
@@ -167,7 +167,7 @@ class Hand:
         return bool(record.receipts) or (arrived and unix_time() > over)
 
     def _look_on(self, trial: Trial, begun: float) -> None:
-        """For as long as a receipt promises that the machine stands; for one that leaves it, until that is told."""
+        """For as long as a receipt promises that the machine stands; for one that leaves it, until that is reported."""
         creeps = trial.fault in LEAVE
         longer = CREEP_STARTS + UNPROVEN if creeps else 0.0
 
@@ -190,17 +190,17 @@ class Hand:
             proven = max((one.at for one in record.receipts), default=stopped)
             if trial.stop.moves and not self.work.lost and record.goal_after(proven) < math.inf:
                 return GOES_ON
-            sleep(LOOK)
+            sleep(CHECK_PERIOD)
         return HUNG
 
     def _last_words(self, trial: Trial, begun: float) -> Recording:
         """A gateway that is back tells its latch a moment later."""
 
-        def told(record: Recording) -> bool:
+        def reported(record: Recording) -> bool:
             wanted = trial.stop.latches or not all(one.confirmed for one in record.receipts)
             return not wanted or (bool(record.states) and bool(record.states[-1].latch))
 
-        self.eyes.wait(told, begun, LATCH_LIMIT)
+        self.eyes.wait(reported, begun, LATCH_LIMIT)
         return self.eyes.since(begun)
 
 

@@ -1,4 +1,4 @@
-"""Compares what was told of a stop with the true motion. Pure logic; all times are s since 1970."""
+"""Compares what was reported of a stop with the true motion. Pure logic; all times are s since 1970."""
 
 import math
 from bisect import bisect_right
@@ -16,7 +16,7 @@ CLAIMED = 0.2  # s of standing that a receipt claims
 LATENCY = 0.1  # s before it in which a new motion is not told yet: two periods of the sources and a beat
 BLIND = 1.0  # s without the truth: from 0.5 s on a stand-in that does not run loses time (tms_sim/telemetry.py)
 AFTER = 1.0  # s after it for which nothing may move either
-TOLD = 3.0  # s in which a motion that comes later must be countered ...
+ASSERTED = 3.0  # s in which a motion that comes later must be countered ...
 UNPROVEN = 12.0  # s ... and until the receipt of that, which waits for a stand-still
 EXTRA = 3.0  # s beyond dead time and braking that a machine in order may move
 BY_ITSELF = 1.5  # s after the hit within which a motion that arrives was not stopped by anybody
@@ -54,7 +54,7 @@ class Row:
     covered: bool = True
     at: float = 0.0
     void: str = ""  # why it proves nothing; it is tried again
-    told_s: float | None = None  # until the first stop command was at the machine
+    reported_s: float | None = None  # until the first stop command was at the machine
     stood_s: float | None = None  # until it truly stood
     travel_joint: str = ""
     travel_rad: float = 0.0
@@ -99,7 +99,7 @@ def judge(seen: Seen) -> Row:
     if row.disturbed and seen.busy:
         row.void, row.disturbed = seen.busy, False
         return row
-    row.told_s = told(seen)
+    row.reported_s = reported(seen)
     _measure(row, seen)
     late = row.stood_s is None or row.stood_s > seen.ends + EXTRA
     row.ran_on = late and row.in_order and stop.covered
@@ -114,8 +114,8 @@ def void(seen: Seen) -> str:
         return f"it was stopped before: {before[0].latch or before[0].hold}"
     if any(one.begun < seen.begun for one in record.receipts):
         return "it was being stopped before"
-    told = [one.at for one in record.truth]
-    moments = [seen.begun, *told[: 1 + bisect_right(told, seen.stop + seen.ends + EXTRA)]]
+    reported = [one.at for one in record.truth]
+    moments = [seen.begun, *reported[: 1 + bisect_right(reported, seen.stop + seen.ends + EXTRA)]]
     gap = max((late - early for early, late in pairwise(moments)), default=math.inf)
     if gap > BLIND:
         return f"its true motion was not heard for {gap:.1f} s"
@@ -150,7 +150,7 @@ def lie(receipt: Receipt, record: Recording) -> str:
     if before:
         return f"moved {receipt.at - before[-1].at:.2f} s before it was said to stand: {before[-1].share:.1f} x limit"
     overtaken = bool(moving) and fresh - moving[0].at < LATENCY  # by a goal, before it could be told
-    if not moving or overtaken or _tells(moving[0].at, record):
+    if not moving or overtaken or _reports(moving[0].at, record):
         return ""
     late = moving[0].at - receipt.at
     if late <= AFTER:
@@ -159,12 +159,12 @@ def lie(receipt: Receipt, record: Recording) -> str:
     return f"left stand-still {late:.2f} s after the receipt, and nobody told it" if over else ""
 
 
-def _tells(moved: float, record: Recording) -> bool:
+def _reports(moved: float, record: Recording) -> bool:
     """Whether a stop that was under way then, or began in time, ended unconfirmed."""
-    return any(not one.confirmed and one.begun < moved + TOLD and one.at > moved for one in record.receipts)
+    return any(not one.confirmed and one.begun < moved + ASSERTED and one.at > moved for one in record.receipts)
 
 
-def told(seen: Seen) -> float | None:
+def reported(seen: Seen) -> float | None:
     """From a signal to the first stop command; None where nobody had to give one, or it was there before."""
     stop, commands = seen.trial.stop, seen.record.commands
     if stop.how not in (How.KILL, How.FREEZE) or not (stop.moves and stop.covered):

@@ -29,7 +29,7 @@ class Waves:
     def __init__(self, node: Ros, site: Site, stand_ins: StandIns) -> None:
         self._site, self._stand_ins = site, stand_ins
         self._hands = {machine: Hand(node, site, machine) for machine in site.file.machines}
-        # ROS's threads, but not those that start processes: what is heard late may be lost, and is not the truth.
+        # ROS's threads, but not those that start processes: what is received late may be lost, and is not the truth.
         come_first(NICE, others())
         session_first(os.getpid(), NICE)
         # Twice: a strike waits beside the trial that it is for.
@@ -117,14 +117,14 @@ class Waves:
             self._end(trial)
 
     def _end(self, trial: Trial) -> None:
-        """That a run does not end is told, and the next wave will see it."""
+        """That a run does not end is reported, and the next wave will see it."""
         try:
             self._hands[trial.machine].work.end()
         except TmsError as error:
             click.echo(f"{trial.machine}, {trial.stop.name}: {error}", err=True)
 
     def _each(self, wave: Sequence[Trial], step: Callable[[Trial], T]) -> list[T | None]:
-        """The same for all at the same time; None where it failed, which is told."""
+        """The same for all at the same time; None where it failed, which is reported."""
 
         def tried(trial: Trial) -> T | None:
             try:

@@ -24,7 +24,7 @@ ARM_LIMIT = 30.0  # s for the machine to be armed again
 SERVER_LIMIT = 20.0  # s for the scheduler to be there
 END_LIMIT = 20.0  # s for a cancelled run to end
 ANSWER_LIMIT = 12.0  # s for the gateway to re-arm
-LOOK = 0.2  # s
+CHECK_PERIOD = 0.2  # s
 
 
 class Work:
@@ -62,7 +62,7 @@ class Work:
         self._peer.wait_ready(SERVER_LIMIT)
         self._run, self.lost = "", False
         goal = ExecuteTask.Goal(task_id=self._task, ignore_warnings=True)
-        self._call = self._peer.send(goal, on_feedback=self._heard)
+        self._call = self._peer.send(goal, on_feedback=self._received)
 
     def cancel(self) -> None:
         """Ask for the end of the run; returns at once."""
@@ -84,7 +84,7 @@ class Work:
         return str(getattr(result, "outcome", "refused"))
 
     def ended(self) -> bool:
-        """Whether its client was told the end of the run."""
+        """Whether its client was sent the end of the run."""
         return self._call is not None and self._call.outcome is not None
 
     def reason(self) -> str:
@@ -103,7 +103,7 @@ class Work:
         while self._call is not None and self.outcome() is None:
             if monotonic() > deadline:
                 raise TmsError(RunDoesNotEnd(str(self._run)))
-            sleep(LOOK)
+            sleep(CHECK_PERIOD)
         if self._recorded() == INTERRUPTED:
             session.call(self._node, CancelRun, "/tms/abandon_run", run_id=self._run)
         self._call = None
@@ -118,7 +118,7 @@ class Work:
             return ""  # the database may be what was hit
         return run.state if run is not None and has_ended(run) else ""
 
-    def _heard(self, feedback: ExecuteTask.Feedback) -> None:
+    def _received(self, feedback: ExecuteTask.Feedback) -> None:
         self._run = feedback.run_id or self._run
         self.subtask = self._subtasks.get(feedback.running_leaf, self.subtask)
 
@@ -138,7 +138,7 @@ class Work:
                     return
                 if monotonic() > deadline:
                     raise
-            sleep(LOOK)
+            sleep(CHECK_PERIOD)
 
     def _arm_once(self) -> None:
         rearm.ask(self._node, self.machine, rearm.ask(self._node, self.machine).token)

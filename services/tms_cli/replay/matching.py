@@ -51,8 +51,8 @@ def match(tracks: Sequence[Track], inputs: Mapping[str, Input], site: Site, want
             text = f"the recording does not tell how {track.type} was laid out: it is read as installed here"
             found.doubts[track.topic] = text
     if not found.played:
-        told = tuple(f"{topic}: {why}" for topic, why in found.skipped.items())
-        raise TmsError(NothingToPlay(told) if told else EmptyRecording(), "NOTHING_TO_PLAY")
+        reported = tuple(f"{topic}: {why}" for topic, why in found.skipped.items())
+        raise TmsError(NothingToPlay(reported) if reported else EmptyRecording(), "NOTHING_TO_PLAY")
     return found
 
 

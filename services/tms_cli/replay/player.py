@@ -24,7 +24,7 @@ LOOP_GAP = 0.5  # s between the end and the next beginning, more than stamps dif
 
 
 @dataclass
-class Told:
+class Played:
     """What has happened so far."""
 
     sent: dict[str, int] = field(default_factory=dict)  # topic -> messages
@@ -42,7 +42,7 @@ class Player:
         Raises:
             TmsError: NO_READER, tms:sp does not hear one of them; TWO_SOURCES, somebody else speaks there.
         """
-        self.told = Told(dict.fromkeys((track.topic for track in found.played), 0))
+        self.reported = Played(dict.fromkeys((track.topic for track in found.played), 0))
         self._ros, self._keep = ros, keep_stamps
         self._stamps = {t.topic: Stamps(given, message_class(given.type)) for t, given in found.played.items()}
         self._publishers = {t.topic: ros.publisher(message_class(t.type), t.topic, DEPTH) for t in found.played}
@@ -77,13 +77,13 @@ class Player:
         try:
             message: Any = stamps.check(data)
         except RuntimeError:
-            self.told.damaged[topic] = self.told.damaged.get(topic, 0) + 1
+            self.reported.damaged[topic] = self.reported.damaged.get(topic, 0) + 1
             return
         stamp = None if self._keep else stamps.read(message)
         if stamp is not None:
             data = stamps.replaced(data, message, pace.stamp(topic, stamp, moment))
         self._publishers[topic].publish(data)
-        self.told.sent[topic] += 1
+        self.reported.sent[topic] += 1
 
     def finish(self) -> None:
         """Wait until the readers have everything."""

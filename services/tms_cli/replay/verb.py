@@ -16,7 +16,7 @@ from tms_reason.errors import TmsError
 
 if TYPE_CHECKING:
     from tms_cli.replay.matching import Matches
-    from tms_cli.replay.player import Told
+    from tms_cli.replay.player import Played
     from tms_cli.replay.recording import Recording
 
 SECOND = 1_000_000_000  # ns
@@ -68,9 +68,9 @@ def replay(
                     player.play(recording, list(found.played), span, pace, partial(tick, turn))
             player.finish()
         except KeyboardInterrupt:
-            click.echo(f"stopped after {player.told.total} messages", err=True)
+            click.echo(f"stopped after {player.reported.total} messages", err=True)
             raise
-        _show(player.told, found, monotonic() - begun, as_json)
+        _show(player.reported, found, monotonic() - begun, as_json)
 
 
 def _span(recording: "Recording", start: float, duration: float | None) -> tuple[int, int]:
@@ -106,16 +106,16 @@ def _progress(span: tuple[int, int], loop: int) -> Iterator[Tick]:
         yield lambda turn, moment: bar.update(task, completed=turn * length + (moment - span[0]) / SECOND)
 
 
-def _show(told: "Told", found: "Matches", seconds: float, as_json: bool) -> None:
-    for topic, count in told.damaged.items():
+def _show(played: "Played", found: "Matches", seconds: float, as_json: bool) -> None:
+    for topic, count in played.damaged.items():
         click.echo(f"{topic}: {count} damaged messages were left out", err=True)
     if as_json:
         session.show_json(
-            {"seconds": round(seconds, 3), "messages": told.total, "sent": told.sent, "damaged": told.damaged,
+            {"seconds": round(seconds, 3), "messages": played.total, "sent": played.sent, "damaged": played.damaged,
              "left_out": found.skipped}
         )  # fmt: skip
         return
     click.echo(f"{'MESSAGES':>9}  TOPIC")
-    for topic, count in told.sent.items():
+    for topic, count in played.sent.items():
         click.echo(f"{count:>9}  {topic}")
-    click.echo(f"{told.total} messages in {seconds:.1f} s; `tms sensing` tells what became of them", err=True)
+    click.echo(f"{played.total} messages in {seconds:.1f} s; `tms sensing` tells what became of them", err=True)

@@ -17,9 +17,9 @@ from tms_ts.bt.reasons import KeyOfTwoTypes, MayHang, PortType, ThrowsWithoutPor
 
 def advise(nodes: list[Node]) -> None:
     """Add the warnings of all nodes to their tree; `nodes` is in pre-order."""
-    at_once: dict[Node, AtOnce] = {}
+    synchronous_outcomes: dict[Node, AtOnce] = {}
     for node in reversed(nodes):  # children before their parents
-        at_once[node] = node.at_once([at_once[child] for child in node.children])
+        synchronous_outcomes[node] = node.synchronous_outcomes([synchronous_outcomes[child] for child in node.children])
     texts = text_keys(nodes)
     type_changes(nodes)
     for node in nodes:
@@ -27,7 +27,7 @@ def advise(nodes: list[Node]) -> None:
             node.context.faults.append((node.line, node.path, fault))
         for note in (*literals(node), *node.preflight(texts)):
             node.warn(note)
-        if node.may_hang([at_once[child] for child in node.children]):
+        if node.may_hang([synchronous_outcomes[child] for child in node.children]):
             node.warn(MayHang(node.registration_name))
 
 

@@ -26,7 +26,7 @@ class AlwaysSuccess(SyncAction):
     def tick(self) -> Status:
         return SUCCESS
 
-    def at_once(self, children: list[AtOnce]) -> AtOnce:
+    def synchronous_outcomes(self, children: list[AtOnce]) -> AtOnce:
         return True, False
 
 
@@ -39,7 +39,7 @@ class AlwaysFailure(SyncAction):
     def tick(self) -> Status:
         return FAILURE
 
-    def at_once(self, children: list[AtOnce]) -> AtOnce:
+    def synchronous_outcomes(self, children: list[AtOnce]) -> AtOnce:
         return False, True
 
 
@@ -70,7 +70,7 @@ class SetBlackboard(SyncAction):
             self.blackboard.set(key, source.text if isinstance(source, Pointer) else source)
         return SUCCESS
 
-    def at_once(self, children: list[AtOnce]) -> AtOnce:
+    def synchronous_outcomes(self, children: list[AtOnce]) -> AtOnce:
         return True, False
 
 
@@ -102,7 +102,7 @@ class BlackboardCheck(Decorator):
         result = self.read("return_on_mismatch")
         return result if isinstance(result, Status) else FAILURE
 
-    def at_once(self, children: list[AtOnce]) -> AtOnce:
+    def synchronous_outcomes(self, children: list[AtOnce]) -> AtOnce:
         succeeds, fails = children[0]
         result = self.read("return_on_mismatch")
         return succeeds or result is SUCCESS, fails or result not in (SUCCESS, RUNNING)

@@ -15,7 +15,7 @@ from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, IDLE, RUNNING, SUCCESS, Status
 
 
-def chosen_at_once(children: list[AtOnce]) -> AtOnce:
+def chosen_synchronously(children: list[AtOnce]) -> AtOnce:
     """What one of the children may do within one tick, the first being a condition that may itself be the end."""
     return any(succeeds for succeeds, _ in children[1:]), any(fails for _, fails in children[1:])
 
@@ -53,10 +53,10 @@ class IfThenElse(Control):
         self.chosen = 0
         self.reset_children()
 
-    def at_once(self, children: list[AtOnce]) -> AtOnce:
+    def synchronous_outcomes(self, children: list[AtOnce]) -> AtOnce:
         if not children or not any(children[0]):
             return False, False
-        succeeds, fails = chosen_at_once(children)
+        succeeds, fails = chosen_synchronously(children)
         return succeeds, fails or (len(children) == 2 and children[0][1])
 
     def faults(self) -> list[Reason]:
@@ -88,8 +88,8 @@ class WhileDoElse(Control):
             self.reset_children()
         return status
 
-    def at_once(self, children: list[AtOnce]) -> AtOnce:
-        return chosen_at_once(children) if children and any(children[0]) else (False, False)
+    def synchronous_outcomes(self, children: list[AtOnce]) -> AtOnce:
+        return chosen_synchronously(children) if children and any(children[0]) else (False, False)
 
     def faults(self) -> list[Reason]:
         count = len(self.children)
@@ -132,7 +132,7 @@ class Switch(Control):
         self.running = -1
         self.reset_children()
 
-    def at_once(self, children: list[AtOnce]) -> AtOnce:
+    def synchronous_outcomes(self, children: list[AtOnce]) -> AtOnce:
         return any(succeeds for succeeds, _ in children), any(fails for _, fails in children)
 
     def faults(self) -> list[Reason]:

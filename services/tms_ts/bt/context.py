@@ -24,8 +24,8 @@ class Timer(Protocol):
 
 class Context:
     __slots__ = (
+        "_reported",
         "_rounds_left",
-        "_told",
         "_yield_at",
         "clock",
         "faults",
@@ -44,7 +44,7 @@ class Context:
         self.timers: list[Timer] = []  # armed ones
         self.warnings: list[tuple[int, Reason]] = []
         self.faults: list[tuple[int, str, Reason]] = []  # line, path: nodes that throw whenever they are ticked
-        self._told: set[tuple[int, Reason]] = set()
+        self._reported: set[tuple[int, Reason]] = set()
         self._rounds_left = ALL_ROUNDS
         self._yield_at = float("inf")
 
@@ -61,6 +61,6 @@ class Context:
 
     def warn(self, line: int, what: Reason) -> None:
         note = (line, shortened(what))
-        if note not in self._told and len(self.warnings) < MAX_WARNINGS:
-            self._told.add(note)
+        if note not in self._reported and len(self.warnings) < MAX_WARNINGS:
+            self._reported.add(note)
             self.warnings.append(note)

@@ -71,7 +71,7 @@ class InOrder(Control):
         self.index = 0
         return status
 
-    def at_once(self, children: list[AtOnce]) -> AtOnce:
+    def synchronous_outcomes(self, children: list[AtOnce]) -> AtOnce:
         return in_order(children, self.goes_on)
 
     def halt(self) -> None:

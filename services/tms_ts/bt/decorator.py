@@ -35,7 +35,7 @@ class Decorator(Node):
         if child.state is not IDLE:
             child.reset()
 
-    def at_once(self, children: list[AtOnce]) -> AtOnce:
+    def synchronous_outcomes(self, children: list[AtOnce]) -> AtOnce:
         return children[0]
 
     def never_idle(self) -> TickError:
@@ -58,7 +58,7 @@ class Inverter(Decorator):
         self.child.reset()
         return FAILURE if status is SUCCESS else SUCCESS
 
-    def at_once(self, children: list[AtOnce]) -> AtOnce:
+    def synchronous_outcomes(self, children: list[AtOnce]) -> AtOnce:
         succeeds, fails = children[0]
         return fails, succeeds
 
@@ -75,7 +75,7 @@ class Force(Decorator):
         self.child.reset()
         return self.result
 
-    def at_once(self, children: list[AtOnce]) -> AtOnce:
+    def synchronous_outcomes(self, children: list[AtOnce]) -> AtOnce:
         completes = any(children[0])
         return completes and self.result is SUCCESS, completes and self.result is FAILURE
 
@@ -108,5 +108,5 @@ class KeepRunningUntilFailure(Decorator):
             self.child.reset()
         return FAILURE if status is FAILURE else RUNNING
 
-    def at_once(self, children: list[AtOnce]) -> AtOnce:
+    def synchronous_outcomes(self, children: list[AtOnce]) -> AtOnce:
         return False, children[0][1]

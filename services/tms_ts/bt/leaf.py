@@ -24,7 +24,7 @@ class PlainAction(Leaf):
 
     __slots__ = ()
 
-    def told(self, port: str) -> str:
+    def reported(self, port: str) -> str:
         """What the document says of a port, if need be as a constant of a SubTreePlus.
 
         What only the run decides reads as its {key}.
@@ -36,7 +36,7 @@ class PlainAction(Leaf):
         text = self.ports[port].default if bound is None else bound
         return "" if text is MISSING else str(text)
 
-    def at_once(self, children: list[AtOnce]) -> AtOnce:
+    def synchronous_outcomes(self, children: list[AtOnce]) -> AtOnce:
         return True, True
 
 
@@ -45,7 +45,7 @@ class SyncAction(Leaf):
 
     __slots__ = ()
 
-    def at_once(self, children: list[AtOnce]) -> AtOnce:
+    def synchronous_outcomes(self, children: list[AtOnce]) -> AtOnce:
         return True, True
 
     def execute_tick(self) -> Status:
@@ -62,7 +62,7 @@ class Condition(Leaf):
     __slots__ = ()
     kind: ClassVar[Kind] = Kind.CONDITION
 
-    def at_once(self, children: list[AtOnce]) -> AtOnce:
+    def synchronous_outcomes(self, children: list[AtOnce]) -> AtOnce:
         return True, True
 
     def check(self) -> bool:

@@ -62,7 +62,7 @@ class Loop(Decorator):
         text = self.literal(self.limit_port)
         return text is not None and text_to_int(text) == -1
 
-    def at_once(self, children: list[AtOnce]) -> AtOnce:
+    def synchronous_outcomes(self, children: list[AtOnce]) -> AtOnce:
         succeeds, fails = children[0]
         if not self.endless():
             return succeeds, fails

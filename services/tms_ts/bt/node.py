@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class NodeSpec:
-    """What a node is told when it is made."""
+    """What a node is given when it is made."""
 
     registration_name: str
     name: str
@@ -192,7 +192,7 @@ class Node:
         bound = [(self.bindings.get(port.name), port.kind) for port in outputs]
         return [(one.key if isinstance(one, Pointer) else one, kind) for one, kind in bound if one is not None]
 
-    def at_once(self, children: list[AtOnce]) -> AtOnce:
+    def synchronous_outcomes(self, children: list[AtOnce]) -> AtOnce:
         """Whether it may succeed and may fail within one tick in the library, given what its children may."""
         return False, False
 

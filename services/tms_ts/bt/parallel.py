@@ -61,7 +61,7 @@ class Parallel(Control):
         self.reset_children()
         return status
 
-    def at_once(self, children: list[AtOnce]) -> AtOnce:
+    def synchronous_outcomes(self, children: list[AtOnce]) -> AtOnce:
         return any(succeeds for succeeds, _ in children), any(fails for _, fails in children)
 
     def halt(self) -> None:

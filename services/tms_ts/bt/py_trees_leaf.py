@@ -37,13 +37,13 @@ log = structlog.stdlib.get_logger(__name__)
 class PyTreesLeaf(StatefulAction):
     """A leaf that is a behaviour of py_trees from its start to its end."""
 
-    __slots__ = ("_live", "_told")
-    tells: ClassVar[bool] = True  # `feedback_message` of the behaviour is why it is RUNNING or has failed
+    __slots__ = ("_live", "_reported")
+    reports: ClassVar[bool] = True  # `feedback_message` of the behaviour is why it is RUNNING or has failed
 
     def prepare(self) -> None:
         """Nothing runs yet."""
         self._live: Behaviour | None = None
-        self._told: list[Worker] = []  # to end
+        self._reported: list[Worker] = []  # to end
 
     def behaviour(self) -> Behaviour:
         """For node authors: make the behaviour from what the ports hold now."""
@@ -54,8 +54,8 @@ class PyTreesLeaf(StatefulAction):
 
     def workers(self) -> list[Worker]:
         """Threads and processes of earlier starts that were told to end and have not ended yet."""
-        self._told = [worker for worker in self._told if worker.is_alive()]
-        return self._told
+        self._reported = [worker for worker in self._reported if worker.is_alive()]
+        return self._reported
 
     def on_start(self) -> Status:
         """Begin, unless something of the last start still goes on."""
@@ -73,7 +73,7 @@ class PyTreesLeaf(StatefulAction):
         if live is not None:
             self._drop(live, stop=True)
 
-    def at_once(self, children: list[AtOnce]) -> AtOnce:
+    def synchronous_outcomes(self, children: list[AtOnce]) -> AtOnce:
         """Nobody knows."""
         return True, True
 
@@ -96,7 +96,7 @@ class PyTreesLeaf(StatefulAction):
     def _tick(self, live: Behaviour) -> Status:
         live.tick_once()
         status = FROM_PY_TREES[live.status]
-        if self.tells:
+        if self.reports:
             self.reason = Foreign(live.feedback_message) if live.feedback_message else None
         if status.completed:
             self.ended(live)
@@ -105,7 +105,9 @@ class PyTreesLeaf(StatefulAction):
         return status
 
     def _drop(self, live: Behaviour, *, stop: bool) -> None:
-        self._told += [worker for one in live.iterate() for worker in vars(one).values() if isinstance(worker, Worker)]
+        self._reported += [
+            worker for one in live.iterate() for worker in vars(one).values() if isinstance(worker, Worker)
+        ]
         try:
             if stop:
                 live.stop(PyTreesStatus.INVALID)

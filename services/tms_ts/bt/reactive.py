@@ -48,7 +48,7 @@ class Reactive(Control):
             if position != index and other.state is not IDLE:
                 other.reset()
 
-    def at_once(self, children: list[AtOnce]) -> AtOnce:
+    def synchronous_outcomes(self, children: list[AtOnce]) -> AtOnce:
         return in_order(children, self.goes_on)
 
     def halt(self) -> None:

@@ -69,7 +69,7 @@ class Delay(Timed):
         self.over = False
         super().halt()
 
-    def at_once(self, children: list[AtOnce]) -> AtOnce:
+    def synchronous_outcomes(self, children: list[AtOnce]) -> AtOnce:
         return False, False
 
 

@@ -128,7 +128,7 @@ class Rules:
             count = sum(1 for _ in children(element))
             broken = self.broken_form(use, count, tree)
             if not broken and not self.document.warns and (not used or ignored(element)):
-                continue  # looking for near names takes long: not for what nobody is told
+                continue  # looking for near names takes long: not for an error that nobody reads
             problem = broken or self.cannot_be_made(use, count, tree)
             if problem is None:
                 continue

@@ -31,7 +31,7 @@ V4_PORTS = {"success_threshold": "success_count", "failure_threshold": "failure_
 
 
 class Groot2:
-    """Answers requests about one tree; knows of states what it is told."""
+    """Answers requests about one tree; knows the states that it was given."""
 
     def __init__(self, tree: Tree) -> None:
         self._id = uuid.uuid4().bytes

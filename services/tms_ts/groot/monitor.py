@@ -19,7 +19,7 @@ from tms_ts.groot.groot2 import Groot2
 
 STEP = 10  # ports from one run to the next
 MAX_RUNS = 10
-PERIOD = 0.04  # s between messages: the library's 25 a second
+MESSAGE_PERIOD = 0.04  # s between messages: the library's 25 a second
 MAX_CHANGES = 10_000  # kept for one message; a tree that spins makes more than anybody can see
 
 
@@ -128,7 +128,7 @@ class Monitor:
                     server2.send_multipart(self._groot2.answer(frames, self._states, self._before))
                 if monotonic() >= due:
                     self._publish(publisher)
-                    due = monotonic() + PERIOD
+                    due = monotonic() + MESSAGE_PERIOD
             self._publish(publisher)
         finally:
             self._context.destroy(linger=100)

@@ -28,7 +28,7 @@ class BlackboardValueReaderMongo(Asking):
     output_port: In[str]
 
     def record_asked(self) -> tuple[str, str]:
-        return self.told("mongo_record_name"), self.told("mongo_param_name")
+        return self.reported("mongo_record_name"), self.reported("mongo_param_name")
 
     def ask(self) -> Pending[Any]:
         return self.world.flags.read(self.mongo_record_name, self.mongo_param_name)

@@ -44,7 +44,7 @@ class LeafNode(PlainAction):
 
     def goal_asked(self) -> tuple[str, str, str]:
         """Machine, subtask and record, as far as the document tells."""
-        return self.told("model_name"), self.told("subtask_name"), self.told("record_name")
+        return self.reported("model_name"), self.reported("subtask_name"), self.reported("record_name")
 
     def tick(self) -> Status:
         return self.start() if self.goal is None else self.look(self.goal)
@@ -70,7 +70,7 @@ class LeafNode(PlainAction):
         if goal is not None:
             goal.cancel()
 
-    def at_once(self, children: list[AtOnce]) -> AtOnce:
+    def synchronous_outcomes(self, children: list[AtOnce]) -> AtOnce:
         return False, False
 
     def preflight(self, texts: Mapping[str, str]) -> list[Reason]:

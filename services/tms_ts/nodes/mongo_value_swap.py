@@ -36,7 +36,7 @@ class MongoValueSwap(Asking):
     input_value: In[str]
 
     def record_asked(self) -> tuple[str, str]:
-        return self.told("mongo_record_name"), self.told("mongo_param_name")
+        return self.reported("mongo_record_name"), self.reported("mongo_param_name")
 
     def ask(self) -> Pending[Any] | None:
         expected, value = typed(self.expected_value), typed(self.input_value)

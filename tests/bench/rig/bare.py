@@ -38,7 +38,7 @@ BEGUN = time.perf_counter()  # everything is imported; the node is made now
 WARM = 10  # rounds that do not count
 
 
-def hear(node: Node, joints: str, odom: str) -> None:
+def receive(node: Node, joints: str, odom: str) -> None:
     node.create_subscription(JointState, joints, lambda _: None, qos_profile_sensor_data)
     node.create_subscription(Odometry, odom, lambda _: None, qos_profile_sensor_data)
     rclpy.spin(node)
@@ -202,7 +202,7 @@ def _run(node: Node, ready: Any, first: Any, rounds: Rounds) -> list[float]:
     return rounds.times[WARM:]
 
 
-STAY = {"node": rclpy.spin, "hear": hear, "serve": serve, "link": link}
+STAY = {"node": rclpy.spin, "hear": receive, "serve": serve, "link": link}
 
 
 def main(what: str, *words: str) -> None:

@@ -25,7 +25,7 @@ from tms_ros.node import Ros
 from tms_ros.server import Goal
 from tms_runtime.pulse import Pulse
 
-NEWS = 0.2  # s, as gateways tell their states
+STATE_PERIOD = 0.2  # s, as gateways tell their states
 WORK = 10.0  # s that a goal takes
 GATEWAY = bytes([255]) * 16
 LOOK = 0.1  # s
@@ -36,7 +36,7 @@ class Machine:
 
     def __init__(self, ros: Ros, name: str, subtasks: list[str]) -> None:
         self.name, self._ros = name, ros
-        self.heard = self.ended = 0  # ns since 1970, of the last stop
+        self.on_press = self.ended = 0  # ns since 1970, of the last stop
         self._latch = ""
         self.open = 0  # goals
         self._states = ros.publisher(MachineState, f"/{name}/rc/state", depth=1, latched=True)
@@ -46,15 +46,15 @@ class Machine:
         for subtask in subtasks:
             ros.serve(LeafNodeBase, f"/{name}/{subtask}", self._work)
 
-    def tell(self) -> None:
+    def report(self) -> None:
         self._states.publish(MachineState(machine=self.name, ready=True, armed=not self._latch, latch=self._latch))
 
     def press(self, message: Any, received: int) -> None:
         if message.data and not self._latch:
-            self.heard, self._latch = received, "software stop"
+            self.on_press, self._latch = received, "software stop"
         elif not message.data:
             self._latch = ""
-        self.tell()
+        self.report()
 
     def _stop(self, request: Any, response: Any) -> Any:
         response.receipt = StopReceipt(machine=self.name, confirmed=True, cause=request.cause, stamp=self._ros.now())
@@ -74,23 +74,23 @@ def main(name: str, subtasks: str, *names: str) -> None:
     ros = Ros(f"crowd_{name}")
     machines = [Machine(ros, machine, subtasks.split(",")) for machine in names]
 
-    def heard(message: Any, info: Any) -> None:
+    def on_press(message: Any, info: Any) -> None:
         for machine in machines:
             machine.press(message, int(info["received_timestamp"]))  # not when one thread of ten machines came to it
         if message.data:
-            threading.Thread(target=tell, daemon=True).start()
+            threading.Thread(target=report, daemon=True).start()
 
-    def tell() -> None:
+    def report() -> None:
         while any(machine.open for machine in machines):
             time.sleep(LOOK)
-        print(json.dumps([[machine.heard, machine.ended] for machine in machines]), flush=True)
+        print(json.dumps([[machine.on_press, machine.ended] for machine in machines]), flush=True)
 
     def news() -> None:
         for machine in machines:
-            machine.tell()
+            machine.report()
 
-    ros.node.create_subscription(Bool, "/emergency_signal", heard, 1, callback_group=ros.loop.group)
-    ros.every(NEWS, news)
+    ros.node.create_subscription(Bool, "/emergency_signal", on_press, 1, callback_group=ros.loop.group)
+    ros.every(STATE_PERIOD, news)
     print("ready", flush=True)
     threading.Event().wait()
 

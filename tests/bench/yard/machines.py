@@ -35,7 +35,7 @@ from tms_ros.server import Goal
 
 COUNT = 20
 MODEL = "zx200"
-NEWS = 0.1  # s between joint states
+STATE_PERIOD = 0.1  # s between joint states
 LIMIT = 60.0  # s for anything to happen; only bounds a hang
 ANSWER_LIMIT = 3.0  # s for one answer
 BURN = "import os; os.setpriority(os.PRIO_PROCESS, 0, 0)\nwhile True: pass"
@@ -92,7 +92,7 @@ class Yard:
         self.running: set[str] = set()  # machines with an open goal
         self._publishers = [self._machine(name, site.border(name)) for name in names()]
         self._button = self.ros.publisher(Bool, "/emergency_signal")
-        self.ros.every(NEWS, self._news)
+        self.ros.every(STATE_PERIOD, self._news)
 
     def _machine(self, name: str, border: Any) -> tuple[Any, Any]:
         ros = self.ros

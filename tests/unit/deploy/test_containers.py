@@ -20,9 +20,9 @@ COMPOSE = sorted(path for path in (DEPLOY / "compose").glob("*.yml") if path.ste
 needs_root = pytest.mark.skipif(os.getuid() != 0, reason="nft checks only for root")
 
 
-def run(*words: str, **variables: str) -> subprocess.CompletedProcess[str]:
+def run(*argv: str, **variables: str) -> subprocess.CompletedProcess[str]:
     environment = {**os.environ, **variables}
-    return subprocess.run(words, env=environment, capture_output=True, text=True, timeout=60, check=False)
+    return subprocess.run(argv, env=environment, capture_output=True, text=True, timeout=60, check=False)
 
 
 def compose() -> list[str]:
@@ -59,8 +59,8 @@ def test_the_trial_has_a_container_at_the_address_of_each_pc() -> None:
 
 @pytest.mark.parametrize("path", COMPOSE, ids=lambda path: path.stem)
 def test_compose_reads_it(path: Path) -> None:
-    words = [*compose(), "-p", f"tms-{path.stem}", "-f", str(path), "config"]
-    done = run(*words, TMS_SITE_NAME="yard", TMS_PC=path.stem)
+    argv = [*compose(), "-p", f"tms-{path.stem}", "-f", str(path), "config"]
+    done = run(*argv, TMS_SITE_NAME="yard", TMS_PC=path.stem)
     assert done.returncode == 0 and not done.stderr.strip(), done.stderr
     services = yaml.safe_load(done.stdout)["services"]
     for name, service in services.items():
@@ -73,8 +73,8 @@ def test_compose_reads_it(path: Path) -> None:
 
 
 def test_a_role_without_a_site_is_refused() -> None:
-    words = [*compose(), "-f", str(DEPLOY / "compose" / "machine.yml"), "config"]
-    done = run(*words, TMS_SITE_NAME="", TMS_PC="")
+    argv = [*compose(), "-f", str(DEPLOY / "compose" / "machine.yml"), "config"]
+    done = run(*argv, TMS_SITE_NAME="", TMS_PC="")
     assert done.returncode != 0 and "TMS_" in done.stderr
 
 

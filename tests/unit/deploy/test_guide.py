@@ -33,10 +33,10 @@ def test_every_make_command_names_its_site(line: str) -> None:
 @pytest.mark.parametrize(("text", "name"), [(JAPANESE, "更新"), (ENGLISH, "update")])
 def test_an_update_starts_what_runs_anew(text: str, name: str) -> None:
     """`make up` leaves a mesh that runs as it is."""
-    told = re.findall(r"`([^`]*)`", row(text, name))
-    down, up = told.index("make down SITE=genba"), told.index("make up SITE=genba ROLE=cps")
-    assert told[0] == "git pull" and down < up
-    assert told.index("make setup") < told.index("sudo systemctl restart tms@cps")
+    reported = re.findall(r"`([^`]*)`", row(text, name))
+    down, up = reported.index("make down SITE=genba"), reported.index("make up SITE=genba ROLE=cps")
+    assert reported[0] == "git pull" and down < up
+    assert reported.index("make setup") < reported.index("sudo systemctl restart tms@cps")
 
 
 @pytest.mark.parametrize("text", [JAPANESE, ENGLISH])

@@ -12,10 +12,10 @@ from tms_config.pcs import ROLES
 HIDDEN = {"SITE", "ROLE", "PC", "RUNTIME", "VENV", "NAV2_DISTRO", "LOCK", "TMS_SITE", "TMS_IMAGE", "MAKEFLAGS"}
 
 
-def make(*words: str) -> str:
+def make(*argv: str) -> str:
     clean = {key: value for key, value in os.environ.items() if key not in HIDDEN}
-    words = ("make", "-n", *words, "DOCKER=docker", "COMPOSE=docker-compose")
-    done = subprocess.run(words, cwd=PROJECT, env=clean, capture_output=True, text=True, timeout=60, check=False)
+    argv = ("make", "-n", *argv, "DOCKER=docker", "COMPOSE=docker-compose")
+    done = subprocess.run(argv, cwd=PROJECT, env=clean, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 0, done.stderr
     return done.stdout
 
@@ -38,10 +38,10 @@ def test_the_next_make_keeps_the_interfaces_that_were_built_for_humble(built: st
 
 
 def test_who_asks_for_the_other_ones_gets_them(built: str) -> None:
-    told = make("interfaces", built, "NAV2_DISTRO=jazzy")
-    assert "building the ROS interface packages" in told
+    reported = make("interfaces", built, "NAV2_DISTRO=jazzy")
+    assert "building the ROS interface packages" in reported
     venv = built.removeprefix("VENV=")
-    assert told.index(f"rm -f {venv}/.interfaces-*") < told.index(f"touch {venv}/.interfaces-jazzy")
+    assert reported.index(f"rm -f {venv}/.interfaces-*") < reported.index(f"touch {venv}/.interfaces-jazzy")
 
 
 def test_without_any_they_are_those_of_jazzy(tmp_path: Path) -> None:
@@ -49,26 +49,26 @@ def test_without_any_they_are_those_of_jazzy(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "state"), [((), "demo"), (("SITE=genba",), "genba"), (("SITE=configs/sites/genba.yaml",), "genba")]
+    ("argv", "state"), [((), "demo"), (("SITE=genba",), "genba"), (("SITE=configs/sites/genba.yaml",), "genba")]
 )
-def test_clean_leaves_the_state_of_other_sites(tmp_path: Path, words: tuple[str, ...], state: str) -> None:
+def test_clean_leaves_the_state_of_other_sites(tmp_path: Path, argv: tuple[str, ...], state: str) -> None:
     """Latches and the numbers of runs are there."""
-    (removal,) = [line for line in make("clean", f"VENV={tmp_path}", *words).splitlines() if line.startswith("rm ")]
+    (removal,) = [line for line in make("clean", f"VENV={tmp_path}", *argv).splitlines() if line.startswith("rm ")]
     assert removal == f"rm -rf {tmp_path} {tmp_path}-store .state/{state}"
 
 
 @pytest.mark.parametrize("role", ROLES)
 def test_a_pc_in_containers_is_named_after_its_role(role: str) -> None:
-    told = make("up", "SITE=genba", f"ROLE={role}", "RUNTIME=docker")
-    assert f"TMS_SITE_NAME=genba TMS_PC={role} docker-compose -p tms-{role} -f deploy/compose/{role}.yml up" in told
+    reported = make("up", "SITE=genba", f"ROLE={role}", "RUNTIME=docker")
+    assert f"TMS_SITE_NAME=genba TMS_PC={role} docker-compose -p tms-{role} -f deploy/compose/{role}.yml up" in reported
 
 
 def test_a_pc_with_a_name_of_its_own_takes_its_roles_compose_file() -> None:
-    words = ("SITE=genba", "ROLE=machine", "PC=truck_pc", "RUNTIME=docker")
+    argv = ("SITE=genba", "ROLE=machine", "PC=truck_pc", "RUNTIME=docker")
     wanted = "TMS_SITE_NAME=genba TMS_PC=truck_pc docker-compose -p tms-truck_pc -f deploy/compose/machine.yml"
-    assert f"{wanted} up" in make("up", *words) and f"{wanted} down" in make("down", *words)
+    assert f"{wanted} up" in make("up", *argv) and f"{wanted} down" in make("down", *argv)
 
 
-@pytest.mark.parametrize("words", [("ROLE=truck_pc",), ("ROLE=machine", "PC=truck_pc")])
-def test_without_containers_either_way_names_the_pc(built: str, words: tuple[str, ...]) -> None:
-    assert "--site genba up --role truck_pc" in make("up", built, "SITE=genba", *words)
+@pytest.mark.parametrize("argv", [("ROLE=truck_pc",), ("ROLE=machine", "PC=truck_pc")])
+def test_without_containers_either_way_names_the_pc(built: str, argv: tuple[str, ...]) -> None:
+    assert "--site genba up --role truck_pc" in make("up", built, "SITE=genba", *argv)

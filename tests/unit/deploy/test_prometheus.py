@@ -19,8 +19,8 @@ FOLDER = PROJECT / "deploy" / "prometheus"
 DASHBOARDS = sorted((PROJECT / "deploy" / "grafana" / "dashboards").glob("*.json"))
 
 
-def check(*words: str, cwd: Path = FOLDER) -> None:
-    done = subprocess.run([tool("promtool"), *words], cwd=cwd, capture_output=True, text=True, timeout=60, check=False)
+def check(*argv: str, cwd: Path = FOLDER) -> None:
+    done = subprocess.run([tool("promtool"), *argv], cwd=cwd, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
 
 
@@ -34,8 +34,8 @@ def test_the_rendered_configuration_is_valid(tmp_path: Path) -> None:
 
 
 def test_the_example_of_the_alertmanager_is_valid() -> None:
-    words = [tool("amtool"), "check-config", str(FOLDER / "alertmanager.example.yml")]
-    done = subprocess.run(words, capture_output=True, text=True, timeout=60, check=False)
+    argv = [tool("amtool"), "check-config", str(FOLDER / "alertmanager.example.yml")]
+    done = subprocess.run(argv, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 0, done.stderr
 
 
@@ -72,8 +72,8 @@ def test_an_alertmanager_by_number_or_name(tmp_path: Path, right: str) -> None:
 
 
 def test_the_alertmanager_may_come_by_environment(tmp_path: Path) -> None:
-    words = ["-o", str(tmp_path)]
-    CliRunner().invoke(prometheus.command, words, env={"TMS_ALERTS_TO": "10.0.0.9:9093"}, catch_exceptions=False)
+    argv = ["-o", str(tmp_path)]
+    CliRunner().invoke(prometheus.command, argv, env={"TMS_ALERTS_TO": "10.0.0.9:9093"}, catch_exceptions=False)
     assert json.loads((tmp_path / "alertmanagers.json").read_text()) == [{"targets": ["10.0.0.9:9093"]}]
 
 

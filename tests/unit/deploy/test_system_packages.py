@@ -30,9 +30,9 @@ def install(tmp_path: Path) -> Install:
         program(folder / "apt-cache", '[ "$2" = docker-cli ]')
         for name in there:
             program(folder / name, "[ $1 != compose ]")
-        words = ["/bin/sh", str(SCRIPT), *groups]
+        argv = ["/bin/sh", str(SCRIPT), *groups]
         bare = {"PATH": str(folder), "SBIN": str(folder), "DOCKER": str(folder / "docker")}
-        done = subprocess.run(words, env=bare, capture_output=True, text=True, timeout=30, check=False)
+        done = subprocess.run(argv, env=bare, capture_output=True, text=True, timeout=30, check=False)
         return done, asked.read_text()
 
     return run

@@ -17,7 +17,7 @@ UNIT.read(FOLDER / "tms@.service")
 WRAPPER = (FOLDER / "tms").read_text()
 TELL = """#!{python}
 import json, os, sys
-json.dump({{"words": sys.argv[1:], "environment": dict(os.environ)}}, sys.stdout)
+json.dump({{"argv": sys.argv[1:], "environment": dict(os.environ)}}, sys.stdout)
 """
 
 
@@ -53,12 +53,12 @@ def test_the_program_passes_words_and_the_sites_variables(tmp_path: Path) -> Non
     script(real, TELL.format(python=sys.executable))
     script(fakes / "sudo", '#!/bin/sh\n[ "$1 $2" = "-u tms" ] || exit 9\nshift 2\nexec "$@"\n')
     script(tmp_path / "tms", WRAPPER.replace("/etc/tms/site", str(site)).replace("/opt/tms/.venv/bin/tms", str(real)))
-    words = ["task", "add", "my file.xml", "--description", "a 'b' $c"]
+    argv = ["task", "add", "my file.xml", "--description", "a 'b' $c"]
     env = {"PATH": f"{fakes}:{os.environ['PATH']}"}
-    done = subprocess.run([str(tmp_path / "tms"), *words], env=env, capture_output=True, text=True, check=True)
-    told = json.loads(done.stdout)
-    assert told["words"] == words
-    there = told["environment"]
+    done = subprocess.run([str(tmp_path / "tms"), *argv], env=env, capture_output=True, text=True, check=True)
+    reported = json.loads(done.stdout)
+    assert reported["argv"] == argv
+    there = reported["environment"]
     wanted = {
         "TMS_SITE": "genba", "TMS_ALERTS_TO": "127.0.0.1:9093", "TMS_NOTE": "two words",
         "TMS_STATE": "/var/lib/tms/state", "TMS_PROMETHEUS": "/var/lib/tms/prometheus", "XDG_RUNTIME_DIR": "/run/tms",

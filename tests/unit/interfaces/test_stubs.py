@@ -71,15 +71,15 @@ def test_an_older_stub_leaves_nothing_behind(tmp_path: Path) -> None:
 
 
 def test_mypy_sees_the_installed_stubs(tmp_path: Path) -> None:
-    told = {
+    reported = {
         "JointState(name=['a'], position=(1.0, 2))": "",
         "JointState(position=['a'])": "List item 0 has incompatible type",
         "JointState(positions=[])": "Unexpected keyword argument",
         "JointState().position.real": '"array[float]" has no attribute "real"',
     }
-    (tmp_path / "use.py").write_text("\n".join(["from sensor_msgs.msg import JointState", *told]))
+    (tmp_path / "use.py").write_text("\n".join(["from sensor_msgs.msg import JointState", *reported]))
     command = [sys.executable, "-m", "mypy", "--strict", "--config-file=", f"--cache-dir={PROJECT}/.mypy_cache/stubs"]
     done = subprocess.run([*command, "use.py"], cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False)
-    for number, error in enumerate(told.values(), start=2):
+    for number, error in enumerate(reported.values(), start=2):
         found = [line for line in done.stdout.splitlines() if line.startswith(f"use.py:{number}: error:")]
         assert [error in line for line in found] == ([True] if error else []), done.stdout

@@ -19,7 +19,7 @@ class FakeMesh:
     def __init__(self) -> None:
         self.answers: dict[str, Any] = {}
         self.asked: list[tuple[str, dict[str, Any]]] = []
-        self.heard: dict[str, Callable[[Any], None]] = {}
+        self.received: dict[str, Callable[[Any], None]] = {}
         self.action: Any = None  # what `peer` returns
 
     def call(self, service_type: Any, name: str, **fields: Any) -> Any:
@@ -36,8 +36,8 @@ class FakeMesh:
     def peer(self, action_type: Any, name: str) -> Any:
         return self.action
 
-    def subscribe(self, message_type: Any, topic: str, heard: Callable[[Any], None], latched: bool) -> None:
-        self.heard[topic] = heard
+    def subscribe(self, message_type: Any, topic: str, received: Callable[[Any], None], latched: bool) -> None:
+        self.received[topic] = received
 
 
 @pytest.fixture

@@ -63,20 +63,20 @@ def test_an_empty_database(mesh, tms, site) -> None:
 
 
 @pytest.mark.parametrize(
-    ("damage", "told"),
+    ("damage", "reported"),
     [
         (lambda stored: stored.pop(2), "entries 3 to 3 are missing"),
         (lambda stored: setattr(stored[1], "text", "ken from 192.0.2.1"), "entry 2 was changed"),
         (lambda stored: stored[3].values.clear(), "entry 4 has no hash"),
     ],
 )
-def test_a_damaged_chain(mesh, tms, site, damage, told) -> None:
+def test_a_damaged_chain(mesh, tms, site, damage, reported) -> None:
     stored = events()
     damage(stored)
     mesh.answers["/tms/db/list_events"] = database(stored)
     result = tms(audit.verify)
     assert result.exit_code == 1
-    assert told in result.output
+    assert reported in result.output
     assert "NOT intact" in result.output
 
 

@@ -99,7 +99,7 @@ def test_percentiles() -> None:
 def row(**changes: Any) -> Row:
     values: dict[str, Any] = {
         "machine": "zx200", "model": "zx200", "stop": "kill rc", "how": "kill", "fault": NONE, "fault_at": 0.1,
-        "in_order": True, "told_s": 0.5, "stood_s": 2.0, "travel_joint": "swing_joint",
+        "in_order": True, "reported_s": 0.5, "stood_s": 2.0, "travel_joint": "swing_joint",
         "travel_rad": 0.25, "back_s": 3.0, "outcome": "goes on", "confirmed": True,
     }  # fmt: skip
     return Row(**{**values, **changes})
@@ -107,10 +107,10 @@ def row(**changes: Any) -> Row:
 
 def test_the_summary_counts_what_matters() -> None:
     rows = [
-        row(), row(told_s=0.9, stood_s=4.0, travel_rad=0.75),
-        row(fault="coast", in_order=False, stood_s=8.0, told_s=None, unconfirmed=True, confirmed=False),
+        row(), row(reported_s=0.9, stood_s=4.0, travel_rad=0.75),
+        row(fault="coast", in_order=False, stood_s=8.0, reported_s=None, unconfirmed=True, confirmed=False),
         row(stop="kill rc+tms:ts", unconfirmed=True, unlatched=True), row(unconfirmed=True, ran_on=True, stood_s=None),
-        row(how="cancel", stop="cancel", told_s=None, false_receipt="moved"), row(outcome=HUNG, disturbed=True),
+        row(how="cancel", stop="cancel", reported_s=None, false_receipt="moved"), row(outcome=HUNG, disturbed=True),
         row(back_s=None), row(outcome=LEFT_OUT, back_s=None),
         row(void="its motion ended by itself", unconfirmed=True, back_s=None),
     ]  # fmt: skip
@@ -173,7 +173,7 @@ def test_a_report_that_cannot_be_written_is_told_before_anything_is_killed(
 
 
 @pytest.mark.parametrize(
-    ("change", "told"),
+    ("change", "reported"),
     [
         ("backend: opera", "Choose a site with backend 'sim'"),
         ("pcs: {cps: {address: 127.0.0.1}}", "and no pcs:"),
@@ -181,10 +181,10 @@ def test_a_report_that_cannot_be_written_is_told_before_anything_is_killed(
     ],
 )
 def test_a_site_that_must_not_be_drilled(
-    ready: Path, tms: Any, monkeypatch: pytest.MonkeyPatch, change: str, told: str
+    ready: Path, tms: Any, monkeypatch: pytest.MonkeyPatch, change: str, reported: str
 ) -> None:
     path = ready / "site.yaml"
     path.write_text(f"name: t\ndomain: 1\nservices: {{db: {{}}}}\n{change}\n")
     monkeypatch.setattr(drill.session, "site", lambda: load_site(str(path)))
     end = tms(drill.command)
-    assert told in str(end.exception) and not (ready / "state" / "drill").exists()
+    assert reported in str(end.exception) and not (ready / "state" / "drill").exists()

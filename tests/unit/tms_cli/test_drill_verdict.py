@@ -47,7 +47,7 @@ def wrong(row: Row) -> set[str]:
 def test_an_honest_stop_is_measured() -> None:
     row = judge(seen(truth((0.0, 2.0)), receipt()))
     assert wrong(row) == set() and row.confirmed and not row.void
-    assert row.told_s == pytest.approx(0.6)
+    assert row.reported_s == pytest.approx(0.6)
     assert row.stood_s == pytest.approx(2.0, abs=0.03)
     assert (row.travel_joint, row.travel_rad) == ("swing_joint", pytest.approx(0.2, abs=0.01))
     assert row.travel_m == pytest.approx(0.2, abs=0.01)
@@ -89,8 +89,8 @@ def test_a_goal_does_not_excuse_what_moved_before_it() -> None:
 
 def test_a_motion_that_is_told_by_a_second_receipt_is_no_lie() -> None:
     creeps = truth((0.0, 2.0), (5.0, 20.0))
-    told = judge(seen(creeps, receipt(), receipt(5.5, 10.0, confirmed=False), latch="left stand-still"))
-    assert wrong(told) == {"unconfirmed", "ran_on"}  # `ran_on` only where the machine should obey
+    reported = judge(seen(creeps, receipt(), receipt(5.5, 10.0, confirmed=False), latch="left stand-still"))
+    assert wrong(reported) == {"unconfirmed", "ran_on"}  # `ran_on` only where the machine should obey
     under_way = receipt(0.2, 10.0, confirmed=False)
     assert judge(seen(creeps, receipt(), under_way, latch="x")).false_receipt == ""
     over = receipt(0.2, 1.0, confirmed=False)
@@ -186,7 +186,7 @@ def test_a_lost_process_beside_the_motion_stops_nothing() -> None:
     beside = Stop(How.KILL, ("tms:db",), moves=False)
     found = seen(truth((0.0, 3.0)), receipt(1.2), stop_kind=beside, stop=HIT + 1.0)
     row = judge(found)
-    assert wrong(row) == set() and row.told_s is None and row.stood_s == pytest.approx(2.0, abs=0.03)
+    assert wrong(row) == set() and row.reported_s is None and row.stood_s == pytest.approx(2.0, abs=0.03)
     assert wrong(judge(replace(found, record=seen(truth((0.0, 2.0)), receipt(0.7)).record))) == {"disturbed"}
     excused = judge(replace(found, record=seen(truth((0.0, 2.0)), receipt(0.7)).record, busy="this PC did not run it"))
     assert wrong(excused) == set() and excused.void == "this PC did not run it"

@@ -26,7 +26,7 @@ def feedback(*statuses: tuple[int, int, str], state: str = "running", reason: st
 def view() -> live.View:
     ticks = iter(range(1000))
     made = live.View(1, "one cycle", GOALS, clock=lambda: float(next(ticks)))
-    made.heard(feedback((1, RUNNING, ""), (2, RUNNING, "MOVING 5 %"), (3, IDLE, "")))
+    made.received(feedback((1, RUNNING, ""), (2, RUNNING, "MOVING 5 %"), (3, IDLE, "")))
     return made
 
 
@@ -44,38 +44,38 @@ def test_the_tree_is_indented_with_states_goals_and_the_running_leafs_reason(vie
 
 
 def test_later_messages_hold_changes_only(view: live.View) -> None:
-    changed = view.heard(feedback((2, SUCCESS, ""), (3, RUNNING, "")))
+    changed = view.received(feedback((2, SUCCESS, ""), (3, RUNNING, "")))
     assert [(node.uid, node.status) for node in changed] == [(2, SUCCESS), (3, RUNNING)]
     assert len(view.nodes) == 3
 
 
 def test_several_changes_of_one_node_in_a_message_are_all_told(view: live.View) -> None:
-    changed = view.heard(feedback((2, SUCCESS, ""), (2, IDLE, "")))
+    changed = view.received(feedback((2, SUCCESS, ""), (2, IDLE, "")))
     assert [node.status for node in changed] == [SUCCESS, IDLE]
     assert texts(view)[1].strip().startswith("✔"), "an idle node still tells how it ended"
 
 
 def test_an_unknown_tree_is_shown_without_goals() -> None:
     other = live.View(1, "", [("Fallback", "")])
-    other.heard(feedback((1, RUNNING, ""), (2, IDLE, "")))
+    other.received(feedback((1, RUNNING, ""), (2, IDLE, "")))
     assert texts(other) == ["▶ Sequence", "  · LeafNodeZx200"]
 
 
 def test_nodes_whose_parent_was_never_heard_of_are_still_shown() -> None:
     lonely = live.View(1)
-    lonely.heard(feedback((3, FAILURE, "out of reach")))
+    lonely.received(feedback((3, FAILURE, "out of reach")))
     assert texts(lonely) == ["✘ LeafNodeZx200  — out of reach"]
 
 
 def test_success_of_a_sequence_tells_the_success_of_its_last_leaf(view: live.View) -> None:
-    view.heard(feedback((2, SUCCESS, ""), (3, RUNNING, "")))
-    view.heard(feedback((1, IDLE, ""), (2, IDLE, ""), (3, IDLE, "")))
+    view.received(feedback((2, SUCCESS, ""), (3, RUNNING, "")))
+    view.received(feedback((1, IDLE, ""), (2, IDLE, ""), (3, IDLE, "")))
     assert [node.uid for node in view.close("success")] == [3, 1]
     assert all(status == SUCCESS for status, _ in live.tree_rows(view))
 
 
 def test_a_cancelled_run_claims_no_success(view: live.View) -> None:
-    view.heard(feedback((1, IDLE, ""), (2, IDLE, ""), (3, IDLE, "")))
+    view.received(feedback((1, IDLE, ""), (2, IDLE, ""), (3, IDLE, "")))
     assert view.close("cancelled") == []
     assert [status for status, _ in live.tree_rows(view)] == [IDLE, IDLE, IDLE]
 
@@ -85,7 +85,7 @@ def test_a_long_tree_is_cut_around_the_part_that_works() -> None:
     nodes = [NodeStatus(uid=1, type="Sequence", name="Sequence", status=RUNNING)]
     nodes += [NodeStatus(uid=n, parent=1, type="Leaf", name=f"leaf{n}", status=IDLE) for n in range(2, 200)]
     nodes[150].status = RUNNING
-    long.heard(ExecuteTask.Feedback(run_id="r", nodes=nodes))
+    long.received(ExecuteTask.Feedback(run_id="r", nodes=nodes))
     shown = texts(long, most=11)
     assert len(shown) == 11
     assert any("leaf151" in line for line in shown)
@@ -94,7 +94,7 @@ def test_a_long_tree_is_cut_around_the_part_that_works() -> None:
 def test_a_deep_tree_does_not_recurse() -> None:
     deep = live.View(1)
     nodes = [NodeStatus(uid=n, parent=n - 1, type="Inverter", name="Inverter") for n in range(1, 5001)]
-    deep.heard(ExecuteTask.Feedback(run_id="r", nodes=nodes))
+    deep.received(ExecuteTask.Feedback(run_id="r", nodes=nodes))
     assert sum(1 for _ in deep.rows()) == 5000
 
 
@@ -108,9 +108,9 @@ def test_joint_angles_in_both_units() -> None:
 def test_a_pipe_gets_one_line_per_change_and_no_percentages(capsys, view: live.View) -> None:
     lines = live.Lines()
     for reason in ("MOVING 5 %", "MOVING 6 %", "MOVING 7 %"):
-        lines.show(view, view.heard(feedback((2, RUNNING, reason), reason=reason)))
-    lines.show(view, view.heard(feedback((2, SUCCESS, ""), (3, RUNNING, "sending"), reason="sending")))
-    lines.show(view, view.heard(feedback((1, IDLE, ""), (2, IDLE, ""), (3, IDLE, ""))))
+        lines.show(view, view.received(feedback((2, RUNNING, reason), reason=reason)))
+    lines.show(view, view.received(feedback((2, SUCCESS, ""), (3, RUNNING, "sending"), reason="sending")))
+    lines.show(view, view.received(feedback((1, IDLE, ""), (2, IDLE, ""), (3, IDLE, ""))))
     shown = [line[11:] for line in capsys.readouterr().out.splitlines()]
     assert shown == [
         "run r1: running",

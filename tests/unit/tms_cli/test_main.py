@@ -60,14 +60,14 @@ def test_what_the_system_refuses_is_one_line_and_exit_code_1() -> None:
 
 
 @pytest.mark.parametrize(
-    ("error", "told"),
+    ("error", "reported"),
     [
         (TimeoutError("timed out"), "timed out; See what is wrong"),
         (OSError(), "OSError; See what is wrong"),
     ],
 )
 def test_what_the_system_refuses_without_naming_a_file(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], error: OSError, told: str
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], error: OSError, reported: str
 ) -> None:
     def fails(**_: object) -> None:
         raise error
@@ -76,7 +76,7 @@ def test_what_the_system_refuses_without_naming_a_file(
     with pytest.raises(SystemExit) as end:
         main.main()
     assert end.value.code == 1
-    assert capsys.readouterr().err.startswith(f"tms: {told}")
+    assert capsys.readouterr().err.startswith(f"tms: {reported}")
 
 
 @pytest.mark.parametrize("locale", ["C.UTF-8", "ja_JP.UTF-8"])

@@ -62,8 +62,8 @@ def test_the_state_of_an_older_release_is_closed_with_one_line(
             path.chmod(mode)
     assert mesh.up(ours) is False
     assert [path for path in (folder, *folder.rglob("*")) if path.stat().st_mode & 0o077] == []
-    told = f"{folder}: closed 3 files to other users\n" if left_open else ""
-    assert capsys.readouterr().err == told
+    reported = f"{folder}: closed 3 files to other users\n" if left_open else ""
+    assert capsys.readouterr().err == reported
 
 
 def test_prometheus_reads_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -90,20 +90,20 @@ def test_a_console_without_its_certificate_is_told_before_anything_starts(tmp_pa
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "reported"),
     [(None, "is not there: `tms user add"), ("users: {}\n", "everybody on this PC may read it"), ("user: 1\n", "user")],
 )
 def test_users_that_the_console_cannot_take_are_told_before_anything_starts(
-    tmp_path: Path, tms: Any, text: str | None, told: str
+    tmp_path: Path, tms: Any, text: str | None, reported: str
 ) -> None:
     file = tmp_path / "users.yaml"
     if text is not None:
         file.write_text(text)
         file.chmod(0o644 if "users" in text else 0o600)
     ours = site(tmp_path, console={"users": "users.yaml"}, store={"kind": "mongodb", "uri": "mongodb://x/"})
-    with pytest.raises(ConfigError, match=f"{file}(:1)?: .*{told}"):
+    with pytest.raises(ConfigError, match=f"{file}(:1)?: .*{reported}"):
         mesh.up(ours)
-    assert told in str(tms(check.command, "--site", ours.path).exception)
+    assert reported in str(tms(check.command, "--site", ours.path).exception)
     assert not (tmp_path / "state" / "supervisord.conf").exists()
 
 

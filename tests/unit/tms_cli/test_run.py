@@ -218,14 +218,14 @@ def test_a_scheduler_that_was_killed_is_noticed(
 ) -> None:
     monkeypatch.setattr(run, "SILENT", silent)
     monkeypatch.setattr(run, "FORGOTTEN", forgotten)
-    monkeypatch.setattr(run, "LOOK", 0.001)
+    monkeypatch.setattr(run, "CHECK_PERIOD", 0.001)
     task.action = FakeScheduler(feedback())
     task.answers["/tms/db/list_runs"] = ListRuns.Response(runs=[Run(run_id="r1", state="running")])
 
     class Display(PressesCtrlC):
         def show(self, view: Any, changed: Any) -> None:
             for message in lists:
-                task.heard["/tms/runs"](message)
+                task.received["/tms/runs"](message)
 
     monkeypatch.setattr(run.live, "display", lambda _: Display())
     end = tms(run.command, "1", "--wait")
@@ -236,14 +236,14 @@ def test_a_scheduler_that_was_killed_is_noticed(
 
 def test_a_result_that_got_lost_is_told_from_the_history(task, tms, monkeypatch) -> None:
     monkeypatch.setattr(run, "FORGOTTEN", 0.0)
-    monkeypatch.setattr(run, "LOOK", 0.001)
+    monkeypatch.setattr(run, "CHECK_PERIOD", 0.001)
     task.action = FakeScheduler(feedback())
     ended = Run(run_id="r1", state="failure", reason="because", ended_at=Time(sec=1))
     task.answers["/tms/db/list_runs"] = ListRuns.Response(runs=[ended])
 
     class Display(PressesCtrlC):
         def show(self, view: Any, changed: Any) -> None:
-            task.heard["/tms/runs"](listing())
+            task.received["/tms/runs"](listing())
 
     monkeypatch.setattr(run.live, "display", lambda _: Display())
     end = tms(run.command, "1", "--wait")

@@ -46,7 +46,7 @@ class Away:
 def fake(monkeypatch: pytest.MonkeyPatch) -> Away:
     monkeypatch.setattr(connection, "FIRST_WAIT", 0.001)
     monkeypatch.setattr(connection, "LAST_WAIT", 0.002)
-    monkeypatch.setattr(connection, "LOOK", 60.0)
+    monkeypatch.setattr(connection, "IDLE_CHECK_PERIOD", 60.0)
     return Away()
 
 
@@ -109,5 +109,5 @@ def test_trouble_is_told_once(fake: Away, caplog: pytest.LogCaptureFixture) -> N
     for _ in range(5):
         assert fake.asked.acquire(timeout=5)
     link.stop()
-    told = [record for record in caplog.records if "store_away" in record.getMessage()]
-    assert len(told) == 1
+    reported = [record for record in caplog.records if "store_away" in record.getMessage()]
+    assert len(reported) == 1

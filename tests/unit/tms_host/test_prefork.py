@@ -52,13 +52,13 @@ run.main("tms:db")
 def run(tmp_path: Path):  # type: ignore[no-untyped-def]
     (tmp_path / "program.py").write_text(PROGRAM)
 
-    def become(name: str, module: str = "program", parent: str = WAITS) -> subprocess.CompletedProcess[str]:
+    def exec_entry(name: str, module: str = "program", parent: str = WAITS) -> subprocess.CompletedProcess[str]:
         code = f"import sys; sys.path.insert(0, {str(tmp_path)!r})" + textwrap.dedent(
             FORK.format(module=module, name=name, parent=parent, orphan=parent != WAITS)
         )
         return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
 
-    return become
+    return exec_entry
 
 
 def test_it_runs_as_if_it_had_been_executed(run) -> None:  # type: ignore[no-untyped-def]

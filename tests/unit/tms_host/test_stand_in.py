@@ -1,6 +1,6 @@
 """When the host agent stops a machine in place of its gateway, and how."""
 
-from tms_host.stand_in import AGAIN, ESCALATE, PATIENCE, Act, Duty, Seen
+from tms_host.stand_in import AGAIN, ESCALATE, LEASE_MARGIN, Act, Duty, Seen
 
 THERE = Seen(alive=True)
 SILENT = Seen(alive=False)
@@ -33,8 +33,8 @@ def test_a_short_silence_is_no_loss() -> None:
     duty.look(0.0, THERE)
     for at in (1.0, 2.0):
         assert duty.look(at, BUSY) is None
-        assert duty.look(at + PATIENCE - 0.01, BUSY) is None
-        assert duty.look(at + PATIENCE, THERE) is None
+        assert duty.look(at + LEASE_MARGIN - 0.01, BUSY) is None
+        assert duty.look(at + LEASE_MARGIN, THERE) is None
     assert duty.lost_since is None
 
 
@@ -65,7 +65,7 @@ def test_it_goes_on_until_a_gateway_gives_its_pulse_and_has_told_its_state() -> 
     duty.look(0.0, THERE)
     assert acts(duty, 1.0, 0.2, SILENT)
     assert acts(duty, 2.0, 0.6, THERE) == [(0.0, Act.STOP), (0.5, Act.STOP)]
-    assert acts(duty, 3.0, 1.0, Seen(alive=True, told=True)) == []
+    assert acts(duty, 3.0, 1.0, Seen(alive=True, reported=True)) == []
     assert duty.lost_since is None
     assert acts(duty, 5.0, 0.2, SILENT) == [(0.1, Act.STOP)]  # and watches that one
 
@@ -74,7 +74,7 @@ def test_what_it_has_told_before_its_pulse_is_remembered() -> None:
     duty = Duty()
     duty.look(0.0, THERE)
     acts(duty, 1.0, 0.2, SILENT)
-    duty.look(1.2, Seen(alive=False, told=True))
+    duty.look(1.2, Seen(alive=False, reported=True))
     duty.look(1.3, THERE)
     assert duty.lost_since is None
 

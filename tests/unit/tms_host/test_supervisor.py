@@ -103,14 +103,14 @@ class Scripted(Supervisor):
 def test_a_process_that_ends_is_waited_for(
     site: Site, monkeypatch: pytest.MonkeyPatch, command: str, states: list[str], did: list[str]
 ) -> None:
-    monkeypatch.setattr(module, "LOOK", 0.0)
+    monkeypatch.setattr(module, "END_CHECK_PERIOD", 0.0)
     supervisor = Scripted(site, *states)
     supervisor.control(command, "zx200:rc")
     assert supervisor.did == did
 
 
 def test_a_process_that_does_not_end_is_told(site: Site, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "LOOK", 0.0)
+    monkeypatch.setattr(module, "END_CHECK_PERIOD", 0.0)
     monkeypatch.setattr(module, "END_LIMIT", 0.02)
     supervisor = Scripted(site, "STOPPING")
     with pytest.raises(TmsError, match="zx200:rc was told to end"):

@@ -20,7 +20,7 @@ from tms_runtime.packing import pack
 TOPIC, SPAWN = "zx200/odom", "/spawn"
 ALLOWED = Allowed(
     published={"/zx200/odom": frozenset({"nav_msgs/Odometry"})},
-    heard={},
+    received={},
     called={SPAWN: frozenset({"std_srvs/Trigger"})},
     offered={},
 )

@@ -13,8 +13,8 @@ GOOD = b'{"topic":"zx200/odom","message_name":"nav_msgs/Odometry","queue_size":1
 def test_the_handshake() -> None:
     data = handshake()
     assert data.startswith(b"\x0b\0\0\0__handshake")
-    told = json.loads(data[4 + 11 + 4 :])
-    assert told == {"version": "v0.7.0", "metadata": '{"protocol": "ROS2"}'}
+    reported = json.loads(data[4 + 11 + 4 :])
+    assert reported == {"version": "v0.7.0", "metadata": '{"protocol": "ROS2"}'}
 
 
 def test_a_registration() -> None:

@@ -34,10 +34,10 @@ class Recorded(Machine):
         self.sent: list[tuple[Any, str, Any]] = []
         self._result, self._feedback = result, feedback
 
-    def act(self, action_type: Any, action: str, goal: Any, heard: Any = None) -> Any:
+    def act(self, action_type: Any, action: str, goal: Any, received: Any = None) -> Any:
         self.sent.append((action_type, action, goal))
         if self._feedback is not None:
-            heard(self._feedback)
+            received(self._feedback)
         return self._result
 
 

@@ -25,8 +25,8 @@ class Dds:
     def after(self, seconds: float, step: Callable[[], None]) -> None:
         self.later.append((seconds, step))
 
-    def lease_subscribe(self, _type: Any, _topic: str, _lease: float, heard: Any, alive: Any) -> None:
-        self.heard, self.alive = heard, alive
+    def lease_subscribe(self, _type: Any, _topic: str, _lease: float, received: Any, alive: Any) -> None:
+        self.received, self.alive = received, alive
 
 
 @pytest.fixture
@@ -38,7 +38,7 @@ def dds() -> Dds:
 def link(dds: Dds) -> tuple[Link, list[bool]]:
     seen: list[bool] = []
     made = Link(dds, dds, "zx200", "rc", lambda link: seen.append(link.alive))  # type: ignore[arg-type]
-    dds.heard(Message(process="rc", goal=GOAL))
+    dds.received(Message(process="rc", goal=GOAL))
     dds.alive(1, 0)
     return made, seen
 
@@ -81,40 +81,40 @@ class Server:
     """What a watcher needs of a Peer: keeps what it was told."""
 
     def __init__(self) -> None:
-        self.told: list[str] = []
+        self.reported: list[str] = []
 
     def mark_lost(self) -> None:
-        self.told.append("lost")
+        self.reported.append("lost")
 
     def mark_alive(self) -> None:
-        self.told.append("found")
+        self.reported.append("found")
 
 
 @pytest.fixture
 def server(dds: Dds) -> Server:
     made = Server()
     watch_server(dds, dds, "zx200", "rc")(made)  # type: ignore[arg-type]
-    dds.heard(Message(process="rc", goal=GOAL))
+    dds.received(Message(process="rc", goal=GOAL))
     dds.alive(1, 0)
-    made.told.clear()
+    made.reported.clear()
     return made
 
 
 def test_a_frozen_process_that_runs_again_is_found(dds: Dds, server: Server) -> None:
     dds.alive(0, 1)
     dds.alive(1, 0)
-    assert server.told == ["lost", "found"]
+    assert server.reported == ["lost", "found"]
 
 
 def test_a_successor_is_not_taken_for_the_process_that_was_lost(dds: Dds, server: Server) -> None:
     dds.alive(0, 1)
     dds.alive(1, 1)
-    dds.heard(Message(process="rc", goal=GOAL))
-    assert server.told == ["lost"]
+    dds.received(Message(process="rc", goal=GOAL))
+    assert server.reported == ["lost"]
 
 
 def test_a_process_that_ends_between_two_goals_loses_none(dds: Dds, server: Server) -> None:
-    dds.heard(Message(process="rc"))
-    server.told.clear()
+    dds.received(Message(process="rc"))
+    server.reported.clear()
     dds.alive(0, 1)
-    assert not server.told
+    assert not server.reported

@@ -43,12 +43,12 @@ def model(**changes: object) -> MachineModel:
     return MachineModel.model_validate({**data, **changes})
 
 
-def watch(stamps: str = "utc", odom: bool = False, at_once: bool = False) -> StandStill:
+def watch(stamps: str = "utc", odom: bool = False, immediate: bool = False) -> StandStill:
     sources: dict[str, object] = {JOINTS: {**SOURCE, "stamps": stamps}}
     border: dict[str, object] = {"joint_states": "joint_states", "sources": sources}
     if odom:
         border["odom"], sources[ODOM] = "odom", SOURCE
-    if at_once:
+    if immediate:
         border |= {"emg_stop": "emg_stop", "emg_stop_at_once": True}
     return StandStill(model(), Border.model_validate(border))
 
@@ -60,7 +60,7 @@ class Reporter:
         self.watch, self.number, self.now = made, 0, 100.0
         self.angle = 0.0
 
-    def tell(self, angle: float, speed: float | None, stamp: float | None = None, arm: bool = True) -> None:
+    def publish_now(self, angle: float, speed: float | None, stamp: float | None = None, arm: bool = True) -> None:
         self.number += 1
         names = ["boom", "arm"] if arm else ["boom"]
         self.watch.take(JOINTS, Sample(
@@ -68,12 +68,12 @@ class Reporter:
             {name: (angle,) for name in names}, {} if speed is None else dict.fromkeys(names, speed),
         ))  # fmt: skip
 
-    def run(self, seconds: float, speed: float, told: float | None = None) -> None:
+    def run(self, seconds: float, speed: float, reported: float | None = None) -> None:
         """Go at a speed for some time."""
         for _ in range(round(seconds / PERIOD)):
             self.now += PERIOD
             self.angle += speed * PERIOD
-            self.tell(self.angle, speed if told is None else told)
+            self.publish_now(self.angle, speed if reported is None else reported)
 
 
 def stood_after(
@@ -125,10 +125,10 @@ def test_a_command_on_its_way_moves_the_machine_after_the_stop() -> None:
 
 def test_a_velocity_field_of_zeros_proves_nothing() -> None:
     reporter = Reporter(watch())
-    reporter.run(1.0, 0.3, told=0.0)
+    reporter.run(1.0, 0.3, reported=0.0)
     trouble = reporter.watch.trouble(reporter.now)
     assert trouble is not None and trouble.reason.find(PositionsMove) is not None
-    assert stood_after(reporter, lambda: reporter.run(PERIOD, 0.3, told=0.0), reporter.now) == float("inf")
+    assert stood_after(reporter, lambda: reporter.run(PERIOD, 0.3, reported=0.0), reporter.now) == float("inf")
 
 
 def test_a_motion_that_lost_messages_hide_is_no_lie() -> None:
@@ -140,14 +140,14 @@ def test_a_motion_that_lost_messages_hide_is_no_lie() -> None:
     for late in (PERIOD, *(1.5 + PERIOD * number for number in range(6))):
         reporter.now += PERIOD
         reporter.angle += 0.5 * (late == 1.5)
-        reporter.tell(reporter.angle, 0.0, stamp=measured + late)
+        reporter.publish_now(reporter.angle, 0.0, stamp=measured + late)
     assert reporter.watch.trouble(reporter.now) is None
     assert reporter.watch.moving()
 
 
 def test_velocities_that_go_on_while_positions_stand_are_implausible() -> None:
     reporter = Reporter(watch())
-    reporter.run(1.0, 0.0, told=0.3)
+    reporter.run(1.0, 0.0, reported=0.3)
     trouble = reporter.watch.trouble(reporter.now)
     assert trouble is not None and trouble.reason.find(VelocitiesMove) is not None
 
@@ -168,7 +168,7 @@ def test_old_messages_that_come_late_do_not_count() -> None:
 
     def late() -> None:
         reporter.now += PERIOD
-        reporter.tell(0.0, 0.0, stamp=reporter.now - 1.5)
+        reporter.publish_now(0.0, 0.0, stamp=reporter.now - 1.5)
 
     reporter.watch.take(JOINTS, Sample(reporter.now, 1e9 + reporter.now - 1.5, 999, {"boom": (0.0,)}, {"boom": 0.0}))
     assert stood_after(reporter, late, begun, limit=1.4) == float("inf")
@@ -181,7 +181,7 @@ def test_a_frozen_stamp_is_silence() -> None:
 
     def again() -> None:
         reporter.now += PERIOD
-        reporter.tell(0.0, 0.0, stamp=frozen)
+        reporter.publish_now(0.0, 0.0, stamp=frozen)
 
     assert stood_after(reporter, again, reporter.now) == float("inf")
     trouble = reporter.watch.trouble(reporter.now)
@@ -193,7 +193,7 @@ def test_a_joint_that_was_never_heard_is_unknown() -> None:
 
     def one_of_two() -> None:
         reporter.now += PERIOD
-        reporter.tell(0.0, 0.0, arm=False)
+        reporter.publish_now(0.0, 0.0, arm=False)
 
     assert stood_after(reporter, one_of_two, reporter.now) == float("inf")
     assert reporter.watch.silent(reporter.now, 1.0) == UnheardOf(JointStates(), "arm")
@@ -230,9 +230,9 @@ def test_the_worst_speed_counts_and_not_the_last_message() -> None:
     def both() -> None:  # every other message says that it stands
         reporter.now += PERIOD / 2
         reporter.angle += 0.3 * PERIOD / 2
-        reporter.tell(reporter.angle, 0.3)
+        reporter.publish_now(reporter.angle, 0.3)
         reporter.now += PERIOD / 2
-        reporter.tell(reporter.angle, 0.0)
+        reporter.publish_now(reporter.angle, 0.0)
 
     assert stood_after(reporter, both, reporter.now) == float("inf")
 
@@ -244,7 +244,7 @@ def test_a_clock_that_jumps_back_is_a_new_one() -> None:
 
     def restarted() -> None:
         reporter.now += PERIOD
-        reporter.tell(0.0, 0.0, stamp=reporter.now + shift)
+        reporter.publish_now(0.0, 0.0, stamp=reporter.now + shift)
 
     restarted()
     trouble = reporter.watch.trouble(reporter.now)
@@ -262,7 +262,7 @@ def test_a_stamp_ahead_of_its_clock_names_the_clock() -> None:
     reporter = Reporter(watch())
     reporter.run(1.0, 0.0)
     reporter.now += PERIOD
-    reporter.tell(0.0, 0.0, stamp=reporter.now + 3.2)
+    reporter.publish_now(0.0, 0.0, stamp=reporter.now + 3.2)
     trouble = reporter.watch.trouble(reporter.now)
     assert trouble is not None
     assert isinstance(trouble.reason, NewClock) and isinstance(trouble.reason.why, ClockAhead)
@@ -281,21 +281,21 @@ def test_without_stamps_the_arrival_counts_and_the_receipt_can_say_so() -> None:
 def test_a_joint_where_it_cannot_be_is_told() -> None:
     reporter = Reporter(watch())
     reporter.now += PERIOD
-    reporter.tell(3.5, 0.0)
+    reporter.publish_now(3.5, 0.0)
     trouble = reporter.watch.trouble(reporter.now)
     assert trouble is not None
     assert text(trouble.reason, "en") == "joint states: boom is told at 3.500 rad, where it cannot be (limit 3.000 rad)"
 
 
 def test_a_stop_that_acts_at_once_is_proven_at_once_when_it_is_seen_to_act() -> None:
-    reporter = Reporter(watch(at_once=True))
+    reporter = Reporter(watch(immediate=True))
     reporter.watch.commanded(reporter.now)
     reporter.run(1.0, 0.3)
     assert stood_after(reporter, standing(reporter), reporter.now, strongest=True) < DEAD
 
 
 def test_a_stop_that_acts_at_once_waits_where_nothing_was_seen_to_move() -> None:
-    reporter = Reporter(watch(at_once=True))
+    reporter = Reporter(watch(immediate=True))
     reporter.run(1.0, 0.0)
     reporter.watch.commanded(reporter.now)
     assert stood_after(reporter, standing(reporter), reporter.now, strongest=True) > DEAD
@@ -321,7 +321,7 @@ def test_a_gateway_that_was_started_anew_waits_for_every_motion_whatever_it_sees
         i += 1
         reporter.now += PERIOD
         place, before = record[i % len(record)], record[(i - 1) % len(record)]
-        reporter.tell(place, max(0.0, (place - before) / PERIOD), reporter.now)
+        reporter.publish_now(place, max(0.0, (place - before) / PERIOD), reporter.now)
 
     assert stood_after(reporter, replay, begun, expected=UNKNOWN) > COASTS + reporter.watch.dead_time
     reporter, i = Reporter(watch()), 0
@@ -353,7 +353,7 @@ def test_a_second_stop_waits_for_what_the_first_one_waits_for() -> None:
     both = second.after(first)
     assert (both.start, both.unseen) == (second.start, second.unseen)
     assert both.expected == Expected(99.0, {"boom": 0.2})
-    cuts = watch(at_once=True)
+    cuts = watch(immediate=True)
     pressed = cuts.proof(100.5, strongest=True)
     assert pressed.after(first) is pressed  # nothing that was on its way comes any more
 
@@ -380,7 +380,7 @@ def test_a_replayed_record_is_never_proven() -> None:
         reporter.now += PERIOD
         at = record[i % len(record)]
         speed = 0.05 if i % len(record) >= 36 else 0.0
-        reporter.tell(at, speed)
+        reporter.publish_now(at, speed)
 
     for i in range(len(record)):
         replay(i)
@@ -441,8 +441,8 @@ def test_what_is_confirmed_stood(motion: list[tuple[int, float]], stop: int, lie
         moved = moved if lies and lie == "stands" else angle
         stamp = stamp if lies and lie == "frozen" else reporter.now - (0.5 if lies and lie == "late" else 0.0)
         if not (lies and lie == "silent"):
-            told = 0.0 if lies and lie in ("zeros", "stands") else speed
-            reporter.tell(moved, told, stamp, arm=not (lies and lie == "muted"))
+            reported = 0.0 if lies and lie in ("zeros", "stands") else speed
+            reporter.publish_now(moved, reported, stamp, arm=not (lies and lie == "muted"))
         if i == stop:
             since = next((100.0 + PERIOD * k for k, one in enumerate(speeds[:i]) if one), None)
             proof = reporter.watch.proof(reporter.now, False, Expected(since))

@@ -14,7 +14,7 @@ def event(alive: int, not_alive: int) -> SimpleNamespace:
 
 
 @pytest.mark.parametrize(
-    ("events", "told"),
+    ("events", "reported"),
     [
         ([(1, 0), (0, 1), (1, 0), (0, 0)], [(1, 0), (0, 1), (1, 0), (0, 0)]),  # killed in the end
         ([None, (-1, 1), (0, 0), (-1, 1), (-1, 0)], [(1, 0), (0, 1), (1, 0), (0, 1), (0, 0)]),  # its begin was missed
@@ -24,9 +24,9 @@ def event(alive: int, not_alive: int) -> SimpleNamespace:
         ([(1, 0), None], [(1, 0)]),
     ],
 )
-def test_what_was_missed_is_made_up(events: list[Numbers | None], told: list[Numbers]) -> None:
+def test_what_was_missed_is_made_up(events: list[Numbers | None], reported: list[Numbers]) -> None:
     seen: list[Numbers] = []
     count = _Count(lambda *numbers: seen.append(numbers))
     for one in events:
-        count.made_up() if one is None else count.told(event(*one))
-    assert seen == told
+        count.made_up() if one is None else count.reported(event(*one))
+    assert seen == reported

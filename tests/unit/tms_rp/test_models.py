@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tms_config.config import CONFIGS
@@ -20,7 +20,6 @@ share = st.floats(0.01, 0.99)
 
 
 @pytest.mark.parametrize("name", EXCAVATORS)
-@settings(max_examples=60, deadline=None)
 @given(swing=st.floats(-3.1, 3.1), boom=share, arm=share, bucket=share)
 def test_there_and_back(name: str, swing: float, boom: float, arm: float, bucket: float) -> None:
     model = EXCAVATORS[name]

@@ -14,11 +14,11 @@ from tms_ros.reasons import ProcessLost
 from tms_rp.mover import _verdict
 
 
-def verdict(outcome: Outcome, cancelled: bool, told: str = "") -> Outcome:
+def verdict(outcome: Outcome, cancelled: bool, reported: str = "") -> Outcome:
     goal: Any = SimpleNamespace(cancelled=threading.Event())
     if cancelled:
         goal.cancelled.set()
-    call: Any = SimpleNamespace(outcome=outcome, result=SimpleNamespace(error_string=told))
+    call: Any = SimpleNamespace(outcome=outcome, result=SimpleNamespace(error_string=reported))
     return _verdict(goal, call, "/zx200/rc/follow_joint_trajectory")
 
 
@@ -37,5 +37,5 @@ def test_a_gateway_that_is_lost_has_seen_nobody_stand(cancelled: bool) -> None:
 
 def test_a_motion_that_was_aborted_says_why_also_after_a_cancel() -> None:
     with pytest.raises(SubtaskFailed) as caught:
-        verdict(Outcome.ABORTED, cancelled=True, told=wire.to_line(Busy("zx200:rc")))
+        verdict(Outcome.ABORTED, cancelled=True, reported=wire.to_line(Busy("zx200:rc")))
     assert caught.value.reason.find(Busy) == Busy("zx200:rc")

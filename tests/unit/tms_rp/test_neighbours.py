@@ -21,7 +21,7 @@ def at(child: str, x: float, parent: str = "map") -> TransformStamped:
     return one
 
 
-def neighbours(*told: TransformStamped) -> Neighbours:
+def neighbours(*reported: TransformStamped) -> Neighbours:
     """Those of zx200, who have heard `told` twice."""
     site: Any = SimpleNamespace(
         border=lambda name: SimpleNamespace(base_frame=BASES[name]),
@@ -29,7 +29,7 @@ def neighbours(*told: TransformStamped) -> Neighbours:
         model_of=lambda _: SimpleNamespace(footprint={"body": object()}),
     )
     ros = SimpleNamespace(
-        sample=lambda *_: lambda: [TFMessage(transforms=list(told))],
+        sample=lambda *_: lambda: [TFMessage(transforms=list(reported))],
         poll_in_thread=lambda *_: None,
         subscribe=lambda *_, **__: None,
     )

@@ -4,7 +4,7 @@ import math
 from itertools import pairwise
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tms_config.config import CONFIGS
@@ -37,7 +37,6 @@ def outside(name: str, joint: Joint, index: int, samples: tuple[Sample, ...]) ->
     return found
 
 
-@settings(max_examples=60, deadline=None)
 @given(pose, st.lists(pose, min_size=1, max_size=3))
 def test_random_plans_keep_all_limits(start: tuple[float, ...], targets: list[tuple[float, ...]]) -> None:
     made = trajectory(JOINTS, start, targets)

@@ -91,14 +91,14 @@ def test_it_stays_in_reach_while_others_hang(health: metrics.Health) -> None:
 
 
 def test_who_asks_nothing_is_dropped(health: metrics.Health, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(metrics, "LIMIT", 0.2)
+    monkeypatch.setattr(metrics, "REQUEST_LIMIT", 0.2)
     with dial() as idle, dial() as slow:
         slow.sendall(b"GET /healthz HTTP/1.1\r\nHost:")
         assert everything(idle) == everything(slow) == b""
 
 
 def test_who_does_not_take_the_answer_is_dropped(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(metrics, "LIMIT", 0.5)
+    monkeypatch.setattr(metrics, "REQUEST_LIMIT", 0.5)
     registry = CollectorRegistry()
     figure = Gauge("large", "More than the system takes for a client that does not read", ["number"], registry=registry)
     for number in range(100_000):
@@ -174,6 +174,6 @@ def test_it_closes_at_once_and_frees_its_port() -> None:
     with dial() as hanging:
         began = time.monotonic()
         health.close()
-        assert time.monotonic() - began < metrics.LIMIT - 1  # waits for no time-out
+        assert time.monotonic() - began < metrics.REQUEST_LIMIT - 1  # waits for no time-out
         assert everything(hanging) == b""
     metrics.Health(ADDRESS, PORT, unready=lambda: None).close()

@@ -98,13 +98,13 @@ def test_an_executor_in_a_long_callback_does_not_work() -> None:
 
 
 def test_a_step_that_stood_still_is_told() -> None:
-    pulse, told = Pulse(Executor()), [(0.0, 0.0)]
-    pulse.stood_still = lambda silent, waited: told.append((silent, waited))
+    pulse, reported = Pulse(Executor()), [(0.0, 0.0)]
+    pulse.stood_still = lambda silent, waited: reported.append((silent, waited))
     once = iter([STOOD_STILL + 0.2])
     pulse.add(lambda: threading.Event().wait(next(once, 0.0)) and None)
     try:
-        wait_until(lambda: len(told) > 1, 30, "it is told")
-        silent, for_a_processor = told[1]
+        wait_until(lambda: len(reported) > 1, 30, "it is told")
+        silent, for_a_processor = reported[1]
         assert silent > STOOD_STILL and 0.0 <= for_a_processor <= silent
     finally:
         pulse.close()
@@ -113,17 +113,17 @@ def test_a_step_that_stood_still_is_told() -> None:
 def test_an_executor_that_did_not_answer_for_long_is_told() -> None:
     executor = Executor(keeps=True)
     assert executor.kept is not None
-    pulse, told = Pulse(executor), [0.0]
-    pulse.stood_still = lambda silent, waited: told.append(silent)
+    pulse, reported = Pulse(executor), [0.0]
+    pulse.stood_still = lambda silent, waited: reported.append(silent)
     silent_since = [0.0]
     pulse.add(lambda: None)
     try:
         wait_until(lambda: not pulse.works(), 30, "it is asked, and does not answer")
         silent_since.append(time.monotonic())
         wait_until(lambda: time.monotonic() - silent_since[1] > STOOD_STILL, 30, "nothing was asserted for long")
-        assert len(told) == 1
+        assert len(reported) == 1
         executor.kept.pop()()
-        wait_until(lambda: len(told) > 1, 30, "it is told")
-        assert told[1] > STOOD_STILL
+        wait_until(lambda: len(reported) > 1, 30, "it is told")
+        assert reported[1] > STOOD_STILL
     finally:
         pulse.close()

@@ -25,19 +25,28 @@ class Stop(threading.Event):
 
 
 def test_a_process_that_stood_still_for_long_ends(monkeypatch: pytest.MonkeyPatch) -> None:
-    stop, failed = Stop(monkeypatch, [run.LOOK, run.FORGOTTEN + 0.1, run.LOOK]), threading.Event()
+    stop, failed = (
+        Stop(monkeypatch, [run.END_CHECK_PERIOD, run.FORGOTTEN + 0.1, run.END_CHECK_PERIOD]),
+        threading.Event(),
+    )
     run._wait_for_end(stop, failed, structlog.stdlib.get_logger("test"))
     assert failed.is_set()
 
 
 def test_one_that_stood_still_for_a_moment_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
-    stop, failed = Stop(monkeypatch, [run.LOOK, run.LOOK + 2.2, run.LOOK + 2.2, run.LOOK]), threading.Event()
+    stop, failed = (
+        Stop(
+            monkeypatch,
+            [run.END_CHECK_PERIOD, run.END_CHECK_PERIOD + 2.2, run.END_CHECK_PERIOD + 2.2, run.END_CHECK_PERIOD],
+        ),
+        threading.Event(),
+    )
     run._wait_for_end(stop, failed, structlog.stdlib.get_logger("test"))
     assert not failed.is_set() and not stop.takes
 
 
 def test_one_that_has_failed_ends(monkeypatch: pytest.MonkeyPatch) -> None:
-    stop, failed = Stop(monkeypatch, [run.LOOK] * 3), threading.Event()
+    stop, failed = Stop(monkeypatch, [run.END_CHECK_PERIOD] * 3), threading.Event()
     failed.set()
     run._wait_for_end(stop, failed, structlog.stdlib.get_logger("test"))
     assert len(stop.takes) == 2

@@ -4,7 +4,7 @@ import math
 from itertools import pairwise
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tms_config.models import Drive
@@ -23,7 +23,6 @@ def run(base: Base, seconds: float, step: float = SUBSTEP) -> list[tuple[float, 
     return seen
 
 
-@settings(max_examples=60, deadline=None)
 @given(place, place, heading, place, place, heading)
 def test_it_arrives_from_anywhere_and_keeps_its_limits(
     x: float, y: float, yaw: float, tx: float, ty: float, tyaw: float

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tms_sim.control_law import MARGIN, ControlLaw
@@ -21,7 +21,6 @@ def played(sent: list[tuple[float, float]], begun: float, dead_time: float, lag:
     return position
 
 
-@settings(max_examples=30, deadline=None)
 @given(
     dead_time=st.floats(0.0, 1.0), lag=st.floats(0.3, 5.0),
     references=st.lists(st.tuples(st.floats(-1, 1), st.floats(-0.5, 0.5)), min_size=1, max_size=40),

@@ -4,7 +4,7 @@ import math
 from itertools import pairwise
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tms_config.models import Joint, Response
@@ -53,7 +53,6 @@ def test_more_dead_time() -> None:
     assert made.position > 0.0
 
 
-@settings(max_examples=50, deadline=None)
 @given(st.lists(st.floats(-5, 5), min_size=1, max_size=30), st.floats(0.0, 0.9), st.floats(0.2, 5.0))
 def test_it_keeps_its_end_stops_and_its_torque(angles: list[float], dead_time: float, lag: float) -> None:
     made = drive(dead_time, lag)
@@ -68,14 +67,14 @@ def test_it_keeps_its_end_stops_and_its_torque(angles: list[float], dead_time: f
         before = made.velocity
 
 
-@pytest.mark.parametrize(("at_once", "stops"), [(True, 0.0), (False, 0.3)])
-def test_the_emergency_stop(at_once: bool, stops: float) -> None:
+@pytest.mark.parametrize(("immediately", "stops"), [(True, 0.0), (False, 0.3)])
+def test_the_emergency_stop(immediately: bool, stops: float) -> None:
     made = drive()
     made.send(0.9, 0.0)
     run(made, 0.8)
     held = made.position
-    made.halt(0.8, at_once)
-    if not at_once:
+    made.halt(0.8, immediately)
+    if not immediately:
         held = run(made, stops, 0.8)[-1]
     run(made, 8.0, 0.8 + stops)
     assert made.position == pytest.approx(held, abs=0.01) and made.still
@@ -84,7 +83,7 @@ def test_the_emergency_stop(at_once: bool, stops: float) -> None:
 def test_at_once_drops_what_is_under_way() -> None:
     made = drive()
     made.send(0.9, 0.0)
-    made.halt(0.1, at_once=True)
+    made.halt(0.1, immediately=True)
     assert run(made, 2.0)[-1] == 0.0 and made.still
 
 

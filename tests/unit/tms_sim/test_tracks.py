@@ -65,13 +65,13 @@ def test_zero_brakes_and_a_small_speed_does_not() -> None:
 
 
 def test_the_emergency_stop_drops_what_is_under_way_where_it_acts_at_once() -> None:
-    for at_once in (True, False):
+    for immediately in (True, False):
         made = base(dead_time=1.0)
         made.command(1.0, 0.0)
         run(made, 0.5)
-        made.halt(at_once)
+        made.halt(immediately)
         run(made, 0.9)
-        assert (made.v > 0.1) is not at_once
+        assert (made.v > 0.1) is not immediately
         run(made, 2.0)
         assert made.still
 

@@ -109,17 +109,17 @@ def test_a_trajectory_coasts_too() -> None:
 
 
 @pytest.mark.parametrize(
-    ("fault", "deaf", "heard"),
+    ("fault", "deaf", "received"),
     [({"ignore_cancel": True}, cancel, press), ({"ignore_emg_stop": True}, press, cancel)],
     ids=["ignore_cancel", "ignore_emg_stop"],
 )
-def test_one_order_is_ignored_and_the_other_is_not(fault: dict[str, bool], deaf: Order, heard: Order) -> None:
+def test_one_order_is_ignored_and_the_other_is_not(fault: dict[str, bool], deaf: Order, received: Order) -> None:
     made = machine(**fault)
     trip = driving(made)
     deaf(made, trip)
     run(made, 5)
     assert base(made).v == pytest.approx(1.0, abs=0.01) and trip.verdict is None
-    heard(made, trip)
+    received(made, trip)
     run(made, 1)
     assert base(made).still and trip.verdict is not None
 

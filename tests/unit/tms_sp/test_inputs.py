@@ -34,7 +34,7 @@ class Heard:
     def say(self, x: float, stamp: float) -> str:
         """What became of a message."""
         before = self.input.refused
-        self.input.hear(Message(header=Message(stamp=Message(sec=int(stamp), nanosec=int(stamp % 1 * 1e9))), x=x))
+        self.input.receive(Message(header=Message(stamp=Message(sec=int(stamp), nanosec=int(stamp % 1 * 1e9))), x=x))
         if self.input.refused == before:
             return "accepted"
         assert self.input.last_refusal is not None
@@ -42,62 +42,62 @@ class Heard:
 
 
 def test_stamps_from_the_future_and_older_ones_are_refused() -> None:
-    heard, now = Heard(), time.time()
-    assert heard.say(1.0, now) == "accepted"
-    assert heard.say(2.0, now + 60) == "STAMP_IN_FUTURE"
-    assert heard.say(3.0, now - 1) == "MEASURED_EARLIER"
-    assert heard.say(4.0, now + 0.1) == "accepted"
-    assert [post.values["x"] for post in heard.posts] == [1.0, 4.0]
-    state = heard.input.state()
+    received, now = Heard(), time.time()
+    assert received.say(1.0, now) == "accepted"
+    assert received.say(2.0, now + 60) == "STAMP_IN_FUTURE"
+    assert received.say(3.0, now - 1) == "MEASURED_EARLIER"
+    assert received.say(4.0, now + 0.1) == "accepted"
+    assert [post.values["x"] for post in received.posts] == [1.0, 4.0]
+    state = received.input.state()
     assert (state.accepted, state.refused, state.state, list(state.records)) == (2, 2, "alive", ["m/r"])
     found = wire.known(state.last_refusal).find(MeasuredEarlier)
     assert found is not None and 1.0 <= found.seconds < 1.1
 
 
 def test_a_source_whose_clock_is_behind_is_told_and_its_delay_counts_as_age() -> None:
-    heard, now = Heard(), time.time()
-    heard.say(1.0, now - 5)
-    heard.say(2.0, now - 5 - 0.0)
-    assert heard.input.state().state == "clock"
-    assert heard.input.state().clock_offset == pytest.approx(5.0, abs=0.5)
-    assert time.monotonic() - heard.posts[0].measured < 2.0
+    received, now = Heard(), time.time()
+    received.say(1.0, now - 5)
+    received.say(2.0, now - 5 - 0.0)
+    assert received.input.state().state == "clock"
+    assert received.input.state().clock_offset == pytest.approx(5.0, abs=0.5)
+    assert time.monotonic() - received.posts[0].measured < 2.0
 
 
 def test_what_comes_faster_than_wanted_is_left_out() -> None:
-    heard, now = Heard(max_hz=1.0), time.time()
+    received, now = Heard(max_hz=1.0), time.time()
     for step in range(5):
-        heard.say(float(step), now + step * 0.01)
-    assert [post.values["x"] for post in heard.posts] == [0.0]
-    assert heard.input.refused == 0
+        received.say(float(step), now + step * 0.01)
+    assert [post.values["x"] for post in received.posts] == [0.0]
+    assert received.input.refused == 0
 
 
 def test_waiting_and_too_much() -> None:
-    heard = Heard(hz=10.0)
-    assert heard.input.state().state == "waiting"
-    heard.full = True
-    assert heard.say(1.0, time.time()) == "MANY_WAIT"
-    heard.input.counts.unwanted.append(("RECORD_MISSING", Foreign("there is no record m/r")))
-    assert heard.input.state().last_refusal == to_line(Foreign("there is no record m/r"))
+    received = Heard(hz=10.0)
+    assert received.input.state().state == "waiting"
+    received.full = True
+    assert received.say(1.0, time.time()) == "MANY_WAIT"
+    received.input.counts.unwanted.append(("RECORD_MISSING", Foreign("there is no record m/r")))
+    assert received.input.state().last_refusal == to_line(Foreign("there is no record m/r"))
 
 
 def test_the_metrics_tell_the_age_and_when_it_is_too_old() -> None:
     def value(name: str) -> float | None:
         return REGISTRY.get_sample_value(name, {"input": "one"})
 
-    heard, now = Heard(hz=5.0), time.time()
-    heard.input._began -= 100.0
+    received, now = Heard(hz=5.0), time.time()
+    received.input._began -= 100.0
     assert value("tms_sp_input_age_seconds") == pytest.approx(100.0, abs=5.0)
     assert value("tms_sp_input_age_limit_seconds") == 2.0
-    heard.say(1.0, now)
+    received.say(1.0, now)
     age = value("tms_sp_input_age_seconds")
     assert age is not None and age < 5.0
 
 
 def test_after_our_clock_was_set_back_stamps_are_taken_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    heard, now = Heard(), time.time()
-    assert heard.say(1.0, now) == "accepted"
+    received, now = Heard(), time.time()
+    assert received.say(1.0, now) == "accepted"
     monkeypatch.setattr(time, "time", lambda: now - 3600)
-    assert heard.say(2.0, now) == "STAMP_IN_FUTURE"  # the source's clock was not
-    assert heard.say(3.0, now - 3599.9) == "accepted"
-    assert heard.say(4.0, now - 3600.5) == "MEASURED_EARLIER"
-    assert [post.values["x"] for post in heard.posts] == [1.0, 3.0]
+    assert received.say(2.0, now) == "STAMP_IN_FUTURE"  # the source's clock was not
+    assert received.say(3.0, now - 3599.9) == "accepted"
+    assert received.say(4.0, now - 3600.5) == "MEASURED_EARLIER"
+    assert [post.values["x"] for post in received.posts] == [1.0, 3.0]

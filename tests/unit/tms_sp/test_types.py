@@ -28,14 +28,14 @@ def made(name: str, given: Input, site: Any = None) -> SensingInput:
 
 @pytest.mark.parametrize("fields", [{"p": "pose.position"}, {}])
 def test_an_input_that_takes_a_message_whole_is_refused_at_the_start(fields: dict[str, str]) -> None:
-    with pytest.raises(ConfigError, match=r"inputs\.pose: pose(\.position)? is a geometry_msgs/P") as told:
+    with pytest.raises(ConfigError, match=r"inputs\.pose: pose(\.position)? is a geometry_msgs/P") as reported:
         made("pose", Input.model_validate({**HERE, "type": POSE, "fields": fields}))
-    assert told.value.reason.find(WrongKindOf)
+    assert reported.value.reason.find(WrongKindOf)
 
 
 def test_numbers_inside_it_are_heard() -> None:
     one = made("pose", Input.model_validate({**HERE, "type": POSE, "fields": {"x": "pose.position.x"}}))
-    one.hear(PoseStamped())
+    one.receive(PoseStamped())
     assert one.accepted == 1
 
 
@@ -43,9 +43,9 @@ def test_numbers_inside_it_are_heard() -> None:
 def test_a_number_that_no_record_can_hold_is_refused_and_the_next_one_heard(kind: Any, value: Any) -> None:
     given = {**HERE, "type": f"std_msgs/msg/{kind.__name__}", "fields": {"n": "data"}}
     one = made("big", Input.model_validate(given))
-    one.hear(kind(data=value))
+    one.receive(kind(data=value))
     assert one.refused == 1 and isinstance(one.last_refusal, ValueTooLarge)
-    one.hear(kind(data=[1] if isinstance(value, list) else 1))
+    one.receive(kind(data=[1] if isinstance(value, list) else 1))
     assert one.accepted == 1
 
 

@@ -1,6 +1,6 @@
 """A loop that waits for hours leaves little in the history; nodes that work leave everything."""
 
-from tms_ts.budget import AT_ONCE, EVERY, Budget
+from tms_ts.budget import MAX_BURST, REFILL_PERIOD, Budget
 
 
 def test_a_loop_of_hours_is_told_in_part_and_a_leaf_of_seconds_always() -> None:
@@ -12,10 +12,10 @@ def test_a_loop_of_hours_is_told_in_part_and_a_leaf_of_seconds_always() -> None:
         loop += budget.take("0.1")
         if tick % 400 == 0:  # every 20 s
             leaf += budget.take("0.0")
-    assert loop <= AT_ONCE + 3600 / EVERY + 1
+    assert loop <= MAX_BURST + 3600 / REFILL_PERIOD + 1
     assert leaf == 20 * 3600 / 400
 
 
 def test_a_node_may_change_often_for_a_while() -> None:
     budget = Budget(lambda: 0.0)
-    assert sum(budget.take("0") for _ in range(AT_ONCE + 50)) == AT_ONCE
+    assert sum(budget.take("0") for _ in range(MAX_BURST + 50)) == MAX_BURST

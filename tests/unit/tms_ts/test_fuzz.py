@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tms_ts.bt import TreeError, load
@@ -34,7 +34,6 @@ def mutated(draw: st.DrawFn) -> bytes:
     return text
 
 
-@settings(deadline=None, max_examples=400)
 @given(text=mutated())
 def test_mutated_tasks_load_or_are_refused(text: bytes) -> None:
     fake = FakeWorld()

@@ -94,9 +94,9 @@ def test_our_reply_says_the_same_of_the_same_tree() -> None:
 
 @pytest.mark.parametrize("golden", GOLDEN["messages"])
 def test_messages_are_the_golden_bytes(golden: dict[str, Any]) -> None:
-    data, told = bytes.fromhex(golden["hex"]), golden["decoded"]
-    changes = [(t["sec"] + t["usec"] * 1e-6, t["uid"], t["prev"], t["status"]) for t in told["transitions"]]
-    assert groot1.message(dict(told["status"]), changes) == data
+    data, reported = bytes.fromhex(golden["hex"]), golden["decoded"]
+    changes = [(t["sec"] + t["usec"] * 1e-6, t["uid"], t["prev"], t["status"]) for t in reported["transitions"]]
+    assert groot1.message(dict(reported["status"]), changes) == data
 
 
 # the sockets

@@ -93,8 +93,8 @@ def test_those_that_come_while_the_disk_works_share_the_next_sync(commit: GroupC
 
 def test_what_others_rely_on_is_synced_first(commit: GroupCommit) -> None:
     calls: list[str] = []
-    told, record = Sink(calls, "told", 1), Sink(calls, "record", 0)
-    for sink in (told, record):
+    reported, record = Sink(calls, "told", 1), Sink(calls, "record", 0)
+    for sink in (reported, record):
         commit.put(sink, b"x")
     assert commit.wait(LIMIT)
     assert calls == ["record", "told"]

@@ -15,7 +15,7 @@ from tms_msg_ts.srv import CancelRun
 from tms_reason import wire
 from tms_reason.errors import TaskError
 from tms_ts.group_commit import GroupCommit
-from tms_ts.interrupted import STOP_LIMIT, Interrupted
+from tms_ts.interrupted import RECEIPT_LIMIT, Interrupted
 from tms_ts.interrupted_run import Header, InterruptedRun
 from tms_ts.reasons import RunInterrupted
 from tms_ts.run_checkpoint import Records
@@ -116,7 +116,7 @@ def closed(records: Records, receipts: list[StopReceipt], monkeypatch: pytest.Mo
     runs = successor(records, journal)
     for one in receipts:
         runs.receipt(one)
-    monkeypatch.setattr("tms_ts.interrupted.STOP_LIMIT", 0.0)
+    monkeypatch.setattr("tms_ts.interrupted.RECEIPT_LIMIT", 0.0)
     runs._close_all()
     return journal
 
@@ -146,7 +146,7 @@ def test_the_history_claims_no_stop_that_nobody_saw(
     )
     assert wire.known(row.reason).find(RunInterrupted).run == "run-1"
     assert [event.number for event in journal[:-1]] == [5, 6, 7, 8, 9, 10]
-    assert records.past()[0].closed and STOP_LIMIT > 5.0  # s that the gateways take
+    assert records.past()[0].closed and RECEIPT_LIMIT > 5.0  # s that the gateways take
 
 
 @pytest.mark.parametrize(("receipts", "seen"), [([0.6], True), ([-0.2], False), ([0.6, -0.2], True)])

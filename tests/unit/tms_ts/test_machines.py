@@ -45,7 +45,7 @@ class Site:
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.now, self.pid, self.peer = 0.0, 1, Peer()
-        self.told: list[str] = []
+        self.reported: list[str] = []
         self.kept: list[tuple[Any, ...]] = []  # what the record has of ends
         self.fatal: Reason | None = None
         self.trouble: Reason | None = None
@@ -66,7 +66,7 @@ class Site:
             hosts,  # type: ignore[arg-type]
             gateways,  # type: ignore[arg-type]
             lambda: None,
-            lambda kind, _, what: self.told.append(f"{kind}: {words(what)}"),
+            lambda kind, _, what: self.reported.append(f"{kind}: {words(what)}"),
             Identity(1, RETRIES, record, self.replay),  # type: ignore[arg-type]
         )
         self.goal: SentGoal = self.machines.send("zx200", "subtask_zx200_change_pose", "pose", "0")
@@ -143,7 +143,7 @@ def test_a_receipt_is_told_once(site: Site) -> None:
     receipt = StopReceipt(machine="zx200", confirmed=True, seconds=0.5, cause="x")
     site.machines.receipt(receipt)
     site.machines.receipt(receipt)
-    assert [text for text in site.told if text.startswith("stop")] == ["stop: zx200 stood after 0.50 s, 0.00 m: x"]
+    assert [text for text in site.reported if text.startswith("stop")] == ["stop: zx200 stood after 0.50 s, 0.00 m: x"]
 
 
 def test_a_goal_that_is_cancelled_while_it_waits_to_be_sent_again_is_never_sent(site: Site) -> None:
@@ -170,7 +170,7 @@ def test_a_request_is_made_again_when_the_gateway_is_lost_or_comes_back() -> Non
 def test_a_loop_around_a_goal_that_fails_at_once_floods_nothing(site: Site, outcome: Outcome) -> None:
     site.retry(2.0, outcome)
     assert 3 <= len(site.peer.calls) <= 1 + 2.0 / ASK_AGAIN
-    assert len(site.told) < 20
+    assert len(site.reported) < 20
     assert site.goal.reason == SentAgainSoon()
 
 
@@ -194,8 +194,8 @@ def test_a_process_that_is_given_up_is_told_once(site: Site) -> None:
     site.peer.calls[0].end(Outcome.ABORTED)
     site.trouble = site.fatal = ProcessState("zx200:subtask_zx200_change_pose", "FATAL")
     site.retry(10.0)
-    assert len([text for text in site.told if text.startswith("alarm")]) == 1
-    assert site.told.count(f"goal: {words(site.fatal)}") >= 10
+    assert len([text for text in site.reported if text.startswith("alarm")]) == 1
+    assert site.reported.count(f"goal: {words(site.fatal)}") >= 10
     assert len(site.peer.calls) == 1
 
 

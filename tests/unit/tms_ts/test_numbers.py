@@ -71,7 +71,7 @@ def test_a_run_is_refused_when_its_number_cannot_be_stored(
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(module, "LIMIT", 0.2)
+    monkeypatch.setattr(module, "DISK_LIMIT", 0.2)
     numbers = Numbers(tmp_path, disk)
     with monkeypatch.context() as patch:
         patch.setattr(module.durable, "replace", full)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import Any
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from conformance.scripted import events, scripted_registry
@@ -57,7 +57,6 @@ def extend(inner: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
 TREES = st.recursive(leaves(), extend, max_leaves=12)
 
 
-@settings(deadline=None, max_examples=150)
 @given(body=TREES, halts=st.lists(st.booleans(), min_size=1, max_size=12))
 def test_a_halt_leaves_nothing_running_and_halts_each_leaf_once(body: str, halts: list[bool]) -> None:
     clock = Clock()
@@ -84,7 +83,6 @@ def test_a_halt_leaves_nothing_running_and_halts_each_leaf_once(body: str, halts
         assert not events
 
 
-@settings(deadline=None, max_examples=100)
 @given(body=TREES, ticks=st.integers(1, 8))
 def test_observers_see_every_change(body: str, ticks: int) -> None:
     tree = load(document(body), registry=REGISTRY, clock=Clock())

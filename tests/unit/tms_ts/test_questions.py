@@ -28,13 +28,13 @@ class Site:
 
     changes: int = 0
     wakes: int = 0
-    told: list[tuple[str, str, str]] = field(default_factory=list)
+    reported: list[tuple[str, str, str]] = field(default_factory=list)
     questions: Questions = field(init=False)
     clicks: Clicks = field(init=False)
 
     def __post_init__(self) -> None:
         self.questions = Questions(FakeRos(), self._changed)  # type: ignore[arg-type]
-        self.clicks = Clicks(self.questions, "r-1", self._wake, lambda *words: self.told.append(words))
+        self.clicks = Clicks(self.questions, "r-1", self._wake, lambda *words: self.reported.append(words))
 
     def _changed(self) -> None:
         self.changes += 1
@@ -61,7 +61,7 @@ def test_the_first_answer_counts(site: Site, yes: bool) -> None:
     assert not site.questions.answer(shown.id, not yes, "mina")
     assert answer.value is yes
     assert site.questions.messages() == []
-    assert site.told == [
+    assert site.reported == [
         ("question", "0.1", Foreign("clear?")),
         ("answer", "0.1", AnsweredYes("ken at pc") if yes else AnsweredNo("ken at pc")),
     ]
@@ -75,7 +75,7 @@ def test_a_withdrawn_question_cannot_be_answered(site: Site) -> None:
     site.clicks.withdraw(answer)
     assert not site.questions.answer(shown.id, True, "ken")
     assert not answer.done
-    assert site.told[-1][0] == "answer"
+    assert site.reported[-1][0] == "answer"
     site.clicks.withdraw(answer)  # a second time is nothing new
     assert site.changes == 2
 

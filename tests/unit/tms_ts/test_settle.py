@@ -18,12 +18,12 @@ from tms_reason.reason import Foreign, Reason
 from tms_reason.wire import to_line
 from tms_ros.goals import Outcome
 from tms_ts.bt import Status
-from tms_ts.budget import AT_ONCE
+from tms_ts.budget import MAX_BURST
 from tms_ts.group_commit import GroupCommit
 from tms_ts.interrupted_run import InterruptedRun
 from tms_ts.node import END_STORED, Scheduler
 from tms_ts.reasons import LeftOut
-from tms_ts.run import PERIOD, Facts, Run
+from tms_ts.run import TICK_PERIOD, Facts, Run
 from tms_ts.run_checkpoint import Records
 from words import words
 
@@ -121,7 +121,7 @@ def test_the_loop_never_sleeps_longer_than_its_period_after_many_wakes(
     monkeypatch.setattr(time, "monotonic", lambda: now[0])
     monkeypatch.setattr(a_run, "wake", SimpleNamespace(wait=wait, clear=lambda: None))
     a_run._tick_to_end(tree(), Machines())  # type: ignore[arg-type]
-    assert max(waits) == pytest.approx(PERIOD)
+    assert max(waits) == pytest.approx(TICK_PERIOD)
     assert len(waits) > 110
 
 
@@ -134,7 +134,7 @@ def test_a_run_that_meets_a_bug_is_closed_in_the_history(a_run: Run, rows: list[
     )
     scheduler._records = SimpleNamespace(open=lambda _: a_run.record)
     scheduler._runs, scheduler._holders = {}, {}
-    scheduler._lock, scheduler._news = a_run._numbering, a_run.ended
+    scheduler._lock, scheduler._changed = a_run._numbering, a_run.ended
     scheduler._gateways = SimpleNamespace(drop=lambda _: None)
     goal = SimpleNamespace(
         request=SimpleNamespace(resume=""), publish=lambda _: None, cancelled=SimpleNamespace(is_set=lambda: False)
@@ -142,8 +142,8 @@ def test_a_run_that_meets_a_bug_is_closed_in_the_history(a_run: Run, rows: list[
     scheduler._disk = SimpleNamespace(wait=lambda _: True)
     with pytest.raises(RuntimeError, match="a bug"):
         scheduler.execute(goal)
-    told = [row for row in rows if hasattr(row, "state")]
-    assert told[-1].state == "refused" and "INTERNAL" in told[-1].reason
+    reported = [row for row in rows if hasattr(row, "state")]
+    assert reported[-1].state == "refused" and "INTERNAL" in reported[-1].reason
     assert scheduler._runs == {}
 
 
@@ -163,21 +163,21 @@ def test_a_resume_that_is_refused_leaves_its_record_and_no_open_file(a_run: Run,
 
 def test_a_loop_that_waits_is_told_to_whoever_looks_and_in_part_to_the_history(a_run: Run, rows: list[Any]) -> None:
     node: Any = SimpleNamespace(name="wait", path="0.1", uid=2, parent=None, registration_name="Wait", reason=None)
-    for _ in range(AT_ONCE + 300):
+    for _ in range(MAX_BURST + 300):
         a_run._changes_of_tick = 0
         a_run._node_changed(node, Status.RUNNING, Status.SUCCESS)
-        a_run._tell_flood()
-    told = [row.text for row in rows if row.kind == "node" and row.node]
-    assert AT_ONCE <= len(told) < AT_ONCE + 10
+        a_run._report_flood()
+    reported = [row.text for row in rows if row.kind == "node" and row.node]
+    assert MAX_BURST <= len(reported) < MAX_BURST + 10
     assert [row.text for row in rows if row.kind == "node" and not row.node] == [to_line(LeftOut(1))]
-    assert len(a_run.facts.changes) == AT_ONCE + 300
+    assert len(a_run.facts.changes) == MAX_BURST + 300
     a_run._end("success", None)
-    told_at_end = [row.text for row in rows if hasattr(row, "kind") and row.kind == "node" and not row.node][1:]
-    assert len(told_at_end) == 1 and wire.known(told_at_end[0]).args["count"] > 280
+    reported_at_end = [row.text for row in rows if hasattr(row, "kind") and row.kind == "node" and not row.node][1:]
+    assert len(reported_at_end) == 1 and wire.known(reported_at_end[0]).args["count"] > 280
 
 
-@pytest.mark.parametrize(("stored", "told"), [(True, "it rains"), (False, "it rains (not stored yet: the disk")])
-def test_a_result_is_told_when_its_run_s_end_is_stored_or_with_a_note(stored: bool, told: str) -> None:
+@pytest.mark.parametrize(("stored", "reported"), [(True, "it rains"), (False, "it rains (not stored yet: the disk")])
+def test_a_result_is_told_when_its_run_s_end_is_stored_or_with_a_note(stored: bool, reported: str) -> None:
     scheduler: Any = Scheduler.__new__(Scheduler)
     asked: list[float] = []
     ended = (Outcome.ABORTED, ExecuteTask.Result(run_id="run", outcome="failure", error_msg="it rains"))
@@ -186,4 +186,4 @@ def test_a_result_is_told_when_its_run_s_end_is_stored_or_with_a_note(stored: bo
     how, result = scheduler.execute(SimpleNamespace(request=SimpleNamespace(resume="")))
     assert (how, asked) == (Outcome.ABORTED, [END_STORED])
     said = words(result.error_msg)
-    assert said.startswith(told) and stored == (said == told)
+    assert said.startswith(reported) and stored == (said == reported)

@@ -105,7 +105,7 @@ def test_the_users_file_is_beside_the_site_file(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "mode", "told"),
+    ("text", "mode", "reported"),
     [
         (None, 0, r"is not there: `tms user add NAME --role admin`"),
         ("users: {}\n", 0o644, r"everybody on this PC may read it: `chmod 600 "),
@@ -119,8 +119,8 @@ def test_the_users_file_is_beside_the_site_file(tmp_path: Path) -> None:
         ("users: [\n", 0o600, r"users\.yaml:2: "),
     ],
 )
-def test_a_users_file_that_does_not_do_is_told(tmp_path: Path, text: str | None, mode: int, told: str) -> None:
-    with pytest.raises(ConfigError, match=told):
+def test_a_users_file_that_does_not_do_is_told(tmp_path: Path, text: str | None, mode: int, reported: str) -> None:
+    with pytest.raises(ConfigError, match=reported):
         address.users(users_of(tmp_path, text, mode))
 
 

@@ -198,8 +198,8 @@ def test_values_at_the_limits(client: Client, site_client: FakeSiteClient, kind:
 def test_names_are_unicode(client: Client, site_client: FakeSiteClient, key: str) -> None:
     names = {"model_name": "zx200", "record_name": "pose", "name": "a", key: "\\ud800"}
     name = names.pop("name")
-    told = ", ".join(f'"{one}": "{text}"' for one, text in names.items())
-    body = f'{{{told}, "fields": [{{"name": "{name}", "type": "int", "value": 1}}]}}'
+    reported = ", ".join(f'"{one}": "{text}"' for one, text in names.items())
+    body = f'{{{reported}, "fields": [{{"name": "{name}", "type": "int", "value": 1}}]}}'
     answer = client.post("/api/parameters", content=body, headers={"Content-Type": "application/json"})
     assert (answer.status_code, answer.json()["code"]) == (422, "BAD_REQUEST")
     assert site_client.calls == []

@@ -14,7 +14,7 @@ from tms_reason.errors import RosError
 from tms_reason.reason import Foreign
 from tms_ur import audit
 from tms_ur.audit_chain import Note, Place, Verdict, tied
-from tms_ur.audit_ledger import Ledger, told
+from tms_ur.audit_ledger import Ledger, reported
 
 
 class FakeRos:
@@ -204,13 +204,13 @@ def test_strangers_are_summed_up(ros: FakeRos, start: Callable[[], audit.Audit])
 
 def test_the_disk_remembers_the_last_entry(tmp_path: Path) -> None:
     file = tmp_path / "audit.db"
-    assert told(file) is None
+    assert reported(file) is None
     ledger = Ledger(file)
     assert ledger.place() is None
     ledger.append([Note(1, "stop", "a", "mina"), Note(2, "stop", "b", "mina")])
     ids, notes = ledger.waiting(10)
     ledger.move(Place(7, tied(Place(6, ""), notes[:1])[0].hash), ids[0])
     ledger.close()
-    assert told(file) == Place(7, tied(Place(6, ""), notes[:1])[0].hash)
+    assert reported(file) == Place(7, tied(Place(6, ""), notes[:1])[0].hash)
     assert Ledger(file).waiting(10)[1] == notes[1:]
     assert file.stat().st_mode & 0o777 == 0o600

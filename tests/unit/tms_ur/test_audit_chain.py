@@ -107,9 +107,9 @@ def test_strangers_need_no_more_memory_the_more_there_are() -> None:
 def test_a_stranger_is_told_of_once_a_minute() -> None:
     now = [0.0]
     strangers = Strangers(lambda: now[0])
-    told = []
+    reported = []
     for second in range(300):
         now[0] = float(second)
-        told += ["first"] * strangers.add("-", "192.0.2.1", "refused", "LOGIN")
-        told += [one.times for one in strangers.due()]  # type: ignore[misc]
-    assert told == ["first", 60, 60, 60, 60]
+        reported += ["first"] * strangers.add("-", "192.0.2.1", "refused", "LOGIN")
+        reported += [one.times for one in strangers.due()]  # type: ignore[misc]
+    assert reported == ["first", 60, 60, 60, 60]

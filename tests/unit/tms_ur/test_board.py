@@ -84,8 +84,8 @@ def test_the_processes_of_a_silent_pc_are_unknown_until_it_is_heard() -> None:
     host = Host(name="pc1", processes=[Process(name="tms:ts", state="RUNNING", pid=7, uptime=5.0, cpu=3.0, memory=9)])
     watched.board.put_host(host)
     watched.now += 6.1
-    told = watched.board.snapshot().hosts[0]
-    assert (told.age, told.processes) == (6.1, [Process(name="tms:ts", state="UNKNOWN")])
+    reported = watched.board.snapshot().hosts[0]
+    assert (reported.age, reported.processes) == (6.1, [Process(name="tms:ts", state="UNKNOWN")])
     assert watched.board.host_of("tms:ts") == "pc1"
     watched.board.put_host(host)
     assert watched.board.snapshot().hosts[0].processes == host.processes
@@ -96,12 +96,12 @@ def test_a_place_has_an_age_of_its_own() -> None:
     place = Place(x=1.0, y=2.0, yaw=0.0)
     watched.board.put_place("zx200", place)
     watched.now += 3
-    never_heard = watched.board.snapshot().machines[0]
-    assert (never_heard.age, never_heard.place, never_heard.place_age) == (None, place, 3.0)
+    never_received = watched.board.snapshot().machines[0]
+    assert (never_received.age, never_received.place, never_received.place_age) == (None, place, 3.0)
     watched.board.put_machine(machine(1.0))
     watched.now += 1
-    heard = watched.board.snapshot().machines[0]
-    assert (heard.state, heard.place, heard.place_age) == ("standing", place, 4.0)
+    received = watched.board.snapshot().machines[0]
+    assert (received.state, received.place, received.place_age) == ("standing", place, 4.0)
     changes = watched.changes
     watched.board.put_place("zx200", place)
     assert (watched.changes, watched.board.snapshot().machines[0].place_age) == (changes, 0.0)
