@@ -6,7 +6,8 @@ from tms_msg_rc.srv import Rearm, TakeMachine
 
 from tms_config.clock import monotonic
 from tms_machine.reasons import ManualMode
-from tms_rc.guard import PRESSED, Guard, Kind
+from tms_rc.active import Kind
+from tms_rc.guard import PRESSED, Guard
 from tms_rc.reasons import (
     BadToken,
     CausePersists,

@@ -1,19 +1,17 @@
 """Passes goals on to the machine's own action servers, one at a time, and ends them when they must end."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
-
-from builtin_interfaces.msg import Duration
-from geometry_msgs.msg import Pose, PoseStamped
-from trajectory_msgs.msg import JointTrajectoryPoint
 
 from tms_config.clock import monotonic, sleep
 from tms_machine.border import Motion
 from tms_machine.reasons import StopUnconfirmed
 from tms_machine.receipts import stood_after
 from tms_rc import limits
+from tms_rc.active import Active, Kind
 from tms_rc.following import Follower, ways
-from tms_rc.guard import Active, Guard, Kind
+from tms_rc.guard import Guard
+from tms_rc.motion_goals import aborted, duration, numbers, point_of, poses_of, reason_of, seconds, with_reason
 from tms_rc.reasons import (
     Cancelled,
     CancelledElsewhere,
@@ -34,7 +32,6 @@ from tms_rc.standstill import JOINTS, StandStill
 from tms_reason import wire
 from tms_reason.errors import RosError
 from tms_reason.reason import Reason
-from tms_reason.wire import to_line
 from tms_ros.client import AnyCall, AnyPeer
 from tms_ros.goals import Ended, Outcome
 from tms_ros.loop import POLL
@@ -48,8 +45,6 @@ ACCEPT_LIMIT = 3.0  # s for it to answer a goal
 OVERRUN = 10.0  # s that a trajectory may last beyond its own duration
 FROZEN = 0.65  # s that a look may take: a gateway that stood still for 0.7 s stops its machine
 LIMIT_CHECK_PERIOD = 0.1  # s between looks at limits and sensors while it moves
-REFUSED = -1  # control_msgs INVALID_GOAL
-UNKNOWN = 600  # nav2_msgs, where a result has an unsigned code
 
 
 class Gateway:
@@ -84,11 +79,11 @@ class Gateway:
             points = [point.positions for point in wanted.points]
             present = self._watch.positions
             return limits.problem(self._model, wanted.joint_names, points, present) or limits.pace_problem(
-                self._model, wanted.joint_names, [_point(point) for point in wanted.points], present, self._speed
+                self._model, wanted.joint_names, [point_of(point) for point in wanted.points], present, self._speed
             )
         if hasattr(request, "target_angle"):
             return limits.angle_problem(self._model, motion.field, request.target_angle, self._watch.positions)
-        return limits.pose_problem([_numbers(stamped.pose) for stamped in poses_of(request)])
+        return limits.pose_problem([numbers(stamped.pose) for stamped in poses_of(request)])
 
     def _pass_on(self, motion: Motion, active: Active) -> Ended[Any]:
         if not self._reachable(active):
@@ -157,7 +152,7 @@ class Gateway:
 
     def _watch_motion(self, motion: Motion, active: Active) -> None:
         """Until the goal is terminal or a stop has begun."""
-        deadline = monotonic() + _duration(active.goal.request) + OVERRUN
+        deadline = monotonic() + duration(active.goal.request) + OVERRUN
         while active.stop is None and not (active.call is not None and active.ended()):
             before = monotonic()
             self._wait(active, lambda call: call.outcome is not None, LIMIT_CHECK_PERIOD)
@@ -200,7 +195,7 @@ class Gateway:
         """The goal was accepted: from now on the machine should follow."""
         wanted = getattr(active.goal.request, "trajectory", None)
         if wanted is not None:
-            points = [(_seconds(point.time_from_start), point.positions) for point in wanted.points]
+            points = [(seconds(point.time_from_start), point.positions) for point in wanted.points]
             found = ways(wanted.joint_names, points, active.start)
             active.follower = Follower(found, self._watch.reached, now, self._speed)
         elif hasattr(active.goal.request, "target_angle") and not self._app.site.border(self._app.machine).dump_returns:
@@ -253,49 +248,3 @@ class Gateway:
 def speed_of(app: App) -> float:
     """Seconds of the machine in one second: stand-ins may run faster."""
     return app.site.file.sim.speed if app.site.file.backend == "sim" else 1.0
-
-
-def poses_of(request: Any) -> Sequence[PoseStamped]:
-    """The poses of a goal for the navigation."""
-    return list(request.poses) if hasattr(request, "poses") else [request.pose]
-
-
-def _numbers(pose: Pose) -> tuple[float, ...]:
-    at, turn = pose.position, pose.orientation
-    return at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w
-
-
-def _seconds(duration: Duration) -> float:
-    return float(duration.sec + duration.nanosec * 1e-9)
-
-
-def _point(point: JointTrajectoryPoint) -> limits.Point:
-    rest = [*point.velocities, *point.accelerations, *point.effort]
-    return limits.Point(_seconds(point.time_from_start), point.positions, rest)
-
-
-def _duration(request: Any) -> float:
-    """How long a goal says that it lasts [s]; navigation does not say."""
-    if not hasattr(request, "trajectory"):
-        return float("inf")
-    return _seconds(request.trajectory.points[-1].time_from_start)
-
-
-def reason_of(result: Any) -> str:
-    """The text in a result, where its type has one."""
-    return str(getattr(result, "error_string", "") or getattr(result, "error_msg", ""))
-
-
-def with_reason(motion: Motion, reason: Reason, code: int | None = None) -> Any:
-    """A result of the motion's type that tells as much as the type has room for."""
-    result, line = motion.type.Result(), to_line(reason)
-    if hasattr(result, "error_string"):
-        result.error_code, result.error_string = REFUSED if code is None else code, line
-    elif hasattr(result, "error_msg"):
-        result.error_code, result.error_msg = UNKNOWN if code is None else code, line
-    return result
-
-
-def aborted(motion: Motion, reason: Reason) -> Ended[Any]:
-    """The end of a goal that must not go on."""
-    return Outcome.ABORTED, with_reason(motion, reason)

@@ -5,9 +5,7 @@ it, or does not leave any more.
 """
 
 import threading
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from enum import Enum
+from collections.abc import Callable
 
 from std_msgs.msg import Bool
 from tms_msg_rc.msg import StopReceipt
@@ -17,8 +15,8 @@ from tms_config.clock import monotonic
 from tms_machine.border import STOP_PROVEN, Controls
 from tms_machine.permit import NOBODY, Link
 from tms_machine.reasons import DrivenByHand, NoPermit, SoftwareStop, SoftwareStopSaying
+from tms_rc.active import Active, Kind
 from tms_rc.chain import SCHEDULER, gap, members
-from tms_rc.following import Follower
 from tms_rc.latch import Latch
 from tms_rc.notes import Notes
 from tms_rc.permits import Permits
@@ -37,9 +35,7 @@ from tms_rc.stopper import Stop, Stopper
 from tms_rc.vigil import Vigil
 from tms_reason import wire
 from tms_reason.reason import Reason
-from tms_ros.client import AnyCall, AnyPeer
 from tms_ros.reasons import ProcessLost
-from tms_ros.server import AnyGoal
 from tms_runtime.app import App
 from tms_runtime.fence import Owner
 
@@ -47,51 +43,6 @@ PERMIT_LIMIT = 3.0  # s that a goal may come before the permits behind it: a new
 PRESSED = 1.0  # s that a software stop counts as pressed after its last message
 FRESH = 1.0  # s, older news of the machine make it not ready
 FOREIGN = "a foreign client"
-
-
-class Kind(Enum):
-    """What a stop means for the next motion."""
-
-    LATCH = "latched until re-armed"
-    HOLD = "held for its run"
-    PLAIN = "the end of a goal or of a run"
-
-
-@dataclass
-class Active:
-    """The goal that moves the machine."""
-
-    goal: AnyGoal
-    owner: Owner | None
-    peer: AnyPeer
-    chain: dict[str, Owner]
-    start: dict[str, float]  # rad, joints when it began
-    sent: float = 0.0  # s, monotonic: when it left for the machine; 0 before
-    begun: float = 0.0  # s, monotonic: when it was received that it was accepted; 0 before
-    follower: Follower | None = None  # of a trajectory, once it was accepted
-    call: AnyCall | None = None
-    stop: Stop | None = None
-    changed: threading.Condition = field(default_factory=threading.Condition)
-
-    def expected(self, now: float, dead_times: Mapping[str, float]) -> Expected:
-        """The motion that must be seen if it is stopped now.
-
-        A machine may have begun as soon as the goal was sent: its answer comes later, or never.
-        """
-        if not self.sent:
-            return NOTHING
-        if self.follower is None:
-            return Expected(self.sent)
-        since = self.sent if self.follower.should_have_moved(now - self.sent) else None
-        return Expected(since, self.follower.on_its_way(now, dead_times))
-
-    def ended(self) -> bool:
-        """Whether nothing of it can move the machine any more."""
-        return self.call is None or self.call.outcome is not None
-
-    def wake(self) -> None:
-        with self.changed:
-            self.changed.notify_all()
 
 
 class Guard:

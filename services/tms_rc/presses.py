@@ -9,7 +9,8 @@ from std_msgs.msg import Bool
 
 from tms_config.clock import monotonic
 from tms_machine.border import stood_in
-from tms_rc.guard import Guard, Kind
+from tms_rc.active import Kind
+from tms_rc.guard import Guard
 from tms_rc.reasons import PressedByOthers
 from tms_runtime.app import App
 

@@ -1,7 +1,8 @@
 """The start of a gateway: nobody knows what the last one left moving, so it is stopped, proven, and held or latched."""
 
 from tms_config.clock import monotonic
-from tms_rc.guard import Guard, Kind
+from tms_rc.active import Kind
+from tms_rc.guard import Guard
 from tms_rc.latch import ANY_LEAF, UNKNOWN_RUN
 from tms_rc.latch_file import Left
 from tms_rc.reasons import GatewayRestarted, GatewayRestartedHeld, GatewayRestartedUnproven, NoRunTold, TakenByAnother

@@ -17,7 +17,7 @@ from tms_reason.wire import to_line
 from tms_runtime.app import App
 from tms_ts.interrupted_run import Header, InterruptedRun, Key, Over
 from tms_ts.journal import Journal
-from tms_ts.machines import reported_by
+from tms_ts.machine_stops import reported_by
 from tms_ts.reasons import (
     GivenUp,
     MachineUnconfirmed,

@@ -1,23 +1,15 @@
 """Leaf nodes' way to the subtasks: goals as action clients, one stopped machine before the next goal."""
 
 import threading
-from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from prometheus_client import Histogram
-from tms_msg_rc.msg import StopReceipt
-from tms_msg_rc.srv import StopMachine
 from tms_msg_ts.action import LeafNodeBase
 
 from tms_config.clock import monotonic
-from tms_machine.border import RECEIPT_LIMIT
-from tms_machine.reasons import MachineLatched, NoDatabase, NoJointState, NoPermit, NoReason, Rejected, StopUnconfirmed
-from tms_machine.receipts import stood_after
-from tms_reason import wire
-from tms_reason.errors import RosError
+from tms_machine.reasons import MachineLatched, NoDatabase, NoJointState, NoPermit, NoReason, Rejected
 from tms_reason.reason import Reason
-from tms_reason.wire import to_line
 from tms_ros.goals import Outcome
 from tms_ros.node import Ros
 from tms_ros.reasons import LostMeanwhile, NoAnswer, NoServer, ProcessLost
@@ -25,6 +17,7 @@ from tms_runtime.fence import LEAVES, Owner
 from tms_ts.gateways import Gateways
 from tms_ts.hosts import Hosts
 from tms_ts.interrupted_run import Key
+from tms_ts.machine_stops import LogEvent, MachineStops
 from tms_ts.reasons import (
     FailedBefore,
     ForTooLong,
@@ -37,10 +30,7 @@ from tms_ts.reasons import (
     GoalSucceeded,
     LastGoalOpen,
     LostTimes,
-    MachineStood,
-    MachineStoodBy,
     MachineStopping,
-    MachineUnconfirmed,
     NotRepeatedDone,
     NotRepeatedFailed,
     ProcessAway,
@@ -55,7 +45,6 @@ from tms_ts.sent_goal import ACCEPT_LIMIT, LeafCall, LeafPeer, SentGoal
 from tms_ts.world import GoalState
 
 SERVER_LIMIT = 10.0  # s for a subtask's server to be there
-GATEWAY_LIMIT = 3.0  # s for a gateway that was lost to be back
 DATABASE_LIMIT = 15.0  # s that a leaf waits for a database that is away
 ASK_AGAIN = 0.5  # s; also from a failure to the same goal: a loop around a leaf must not flood the history
 AWAY = (NoDatabase.code, "STORE_DOWN")  # why a subtask refuses a goal when its record cannot be read now
@@ -66,8 +55,6 @@ HANDOVER = Histogram(
     "tms_ts_handover_seconds", "From the result of one leaf of a run to the acceptance of the next goal",
     buckets=(0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.5, 1, 5),
 )  # fmt: skip
-
-LogEvent = Callable[[str, str, Reason], None]  # kind, node path, what: for the journal
 
 
 @dataclass(frozen=True)
@@ -94,11 +81,11 @@ class Machines:
     ) -> None:
         self._ros, self._hosts, self._gateways = ros, hosts, gateways
         self._wake, self._log_event = wake, log_event
+        self.stops = MachineStops(ros, gateways, log_event)
         self._number, self._retries = identity.number, identity.retries
         self._record, self._replay = identity.record, identity.replay
         self._leaves = 0  # goals sent so far
         self._handed_over: float | None = None  # monotonic time of the last result that no acceptance has followed
-        self._reported: set[tuple[str, int, int]] = set()  # receipts in the journal
         self._failed: dict[Key, float] = {}  # monotonic time of each goal's last failure
         self._given_up: set[Reason] = set()  # processes in the journal that supervisord does not start any more
         self._open: list[SentGoal] = []
@@ -142,39 +129,6 @@ class Machines:
     def open_goals(self) -> list[str]:
         """Names of the goals that have not ended."""
         return [goal.name for goal in self._open]
-
-    def stop(self, machine: str, cause: Reason) -> StopReceipt:
-        """Have the gateway stop the machine and watch it stand. Blocks; never raises.
-
-        A gateway that is lost meanwhile has a successor, which is asked again.
-        """
-        line, deadline = to_line(cause), monotonic() + RECEIPT_LIMIT
-        request = StopMachine.Request(cause=line, orderly=True)
-        while True:
-            self._gateways.wait_alive(machine, GATEWAY_LIMIT)
-            lost = self._gateways.loss(machine)
-            try:
-                answer = self._ros.call(StopMachine, f"/{machine}/rc/stop", request, RECEIPT_LIMIT, lost)
-            except RosError as error:
-                if isinstance(error.reason, ProcessLost) and monotonic() < deadline:
-                    continue
-                stamp, why = self._ros.now(), to_line(error.reason)
-                return StopReceipt(machine=machine, confirmed=False, cause=line, detail=why, stamp=stamp)
-            return answer.receipt
-
-    def stop_all(self, machines: Sequence[str], cause: Reason) -> list[StopReceipt]:
-        """`stop` for several machines at the same time."""
-        if not machines:
-            return []
-        with ThreadPoolExecutor(len(machines), "stop") as pool:
-            return list(pool.map(lambda machine: self.stop(machine, cause), machines))
-
-    def receipt(self, receipt: StopReceipt) -> None:
-        """A stop into the journal, once, from wherever it is received first."""
-        key = (receipt.machine, receipt.stamp.sec, receipt.stamp.nanosec)
-        if key not in self._reported:
-            self._reported.add(key)
-            self._log_event("stop", "", reported_by(receipt))
 
     def _try_send(self, goal: SentGoal) -> None:
         assert goal.peer is not None
@@ -329,19 +283,6 @@ class Machines:
         return goal.pid is not None and now is not None and now != goal.pid
 
     def _stop_after_loss(self, machine: str, cause: Reason) -> None:
-        receipt = self.stop(machine, cause)
-        self.receipt(receipt)
+        self.stops.receipt(self.stops.stop(machine, cause))
         self._stopping.discard(machine)
         self._wake()
-
-
-def reported_by(receipt: StopReceipt) -> Reason:
-    """A receipt as a reason."""
-    cause, evidence = wire.of(receipt.cause) or NoReason(), wire.of(receipt.evidence)
-    if not receipt.confirmed:
-        why = StopUnconfirmed(wire.of(receipt.detail) or NoReason(), cause)
-        return MachineUnconfirmed(receipt.machine, why)
-    stood = stood_after(receipt, cause)
-    return (
-        MachineStood(receipt.machine, stood) if evidence is None else MachineStoodBy(receipt.machine, stood, evidence)
-    )

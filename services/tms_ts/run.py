@@ -2,7 +2,6 @@
 
 import threading
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 from typing import Any
 
 from builtin_interfaces.msg import Time
@@ -10,7 +9,7 @@ from prometheus_client import Counter, Histogram
 from tms_msg_db.msg import Event
 from tms_msg_db.msg import Run as RunRow
 from tms_msg_ts.action import ExecuteTask
-from tms_msg_ts.msg import NodeStatus, RunState
+from tms_msg_ts.msg import RunState
 
 from tms_config.clock import monotonic
 from tms_machine.border import STOP_PROVEN
@@ -21,18 +20,16 @@ from tms_reason.wire import to_line
 from tms_ros.node import Ros
 from tms_ros.server import Goal
 from tms_runtime.log import Logger
-from tms_ts.bt import IDLE, Node, Status, Tree, TreeError
-from tms_ts.budget import Budget
+from tms_ts.bt import Status, Tree, TreeError
+from tms_ts.facts import Facts
 from tms_ts.flags import Flags
 from tms_ts.journal import Journal
-from tms_ts.machines import Machines, reported_by
+from tms_ts.machine_stops import reported_by
+from tms_ts.machines import Machines
+from tms_ts.node_report import NodeReport
 from tms_ts.reasons import (
     GoalNotEnded,
     HaltedGoalsEnd,
-    LeftOut,
-    NodeChanged,
-    NodeChangedBecause,
-    NodeFailed,
     NotResumed,
     StopRequested,
     TreeOf,
@@ -41,10 +38,6 @@ from tms_ts.run_checkpoint import RunCheckpoint
 from tms_ts.run_states import STATES, entered
 
 TICK_PERIOD = 0.05  # s between ticks when nothing wakes the loop
-FEEDBACK_PERIOD = 0.1  # s between messages to the client
-CHANGES_A_TICK = 200  # node changes recorded of one tick; an endless loop makes thousands
-FLOOD_REPORTED = 10.0  # s between notes that changes are left out
-CHANGES_A_MESSAGE = 1000
 TICK_LIMIT = 0.4  # s without a tick after which the scheduler does not stand behind its motions any more
 SETTLE_LIMIT = STOP_PROVEN + 7.0  # s for goals to become terminal after a halt
 
@@ -54,24 +47,6 @@ ALARMS = Counter("tms_ts_alarms_total", "Stops that were not seen, and processes
 OVERRUNS = Counter("tms_ts_tick_overruns_total", "Ticks that took longer than the tick period")
 
 TaskGoal = Goal[ExecuteTask.Goal, ExecuteTask.Feedback]
-
-
-@dataclass
-class Facts:
-    """What is reported a run; changed by its own thread only."""
-
-    run_id: str
-    number: int  # fencing number
-    task_id: int
-    description: str
-    machines: list[str]
-    started: Time
-    records: list[str] = field(default_factory=list)  # that the tree names
-    writes: set[tuple[str, str]] = field(default_factory=set)  # shared records and fields that it writes
-    state: str = "preparing"
-    reason: Reason | None = None
-    nodes_reported: bool = False
-    changes: list[NodeStatus] = field(default_factory=list)  # to tell the client, in order
 
 
 class Run:
@@ -93,17 +68,8 @@ class Run:
         self._resumed = bool(goal.request.resume)
         self.number = 0  # of the last event
         self._numbering = threading.Lock()  # events come from the executor thread too
-        self._failure: Reason | None = None
-        self._next_feedback = 0.0
-        self._budget = Budget()
-        self._changes_of_tick = self._left_out = 0
-        self._flood_reported = -FLOOD_REPORTED
-        self._ending: tuple[str, Reason | None] = (
-            "cancelled",
-            None,
-        )  # how it ends from outside
-        self.states = b""  # of every node, for who looks
-        self._leaf = ""
+        self._ending: tuple[str, Reason | None] = ("cancelled", None)  # how it ends from outside
+        self.nodes = NodeReport(facts, lambda node, what: self.log_event("node", node, what), changed)
         self._ticked: float | None = None  # when the last tick ended; None while nothing ticks
 
     def cancel(self, outcome: str = "cancelled", reason: Reason | None = None) -> None:
@@ -160,7 +126,7 @@ class Run:
         facts = self.facts
         return RunState(
             run_id=facts.run_id, task_id=facts.task_id, state=facts.state, machines=facts.machines,
-            reason=to_line(facts.reason), started_at=facts.started, leaf=self._leaf, nodes=self.states,
+            reason=to_line(facts.reason), started_at=facts.started, leaf=self.nodes.leaf, nodes=self.nodes.states,
         )  # fmt: skip
 
     def publish_tree(self, tree: Tree) -> None:
@@ -175,17 +141,22 @@ class Run:
         }
         self.log_event("tree", "", TreeOf(len(nodes)), values)
 
+    def _report_to_client(self, tree: Tree, last: bool = False) -> None:
+        message = self.nodes.feedback(tree, last)
+        if message is not None:
+            self._goal.publish(message)
+
     # the loop
 
     def execute(self, tree: Tree, machines: Machines) -> str:
         """Tick to the end and stop what still moves; returns the outcome."""
-        tree.observers.append(self._node_changed)
+        tree.observers.append(self.nodes.changed)
         self.enter("running")
         outcome = "failure"
         try:
             outcome = self._tick_to_end(tree, machines)
         except TreeError as error:
-            self._failure = error.reason
+            self.nodes.failure = error.reason
             self.log_event("error", error.path or "", error.reason)
         finally:
             outcome = self._settle(tree, machines, outcome)
@@ -196,12 +167,12 @@ class Run:
         while not self.cancelled.is_set():
             machines.advance()
             begun = monotonic()
-            self._changes_of_tick = 0
+            self.nodes.begin_tick()
             status = tree.tick()
             self._ticked = monotonic()
             took = self._ticked - begun
-            self._report_flood()
-            self._look(tree)
+            self.nodes.report_flood()
+            self.nodes.look(tree)
             TICKS.observe(took)
             self._report_to_client(tree)
             if status.completed:
@@ -211,7 +182,7 @@ class Run:
             next_tick = min(max(next_tick + TICK_PERIOD, begun), begun + TICK_PERIOD)  # however often something woke it
             self.wake.wait(max(0.0, next_tick - monotonic()))
             self.wake.clear()
-        outcome, self._failure = self._ending
+        outcome, self.nodes.failure = self._ending
         return outcome
 
     def _settle(self, tree: Tree, machines: Machines, outcome: str) -> str:
@@ -220,28 +191,28 @@ class Run:
         moving, receipts = True, []
         try:
             if outcome != "success":
-                self.enter("stopping", self._failure or STATES[outcome])
+                self.enter("stopping", self.nodes.failure or STATES[outcome])
             tree.halt()
-            self._look(tree)
+            self.nodes.look(tree)
             self._report_to_client(tree, last=True)
             moving = outcome != "success" or not machines.settled()
             if moving and outcome == "success":  # the tree succeeded in the tick that halted a leaf
-                self._failure = None
+                self.nodes.failure = None
                 self.enter("stopping", HaltedGoalsEnd())
         finally:  # also when the lines above have a bug
             if moving:
                 # Straight to the gateways, beside the cancels on their way through subtask and planner: a stop takes
                 # the shortest way, and its receipt measures from here.
-                receipts = machines.stop_all(self.facts.machines, STATES[outcome])
+                receipts = machines.stops.stop_all(self.facts.machines, STATES[outcome])
         if not moving:
             return self._end(outcome, None)
         for receipt in receipts:
-            machines.receipt(receipt)
+            machines.stops.receipt(receipt)
         deadline = monotonic() + SETTLE_LIMIT
         while not machines.settled() and monotonic() < deadline:
             self.wake.wait(TICK_PERIOD)
             self.wake.clear()
-        reason = self._failure
+        reason = self.nodes.failure
         unseen = [reported_by(receipt) for receipt in receipts if not receipt.confirmed]
         unseen += [GoalNotEnded(name) for name in machines.open_goals()]
         for alarm in unseen:
@@ -252,7 +223,7 @@ class Run:
 
     def _end(self, outcome: str, reason: Reason | None) -> str:
         self.over = True
-        self._report_flood(last=True)
+        self.nodes.report_flood(last=True)
         if outcome != "interrupted":
             self.record.over(outcome, to_line(reason))
         self.enter(outcome, reason, ended=True)
@@ -280,73 +251,3 @@ class Run:
         self.enter("refused", reason, ended=True)
         self.record.remove()
         RUNS.labels("refused").inc()
-
-    # nodes
-
-    def _node_changed(self, node: Node, old: Status, new: Status) -> None:
-        if new is Status.FAILURE and node.reason and not node.children:
-            self._failure = NodeFailed(node.name, node.reason, node.path)
-        self._changes_of_tick += 1
-        if self._changes_of_tick > CHANGES_A_TICK:
-            self._left_out += 1
-            self.facts.nodes_reported = False  # the client gets the state of every node instead
-            return
-        self.facts.changes.append(_message(node, new))
-        if not self._budget.take(node.path):
-            self._left_out += 1
-            return
-        self.log_event("node", node.path, _change(node, old, new))
-
-    def _report_flood(self, last: bool = False) -> None:
-        """A loop that spins, or waits for hours, must not fill the history with its rounds."""
-        now = monotonic()
-        if self._left_out and (last or now - self._flood_reported >= FLOOD_REPORTED):
-            self.log_event("node", "", LeftOut(self._left_out))
-            self._left_out, self._flood_reported = 0, now
-
-    def _look(self, tree: Tree) -> None:
-        """Keep what state() tells of the nodes."""
-        states = bytes(node.state for node in tree.nodes)
-        running = next((node for node in tree.running() if node.reason), None)
-        leaf, reason = (running.path, running.reason) if running is not None else ("", None)
-        if self.facts.state != "running":
-            reason = self.facts.reason
-        if (states, leaf, reason) != (self.states, self._leaf, self.facts.reason):
-            self.states, self._leaf, self.facts.reason = states, leaf, reason
-            self._changed()
-
-    def _report_to_client(self, tree: Tree, last: bool = False) -> None:
-        now = monotonic()
-        if now < self._next_feedback and not last:
-            return
-        facts = self.facts
-        running = [node for node in tree.running() if node.reason]
-        if facts.nodes_reported and not facts.changes and not running and now < self._next_feedback + 1.0:
-            return
-        facts.reason = running[0].reason if running else facts.reason if facts.state == "stopping" else None
-        message = ExecuteTask.Feedback(
-            run_id=facts.run_id, state=facts.state, running_leaf=running[0].path if running else "",
-            reason=to_line(facts.reason), nodes=self._nodes(tree, running),
-        )  # fmt: skip
-        self._goal.publish(message)
-        facts.nodes_reported, facts.changes, self._next_feedback = True, [], now + FEEDBACK_PERIOD
-
-    def _nodes(self, tree: Tree, running: list[Node]) -> list[NodeStatus]:
-        """Every node in the first message; later the changes in their order, and what the running leaves say."""
-        if not self.facts.nodes_reported or len(self.facts.changes) > CHANGES_A_MESSAGE:
-            return [_message(node, node.state) for node in tree.nodes]
-        return [*self.facts.changes, *(_message(node, node.state) for node in running)]
-
-
-def _change(node: Node, old: Status, new: Status) -> Reason:
-    if new is IDLE or node.reason is None:
-        return NodeChanged(node.name, old.name, new.name)
-    return NodeChangedBecause(node.name, old.name, new.name, node.reason)
-
-
-def _message(node: Node, status: Status) -> NodeStatus:
-    return NodeStatus(
-        uid=node.uid, parent=node.parent.uid if node.parent is not None else 0, name=node.name,
-        type=node.registration_name, status=status,
-        reason=to_line(node.reason) if status in (Status.RUNNING, Status.FAILURE) else "",
-    )  # fmt: skip

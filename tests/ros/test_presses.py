@@ -11,7 +11,7 @@ from std_msgs.msg import Bool
 from conftest import wait_until
 from tms_machine.border import stood_in
 from tms_rc import presses
-from tms_rc.guard import Kind
+from tms_rc.active import Kind
 from tms_rc.presses import Presses
 from tms_ros.node import Ros
 

@@ -4,8 +4,8 @@ from typing import Any
 
 import pytest
 
+from tms_rc.active import Active
 from tms_rc.following import Follower, ways
-from tms_rc.guard import Active
 from tms_rc.standstill import NOTHING, Expected
 
 DEAD = {"boom": 0.6}

@@ -6,8 +6,9 @@ from typing import Any
 import pytest
 
 from tms_machine.reasons import MachineLatched, SoftwareStop
+from tms_rc.active import Active, Kind
 from tms_rc.gateway import Gateway
-from tms_rc.guard import Active, Guard, Kind
+from tms_rc.guard import Guard
 from tms_rc.latch import Latch
 from tms_rc.reasons import HeldByAnother, NoScheduler, NoSubtask
 from tms_reason.reason import Reason

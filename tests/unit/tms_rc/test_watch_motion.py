@@ -7,8 +7,8 @@ from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
 from tms_machine.border import MOTIONS
+from tms_rc.active import Active, Kind
 from tms_rc.gateway import Gateway
-from tms_rc.guard import Active, Kind
 from tms_rc.reasons import ControllerLeft
 from tms_reason.reason import Reason
 from tms_ros.reasons import ProcessLost

@@ -141,8 +141,8 @@ def test_with_a_goal_that_was_really_done_the_past_is_over(site: Site, outcome: 
 
 def test_a_receipt_is_told_once(site: Site) -> None:
     receipt = StopReceipt(machine="zx200", confirmed=True, seconds=0.5, cause="x")
-    site.machines.receipt(receipt)
-    site.machines.receipt(receipt)
+    site.machines.stops.receipt(receipt)
+    site.machines.stops.receipt(receipt)
     assert [text for text in site.reported if text.startswith("stop")] == ["stop: zx200 stood after 0.50 s, 0.00 m: x"]
 
 

@@ -17,13 +17,15 @@ from tms_reason import wire
 from tms_reason.reason import Foreign, Reason
 from tms_reason.wire import to_line
 from tms_ros.goals import Outcome
+from tms_ts.active_runs import ActiveRuns
 from tms_ts.bt import Status
 from tms_ts.budget import MAX_BURST
+from tms_ts.execution import END_STORED, Execution
+from tms_ts.facts import Facts
 from tms_ts.group_commit import GroupCommit
 from tms_ts.interrupted_run import InterruptedRun
-from tms_ts.node import END_STORED, Scheduler
 from tms_ts.reasons import LeftOut
-from tms_ts.run import TICK_PERIOD, Facts, Run
+from tms_ts.run import TICK_PERIOD, Run
 from tms_ts.run_checkpoint import Records
 from words import words
 
@@ -33,6 +35,7 @@ class Machines:
 
     def __init__(self, *open_goals: str, confirmed: bool = True) -> None:
         self.open, self.stopped, self._confirmed = list(open_goals), list[str](), confirmed
+        self.stops = self
 
     def stop_all(self, machines: list[str], cause: Reason) -> list[Any]:
         self.stopped += machines
@@ -74,6 +77,21 @@ def a_run(rows: list[Any]) -> Run:
     )
 
 
+def parts(rows: list[Any], **own: Any) -> Any:
+    """What an execution needs, in which every run meets a bug as soon as it reads its task."""
+    ros = SimpleNamespace(now=Time)
+    log = structlog.stdlib.get_logger("test")
+    app = SimpleNamespace(ros=ros, log=log, process=SimpleNamespace(full="tms:ts"))
+    record = SimpleNamespace(event=lambda _: None, over=lambda *_: None, remove=lambda: None)
+    there = {
+        "app": app, "disk": SimpleNamespace(wait=lambda _: True), "journal": SimpleNamespace(put=rows.append),
+        "records": SimpleNamespace(open=lambda _: record), "numbers": SimpleNamespace(next=lambda: 1),
+        "gateways": SimpleNamespace(drop=lambda _: None), "publisher": SimpleNamespace(changed=lambda: None),
+        "check": SimpleNamespace(task=lambda _: broken()),
+    }  # fmt: skip
+    return SimpleNamespace(**{**there, **own})
+
+
 def tree(tick: Callable[[], Status] = lambda: Status.RUNNING, halt: Callable[[], None] = lambda: None) -> Any:
     return SimpleNamespace(tick=tick, halt=halt, nodes=[], running=list)
 
@@ -94,7 +112,7 @@ def test_a_success_that_leaves_nothing_open_stops_nobody(a_run: Run) -> None:
 
 def test_a_tree_that_succeeds_while_a_halted_leaf_still_moves_has_its_machine_seen_to_stop(a_run: Run) -> None:
     machines = Machines("/zx200/st_zx200_swing")
-    a_run._failure = Foreign("an earlier leaf failed")
+    a_run.nodes.failure = Foreign("an earlier leaf failed")
     assert a_run._settle(tree(), machines, "success") == "success"  # type: ignore[arg-type]
     assert machines.stopped == ["zx200"]
     assert a_run.facts.reason is None
@@ -125,26 +143,19 @@ def test_the_loop_never_sleeps_longer_than_its_period_after_many_wakes(
     assert len(waits) > 110
 
 
-def test_a_run_that_meets_a_bug_is_closed_in_the_history(a_run: Run, rows: list[Any]) -> None:
-    scheduler: Any = Scheduler.__new__(Scheduler)
-    scheduler._facts = lambda goal, past: a_run.facts
-    scheduler._execute = lambda *_: broken()
-    scheduler._ros = scheduler._journal = scheduler._app = SimpleNamespace(
-        log=structlog.stdlib.get_logger("test"), process=SimpleNamespace(full="tms:ts"), now=Time, put=rows.append
-    )
-    scheduler._records = SimpleNamespace(open=lambda _: a_run.record)
-    scheduler._runs, scheduler._holders = {}, {}
-    scheduler._lock, scheduler._changed = a_run._numbering, a_run.ended
-    scheduler._gateways = SimpleNamespace(drop=lambda _: None)
+def test_a_run_that_meets_a_bug_is_closed_in_the_history(rows: list[Any]) -> None:
+    runs = ActiveRuns()
+    execution = Execution(parts(rows, runs=runs))
     goal = SimpleNamespace(
-        request=SimpleNamespace(resume=""), publish=lambda _: None, cancelled=SimpleNamespace(is_set=lambda: False)
+        request=SimpleNamespace(resume="", task_id=1),
+        publish=lambda _: None,
+        cancelled=SimpleNamespace(is_set=lambda: False),
     )
-    scheduler._disk = SimpleNamespace(wait=lambda _: True)
     with pytest.raises(RuntimeError, match="a bug"):
-        scheduler.execute(goal)
+        execution.execute(goal)  # type: ignore[arg-type]
     reported = [row for row in rows if hasattr(row, "state")]
     assert reported[-1].state == "refused" and "INTERNAL" in reported[-1].reason
-    assert scheduler._runs == {}
+    assert list(runs) == []
 
 
 def test_a_resume_that_is_refused_leaves_its_record_and_no_open_file(a_run: Run, tmp_path: Path) -> None:
@@ -163,27 +174,30 @@ def test_a_resume_that_is_refused_leaves_its_record_and_no_open_file(a_run: Run,
 
 def test_a_loop_that_waits_is_told_to_whoever_looks_and_in_part_to_the_history(a_run: Run, rows: list[Any]) -> None:
     node: Any = SimpleNamespace(name="wait", path="0.1", uid=2, parent=None, registration_name="Wait", reason=None)
+    assert a_run.nodes.feedback(tree())  # the first message has every node, later ones have changes
     for _ in range(MAX_BURST + 300):
-        a_run._changes_of_tick = 0
-        a_run._node_changed(node, Status.RUNNING, Status.SUCCESS)
-        a_run._report_flood()
+        a_run.nodes.begin_tick()
+        a_run.nodes.changed(node, Status.RUNNING, Status.SUCCESS)
+        a_run.nodes.report_flood()
     reported = [row.text for row in rows if row.kind == "node" and row.node]
     assert MAX_BURST <= len(reported) < MAX_BURST + 10
     assert [row.text for row in rows if row.kind == "node" and not row.node] == [to_line(LeftOut(1))]
-    assert len(a_run.facts.changes) == MAX_BURST + 300
+    message = a_run.nodes.feedback(tree(), last=True)
+    assert message is not None and len(message.nodes) == MAX_BURST + 300
     a_run._end("success", None)
     reported_at_end = [row.text for row in rows if hasattr(row, "kind") and row.kind == "node" and not row.node][1:]
     assert len(reported_at_end) == 1 and wire.known(reported_at_end[0]).args["count"] > 280
 
 
 @pytest.mark.parametrize(("stored", "reported"), [(True, "it rains"), (False, "it rains (not stored yet: the disk")])
-def test_a_result_is_told_when_its_run_s_end_is_stored_or_with_a_note(stored: bool, reported: str) -> None:
-    scheduler: Any = Scheduler.__new__(Scheduler)
+def test_a_result_is_told_when_its_run_s_end_is_stored_or_with_a_note(
+    stored: bool, reported: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     asked: list[float] = []
     ended = (Outcome.ABORTED, ExecuteTask.Result(run_id="run", outcome="failure", error_msg="it rains"))
-    scheduler._run = lambda goal, past: ended
-    scheduler._disk = SimpleNamespace(wait=lambda seconds: asked.append(seconds) or stored)
-    how, result = scheduler.execute(SimpleNamespace(request=SimpleNamespace(resume="")))
+    execution = Execution(parts([], disk=SimpleNamespace(wait=lambda seconds: asked.append(seconds) or stored)))
+    monkeypatch.setattr(execution, "_run", lambda goal, past: ended)
+    how, result = execution.execute(SimpleNamespace(request=SimpleNamespace(resume="")))  # type: ignore[arg-type]
     assert (how, asked) == (Outcome.ABORTED, [END_STORED])
     said = words(result.error_msg)
     assert said.startswith(reported) and stored == (said == reported)

@@ -1,0 +1,66 @@
+"""What the gateway reads from goals, whose types differ, and writes into their results."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from builtin_interfaces.msg import Duration
+from geometry_msgs.msg import Pose, PoseStamped
+from trajectory_msgs.msg import JointTrajectoryPoint
+
+from tms_machine.border import Motion
+from tms_rc.limits import Point
+from tms_reason.reason import Reason
+from tms_reason.wire import to_line
+from tms_ros.goals import Ended, Outcome
+
+REFUSED = -1  # control_msgs INVALID_GOAL
+UNKNOWN = 600  # nav2_msgs, where a result has an unsigned code
+
+
+def poses_of(request: Any) -> Sequence[PoseStamped]:
+    """The poses of a goal for the navigation."""
+    return list(request.poses) if hasattr(request, "poses") else [request.pose]
+
+
+def numbers(pose: Pose) -> tuple[float, ...]:
+    """Position [m] and quaternion."""
+    at, turn = pose.position, pose.orientation
+    return at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w
+
+
+def seconds(duration: Duration) -> float:
+    """A duration [s]."""
+    return float(duration.sec + duration.nanosec * 1e-9)
+
+
+def point_of(point: JointTrajectoryPoint) -> Point:
+    """What the limits need of a point of a trajectory."""
+    rest = [*point.velocities, *point.accelerations, *point.effort]
+    return Point(seconds(point.time_from_start), point.positions, rest)
+
+
+def duration(request: Any) -> float:
+    """How long a goal says that it lasts [s]; navigation does not say."""
+    if not hasattr(request, "trajectory"):
+        return float("inf")
+    return seconds(request.trajectory.points[-1].time_from_start)
+
+
+def reason_of(result: Any) -> str:
+    """The text in a result, where its type has one."""
+    return str(getattr(result, "error_string", "") or getattr(result, "error_msg", ""))
+
+
+def with_reason(motion: Motion, reason: Reason, code: int | None = None) -> Any:
+    """A result of the motion's type that tells as much as the type has room for."""
+    result, line = motion.type.Result(), to_line(reason)
+    if hasattr(result, "error_string"):
+        result.error_code, result.error_string = REFUSED if code is None else code, line
+    elif hasattr(result, "error_msg"):
+        result.error_code, result.error_msg = UNKNOWN if code is None else code, line
+    return result
+
+
+def aborted(motion: Motion, reason: Reason) -> Ended[Any]:
+    """The end of a goal that must not go on."""
+    return Outcome.ABORTED, with_reason(motion, reason)

@@ -1,0 +1,23 @@
+"""What is known of a run."""
+
+from dataclasses import dataclass, field
+
+from builtin_interfaces.msg import Time
+
+from tms_reason.reason import Reason
+
+
+@dataclass
+class Facts:
+    """What is reported of a run; changed by its own thread only."""
+
+    run_id: str
+    number: int  # fencing number
+    task_id: int
+    description: str
+    machines: list[str]
+    started: Time
+    records: list[str] = field(default_factory=list)  # that the tree names
+    writes: set[tuple[str, str]] = field(default_factory=set)  # shared records and fields that it writes
+    state: str = "preparing"
+    reason: Reason | None = None

@@ -1,0 +1,83 @@
+"""Preflight: of a stored task or of XML, and of a run before it begins."""
+
+from tms_msg_db.msg import Task
+from tms_msg_db.srv import GetTask
+from tms_msg_ts.srv import CheckTask
+
+from tms_machine.reasons import MachineLatched
+from tms_reason.errors import TaskError, TmsError
+from tms_reason.reason import Reason
+from tms_reason.wire import refusal, to_line
+from tms_runtime.app import App
+from tms_ts import bt
+from tms_ts.active_runs import ActiveRuns
+from tms_ts.gateways import Gateways
+from tms_ts.preflight import Findings, at, preflight
+from tms_ts.reasons import MachineBusy
+from tms_ts.surroundings import PreflightContext, Sensing
+
+DB_LIMIT = 5.0  # s
+
+
+class TaskCheck:
+    """Reads tasks from the database and checks them against the site as it is now."""
+
+    def __init__(self, app: App, runs: ActiveRuns, gateways: Gateways) -> None:
+        self._app, self._runs, self._gateways = app, runs, gateways
+        self._sensing = Sensing(app)
+
+    def check(self, request: CheckTask.Request, response: CheckTask.Response) -> CheckTask.Response:
+        """Preflight of a stored task or of XML, without running."""
+        try:
+            xml = request.xml if request.task_id == 0 else self.task(request.task_id).task_sequence
+            report = bt.check(xml)
+            if report.ok:
+                found = self._preflight(bt.load(xml, world=None), present=True)
+                response.errors = list(map(to_line, found.errors))
+                response.warnings = list(map(to_line, found.warnings))
+            else:
+                response.errors = [to_line(error.reason) for error in report.errors]
+                response.warnings = [to_line(at(line, what)) for line, what in report.warnings]
+        except TmsError as error:
+            response.error_code, response.error_msg = error.code, to_line(error.reason)
+        return response
+
+    def task(self, task_id: int) -> Task:
+        """A stored task.
+
+        Raises:
+            TaskError: there is none of this number.
+            RosError: the database does not answer.
+        """
+        answer = self._app.ros.call(GetTask, "/tms/db/get_task", GetTask.Request(task_id=task_id), DB_LIMIT)
+        if answer.error_code:
+            raise TaskError(refusal(answer.error_code, answer.error_msg), answer.error_code)
+        return answer.task
+
+    def before_run(self, tree: bt.Tree) -> Findings:
+        """Preflight of a run that is about to begin; what keeps its machines from moving now is asked later."""
+        return self._preflight(tree, present=False)
+
+    def refuse_latched(self, machines: list[str]) -> None:
+        """A run may begin only with machines that are armed and free.
+
+        Raises:
+            TaskError: why one of them may not move now; NOT_ARMED if it is latched.
+        """
+        for machine in machines:
+            found = self._gateways.held_back(machine)
+            if found is not None:
+                raise TaskError(found, "NOT_ARMED" if isinstance(found, MachineLatched) else found.code)
+
+    def _preflight(self, tree: bt.Tree, present: bool) -> Findings:
+        """`present`: also say what keeps the machines from moving now; a run is refused for that later."""
+        problem = self._problem if present else _no_problem
+        return preflight(tree, self._app.site, PreflightContext(self._app, self._sensing, problem, self._runs.writes))
+
+    def _problem(self, machine: str) -> Reason | None:
+        holder = self._runs.holder(machine)
+        return MachineBusy(machine, holder) if holder is not None else self._gateways.obstacle(machine)
+
+
+def _no_problem(_machine: str) -> None:
+    return None
