@@ -122,21 +122,9 @@ class _Server:
 
     def _execute(self, goal: LeafGoal) -> Outcome:
         """However the subtask ends, its motion has ended when this returns."""
-        app, request = self._app, goal.request
-        use = app.site.file.machines[app.machine]
-        model, limit = app.site.model_of(app.machine), self._kind.timeout
-        machine = Machine(app.ros, app.machine, use.model, model, limit, goal.uuid, self._watched())
-        subtask = self._kind(machine, self._want, self._read)
+        request, lock = goal.request, self._lock
+        machine, subtask = self._begin(goal)
         say = _Feedback(goal)
-        lock = self._lock
-
-        def cancel() -> None:
-            subtask.on_cancel()
-            machine.cancel()
-
-        goal.on_cancel = cancel
-        if goal.cancelled.is_set():
-            cancel()
         failure: SubtaskFailed | None = None
         finished = stopped = cancelled = False
         try:
@@ -157,14 +145,31 @@ class _Server:
             if lock is not None and not (self._plans and finished and not cancelled):
                 lock.release()
             if not (finished or failure or cancelled):
-                say.last(Internal(app.process.full))
+                say.last(Internal(self._app.process.full))
         if not stopped:
-            failure = SubtaskFailed(MotionNotEnded(app.machine))
+            failure = SubtaskFailed(MotionNotEnded(self._app.machine))
         if failure is None or (cancelled and stopped):
             return Outcome.CANCELED if cancelled else Outcome.SUCCEEDED
-        app.log.warning("failed", goal=goal.id, reason=failure.reason)
+        self._app.log.warning("failed", goal=goal.id, reason=failure.reason)
         say.last(failure.reason)
         return Outcome.ABORTED
+
+    def _begin(self, goal: LeafGoal) -> tuple[Machine, Subtask]:
+        """The machine as the goal may move it, and the subtask, which a cancel reaches from now on."""
+        app = self._app
+        model, limit = app.site.model_of(app.machine), self._kind.timeout
+        name = app.site.file.machines[app.machine].model
+        machine = Machine(app.ros, app.machine, name, model, limit, goal.uuid, self._watched())
+        subtask = self._kind(machine, self._want, self._read)
+
+        def cancel() -> None:
+            subtask.on_cancel()
+            machine.cancel()
+
+        goal.on_cancel = cancel
+        if goal.cancelled.is_set():
+            cancel()
+        return machine, subtask
 
     def _watched(self) -> dict[str, Callable[[AnyPeer], None]]:
         """Begins with the first goal: the gateway's lease, ten times a second, must not wake what nobody uses."""

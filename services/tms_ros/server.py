@@ -118,26 +118,33 @@ class Served:
                 reasons.publish(telling(goal_id=goal_id, feedback=feedback))
             return GoalResponse.REJECT
 
-        def accepted(handle: ServerGoalHandle) -> None:
-            goal = Goal(handle, action_type)
-            self._goals[name, goal.uuid] = goal
-            if self._leaving:  # since the decision
-                goal.cancel()
-            threading.Thread(target=self._work, args=(action_type, run, goal, name), name=name, daemon=True).start()
-
-        def cancel(handle: ServerGoalHandle) -> CancelResponse:
-            goal = self._goals.get((name, bytes(handle.goal_id.uuid)))
-            if goal is not None:  # else it has ended and its result is being delivered
-                goal.cancel()
-            return CancelResponse.ACCEPT
-
         server = NamingActionServer(
             self._loop.node, action_type, name, execute_callback=_never, goal_callback=decide,
-            handle_accepted_callback=accepted, cancel_callback=cancel, result_timeout=RESULT_KEPT,
+            handle_accepted_callback=lambda handle: self._accepted(action_type, run, handle, name),
+            cancel_callback=lambda handle: self._cancel(name, handle), result_timeout=RESULT_KEPT,
             callback_group=self._loop.group,
             goal_service_qos_profile=SERVICE, result_service_qos_profile=SERVICE,
             cancel_service_qos_profile=SERVICE,
         )  # fmt: skip
+
+    def _accepted(
+        self,
+        action_type: ActionType[G, R, F],
+        run: Callable[[Goal[G, F]], Ended[R]],
+        handle: ServerGoalHandle,
+        name: str,
+    ) -> None:
+        goal = Goal(handle, action_type)
+        self._goals[name, goal.uuid] = goal
+        if self._leaving:  # since the decision
+            goal.cancel()
+        threading.Thread(target=self._work, args=(action_type, run, goal, name), name=name, daemon=True).start()
+
+    def _cancel(self, name: str, handle: ServerGoalHandle) -> CancelResponse:
+        goal = self._goals.get((name, bytes(handle.goal_id.uuid)))
+        if goal is not None:  # else it has ended and its result is being delivered
+            goal.cancel()
+        return CancelResponse.ACCEPT
 
     def _work(
         self, action_type: ActionType[G, R, F], run: Callable[[Goal[G, F]], Ended[R]], goal: Goal[G, F], name: str

@@ -92,6 +92,12 @@ def test_upload_fix_run_watch_stop_rearm_and_run_again(page: Page, address: str,
     expect(page.locator("#difference .added").nth(1)).to_be_visible()
     task = store(page)
 
+    run_to_its_end(page, address, idle, task)
+    watch_and_stop(page)
+    arm_and_run_again(page, address)
+
+
+def run_to_its_end(page: Page, address: str, idle: Mesh, task: int) -> None:
     open_page(page, address, "run")
     start(page, task)
     expect(page.locator("#message")).to_contain_text(re.compile("has begun|Success"))
@@ -99,6 +105,8 @@ def test_upload_fix_run_watch_stop_rearm_and_run_again(page: Page, address: str,
     wait_until(lambda: newest()["task_id"] == task and newest()["ended_at"], 60, "its end")
     expect(page.locator("#list_active li")).to_have_count(0)
 
+
+def watch_and_stop(page: Page) -> None:
     start(page, SWINGS)
     page.locator("#list_active a", has_text="Tree").click()
     running = page.locator("#tree_box [data-state=running]")
@@ -111,6 +119,8 @@ def test_upload_fix_run_watch_stop_rearm_and_run_again(page: Page, address: str,
     stop(page)
     assert re.search(r"after \d+(\.\d+)? s", page.locator("#stop_report").inner_text())
 
+
+def arm_and_run_again(page: Page, address: str) -> None:
     open_page(page, address, "run")
     expect(page.locator("[data-machine=zx200]")).to_contain_text("Stopped because: software stop by local")
     expect(page.locator("#list_active li")).to_have_count(0)

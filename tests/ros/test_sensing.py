@@ -297,37 +297,40 @@ def test_the_newest_value_is_written_when_the_store_returns(sensing: Sensing) ->
 
 
 @pytest.mark.timeout(420)
+def write_all(
+    writer: int, sensing: Sensing, left: Iterator[int], lock: threading.Lock, acknowledged: dict[str, int], until: float
+) -> None:
+    """Writes until none is left; every write is repeated until it is acknowledged."""
+    number = 0
+    while time.monotonic() < until:
+        with lock:
+            if next(left, None) is None:
+                return
+        number += 1
+        key = f"w/{writer}_{number % 5}"
+        request = SetParameter.Request(model_name="w", record_name=key[2:], values=to_parameters({"n": number}))
+        while time.monotonic() < until:
+            try:
+                answer = sensing.ros.call(SetParameter, "/tms/db/set_parameter", request, 2.0)
+            except RosError:
+                continue
+            if not answer.error_code:
+                acknowledged[key] = number
+                break
+            time.sleep(0.05)
+
+
 def test_acknowledged_writes_outlive_the_death_of_store_and_database(sensing: Sensing) -> None:
     """10 000 writes over 20 records from 4 writers, while store and database are killed again and again."""
     acknowledged: dict[str, int] = {}
     left = iter(range(10_000))
-    lock = threading.Lock()
     deadline = time.monotonic() + 300
-
-    def write(writer: int) -> None:
-        number = 0
-        while time.monotonic() < deadline:
-            with lock:
-                if next(left, None) is None:
-                    return
-            number += 1
-            key = f"w/{writer}_{number % 5}"
-            values = to_parameters({"n": number})
-            request = SetParameter.Request(model_name="w", record_name=key[2:], values=values)
-            while time.monotonic() < deadline:
-                try:
-                    answer = sensing.ros.call(SetParameter, "/tms/db/set_parameter", request, 2.0)
-                except RosError:
-                    continue
-                if not answer.error_code:
-                    acknowledged[key] = number
-                    break
-                time.sleep(0.05)
-
     for writer in range(4):
         for one in range(5):
             sensing.set(f"w/{writer}_{one}", {"n": 0}, type="dynamic", create=True)
-    writers = [threading.Thread(target=write, args=(writer,)) for writer in range(4)]
+    lock = threading.Lock()
+    write = (sensing, left, lock, acknowledged, deadline)
+    writers = [threading.Thread(target=write_all, args=(number, *write)) for number in range(4)]
     for thread in writers:
         thread.start()
     for victim in ("tms:db", "tms:store", "tms:db"):

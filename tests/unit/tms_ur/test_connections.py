@@ -161,6 +161,23 @@ def test_the_room_counts_by_caller() -> None:
     assert room.enter("a")
 
 
+async def whole() -> dict[str, Any]:
+    return {"type": "http.request", "body": b"{}", "more_body": False}
+
+
+async def ask(application: Any, method: str, path: str, receive: Any, address: str = "127.0.0.1") -> tuple[int, bytes]:
+    headers = [(b"host", b"localhost"), (b"content-type", b"application/json"), (b"content-length", b"2")]
+    scope = {"type": "http", "method": method, "path": path, "raw_path": path.encode(), "query_string": b"",
+             "headers": headers, "client": (address, 1), "root_path": ""}  # fmt: skip
+    sent: list[dict[str, Any]] = []
+
+    async def send(message: Any) -> None:
+        sent.append(message)
+
+    await application(scope, receive, send)
+    return sent[0]["status"], sent[1]["body"]
+
+
 def test_a_stop_is_answered_when_no_other_request_is() -> None:
     """As many requests as one address may have hang in their bodies."""
     site_client = FakeSiteClient()
@@ -173,33 +190,18 @@ def test_a_stop_is_answered_when_no_other_request_is() -> None:
             await never.wait()
             return {"type": "http.disconnect"}
 
-        hanging = [asyncio.create_task(ask("POST", "/api/runs", hang)) for _ in range(MAX_ASKED)]
+        hanging = [asyncio.create_task(ask(application, "POST", "/api/runs", hang)) for _ in range(MAX_ASKED)]
         await asyncio.sleep(0)
-        while (await ask("GET", "/api/state", hang))[0] != 503:
+        while (await ask(application, "GET", "/api/state", hang))[0] != 503:
             await asyncio.sleep(0)
-        assert (await ask("GET", "/api/state", hang, "192.0.2.9"))[0] == 200
-        status, body = await ask("POST", "/api/stop", whole)
+        assert (await ask(application, "GET", "/api/state", hang, "192.0.2.9"))[0] == 200
+        status, body = await ask(application, "POST", "/api/stop", whole)
         assert (status, site_client.calls) == (200, [("stop", "zx200", SoftwareStopBy("local at 127.0.0.1"))]), body
-        assert (await ask("POST", "/api/runs/r-1/cancel", whole))[0] == 202
-        assert (await ask("POST", "/api/runs", whole))[0] == 503
+        assert (await ask(application, "POST", "/api/runs/r-1/cancel", whole))[0] == 202
+        assert (await ask(application, "POST", "/api/runs", whole))[0] == 503
         for task in hanging:
             task.cancel()
         await asyncio.gather(*hanging, return_exceptions=True)
-        assert (await ask("GET", "/api/state", hang))[0] == 200
-
-    async def whole() -> dict[str, Any]:
-        return {"type": "http.request", "body": b"{}", "more_body": False}
-
-    async def ask(method: str, path: str, receive: Any, address: str = "127.0.0.1") -> tuple[int, bytes]:
-        headers = [(b"host", b"localhost"), (b"content-type", b"application/json"), (b"content-length", b"2")]
-        scope = {"type": "http", "method": method, "path": path, "raw_path": path.encode(), "query_string": b"",
-                 "headers": headers, "client": (address, 1), "root_path": ""}  # fmt: skip
-        sent: list[dict[str, Any]] = []
-
-        async def send(message: Any) -> None:
-            sent.append(message)
-
-        await application(scope, receive, send)
-        return sent[0]["status"], sent[1]["body"]
+        assert (await ask(application, "GET", "/api/state", hang))[0] == 200
 
     asyncio.run(asyncio.wait_for(story(), 60))
