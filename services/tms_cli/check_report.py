@@ -55,6 +55,7 @@ def show_folder(files: Iterable[Checked], *, as_json: bool) -> bool:
 
 
 def report_unchecked(done: list[Checked]) -> None:
+    """Say on stderr that no scheduler looked at what was checked."""
     if any(found.by != "scheduler" and not found.errors and not found.no_task for found in done):
         click.echo(say("no scheduler answers: records and subtasks are unchecked"), err=True)
     elif any(found.by != "scheduler" and found.errors and not found.no_task for found in done):

@@ -99,6 +99,7 @@ class Scheduler(AbstractContextManager["Scheduler"]):
 
 
 def structure(what: str, text: str, folder: Path | None = None) -> Checked:
+    """Check the tree alone, without a site."""
     report = bt.check(text, folder=folder)
     warnings = [sentence(Placed(Line(line), warning)) for line, warning in report.warnings]
     if report.ok and "<include" in text:
@@ -107,6 +108,7 @@ def structure(what: str, text: str, folder: Path | None = None) -> Checked:
 
 
 def stored(scheduler: Scheduler, task_id: int) -> Checked:
+    """Have the scheduler check a stored task, and find its lines."""
     task = session.call(scheduler.node(), GetTask, "/tms/db/get_task", task_id=task_id).task
     found = structure(str(task_id), task.task_sequence)
     scheduler.look(found, task_id=task_id)

@@ -12,6 +12,7 @@ from tms_db.values import from_parameters, from_time, to_parameters, to_time
 
 
 def task(task: Task) -> msg.Task:
+    """A stored task as a message."""
     return msg.Task(**{**vars(task), "added_at": to_time(task.added_at)})
 
 
@@ -26,12 +27,14 @@ def record(document: Document) -> tuple[msg.Record, list[str]]:
 
 
 def run(run: Run) -> msg.Run:
+    """A stored run as a message."""
     times = {"started_at": to_time(run.started_at), "ended_at": to_time(run.ended_at)}
     lists = {"machines": list(run.machines), "records": list(run.records)}
     return msg.Run(**{**vars(run), **lists, **times})
 
 
 def stored_run(message: msg.Run) -> Run:
+    """A message as the run to store."""
     ended = message.ended_at
     return Run(
         run_id=message.run_id,
@@ -47,11 +50,13 @@ def stored_run(message: msg.Run) -> Run:
 
 
 def event(event: Event) -> msg.Event:
+    """A stored event as a message."""
     values, _ = to_parameters(event.values, hidden=())
     return msg.Event(**{**vars(event), "stamp": to_time(event.stamp), "values": values})
 
 
 def stored_event(message: msg.Event) -> Event:
+    """A message as the event to store."""
     return Event(
         run_id=message.run_id,
         number=message.number,

@@ -150,6 +150,7 @@ def index(db: Db, collection: str, name: str = "") -> None:
 
 
 def conflict(db: Db, collection: str, key: object) -> DbError:
+    """The error for two documents where one is allowed."""
     return DbError(TwoWithOneKey(db.name, collection, str(key)))
 
 

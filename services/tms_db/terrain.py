@@ -138,6 +138,7 @@ class Terrain:
 
 
 def missing(filename: str) -> DbError:
+    """The error for a terrain that is not stored."""
     return DbError(TerrainMissing(filename))
 
 

@@ -64,7 +64,7 @@ def runtime_folder() -> Path:
 
 
 def socket_path(site: Site) -> Path:
-    """supervisord's socket for the mesh whose state is in `site.state`."""
+    """Supervisord's socket for the mesh whose state is in `site.state`."""
     return runtime_folder() / f"{hashlib.sha256(str(site.state).encode()).hexdigest()[:16]}.sock"
 
 
@@ -133,7 +133,7 @@ def _section(row: Process) -> str:
 
 
 def _escape(text: str) -> str:
-    """supervisord expands %(name)s in values."""
+    """Supervisord expands %(name)s in values."""
     if '"' in text or "\n" in text:
         raise ConfigError(PathQuoted(repr(text)))
     return text.replace("%", "%%")
@@ -173,7 +173,7 @@ class Supervisor:
         return True
 
     def pid(self) -> int:
-        """supervisord's own pid."""
+        """Supervisord's own pid."""
         pid = self._call("getPID")
         assert isinstance(pid, int)
         return pid

@@ -27,7 +27,8 @@ class Turner:
 
     def __init__(self, arm: Arm, returns: bool = False) -> None:
         """`returns`: a goal tips, waits and comes back to 0, and nothing ends it on the way, as OPERA's helper for
-        the simulator has it."""
+        the simulator has it.
+        """
         self.arm, self._returns = arm, returns
         self._turns: dict[str, Turn] = {}
         self._lock = arm.lock

@@ -16,7 +16,7 @@ class SourceClock:
 
     @property
     def offset(self) -> float | None:
-        """s that our clock is ahead of the source's; None before the first stamp."""
+        """S that our clock is ahead of the source's; None before the first stamp."""
         return min(self._least) if self._least else None
 
     @property
@@ -25,11 +25,11 @@ class SourceClock:
         return self.offset is not None and abs(self.offset) > self._limit
 
     def ahead(self, stamp: float, now: float) -> float:
-        """s that a stamp lies further in the future than allowed; 0 if it does not."""
+        """S that a stamp lies further in the future than allowed; 0 if it does not."""
         return max(0.0, stamp - now - self._limit)
 
     def age(self, stamp: float, now: float) -> float:
-        """s between measurement and arrival, beyond the usual."""
+        """S between measurement and arrival, beyond the usual."""
         if not self._least or not 0 <= now - self._began <= WINDOW:  # below 0: our clock was set back
             self._least, self._began = [*self._least[-1:], now - stamp], now
         self._least[-1] = min(self._least[-1], now - stamp)

@@ -80,7 +80,7 @@ class SensingInput:
         return "accepted"
 
     def _age(self, reading: Reading, wall: float) -> float:
-        """s since the measurement.
+        """S since the measurement.
 
         Raises:
             Refused: StampInFuture, MeasuredEarlier.

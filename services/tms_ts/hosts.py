@@ -28,7 +28,7 @@ class Hosts:
         self._known = {**others, **{row.name: (message.host, row) for row in message.processes}}
 
     def pid(self, machine: str, subtask: str) -> int | None:
-        """pid of a subtask's process, 0 if it does not run; None for a server that no host agent knows."""
+        """Pid of a subtask's process, 0 if it does not run; None for a server that no host agent knows."""
         found = self._known.get(f"{machine}:{subtask}")
         return None if found is None else int(found[1].pid)
 

@@ -12,6 +12,7 @@ COLUMNS = ("number", "stamp", "kind", "node", "text")
 
 
 def as_json(run_id: str, events: list[Event]) -> bytes:
+    """A run with its events as one JSON document."""
     return json.dumps(
         {"run_id": run_id, "events": [event.model_dump(mode="json") for event in events]}, ensure_ascii=False, indent=1
     ).encode()

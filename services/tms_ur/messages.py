@@ -37,6 +37,7 @@ def when(stamp: Time) -> datetime | None:
 
 
 def machine(message: rc.MachineState) -> Machine:
+    """For the console: the state of a machine."""
     joints = zip(message.joint_names, message.positions, message.velocities, strict=False)
     state: Shown = "not_ready" if not message.ready else "moving" if message.moving else "standing"
     return Machine(
@@ -48,6 +49,7 @@ def machine(message: rc.MachineState) -> Machine:
 
 
 def active_run(run: ts.RunState) -> ActiveRun:
+    """For the console: a run that is active."""
     return ActiveRun(
         run_id=run.run_id, task_id=run.task_id, state=run.state, machines=list(run.machines),
         reason=of_line(run.reason), started_at=when(run.started_at), leaf=run.leaf, nodes="".join(map(str, run.nodes)),
@@ -55,6 +57,7 @@ def active_run(run: ts.RunState) -> ActiveRun:
 
 
 def question(asked: ts.Question) -> Question:
+    """For the console: a question that waits for an answer."""
     return Question(
         id=asked.id, run_id=asked.run_id, node=asked.node, title=asked.title, text=asked.text,
         asked_at=when(asked.asked_at), until=when(asked.until),
@@ -62,6 +65,7 @@ def question(asked: ts.Question) -> Question:
 
 
 def receipt(made: rc.StopReceipt) -> Receipt:
+    """For the console: a receipt of a stop."""
     return Receipt(
         machine=made.machine, confirmed=made.confirmed, seconds=round(made.seconds, 3),
         travel_joint=made.travel_joint, travel_rad=round(made.travel_rad, 4), travel_m=round(made.travel_m, 3),
@@ -70,6 +74,7 @@ def receipt(made: rc.StopReceipt) -> Receipt:
 
 
 def process(row: host.Process) -> Process:
+    """For the console: a supervised process."""
     return Process(
         name=row.name,
         state=row.state,
@@ -83,11 +88,13 @@ def process(row: host.Process) -> Process:
 
 
 def task(task: db.Task) -> dict[str, Any]:
+    """For the console: a stored task without its XML."""
     return {"id": task.task_id, "model_name": task.model_name, "description": task.description,
             "added_at": when(task.added_at)}  # fmt: skip
 
 
 def run(run: db.Run) -> Run:
+    """For the console: a run of the history."""
     return Run(
         run_id=run.run_id, task_id=run.task_id, description=run.description, state=run.state,
         reason=of_line(run.reason), machines=list(run.machines), started_at=when(run.started_at),
@@ -96,6 +103,7 @@ def run(run: db.Run) -> Run:
 
 
 def event(event: db.Event) -> Event:
+    """For the console: an event of the history."""
     return Event(
         number=event.number, stamp=when(event.stamp), kind=event.kind, node=event.node, text=event.text,
         reason=_reason_in(event.text), values={**from_parameters(event.values)},
@@ -109,6 +117,7 @@ def _reason_in(text: str) -> ReasonView | None:
 
 
 def record(record: db.Record) -> Record:
+    """For the console: a parameter record."""
     return Record(
         model_name=record.model_name, record_name=record.record_name, type=record.type,
         description=record.description, source=record.source, updated_at=when(record.updated_at),
@@ -119,6 +128,7 @@ def record(record: db.Record) -> Record:
 
 
 def change(made: db.PastValues) -> Change:
+    """For the console: a change of a record."""
     return Change(stamp=when(made.stamp), source=made.source, values={**from_parameters(made.values)})
 
 

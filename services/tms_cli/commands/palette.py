@@ -36,6 +36,7 @@ def command(output: Path | None, as_json: bool) -> None:
 
 
 def write(file: Path, text: str) -> None:
+    """Write the palette, or say why the file cannot be written."""
     try:
         file.write_text(text, encoding="utf-8")
     except OSError as error:

@@ -95,5 +95,5 @@ def sample_of(message: "JointState", still: Still) -> Sample:
 
 
 def time_of(stamp: "Time") -> float:
-    """s since 1970."""
+    """S since 1970."""
     return float(stamp.sec + stamp.nanosec * 1e-9)

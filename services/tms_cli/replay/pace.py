@@ -31,7 +31,7 @@ class Pace:
         self._begin, self._begin_wall = self._clock(), self._wall()
 
     def wait(self, moment: int) -> float:
-        """s until a message is due."""
+        """S until a message is due."""
         seconds = self._begin + self._played(moment) - self._clock()
         if seconds < -LATE:
             self._begin -= seconds

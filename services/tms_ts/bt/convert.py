@@ -49,6 +49,7 @@ _LONGEST_NUMBER = 400  # digits; Python's own limit for int() is far above, C's 
 
 
 def text_to_integer(text: str, low: int, high: int) -> int | Missing:
+    """A decimal integer between `low` and `high`; MISSING for anything else."""
     found = _INTEGER.match(text)
     if found is None or len(found[1]) > _LONGEST_NUMBER:
         return MISSING
@@ -57,15 +58,18 @@ def text_to_integer(text: str, low: int, high: int) -> int | Missing:
 
 
 def text_to_int(text: str) -> int | Missing:
+    """As C++ reads an int."""
     return text_to_integer(text, -(2**31), 2**31 - 1)
 
 
 def text_to_unsigned(text: str) -> int | Missing:
+    """As C++ reads an unsigned int: a negative number wraps around."""
     number = text_to_integer(text, -(2**64) + 1, 2**64 - 1)
     return number if isinstance(number, Missing) else number & 0xFFFFFFFF  # -1 wraps, as in C
 
 
 def text_to_double(text: str) -> float | Missing:
+    """As C++ reads a double in the locale C."""
     found = _REAL.match(text)
     if found is None:
         return MISSING
@@ -85,12 +89,14 @@ def text_to_double(text: str) -> float | Missing:
 
 
 def text_to_bool(text: str) -> bool | Missing:
+    """As the library reads a bool: true, false, 1, 0 and their capital forms."""
     if text in TRUE_WORDS:
         return True
     return False if text in FALSE_WORDS else MISSING
 
 
 def text_to_status(text: str) -> Status | Missing:
+    """The name of a status."""
     return Status.__members__.get(text, MISSING)
 
 
@@ -112,6 +118,7 @@ FROM_TEXT: Final[dict[Any, Callable[[str], Any]]] = {
 
 
 def to_text(value: object) -> str | Missing:
+    """The text that the library makes of a value; MISSING where it makes none."""
     if isinstance(value, str):
         return value
     if isinstance(value, Status):

@@ -44,11 +44,17 @@ class Source:
 
 
 def line_of(element: etree._Element) -> int:
+    """The line of an element in its file; 0 when the parser does not know it."""
     line: object = element.sourceline
     return line if isinstance(line, int) else 0
 
 
 def read_file(path: Path, limit: int = MAX_BYTES) -> bytes:
+    """The bytes of a file.
+
+    Raises:
+        TreeError: there is no such file, or it is larger than `limit` [bytes].
+    """
     if not path.is_file():
         raise TreeError(NoFile(str(path)))
     with path.open("rb") as file:
@@ -90,6 +96,11 @@ def _set_lines(root: etree._Element, text: str) -> None:
 
 
 def parse(data: bytes | str, *, file: str = "", limit: int = MAX_BYTES) -> Source:
+    """Parse XML from outside.
+
+    Raises:
+        TreeError: it is too large, not in a known encoding, or no well-formed XML; with the line.
+    """
     try:
         text = xml_text.decode(data, limit)
         if "<" not in text:

@@ -220,4 +220,5 @@ class Rules:
 
 
 def ignored(element: etree._Element) -> bool:
+    """Whether the library does not look at an element."""
     return any(above.tag == "SubTreePlus" for above in element.iterancestors())

@@ -32,6 +32,7 @@ def models(tree: Tree) -> list[Model]:
 
 
 def type_name(port: Port) -> str:
+    """The C++ name of a port's type."""
     return CPP_NAMES.get(port.kind, "void")
 
 
@@ -46,14 +47,17 @@ def assignments(node: Node) -> Iterator[tuple[Port, str]]:
 
 
 def default_text(value: object) -> str:
+    """A default value as Groot shows it."""
     if isinstance(value, bool):
         return "true" if value else "false"
     return value.name if hasattr(value, "name") else str(value)
 
 
 def is_input(port: Port) -> bool:
+    """Whether a node reads the port."""
     return port.direction is not Direction.OUTPUT
 
 
 def is_output(port: Port) -> bool:
+    """Whether a node writes the port."""
     return port.direction is not Direction.INPUT

@@ -15,6 +15,7 @@ from tms_ts.bt.status import SUCCESS, Status
 
 
 def typed(text: str) -> str | bool | int | float:
+    """The value that a text stands for: a bool, an integer, a real number, or the text."""
     if text in ("true", "false"):
         return text == "true"
     if re.fullmatch(r"-?[0-9]{1,18}", text):
