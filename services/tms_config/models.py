@@ -5,11 +5,12 @@ from typing import Any, Literal, get_args
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from tms_config import reasons
+from tms_config.extending import extended
 from tms_config.validation import Wrong
 from tms_reason.reason import Reason
 
 Backend = Literal["sim", "opera", "physx"]
-Kind = Literal["backhoe", "crawler_dump", "bulldozer"]
+Kind = Literal["backhoe", "crawler_dump", "bulldozer"]  # as the console draws it
 DRIVE = "drive"  # key of the tracks in `response`
 NAME = r"^[a-z][a-z0-9_]*$"
 # Action that brings one joint to an angle -> the names that models have for this joint.
@@ -152,6 +153,9 @@ class MachineModel(Settings):
     """A type of machine: configs/machines/<model>.yaml."""
 
     kind: Kind
+    planner: str | None = Field(
+        default=None, pattern=NAME
+    )  # a folder of services/tms_rp/kinds; absent: plans no motions
     joints: dict[str, Joint]
     geometry: dict[str, Origin]
     footprint: dict[str, Box] = {}  # what other machines must not touch, base_link
@@ -172,6 +176,11 @@ class MachineModel(Settings):
     def turned(self, action: str) -> str | None:
         """The joint that an action like set_dump_angle moves; None if the model has none."""
         return next((name for name in TURNED.get(action, ()) if name in self.joints), None)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _borders_extended(cls, data: Any) -> Any:
+        return {**data, "borders": extended(data["borders"])} if isinstance(data.get("borders"), dict) else data
 
     @model_validator(mode="after")
     def _names_fit(self) -> "MachineModel":

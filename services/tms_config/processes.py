@@ -7,7 +7,7 @@ from tms_config import pcs
 from tms_config.config import CONFIGS, Site
 from tms_config.models import MachineModel
 from tms_config.pcs import Role
-from tms_config.reasons import BadFile, NoProcess, NoService, NoSubtaskFile, ProcessMeant, SameName, SeveralProcesses
+from tms_config.reasons import BadFile, NoCodeFile, NoProcess, NoService, ProcessMeant, SameName, SeveralProcesses
 from tms_config.yaml_file import located
 from tms_reason.errors import ConfigError
 
@@ -124,7 +124,8 @@ def _machine(site: Site, machine: str) -> list[Process]:
     if site.file.backend == "sim":
         rows.append(Process("sim", machine, "sim", "tms_sim.node", 0, f"stand-in for {machine}", machine))
     rows.append(Process(machine, "rc", use.role, "tms_rc.node", 0, "gateway: every motion passes it", machine))
-    if model.kind == "backhoe":
+    if model.planner is not None:
+        _require(site, machine, f"tms_rp/kinds/{model.planner}/__init__.py", "planner")
         rows.append(Process(machine, "rp", use.role, "tms_rp.node", 0, "plans motions", machine))
     rows += [_subtask(site, machine, model, action) for action in model.subtasks]
     return rows
@@ -132,10 +133,15 @@ def _machine(site: Site, machine: str) -> list[Process]:
 
 def _subtask(site: Site, machine: str, model: MachineModel, action: str) -> Process:
     file = model.subtask(action).run
-    if not (CONFIGS.parent / "services" / "tms_subtasks" / f"{file}.py").exists():
-        where = CONFIGS / "machines" / f"{site.file.machines[machine].model}.yaml"
-        raise ConfigError(located(where, NoSubtaskFile(file), "subtasks", action))
+    _require(site, machine, f"tms_subtasks/{file}.py", "subtasks", action)
     return Process(
         machine, action, site.file.machines[machine].role, "tms_machine.subtask_server", 0,
         f"subtask {file}", machine, action, autostart=False,
     )  # fmt: skip
+
+
+def _require(site: Site, machine: str, path: str, *keys: str) -> None:
+    """A machine file names a file of ours, which must be there."""
+    if not (CONFIGS.parent / "services" / path).exists():
+        where = CONFIGS / "machines" / f"{site.file.machines[machine].model}.yaml"
+        raise ConfigError(located(where, NoCodeFile(path), *keys))

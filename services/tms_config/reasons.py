@@ -43,6 +43,7 @@ class EmptyFile(Reason, text="is empty", action=EDIT_CONFIG): pass
 class NoYaml(Reason, text="is no YAML: {problem}", action=EDIT_CONFIG): problem: str
 class KeyTwice(Reason, text="key '{name}' is there twice", action=EDIT_CONFIG): name: str
 class NoKey(Reason, text="a key is itself a mapping or a list", action=KEY_AS_TEXT): pass
+class NoMerge(Reason, text="only a mapping, or a list of mappings, can be merged with <<", action=EDIT_CONFIG): pass
 
 # keys and values
 class UnknownKey(Reason, text="unknown key", action=EDIT_CONFIG): pass
@@ -68,7 +69,10 @@ class NoMover(Reason, text="{name} is no joint that moves, nor 'drive'", action=
 class NoParent(Reason, text="no joint above it has '{parent}' as its child", action=EDIT_CONFIG): parent: str
 class NoSourceFacts(Reason, text="is missing: the border has this topic", action=SAY_SOURCE): pass
 class NoTopic(Reason, text="the border has no topic '{name}'", action=EDIT_CONFIG): name: str
-class NoSubtaskFile(Reason, text="there is no file services/tms_subtasks/{name}.py", action=EDIT_CONFIG): name: str
+class ExtendsNothing(Reason, text="there is no border '{name}' to extend, only {known}", action=EDIT_CONFIG):
+    name: str; known: tuple[str, ...]
+class ExtendsItself(Reason, text="the border '{name}' extends itself by way of others", action=EDIT_CONFIG): name: str
+class NoCodeFile(Reason, text="there is no file services/{path}", action=EDIT_CONFIG): path: str
 
 # the site
 class NoMachine(Reason, text="the site has no machine '{machine}' (there: {machines})",

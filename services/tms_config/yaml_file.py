@@ -16,6 +16,7 @@ from tms_reason.errors import ConfigError
 from tms_reason.reason import Reason
 
 T = TypeVar("T", bound=Settings)
+MERGE = "tag:yaml.org,2002:merge"
 MAX_SHOWN = 5  # problems of one file
 
 
@@ -32,15 +33,27 @@ class _Loader(yaml.CSafeLoader):
 
 
 def _mapping(loader: _Loader, node: yaml.MappingNode) -> dict[Any, Any]:
+    merged: dict[Any, Any] = {}
     seen: dict[Any, Any] = {}
     for key_node, value_node in node.value:
+        if key_node.tag == MERGE:  # `<<: *other`: the keys of the other mapping, but for those given here
+            for other in value_node.value if isinstance(value_node, yaml.SequenceNode) else [value_node]:
+                merged = {**_merged(loader, other, key_node.start_mark), **merged}
+            continue
         key = loader.construct_object(key_node, deep=True)
         if not isinstance(key, Hashable):  # `{{ address }}` is a mapping as key of a mapping
             raise _BadMapping(reasons.NoKey(), key_node.start_mark)
         if key in seen:
             raise _BadMapping(reasons.KeyTwice(str(key)), key_node.start_mark)
         seen[key] = loader.construct_object(value_node, deep=True)
-    return seen
+    return {**merged, **seen}
+
+
+def _merged(loader: _Loader, node: yaml.Node, mark: yaml.Mark) -> dict[Any, Any]:
+    found: object = loader.construct_object(node, deep=True)
+    if not isinstance(found, dict):
+        raise _BadMapping(reasons.NoMerge(), mark)
+    return found
 
 
 _Loader.add_constructor(yaml.resolver.BaseResolver.DEFAULT_MAPPING_TAG, _mapping)

@@ -13,7 +13,7 @@ class Permits:
 
     def __init__(self, app: App, changed: Callable[[Link], None]) -> None:
         model = app.site.model_of(app.machine)
-        names = [SCHEDULER, *(["rp"] if model.kind == "backhoe" else []), *model.subtasks]
+        names = [SCHEDULER, *(["rp"] if model.planner else []), *model.subtasks]
         self._links: list[Link] = []
 
         def listen() -> None:

@@ -1,14 +1,11 @@
-"""Process `<machine>:rp`: plans an excavator's motions and has the machine's gateway execute them."""
+"""Process `<machine>:rp`: plans motions and has the machine's gateway execute them."""
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 from control_msgs.action import FollowJointTrajectory
 from prometheus_client import Histogram
 from sensor_msgs.msg import JointState
-from tms_msg_rp.action import TmsRpZx200ChangePose, TmsRpZx200ExcavateSimple, TmsRpZx200ReleaseSimple
 from tms_msg_rp.msg import TmsRpErrorCodes
 
 from tms_config.clock import monotonic
@@ -21,10 +18,9 @@ from tms_reason.texts import text
 from tms_ros.goals import Ended, Outcome
 from tms_ros.naming import process_of
 from tms_ros.server import AnyGoal
-from tms_rp import messages
 from tms_rp.clearance import Clearance
-from tms_rp.kinds.backhoe import NAMES, Backhoe, Moves
-from tms_rp.linkage import Pose
+from tms_rp.kind import Action, Angles, Moves
+from tms_rp.kinds import load
 from tms_rp.mover import Mover
 from tms_rp.neighbours import Neighbours
 from tms_rp.reasons import (
@@ -45,45 +41,12 @@ JOINTS_PERIOD = 0.25  # s between looks at joint states, to know their age
 
 PLANNING = Histogram("tms_rp_planning_seconds", "From goal to trajectory", buckets=(0.001, 0.005, 0.02, 0.05, 0.2, 1))
 
-Plan = Callable[[Backhoe, Pose, Any], Moves]
-
-
-@dataclass(frozen=True)
-class Action:
-    """One action that is served: how its goal becomes moves, and whether they are executed."""
-
-    name: str
-    type: Any  # all have the same result and feedback
-    plan: Plan
-    moves: bool
-
-
-def _change_pose(planner: Backhoe, now: Pose, request: TmsRpZx200ChangePose.Goal) -> Moves:
-    return planner.change_pose(now, messages.change_pose(request))
-
-
-def _excavate(planner: Backhoe, now: Pose, request: TmsRpZx200ExcavateSimple.Goal) -> Moves:
-    return planner.excavate(now, messages.tip(request.position_with_angle))
-
-
-def _release(planner: Backhoe, now: Pose, request: TmsRpZx200ReleaseSimple.Goal) -> Moves:
-    return planner.release(now, request.target_angle)
-
-
-ACTIONS = (
-    Action("change_pose", TmsRpZx200ChangePose, _change_pose, True),
-    Action("change_pose_plan", TmsRpZx200ChangePose, _change_pose, False),
-    Action("excavate_simple", TmsRpZx200ExcavateSimple, _excavate, True),
-    Action("excavate_simple_plan", TmsRpZx200ExcavateSimple, _excavate, False),
-    Action("release_simple", TmsRpZx200ReleaseSimple, _release, True),
-)
-
 
 def start(app: App) -> None:
     """Serve `/<machine>/tms_rp_<model>_<action>`."""
     planner, model = Planner(app), app.site.file.machines[app.machine].model
     app.ros.poll_in_thread(JOINTS_PERIOD, planner.look, "joints")
-    for action in ACTIONS:
+    for action in planner.kind.actions:
         planner.serve(action, f"/{app.machine}/tms_rp_{model}_{action.name}")
     app.ready_when(planner.unready)
 
@@ -94,7 +57,9 @@ class Planner:
     def __init__(self, app: App) -> None:
         self._app = app
         self._model = app.site.model_of(app.machine)
-        self._backhoe = Backhoe(self._model)
+        assert self._model.planner is not None  # else the process table has no planner for the machine
+        self.kind = load(self._model.planner)
+        self._planner = self.kind.planner(self._model)
         self._clearance, self._neighbours = Clearance(self._model), Neighbours(app)
         self._rc = app.ros.peer(FollowJointTrajectory, f"/{app.machine}/rc/follow_joint_trajectory")
         watch_server(app.ros, app.pulse, app.machine, "rc")(self._rc)
@@ -102,7 +67,7 @@ class Planner:
         self._mover = Mover(self._rc)
         self._renamed = app.site.border(app.machine).joints
         self._busy = False  # set on the executor thread, which accepts one goal after another
-        self._now: tuple[float, Pose] | None = None  # monotonic time [s], joints
+        self._now: tuple[float, Angles] | None = None  # monotonic time [s], joints
         self._samples = app.ros.sample(JointState, f"/{app.machine}/{app.site.border(app.machine).joint_states}")
 
     def look(self) -> None:
@@ -114,9 +79,9 @@ class Planner:
         """Joint states are matched by name: backends order them differently."""
         found = dict(zip(message.name, message.position, strict=False))
         found.update({name: found[own] for name, own in self._renamed.items() if own in found})
-        angles = [found.get(name, math.nan) for name in NAMES]
+        angles = [found.get(name, math.nan) for name in self.kind.joints]
         if all(map(math.isfinite, angles)):
-            self._now = (monotonic(), Pose(*angles))
+            self._now = (monotonic(), tuple(angles))
 
     def unready(self) -> Reason | None:
         """Why no motion can be planned and executed now."""
@@ -126,7 +91,7 @@ class Planner:
             return error.reason
         return None if self._rc.ready() else GatewayAway(process_of(self._rc.name), self._rc.name)
 
-    def joints(self) -> Pose:
+    def joints(self) -> Angles:
         """Where the arm is.
 
         Raises:
@@ -136,7 +101,7 @@ class Planner:
         last = self._now
         topic = f"/{self._app.machine}/{self._app.site.border(self._app.machine).joint_states}"
         if last is None:
-            raise SubtaskFailed(JointsUnheard(self._app.machine, topic, NAMES))
+            raise SubtaskFailed(JointsUnheard(self._app.machine, topic, self.kind.joints))
         age = monotonic() - last[0]
         if age > FRESH:
             raise SubtaskFailed(JointsOld(self._app.machine, age, topic))
@@ -191,7 +156,7 @@ class Planner:
         """The trajectory, and what of the goal was changed for it."""
         begun = monotonic()
         now = self.joints()
-        moves = action.plan(self._backhoe, now, goal.request)
+        moves = action.plan(self._planner, now, goal.request)
         made = self._trajectory(now, moves)
         self._clearance.check(made, self._neighbours.obstacles())
         seconds = monotonic() - begun
@@ -207,11 +172,11 @@ class Planner:
         )
         return made, moves.notes
 
-    def _trajectory(self, now: Pose, moves: Moves) -> Trajectory:
+    def _trajectory(self, now: Angles, moves: Moves) -> Trajectory:
         """Through all targets; joints that no kind of goal moves (the tool frame) stay at 0."""
 
-        def all_joints(pose: Pose) -> tuple[float, ...]:
-            angles = dict(zip(NAMES, pose, strict=True))
+        def all_joints(pose: Angles) -> tuple[float, ...]:
+            angles = dict(zip(self.kind.joints, pose, strict=True))
             return tuple(angles.get(name, 0.0) for name in self._model.joints)
 
         return trajectory(self._model.joints, all_joints(now), [all_joints(pose) for pose in moves.targets])

@@ -20,9 +20,9 @@ from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
 from tms_reason.errors import SubtaskFailed
 from tms_rp.clearance import Clearance, Obstacle, placed
-from tms_rp.goals import TipGoal
-from tms_rp.kinds.backhoe import Backhoe
-from tms_rp.linkage import Pose
+from tms_rp.kinds.backhoe.goals import TipGoal
+from tms_rp.kinds.backhoe.linkage import Pose
+from tms_rp.kinds.backhoe.planner import Backhoe
 from tms_rp.trajectory import trajectory
 
 GOALS = 500
@@ -32,6 +32,7 @@ import re, pathlib, sys
 sys.path[:0] = ["services", "tests"]
 import rclpy
 if sys.argv[1] == "all":
+    import tms_rp.kinds.backhoe
     import tms_rp.node
     from bench.planning import plan_all
     plan_all()

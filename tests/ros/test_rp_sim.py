@@ -30,7 +30,7 @@ from tms_reason.reason import R
 from tms_ros.client import Call
 from tms_ros.goals import Outcome
 from tms_ros.node import Ros
-from tms_rp.kinds.backhoe import NAMES as ARM
+from tms_rp.kinds.backhoe.planner import NAMES as ARM
 from tms_rp.reasons import JointBroken, JointsOld, JointsUnheard, MoveOf, OtherAngle, OutOfRange
 
 pytestmark = [

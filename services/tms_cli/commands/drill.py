@@ -52,7 +52,7 @@ def own_state(site: Site) -> None:
 
 def planned(site: Site, seed: int, rounds: int, quick: bool, only: str | None = None) -> list[list[Trial]]:
     """What is tried on this site."""
-    planners = {name: site.model_of(name).kind == "backhoe" for name in site.file.machines}
+    planners = {name: site.model_of(name).planner is not None for name in site.file.machines}
     return plan(seed, planners, rounds, quick) if only is None else plan_only(seed, planners, only, rounds)
 
 

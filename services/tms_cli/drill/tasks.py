@@ -22,7 +22,7 @@ Leaves = list[tuple[str, str]]  # subtask, record
 def task(site: Site, machine: str) -> tuple[str, Records]:
     """The tree, and records by name."""
     model = site.model_of(machine)
-    leaves, records = _arm(model) if model.kind == "backhoe" else _tracks(site, machine, model)
+    leaves, records = _arm(model) if model.planner else _tracks(site, machine, model)
     actions = "".join(
         f"<Action ID={quoteattr(f'LeafNode{site.file.machines[machine].model.capitalize()}')} "
         f"model_name={quoteattr(machine)} subtask_name={quoteattr(subtask)} record_name={quoteattr(record)}/>"

@@ -1,1 +1,11 @@
-"""One module for each kind of machine that plans motions."""
+"""One folder for each kind of machine that plans motions; `planner:` of a machine file names it."""
+
+from importlib import import_module
+
+from tms_rp.kind import Kind
+
+
+def load(name: str) -> Kind:
+    """The kind of this name; the process table has checked that it is there."""
+    found: Kind = import_module(f"{__name__}.{name}").KIND
+    return found

@@ -1,6 +1,8 @@
 """Configuration errors name the file, the key and what is wrong."""
 
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 import yaml
@@ -24,6 +26,7 @@ from tms_config.reasons import (
     KeyTwice,
     MissingKey,
     NoBorder,
+    NoCodeFile,
     NoDomain,
     NoKey,
     NoMachine,
@@ -265,6 +268,28 @@ def test_a_model_without_the_border_of_the_site(tmp_path: Path) -> None:
     found = refused(file)
     assert isinstance(found, BadKey) and found.file.endswith("configs/machines/d37pxi.yaml")
     assert (found.key, found.problem) == ("borders", NoBorder("physx", file))
+
+
+@pytest.mark.parametrize(
+    ("change", "key", "path"),
+    [
+        ({"planner": "crane"}, "planner", "tms_rp/kinds/crane/__init__.py"),
+        ({"subtasks": {"wave": "wave_the_flag"}}, "subtasks.wave", "tms_subtasks/wave_the_flag.py"),
+    ],
+)
+def test_a_model_that_names_code_that_is_not_there(tmp_path: Path, change: dict[str, Any], key: str, path: str) -> None:
+    loaded = load_site(site(tmp_path))
+    models = {"zx200": loaded.models["zx200"].model_copy(update=change)}
+    with pytest.raises(ConfigError) as caught:
+        table(replace(loaded, models=models))
+    found = caught.value.reason
+    assert isinstance(found, BadKey) and found.file.endswith("configs/machines/zx200.yaml")
+    assert (found.key, found.problem) == (key, NoCodeFile(path))
+
+
+def test_a_machine_without_a_planner_has_no_planning_process(tmp_path: Path) -> None:
+    names = {row.full for row in table(load_site(site(tmp_path, machines={"d": {"model": "d37pxi"}})))}
+    assert "d:rc" in names and "d:rp" not in names
 
 
 def test_one_line_adds_a_machine(tmp_path: Path) -> None:

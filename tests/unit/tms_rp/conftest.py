@@ -5,7 +5,7 @@ import pytest
 from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
-from tms_rp.kinds.backhoe import Backhoe
+from tms_rp.kinds.backhoe.planner import Backhoe
 
 
 @pytest.fixture(scope="session")

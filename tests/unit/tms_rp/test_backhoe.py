@@ -12,9 +12,9 @@ from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
 from tms_reason.errors import ConfigError, SubtaskFailed
-from tms_rp.goals import ChangePose, LinkGoal, TipGoal, joint_goal
-from tms_rp.kinds.backhoe import Backhoe
-from tms_rp.linkage import Pose
+from tms_rp.kinds.backhoe.goals import ChangePose, LinkGoal, TipGoal, joint_goal
+from tms_rp.kinds.backhoe.linkage import Pose
+from tms_rp.kinds.backhoe.planner import Backhoe
 from tms_rp.reasons import ClearanceCut
 from words import words
 

@@ -11,7 +11,7 @@ from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
-from tms_rp.linkage import Linkage, Pose, Tip, wrap
+from tms_rp.kinds.backhoe.linkage import Linkage, Pose, Tip, wrap
 from tms_rp.reasons import TooFar, TooNear, TooNearAxis
 
 LINKAGE = Linkage.of(parse(CONFIGS / "machines" / "zx200.yaml", MachineModel).geometry)

@@ -9,12 +9,12 @@ from hypothesis import strategies as st
 from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
-from tms_rp.linkage import Linkage, Pose, wrap
+from tms_rp.kinds.backhoe.linkage import Linkage, Pose, wrap
 
 EXCAVATORS = {
     path.stem: model
     for path in sorted((CONFIGS / "machines").glob("*.yaml"))
-    if (model := parse(path, MachineModel)).kind == "backhoe"
+    if (model := parse(path, MachineModel)).planner == "backhoe"
 }
 share = st.floats(0.01, 0.99)
 

@@ -2,15 +2,15 @@
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 
 from tms_config.models import MachineModel
 from tms_machine import geometry
 from tms_machine.reasons import NoSuchJoint
 from tms_reason.errors import ConfigError, SubtaskFailed
 from tms_reason.reason import Reason
-from tms_rp.goals import ChangePose, LinkGoal, TipGoal, finite
-from tms_rp.linkage import Linkage, Pose, Tip, wrap
+from tms_rp.kind import Moves
+from tms_rp.kinds.backhoe.goals import ChangePose, LinkGoal, TipGoal, finite
+from tms_rp.kinds.backhoe.linkage import Linkage, Pose, Tip, wrap
 from tms_rp.reasons import (
     ClearanceCut,
     JointBroken,
@@ -35,14 +35,6 @@ CLEAR_ARM = 0.1  # rad, arm curls in by this much when the bucket closes or open
 CLEAR_BOOM = -0.15  # rad, boom rises by this much when the bucket opens
 EMPTY = 1e-3  # length of a quaternion that nobody has filled in; others are brought to 1, as MoveIt does
 OUT_OF_PLANE = 0.05  # rad, how far an orientation may point out of the arm's plane
-
-
-@dataclass(frozen=True)
-class Moves:
-    """Joint targets one after another, each reached at rest, and what the planner changed in the goal."""
-
-    targets: tuple[Pose, ...]
-    notes: tuple[Reason, ...] = ()
 
 
 class Backhoe:

@@ -1,0 +1,40 @@
+"""What a kind of machine brings so that its motions are planned: one folder of `kinds`, whose KIND this is."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from tms_config.models import MachineModel
+from tms_reason.reason import Reason
+
+Angles = tuple[float, ...]  # rad, of the joints of the kind in their order
+
+
+@dataclass(frozen=True)
+class Moves:
+    """Joint targets one after another, each reached at rest, and what the planner changed in the goal."""
+
+    targets: tuple[Angles, ...]
+    notes: tuple[Reason, ...] = ()
+
+
+@dataclass(frozen=True)
+class Action:
+    """One action that is served: how its goal becomes moves, and whether they are executed.
+
+    `plan` gets the planner, the present angles and the goal; it raises SubtaskFailed with a reason.
+    """
+
+    name: str
+    type: Any  # all have the same result and feedback
+    plan: Callable[[Any, Any, Any], Moves]
+    moves: bool
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of machine whose motions are planned."""
+
+    joints: tuple[str, ...]  # that goals move
+    planner: Callable[[MachineModel], Any]  # raises ConfigError: the model is not of this kind
+    actions: tuple[Action, ...]

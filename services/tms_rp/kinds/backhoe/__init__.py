@@ -1,0 +1,33 @@
+"""Excavators: an arm on an upper body that turns."""
+
+from tms_msg_rp.action import TmsRpZx200ChangePose, TmsRpZx200ExcavateSimple, TmsRpZx200ReleaseSimple
+
+from tms_rp.kind import Action, Kind, Moves
+from tms_rp.kinds.backhoe import messages
+from tms_rp.kinds.backhoe.linkage import Pose
+from tms_rp.kinds.backhoe.planner import NAMES, Backhoe
+
+
+def _change_pose(planner: Backhoe, now: Pose, request: TmsRpZx200ChangePose.Goal) -> Moves:
+    return planner.change_pose(now, messages.change_pose(request))
+
+
+def _excavate(planner: Backhoe, now: Pose, request: TmsRpZx200ExcavateSimple.Goal) -> Moves:
+    return planner.excavate(now, messages.tip(request.position_with_angle))
+
+
+def _release(planner: Backhoe, now: Pose, request: TmsRpZx200ReleaseSimple.Goal) -> Moves:
+    return planner.release(now, request.target_angle)
+
+
+KIND = Kind(
+    NAMES,
+    Backhoe,
+    (
+        Action("change_pose", TmsRpZx200ChangePose, _change_pose, True),
+        Action("change_pose_plan", TmsRpZx200ChangePose, _change_pose, False),
+        Action("excavate_simple", TmsRpZx200ExcavateSimple, _excavate, True),
+        Action("excavate_simple_plan", TmsRpZx200ExcavateSimple, _excavate, False),
+        Action("release_simple", TmsRpZx200ReleaseSimple, _release, True),
+    ),
+)
