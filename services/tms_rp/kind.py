@@ -27,7 +27,7 @@ class Action:
 
     name: str
     type: Any  # all have the same result and feedback
-    plan: Callable[[Any, Any, Any], Moves]
+    plan: Callable[[Any, Angles, Any], Moves]
     moves: bool
 
 

@@ -2,22 +2,22 @@
 
 from tms_msg_rp.action import TmsRpZx200ChangePose, TmsRpZx200ExcavateSimple, TmsRpZx200ReleaseSimple
 
-from tms_rp.kind import Action, Kind, Moves
+from tms_rp.kind import Action, Angles, Kind, Moves
 from tms_rp.kinds.backhoe import messages
 from tms_rp.kinds.backhoe.linkage import Pose
 from tms_rp.kinds.backhoe.planner import NAMES, Backhoe
 
 
-def _change_pose(planner: Backhoe, now: Pose, request: TmsRpZx200ChangePose.Goal) -> Moves:
-    return planner.change_pose(now, messages.change_pose(request))
+def _change_pose(planner: Backhoe, now: Angles, request: TmsRpZx200ChangePose.Goal) -> Moves:
+    return planner.change_pose(Pose(*now), messages.change_pose(request))
 
 
-def _excavate(planner: Backhoe, now: Pose, request: TmsRpZx200ExcavateSimple.Goal) -> Moves:
-    return planner.excavate(now, messages.tip(request.position_with_angle))
+def _excavate(planner: Backhoe, now: Angles, request: TmsRpZx200ExcavateSimple.Goal) -> Moves:
+    return planner.excavate(Pose(*now), messages.tip(request.position_with_angle))
 
 
-def _release(planner: Backhoe, now: Pose, request: TmsRpZx200ReleaseSimple.Goal) -> Moves:
-    return planner.release(now, request.target_angle)
+def _release(planner: Backhoe, now: Angles, request: TmsRpZx200ReleaseSimple.Goal) -> Moves:
+    return planner.release(Pose(*now), request.target_angle)
 
 
 KIND = Kind(
