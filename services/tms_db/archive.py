@@ -17,8 +17,8 @@ import bson
 from bson import json_util
 from bson.errors import BSONError
 from bson.int64 import Int64
+from fastcrc import crc64
 
-from tms_db.crc64 import Crc64
 from tms_db.reasons import (
     ArchiveChecksum,
     ArchiveCut,
@@ -75,16 +75,16 @@ class Writer:
 
     def collection(self, name: str, documents: Iterator[bytes]) -> None:
         """All documents of a collection, as BSON."""
-        crc, begun = Crc64(), False
+        crc, begun = 0, False
         for document in documents:
             if not begun:
                 self._segment(name, 0, last=False)
                 begun = True
-            crc.update(document)
+            crc = crc64.xz(document, crc)
             self._put(document)
         if begun:
             self._put(END)
-        self._segment(name, crc.signed(), last=True)
+        self._segment(name, signed(crc), last=True)
         self._put(END)
 
     def _segment(self, name: str, crc: int, last: bool) -> None:
@@ -95,6 +95,11 @@ class Writer:
 
     def _put(self, data: bytes) -> None:
         self._file.write(data)
+
+
+def signed(crc: int) -> int:
+    """A checksum (CRC-64/ECMA as Go has it, which is the one of xz) as the signed 64-bit number that BSON holds."""
+    return crc - 2**64 if crc >> 63 else crc
 
 
 class Reader:
@@ -115,21 +120,20 @@ class Reader:
 
     def documents(self) -> Iterator[tuple[Name, bytes]]:
         """Every document with its collection, in the order of the file."""
-        sums: dict[Name, Crc64] = {}
+        sums: dict[Name, int] = {}
         ended: set[Name] = set()
         while (found := self._document(may_end=True)) is not None:
             head = self._decoded(found)
             name = self._name(head)
             if name in ended or name not in self.names:
                 raise self._wrong(ArchiveMisplaced(".".join(name)))
-            crc = sums.setdefault(name, Crc64())
             while (document := self._document()) is not None:
                 self._decoded(document)
-                crc.update(document)
+                sums[name] = crc64.xz(document, sums.get(name, 0))
                 yield name, document
             if head.get("EOF"):
                 ended.add(name)
-                if crc.signed() != head.get("CRC"):
+                if signed(sums.get(name, 0)) != head.get("CRC"):
                     raise self._wrong(ArchiveChecksum(".".join(name)))
         missing = [".".join(name) for name in self.names if name not in ended]
         if missing:

@@ -4,6 +4,7 @@ The store takes about a millisecond for each update however they are sent, so wh
 moment becomes one update. Callers wait for the writer's next round; what failed they send again.
 """
 
+import math
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -19,9 +20,11 @@ from tms_db.reasons import ManyRecordsWait, StoreDown, StoreRefusedUpdate, Store
 from tms_db.record_cache import Key
 from tms_db.records import Document, Value
 from tms_db.store import Db, errors
+from tms_db.worker import Worker
 from tms_reason.errors import DbError
 from tms_runtime.log import Logger
 
+END_LIMIT = 1.0  # s that the last round may take
 LINGER = 0.25  # s that updates of sensing wait for company
 WAITING = 10_000  # records whose updates may wait at the same time
 SETTLE_LIMIT = 4.0  # s for a round of the writer, a little more than the store may take to answer
@@ -63,19 +66,15 @@ class Batches:
         self._waiting: dict[Key, Update] = {}
         self._written: dict[Key, Update] = {}  # by the round that runs now
         self._callers: list[Done] = []
-        self._hurry = self._stopping = False
         self.gone = threading.Event()  # a record was not there any more
-        self._thread = threading.Thread(target=self._run, name="batches", daemon=True)
+        self._worker = Worker("batches", self._write_round, first=math.inf, finish=True)
 
     def start(self) -> None:
-        self._thread.start()
+        self._worker.start()
 
     def stop(self) -> None:
         """Write what waits and end."""
-        with self._changed:
-            self._stopping = True
-            self._changed.notify_all()
-        self._thread.join(1.0)
+        self._worker.stop(END_LIMIT)
 
     def put(self, updates: dict[Key, Update], done: Done, hurry: bool) -> None:
         """Take updates; `done` is reported when they are stored or why not.
@@ -89,9 +88,8 @@ class Batches:
             for key, update in updates.items():
                 self._add(key, update)
             self._callers.append(done)
-            self._hurry |= hurry
             PENDING.set(len(self._waiting))
-            self._changed.notify_all()
+        self._worker.wake(0.0 if hurry else LINGER)
 
     def _add(self, key: Key, update: Update) -> None:
         before = self._waiting.get(key)
@@ -113,27 +111,24 @@ class Batches:
             DbError: STORE_DOWN; it takes too long.
         """
         with self._changed:
-            self._hurry |= key in self._waiting
-            self._changed.notify_all()
+            if key in self._waiting:
+                self._worker.wake()
             if not self._changed.wait_for(lambda: not (key in self._waiting or key in self._written), SETTLE_LIMIT):
                 raise DbError(StoreDown(StoreSlow()))
 
-    def _run(self) -> None:
-        while True:
-            with self._changed:
-                self._changed.wait_for(lambda: self._callers or self._stopping)
-                if not self._callers:
-                    return
-                self._changed.wait_for(lambda: self._hurry or self._stopping, LINGER)
-                callers, self._callers = self._callers, []
-                self._written, self._waiting, self._hurry = self._waiting, {}, False
-                PENDING.set(0)
-            problem = self._write(list(self._written.values()))
-            with self._changed:
-                self._written = {}
-                self._changed.notify_all()
-            for done in callers:
-                done(problem)
+    def _write_round(self) -> float:
+        """Store all that waits; answers math.inf, as `put` says when the next round is due."""
+        with self._changed:
+            callers, self._callers = self._callers, []
+            self._written, self._waiting = self._waiting, {}
+            PENDING.set(0)
+        problem = self._write(list(self._written.values()))
+        with self._changed:
+            self._written = {}
+            self._changed.notify_all()
+        for done in callers:
+            done(problem)
+        return math.inf
 
     def _write(self, updates: list[Update]) -> DbError | None:
         if not updates:

@@ -1,6 +1,5 @@
 """Keeps the store's connection: knows whether it is up, and brings it back in the background."""
 
-import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -8,6 +7,7 @@ from prometheus_client import Gauge
 from pymongo.errors import PyMongoError
 
 from tms_db import schema, store
+from tms_db.worker import Worker
 from tms_reason.errors import DbError
 from tms_reason.reason import Reason
 from tms_runtime.log import Logger
@@ -25,17 +25,15 @@ class Connection:
         self._db, self._address, self._log = db, address, log
         self._trouble: DbError | None = store.down()  # until the first attempt says otherwise
         self._reported = ""  # code of the trouble that the log has told, so that it tells it once
-        self._lost = threading.Event()
-        self._stopping = threading.Event()
-        self._thread = threading.Thread(target=self._keep, name="store", daemon=True)
+        self._wait = FIRST_WAIT
+        self._worker = Worker("store", self._keep)
 
     def start(self) -> None:
         """Begin to connect; returns at once."""
-        self._thread.start()
+        self._worker.start()
 
     def stop(self) -> None:
-        self._stopping.set()
-        self._lost.set()
+        self._worker.stop()
         self._db.client.close()
 
     def unready(self) -> Reason | None:
@@ -63,22 +61,18 @@ class Connection:
         self._report(trouble)
         self._trouble = trouble
         UP.set(False)
-        self._lost.set()
+        self._worker.wake()
 
-    def _keep(self) -> None:
-        wait = FIRST_WAIT
-        while not self._stopping.is_set():
-            self._lost.clear()
-            trouble = self._attempt()
-            self._report(trouble)
-            self._trouble = trouble
-            UP.set(trouble is None)
-            if trouble is None:
-                wait = FIRST_WAIT
-                self._lost.wait(IDLE_CHECK_PERIOD)
-            else:
-                self._stopping.wait(wait)
-                wait = min(2 * wait, LAST_WAIT)
+    def _keep(self) -> float:
+        trouble = self._attempt()
+        self._report(trouble)
+        self._trouble = trouble
+        UP.set(trouble is None)
+        if trouble is None:
+            self._wait = FIRST_WAIT
+            return IDLE_CHECK_PERIOD
+        wait, self._wait = self._wait, min(2 * self._wait, LAST_WAIT)
+        return wait
 
     def _attempt(self) -> DbError | None:
         try:
@@ -91,12 +85,12 @@ class Connection:
         except DbError as error:
             return error
         except (PyMongoError, RuntimeError):  # the client was closed meanwhile
-            if not self._stopping.is_set():
+            if not self._worker.stopping:
                 raise
         return None
 
     def _report(self, trouble: DbError | None) -> None:
-        if self._stopping.is_set():
+        if self._worker.stopping:
             return
         if trouble is None and self._trouble is not None:
             self._log.info("store_up", address=self._address)

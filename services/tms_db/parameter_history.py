@@ -15,11 +15,13 @@ from tms_db.connection import Connection
 from tms_db.record_cache import Key
 from tms_db.records import Value
 from tms_db.store import Db, errors
+from tms_db.worker import Worker
 from tms_reason.errors import DbError
 from tms_runtime.log import Logger
 
 KEPT = 50  # changes a record
 ROOM = 3 * 2**20  # bytes; the store takes documents of 16 MB, see `_room`
+END_LIMIT = 1.0  # s that the last write may take
 WRITE_PERIOD = 2.0  # s between writes; what sensing changes in between counts as one change
 
 Change = dict[str, Any]  # stamp, source, values
@@ -34,15 +36,13 @@ class ParameterHistory:
         self._storing = threading.Lock()  # while changes are on their way from memory to the store
         self._new: dict[Key, list[Change]] = {}
         self._unclear = False  # nobody knows how much of an earlier write was done
-        self._stopping = threading.Event()
-        self._thread = threading.Thread(target=self._run, name="past", daemon=True)
+        self._worker = Worker("past", self._run, first=WRITE_PERIOD, finish=True)
 
     def start(self) -> None:
-        self._thread.start()
+        self._worker.start()
 
     def stop(self) -> None:
-        self._stopping.set()
-        self._thread.join(1.0)
+        self._worker.stop(END_LIMIT)
 
     def note(self, key: Key, stamp: datetime, source: str, values: Mapping[str, Value], often: bool = False) -> None:
         """Remember one change; returns at once. One that comes `often` takes the place of the one before."""
@@ -73,12 +73,10 @@ class ParameterHistory:
         changes: list[Change] = found.get("changes", [])
         return changes
 
-    def _run(self) -> None:
-        ending = False
-        while not ending:
-            ending = self._stopping.wait(WRITE_PERIOD)
-            with self._storing:
-                self._store_new()
+    def _run(self) -> float:
+        with self._storing:
+            self._store_new()
+        return WRITE_PERIOD
 
     def _store_new(self) -> None:
         with self._lock:

@@ -5,7 +5,6 @@ do all tasks and records. Ages count back from the newest run as well as from th
 or a site that slept for years, loses nothing.
 """
 
-import threading
 from datetime import datetime, timedelta, timezone
 
 from prometheus_client import Counter
@@ -17,6 +16,7 @@ from tms_db.connection import Connection
 from tms_db.machine_states import COLLECTIONS
 from tms_db.reasons import NoStateTime
 from tms_db.store import Db, errors
+from tms_db.worker import Worker
 from tms_reason.errors import DbError
 from tms_runtime.log import Logger
 
@@ -95,26 +95,23 @@ class Retention:
 
     def __init__(self, db: Db, connection: Connection, settings: Store, log: Logger) -> None:
         self._db, self._connection, self._settings, self._log = db, connection, settings, log
-        self._stopping = threading.Event()
-        self._thread = threading.Thread(target=self._run, name="retention", daemon=True)
+        self._worker = Worker("retention", self._run, first=FIRST)
 
     def start(self) -> None:
-        self._thread.start()
+        self._worker.start()
 
     def stop(self) -> None:
-        self._stopping.set()
+        self._worker.stop()
 
-    def _run(self) -> None:
-        wait = FIRST
-        while not self._stopping.wait(wait):
-            wait = RETENTION_PERIOD
-            try:
-                with self._connection.use():
-                    self._look(utc_now())
-            except DbError as error:
-                if error.code != "STORE_DOWN":  # which the connection tells
-                    self._log.warning("retention_waits", code=error.code, reason=error.reason)
-                wait = AGAIN
+    def _run(self) -> float:
+        try:
+            with self._connection.use():
+                self._look(utc_now())
+        except DbError as error:
+            if error.code != "STORE_DOWN":  # which the connection tells
+                self._log.warning("retention_waits", code=error.code, reason=error.reason)
+            return AGAIN
+        return RETENTION_PERIOD
 
     def _look(self, now: datetime) -> None:
         gone: dict[str, int] = {}

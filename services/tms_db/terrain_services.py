@@ -3,6 +3,7 @@
 These types have no error fields: who asks for what is not there gets an empty answer, and the log says why.
 """
 
+import math
 import threading
 
 from prometheus_client import Counter
@@ -14,6 +15,7 @@ from tms_db.connection import Connection
 from tms_db.reasons import NoImageType, TerrainOverRos
 from tms_db.terrain import Stored, Terrain, missing
 from tms_db.terrain_files import IMAGES, bad
+from tms_db.worker import Worker
 from tms_reason.errors import TmsError
 from tms_runtime.app import App
 
@@ -29,22 +31,16 @@ class TerrainServices:
         self._app, self._connection = app, connection
         self._terrain = Terrain(db)
         self._waiting: dict[str, TmsdbGridFS] = {}
-        self._changed = threading.Condition()
-        self._stopping = False
-        self._thread = threading.Thread(target=self._write, name="terrain", daemon=True)
+        self._lock = threading.Lock()
+        self._worker = Worker("terrain", self._write, first=math.inf)
 
     def offer(self) -> None:
         ros = self._app.ros
         ros.offer_slow(TmsdbTerrainImageSrv, "/tms/db/terrain_image", self.image)
         ros.offer_slow(TerrainStaticSrv, "/tms/db/terrain_cloud", self.cloud)
         ros.subscribe(TmsdbGridFS, f"/{TOPIC}", self.received)
-        self._app.on_stop(self.stop)
-        self._thread.start()
-
-    def stop(self) -> None:
-        with self._changed:
-            self._stopping = True
-            self._changed.notify_all()
+        self._app.on_stop(self._worker.stop)
+        self._worker.start()
 
     def image(
         self, request: TmsdbTerrainImageSrv.Request, response: TmsdbTerrainImageSrv.Response
@@ -82,27 +78,26 @@ class TerrainServices:
     def received(self, message: TmsdbGridFS) -> None:
         """A cloud from sensing; on the executor thread."""
         name = message.filename or message.type
-        with self._changed:
+        with self._lock:
             full = len(self._waiting) >= NAMES and name not in self._waiting
             CLOUDS.labels("dropped" if full or name in self._waiting else "taken").inc()
             if not full:
                 self._waiting[name] = message
-                self._changed.notify_all()
+        self._worker.wake()
 
-    def _write(self) -> None:
-        while True:
-            with self._changed:
-                self._changed.wait_for(lambda: self._waiting or self._stopping)
-                if self._stopping:
-                    return
-                name, message = next(iter(self._waiting.items()))
-                del self._waiting[name]
+    def _write(self) -> float:
+        with self._lock:
+            waiting, self._waiting = self._waiting, {}
+        for name, message in waiting.items():
+            if self._worker.stopping:
+                break
             try:
                 with self._connection.use():
                     self._store(name, message)
             except TmsError as error:
                 CLOUDS.labels("refused").inc()
                 self._refused(TOPIC, error)
+        return math.inf
 
     def _store(self, name: str, message: TmsdbGridFS) -> None:
         if message.type != "dynamic":

@@ -4,7 +4,6 @@ A change stream tells of everybody's writes, also of another system's in the sam
 embedded store does without); where there is none, records are read from the store each time.
 """
 
-import threading
 from collections.abc import Callable
 from typing import Any
 
@@ -13,6 +12,7 @@ from pymongo.errors import OperationFailure, PyMongoError
 from tms_config.clock import monotonic
 from tms_db.connection import Connection
 from tms_db.store import Db
+from tms_db.worker import Worker
 from tms_runtime.log import Logger
 
 AWAIT_MS = 500  # that the store waits for a change before it says that there is none
@@ -29,39 +29,36 @@ class Watching:
         """`changed` is called in that thread with the _id of a record, or with None: any of them."""
         self._records, self._connection, self._log, self._changed = db["parameter"], connection, log, changed
         self._received = float("-inf")  # monotonic; read in other threads
-        self._stopping = threading.Event()
-        self._thread = threading.Thread(target=self._keep, name="watching", daemon=True)
+        self._worker = Worker("watching", self._keep)
 
     def start(self) -> None:
-        self._thread.start()
+        self._worker.start()
 
     def stop(self) -> None:
         """Ends with the client at the latest."""
-        self._stopping.set()
+        self._worker.stop()
 
     def sure(self) -> bool:
         """Whether every change is reported, but for those of the last moments."""
         return monotonic() - self._received < SURE
 
-    def _keep(self) -> None:
-        wait = 0.0
-        while not self._stopping.wait(wait):
-            wait = RETRY
-            if self._connection.unready() is not None:
-                continue
-            try:
-                self._listen()
-            except OperationFailure as error:
-                self._log.info("no_change_stream", reason=str(error).splitlines()[0])
-                wait = RETRY_REFUSED
-            except (PyMongoError, RuntimeError) as error:  # RuntimeError: the client was closed meanwhile
-                if not self._stopping.is_set():
-                    self._log.warning("change_stream_broken", reason=str(error).splitlines()[0])
+    def _keep(self) -> float:
+        if self._connection.unready() is not None:
+            return RETRY
+        try:
+            self._listen()
+        except OperationFailure as error:
+            self._log.info("no_change_stream", reason=str(error).splitlines()[0])
+            return RETRY_REFUSED
+        except (PyMongoError, RuntimeError) as error:  # RuntimeError: the client was closed meanwhile
+            if not self._worker.stopping:
+                self._log.warning("change_stream_broken", reason=str(error).splitlines()[0])
+        return RETRY
 
     def _listen(self) -> None:
         with self._records.watch(WANTED, max_await_time_ms=AWAIT_MS) as stream:
             self._changed(None)  # whatever happened before
-            while stream.alive and not self._stopping.is_set():
+            while stream.alive and not self._worker.stopping:
                 change = stream.try_next()
                 self._received = monotonic()
                 if change is not None:
