@@ -12,11 +12,6 @@ if TYPE_CHECKING:
     from tms_config.site_file import Store
 
 
-def holds_password(uri: str) -> bool:
-    """Whether a URI names a user with a password."""
-    return ":" in uri.partition("://")[2].rpartition("@")[0]
-
-
 def address(store: "Store", uri: str, site: Path) -> str:
     """The URI with user, password and TLS files of the site; files are looked for beside the site file.
 
