@@ -5,7 +5,7 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
-from tms_config import reasons, store_address
+from tms_config import reasons
 from tms_config.models import Backend, Border, MachineModel
 from tms_config.site_file import ROLES, Bridge, SiteFile, roles
 from tms_config.yaml_file import located, parse
@@ -33,19 +33,6 @@ class Site:
     @property
     def domain(self) -> int:
         return self.file.domain
-
-    @property
-    def store_uri(self) -> str:
-        """URI of the store, with its password: never log it.
-
-        Raises:
-            ConfigError: a file with a secret cannot be read.
-        """
-        if given := _secret("TMS_MONGODB_URI"):
-            return given
-        if given := self.file.store.uri:
-            return store_address.address(self.file.store, given, self.path)
-        return f"mongodb://127.0.0.1:{self.file.ports.store}/?directConnection=true"
 
     @property
     def embedded_store(self) -> bool:
@@ -83,18 +70,6 @@ class Site:
     def start_of(self, machine: str) -> tuple[float, float, float]:
         """Where a stand-in begins: x [m], y [m], yaw [rad] in map."""
         return self.file.machines[machine].start or self.model_of(machine).start
-
-
-def _secret(name: str) -> str | None:
-    """Value of a variable, or of the file that NAME_FILE names, as containers and systemd hand out secrets."""
-    path = os.environ.get(f"{name}_FILE")
-    if name in os.environ or not path:
-        return os.environ.get(name)
-    try:
-        return Path(path).read_text(encoding="utf-8").strip()
-    except OSError as error:
-        problem = reasons.BadFile(path, reasons.CannotBeRead(str(error.strerror)))
-        raise ConfigError(reasons.BadVariable(f"{name}_FILE", problem)) from error
 
 
 def version() -> str:

@@ -7,7 +7,7 @@ from pydantic import Field, ValidationError, field_validator, model_validator
 
 from tms_config.models import NAME, Backend, Settings
 from tms_config.reasons import HalfALogin, NoUri, PasswordInUri, UserTwice
-from tms_config.validation import Wrong, problems
+from tms_reason.validation import Wrong, problems
 
 ServiceName = Annotated[str, Field(pattern=r"^(/[A-Za-z_][A-Za-z0-9_]*)+$", max_length=200)]
 ServiceType = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*/[A-Z][A-Za-z0-9]*$")]  # pkg/Type

@@ -2,7 +2,7 @@
 
 from tms_reason.quantities import Seconds
 from tms_reason.reason import Reason
-from tms_reason.remedies import EDIT_TASK, LOGS, RETRY, STATUS, Remedy
+from tms_reason.remedies import EDIT_TASK, LOGS, OTHER_FOLDER, RETRY, STATUS, Remedy
 
 OTHER_PORT = Remedy("edit_config", "", "Stop the other program, or change ports.metrics in the site file")
 
@@ -42,3 +42,5 @@ class XmlHint(Reason, text="{what}: {hint}"): what: Reason; hint: Reason
 # the disk of this PC
 class NotStored(Reason, text="{end} (not stored yet: the disk of the scheduler's PC is slow or full)", action=STATUS):
     end: Reason
+class OthersFile(Reason, text="belongs to another user, and others may read it", action=OTHER_FOLDER,
+    details="or give the folder to this user: `chown -R {user}`"): user: int

@@ -7,25 +7,24 @@ import pytest
 import yaml
 
 from tms_config.config import CHOICE, Site, load_site
-from tms_config.environment import environment
 from tms_config.processes import here, table
 from tms_config.reasons import (
     BadConfig,
     BadKey,
     ManyPcsFor,
-    MissingKey,
     NoAddress,
     NoCps,
     NoPcFor,
     NoRole,
     NoSuchPc,
     NotUnderMachines,
-    UnknownKey,
     WhichPc,
-)  # fmt: skip
+)
 from tms_config.site_file import ROLES
 from tms_reason.errors import ConfigError
 from tms_reason.reason import Reason
+from tms_reason.reasons import MissingKey, UnknownKey
+from tms_runtime.environment import environment
 
 PCS = {
     "cps": {"address": "10.9.0.10"},
