@@ -26,8 +26,8 @@ from conftest import wait_until
 from tms_config.config import load_site
 from tms_reason.errors import RosError
 from tms_ros.node import Ros
+from tms_ros.packing import pack, unpack
 from tms_runtime import environment
-from tms_runtime.packing import pack, unpack
 from unity_client import Unity, frame, text
 
 pytestmark = [
