@@ -169,8 +169,8 @@ def running(mesh: Mesh, armed: bool = True) -> Iterator[Mesh]:
 @contextmanager
 def mesh_apart(folder: Path, **changes: object) -> Iterator[Mesh]:
     """A mesh in a domain of its own, not up yet, whose site and environment are those of this process meanwhile."""
-    from tms_config import environment
     from tms_config.config import load_site
+    from tms_runtime import environment
 
     with claimed_domain() as domain, pytest.MonkeyPatch.context() as patch:
         site = folder / "site.yaml"
@@ -231,9 +231,9 @@ def node(mesh: Mesh) -> Iterator["Ros"]:
 @contextmanager
 def node_in(mesh: Mesh) -> Iterator["Ros"]:
     """A ROS node in the domain of a mesh."""
-    from tms_config import environment
     from tms_config.config import load_site
     from tms_ros.node import Ros
+    from tms_runtime import environment
 
     old = dict(os.environ)
     os.environ.update(mesh.env)

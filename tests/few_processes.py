@@ -14,11 +14,11 @@ import pytest
 from tms_msg_db.srv import ListTasks
 
 from conftest import ports_of
-from tms_config import environment
 from tms_config.config import PROJECT, Site, load_site
 from tms_config.processes import find
 from tms_reason.errors import RosError
 from tms_ros.node import Ros
+from tms_runtime import environment
 
 M = TypeVar("M", bound="Mesh")
 LIMIT = 60.0  # s for whatever must happen at all

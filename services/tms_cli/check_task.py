@@ -11,8 +11,8 @@ from tms_msg_db.srv import GetTask
 from tms_msg_ts.srv import CheckTask
 
 from tms_cli import session
-from tms_cli.commands.task import read
 from tms_cli.reasons import NoXmlFiles, NoXmlHere
+from tms_cli.task_file import read
 from tms_cli.words import reason, say, sentence
 from tms_config.clock import monotonic
 from tms_reason.errors import RosError, TaskError, TmsError

@@ -29,16 +29,15 @@ from tms_cli.reasons import (
     SupervisordNotUp,
 )
 from tms_cli.words import say
-from tms_config import pcs, state_folder
 from tms_config.clock import monotonic, sleep
-from tms_config.config import Site
-from tms_config.environment import environment
+from tms_config.config import CHOICE, Site
 from tms_config.processes import Process, here
 from tms_host import store
 from tms_host.supervisor import Supervisor, render, runtime_folder
 from tms_reason.errors import ConfigError, TmsError
 from tms_reason.reason import Reason
-from tms_runtime import metrics
+from tms_runtime import metrics, state_folder
+from tms_runtime.environment import environment
 from tms_runtime.priority import session_first
 from tms_ur.address import certificate, users
 
@@ -110,7 +109,7 @@ def up(site: Site, foreground: bool = False, without: str = "") -> bool:
 
 def _up(site: Site, rows: tuple[Process, ...], foreground: bool) -> bool:
     if site.pc is not None:
-        (site.state / pcs.CHOICE).write_text(site.pc, encoding="utf-8")  # for the verbs that follow
+        (site.state / CHOICE).write_text(site.pc, encoding="utf-8")  # for the verbs that follow
     supervisor = Supervisor(site)
     with _domain(site.domain) as lock:
         if supervisor.alive():

@@ -6,10 +6,10 @@ import re
 from pathlib import Path
 
 from tms_cli.reasons import NoHostPort, NotWritable
-from tms_config import state_folder
 from tms_config.config import PROJECT, Site
 from tms_config.processes import table
 from tms_reason.errors import ConfigError
+from tms_runtime import state_folder
 
 SOURCE = PROJECT / "deploy" / "prometheus"
 COPIED = ("prometheus.yml", "rules.yml")

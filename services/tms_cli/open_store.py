@@ -15,10 +15,10 @@ ANSWER_MS = 60_000  # one step may touch a whole collection
 @contextmanager
 def opened() -> Iterator["Db"]:
     """The database of the chosen site, for the length of one command."""
-    from tms_db import store
+    from tms_db import store, store_address
 
     site = session.site()
-    db = store.connect(site.store_uri, site.file.store.database, ANSWER_MS)
+    db = store.connect(store_address.uri(site), site.file.store.database, ANSWER_MS)
     try:
         yield db
     finally:

@@ -8,8 +8,8 @@ import click
 import yaml
 
 from tms_cli.reasons import FieldValue, NotAFiniteNumber, ValueEmpty, ValueUnreadable
-from tms_config.validation import Wrong
 from tms_reason.errors import TmsError
+from tms_reason.validation import Wrong
 
 NOT_FINITE = re.compile(r"[-+]?\.?(nan|inf|infinity)", re.IGNORECASE)
 

@@ -5,14 +5,15 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
-from tms_config import pcs, reasons, store_address
+from tms_config import reasons
 from tms_config.models import Backend, Border, MachineModel
-from tms_config.site_file import Bridge, SiteFile
+from tms_config.site_file import ROLES, Bridge, SiteFile, roles
 from tms_config.yaml_file import located, parse
 from tms_reason.errors import ConfigError
 
 PROJECT = Path(__file__).resolve().parents[2]
 CONFIGS = PROJECT / "configs"
+CHOICE = "pc"  # file in the state folder: which PC this is, as chosen by `tms up --role`
 
 
 @dataclass(frozen=True)
@@ -32,19 +33,6 @@ class Site:
     @property
     def domain(self) -> int:
         return self.file.domain
-
-    @property
-    def store_uri(self) -> str:
-        """URI of the store, with its password: never log it.
-
-        Raises:
-            ConfigError: a file with a secret cannot be read.
-        """
-        if given := _secret("TMS_MONGODB_URI"):
-            return given
-        if given := self.file.store.uri:
-            return store_address.address(self.file.store, given, self.path)
-        return f"mongodb://127.0.0.1:{self.file.ports.store}/?directConnection=true"
 
     @property
     def embedded_store(self) -> bool:
@@ -84,18 +72,6 @@ class Site:
         return self.file.machines[machine].start or self.model_of(machine).start
 
 
-def _secret(name: str) -> str | None:
-    """Value of a variable, or of the file that NAME_FILE names, as containers and systemd hand out secrets."""
-    path = os.environ.get(f"{name}_FILE")
-    if name in os.environ or not path:
-        return os.environ.get(name)
-    try:
-        return Path(path).read_text(encoding="utf-8").strip()
-    except OSError as error:
-        problem = reasons.BadFile(path, reasons.CannotBeRead(str(error.strerror)))
-        raise ConfigError(reasons.BadVariable(f"{name}_FILE", problem)) from error
-
-
 def version() -> str:
     """Version of this project, as it is installed."""
     return importlib.metadata.version("ros2-tms")
@@ -126,9 +102,9 @@ def load_site(chosen: str | None = None) -> Site:
         if use.model not in models:
             models[use.model] = _model(path, machine, use.model, file.names)
     _check_machines(path, file, models)
-    pcs.check(path, file)
+    _check_pcs(path, file)
     state = Path(os.environ.get("TMS_STATE") or PROJECT / ".state" / file.name).resolve()
-    return Site(path, file, models, state, pcs.chosen(path, file, state))
+    return Site(path, file, models, state, _chosen_pc(path, file, state))
 
 
 def _check_machines(path: Path, file: SiteFile, models: dict[str, MachineModel]) -> None:
@@ -144,6 +120,38 @@ def _check_machines(path: Path, file: SiteFile, models: dict[str, MachineModel])
             raise ConfigError(
                 located(path, reasons.NotUnderMachines(machine, tuple(file.machines)), "sim", "faults", machine)
             )
+
+
+def _check_pcs(path: Path, file: SiteFile) -> None:
+    """Refuse PCs without a role, roles without a PC, and machines that two PCs or none would run.
+
+    Raises:
+        ConfigError: names the file and the key.
+    """
+    for name, pc in file.pcs.items():
+        if not roles(name, pc):
+            raise ConfigError(located(path, reasons.NoRole(ROLES), "pcs", name))
+        for machine in pc.machines:
+            if machine not in file.machines:
+                raise ConfigError(
+                    located(path, reasons.NotUnderMachines(machine, tuple(file.machines)), "pcs", name, "machines")
+                )
+
+
+def _chosen_pc(path: Path, file: SiteFile, state: Path) -> str | None:
+    """Which PC this is: TMS_PC, else what the last `tms up --role` chose here, else the only one.
+
+    Raises:
+        ConfigError: the site has no such PC.
+    """
+    kept = state / CHOICE
+    name = os.environ.get("TMS_PC") or (kept.read_text(encoding="utf-8").strip() if kept.exists() else "")
+    name = name or (next(iter(file.pcs)) if len(file.pcs) == 1 else "")
+    if not file.pcs or not name:
+        return None
+    if name not in file.pcs:
+        raise ConfigError(located(path, reasons.NoSuchPc(name, tuple(file.pcs)), "pcs"))
+    return name
 
 
 def _domain(text: str) -> int:

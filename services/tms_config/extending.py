@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from tms_config import reasons
-from tms_config.validation import Wrong
+from tms_reason.validation import Wrong
 
 EXTENDS = "extends"
 

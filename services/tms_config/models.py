@@ -6,8 +6,8 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from tms_config import reasons
 from tms_config.extending import extended
-from tms_config.validation import Wrong
 from tms_reason.reason import Reason
+from tms_reason.validation import Wrong
 
 Backend = Literal["sim", "opera", "physx"]
 Kind = Literal["backhoe", "crawler_dump", "bulldozer"]  # as the console draws it

@@ -6,8 +6,18 @@ from dataclasses import dataclass, replace
 from tms_config import pcs
 from tms_config.config import CONFIGS, Site
 from tms_config.models import MachineModel
-from tms_config.pcs import Role
-from tms_config.reasons import BadFile, NoCodeFile, NoProcess, NoService, ProcessMeant, SameName, SeveralProcesses
+from tms_config.reasons import (
+    BadFile,
+    ManyPcsFor,
+    NoCodeFile,
+    NoPcFor,
+    NoProcess,
+    NoService,
+    ProcessMeant,
+    SameName,
+    SeveralProcesses,
+)
+from tms_config.site_file import Role, roles
 from tms_config.yaml_file import located
 from tms_reason.errors import ConfigError
 
@@ -93,8 +103,26 @@ def find(site: Site, name: str) -> Process:
 
 
 def _placed(site: Site, row: Process) -> Process:
-    pc = row.pc or pcs.place(site, row)
+    pc = row.pc or _place(site, row)
     return replace(row, pc=pc, address=site.file.pcs[pc].address if pc else site.file.bind)
+
+
+def _place(site: Site, row: Process) -> str:
+    """Name of the PC that runs a process; empty when the site is one PC.
+
+    Raises:
+        ConfigError: no PC or several would run it.
+    """
+    known = site.file.pcs
+    able = [name for name, pc in known.items() if row.role in roles(name, pc)]
+    named = [name for name in able if row.machine in known[name].machines]
+    fit = named or [name for name in able if not known[name].machines]
+    if not known:
+        return ""
+    if len(fit) != 1:
+        problem = ManyPcsFor(tuple(fit), row.full, row.role) if fit else NoPcFor(row.full, row.role)
+        raise ConfigError(located(site.path, problem, "pcs"))
+    return fit[0]
 
 
 def _services(site: Site) -> list[Process]:
@@ -108,7 +136,7 @@ def _services(site: Site) -> list[Process]:
         if name not in SERVICES:
             raise ConfigError(located(site.path, NoService(name, tuple(SERVICES)), "services", name))
         if name == "host" and site.file.pcs:
-            rows += [_host(pc, pcs.roles(pc, facts)[0]) for pc, facts in site.file.pcs.items()]
+            rows += [_host(pc, roles(pc, facts)[0]) for pc, facts in site.file.pcs.items()]
         else:
             rows.append(Process("tms", name, service.role, f"tms_{name}.node", 0, SERVICES[name]))
     return rows

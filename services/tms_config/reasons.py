@@ -1,20 +1,18 @@
-"""What is wrong with a configuration, with what is measured against it, and with names from outside."""
+"""What is wrong with a configuration, and with what is measured against it."""
 
-from tms_reason.quantities import Megabytes, Radians
+from tms_reason.quantities import Radians
 from tms_reason.reason import Reason
 from tms_reason.remedies import EDIT_CONFIG, PROCESSES, STATUS, Remedy
 
 # What helps only here: it all is done in an editor or a shell.
 KEY_AS_TEXT = Remedy("edit_config", "", "Fill in the placeholder, or put the key in quotes")
 READABLE = Remedy("edit_config", "", "Give the file to the user of this system, or name another file")
-OTHER_FOLDER = Remedy("edit_config", "", "Set TMS_STATE to another folder")
 DOMAIN = Remedy("edit_config", "", "Use a number from 0 to 101, or unset the variable")
 NO_PASSWORD = Remedy("edit_config", "", "Use user and password_file instead, or TMS_MONGODB_URI_FILE")
 SAY_SOURCE = Remedy("edit_config", "", "Say its period, stamps and frozen_after")
 FRAME_PREFIX = Remedy("edit_config", "", "Put the machine's name into the frame_prefix of the model's border")
 SAY_PC = Remedy("say_pc", "", "Say which PC this is: `tms up --role NAME`")
 FULL_NAME = Remedy("processes", "tms ps", "Give the full name")
-RETYPE = Remedy("retype", "", "Write a plain name")
 
 
 # fmt: off
@@ -32,24 +30,14 @@ class BadVariable(Reason, text="the variable {variable}: {problem}"): variable: 
 
 # files
 class CannotBeRead(Reason, text="cannot be read ({problem})", action=READABLE): problem: str
-class CannotBeWritten(Reason, text="cannot be written ({problem})", action=OTHER_FOLDER): problem: str
-class NoRoom(Reason, text="only {free} free, {needed} are needed", action=OTHER_FOLDER):
-    free: Megabytes; needed: Megabytes
-class OthersFile(Reason, text="belongs to another user, and others may read it", action=OTHER_FOLDER,
-    details="or give the folder to this user: `chown -R {user}`"): user: int
 class NotUtf8(Reason, text="is no UTF-8 text", action=EDIT_CONFIG): pass
 class NoMapping(Reason, text="must hold keys and values", action=EDIT_CONFIG): pass
-class EmptyFile(Reason, text="is empty", action=EDIT_CONFIG): pass
 class NoYaml(Reason, text="is no YAML: {problem}", action=EDIT_CONFIG): problem: str
 class KeyTwice(Reason, text="key '{name}' is there twice", action=EDIT_CONFIG): name: str
 class NoKey(Reason, text="a key is itself a mapping or a list", action=KEY_AS_TEXT): pass
 class NoMerge(Reason, text="only a mapping, or a list of mappings, can be merged with <<", action=EDIT_CONFIG): pass
 
 # keys and values
-class UnknownKey(Reason, text="unknown key", action=EDIT_CONFIG): pass
-class MissingKey(Reason, text="is missing", action=EDIT_CONFIG): pass
-class BadSetting(Reason, text="{problem}", action=EDIT_CONFIG): problem: Reason
-class BadValueOf(Reason, text="{problem}, but it is {value}", action=EDIT_CONFIG): problem: Reason; value: str
 class NoDomain(Reason, text="'{value}' is no ROS domain", action=DOMAIN): value: str
 class NoUnit(Reason, text="there is no unit '{unit}' (there: {units}); SI values need none", action=EDIT_CONFIG):
     unit: str; units: tuple[str, ...]
@@ -107,13 +95,4 @@ class ProcessMeant(Reason, text="there is no process '{name}': did you mean {nea
     name: str; near: str
 class SeveralProcesses(Reason, text="'{name}' fits {processes}", action=FULL_NAME):
     name: str; processes: tuple[str, ...]
-
-# names and texts from outside
-class BadText(Reason, text="{field} {value} {problem}"): field: str; value: str; problem: Reason
-class BadName(Reason, text="{value} {problem}", action=RETYPE): value: str; problem: Reason
-class EmptyName(Reason, text="is empty", action=RETYPE): pass
-class ControlLetter(Reason, text="holds the control character {letter}", action=RETYPE): letter: str
-class HiddenLetter(Reason, text="holds a character that nobody sees", action=RETYPE): pass
-class OuterBlank(Reason, text="begins or ends with a blank", action=RETYPE): pass
-class LongName(Reason, text="has more than {limit} letters", action=RETYPE): limit: int
 # fmt: on

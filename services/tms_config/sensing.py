@@ -9,10 +9,10 @@ from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 from tms_config.config import CONFIGS, Site
 from tms_config.models import NAME, Settings
-from tms_config.names import Name, Text
 from tms_config.reasons import NoField, NotOrdered, NoUnit
-from tms_config.validation import Wrong
 from tms_config.yaml_file import parse
+from tms_reason.names import Name, Text
+from tms_reason.validation import Wrong
 
 # Unit of a message -> factor to the unit that records use (m, rad, s, m/s, rad/s).
 UNITS: Mapping[str, float] = {

@@ -5,14 +5,14 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, ValidationError, field_validator, model_validator
 
-from tms_config import store_address
 from tms_config.models import NAME, Backend, Settings
-from tms_config.pcs import Network, Pc, Role
 from tms_config.reasons import HalfALogin, NoUri, PasswordInUri, UserTwice
-from tms_config.validation import Wrong, problems
+from tms_reason.validation import Wrong, problems
 
 ServiceName = Annotated[str, Field(pattern=r"^(/[A-Za-z_][A-Za-z0-9_]*)+$", max_length=200)]
 ServiceType = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*/[A-Z][A-Za-z0-9]*$")]  # pkg/Type
+Role = Literal["cps", "machine", "sensing", "sim"]
+ROLES: tuple[Role, ...] = ("cps", "machine", "sensing", "sim")
 
 
 class Service(Settings):
@@ -51,6 +51,11 @@ class Ports(Settings):
     )  # of the first run: Groot 1 here and +1, Groot 2 +2; next run +10
 
 
+def _holds_password(uri: str) -> bool:
+    """Whether a URI names a user with a password."""
+    return ":" in uri.partition("://")[2].rpartition("@")[0]
+
+
 class Store(Settings):
     """`embedded` is the demo's own store; `mongodb` is a server that the site runs.
 
@@ -70,7 +75,7 @@ class Store(Settings):
 
     @model_validator(mode="after")
     def _whole(self) -> "Store":
-        if store_address.holds_password(self.uri or ""):
+        if _holds_password(self.uri or ""):
             raise Wrong(PasswordInUri(), "uri")
         if (self.user is None) != (self.password_file is None):
             raise Wrong(HalfALogin())
@@ -150,6 +155,28 @@ class Log(Settings):
 
     level: Literal["DEBUG", "INFO", "WARNING", "ERROR"] = "INFO"
     json_lines: bool = False  # a JSON object a line, for Loki
+
+
+class Pc(Settings):
+    """One PC of the site; its name is its key."""
+
+    address: str = Field(min_length=1)  # IP address or name, as the other PCs reach it
+    roles: tuple[Role, ...] = ()  # default: the one that the PC is named after
+    machines: tuple[str, ...] = ()  # whose processes run here; default: those of no other PC with that role
+
+
+class Network(Settings):
+    """How processes of different PCs find each other."""
+
+    # server: across segments that pass no multicast. A server that is killed may leave new processes unfound for half a
+    # minute, so it is no default, not even for the many processes that it makes cheaper.
+    discovery: Literal["multicast", "server"] = "multicast"
+    port: int = Field(ge=1024, le=65535, default=11811)  # of the discovery server, on the PC with the role cps
+
+
+def roles(name: str, pc: Pc) -> tuple[Role, ...]:
+    """What a PC does."""
+    return pc.roles or tuple(role for role in ROLES if role == name)
 
 
 class SiteFile(Settings):

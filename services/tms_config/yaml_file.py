@@ -10,10 +10,9 @@ from pydantic import ValidationError
 
 from tms_config import reasons
 from tms_config.models import Settings
-from tms_config.validation import Keys, dotted, problems
-from tms_reason import texts
 from tms_reason.errors import ConfigError
 from tms_reason.reason import Reason
+from tms_reason.validation import Keys, dotted, problems
 
 T = TypeVar("T", bound=Settings)
 MERGE = "tag:yaml.org,2002:merge"
@@ -114,13 +113,6 @@ def located(path: Path, problem: Reason, *keys: int | str) -> Reason:
     if not keys:
         return reasons.BadFile(str(path), problem)
     return reasons.BadKey(str(path), _line(yaml.compose(read_text(path), _Loader), keys), dotted(keys), problem)
-
-
-def explain(error: ValidationError) -> str:
-    """First problem of a validation, as `key: what`; says how many more there are."""
-    keys, reason = next(problems(error))
-    key, more = dotted(keys), error.error_count() - 1
-    return (f"{key}: " if key else "") + texts.text(reason, "en") + (f" (and {more} more)" if more else "")
 
 
 def _line(node: yaml.Node | None, keys: Keys) -> int:

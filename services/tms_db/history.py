@@ -7,10 +7,10 @@ from typing import Any
 
 from pymongo.errors import BulkWriteError, DuplicateKeyError
 
-from tms_config import names
 from tms_db.reasons import BadRunId, NoEventNumber, RivalScheduler, RunMissing
 from tms_db.records import Value
 from tms_db.store import Db, errors
+from tms_reason import names
 from tms_reason.errors import DbError
 
 RUNS = 50

@@ -11,7 +11,7 @@ from tms_msg_db.srv import (
     WriteMachineStates,
 )
 
-from tms_db import messages, store
+from tms_db import messages, store, store_address
 from tms_db.answering import Answering
 from tms_db.connection import Connection
 from tms_db.cpp_services import CppServices
@@ -82,8 +82,8 @@ def start(app: App) -> None:
     Raises:
         ConfigError: the store's address is wrong.
     """
-    db = store.connect(app.site.store_uri, app.site.file.store.database)
-    connection = Connection(db, store.redact(app.site.store_uri), app.log)
+    db = store.connect(store_address.uri(app.site), app.site.file.store.database)
+    connection = Connection(db, store.redact(store_address.uri(app.site)), app.log)
     app.ready_when(connection.unready)
     app.on_stop(connection.stop)
     answering = Answering(app, connection)

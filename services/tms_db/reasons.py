@@ -5,7 +5,7 @@
 
 from tms_reason.quantities import Megabytes, Seconds
 from tms_reason.reason import Reason
-from tms_reason.remedies import CANCEL, EDIT_TASK, LOGS, PROCESSES, RECORDS, RETRY, RUNS, TASKS
+from tms_reason.remedies import CANCEL, EDIT_CONFIG, EDIT_TASK, LOGS, PROCESSES, RECORDS, RETRY, RUNS, TASKS
 
 
 # fmt: off
@@ -145,6 +145,7 @@ class TerrainOverRos(Reason,
 class NoImageType(Reason, text="terrain type '{type}': an image is one of {types}"): type: str; types: tuple[str, ...]
 
 # the store
+class EmptyFile(Reason, text="is empty", action=EDIT_CONFIG): pass
 class StoreDown(Reason, text="{why}"): why: Reason
 class NoStore(Reason, text="the store does not answer: start it (`tms start tms:store`, or MongoDB of the site); "
     "the database module reconnects by itself"): pass

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tms_config import names
 from tms_config.yaml_file import read_yaml
 from tms_db.reasons import (
     BadFieldName,
@@ -33,6 +32,7 @@ from tms_db.reasons import (
     StaticWithAge,
     TooManyBits,
 )
+from tms_reason import names
 from tms_reason.errors import DbError
 from tms_reason.reason import Reason
 

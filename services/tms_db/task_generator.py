@@ -7,12 +7,12 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tms_config import environment
 from tms_config.config import CONFIGS, load_site
 from tms_db import task_text
 from tms_db.reasons import NoFileGiven, NoSuchFile
 from tms_reason.errors import DbError, TaskError, TmsError
 from tms_reason.wire import refusal
+from tms_runtime import environment
 from tms_runtime.last_resort import LEAVE_LIMIT, end_after
 
 if TYPE_CHECKING:

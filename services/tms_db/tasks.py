@@ -10,12 +10,12 @@ from typing import Any
 from pymongo.errors import BulkWriteError
 
 from tms_config.clock import utc_now
-from tms_config.names import check_text
 from tms_db import task_text
 from tms_db.reasons import NoTaskNumber, TaskMissing
 from tms_db.store import Db, errors
 from tms_db.task_numbers import TaskNumbers
 from tms_reason.errors import DbError
+from tms_reason.names import check_text
 
 ATTEMPTS = 1000  # each lost race means that somebody else has registered a task
 DUPLICATE = 11000  # MongoDB's code for a key that is there already

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tms_config import names
 from tms_config.clock import utc_now
 from tms_db import terrain_files
 from tms_db.reasons import BadTerrainName, TerrainExists, TerrainMissing, TerrainNotWhole, TerrainSigns, TerrainSizes
 from tms_db.store import Db, errors, long_work
 from tms_db.terrain_files import IDS, IMAGES, Size, bad
+from tms_reason import names
 from tms_reason.errors import DbError
 
 if TYPE_CHECKING:

@@ -1,8 +1,8 @@
 """Why a PC cannot run, start or stop a process, and how its processes are."""
 
-from tms_reason.quantities import Seconds
+from tms_reason.quantities import Megabytes, Seconds
 from tms_reason.reason import Reason
-from tms_reason.remedies import LOGS, PROCESSES, RETRY, Remedy
+from tms_reason.remedies import LOGS, OTHER_FOLDER, PROCESSES, RETRY, Remedy
 
 SETUP = Remedy("setup", "make setup", "Install what is missing")
 UP = Remedy("up", "make up", "Start it")
@@ -13,6 +13,9 @@ OTHER_PATH = Remedy("edit_config", "", "Choose another folder")
 # fmt: off
 # this PC
 class NoProgram(Reason, text="the program {file} is missing", action=SETUP): file: str
+class CannotBeWritten(Reason, text="cannot be written ({problem})", action=OTHER_FOLDER): problem: str
+class NoRoom(Reason, text="only {free} free, {needed} are needed", action=OTHER_FOLDER):
+    free: Megabytes; needed: Megabytes
 class NotPrivate(Reason, text="{folder} is not private to you", action=OTHER_RUNTIME_FOLDER): folder: str
 class PathQuoted(Reason, text="the path {path} holds a quote or a line break", action=OTHER_PATH): path: str
 

@@ -5,11 +5,11 @@ import shutil
 import sys
 from pathlib import Path
 
-from tms_config import state_folder
 from tms_config.config import PROJECT, Site
-from tms_config.reasons import BadFile, CannotBeWritten, NoRoom
-from tms_host.reasons import NoProgram
+from tms_config.reasons import BadFile
+from tms_host.reasons import CannotBeWritten, NoProgram, NoRoom
 from tms_reason.errors import ConfigError
+from tms_runtime import state_folder
 
 PROGRAM = PROJECT / ".venv-store" / "bin" / "secantusd-py"
 NEEDED_BYTES = 200 * 2**20

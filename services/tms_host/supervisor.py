@@ -12,9 +12,7 @@ from supervisor.xmlrpc import SupervisorTransport
 
 from tms_config.clock import monotonic, sleep
 from tms_config.config import PROJECT, Site
-from tms_config.environment import environment
 from tms_config.processes import Process, here
-from tms_config.state_folder import UMASK
 from tms_host.reasons import (
     LogUnreadable,
     MeshDown,
@@ -25,6 +23,8 @@ from tms_host.reasons import (
     SupervisordSays,
 )
 from tms_reason.errors import ConfigError, TmsError
+from tms_runtime.environment import environment
+from tms_runtime.state_folder import UMASK
 
 START_SECONDS = 1  # a process that ends sooner counts as failed to start
 STOP_SECONDS = 3  # the runtime ends within 2

@@ -13,9 +13,10 @@ from tms_if.commands import CommandError, Registration, command, full_name
 from tms_if.framing import encode
 from tms_if.interfaces import interface, short_name
 from tms_if.names import Allowed
+from tms_if.on_executor import do
 from tms_reason.errors import RosError
 from tms_ros.node import Ros
-from tms_runtime.packing import pack, unpack
+from tms_ros.packing import pack, unpack
 
 ROS_LIMIT = 5.0  # s for the ROS thread to make or remove something
 ANSWER_LIMIT = 30.0  # s for a service to answer, on either side
@@ -237,7 +238,7 @@ class ClientEndpoints:
 
     def _on_ros(self, step: Callable[[], T], wanted: Registration) -> T:
         try:
-            return self._ros.do(step, ROS_LIMIT)
+            return do(self._ros, step, ROS_LIMIT)
         except (RosError, RuntimeError, ValueError) as error:
             raise CommandError(f"{wanted.topic} ({wanted.message_name}): {error}") from error
 

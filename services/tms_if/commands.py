@@ -5,8 +5,8 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
-from tms_config.yaml_file import explain
 from tms_if.framing import encode
+from tms_reason.validation import explain
 
 VERSION = "v0.7.0"  # the simulator wants v0.7; of its protocol, not of this project
 NAME = r"^/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*$"

@@ -1,7 +1,8 @@
 """Why the ROS-TCP interface cannot be offered."""
 
+from tms_reason.quantities import Seconds
 from tms_reason.reason import Reason
-from tms_reason.remedies import Remedy
+from tms_reason.remedies import PROCESSES, Remedy
 
 OTHER_INTERFACE_PORT = Remedy("edit_config", "", "Stop the other program, or change services.if in the site file")
 
@@ -9,3 +10,5 @@ OTHER_INTERFACE_PORT = Remedy("edit_config", "", "Stop the other program, or cha
 # fmt: off
 class InterfacePortTaken(Reason, text="{address} cannot be listened on ({problem})", action=OTHER_INTERFACE_PORT):
     address: str; problem: str
+class ExecutorBusy(Reason, text="the process is too busy: it did not come to this within {waited}",
+    action=PROCESSES): waited: Seconds

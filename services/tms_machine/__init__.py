@@ -1,1 +1,1 @@
-"""Machines: border, permit, geometry, and the kit of those who write subtasks."""
+"""Machines: border, leases, permit, geometry, and the kit of those who write subtasks."""

@@ -6,6 +6,7 @@ from typing import Any
 
 from tms_config.clock import monotonic
 from tms_config.models import Joint, MachineModel
+from tms_config.naming import process_of
 from tms_machine.border import STOP_PROVEN
 from tms_machine.reasons import (
     Aborted,
@@ -24,7 +25,6 @@ from tms_reason.reason import Reason, Several
 from tms_ros.client import AnyCall, AnyPeer
 from tms_ros.goals import Outcome
 from tms_ros.interface_types import ActionType, F, G, R
-from tms_ros.naming import process_of
 from tms_ros.node import Ros
 from tms_ros.reasons import LostMeanwhile, NoAnswer, ProcessLost
 from tms_runtime.fence import derived

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from tms_msg_rc.msg import Permit as Message
 
 from tms_config.clock import monotonic
+from tms_machine import leases
 from tms_ros.client import AnyPeer
 from tms_ros.node import Ros
 from tms_runtime.pulse import Pulse
@@ -63,7 +64,7 @@ class Link:
         )
         self.left = False  # the last one took leave, in order; a killed one leaves a stale writer
         self._received, self._alive, self._asserted = 0.0, False, 0
-        ros.lease_subscribe(Message, topic(machine, process), LEASE, self._on_message, self._on_liveliness)
+        leases.subscribe(ros, Message, topic(machine, process), LEASE, self._on_message, self._on_liveliness)
 
     @property
     def alive(self) -> bool:

@@ -9,7 +9,6 @@ from tms_msg_db.srv import GetParameter
 from tms_msg_ts.action import LeafNodeBase
 
 from tms_config.clock import monotonic
-from tms_config.yaml_file import explain
 from tms_machine.machine import Cancelled, Machine
 from tms_machine.permit import Permit, watch_server
 from tms_machine.reasons import BadRecord, Busy, MotionNotEnded, NoDatabase, WaitingFor
@@ -18,6 +17,7 @@ from tms_machine.subtask import Params, Subtask, load
 from tms_machine.values import Value, from_parameters
 from tms_reason.errors import RosError, SubtaskFailed
 from tms_reason.reason import Foreign, Reason
+from tms_reason.validation import explain
 from tms_reason.wire import refusal, to_line
 from tms_ros.client import AnyPeer
 from tms_ros.goals import Ended, Outcome

@@ -8,6 +8,7 @@ from prometheus_client import Gauge
 from tms_msg_rc.msg import GatewayClaim
 
 from tms_config.clock import sleep
+from tms_machine import leases
 from tms_machine.permit import BEATS, LEASE
 from tms_rc.reasons import Rival
 from tms_reason.reason import Reason
@@ -30,7 +31,7 @@ class Claim:
         topic = f"/{app.machine}/rc/claim"
         self._publisher = app.ros.lease_publisher(GatewayClaim, topic, LEASE)
         app.ros.on_executor(
-            lambda: app.ros.lease_subscribe(GatewayClaim, topic, LEASE, self._on_claim, self._on_liveliness)
+            lambda: leases.subscribe(app.ros, GatewayClaim, topic, LEASE, self._on_claim, self._on_liveliness)
         )
         self._publish()
         app.pulse.add(self._beat)

@@ -15,6 +15,7 @@ from tms_rc.reasons import StrangeType
 from tms_rc.source import LABELS, Sample
 from tms_rc.standstill import HEADING, IMU, JOINTS, ODOM, PLACE, POSE, TURNING, StandStill, yaw_of
 from tms_reason.reason import Reason
+from tms_ros.node import Ros
 from tms_ros.topics import Arrival
 from tms_runtime.app import App
 
@@ -55,11 +56,11 @@ class MachineMonitor:
     def _count(self, name: str) -> None:
         """Whether somebody else speaks for the machine. Its own publisher, killed, counts until discovery drops it."""
         source, topic = self._watch.sources[name], self._topics[name]
-        count = self._app.ros.publisher_count(topic)
+        count = int(self._app.ros.node.count_publishers(topic))
         if count < 2:
             source.publishers = ()
         elif len(source.publishers) != count:
-            source.publishers = tuple(node for node, _ in self._app.ros.publishers(topic))
+            source.publishers = tuple(node for node, _ in _publishers(self._app.ros, topic))
 
     def strange_type(self) -> Reason | None:
         """A source that is published under another type than the border has: nothing of it can be heard."""
@@ -68,7 +69,7 @@ class MachineMonitor:
             if source.age(monotonic()) <= source.longest:
                 continue
             wanted = _full_name(_type(name, self._app.site.border(self._app.machine)))
-            for node, kind in self._app.ros.publishers(topic):
+            for node, kind in _publishers(self._app.ros, topic):
                 if kind != wanted:
                     return StrangeType(LABELS[name], node, topic, kind, wanted)
         return None
@@ -87,6 +88,12 @@ class MachineMonitor:
         known = [(i, self._names[name]) for i, name in enumerate(message.name) if name in self._names]
         places = {name: (value,) for name, value in _numbers(known, message.position).items()}
         return places, _numbers(known, message.velocity)
+
+
+def _publishers(ros: Ros, topic: str) -> list[tuple[str, str]]:
+    """Node and type of each publisher of a topic in the whole graph."""
+    found = ros.node.get_publishers_info_by_topic(topic)
+    return [(f"{end.node_namespace.rstrip('/')}/{end.node_name}", end.topic_type) for end in found]
 
 
 def _type(name: str, border: Border) -> Any:

@@ -21,8 +21,8 @@ from tms_rc.standstill import NOTHING, Expected, Proof, StandStill
 from tms_reason import wire
 from tms_reason.reason import Reason, Several
 from tms_reason.wire import to_line
+from tms_ros.packing import pack, unpack
 from tms_runtime.app import App
-from tms_runtime.packing import pack, unpack
 
 AGAIN = 0.5  # s between repeated commands while it is not proven
 STANDSTILL_CHECK_PERIOD = 0.01  # s

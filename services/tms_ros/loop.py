@@ -10,7 +10,7 @@ import threading
 from collections import deque
 from collections.abc import Awaitable, Callable
 from contextlib import AbstractContextManager, nullcontext
-from typing import Any, TypeVar
+from typing import Any
 
 import rclpy
 from builtin_interfaces.msg import Time
@@ -28,11 +28,7 @@ from tms_config.clock import monotonic, sleep
 from tms_reason.errors import RosError
 from tms_reason.reason import Reason
 from tms_ros.privates import TimedExecutor
-from tms_ros.reasons import ExecutorBusy, Hangs
 
-T = TypeVar("T")
-
-HANGS = 5.0  # s after which an executor that does not run counts as hanging
 POLL = 0.02  # s between looks at the ROS graph, which has no cheap event in rclpy
 
 
@@ -59,7 +55,6 @@ class Loop:
         self._executor = TimedExecutor(context=self._context)
         self._executor.add_node(self.node)
         self._coming, self._starting = deque[Callable[[], None]](), deque[Callable[[], Awaitable[None]]]()
-        self._asked: float | None = None  # monotonic time since which the executor has not shown itself
         self.failed = threading.Event()  # a thread of this node died of an exception: the process ends, not half of it
         self.closing = False  # nothing can be sent any more
         self._ends: list[Callable[[], None]] = []
@@ -124,43 +119,6 @@ class Loop:
         else:
             self._coming.append(step)
             self._executor.create_task(lambda: self._coming.popleft()())  # rclpy runs the newest task first
-
-    def do(self, step: Callable[[], T], seconds: float) -> T:
-        """Run `step` on the executor thread and wait for what it returns or raises; from worker threads only.
-
-        Raises:
-            RosError: the executor did not come to it within `seconds`.
-        """
-        there = threading.Event()
-        results: list[T] = []
-        errors: list[Exception] = []
-
-        def run() -> None:
-            try:
-                results.append(step())
-            except Exception as error:  # raised again in the caller's thread; here it would end the executor
-                errors.append(error)
-            there.set()
-
-        self.on_executor(run)
-        if not there.wait(seconds):
-            raise RosError(ExecutorBusy(seconds))
-        if errors:
-            raise errors[0]
-        return results[0]
-
-    def hangs(self) -> Reason | None:
-        """Asks the executor to show itself; why it should be restarted when it has not done so since it was asked."""
-        asked = self._asked
-        if asked is not None:
-            seconds = monotonic() - asked
-            return Hangs(self.process, seconds) if seconds > HANGS else None
-        self._asked = monotonic()
-        self.on_executor(self._shown)
-        return None
-
-    def _shown(self) -> None:
-        self._asked = None
 
     def start(self, step: Callable[[], Awaitable[None]]) -> None:
         """Run a coroutine function on the executor thread, begun behind those that were asked for before."""

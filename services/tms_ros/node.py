@@ -30,23 +30,16 @@ class Ros:
         self._making = threading.Lock()
 
         self.node, self.process, self.failed = loop.node, loop.process, loop.failed
-        self.on_executor, self.do, self.start, self.create_future = (
-            loop.on_executor,
-            loop.do,
-            loop.start,
-            loop.create_future,
-        )
+        self.on_executor, self.start, self.create_future = loop.on_executor, loop.start, loop.create_future
         self.every, self.after, self.poll_in_thread, self.now = loop.every, loop.after, loop.poll_in_thread, loop.now
-        self.begin, self.on_stop, self.hangs, self.leave = loop.begin, loop.on_stop, loop.hangs, loop.leave
+        self.begin, self.on_stop, self.leave = loop.begin, loop.on_stop, loop.leave
         self.busy_since, self.thread_number, self.wait_for = loop.busy_since, loop.thread_number, loop.wait_for
 
         self.publisher, self.delivered, self.subscribe = topics.publisher, topics.delivered, topics.subscribe
         self.sample, self.sample_arrivals, self.subscribe_raw = (
             topics.sample, topics.sample_arrivals, topics.subscribe_raw,
         )  # fmt: skip
-        self.publishers, self.publisher_count = topics.publishers, topics.publisher_count
         self.lease_publisher, self.lease_subscribe = topics.lease_publisher, topics.lease_subscribe
-        self.mismatches = topics.mismatches
 
         self.offer, self.offer_slow, self.prepare = services.offer, services.offer_slow, services.prepare
         self.call, self.ask, self.post, self.request = services.call, services.ask, services.post, services.request

@@ -3,7 +3,15 @@
 from collections.abc import Sequence
 
 from rclpy.duration import Duration
-from rclpy.qos import DurabilityPolicy, LivelinessPolicy, QoSProfile, ReliabilityPolicy, qos_profile_services_default
+from rclpy.qos import (
+    DurabilityPolicy,
+    LivelinessPolicy,
+    QoSCompatibility,
+    QoSProfile,
+    ReliabilityPolicy,
+    qos_check_compatible,
+    qos_profile_services_default,
+)
 
 # With the default depth 10, twenty goals at once lose requests for ever.
 SERVICE = QoSProfile(depth=100, durability=qos_profile_services_default.durability)
@@ -34,3 +42,9 @@ def as_offered(offered: Sequence[QoSProfile]) -> QoSProfile:
     if any(one.reliability == ReliabilityPolicy.BEST_EFFORT for one in offered):
         found.reliability = ReliabilityPolicy.BEST_EFFORT
     return found
+
+
+def misfit(writer: QoSProfile, reader: QoSProfile) -> str:
+    """Why DDS does not connect two ends of a topic, in rclpy's words; empty when it does."""
+    found, reason = qos_check_compatible(writer, reader)
+    return str(reason).removeprefix("ERROR: ").rstrip("; ") if found == QoSCompatibility.ERROR else ""

@@ -2,7 +2,7 @@
 
 from tms_reason.quantities import Seconds
 from tms_reason.reason import Reason
-from tms_reason.remedies import LOGS, PROCESSES, RESTART
+from tms_reason.remedies import LOGS, PROCESSES
 
 
 # fmt: off
@@ -18,9 +18,4 @@ class NoServer(Reason, text="{process} is not there (waited {waited})", details=
 class NoAnswer(Reason, text="{process} did not answer within {waited}", details="{name}",
     action=PROCESSES): process: str; name: str; waited: Seconds
 class BadServiceName(Reason, text="there can be no service '{name}'", details="{problem}"): name: str; problem: str
-class ExecutorBusy(Reason, text="the process is too busy: it did not come to this within {waited}",
-    action=PROCESSES): waited: Seconds
-class Hangs(Reason, text="{process} has not run for {seconds}", action=RESTART): process: str; seconds: Seconds
-class NotConnected(Reason, text="{reader} does not receive what {writer} publishes", details="{topic}: {problem}"):
-    topic: str; reader: str; writer: str; problem: str
 class Internal(Reason, text="{process} has made a mistake: this is a bug", action=LOGS): process: str

@@ -1,28 +1,23 @@
 """Topics: what is published, heard, sampled, and leased.
 
 rclpy's own warnings of ends that do not fit are switched off: they are events that the executor waits for, and each
-topic's cost every wake-up 10 us, three quarters of it all. `mismatches` tells the same when it is asked.
+topic's cost every wake-up 10 us, three quarters of it all. `tms_runtime.graph` tells the same.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import product
 from typing import Any, Generic
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.exceptions import InvalidHandle
-from rclpy.qos import QoSCompatibility, QoSProfile, qos_check_compatible
+from rclpy.qos import QoSProfile
 
 from tms_ros import quality
 from tms_ros.interface_types import M, Message, Publisher
 from tms_ros.loop import Loop
 from tms_ros.privates import Asleep, take
-from tms_ros.reasons import NotConnected
-
-ASSERTED = 0.1  # s in which the news that a publisher is asserted follows its message, twice
-UNKNOWN = "_NODE_NAME_UNKNOWN_"  # of an end that discovery has found a moment before its node
 
 
 @dataclass(frozen=True)
@@ -127,15 +122,6 @@ class Topics:
 
         return take_new
 
-    def publishers(self, topic: str) -> list[tuple[str, str]]:
-        """Node and type of each publisher of a topic in the whole graph."""
-        found = self._loop.node.get_publishers_info_by_topic(topic)
-        return [(f"{end.node_namespace.rstrip('/')}/{end.node_name}", end.topic_type) for end in found]
-
-    def publisher_count(self, topic: str) -> int:
-        """How many publishers a topic has in the whole graph."""
-        return int(self._loop.node.count_publishers(topic))
-
     def subscribe_raw(self, message_type: type[Message], topic: str, on_message: Callable[[bytes], None]) -> Any:
         """Call `heard` with each message as it is on the wire, with the QoS of those who publish now."""
         offered = [info.qos_profile for info in self._loop.node.get_publishers_info_by_topic(topic)]
@@ -151,70 +137,10 @@ class Topics:
         topic: str,
         seconds: float,
         on_message: Callable[[M], None],
-        alive: Callable[[int, int], None],
+        on_liveliness: Callable[[Any], None],
     ) -> Any:
-        """Call `heard` with messages and `alive` with the numbers of publishers that are, and are not, asserted.
-
-        A publisher that was killed counts as not asserted until discovery has dropped it.
-        """
-
-        count = _Count(alive)
-
-        def received_first(message: M) -> None:
-            if not count.known:
-                # In two steps: what was reported meanwhile is handled before the second one.
-                self._loop.after(ASSERTED, lambda: self._loop.after(ASSERTED, count.made_up))
-            on_message(message)
-
-        return self._subscribed(message_type, topic, received_first, quality.lease(seconds), liveliness=count.reported)
-
-    def mismatches(self, topic: str) -> set[NotConnected] | None:
-        """What of others is on a topic of ours but not connected to us, and why; None while one's name is not known."""
-        writers = self._loop.node.get_publishers_info_by_topic(topic)
-        readers = self._loop.node.get_subscriptions_info_by_topic(topic)
-        if any(end.node_name == UNKNOWN for end in [*writers, *readers]):
-            return None
-        own, found = self._loop.node.get_fully_qualified_name(), set[NotConnected]()
-        for writer, reader in product(writers, readers):
-            names = [f"{end.node_namespace.rstrip('/')}/{end.node_name}" for end in (writer, reader)]
-            if own in names and names[0] != names[1] and (reason := _mismatch(writer, reader)):
-                found.add(NotConnected(topic, names[1], names[0], reason))
-        return found
-
-
-def _mismatch(writer: Any, reader: Any) -> str:
-    """Why DDS does not connect two ends of a topic; empty when it does."""
-    if writer.topic_type != reader.topic_type:
-        return f"{writer.topic_type} is not {reader.topic_type}"
-    found, reason = qos_check_compatible(writer.qos_profile, reader.qos_profile)
-    return str(reason).removeprefix("ERROR: ").rstrip("; ") if found == QoSCompatibility.ERROR else ""
-
-
-class _Count:
-    """Publishers that are, and are not, asserted, as one subscription knows them.
-
-    Fast DDS tells a reader of changes only, and not of those from before it is registered: of a publisher that was
-    asserted a moment too early, or that another reader of this process knows already, it counts from 0 down to -1.
-    Such a one has sent its message all the same, and that counts as an assertion.
-    """
-
-    def __init__(self, alive: Callable[[int, int], None]) -> None:
-        self._alive, self._missed = alive, 0
-        self.known = False  # whether anything was reported
-
-    def reported(self, event: Any) -> None:
-        """By DDS."""
-        self.known = True
-        self._missed = max(self._missed, -event.alive_count)
-        if event.not_alive_count < 0:  # the one that was missed has ended since, and that was missed, too
-            self._missed = 0
-        self._alive(max(0, event.alive_count + self._missed), max(0, event.not_alive_count))
-
-    def made_up(self) -> None:
-        """A message came, and nothing was reported."""
-        if not self.known:
-            self.known, self._missed = True, 1
-            self._alive(1, 0)
+        """Call `on_message` with messages and `on_liveliness` with what DDS tells of those who assert the topic."""
+        return self._subscribed(message_type, topic, on_message, quality.lease(seconds), liveliness=on_liveliness)
 
 
 def _arrival(subscription: Any) -> Arrival[Any] | None:

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from control_msgs.action import FollowJointTrajectory
 
 from tms_config.clock import monotonic
+from tms_config.naming import process_of
 from tms_machine.border import STOP_PROVEN
 from tms_machine.reasons import MotionNotEnded, NoReason
 from tms_reason import wire
@@ -12,7 +13,6 @@ from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
 from tms_ros.client import Call, Peer
 from tms_ros.goals import Outcome
-from tms_ros.naming import process_of
 from tms_ros.reasons import LostMeanwhile, NoAnswer, ProcessLost
 from tms_ros.server import AnyGoal
 from tms_rp.messages import follow

@@ -9,6 +9,7 @@ from sensor_msgs.msg import JointState
 from tms_msg_rp.msg import TmsRpErrorCodes
 
 from tms_config.clock import monotonic
+from tms_config.naming import process_of
 from tms_machine.permit import Permit, watch_server
 from tms_machine.reasons import Aborted, Busy
 from tms_reason import wire
@@ -16,7 +17,6 @@ from tms_reason.errors import SubtaskFailed, TmsError
 from tms_reason.reason import Reason
 from tms_reason.texts import text
 from tms_ros.goals import Ended, Outcome
-from tms_ros.naming import process_of
 from tms_ros.server import AnyGoal
 from tms_rp.clearance import Clearance
 from tms_rp.kind import Action, Angles, Moves

@@ -1,1 +1,1 @@
-"""What every process does: start, pulse, log, metrics, health, end."""
+"""What every process does: environment, start, pulse, log, metrics, health, end."""

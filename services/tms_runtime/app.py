@@ -7,6 +7,7 @@ from tms_config.config import Site
 from tms_config.processes import Process
 from tms_reason.reason import Reason
 from tms_ros.node import Ros
+from tms_runtime.hanging import Hanging
 from tms_runtime.log import Logger
 from tms_runtime.pulse import Pulse
 from tms_runtime.reasons import ProcessStarting
@@ -20,6 +21,7 @@ class App:
         self.process = process
         self.ros = ros
         self.pulse = Pulse(ros)
+        self.hanging = Hanging(ros)
         self.log = log
         self.stopping = threading.Event()
         self._unready: Callable[[], Reason | None] = ProcessStarting

@@ -1,11 +1,16 @@
 """What a process sees of the ROS graph: how many ends it is connected to, and which ones it cannot be connected to."""
 
+from itertools import product
+from typing import Any
+
 from tms_ros.node import Ros
-from tms_ros.reasons import NotConnected
+from tms_ros.quality import misfit
 from tms_runtime import metrics
 from tms_runtime.log import Logger
+from tms_runtime.reasons import NotConnected
 
 GRAPH_CHECK_PERIOD = 5.0  # s between looks
+UNKNOWN = "_NODE_NAME_UNKNOWN_"  # of an end that discovery has found a moment before its node
 RCLPYS_OWN = "/parameter_events"
 TOPICS = 20  # looked at in one go: each takes some 0.3 ms of the executor
 
@@ -35,7 +40,7 @@ class Graph:
             self._publish(topic)
 
     def _publish(self, topic: str) -> None:
-        found = self._ros.mismatches(topic)
+        found = mismatches(self._ros, topic)
         if found is None:
             self._changed.append(topic)
             return
@@ -57,3 +62,24 @@ def peer_counts(ros: Ros) -> dict[str, tuple[int, int]]:
     node = ros.node
     topics = {end.topic_name for end in [*node.publishers, *node.subscriptions]} - {RCLPYS_OWN}
     return {topic: (node.count_publishers(topic), node.count_subscribers(topic)) for topic in topics}
+
+
+def mismatches(ros: Ros, topic: str) -> set[NotConnected] | None:
+    """What of others is on a topic of ours but not connected to us, and why; None while one's name is not known."""
+    writers = ros.node.get_publishers_info_by_topic(topic)
+    readers = ros.node.get_subscriptions_info_by_topic(topic)
+    if any(end.node_name == UNKNOWN for end in [*writers, *readers]):
+        return None
+    own, found = ros.node.get_fully_qualified_name(), set[NotConnected]()
+    for writer, reader in product(writers, readers):
+        names = [f"{end.node_namespace.rstrip('/')}/{end.node_name}" for end in (writer, reader)]
+        if own in names and names[0] != names[1] and (reason := _mismatch(writer, reader)):
+            found.add(NotConnected(topic, names[1], names[0], reason))
+    return found
+
+
+def _mismatch(writer: Any, reader: Any) -> str:
+    """Why DDS does not connect two ends of a topic; empty when it does."""
+    if writer.topic_type != reader.topic_type:
+        return f"{writer.topic_type} is not {reader.topic_type}"
+    return misfit(writer.qos_profile, reader.qos_profile)

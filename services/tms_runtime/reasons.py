@@ -2,7 +2,7 @@
 
 from tms_reason.quantities import Seconds
 from tms_reason.reason import Reason
-from tms_reason.remedies import EDIT_TASK, LOGS, RETRY, STATUS, Remedy
+from tms_reason.remedies import EDIT_TASK, LOGS, OTHER_FOLDER, RESTART, RETRY, STATUS, Remedy
 
 OTHER_PORT = Remedy("edit_config", "", "Stop the other program, or change ports.metrics in the site file")
 
@@ -16,6 +16,9 @@ class PortTaken(Reason, text="port {port} on {address} is taken ({problem})", ac
 class ParentGone(Reason, text="supervisord ended while this process started"): pass
 class PcBusy(Reason, text="its PC was too busy for {seconds}"): seconds: Seconds
 class LongCallback(Reason, text="a callback took {seconds}, or the process was frozen"): seconds: Seconds
+class Hangs(Reason, text="{process} has not run for {seconds}", action=RESTART): process: str; seconds: Seconds
+class NotConnected(Reason, text="{reader} does not receive what {writer} publishes", details="{topic}: {problem}"):
+    topic: str; reader: str; writer: str; problem: str
 
 # XML
 class TaskTooLarge(Reason, text="the task is larger than {limit} bytes"): limit: int
@@ -42,3 +45,5 @@ class XmlHint(Reason, text="{what}: {hint}"): what: Reason; hint: Reason
 # the disk of this PC
 class NotStored(Reason, text="{end} (not stored yet: the disk of the scheduler's PC is slow or full)", action=STATUS):
     end: Reason
+class OthersFile(Reason, text="belongs to another user, and others may read it", action=OTHER_FOLDER,
+    details="or give the folder to this user: `chown -R {user}`"): user: int

@@ -8,12 +8,11 @@ import signal
 import sys
 import threading
 
-from tms_config import environment, state_folder
 from tms_config.clock import monotonic
 from tms_config.config import Site, load_site, version
 from tms_config.processes import Process, find
 from tms_reason.errors import ConfigError
-from tms_runtime import log, metrics
+from tms_runtime import environment, log, metrics, state_folder
 from tms_runtime.last_resort import LEAVE_LIMIT, end_after
 from tms_runtime.log import Logger
 from tms_runtime.metrics import Health
@@ -60,7 +59,7 @@ def _serve(site: Site, row: Process) -> int:
         row.address,
         row.port,
         unready=lambda: app_box[0].unready() if app_box else ProcessStarting(),
-        hangs=lambda: app_box[0].ros.hangs() if app_box else None,
+        hangs=lambda: app_box[0].hanging.look() if app_box else None,
     )
     stop = threading.Event()
     for number in (signal.SIGTERM, signal.SIGINT):

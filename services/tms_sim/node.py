@@ -10,7 +10,7 @@ from std_msgs.msg import Bool, Float64, String
 
 from tms_config.models import Border
 from tms_config.site_file import Fault
-from tms_config.yaml_file import explain
+from tms_reason.validation import explain
 from tms_runtime.app import App
 from tms_sim.arm_server import trajectory_server
 from tms_sim.joint_commands import POSITION

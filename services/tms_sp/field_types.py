@@ -3,8 +3,8 @@
 import re
 from collections.abc import Callable, Collection
 
-from tms_config.validation import Wrong
 from tms_reason.reason import Reason
+from tms_reason.validation import Wrong
 from tms_sp.reasons import NoArray, NoFieldInside, NoMessageField, NoNames, WrongKind, WrongKindOf
 
 NUMBERS = {"float", "double", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64))}

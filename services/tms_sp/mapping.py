@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from tms_config.sensing import FieldRule, Input
-from tms_config.validation import Wrong
 from tms_reason.errors import TmsError
+from tms_reason.validation import Wrong
 from tms_sp.field_types import NAMES, PART, PLAIN, STAMPS, VALUES, Fields, FieldsOf, FieldTypes
 from tms_sp.reasons import (
     ArrayOfTexts,

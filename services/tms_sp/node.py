@@ -10,11 +10,11 @@ from tms_msg_sp.msg import InputState, InputStates
 
 from tms_config.clock import monotonic
 from tms_config.sensing import Input, load_sensing, sensing_path
-from tms_config.validation import Wrong
 from tms_config.yaml_file import located
 from tms_machine.values import to_parameters
 from tms_reason.errors import ConfigError
 from tms_reason.reason import Reason
+from tms_reason.validation import Wrong
 from tms_reason.wire import refusal
 from tms_ros.interface_types import Message
 from tms_runtime.app import App

@@ -1,7 +1,7 @@
 """Drive to each waypoint of a record in turn; one that is not reached is a failure that names it."""
 
-from tms_machine.places import Path
 from tms_machine.subtask import Machine, Progress, subtask
+from tms_subtasks.records.places import Path
 
 
 @subtask(timeout=1800)

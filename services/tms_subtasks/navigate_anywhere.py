@@ -1,7 +1,7 @@
 """Drive to the place of a record and stand there."""
 
-from tms_machine.places import Place
 from tms_machine.subtask import Machine, Progress, subtask
+from tms_subtasks.records.places import Place
 
 
 @subtask(timeout=900)

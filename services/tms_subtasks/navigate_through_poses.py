@@ -1,7 +1,7 @@
 """Drive through the poses of a record without a stop."""
 
-from tms_machine.places import Path
 from tms_machine.subtask import Machine, Progress, subtask
+from tms_subtasks.records.places import Path
 
 
 @subtask(timeout=1800)

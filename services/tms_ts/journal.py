@@ -19,8 +19,8 @@ from tms_reason.errors import DbError, RosError
 from tms_reason.reason import Foreign, Reason
 from tms_reason.wire import refusal
 from tms_ros.node import Ros
+from tms_ros.packing import pack, unpack
 from tms_runtime.log import Logger
-from tms_runtime.packing import pack, unpack
 from tms_ts.group_commit import GroupCommit
 from tms_ts.reasons import DiskFull, EntryTooLarge, HistoryInMemory, HistoryLost, JournalFull
 from tms_ts.spool import Spool

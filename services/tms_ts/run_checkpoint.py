@@ -15,8 +15,8 @@ import structlog
 from prometheus_client import Counter
 
 from tms_config.clock import unix_time
-from tms_runtime.append_file import AppendFile
 from tms_runtime.durable import set_aside
+from tms_ts.append_file import AppendFile
 from tms_ts.group_commit import GroupCommit
 from tms_ts.interrupted_run import Header, InterruptedRun, Key
 

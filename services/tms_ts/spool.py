@@ -6,7 +6,7 @@ from collections.abc import Callable
 from contextlib import ExitStack, suppress
 from pathlib import Path
 
-from tms_runtime.append_file import AppendFile
+from tms_ts.append_file import AppendFile
 
 LARGEST = 256 * 2**20  # bytes; some days of a database that is away
 PIECE = 2**20  # bytes of one batch, if no line is longer

@@ -10,11 +10,11 @@ from tms_msg_sp.msg import InputState, InputStates
 
 from tms_config.clock import monotonic, sleep, unix_time
 from tms_config.models import MachineModel
-from tms_config.yaml_file import explain
 from tms_machine.subtask import load
 from tms_machine.values import from_parameters
 from tms_reason.errors import RosError
 from tms_reason.reason import Foreign, Reason
+from tms_reason.validation import explain
 from tms_reason.wire import refusal
 from tms_runtime.app import App
 from tms_ts.preflight import Stored

@@ -16,9 +16,9 @@ from pydantic import Field, model_validator
 
 from tms_config.clock import monotonic
 from tms_config.models import Settings
-from tms_config.names import Name
 from tms_config.yaml_file import parse
 from tms_reason.errors import ConfigError, TmsError
+from tms_reason.names import Name
 from tms_ur.login_throttle import LoginThrottle
 from tms_ur.reasons import Login, NoUsersFile, UnreadableUsers, UsersForAll, WrongPassword
 

@@ -2,7 +2,7 @@
 
 from pydantic import ConfigDict, Field
 
-from tms_config.names import Text
+from tms_reason.names import Text
 from tms_ur.models import INT32, Model
 
 

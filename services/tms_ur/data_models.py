@@ -5,7 +5,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from tms_config.names import Name
+from tms_reason.names import Name
 from tms_ur.command_models import Command
 from tms_ur.models import Model, Value
 from tms_ur.reason_view import ReasonView

@@ -8,9 +8,9 @@ from fastapi import FastAPI, Path, Query, Request, Response
 
 from tms_config.clock import utc_now
 from tms_config.config import Site
-from tms_config.names import Name
 from tms_reason import wire
 from tms_reason.errors import TmsError
+from tms_reason.names import Name
 from tms_reason.reason import Reason
 from tms_ur import export
 from tms_ur.audit_chain import RUN as AUDIT

@@ -25,12 +25,12 @@ from tms_msg_ts.srv import AnswerQuestion, CancelRun, CheckTask
 
 from tms_config.clock import monotonic
 from tms_config.config import Site
-from tms_config.names import check_sent
 from tms_machine.border import RECEIPT_LIMIT
 from tms_machine.frames import Frames
 from tms_machine.values import to_parameters
 from tms_reason import wire
 from tms_reason.errors import RosError, TmsError
+from tms_reason.names import check_sent
 from tms_reason.reason import Foreign, Reason
 from tms_ros.client import Call
 from tms_ros.interface_types import Coded, Reply, Req, ServiceType

@@ -17,7 +17,7 @@ from rosbags.typesys import Stores, get_typestore
 
 from bench.rig.mesh import Rig, rig, until
 from bench.runner import Figure
-from tms_runtime.packing import pack
+from tms_ros.packing import pack
 
 HZ, MINUTES, SPEED = 50, 10, 20
 MESSAGES = HZ * MINUTES * 60

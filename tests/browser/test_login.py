@@ -12,8 +12,8 @@ import yaml
 from playwright.sync_api import Browser, Page, expect
 
 from conftest import ports_of, site_data, tool, wait_until
-from tms_config import environment
 from tms_config.config import load_site
+from tms_runtime import environment
 from tms_ur.access import hashed
 
 pytestmark = [pytest.mark.ros, pytest.mark.browser]

@@ -1,4 +1,4 @@
-"""Files and functions stay short enough to be read at once."""
+"""Files and functions stay short enough to be read at once, and the packages below all services small."""
 
 import ast
 from pathlib import Path
@@ -7,7 +7,8 @@ import pytest
 
 from conftest import PROJECT
 
-FILES, FUNCTIONS = 300, 40  # lines
+FILES, FUNCTIONS, PACKAGES = 300, 40, 1300  # lines
+LOWER = ("tms_reason", "tms_config", "tms_ros", "tms_runtime", "tms_machine")
 PYTHON = sorted(path for path in (PROJECT / "services").rglob("*.py"))
 
 
@@ -19,3 +20,10 @@ def test_its_sizes(path: Path) -> None:
     functions = [node for node in ast.walk(ast.parse(text)) if isinstance(node, made)]
     long = [node.name for node in functions if (node.end_lineno or 0) - node.lineno + 1 > FUNCTIONS]
     assert long == [], "split the functions"
+
+
+@pytest.mark.parametrize("package", LOWER)
+def test_the_size_of_a_package_that_all_services_use(package: str) -> None:
+    files = [path for path in PYTHON if path.is_relative_to(PROJECT / "services" / package)]
+    lines = sum(len(path.read_text(encoding="utf-8").splitlines()) for path in files)
+    assert files and lines <= PACKAGES, "move what one service uses to that service, or further up or down"

@@ -9,7 +9,7 @@ import yaml
 
 from stores import Server
 from tms_config.config import load_site
-from tms_db import schema, store
+from tms_db import schema, store, store_address
 from tms_reason.errors import DbError
 
 PASSWORD = "p@ss/w:rd%"
@@ -67,7 +67,7 @@ def attempt(folder: Path, guarded: Server, monkeypatch: pytest.MonkeyPatch) -> I
         given["uri"] = str(given["uri"]).format(host=f"127.0.0.1:{guarded.port}")
         site = {"name": "t", "domain": 43, "services": {"db": {}}, "store": {"kind": "mongodb", **given}}
         (folder / "site.yaml").write_text(yaml.safe_dump(site))
-        opened.append(store.connect(load_site(str(folder / "site.yaml")).store_uri, "rostmsdb"))
+        opened.append(store.connect(store_address.uri(load_site(str(folder / "site.yaml"))), "rostmsdb"))
         schema.bring_up(opened[-1])
         return schema.stored(opened[-1])
 

@@ -9,9 +9,9 @@ import time
 
 from tms_msg_rc.srv import StopMachine
 
-from tms_config import environment
 from tms_config.config import load_site
 from tms_ros.node import Ros
+from tms_runtime import environment
 from tms_runtime.last_resort import end_after
 
 LIMIT = 10.0  # s for a receipt

@@ -16,9 +16,9 @@ from typing import Any
 import pytest
 
 from conftest import ports_of
-from tms_config import environment
 from tms_config.config import Site, load_site
 from tms_config.processes import find
+from tms_runtime import environment
 
 LIMIT = 60.0  # s for whatever must happen at all
 SITE = """

@@ -19,11 +19,11 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
-from tms_config import environment
 from tms_config.config import load_site
 from tms_ros.client import Call
 from tms_ros.goals import Outcome
 from tms_ros.node import Ros
+from tms_runtime import environment
 
 LIMIT = 40.0  # s for whatever must happen at all
 SITE = """

@@ -34,7 +34,7 @@ from tms_msg_db.srv import (
 
 from few_processes import LIMIT, Mesh, bare
 from tms_config.config import CONFIGS
-from tms_db import store
+from tms_db import store, store_address
 from tms_db.terrain import Terrain
 from tms_db.terrain_files import Size
 from words import words
@@ -119,7 +119,7 @@ def terrain(mesh: Mesh) -> None:
     heights = np.arange(500 * 400, dtype=np.uint32).astype(np.uint16).reshape(400, 500)
     file = mesh.log.with_name("yard.png")
     Image.fromarray(heights).save(file)
-    db = store.connect(mesh.site.store_uri, "rostmsdb")
+    db = store.connect(store_address.uri(mesh.site), "rostmsdb")
     Terrain(db).add(file, "heightmap", Size(120.0, 80.0, 14.0, -24.0))
     db.client.close()
     found = mesh.db(TmsdbTerrainImageSrv, "terrain_image", type="heightmap", id=4031)

@@ -155,4 +155,4 @@ def test_a_frozen_process_is_restarted(small: tuple[Mesh, Ros], watch: Watch) ->
     watch.wait(lambda: watch.state is not None and watch.state.ready, "the new gateway is heard")
     # Until then a client takes the dead server for the new one, and a goal sent to it is lost.
     states = f"/{MACHINE}/rc/state"
-    wait_until(lambda: ros.publisher_count(states) == 1, 60, "the old gateway has left discovery")
+    wait_until(lambda: ros.node.count_publishers(states) == 1, 60, "the old gateway has left discovery")

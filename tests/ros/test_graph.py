@@ -8,8 +8,9 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from std_msgs.msg import Bool, String
 
 from conftest import wait_until
+from tms_if.on_executor import do
 from tms_ros.node import Ros
-from tms_runtime.graph import Graph, peer_counts
+from tms_runtime.graph import Graph, mismatches, peer_counts
 
 pytestmark = pytest.mark.ros
 LIMIT = 20.0  # s for whatever must happen at all
@@ -25,7 +26,7 @@ class Watched:
         self._graph = Graph(ros, structlog.stdlib.get_logger("test"))
 
     def reported(self) -> list[str]:
-        self._ros.do(self._graph.look, LIMIT)
+        do(self._ros, self._graph.look, LIMIT)
         return [record.getMessage() for record in self._caplog.records if record.name == "test"]
 
 
@@ -42,7 +43,7 @@ def test_a_publisher_that_nobody_can_hear_is_told_once(two_nodes: tuple[Ros, Ros
     wait_until(lambda: any(text in line for line in watched.reported()), LIMIT, "told")
     foreign.publisher(Bool, ACTED)  # one that fits: the topic is looked at again
     wait_until(lambda: peer_counts(here)[ACTED] == (2, 1), LIMIT, "seen")
-    wait_until(lambda: here.mismatches(ACTED) is not None, LIMIT, "known by name")
+    wait_until(lambda: mismatches(here, ACTED) is not None, LIMIT, "known by name")
     assert len(watched.reported()) == 1
 
 
@@ -66,5 +67,5 @@ def test_ends_that_fit_are_not_told(two_nodes: tuple[Ros, Ros], watched: Watched
         return bool(received)
 
     wait_until(arrives, LIMIT, "heard")
-    wait_until(lambda: here.mismatches(ACTED) is not None, LIMIT, "known by name")
+    wait_until(lambda: mismatches(here, ACTED) is not None, LIMIT, "known by name")
     assert watched.reported() == []

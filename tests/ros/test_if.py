@@ -23,11 +23,11 @@ from std_msgs.msg import Bool, Float64, Float64MultiArray
 from std_srvs.srv import SetBool, Trigger
 
 from conftest import wait_until
-from tms_config import environment
 from tms_config.config import load_site
 from tms_reason.errors import RosError
 from tms_ros.node import Ros
-from tms_runtime.packing import pack, unpack
+from tms_ros.packing import pack, unpack
+from tms_runtime import environment
 from unity_client import Unity, frame, text
 
 pytestmark = [

@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 from tms_msg_rc.msg import Permit as Message
 
+from tms_machine import leases
 from tms_machine.permit import LEASE
 from tms_ros.node import Ros
 from tms_runtime.pulse import Pulse
@@ -19,7 +20,7 @@ class Reader:
 
     def __init__(self, ros: Ros) -> None:
         self.changed, self.numbers, self.received = threading.Condition(), (0, 0), 0
-        ros.on_executor(lambda: ros.lease_subscribe(Message, TOPIC, LEASE, self._on_message, self._on_liveliness))
+        ros.on_executor(lambda: leases.subscribe(ros, Message, TOPIC, LEASE, self._on_message, self._on_liveliness))
 
     def _on_message(self, _message: Any) -> None:
         with self.changed:

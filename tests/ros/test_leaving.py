@@ -6,8 +6,8 @@ import sys
 from pathlib import Path
 
 from conftest import ports_of, wait_until
-from tms_config import environment
 from tms_config.config import load_site
+from tms_runtime import environment
 
 SITE = """
 name: leaving

@@ -9,6 +9,7 @@ from std_msgs.msg import String
 from tms_msg_ts.action import LeafNodeBase
 
 from conftest import wait_until
+from tms_if.on_executor import do
 from tms_reason.reason import Foreign, Reason
 from tms_reason.wire import to_line
 from tms_ros.client import Call
@@ -95,6 +96,6 @@ def test_ids_that_arrive_and_feedback_that_comes_before_its_result(
     assert refused.feedback.status == to_line(Foreign("not today"))  # said under the id that was arriving
     client = peer._client
     assert refused.id in client._feedback_callbacks  # rclpy keeps those of goals that had no result
-    here.do(lambda: client.forget(refused.id), LIMIT)
+    do(here, lambda: client.forget(refused.id), LIMIT)
     assert refused.id not in client._feedback_callbacks
     assert bytes(client.handle_of(call.id).goal_id.uuid) == call.id

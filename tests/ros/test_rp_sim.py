@@ -19,7 +19,6 @@ from tms_msg_rp.msg import TmsRpErrorCodes, TmsRpZx200PositionWithAngle
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from conftest import rearm
-from tms_config import environment
 from tms_config.config import load_site
 from tms_config.reasons import AboveLimit
 from tms_machine.reasons import MachineLatched
@@ -32,6 +31,7 @@ from tms_ros.goals import Outcome
 from tms_ros.node import Ros
 from tms_rp.kinds.backhoe.planner import NAMES as ARM
 from tms_rp.reasons import JointBroken, JointsOld, JointsUnheard, MoveOf, OtherAngle, OutOfRange
+from tms_runtime import environment
 
 pytestmark = [
     pytest.mark.ros,

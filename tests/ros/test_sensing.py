@@ -24,10 +24,11 @@ from tms_msg_sp.msg import InputStates
 from conftest import PROJECT
 from few_processes import Mesh, bare
 from tms_db.reasons import TooOld
+from tms_if.on_executor import do
 from tms_machine.values import from_parameters, to_parameters
 from tms_reason import wire
 from tms_reason.errors import RosError
-from tms_runtime.packing import pack
+from tms_ros.packing import pack
 from words import words
 
 pytestmark = [
@@ -275,7 +276,7 @@ def what_waits_is_heard_in_one_go(sensing: Sensing) -> None:
             publisher.publish(Float64(data=float(number)))
         assert ros.delivered(publisher, 5.0)
 
-    ros.do(send, 10.0)
+    do(ros, send, 10.0)
     sensing.until(lambda: -1.0 in received, "what waited")
     assert received == [*map(float, range(50)), -1.0]
 

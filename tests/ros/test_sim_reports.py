@@ -17,9 +17,9 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64, String
 
 from stand_in_rig import client_in
-from tms_config import environment
 from tms_config.config import load_site
 from tms_ros.node import Ros
+from tms_runtime import environment
 
 pytestmark = [
     pytest.mark.ros,

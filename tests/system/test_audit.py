@@ -9,6 +9,7 @@ import pytest
 
 from conftest import Mesh, wait_until
 from tms_config.config import load_site
+from tms_db import store_address
 
 pytestmark = [pytest.mark.system, pytest.mark.timeout(300)]
 
@@ -40,7 +41,7 @@ def test_the_chain(mesh: Mesh, monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setenv("TMS_STATE", str(mesh.state))
     site = load_site(str(mesh.site))
-    with pymongo.MongoClient(site.store_uri) as client:
+    with pymongo.MongoClient(store_address.uri(site)) as client:
         events = client[site.file.store.database]["event"]
         entry = events.find_one({"run_id": "audit", "node": "r-before"})
         events.update_one({"_id": entry["_id"]}, {"$set": {"text": "somebody else"}})

@@ -15,7 +15,7 @@ from conftest import PROJECT, Mesh, ports_of, wait_until
 from prometheus_server import get, processes_up, prometheus, query
 from tms_config.clock import utc_now
 from tms_config.config import load_site
-from tms_db import store
+from tms_db import store, store_address
 from tms_ros.node import Ros
 
 pytestmark = pytest.mark.system
@@ -117,7 +117,7 @@ def test_diagnostics_tell_every_process(mesh: Mesh, node: Ros) -> None:
 def test_where_machines_are_is_stored_once_a_second_with_its_age(mesh: Mesh) -> None:
     """The simulated machine publishes pose and joints some 50 times as often."""
     site = load_site(str(mesh.site))
-    db = store.connect(site.store_uri, site.file.store.database)
+    db = store.connect(store_address.uri(site), site.file.store.database)
 
     def newest(collection: str) -> list[Any]:
         return list(db[collection].find({"name": "zx200"}).sort("time", -1).limit(4))

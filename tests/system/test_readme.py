@@ -14,7 +14,7 @@ from sensing_msgs.msg import Sample
 
 from conftest import PROJECT, Mesh
 from tms_cli.replay.matching import built_hash
-from tms_runtime.packing import pack
+from tms_ros.packing import pack
 
 pytestmark = pytest.mark.system
 

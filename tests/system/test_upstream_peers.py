@@ -13,7 +13,7 @@ import pytest
 
 from conftest import PROJECT, Mesh
 from tms_config.config import load_site
-from tms_config.environment import environment
+from tms_runtime.environment import environment
 
 pytestmark = pytest.mark.system
 SCRIPT = str(PROJECT / "tests" / "data" / "upstream_client.py")

@@ -42,11 +42,11 @@ def info(as_json: bool) -> None:
     Example:
       tms db info --json
     """
-    from tms_db import backup, schema, store
+    from tms_db import backup, schema, store, store_address
 
     with opened() as db:
         report = backup.look(db)
-    address = store.redact(session.site().store_uri)
+    address = store.redact(store_address.uri(session.site()))
     if as_json:
         session.show_json({**_as_dict(report), "address": address, "newest_schema": schema.NEWEST})
         return

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tms_cli import live, session
-from tms_cli.reasons import InTaskFile, NoTaskFile, TaskUnknown
+from tms_cli.reasons import InTaskFile, TaskUnknown
+from tms_cli.task_file import read
 from tms_cli.words import Group, say
 from tms_reason.errors import TaskError, TmsError
 
@@ -29,20 +30,6 @@ def command() -> None:
       tms task list
       tms task check my_task.xml
     """
-
-
-def read(file: str) -> str:
-    """Text of a task file.
-
-    Raises:
-        TaskError: it is missing, no file, too big or no text.
-    """
-    from tms_db import task_text
-
-    path = Path(file)
-    if path.exists() and not path.is_file():
-        raise TaskError(NoTaskFile(file), TaskError.code)
-    return task_text.read_file(path)
 
 
 @command.command()

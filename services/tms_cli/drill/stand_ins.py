@@ -5,9 +5,9 @@ import subprocess
 import sys
 from types import TracebackType
 
-from tms_config import state_folder
 from tms_config.config import Site
-from tms_config.environment import environment
+from tms_runtime import state_folder
+from tms_runtime.environment import environment
 from tms_runtime.priority import come_first, session_first
 
 GROUP = "sim"  # of the process table

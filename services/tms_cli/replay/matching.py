@@ -12,8 +12,8 @@ from tms_cli.replay.recording import Track
 from tms_config.config import Site
 from tms_config.models import Border
 from tms_config.sensing import Input, sensing_path
-from tms_config.validation import Wrong
 from tms_reason.errors import TmsError
+from tms_reason.validation import Wrong
 from tms_sp.node import message_class
 
 

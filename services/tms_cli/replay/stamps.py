@@ -6,7 +6,7 @@ from typing import Any
 from tms_cli.reasons import StampFixed
 from tms_config.sensing import Input
 from tms_reason.errors import TmsError
-from tms_runtime.packing import pack, unpack
+from tms_ros.packing import pack, unpack
 from tms_sp.mapping import Getter, field_getter, stamp_path
 
 SECOND = 1_000_000_000  # ns

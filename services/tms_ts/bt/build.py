@@ -20,7 +20,7 @@ MAX_NODES = 20_000
 
 
 class Builder:
-    def __init__(self, document: Document, rules: Rules, context: Context) -> None:
+    def __init__(self, document: Document, rules: Rules, context: Context[Node]) -> None:
         self.document = document
         self.rules = rules
         self.context = context

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Protocol
+from typing import Generic, Protocol, TypeVar
 
 from tms_config.clock import monotonic
 from tms_reason.reason import Reason
 from tms_ts.bt.errors import MAX_WARNINGS, shortened
-from tms_ts.bt.node import Observer
+from tms_ts.bt.status import Status
 from tms_ts.world import World
+
+N = TypeVar("N")  # the nodes that observers are told of
 
 ENDLESS_ROUNDS = 100  # rounds that one endless loop may make in a tick
 ALL_ROUNDS = 10_000  # rounds of all loops of the tree together in a tick
@@ -22,7 +24,7 @@ class Timer(Protocol):
     def expire(self) -> None: ...
 
 
-class Context:
+class Context(Generic[N]):
     __slots__ = (
         "_reported",
         "_rounds_left",
@@ -40,7 +42,7 @@ class Context:
         self.world = world
         self.clock = clock or (world.clock if world else monotonic)
         self.quirks = quirks
-        self.observers: list[Observer] = []
+        self.observers: list[Callable[[N, Status, Status], None]] = []
         self.timers: list[Timer] = []  # armed ones
         self.warnings: list[tuple[int, Reason]] = []
         self.faults: list[tuple[int, str, Reason]] = []  # line, path: nodes that throw whenever they are ticked

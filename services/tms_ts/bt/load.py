@@ -16,6 +16,7 @@ from tms_ts.bt.build import Builder
 from tms_ts.bt.context import Context
 from tms_ts.bt.document import Document, read
 from tms_ts.bt.errors import TreeError
+from tms_ts.bt.node import Node
 from tms_ts.bt.registry import Registry
 from tms_ts.bt.registry import registry as all_nodes
 from tms_ts.bt.source import read_file
@@ -56,7 +57,7 @@ def _read(tree: str | bytes | Path, folder: Path | None, limit: int) -> Document
     return read(tree, folder=folder, limit=limit)
 
 
-def _build(document: Document, rules: Rules, context: Context, values: Mapping[str, Any] | None) -> Tree:
+def _build(document: Document, rules: Rules, context: Context[Node], values: Mapping[str, Any] | None) -> Tree:
     outermost = Blackboard()
     for key, value in (values or {}).items():
         outermost.set(key, value)

@@ -9,18 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from tms_reason.reason import Reason
 from tms_ts.bt.blackboard import Blackboard
+from tms_ts.bt.context import Context
 from tms_ts.bt.convert import FROM_TEXT, MISSING, convert
 from tms_ts.bt.errors import TickError
 from tms_ts.bt.ports import Direction, Pointer, Port
 from tms_ts.bt.reasons import AddPort, DoesNotFit, KeyChangesType, KeyHasNoValue, MissingParameter, OutputNotConnected
 from tms_ts.bt.status import IDLE, RUNNING, Kind, Status
-
-if TYPE_CHECKING:
-    from tms_ts.bt.context import Context
 
 
 @dataclass(slots=True)
@@ -29,7 +27,7 @@ class NodeSpec:
 
     registration_name: str
     name: str
-    context: Context
+    context: Context[Node]
     blackboard: Blackboard
     bindings: Mapping[str, Pointer | str] = field(default_factory=dict)
     path: str = "0"  # child positions from the root, e.g. 0.1.2

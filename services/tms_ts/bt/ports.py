@@ -5,12 +5,9 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import TYPE_CHECKING, Annotated, Any, TypeAlias, TypeVar, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, Protocol, TypeAlias, TypeVar, get_args, get_origin, get_type_hints
 
 from tms_ts.bt.convert import CPP_NAMES, MISSING
-
-if TYPE_CHECKING:
-    from tms_ts.bt.node import Node
 
 T = TypeVar("T")
 
@@ -56,6 +53,13 @@ def bind(port: str, text: str, *, v4: bool = False) -> Pointer | str:
     return text
 
 
+class HasPorts(Protocol):
+    """A node, as far as its ports go."""
+
+    def require(self, port: str) -> Any: ...
+    def write(self, port: str, value: Any) -> None: ...
+
+
 class PortAccess:
     """Makes a port read and write like a plain field inside a node."""
 
@@ -64,10 +68,10 @@ class PortAccess:
     def __init__(self, port: Port) -> None:
         self.port = port
 
-    def __get__(self, node: Node | None, owner: type[Node]) -> Any:
+    def __get__(self, node: HasPorts | None, owner: type) -> Any:
         return self if node is None else node.require(self.port.name)
 
-    def __set__(self, node: Node, value: Any) -> None:
+    def __set__(self, node: HasPorts, value: Any) -> None:
         node.write(self.port.name, value)
 
 
@@ -77,7 +81,7 @@ def _port_help(cls: type) -> dict[str, str]:
     return dict(re.findall(r"^\s*(\w+): (.+)$", texts, re.MULTILINE))
 
 
-def declare_ports(cls: type[Node]) -> dict[str, Port]:
+def declare_ports(cls: type) -> dict[str, Port]:
     """Read the annotations of a node class and put accessors in their place."""
     ports: dict[str, Port] = {}
     texts = _port_help(cls)

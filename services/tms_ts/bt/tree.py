@@ -64,7 +64,13 @@ class SharedValue:
 
 class Tree:
     def __init__(
-        self, root: Node, nodes: list[Node], blackboards: list[Blackboard], context: Context, xml: str, name: str = ""
+        self,
+        root: Node,
+        nodes: list[Node],
+        blackboards: list[Blackboard],
+        context: Context[Node],
+        xml: str,
+        name: str = "",
     ) -> None:
         self.name = name  # ID of the main tree
         self.root = root

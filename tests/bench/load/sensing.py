@@ -9,8 +9,8 @@ import time
 from typing import Any
 
 from bench.sensing import RATE, RECORDS, SECONDS, TOPIC
-from tms_config import environment
 from tms_config.config import load_site
+from tms_runtime import environment
 
 LIMIT = 20.0  # s
 PROBE = "/bench/probe"

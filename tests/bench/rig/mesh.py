@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING
 import yaml
 
 from conftest import Mesh, claimed_domain, ports_of, site_data
-from tms_config import environment
 from tms_config.config import Site, load_site
+from tms_runtime import environment
 
 if TYPE_CHECKING:
     from tms_ros.node import Ros

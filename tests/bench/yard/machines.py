@@ -25,13 +25,13 @@ from tms_msg_rc.srv import Rearm
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from conftest import ports_of, site_data
-from tms_config import environment
 from tms_config.config import Site, load_site
 from tms_reason.errors import RosError
 from tms_ros.client import Call
 from tms_ros.goals import Ended, Outcome
 from tms_ros.node import Ros
 from tms_ros.server import Goal
+from tms_runtime import environment
 
 COUNT = 20
 MODEL = "zx200"

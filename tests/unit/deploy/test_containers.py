@@ -11,8 +11,8 @@ import yaml
 
 from conftest import PROJECT, tool
 from tms_config.config import load_site
-from tms_config.pcs import ROLES
 from tms_config.processes import table
+from tms_config.site_file import ROLES
 
 DEPLOY = PROJECT / "deploy"
 COMPOSE = sorted(path for path in (DEPLOY / "compose").glob("*.yml") if path.stem != "base")

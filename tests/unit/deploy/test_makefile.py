@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from conftest import PROJECT
-from tms_config.pcs import ROLES
+from tms_config.site_file import ROLES
 
 HIDDEN = {"SITE", "ROLE", "PC", "RUNTIME", "VENV", "NAV2_DISTRO", "LOCK", "TMS_SITE", "TMS_IMAGE", "MAKEFLAGS"}
 

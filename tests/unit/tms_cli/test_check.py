@@ -11,16 +11,9 @@ import yaml
 from conftest import site_data
 from tms_cli.commands import check
 from tms_config import config
-from tms_config.reasons import (
-    BadConfig,
-    BadValueOf,
-    MissingKey,
-    NoMover,
-    NoResponse,
-    NoSourceFacts,
-    NoTopic,
-)  # fmt: skip
+from tms_config.reasons import BadConfig, NoMover, NoResponse, NoSourceFacts, NoTopic
 from tms_reason.reason import Reason
+from tms_reason.reasons import BadValueOf, MissingKey
 
 MODEL = yaml.safe_load((config.CONFIGS / "machines" / "zx200.yaml").read_text(encoding="utf-8"))
 

@@ -23,7 +23,7 @@ from tms_cli.replay import player
 from tms_cli.replay.matching import built_hash
 from tms_cli.replay.recording import Recording
 from tms_reason.errors import TmsError
-from tms_runtime.packing import pack, unpack
+from tms_ros.packing import pack, unpack
 
 SECOND = 1_000_000_000
 BEGAN = 1_000 * SECOND  # of the recordings

@@ -8,7 +8,7 @@ from tms_msg_db.msg import Task
 from tms_msg_db.srv import AddTask, GetTask, ListTasks
 from tms_msg_ts.srv import CheckTask
 
-from tms_cli import check_task
+from tms_cli import check_task, task_file
 from tms_cli.commands import task
 from tms_reason.errors import DbError, TaskError
 from tms_reason.reason import Foreign
@@ -47,7 +47,7 @@ def test_files_that_are_no_task_are_told_in_one_line(tmp_path: Path, mesh, tms) 
 
 def test_a_pipe_or_device_is_no_task() -> None:
     with pytest.raises(TaskError, match="/dev/zero is no file"):
-        task.read("/dev/zero")
+        task_file.read("/dev/zero")
 
 
 def test_add_says_the_number(mesh, tms, file: Path) -> None:

@@ -17,14 +17,10 @@ from tms_config.reasons import (
     BadFile,
     BadKey,
     BadLine,
-    BadSetting,
-    BadValueOf,
     BadVariable,
     CannotBeRead,
-    EmptyFile,
     HalfALogin,
     KeyTwice,
-    MissingKey,
     NoBorder,
     NoCodeFile,
     NoDomain,
@@ -48,12 +44,12 @@ from tms_config.reasons import (
     ProcessMeant,
     SeveralProcesses,
     SharedFrames,
-    UnknownKey,
     UserTwice,
-)  # fmt: skip
+)
 from tms_config.yaml_file import parse, read_yaml
 from tms_reason.errors import ConfigError
 from tms_reason.reason import Foreign, Reason
+from tms_reason.reasons import BadSetting, BadValueOf, MissingKey, UnknownKey
 from tms_reason.texts import text
 from tms_reason.wire import to_line
 
@@ -168,29 +164,7 @@ def test_environment_wins_over_the_file(tmp_path: Path, monkeypatch: pytest.Monk
     assert refused(site(tmp_path)) == BadVariable("ROS_DOMAIN_ID", NoDomain("200"))
 
 
-def test_a_password_comes_only_from_the_environment(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert load_site(site(tmp_path)).store_uri == "mongodb://127.0.0.1:20091/?directConnection=true"
-    monkeypatch.setenv("TMS_MONGODB_URI", "mongodb://u:p@db/")
-    loaded = load_site(site(tmp_path))
-    assert loaded.store_uri == "mongodb://u:p@db/"
-    assert not any(row.name == "store" for row in table(loaded))
-
-
 URI = "mongodb://db1,db2:27018"
-
-
-def test_a_mongodb_with_user_password_and_tls(tmp_path: Path) -> None:
-    (tmp_path / "password").write_text("p@ss/w:rd%\n")
-    login = {"kind": "mongodb", "user": "t ms", "password_file": "password"}
-    for given, wanted in (
-        ({"uri": URI, **login}, "mongodb://t%20ms:p%40ss%2Fw%3Ard%25@db1,db2:27018"),
-        ({"uri": f"{URI}/?replicaSet=rs0", "tls_ca": "/etc/ca.pem"},
-         f"{URI}/?replicaSet=rs0&tls=true&tlsCAFile=%2Fetc%2Fca.pem"),
-        ({"uri": f"{URI}/", "tls_ca": "/a", "tls_certificate": "/b"},
-         f"{URI}/?tls=true&tlsCAFile=%2Fa&tlsCertificateKeyFile=%2Fb"),
-        ({"uri": URI, "tls_ca": "/a"}, f"{URI}/?tls=true&tlsCAFile=%2Fa"),
-    ):  # fmt: skip
-        assert load_site(site(tmp_path, store=given)).store_uri == wanted
 
 
 @pytest.mark.parametrize(
@@ -218,22 +192,6 @@ def test_no_reason_shows_what_stands_under_password_or_uri(tmp_path: Path) -> No
         found = refused(site(tmp_path, store={name: 12345}))
         assert isinstance(found, BadKey) and isinstance(found.problem, BadSetting)
         assert "12345" not in to_line(found)
-
-
-@pytest.mark.parametrize(
-    ("content", "problem"),
-    [(None, CannotBeRead("No such file or directory")), (b"\n", EmptyFile()), (b"\xff\xfe", NotUtf8())],
-)
-def test_a_password_file_that_is_of_no_use(tmp_path: Path, content: bytes | None, problem: Reason) -> None:
-    file = tmp_path / "password"
-    if content is not None:
-        file.write_bytes(content)
-    loaded = load_site(site(tmp_path, store={"uri": URI, "user": "anna", "password_file": "password"}))
-    with pytest.raises(ConfigError) as caught:
-        _ = loaded.store_uri
-    found = caught.value.reason
-    assert isinstance(found, BadKey)
-    assert (found.key, found.problem) == ("store.password_file", BadFile(str(file), problem))
 
 
 def test_the_backend_chooses_the_names(tmp_path: Path) -> None:
@@ -337,19 +295,6 @@ def test_unknown_service(tmp_path: Path) -> None:
     found = caught.value.reason
     assert isinstance(found, BadKey) and found.key == "services.dbx"
     assert found.problem == NoService("dbx", ("db", "sp", "ts", "ur", "if", "host"))
-
-
-def test_a_secret_can_come_from_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    secret = tmp_path / "uri"
-    secret.write_text("mongodb://u:p@db/\n")
-    monkeypatch.setenv("TMS_MONGODB_URI_FILE", str(secret))
-    loaded = load_site(site(tmp_path))
-    assert loaded.store_uri == "mongodb://u:p@db/" and not loaded.embedded_store
-    secret.unlink()
-    with pytest.raises(ConfigError) as caught:
-        _ = loaded.store_uri
-    problem = BadFile(str(secret), CannotBeRead("No such file or directory"))
-    assert caught.value.reason == BadVariable("TMS_MONGODB_URI_FILE", problem)
 
 
 def test_the_bridge_has_settings_of_its_own(tmp_path: Path) -> None:

@@ -6,26 +6,25 @@ from typing import Any
 import pytest
 import yaml
 
-from tms_config import pcs
-from tms_config.config import Site, load_site
-from tms_config.environment import environment
+from tms_config.config import CHOICE, Site, load_site
 from tms_config.processes import here, table
 from tms_config.reasons import (
     BadConfig,
     BadKey,
     ManyPcsFor,
-    MissingKey,
     NoAddress,
     NoCps,
     NoPcFor,
     NoRole,
     NoSuchPc,
     NotUnderMachines,
-    UnknownKey,
     WhichPc,
-)  # fmt: skip
+)
+from tms_config.site_file import ROLES
 from tms_reason.errors import ConfigError
 from tms_reason.reason import Reason
+from tms_reason.reasons import MissingKey, UnknownKey
+from tms_runtime.environment import environment
 
 PCS = {
     "cps": {"address": "10.9.0.10"},
@@ -76,7 +75,7 @@ def test_a_pc_runs_its_own_rows_only(tmp_path: Path, monkeypatch: pytest.MonkeyP
 def test_the_choice_of_the_last_start_holds(tmp_path: Path) -> None:
     state = tmp_path / "state"
     state.mkdir()
-    (state / pcs.CHOICE).write_text("machine")
+    (state / CHOICE).write_text("machine")
     assert site(tmp_path).pc == "machine"
 
 
@@ -111,7 +110,7 @@ def test_a_site_of_one_pc_may_have_one_too(tmp_path: Path) -> None:
         ({"pcs": {"cps": PCS["cps"], "sim": PCS["sim"]}}, "pcs", NoPcFor("zx200:rc", "machine")),
         ({"pcs": {**PCS, "b": {"address": "10.9.0.4", "roles": ["cps"]}}}, "pcs",
          ManyPcsFor(("cps", "b"), "tms:store", "cps")),
-        ({"pcs": {**PCS, "spare": {"address": "10.9.0.4"}}}, "pcs.spare", NoRole(pcs.ROLES)),
+        ({"pcs": {**PCS, "spare": {"address": "10.9.0.4"}}}, "pcs.spare", NoRole(ROLES)),
         ({"pcs": {**PCS, "machine": {"address": "a", "machines": ["zx9"]}}}, "pcs.machine.machines",
          NotUnderMachines("zx9", ("zx200", "ic120_1"))),
         ({"pcs": {"sim": PCS["sim"]}, "network": {"discovery": "server"}}, "network.discovery", NoCps()),

@@ -15,7 +15,7 @@ from tms_if.commands import CommandError, Registration
 from tms_if.names import Allowed
 from tms_reason.errors import RosError
 from tms_reason.reason import Foreign
-from tms_runtime.packing import pack
+from tms_ros.packing import pack
 
 TOPIC, SPAWN = "zx200/odom", "/spawn"
 ALLOWED = Allowed(

@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 from tms_msg_rc.msg import Permit as Message
 
+from tms_machine import leases
 from tms_machine.permit import GRACE, Link, watch_server
 
 GOAL = [7] * 16
@@ -25,13 +26,15 @@ class Dds:
     def after(self, seconds: float, step: Callable[[], None]) -> None:
         self.later.append((seconds, step))
 
-    def lease_subscribe(self, _type: Any, _topic: str, _lease: float, received: Any, alive: Any) -> None:
+    def subscribe(self, _ros: Any, _type: Any, _topic: str, _lease: float, received: Any, alive: Any) -> None:
         self.received, self.alive = received, alive
 
 
 @pytest.fixture
-def dds() -> Dds:
-    return Dds()
+def dds(monkeypatch: pytest.MonkeyPatch) -> Dds:
+    made = Dds()
+    monkeypatch.setattr(leases, "subscribe", made.subscribe)
+    return made
 
 
 @pytest.fixture

@@ -3,10 +3,10 @@
 import pytest
 from pydantic import ValidationError
 
-from tms_config.yaml_file import explain
 from tms_machine.subtask import Machine, Params, Progress, Subtask, subtask
 from tms_machine.subtask_server import load
 from tms_reason.errors import ConfigError
+from tms_reason.validation import explain
 
 
 class Heading(Params):

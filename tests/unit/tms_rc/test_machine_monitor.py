@@ -78,16 +78,18 @@ class Ros:
 
     def __init__(self) -> None:
         self.waiting: list[Any] = []
-        self.voices = ["/driver"]
+        self.voices = ["driver"]
+        self.node = self
 
     def sample_arrivals(self, _kind: Any, _topic: str, _depth: int) -> Any:
         return lambda: [self.waiting.pop(0) for _ in list(self.waiting)]
 
-    def publisher_count(self, _topic: str) -> int:
+    def count_publishers(self, _topic: str) -> int:
         return len(self.voices)
 
-    def publishers(self, _topic: str) -> list[tuple[str, str]]:
-        return [(node, "sensor_msgs/msg/JointState") for node in self.voices]
+    def get_publishers_info_by_topic(self, _topic: str) -> list[Any]:
+        kind = "sensor_msgs/msg/JointState"
+        return [SimpleNamespace(node_namespace="/", node_name=node, topic_type=kind) for node in self.voices]
 
 
 def test_a_source_that_speaks_again_is_not_believed_before_its_publishers_were_counted(
@@ -112,7 +114,7 @@ def test_a_source_that_speaks_again_is_not_believed_before_its_publishers_were_c
     now[0] += 5.0
     seen.look()  # the regular count, while the first publisher, killed, is still the only one
     now[0] += 0.01
-    ros.voices = ["/driver", "/driver"]
+    ros.voices = ["driver", "driver"]
     speak()
     trouble = watch.trouble(now[0])
     assert trouble is not None and isinstance(trouble.reason, ManyPublishers)

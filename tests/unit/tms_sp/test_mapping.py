@@ -9,7 +9,7 @@ import pytest
 from pydantic import ValidationError
 
 from tms_config.sensing import Input
-from tms_config.validation import Wrong
+from tms_reason.validation import Wrong
 from tms_sp.mapping import Mapping, Refused
 
 EXCAVATE = {"model_name": "string", "record_name": "string", "x": "double", "y": "double"}

@@ -6,11 +6,11 @@ from hypothesis import strategies as st
 from pydantic import BaseModel, ValidationError
 from tms_msg_db.srv import SetParameter
 
-from tms_config.names import Name, Text, check_sent, check_text, name_flaw
-from tms_config.reasons import BadText, ControlLetter, EmptyName, HiddenLetter, LongName, OuterBlank
 from tms_machine.values import to_parameters
 from tms_reason.errors import TmsError
+from tms_reason.names import Name, Text, check_sent, check_text, name_flaw
 from tms_reason.reason import Reason
+from tms_reason.reasons import BadText, ControlLetter, EmptyName, HiddenLetter, LongName, OuterBlank
 
 
 @pytest.mark.parametrize(

@@ -5,9 +5,9 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from tms_config.reasons import BadSetting, BadValueOf, MissingKey, UnknownKey
 from tms_reason.reason import Foreign, Reason
-from tms_reason.texts import sentence
+from tms_reason.reasons import BadSetting, BadValueOf, MissingKey, UnknownKey
+from tms_reason.texts import sentence, text
 
 Keys = tuple[int | str, ...]
 PLAIN: dict[str, type[UnknownKey | MissingKey]] = {"extra_forbidden": UnknownKey, "missing": MissingKey}
@@ -35,6 +35,13 @@ def problems(error: ValidationError) -> Iterator[tuple[Keys, Reason]]:
             yield keys, BadSetting(Foreign(str(own)))
         else:
             yield keys, _refused(keys, one["msg"], one["input"])
+
+
+def explain(error: ValidationError) -> str:
+    """First problem of a validation, as `key: what`; says how many more there are."""
+    keys, reason = next(problems(error))
+    key, more = dotted(keys), error.error_count() - 1
+    return (f"{key}: " if key else "") + text(reason, "en") + (f" (and {more} more)" if more else "")
 
 
 def dotted(keys: Keys) -> str:

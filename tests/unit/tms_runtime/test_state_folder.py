@@ -5,9 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from tms_config import state_folder
-from tms_config.reasons import BadFile, OthersFile
+from tms_config.reasons import BadFile
 from tms_reason.errors import ConfigError
+from tms_runtime import state_folder
+from tms_runtime.reasons import OthersFile
 
 
 def mode(path: Path) -> int:

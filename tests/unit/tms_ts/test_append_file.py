@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from tms_runtime import durable
-from tms_runtime.append_file import AppendFile
+from tms_ts.append_file import AppendFile
 
 
 def once(call: Callable[..., Any], does: Callable[..., Any]) -> Callable[..., Any]:

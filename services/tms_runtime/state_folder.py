@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from tms_config.reasons import BadFile, OthersFile
+from tms_config.reasons import BadFile
 from tms_reason.errors import ConfigError
+from tms_runtime.reasons import OthersFile
 
 UMASK = 0o077
 OTHERS = 0o077  # what group and others may do

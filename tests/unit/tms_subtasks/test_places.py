@@ -5,8 +5,8 @@ import math
 import pytest
 from pydantic import ValidationError
 
-from tms_config.yaml_file import explain
-from tms_machine.places import Path, Place
+from tms_reason.validation import explain
+from tms_subtasks.records.places import Path, Place
 
 QUATERNION = {"qx": 0.0, "qy": 0.0, "qz": 0.70711, "qw": 0.70711}
 LISTS = {"x": [1.0, 2.0], "y": [0.0, 0.0], "z": [0.0, 0.0]}

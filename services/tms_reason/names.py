@@ -11,11 +11,11 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, Field
 
-from tms_config.reasons import BadName, BadText, ControlLetter, EmptyName, HiddenLetter, LongName, OuterBlank
-from tms_config.validation import Wrong
 from tms_reason import texts
 from tms_reason.errors import TmsError
 from tms_reason.reason import Reason
+from tms_reason.reasons import BadName, BadText, ControlLetter, EmptyName, HiddenLetter, LongName, OuterBlank
+from tms_reason.validation import Wrong
 
 MAX_LENGTH = 200  # letters
 EXCERPT = 40  # letters of a text in a reason

@@ -3,8 +3,9 @@
 import os
 from pathlib import Path
 
-from tms_config import pcs, state_folder
+from tms_config import pcs
 from tms_config.config import PROJECT, Site
+from tms_runtime import state_folder
 
 # UDP on one interface only, no shared memory: the LOCALHOST range of Fast DDS silently loses
 # everything above 32 participants, and shared memory leaks with every killed process.

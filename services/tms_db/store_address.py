@@ -1,23 +1,43 @@
 """The URI of the site's MongoDB out of what the site file says and a password that stands in a file of its own."""
 
+import os
 from pathlib import Path
-from typing import TYPE_CHECKING
 from urllib.parse import quote, urlencode
 
-from tms_config.reasons import BadFile, EmptyFile
+from tms_config.config import Site
+from tms_config.reasons import BadFile, BadVariable, CannotBeRead
+from tms_config.site_file import Store
 from tms_config.yaml_file import located, read_text
+from tms_db.reasons import EmptyFile
 from tms_reason.errors import ConfigError
 
-if TYPE_CHECKING:
-    from tms_config.site_file import Store
+
+def uri(site: Site) -> str:
+    """URI of the store, with its password: never log it.
+
+    Raises:
+        ConfigError: a file with a secret cannot be read.
+    """
+    if given := _secret("TMS_MONGODB_URI"):
+        return given
+    if given := site.file.store.uri:
+        return _with_login(site.file.store, given, site.path)
+    return f"mongodb://127.0.0.1:{site.file.ports.store}/?directConnection=true"
 
 
-def holds_password(uri: str) -> bool:
-    """Whether a URI names a user with a password."""
-    return ":" in uri.partition("://")[2].rpartition("@")[0]
+def _secret(name: str) -> str | None:
+    """Value of a variable, or of the file that NAME_FILE names, as containers and systemd hand out secrets."""
+    path = os.environ.get(f"{name}_FILE")
+    if name in os.environ or not path:
+        return os.environ.get(name)
+    try:
+        return Path(path).read_text(encoding="utf-8").strip()
+    except OSError as error:
+        problem = BadFile(path, CannotBeRead(str(error.strerror)))
+        raise ConfigError(BadVariable(f"{name}_FILE", problem)) from error
 
 
-def address(store: "Store", uri: str, site: Path) -> str:
+def _with_login(store: Store, uri: str, site: Path) -> str:
     """The URI with user, password and TLS files of the site; files are looked for beside the site file.
 
     Raises:
