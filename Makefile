@@ -24,7 +24,7 @@ TMS := $(VENV)/bin/tms $(if $(SITE),--site $(SITE))
 # A sourced ROS installation would mix its libraries into the venv's.
 unexport PYTHONPATH LD_LIBRARY_PATH AMENT_PREFIX_PATH CMAKE_PREFIX_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE
 .DEFAULT_GOAL := help
-.PHONY: help setup interfaces locks demo test test-fast up down status logs restart lint conformance bench soak drill nightly test-docker system containers clean
+.PHONY: help setup interfaces locks demo test test-fast up down status logs restart lint conformance bench pictures soak drill nightly test-docker system containers clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -128,6 +128,10 @@ nightly: setup ## what takes hours: properties with 400 examples, 30 power cuts 
 bench: setup ## benchmarks with ratios to a floor of the same run (ONLY=group)
 	@sh deploy/system-packages.sh chromium
 	@$(PY) tests/bench $(if $(ONLY),--only "$(ONLY)")
+
+pictures: setup ## every page of the running demo's console as deploy/pictures/<page>.png; runs its task once more
+	@sh deploy/system-packages.sh chromium japanese
+	@$(if $(SITE),TMS_SITE="$(SITE)") $(PY) tests/pictures.py
 
 soak: setup ## the two-machine demo over and over; nothing may grow (MINUTES=120)
 	@$(PY) tests/soak.py $(if $(MINUTES),--minutes "$(MINUTES)")

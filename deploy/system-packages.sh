@@ -1,6 +1,6 @@
 #!/bin/sh
 # Names the system packages that are missing with the one command that installs them; as root, installs them.
-# Arguments are groups: setup (when there is none), test, containers, chromium, debootstrap.
+# Arguments are groups: setup (when there is none), test, containers, chromium, japanese, debootstrap.
 set -eu
 PATH=$PATH:${SBIN:-/usr/local/sbin:/usr/sbin:/sbin} # where nft and others are, and only root looks
 missing=""
@@ -32,6 +32,11 @@ sys.exit(not pathlib.Path(sysconfig.get_path("include"), "Python.h").exists())' 
 }
 
 browser() { need chromium chromium chromium-browser; }
+
+letters() { # of Japanese: a browser without a font of them shows boxes
+  need fontconfig fc-list
+  [ -n "$(fc-list :lang=ja 2>/dev/null)" ] || lacks fonts-ipafont-gothic
+}
 
 compose() { # a plugin of the client, or a program of its own
   client=${DOCKER:-docker}
@@ -68,6 +73,7 @@ for group in "$@"; do
   case $group in
     test) tests ;;
     chromium) browser ;;
+    japanese) letters ;;
     debootstrap) need debootstrap debootstrap ;;
     setup | containers) "$group" ;;
     *) echo "no group of system packages: $group" >&2; exit 2 ;;

@@ -32,6 +32,7 @@ class Run:
     started_at: datetime
     ended_at: datetime | None
     records: tuple[str, ...] = ()  # that the tree names: MODEL/RECORD; MODEL/* where only the run decides
+    values: dict[str, Value] = field(default_factory=dict)  # what else the scheduler tells of it
 
 
 @dataclass(frozen=True)
@@ -90,7 +91,8 @@ class History:
 
     def _write_runs(self, runs: Iterable[Run]) -> None:
         for run in runs:
-            document = {**vars(run), "machines": list(run.machines), "records": list(run.records)}
+            lists = {"machines": list(run.machines), "records": list(run.records), "values": _pairs(run.values)}
+            document = {**vars(run), **lists}
             for _ in range(ATTEMPTS):
                 with errors():
                     try:
@@ -137,13 +139,21 @@ def _check_id(run_id: str) -> None:
         raise DbError(BadRunId(run_id[:40], why), "BAD_JOURNAL")
 
 
+def _pairs(values: dict[str, Value]) -> list[dict[str, Any]]:
+    # Names of values may hold what field names may not (dots, a leading $).
+    return [{"name": name, "value": value} for name, value in values.items()]
+
+
+def _values(pairs: Iterable[dict[str, Any]]) -> dict[str, Value]:
+    return {pair["name"]: pair["value"] for pair in pairs}
+
+
 def _document(event: Event) -> dict[str, Any]:
-    # Pairs, since names of values may hold what field names may not (dots, a leading $).
-    return {**vars(event), "values": [{"name": name, "value": value} for name, value in event.values.items()]}
+    return {**vars(event), "values": _pairs(event.values)}
 
 
 def _event(document: dict[str, Any]) -> Event:
-    return Event(**{**document, "values": {pair["name"]: pair["value"] for pair in document["values"]}})
+    return Event(**{**document, "values": _values(document["values"])})
 
 
 def _rival() -> DbError:
@@ -152,4 +162,4 @@ def _rival() -> DbError:
 
 def _run(document: dict[str, Any]) -> Run:
     lists = {"machines": tuple(document["machines"]), "records": tuple(document.get("records", ()))}
-    return Run(**{**document, **lists})
+    return Run(**{**document, **lists, "values": _values(document.get("values", ()))})

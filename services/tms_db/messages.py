@@ -30,7 +30,8 @@ def run(run: Run) -> msg.Run:
     """A stored run as a message."""
     times = {"started_at": to_time(run.started_at), "ended_at": to_time(run.ended_at)}
     lists = {"machines": list(run.machines), "records": list(run.records)}
-    return msg.Run(**{**vars(run), **lists, **times})
+    values, _ = to_parameters(run.values, hidden=())
+    return msg.Run(**{**vars(run), **lists, **times, "values": values})
 
 
 def stored_run(message: msg.Run) -> Run:
@@ -46,6 +47,7 @@ def stored_run(message: msg.Run) -> Run:
         records=tuple(message.records),
         started_at=from_time(message.started_at),
         ended_at=from_time(ended) if ended.sec or ended.nanosec else None,
+        values=from_parameters(f"run {message.run_id}", message.values),
     )
 
 

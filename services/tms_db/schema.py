@@ -30,8 +30,15 @@ def _runs_name_their_records(db: Db) -> None:
     db["run"].update_many({"records": {"$exists": False}}, {"$set": {"records": []}})
 
 
+def _runs_have_values(db: Db) -> None:
+    db["run"].update_many({"values": {"$exists": False}}, {"$set": {"values": []}})
+
+
 # Step n brings a database from version n - 1 to n. Never change or remove one that was released: append.
-MIGRATIONS = (Migration("runs name the records that they use", _runs_name_their_records),)
+MIGRATIONS = (
+    Migration("runs name the records that they use", _runs_name_their_records),
+    Migration("runs have further values", _runs_have_values),
+)
 NEWEST = len(MIGRATIONS)
 
 

@@ -139,7 +139,8 @@ class Execution:
         if past is not None and past.header is not None:
             old = past.header
             started = Time(sec=old.started[0], nanosec=old.started[1])
-            return Facts(old.run_id, number, old.task_id, old.description, old.machines, started)
+            known = (old.run_id, number, old.task_id, old.description, old.machines, started)
+            return Facts(*known, values=dict(old.values))
         stamp = utc_now().strftime("%Y%m%d-%H%M%S")
         run_id = f"{stamp}-{uuid.uuid4().hex[:4]}"
         return Facts(run_id, number, goal.request.task_id, "", [], self._ros.now())
@@ -185,7 +186,7 @@ class Execution:
         facts.writes = {(value.record, value.field) for value in tree.shared_values() if value.writes}
         started = (facts.started.sec, facts.started.nanosec)
         known = (facts.run_id, facts.number, facts.task_id, facts.description, facts.machines, xml, started)
-        run.record.begin(Header(*known, facts.records))
+        run.record.begin(Header(*known, facts.records, facts.values))
         run.enter("preparing", Resumed() if resumed else None)
         run.publish_tree(tree)
         _refuse_errors(run, self._parts.check.before_run(tree))

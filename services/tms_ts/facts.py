@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 from builtin_interfaces.msg import Time
 
+from tms_machine.values import Value
 from tms_reason.reason import Reason
 
 
@@ -19,5 +20,6 @@ class Facts:
     started: Time
     records: list[str] = field(default_factory=list)  # that the tree names
     writes: set[tuple[str, str]] = field(default_factory=set)  # shared records and fields that it writes
+    values: dict[str, Value] = field(default_factory=dict)  # more fields of the run: whoever shows it shows them
     state: str = "preparing"
     reason: Reason | None = None

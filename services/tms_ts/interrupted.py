@@ -10,6 +10,7 @@ from tms_msg_ts.srv import CancelRun, ResumePlan
 
 from tms_config.clock import monotonic
 from tms_machine.border import RECEIPT_LIMIT
+from tms_machine.values import to_parameters
 from tms_reason import wire
 from tms_reason.errors import TaskError
 from tms_reason.reason import Reason
@@ -185,5 +186,5 @@ def _row(header: Header, state: str, reason: Reason | None, ended: Time) -> Run:
     return Run(
         run_id=header.run_id, task_id=header.task_id, description=header.description, state=state,
         reason=to_line(reason), machines=header.machines, records=header.records, ended_at=ended,
-        started_at=Time(sec=header.started[0], nanosec=header.started[1]),
+        started_at=Time(sec=header.started[0], nanosec=header.started[1]), values=to_parameters(header.values),
     )  # fmt: skip

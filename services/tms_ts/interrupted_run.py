@@ -21,6 +21,7 @@ class Header:
     xml: str
     started: tuple[int, int]  # s, ns
     records: list[str] = field(default_factory=list)  # that the tree names; none in records of earlier versions
+    values: dict[str, Any] = field(default_factory=dict)  # more fields of the run that are known by then
 
 
 @dataclass(frozen=True)

@@ -118,7 +118,7 @@ class Run:
         return RunRow(
             run_id=facts.run_id, task_id=facts.task_id, description=facts.description, state=facts.state,
             reason=to_line(facts.reason), machines=facts.machines, records=facts.records, started_at=facts.started,
-            ended_at=self._ros.now() if ended else Time(),
+            ended_at=self._ros.now() if ended else Time(), values=to_parameters(facts.values),
         )  # fmt: skip
 
     def state(self) -> RunState:

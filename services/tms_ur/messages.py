@@ -98,7 +98,7 @@ def run(run: db.Run) -> Run:
     return Run(
         run_id=run.run_id, task_id=run.task_id, description=run.description, state=run.state,
         reason=of_line(run.reason), machines=list(run.machines), started_at=when(run.started_at),
-        ended_at=when(run.ended_at),
+        ended_at=when(run.ended_at), values={**from_parameters(run.values)},
     )  # fmt: skip
 
 

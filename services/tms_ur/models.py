@@ -140,6 +140,7 @@ class Run(Model):
     machines: list[str]
     started_at: datetime | None = None
     ended_at: datetime | None = Field(default=None, description="null while it runs")
+    values: dict[str, Value | None] = Field(default={}, description="what else the scheduler tells of it, by name")
 
 
 class Event(Model):

@@ -9,7 +9,6 @@ connections that hang is compared with the same press without them.
 from __future__ import annotations
 
 import json
-import shutil
 import socket
 import tempfile
 import threading
@@ -36,7 +35,6 @@ HANGING, PRESSES = 1000, 5
 TREE = """<root main_tree_to_execute="M"><BehaviorTree ID="M"><KeepRunningUntilFailure><Sequence name="run {number}">
 <Delay delay_msec="500"><AlwaysSuccess name="a"/></Delay><Delay delay_msec="500"><AlwaysSuccess name="b"/></Delay>
 </Sequence></KeepRunningUntilFailure></BehaviorTree></root>"""
-FLAGS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking"]
 # Notes when each node became running in the document, at the next frame.
 WATCH = """() => {
   window.seen = [];
@@ -71,7 +69,7 @@ def measure() -> Iterable[Figure]:
         mesh.arm()
         runs = [_start(mesh, folder, number) for number in range(RUNS)]
         address = f"http://127.0.0.1:{port + 90}"
-        yield from _pages(stack, mesh, address, runs[0])
+        yield from _pages(address, runs[0])
         yield _consoles(mesh, port + 90)
         yield _press(port + 90)
 
@@ -83,12 +81,14 @@ def _start(mesh: Mesh, folder: Path, number: int) -> str:
     return str(json.loads(mesh.tms("run", str(task), "--json").stdout)["run_id"])
 
 
-def _pages(stack: ExitStack, mesh: Mesh, address: str, run: str) -> Iterator[Figure]:
-    from playwright.sync_api import sync_playwright
+def _pages(address: str, run: str) -> Iterator[Figure]:
+    from browsers import chromium
 
-    program = shutil.which("chromium") or shutil.which("chromium-browser")
-    browser = stack.enter_context(sync_playwright()).chromium.launch(executable_path=program, args=FLAGS)
-    page = browser.new_page(locale="en-GB")
+    with chromium() as browser:
+        yield from _page(browser.new_page(locale="en-GB"), address, run)
+
+
+def _page(page: Page, address: str, run: str) -> Iterator[Figure]:
     sizes: list[int] = []
     page.on("response", lambda answer: sizes.append(int(answer.headers.get("content-length", 0))))
     page.goto(f"{address}/icon.svg")
@@ -104,7 +104,6 @@ def _pages(stack: ExitStack, mesh: Mesh, address: str, run: str) -> Iterator[Fig
     delays = sorted(_delays(page.evaluate("window.seen"), _journal(address, run)))
     yield Figure("node to pixel p95", "ms", delays[int(len(delays) * 0.95)] * 1000, 200.0, page.evaluate(PING, ROUNDS),
                  usual_floor=20.0)  # fmt: skip
-    browser.close()
 
 
 def _opened(page: Page, url: str, selector: str) -> float:

@@ -8,23 +8,20 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, Page, expect, sync_playwright
+from playwright.sync_api import Browser, Page, expect
 
-from conftest import PROJECT, Mesh, tool, wait_until
+import browsers
+from conftest import PROJECT, Mesh, wait_until
 
 LIMIT = 60.0  # s for whatever must happen at all
 SHOTS = PROJECT / ".state" / "screenshots"
-FLAGS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking"]
 
 
 @pytest.fixture(scope="module")
 def chromium() -> Iterator[Browser]:
-    program = tool("chromium", "chromium-browser")
     expect.set_options(timeout=LIMIT * 1000)
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=program, args=FLAGS)
+    with browsers.chromium() as browser:
         yield browser
-        browser.close()
 
 
 @pytest.fixture(scope="module")

@@ -10,9 +10,10 @@ from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Browser, Page, Route, expect
 
 from conftest import Mesh, wait_until
+from tms_ur.api import STATIC
 
 pytestmark = [pytest.mark.system, pytest.mark.browser]
-PAGES = ("run", "tree", "site", "history", "data", "system", "tasks")
+PAGES = sorted(path.stem for path in (STATIC / "pages").glob("*.js"))
 SWINGS = 3  # number of the task of long swings to and fro
 FIRST_PAGE = 300_000  # bytes
 TARGET = 44  # px
@@ -145,6 +146,7 @@ def test_the_stop_is_in_reach_everywhere(page: Page, address: str, idle: Mesh) -
     for name in PAGES:
         expect(page.locator(f"#pages a[href='#{name}']")).to_be_in_viewport(ratio=1)
 
+    open_page(page, address, "tasks")
     idle.tms("run", str(SWINGS))
     page.get_by_role("button", name="Remove task 1", exact=True).click()
     page.locator("#dialog_stop").click()

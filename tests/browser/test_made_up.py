@@ -59,7 +59,7 @@ class Yard(FakeSiteClient):
 
     def runs(self, limit: int) -> list[Run]:
         facts = {"task_id": 4, "description": "", "machines": [], "started_at": NOON, "ended_at": NOON}
-        return [Run(run_id=name, state="abandoned", **facts) for name in self.journals]
+        return [Run(run_id=name, state="abandoned", **facts, values={"nodes": 3}) for name in self.journals]
 
     def events(self, run_id: str, after: int, limit: int) -> list[Event]:
         return self.journals[run_id][after : after + limit] if self.journals else super().events(run_id, after, limit)
@@ -157,6 +157,12 @@ def test_a_silent_scheduler_is_told_on_panel_and_tree(page: Page, address: str, 
     yard.now += 6
     page.reload()
     expect(page.locator("#no_tree")).to_contain_text(silent)  # and not that nothing runs
+
+
+def test_a_field_of_a_run_that_nobody_has_translated_is_shown(page: Page, address: str, yard: Yard) -> None:
+    yard.journals = {"r-1": [event(1)]}
+    page.goto(f"{address}/#history/r-1")
+    expect(page.locator("#past_values li")).to_have_text(["nodes: 3"])
 
 
 def test_an_old_place_is_marked(page: Page, address: str, yard: Yard) -> None:

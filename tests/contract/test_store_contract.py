@@ -502,7 +502,8 @@ def test_stale_records_are_told_with_age_limit_and_source() -> None:
 def run(run_id: str, ended: bool = False, minute: int = 0) -> Run:
     started = BEGIN + timedelta(minutes=minute)
     state = "SUCCESS" if ended else "RUNNING"
-    return Run(run_id, 4, "text", state, "", ("zx200",), started, started + timedelta(seconds=9) if ended else None)
+    over = started + timedelta(seconds=9) if ended else None
+    return Run(run_id, 4, "text", state, "", ("zx200",), started, over, values={"a.b": 1.5, "n": 3})
 
 
 def event(run_id: str, number: int) -> Event:

@@ -11,10 +11,13 @@ from pathlib import Path
 
 import pytest
 import yaml
+from playwright.sync_api import expect
 
+from browsers import chromium
 from conftest import PROJECT, Mesh, ports_of, running, site_data
 
 pytestmark = [pytest.mark.system, pytest.mark.timeout(200)]
+LIMIT = 60_000  # ms for what a page shows
 GUIDE = (PROJECT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 TABLE = GUIDE.partition("## What it costs to add\n")[2].partition("\n## ")[0]
 ROWS = {name.strip() for name in re.findall(r"^\| ([a-z][^|]*)\|", TABLE, re.MULTILINE)} - {"thing"}
@@ -56,6 +59,19 @@ def command() -> None:
     """Say hello."""
     click.echo("hello")
 '''
+PAGE = """// Hello: how many machines there are.
+import { at, heading, make, setText } from "../dom.js";
+
+export function build(root) {
+  root.append(heading("p_hello"), make("p", { id: "hello_machines" }));
+}
+
+export function update(state) {
+  setText(at("hello_machines"), String(state.machines.length));
+}
+"""
+TEXTS = '    "p_hello": "Hello",\n    "f_nodes": "Number of nodes",\n'  # in both languages
+FIELD = '        facts.values["nodes"] = len(tree.nodes)\n'
 SENSING = "\n  height: {topic: /height, type: sensing_msgs/msg/Sample}\n"
 TREE = (
     '<root main_tree_to_execute="T"><BehaviorTree ID="T"><Sequence><Greet word="good morning"/><Pause seconds="0.2"/>'
@@ -79,6 +95,13 @@ class Copy(Mesh):
         return done
 
 
+def insert(file: Path, line: str, behind: str, times: int = 1) -> None:
+    """Put `line` behind each of the `times` lines that begin with `behind`."""
+    text, found = re.subn(rf"^ *{re.escape(behind)}.*\n", lambda here: here[0] + line, file.read_text(), flags=re.M)
+    assert found == times, f"{file}: {found} lines begin with {behind}"
+    file.write_text(text)
+
+
 def add(project: Path) -> set[str]:
     """One of each; returns the rows of the table that this covers."""
     services, machines = project / "services", project / "configs" / "machines"
@@ -86,6 +109,10 @@ def add(project: Path) -> set[str]:
     (services / "tms_ts" / "nodes" / "greet.py").write_text(NODE)
     (services / "tms_ts" / "nodes" / "pause.py").write_text(PAUSE)
     (services / "tms_cli" / "commands" / "hello.py").write_text(VERB)
+    static = services / "tms_ur" / "static"
+    (static / "pages" / "hello.js").write_text(PAGE)
+    insert(static / "words.js", TEXTS, behind='"p_tasks":', times=2)
+    insert(services / "tms_ts" / "execution.py", FIELD, behind="facts.machines, facts.records = ")
     (machines / "zx210.yaml").write_text((machines / "zx200.yaml").read_text() + LINE)
     with (project / "configs" / "sensing.yaml").open("a") as inputs:
         inputs.write(SENSING)
@@ -98,7 +125,23 @@ def add(project: Path) -> set[str]:
         "verb of `tms`",
         "metric",
         "sensing input",
+        "console page",
+        "field of a run",
     }
+
+
+def look(copy: Copy, run: str, nodes: int) -> None:
+    """The console has a link to the new page, which is filled, and the new field of the run."""
+    address = f"http://127.0.0.1:{yaml.safe_load(copy.site.read_text())['ports']['console']}"
+    with urllib.request.urlopen(f"{address}/api/runs", timeout=10) as answer:
+        assert json.load(answer)[0]["values"] == {"nodes": nodes}
+    with chromium() as browser:
+        page = browser.new_page(locale="en-GB")
+        page.goto(f"{address}/#hello")
+        expect(page.locator("#pages a[href='#hello']")).to_have_text("Hello", timeout=LIMIT)
+        expect(page.locator("#hello_machines")).to_have_text("1", timeout=LIMIT)
+        page.goto(f"{address}/#history/{run}")
+        expect(page.locator("#past_values li")).to_have_text(f"Number of nodes: {nodes}", timeout=LIMIT)
 
 
 @pytest.fixture
@@ -122,6 +165,10 @@ def test_one_of_each_is_added_and_works(copy: Copy, tmp_path: Path) -> None:
     copy.tms("task", "add", str(tmp_path / "tree.xml"))
     done = copy.tms("run", "1", "--wait", "--json", expect=None)
     assert json.loads(done.stdout)["outcome"] == "success", done.stdout + done.stderr
+    (run,) = json.loads(copy.tms("runs", "--json").stdout)
+    nodes = run["values"]["nodes"]
+    assert nodes >= 4
+    look(copy, run["run_id"], nodes)
     assert copy.tms("hello").stdout == "hello\n"
     palette = copy.tms("palette").stdout
     assert 'ID="Greet"' in palette and 'ID="Pause"' in palette

@@ -55,6 +55,8 @@ def find_run(runs: "list[Run]", word: str) -> "Run":
 
 def as_dict(run: "Run") -> dict[str, Any]:
     """A run for --json."""
+    from tms_machine.values import from_parameters
+
     return {
         "run_id": run.run_id,
         "task_id": run.task_id,
@@ -65,6 +67,7 @@ def as_dict(run: "Run") -> dict[str, Any]:
         "started_at": live.iso(run.started_at),
         "ended_at": live.iso(run.ended_at),
         "seconds": round(_seconds(run), 3),
+        "values": from_parameters(run.values),
     }
 
 

@@ -1,23 +1,17 @@
 // The console's frame: login, pages, connection, questions, and the software stop that is always in reach.
 import { at, duration, keep, make, relabelAll, say, setText } from "./dom.js";
-import * as data from "./pages/data.js";
-import * as history from "./pages/history.js";
-import * as run from "./pages/run.js";
-import * as site from "./pages/site.js";
-import * as system from "./pages/system.js";
-import * as tasks from "./pages/tasks.js";
-import * as tree from "./pages/tree.js";
 import { buildQuestion, fillQuestion } from "./questions.js";
 import { sayError } from "./reasons.js";
 import { ask, watch } from "./server.js";
 import { reportOpen, stop } from "./stop.js";
 import { onLanguage, said, switchLanguage, t, translatePage } from "./strings.js";
+import { PAGE_NAMES } from "./words.js";
 
-const PAGES = { run, tree, site, history, data, system, tasks };
+// Each page has build(root), update(state), and where it asks for lists: load()
+const load = async (name) => [name, await import(`./pages/${name}.js`)];
+const PAGES = Object.fromEntries(await Promise.all(PAGE_NAMES.map(load)));
 let shown = null; // name of the page on the screen
 let state = null;
-
-// pages: each has build(root), update(state), and where it asks for lists: load()
 
 function open() {
   const [name, ...rest] = location.hash.slice(1).split("/");

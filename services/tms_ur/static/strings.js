@@ -20,6 +20,9 @@ export function t(key, values = {}) {
   return text.replace(/\{(\w+)\}/g, (_, name) => String(values[name] ?? ""));
 }
 
+/** The name of a field of a run: its text f_<name>, or the name itself where nobody has translated it. */
+export const fieldName = (name) => WORDS[language][`f_${name}`] ?? name;
+
 /** One of the texts that the server sends in every language. */
 export const inLanguage = (texts) => texts[language];
 

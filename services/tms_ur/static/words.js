@@ -497,3 +497,6 @@ export const WORDS = {
     "did_refused": "Request refused"
   }
 };
+
+// A page is a file of pages/ and its title p_<name> here; the links to them stand in this order.
+export const PAGE_NAMES = Object.keys(WORDS.en).filter((key) => key.startsWith("p_")).map((key) => key.slice(2));

@@ -64,6 +64,11 @@ def test_a_newer_distribution_has_the_client_apart(install: Install) -> None:
     assert {"docker.io", "docker-cli"} <= set(asked) and "docker-buildx" not in asked
 
 
+def test_pictures_get_letters_of_japanese(install: Install) -> None:
+    asked = install("chromium", "japanese")[1].splitlines()[1].split()
+    assert {"chromium", "fontconfig", "fonts-ipafont-gothic"} <= set(asked)
+
+
 def test_nothing_to_do_asks_nobody(install: Install) -> None:
     assert install("chromium", there=("chromium-browser",))[1] == ""
     done, asked = install("colours")

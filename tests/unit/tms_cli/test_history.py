@@ -51,6 +51,14 @@ def test_runs_for_machines(mesh, tms) -> None:
     assert mesh.asked[0][1] == {"limit": 1}
 
 
+def test_further_fields_of_a_run_are_told_without_being_known_here(mesh, tms) -> None:
+    run = made("r1")
+    run.values = to_parameters({"nodes": 3, "who": "mina"})
+    mesh.answers["/tms/db/list_runs"] = ListRuns.Response(runs=[run])
+    (one,) = json.loads(tms(runs.command, "--json").stdout)
+    assert one["values"] == {"nodes": 3, "who": "mina"}
+
+
 def test_runs_for_people(mesh, tms) -> None:
     mesh.answers["/tms/db/list_runs"] = ListRuns.Response(runs=[NEWEST, OLDER])
     lines = tms(runs.command).stdout.splitlines()

@@ -88,7 +88,7 @@ def test_odd_documents_become_messages(document: dict[str, Any]) -> None:
 
 def test_history_survives_the_way() -> None:
     for ended in (None, NOON):
-        run = Run("r1", 4, "d", "RUNNING", "why", ("zx200", "ic120_1"), NOON, ended)
+        run = Run("r1", 4, "d", "RUNNING", "why", ("zx200", "ic120_1"), NOON, ended, values={"a.b": [1.5], "n": 3})
         assert messages.stored_run(messages.run(run)) == run
     event = Event("r1", 3, NOON, "node", "1/2", "text", {"type": "x", "a.b": [1.5]})
     assert messages.stored_event(messages.event(event)) == event

@@ -12,6 +12,7 @@ from builtin_interfaces.msg import Time
 from tms_msg_rc.msg import StopReceipt
 from tms_msg_ts.srv import CancelRun
 
+from tms_machine.values import from_parameters
 from tms_reason import wire
 from tms_reason.errors import TaskError
 from tms_ts.group_commit import GroupCommit
@@ -21,7 +22,7 @@ from tms_ts.reasons import RunInterrupted
 from tms_ts.run_checkpoint import Records
 from words import words
 
-HEADER = Header("run-1", 7, 3, "dig", ["zx200"], "<root/>", (1, 2))
+HEADER = Header("run-1", 7, 3, "dig", ["zx200"], "<root/>", (1, 2), values={"nodes": 3})
 
 
 class Slow(Records):
@@ -67,6 +68,7 @@ def test_a_lost_run_that_is_closed_leaves_no_open_file(
     assert disk.wait(10)
     assert len(list(Path("/proc/self/fd").iterdir())) == before
     assert journal[-1].state == "interrupted"
+    assert from_parameters(journal[-1].values) == {"nodes": 3}
 
 
 @pytest.mark.parametrize("second", ["resume", "abandon"])

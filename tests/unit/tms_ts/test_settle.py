@@ -13,6 +13,7 @@ from tms_msg_rc.msg import StopReceipt
 from tms_msg_ts.action import ExecuteTask
 
 from tms_machine.reasons import MachineLatched, SoftwareStop, StopUnconfirmed
+from tms_machine.values import from_parameters
 from tms_reason import wire
 from tms_reason.reason import Foreign, Reason
 from tms_reason.wire import to_line
@@ -102,6 +103,12 @@ def test_a_bug_while_the_tree_is_halted_does_not_keep_the_machines_from_being_st
     with pytest.raises(RuntimeError, match="a bug"):
         a_run._settle(tree(halt=broken), machines, outcome)  # type: ignore[arg-type]
     assert machines.stopped == ["zx200"]
+
+
+def test_further_fields_of_a_run_get_into_the_history(a_run: Run, rows: list[Any]) -> None:
+    a_run.facts.values["nodes"] = 3
+    a_run.enter("running")
+    assert from_parameters(rows[0].values) == {"nodes": 3}
 
 
 def test_a_success_that_leaves_nothing_open_stops_nobody(a_run: Run) -> None:

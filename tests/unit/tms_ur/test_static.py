@@ -67,6 +67,13 @@ def test_a_run_has_the_states_and_words_of_the_command_line() -> None:
     assert {state: words.get(state) for state in wanted} == wanted
 
 
+def test_every_page_has_a_title_and_every_title_a_page() -> None:
+    pages = {path.stem: text for path, text in CODE.items() if path.parent.name == "pages"}
+    assert {key.removeprefix("p_") for key in table()["en"] if key.startswith("p_")} == pages.keys()
+    for name, text in pages.items():
+        assert {"build", "update"} <= set(re.findall(r"^export function (\w+)", text, re.MULTILINE)), name
+
+
 def test_every_element_that_the_code_asks_for_is_made_somewhere() -> None:
     everything = "".join([*PAGES.values(), *CODE.values()])
     made = set(re.findall(r'\bid(?:="|: "| = ")(\w+)"', everything)) | set(re.findall(r'\btable\("(\w+)"', everything))

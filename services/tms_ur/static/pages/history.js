@@ -2,7 +2,7 @@
 import { at, button, duration, heading, keep, make, part, parts, setBadge, setText, table } from "../dom.js";
 import { fillReason, showError } from "../reasons.js";
 import { ask } from "../server.js";
-import { clock, said, t, when } from "../strings.js";
+import { clock, fieldName, said, t, when } from "../strings.js";
 import { TreeView } from "../treeview.js";
 import { zoomBar } from "./tree.js";
 
@@ -10,6 +10,7 @@ const PAGE = 1000;
 const MAX_EVENTS = 20000; // events that a browser replays
 const CODES = { IDLE: 0, RUNNING: 1, SUCCESS: 2, FAILURE: 3 };
 let view = null;
+let runs = [];
 let journal = [];
 let cut = false; // the journal is longer
 let chosen = null;
@@ -22,7 +23,7 @@ export function build(root) {
     make("p", { id: "none_history", hidden: true, data: { t: "none_history" } }),
     table("list_history", "history", ["task", "started_at", "state", "duration", "reason", "show"]),
     make("section", { id: "past", hidden: true },
-      make("h2", { id: "past_title" }), make("div", { id: "exports", className: "bar" }),
+      make("h2", { id: "past_title" }), make("ul", { id: "past_values", className: "plain", hidden: true }), make("div", { id: "exports", className: "bar" }),
       make("h3", { data: { t: "receipts" } }), make("ul", { id: "receipts", className: "plain" }),
       make("p", {}, make("label", { className: "wide" }, make("span", { data: { t: "timeline" } }), slider), make("output", { id: "moment" })),
       make("p", { id: "journal_cut", className: "bad" }), make("section", { id: "past_tree" }, zoomBar(() => view), box),
@@ -36,10 +37,11 @@ export function build(root) {
 
 export async function load() {
   try {
-    const runs = await ask("/api/runs?limit=50");
+    runs = await ask("/api/runs?limit=50");
     showError(at("history_problem"), null);
     at("none_history").hidden = runs.length > 0;
     keep(at("list_history"), runs, (run) => run.run_id, buildRun, fillRun);
+    showValues();
   } catch (error) {
     showError(at("history_problem"), error);
   }
@@ -81,6 +83,13 @@ function show(id) {
   }
 }
 
+/** What the scheduler tells of the chosen run beside what it tells of every run. */
+function showValues() {
+  const values = Object.entries(runs.find((run) => run.run_id === chosen)?.values ?? {});
+  at("past_values").hidden = values.length === 0;
+  at("past_values").replaceChildren(...values.map(([name, value]) => make("li", {}, `${fieldName(name)}: ${value}`)));
+}
+
 function markChosen(row) {
   row.ariaCurrent = String(row.dataset.key === chosen);
 }
@@ -97,6 +106,7 @@ async function showRun(id) {
   const tree = journal.find((event) => event.kind === "tree");
   at("past").hidden = false;
   setText(at("past_title"), `${t("run")} ${id}`);
+  showValues();
   at("exports").replaceChildren(make("span", {}, `${t("export")}:`), ...["json", "csv", "mcap"].map((form) => (
     make("a", { className: "button", href: `/api/runs/${encodeURIComponent(id)}/export?form=${form}`, download: "" }, form.toUpperCase()))));
   const stops = journal.filter((event) => event.kind === "stop");
