@@ -6,7 +6,6 @@ it is on this disk: what was reported is there after a power cut, too. Writing a
 database. An entry that the database will never take is dropped, so that the others do not wait for it.
 """
 
-import base64
 import threading
 from pathlib import Path
 
@@ -19,18 +18,17 @@ from tms_reason.errors import DbError, RosError
 from tms_reason.reason import Foreign, Reason
 from tms_reason.wire import refusal
 from tms_ros.node import Ros
-from tms_ros.packing import pack, unpack
 from tms_runtime.log import Logger
 from tms_ts.group_commit import GroupCommit
+from tms_ts.journal_entry import of_line, to_line
 from tms_ts.reasons import DiskFull, EntryTooLarge, HistoryInMemory, HistoryLost, JournalFull
 from tms_ts.spool import Spool
 
 BATCH = 200
 RETRY = 0.5  # s
 GATHER = 0.1  # s from the first entry to its writing: ten calls beside a hand-over make it half as long again
-KINDS = {b"R": Run, b"E": Event}
 VITAL = {"run", "tree", "stop", "alarm", "warning"}  # kinds of events that a flood of others must not push out
-LARGEST = 16 * 2**20  # bytes of an entry: the store takes no larger document, and ROS carries none in good time
+LARGEST = 16 * 2**20 * 4 // 3  # bytes of a line, 16 MB in base64: the store takes no larger document, nor ROS in time
 # What is wrong with the store, not with an entry: it passes, or a person mends it.
 MAY_PASS = {"STORE_DOWN", "STORE_FULL", "STORE_REFUSED", "STORE_NEWER", "STORE_CONFLICT", "DB_FAILED", "BUSY"}
 
@@ -55,17 +53,16 @@ class Journal:
 
     def put(self, entry: Run | Event) -> None:
         """Take an entry; waits for nobody."""
-        kind = b"R" if isinstance(entry, Run) else b"E"
-        data = pack(entry)
-        if len(data) > LARGEST:
-            self._lost(entry, EntryTooLarge(len(data), LARGEST))
+        line = to_line(entry)
+        if len(line) > LARGEST:
+            self._lost(entry, EntryTooLarge(len(line), LARGEST))
             return
         event = "" if isinstance(entry, Run) else entry.kind
         urgent = isinstance(entry, Run) or event == "tree"  # somebody looks at a run that begins or ends
         vital = urgent or event in VITAL
         if self._spool.full():
             self._lost(entry, JournalFull(self._spool.waiting()))
-        elif not self._disk.put(self._spool, kind + base64.b64encode(data), vital=vital, urgent=urgent):
+        elif not self._disk.put(self._spool, line, vital=vital, urgent=urgent):
             trouble = self._disk.trouble()
             self._lost(entry, Foreign(trouble) if trouble else DiskFull())
         elif urgent:
@@ -152,9 +149,7 @@ class Journal:
 
     def _entry(self, line: bytes) -> Run | Event | None:
         try:
-            entry: Run | Event = unpack(base64.b64decode(line[1:], validate=True), KINDS[line[:1]])
-        except (KeyError, ValueError, RuntimeError) as error:
-            if line:
-                self._log.error("journal_unreadable", reason=str(error))
+            return of_line(line) if line else None
+        except (ValueError, RuntimeError) as error:
+            self._log.error("journal_unreadable", reason=str(error))
             return None
-        return entry

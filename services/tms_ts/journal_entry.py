@@ -1,0 +1,30 @@
+"""An entry of the journal as a line of a file: one letter for its kind, then the message in base64."""
+
+import base64
+
+from tms_msg_db.msg import Event, Run
+
+from tms_ros.packing import pack, unpack
+
+KINDS: dict[bytes, type[Run] | type[Event]] = {b"V": Run, b"E": Event}
+EARLIER = b"R"  # a run as of releases before it had `values`, which are the last field: it ends before their number
+NO_VALUES = bytes(4)  # how many values there are, as CDR has it
+
+
+def to_line(entry: Run | Event) -> bytes:
+    """The line, without a line break."""
+    return (b"V" if isinstance(entry, Run) else b"E") + base64.b64encode(pack(entry))
+
+
+def of_line(line: bytes) -> Run | Event:
+    """The entry of a line, also of one that an earlier release has left behind.
+
+    Raises:
+        ValueError, RuntimeError: it is damaged.
+    """
+    kind, data = line[:1], base64.b64decode(line[1:], validate=True)
+    if kind == EARLIER:
+        return unpack(data + NO_VALUES, Run)
+    if kind not in KINDS:
+        raise ValueError(f"no kind of entry is {kind!r}")
+    return unpack(data, KINDS[kind])
