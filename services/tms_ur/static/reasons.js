@@ -1,7 +1,7 @@
 // Reasons on the page: the text, what helps as a button, a link or a command, and details for who asks for them.
 import { COMMANDS, LINKS } from "./actions.js";
 import { at, make, say, setText } from "./dom.js";
-import { inLanguage, said, t } from "./strings.js";
+import { said, sayAgain, t } from "./strings.js";
 
 /** Shows a reason in `box`; `text` may stand around its own, and `done` is an action that has a button beside it. */
 export function fillReason(box, reason, { text = said(reason), done = "" } = {}) {
@@ -13,9 +13,9 @@ export function fillReason(box, reason, { text = said(reason), done = "" } = {})
   if (box.dataset.shape !== shape) { // else its button keeps the focus while the state streams in
     box.dataset.shape = shape;
     box.replaceChildren(...(text === "" ? [] : [make("span"), ...help(action), ...details(reason)]));
+    sayAgain(box);
   }
   setText(box.firstChild, text);
-  box.querySelectorAll("[data-said]").forEach((element) => setText(element, inLanguage(JSON.parse(element.dataset.said))));
   box.querySelectorAll("summary").forEach((element) => setText(element, t("details")));
 }
 

@@ -41,7 +41,14 @@ export function clock(iso) {
   return iso ? new Date(iso).toLocaleTimeString(language === "ja" ? "ja-JP" : "en-GB", PARTS) : "-";
 }
 
-/** Texts that stand in the page itself: elements with data-t. */
+/** Texts that the server has sent in every language: elements with data-said, in a part of the page. */
+export function sayAgain(part) {
+  for (const element of part.querySelectorAll("[data-said]")) {
+    element.textContent = inLanguage(JSON.parse(element.dataset.said));
+  }
+}
+
+/** Texts that stand in the page itself: elements with data-t; and those that the server has sent. */
 export function translatePage() {
   document.documentElement.lang = language;
   document.title = `${t("title")} - ROS2-TMS`;
@@ -51,6 +58,7 @@ export function translatePage() {
   for (const element of document.querySelectorAll("[data-label]")) {
     element.setAttribute("aria-label", t(element.dataset.label));
   }
+  sayAgain(document);
 }
 
 export function onLanguage(listener) {

@@ -40,11 +40,15 @@ export async function load() {
     runs = await ask("/api/runs?limit=50");
     showError(at("history_problem"), null);
     at("none_history").hidden = runs.length > 0;
-    keep(at("list_history"), runs, (run) => run.run_id, buildRun, fillRun);
-    showValues();
+    showRuns();
   } catch (error) {
     showError(at("history_problem"), error);
   }
+}
+
+function showRuns() {
+  keep(at("list_history"), runs, (run) => run.run_id, buildRun, fillRun);
+  showValues();
 }
 
 export function update() {}
@@ -173,6 +177,7 @@ function replay(index) {
 }
 
 export function redraw() {
+  showRuns();
   if (view?.tree) {
     view.rebuild();
   }
