@@ -79,7 +79,7 @@ class Scheduler(AbstractContextManager["Scheduler"]):
             self._node = self._open.enter_context(session.ros())
         return self._node
 
-    def look(self, found: Checked, **task: Any) -> None:
+    def ask_scheduler(self, found: Checked, **task: Any) -> None:
         """Let it check what is right by its structure."""
         if self._absent or found.errors:
             return
@@ -111,7 +111,7 @@ def stored(scheduler: Scheduler, task_id: int) -> Checked:
     """Have the scheduler check a stored task, and find its lines."""
     task = session.call(scheduler.node(), GetTask, "/tms/db/get_task", task_id=task_id).task
     found = structure(str(task_id), task.task_sequence)
-    scheduler.look(found, task_id=task_id)
+    scheduler.ask_scheduler(found, task_id=task_id)
     return found
 
 
@@ -125,7 +125,7 @@ def file(scheduler: Scheduler, path: Path) -> Checked:
     why = no_task(text)
     found = Checked(str(path), errors=[f"this is no task: {why}"], no_task=why) if why else None
     found = found or structure(str(path), text, path.parent)
-    scheduler.look(found, xml=text)
+    scheduler.ask_scheduler(found, xml=text)
     return found
 
 

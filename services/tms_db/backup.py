@@ -61,7 +61,7 @@ class Report:
         return ", ".join(filled) or "nothing"
 
 
-def look(db: Db) -> Report:
+def describe(db: Db) -> Report:
     """What the database holds.
 
     Raises:
@@ -82,7 +82,7 @@ def backup(db: Db, path: Path, say: Say, *, overwrite: bool = False) -> Report:
     """
     if path.exists() and not (overwrite and path.is_file()):
         raise TmsError(FileExists(str(path)))
-    before = look(db)
+    before = describe(db)
     try:
         with tempfile.NamedTemporaryFile(dir=path.parent, prefix=f".{path.name}.", delete=False) as file:  # mode 0600
             new = Path(file.name)
@@ -155,7 +155,7 @@ def restore(db: Db, path: Path, say: Say, *, drop: bool = False) -> Report:
             store was lost between two collections.
     """
     report = check(path, db.name, say)
-    there = look(db)
+    there = describe(db)
     schema.refuse_newer(f"database {db.name}", there.schema)
     if any(there.documents.values()) and not drop:
         raise DbError(NotEmpty(db.name, there.text))

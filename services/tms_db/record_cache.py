@@ -143,9 +143,9 @@ class RecordCache:
         for key, head in due.items():
             head.since = self._newest(key)
         self._reading = True
-        threading.Thread(target=self._look, args=(due,), name="heads", daemon=True).start()
+        threading.Thread(target=self._read_due, args=(due,), name="records", daemon=True).start()
 
-    def _look(self, due: dict[Key, Head]) -> None:
+    def _read_due(self, due: dict[Key, Head]) -> None:
         found = None
         try:
             found = {document["_id"]: document for document in self._parameters.by_id([h.id for h in due.values()])}

@@ -106,14 +106,14 @@ class Retention:
     def _run(self) -> float:
         try:
             with self._connection.use():
-                self._look(utc_now())
+                self._delete_old(utc_now())
         except DbError as error:
             if error.code != "STORE_DOWN":  # which the connection tells
                 self._log.warning("retention_waits", code=error.code, reason=error.reason)
             return AGAIN
         return RETENTION_PERIOD
 
-    def _look(self, now: datetime) -> None:
+    def _delete_old(self, now: datetime) -> None:
         gone: dict[str, int] = {}
         if self._settings.history_days is not None:
             gone["runs"] = delete_runs(self._db, self._settings.history_days, now)

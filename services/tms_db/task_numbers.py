@@ -22,12 +22,12 @@ class TaskNumbers:
 
     def lowest_free(self, how_many: int) -> list[int]:
         """Numbers from 1 that no task has."""
-        self._look()
+        self._refresh()
         return list(islice(self._free(), how_many))
 
     def foreign(self) -> bool:
         """Whether there are tasks without a hash of their text, of the C++ system."""
-        self._look()
+        self._refresh()
         return self._foreign
 
     def took(self, number: int) -> None:
@@ -41,7 +41,7 @@ class TaskNumbers:
     def _free(self) -> Iterator[int]:
         return (number for number in count(1) if number not in self._taken)
 
-    def _look(self) -> None:
+    def _refresh(self) -> None:
         if self._clock() < self._until:
             return
         until = self._clock() + KEPT

@@ -63,7 +63,7 @@ class Duty:
         self._reported = self._emergency = False
         self._again = 0.0
 
-    def look(self, now: float, seen: Seen) -> Act | None:
+    def check(self, now: float, seen: Seen) -> Act | None:
         """What must be commanded now."""
         if self.lost_since is not None:
             return self._stand_in(now, self.lost_since, seen)
@@ -116,9 +116,9 @@ class Post:
         LOST.labels(machine).set(0)
         STOOD_IN.labels(machine)
 
-    def look(self, now: float) -> None:
+    def check(self, now: float) -> None:
         """At every beat of the pulse."""
-        act = self.duty.look(now, self._seen(now))
+        act = self.duty.check(now, self._seen(now))
         if act is not None:
             self._command(act)
         self._publish(act)
@@ -167,7 +167,7 @@ class StandIn:
         rows = [row for row in here(app.site) if row.module == GATEWAY]
         self._posts = {row.full: Post(app, str(row.machine)) for row in rows}
         if self._posts:
-            app.pulse.add(self._look)
+            app.pulse.add(self._check)
 
     def silent(self) -> dict[str, float]:
         """Gateways that are lost, and for how long [s]; from any thread."""
@@ -175,10 +175,10 @@ class StandIn:
         since = {name: post.duty.lost_since for name, post in self._posts.items()}
         return {name: now - at for name, at in since.items() if at is not None}
 
-    def _look(self) -> None:
+    def _check(self) -> None:
         now = monotonic()
         for post in self._posts.values():
-            post.look(now)
+            post.check(now)
 
 
 def _looked_at(link: Link) -> None:

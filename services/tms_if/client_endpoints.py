@@ -182,7 +182,7 @@ class ClientEndpoints:
         async def call() -> None:
             self._calls += 1
             try:
-                answer = await self._ros.ask(kind, full_name(topic), wanted, ANSWER_LIMIT)
+                answer = await self._ros.call_async(kind, full_name(topic), wanted, ANSWER_LIMIT)
             except RosError as error:  # no reason to end the executor, and with it all clients
                 self._say(str(error))
                 return

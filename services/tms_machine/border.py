@@ -66,7 +66,7 @@ class Controls:
         """A cancel request with zero id reaches the goals of all clients."""
         for service in self._cancels:
             if self._ros.has_service(CancelGoal, service):
-                self._ros.post(CancelGoal, service, CancelGoal.Request())
+                self._ros.call_unanswered(CancelGoal, service, CancelGoal.Request())
 
     def zero(self) -> None:
         """Ask for no velocity, where the machine takes velocities."""

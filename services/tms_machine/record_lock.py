@@ -68,7 +68,7 @@ class RecordLock:
 
     def release(self) -> None:
         """Free it. Waits for nobody: the end of a motion must not depend on a database."""
-        self._ros.post(SetParameter, SERVICE, self._request(released()))
+        self._ros.call_unanswered(SetParameter, SERVICE, self._request(released()))
 
     def _request(self, values: Mapping[str, Value]) -> SetParameter.Request:
         return SetParameter.Request(

@@ -81,7 +81,7 @@ class _Server:
         wanted = GetParameter.Request(
             model_name=request.model_name, record_name=request.record_name, max_age=self._max_age
         )
-        answer = await self._app.ros.ask(GetParameter, "/tms/db/get_parameter", wanted, RECORD_LIMIT)
+        answer = await self._app.ros.call_async(GetParameter, "/tms/db/get_parameter", wanted, RECORD_LIMIT)
         if answer is None:
             return NoDatabase("tms:db")
         if answer.error_code:

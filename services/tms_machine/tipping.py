@@ -34,13 +34,13 @@ class Tipping(Acting):
         found: list[float] = []
         received = threading.Event()
 
-        def look(state: MachineState) -> None:
+        def on_state(state: MachineState) -> None:
             if state.ready and joint in state.joint_names:
                 found.append(state.positions[list(state.joint_names).index(joint)])
                 received.set()
 
         topic = f"/{self.name}/rc/state"
-        subscription = self._ros.subscribe(MachineState, topic, look, latched=True)
+        subscription = self._ros.subscribe(MachineState, topic, on_state, latched=True)
         there = received.wait(STATE_LIMIT)
         self._ros.on_executor(lambda: self._ros.node.destroy_subscription(subscription))
         self.check()

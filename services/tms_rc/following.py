@@ -101,7 +101,7 @@ class Follower:
         low, high = way.hull(passed - seconds * self._scale, passed)
         return high - low
 
-    def look(self, now: float, angles: Mapping[str, float]) -> Reason | None:
+    def check(self, now: float, angles: Mapping[str, float]) -> Reason | None:
         """What is wrong with where the joints are [rad], None if nothing."""
         for name, way in self._ways.items():
             if name not in angles:

@@ -188,7 +188,7 @@ class Gateway:
             return None
         if (frozen := self._frozen(active, active.follower, now)) is not None:
             return frozen, Kind.LATCH
-        wrong = active.follower.look(now, watch.positions)
+        wrong = active.follower.check(now, watch.positions)
         return None if wrong is None else (wrong, Kind.LATCH if isinstance(wrong, OffPath) else Kind.PLAIN)
 
     def _begin(self, motion: Motion, active: Active, now: float) -> None:

@@ -201,7 +201,7 @@ class Guard:
         self.reported()
         return stop
 
-    def look(self) -> None:
+    def check(self) -> None:
         """At every beat of the pulse: a machine that was stopped must go on standing."""
         now = monotonic()
         self.watch.settle(now)

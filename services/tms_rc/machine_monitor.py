@@ -39,7 +39,7 @@ class MachineMonitor:
         ]
         self._counted = 0.0  # monotonic
 
-    def look(self) -> None:
+    def take_samples(self) -> None:
         """Take what waits."""
         now = monotonic()
         for name, take_new, read in self._inputs:

@@ -72,7 +72,7 @@ def _serve(app: App, claim: Claim) -> None:
     publisher = app.ros.publisher(MachineState, f"/{machine}/rc/state", depth=1, latched=True)
     state_publisher = StatePublisher(guard, watch, lambda: publisher.publish(reported.state()))
     guard.reported = state_publisher.publish_now
-    for step in (view.look, guard.look, state_publisher.look):
+    for step in (view.take_samples, guard.check, state_publisher.check):
         app.pulse.add(step)
     permit = Permit(app.ros, app.pulse, machine, "rc")
     # Not before the lease of a predecessor that was killed has run out: nobody would notice its loss.
@@ -106,7 +106,7 @@ class StatePublisher:
         self._last: tuple[object, ...] = ()
         self._at = 0.0  # monotonic
 
-    def look(self) -> None:
+    def check(self) -> None:
         """At every beat."""
         guard, moving = self._guard, self._watch.moving()
         active, latch = guard.active, guard.latch

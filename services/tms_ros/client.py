@@ -90,7 +90,7 @@ class Call(Generic[R, F]):
         if self._handle is not None and self.outcome is None:
             self._handle.get_result_async().add_done_callback(self._finished)
 
-    def doubt(self, handle: ClientGoalHandle) -> None:
+    def resolve_unanswered(self, handle: ClientGoalHandle) -> None:
         """Its answer is overdue: a server that does not know the goal says so, another one ends it."""
         if self._handle is None and self.outcome is None:
             self._cancel_wanted = True  # should the answer come after all
@@ -199,7 +199,7 @@ class Peer(Generic[G, R, F]):
 
     def resolve_unanswered(self, call: Call[R, F]) -> None:
         """Give up a goal that was not answered in time; it ends as LOST when the server knows nothing of it."""
-        self._loop.on_executor(lambda: call.doubt(self._client.handle_of(call.id)))
+        self._loop.on_executor(lambda: call.resolve_unanswered(self._client.handle_of(call.id)))
 
     def cancel(self, call: Call[R, F]) -> None:
         """Ask for the end of a goal, also before it was accepted. Returns at once."""

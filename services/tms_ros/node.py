@@ -42,7 +42,8 @@ class Ros:
         self.lease_publisher, self.lease_subscribe = topics.lease_publisher, topics.lease_subscribe
 
         self.offer, self.offer_slow, self.prepare = services.offer, services.offer_slow, services.prepare
-        self.call, self.ask, self.post, self.request = services.call, services.ask, services.post, services.request
+        self.call, self.call_async = services.call, services.call_async
+        self.call_then, self.call_unanswered = services.call_then, services.call_unanswered
         self.has_service = services.has_service
 
         self.serve = self._served.serve

@@ -115,12 +115,12 @@ class Services:
         """Whether a service is there now."""
         return bool(self._service(service_type, name).service_is_ready())
 
-    def post(self, service_type: ServiceType[Req, Res], name: str, request: Req) -> None:
+    def call_unanswered(self, service_type: ServiceType[Req, Res], name: str, request: Req) -> None:
         """Send a service request; nobody waits for its answer, which may never come."""
         client = self._service(service_type, name)
         self._loop.on_executor(lambda: client.remove_pending_request(client.call_async(request)))
 
-    def request(
+    def call_then(
         self, service_type: ServiceType[Req, Res], name: str, request: Req, answered: Callable[[Res], None]
     ) -> Callable[[], None] | None:
         """Send a request; `answered` is called on the executor thread, where this must be called, too.
@@ -134,7 +134,9 @@ class Services:
         future.add_done_callback(lambda done: answered(done.result()))
         return lambda: client.remove_pending_request(future)
 
-    async def ask(self, service_type: ServiceType[Req, Res], name: str, request: Req, seconds: float) -> Res | None:
+    async def call_async(
+        self, service_type: ServiceType[Req, Res], name: str, request: Req, seconds: float
+    ) -> Res | None:
         """Call a service from a callback on the executor thread; None when it did not answer in time.
 
         Raises:
@@ -145,7 +147,7 @@ class Services:
         deadline = monotonic() + seconds
         sent: list[Future] = []
 
-        def look() -> None:
+        def poll() -> None:
             if not sent and client.service_is_ready():
                 sent.append(client.call_async(request))
                 sent[0].add_done_callback(lambda future: settle(future.result()))
@@ -156,8 +158,8 @@ class Services:
             if not settled.done():
                 settled.set_result(value)
 
-        look()
-        timer = self._loop.every(seconds if sent else POLL, look)
+        poll()
+        timer = self._loop.every(seconds if sent else POLL, poll)
         try:
             answer: Res | None = await settled
             return answer
@@ -168,7 +170,7 @@ class Services:
 
 
 def _failed(response: Any, process: str) -> Any:
-    """What a caller hears when a handler has a bug."""
+    """What a caller receives when a handler has a bug."""
     if hasattr(response, "error_code") and isinstance(response.error_code, str):
         bug = Internal(process)
         response.error_code, response.error_msg = bug.code, to_line(bug)

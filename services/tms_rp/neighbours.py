@@ -24,9 +24,9 @@ class Neighbours:
             return  # nobody else is here
         self._samples = app.ros.sample(TFMessage, "/tf", DEPTH)
         app.ros.subscribe(TFMessage, "/tf_static", self._frames.receive_fixed, depth=FIXED, latched=True)
-        app.ros.poll_in_thread(FRAMES_PERIOD, self._look, "neighbours")
+        app.ros.poll_in_thread(FRAMES_PERIOD, self._take_frames, "neighbours")
 
-    def _look(self) -> None:
+    def _take_frames(self) -> None:
         for message in self._samples():
             self._frames.receive(message)
 

@@ -45,7 +45,7 @@ PLANNING = Histogram("tms_rp_planning_seconds", "From goal to trajectory", bucke
 def start(app: App) -> None:
     """Serve `/<machine>/tms_rp_<model>_<action>`."""
     planner, model = Planner(app), app.site.file.machines[app.machine].model
-    app.ros.poll_in_thread(JOINTS_PERIOD, planner.look, "joints")
+    app.ros.poll_in_thread(JOINTS_PERIOD, planner.take_samples, "joints")
     for action in planner.kind.actions:
         planner.serve(action, f"/{app.machine}/tms_rp_{model}_{action.name}")
     app.ready_when(planner.unready)
@@ -70,7 +70,7 @@ class Planner:
         self._now: tuple[float, Angles] | None = None  # monotonic time [s], joints
         self._samples = app.ros.sample(JointState, f"/{app.machine}/{app.site.border(app.machine).joint_states}")
 
-    def look(self) -> None:
+    def take_samples(self) -> None:
         """Take the newest joint state."""
         for message in self._samples():
             self._received(message)
@@ -97,7 +97,7 @@ class Planner:
         Raises:
             SubtaskFailed: JointsUnheard, JointsOld.
         """
-        self.look()
+        self.take_samples()
         last = self._now
         topic = f"/{self._app.machine}/{self._app.site.border(self._app.machine).joint_states}"
         if last is None:

@@ -23,9 +23,9 @@ class Graph:
         self._peers: dict[str, tuple[int, int]] = {}
         self._changed: list[str] = []  # topics that are still to be looked at
         self._reported: dict[str, set[NotConnected]] = {}  # by topic
-        ros.every(GRAPH_CHECK_PERIOD, self.look)
+        ros.every(GRAPH_CHECK_PERIOD, self.check)
 
-    def look(self) -> None:
+    def check(self) -> None:
         """On the executor thread; also called by itself."""
         readers, writers, nodes = endpoint_counts(self._ros)
         metrics.ENDPOINTS.labels("readers").set(readers)

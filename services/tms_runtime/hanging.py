@@ -15,7 +15,7 @@ class Hanging:
         self._ros = ros
         self._asked: float | None = None  # monotonic time since which the executor has not shown itself
 
-    def look(self) -> Reason | None:
+    def check(self) -> Reason | None:
         """Asks the executor to show itself; why it should be restarted when it has not done so since it was asked."""
         asked = self._asked
         if asked is not None:

@@ -59,7 +59,7 @@ def _serve(site: Site, row: Process) -> int:
         row.address,
         row.port,
         unready=lambda: app_box[0].unready() if app_box else ProcessStarting(),
-        hangs=lambda: app_box[0].hanging.look() if app_box else None,
+        hangs=lambda: app_box[0].hanging.check() if app_box else None,
     )
     stop = threading.Event()
     for number in (signal.SIGTERM, signal.SIGINT):

@@ -20,7 +20,7 @@ class Impostor:
         self._timer: Any = None
         self._reading: Reading | None = None
 
-    def look(self, reported: Reading, on: bool) -> None:
+    def switch(self, reported: Reading, on: bool) -> None:
         """Begin or end, on the executor thread."""
         if on and self._timer is None:
             self._reading, self._topics = reported.standing(), self._made()

@@ -55,16 +55,16 @@ class Telemetry:
         self._stepped = now
         self._truth.publish()
         self._ticks += 1
-        reading = self._look()
+        reading = self._read()
         reported = self._report.apply(reading, self._machine.fault)
         for topic in self._topics:
             if topic.due(self._ticks, STEP_PERIOD):
                 topic.publish(reported)
-        self._impostor.look(reported, self._machine.fault.second_publisher)
+        self._impostor.switch(reported, self._machine.fault.second_publisher)
         if self._ticks % TF_EVERY == 0:
             self._publish_frames(reading)
 
-    def _look(self) -> Reading:
+    def _read(self) -> Reading:
         arm, base = self._machine.arm, self._machine.base
         place = (base.x, base.y, base.yaw) if base else self._origin
         speeds = (base.v + base.leak, base.w) if base else (0.0, 0.0)

@@ -28,10 +28,10 @@ class MachineStates:
                 self._topics.append(("machine_joints", machine, app.ros.sample(JointState, topic)))
         self._waiting = False
         if self._topics:
-            app.ros.every(1.0 / hz, self._look)
+            app.ros.every(1.0 / hz, self._write_due)
 
-    def _look(self) -> None:
-        if self._waiting:  # for the database: a state that is not written now is written with the next look
+    def _write_due(self) -> None:
+        if self._waiting:  # for the database: a state that is not written now is written with the next ones
             self._waiting = False
             return
         states = [
@@ -41,7 +41,7 @@ class MachineStates:
         ]
         if states:
             request = WriteMachineStates.Request(states=states)
-            sent = self._ros.request(WriteMachineStates, "/tms/db/write_machine_states", request, self._written)
+            sent = self._ros.call_then(WriteMachineStates, "/tms/db/write_machine_states", request, self._written)
             self._waiting = sent is not None
 
     def _written(self, _: WriteMachineStates.Response) -> None:

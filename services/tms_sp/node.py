@@ -99,9 +99,9 @@ class Listener:
         if len(inputs) == 1:
             self._receive(inputs[0])
         else:
-            app.ros.every(PUBLISHERS_CHECK_PERIOD, self._look)
+            app.ros.every(PUBLISHERS_CHECK_PERIOD, self._find_publisher)
 
-    def _look(self) -> None:
+    def _find_publisher(self) -> None:
         types = {info.topic_type for info in self._ros.node.get_publishers_info_by_topic(self._topic)}
         there = [one for one in self._inputs if one.given.type in types]
         if there and self._received not in there:
@@ -134,7 +134,7 @@ class Sender:
         self._trouble: Reason | None = None
         self._clock = app.ros.every(GAP, self._send)  # stands while nothing waits
         self._clock.cancel()
-        self._retry = app.ros.every(RETRY, self._look)  # so does this one while nothing waits or is on its way
+        self._retry = app.ros.every(RETRY, self._expire)  # so does this one while nothing waits or is on its way
 
     def unready(self) -> Reason | None:
         """Why values do not reach the database."""
@@ -160,7 +160,7 @@ class Sender:
         number, posts = self._outbox.take()
         request = UpdateParameters.Request(updates=[self._update(post, now) for post in posts])
         self._flights[number] = now + ANSWER_LIMIT
-        forget = self._ros.request(
+        forget = self._ros.call_then(
             UpdateParameters, "/tms/db/update_parameters", request, lambda answer: self._answered(number, answer)
         )
         if forget is None:
@@ -200,7 +200,7 @@ class Sender:
             self._log.warning("database_away", reason=why)
         self._trouble = why
 
-    def _look(self) -> None:
+    def _expire(self) -> None:
         now = monotonic()
         for number, limit in list(self._flights.items()):
             if now > limit:

@@ -90,7 +90,7 @@ class Flags:
         settle: Callable[[Reply], None],
     ) -> None:
         async def ask() -> None:
-            response = await self._ros.ask(service, name, request, DATABASE_LIMIT)
+            response = await self._ros.call_async(service, name, request, DATABASE_LIMIT)
             if response is None:
                 answer.fail(NoDatabase("tms:db"))
             elif response.error_code:

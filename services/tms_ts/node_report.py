@@ -62,7 +62,7 @@ class NodeReport:
             self._log_node("", LeftOut(self._left_out))
             self._left_out, self._flood_reported = 0, now
 
-    def look(self, tree: Tree) -> None:
+    def report(self, tree: Tree) -> None:
         """Keep the states of the nodes for the topic of active runs."""
         states = bytes(node.state for node in tree.nodes)
         running = next((node for node in tree.running() if node.reason), None)

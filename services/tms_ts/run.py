@@ -172,7 +172,7 @@ class Run:
             self._ticked = monotonic()
             took = self._ticked - begun
             self.nodes.report_flood()
-            self.nodes.look(tree)
+            self.nodes.report(tree)
             TICKS.observe(took)
             self._report_to_client(tree)
             if status.completed:
@@ -193,7 +193,7 @@ class Run:
             if outcome != "success":
                 self.enter("stopping", self.nodes.failure or STATES[outcome])
             tree.halt()
-            self.nodes.look(tree)
+            self.nodes.report(tree)
             self._report_to_client(tree, last=True)
             moving = outcome != "success" or not machines.settled()
             if moving and outcome == "success":  # the tree succeeded in the tick that halted a leaf

@@ -79,7 +79,7 @@ class Gate:
         """Whether one more may be accepted now; False once room was made, which takes a turn of the event loop."""
         if len(self._there) < FULL:
             return True
-        self.look()
+        self.close_hanging()
         oldest = self._oldest_hanging(0.0)[:ROOM]
         for one in oldest:
             self._cut(one, "full")
@@ -101,7 +101,7 @@ class Gate:
             found.served = served
         return found
 
-    def look(self) -> None:
+    def close_hanging(self) -> None:
         """Close what hangs for too long, and the oldest that hang where there are too many."""
         self._there = {fd: one for fd, one in self._there.items() if one.sock.fileno() == fd}
         now = self._clock()

@@ -59,7 +59,7 @@ class _Looking(uvicorn.Server):
 
     async def on_tick(self, counter: int) -> bool:
         if counter % CONNECTIONS_CHECK_TICKS == 0:
-            self._gate.look()
+            self._gate.close_hanging()
         return await super().on_tick(counter)
 
 

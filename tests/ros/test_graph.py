@@ -26,7 +26,7 @@ class Watched:
         self._graph = Graph(ros, structlog.stdlib.get_logger("test"))
 
     def reported(self) -> list[str]:
-        do(self._ros, self._graph.look, LIMIT)
+        do(self._ros, self._graph.check, LIMIT)
         return [record.getMessage() for record in self._caplog.records if record.name == "test"]
 
 

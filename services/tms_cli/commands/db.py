@@ -45,7 +45,7 @@ def info(as_json: bool) -> None:
     from tms_db import backup, schema, store, store_address
 
     with opened() as db:
-        report = backup.look(db)
+        report = backup.describe(db)
     address = store.redact(store_address.uri(session.site()))
     if as_json:
         session.show_json({**_as_dict(report), "address": address, "newest_schema": schema.NEWEST})
@@ -100,7 +100,7 @@ def restore(file: Path, drop: bool, yes: bool, as_json: bool) -> None:
     if yes and not drop:
         raise click.UsageError("--yes goes with --drop")
     with opened() as db:
-        there = backup.look(db)
+        there = backup.describe(db)
         if drop and not yes and any(there.documents.values()):
             question = say("Replace all of database {name} ({there})?", name=db.name, there=there.text)
             click.confirm(question, abort=True, err=True)

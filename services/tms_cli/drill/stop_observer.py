@@ -33,7 +33,7 @@ class StopObserver:
         self._forgotten = unix_time()
         # Not by callbacks: a hundred and fifty a second would take a busy PC a tenth of a processor.
         self._truth = node.sample_arrivals(JointState, f"/{machine}/sim/truth", WAITING, best_effort=False)
-        Pulse(node).add(self._look)
+        Pulse(node).add(self._take_truth)
         node.subscribe(StopReceipt, f"/{machine}/rc/receipts", self._on_receipt, depth=20, latched=True)
         node.subscribe(MachineState, f"/{machine}/rc/state", self._on_state, depth=10, latched=True)
         for motion in motions(border):
@@ -44,7 +44,7 @@ class StopObserver:
         if border.emg_stop:
             node.subscribe(Bool, f"/{machine}/{border.emg_stop}", self._on_emergency, depth=10)
 
-    def _look(self) -> None:
+    def _take_truth(self) -> None:
         samples = [sample_of(arrival.message, self._still) for arrival in self._truth()]
         with self._lock:
             self._record.truth += samples

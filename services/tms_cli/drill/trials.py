@@ -119,7 +119,7 @@ class Hand:
             struck.back.set_result(self._hits.back(stop.how, found, struck.hit.result()))
 
     def _press(self) -> None:
-        self._node.post(StopMachine, f"/{self.machine}/rc/stop", StopMachine.Request(cause=CAUSE))
+        self._node.call_unanswered(StopMachine, f"/{self.machine}/rc/stop", StopMachine.Request(cause=CAUSE))
 
     def watch(self, trial: Trial, at: float, struck: Struck) -> Row:
         """The verdict of a trial that is hit at a moment."""

@@ -47,16 +47,16 @@ class LeafNode(PlainAction):
         return self.reported("model_name"), self.reported("subtask_name"), self.reported("record_name")
 
     def tick(self) -> Status:
-        return self.start() if self.goal is None else self.look(self.goal)
+        return self.start() if self.goal is None else self.progress(self.goal)
 
     def start(self) -> Status:
         machine, subtask, record = self.model_name, self.subtask_name, self.record_name
         if self.context.world is None:
             raise TickError(NoMachines(self.registration_name))
         self.goal = self.context.world.machines.send(machine, subtask, record, self.path)
-        return self.look(self.goal)
+        return self.progress(self.goal)
 
-    def look(self, goal: Goal) -> Status:
+    def progress(self, goal: Goal) -> Status:
         state = goal.state
         if not state.final:
             self.reason = goal.reason or goal.feedback or (Working() if state is GoalState.RUNNING else Sending())

@@ -12,7 +12,7 @@ def acts(duty: Duty, begin: float, seconds: float, seen: Seen) -> list[tuple[flo
     """What is commanded meanwhile, and how long after `begin`."""
     found = []
     for i in range(round(seconds / BEAT)):
-        act = duty.look(begin + i * BEAT, seen)
+        act = duty.check(begin + i * BEAT, seen)
         if act is not None:
             found.append((round(i * BEAT, 3), act))
     return found
@@ -30,11 +30,11 @@ def test_a_gateway_that_was_never_there_is_not_stood_in_for() -> None:
 
 def test_a_short_silence_is_no_loss() -> None:
     duty = Duty()
-    duty.look(0.0, THERE)
+    duty.check(0.0, THERE)
     for at in (1.0, 2.0):
-        assert duty.look(at, BUSY) is None
-        assert duty.look(at + LEASE_MARGIN - 0.01, BUSY) is None
-        assert duty.look(at + LEASE_MARGIN, THERE) is None
+        assert duty.check(at, BUSY) is None
+        assert duty.check(at + LEASE_MARGIN - 0.01, BUSY) is None
+        assert duty.check(at + LEASE_MARGIN, THERE) is None
     assert duty.lost_since is None
 
 
@@ -53,7 +53,7 @@ def test_a_run_that_is_lost_too_gets_emg_stop_at_once() -> None:
 
 def test_the_loss_of_the_run_does_not_wait_for_the_next_repetition() -> None:
     duty = Duty()
-    duty.look(0.0, THERE)
+    duty.check(0.0, THERE)
     assert acts(duty, 1.0, 0.2, BUSY) == [(0.1, Act.STOP)]
     assert acts(duty, 1.2, 0.2, Seen(alive=False, run_lost=True)) == [(0.0, Act.EMERGENCY)]
     again = acts(duty, 1.4, AGAIN, SILENT)  # an emergency stays one
@@ -62,7 +62,7 @@ def test_the_loss_of_the_run_does_not_wait_for_the_next_repetition() -> None:
 
 def test_it_goes_on_until_a_gateway_gives_its_pulse_and_has_told_its_state() -> None:
     duty = Duty()
-    duty.look(0.0, THERE)
+    duty.check(0.0, THERE)
     assert acts(duty, 1.0, 0.2, SILENT)
     assert acts(duty, 2.0, 0.6, THERE) == [(0.0, Act.STOP), (0.5, Act.STOP)]
     assert acts(duty, 3.0, 1.0, Seen(alive=True, reported=True)) == []
@@ -72,23 +72,23 @@ def test_it_goes_on_until_a_gateway_gives_its_pulse_and_has_told_its_state() -> 
 
 def test_what_it_has_told_before_its_pulse_is_remembered() -> None:
     duty = Duty()
-    duty.look(0.0, THERE)
+    duty.check(0.0, THERE)
     acts(duty, 1.0, 0.2, SILENT)
-    duty.look(1.2, Seen(alive=False, reported=True))
-    duty.look(1.3, THERE)
+    duty.check(1.2, Seen(alive=False, reported=True))
+    duty.check(1.3, THERE)
     assert duty.lost_since is None
 
 
 def test_a_gateway_that_takes_leave_is_no_loss() -> None:
     duty = Duty()
-    duty.look(0.0, THERE)
+    duty.check(0.0, THERE)
     assert acts(duty, 1.0, 3.0, Seen(alive=False, left=True, busy=True)) == [(0.0, Act.STOP)]
     assert duty.lost_since is None
 
 
 def test_a_stale_writer_that_discovery_drops_later_is_no_leave() -> None:
     duty = Duty()
-    duty.look(0.0, THERE)
+    duty.check(0.0, THERE)
     acts(duty, 1.0, 0.2, SILENT)
     assert acts(duty, 6.0, 0.4, Seen(alive=False, left=True)) == [(0.0, Act.STOP)]
     assert duty.lost_since is not None

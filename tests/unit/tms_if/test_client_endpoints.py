@@ -43,7 +43,7 @@ class Ros:
         self.publishers: list[Publisher] = []
         self.node = SimpleNamespace(destroy_publisher=lambda gone: self.publishers.remove(gone))
 
-    async def ask(self, *_: Any) -> Any:
+    async def call_async(self, *_: Any) -> Any:
         if self.trouble is not None:
             raise self.trouble
         return Trigger.Response(success=True)

@@ -65,7 +65,7 @@ class Database:
         self.x = self.next.pop(0) if self.next else self.x
         return GetParameter.Response(record=record)
 
-    async def ask(self, *_: Any) -> Any:
+    async def call_async(self, *_: Any) -> Any:
         return self._answer()
 
     def call(self, service: Any, _name: str, request: Any, *_limit: Any) -> Any:
@@ -74,14 +74,15 @@ class Database:
         self.lock.append(bool(from_parameters(request.values)[FLAG]))
         return SetParameter.Response()
 
-    def post(self, service: Any, name: str, request: Any) -> None:
+    def call_unanswered(self, service: Any, name: str, request: Any) -> None:
         self.call(service, name, request)
 
 
 def served(database: Database, plan_only: bool) -> Any:
     """The server of Dig on this database, and the class that notes what it did."""
     nothing: Any = SimpleNamespace(lease_publisher=lambda *_: None, lease_subscribe=lambda *_: None)
-    ros: Any = SimpleNamespace(**vars(nothing), ask=database.ask, call=database.call, post=database.post)
+    ros: Any = SimpleNamespace(**vars(nothing), call_async=database.call_async, call=database.call)
+    ros.call_unanswered = database.call_unanswered
     site = SimpleNamespace(
         file=SimpleNamespace(machines={"zx200": SimpleNamespace(model="zx200")}), model_of=lambda _: None
     )

@@ -22,7 +22,7 @@ def watched(
     follower = Follower(found, DEAD + LAG, 100.0)
     for i in range(round(limit / LOOK)):
         time = i * LOOK
-        wrong = follower.look(100.0 + time, {name: joint(time, way) for name, way in found.items()})
+        wrong = follower.check(100.0 + time, {name: joint(time, way) for name, way in found.items()})
         if wrong is not None:
             return time, wrong
     return float("inf"), None
@@ -90,4 +90,4 @@ def test_what_is_heard_must_change_while_the_reference_moves() -> None:
 def test_a_goal_that_asks_for_no_motion_changes_nothing() -> None:
     follower = Follower(ways(NAMES, [(60.0, (0.0, 0.5))], START), DEAD + LAG, 100.0)
     assert not follower.moved(130.0, 20.0)
-    assert follower.look(130.0, START) is None
+    assert follower.check(130.0, START) is None

@@ -107,12 +107,12 @@ def test_a_source_that_speaks_again_is_not_believed_before_its_publishers_were_c
     def speak() -> None:
         message = JointState(name=list(model.initial), position=list(model.initial.values()))
         ros.waiting.append(Arrival(message, now[0], 1))
-        seen.look()
+        seen.take_samples()
 
     speak()
     assert watch.trouble(now[0]) is None
     now[0] += 5.0
-    seen.look()  # the regular count, while the first publisher, killed, is still the only one
+    seen.take_samples()  # the regular count, while the first publisher, killed, is still the only one
     now[0] += 0.01
     ros.voices = ["driver", "driver"]
     speak()

@@ -32,7 +32,7 @@ class Rig:
         """How often it is told at the next look."""
         self.now += seconds
         before = self.reported
-        self.state_publisher.look()
+        self.state_publisher.check()
         return self.reported - before
 
 
@@ -40,7 +40,7 @@ class Rig:
 def rig(monkeypatch: pytest.MonkeyPatch) -> Rig:
     made = Rig()
     monkeypatch.setattr(time, "monotonic", lambda: made.now)
-    made.state_publisher.look()
+    made.state_publisher.check()
     return made
 
 

@@ -34,8 +34,8 @@ def neighbours(*reported: TransformStamped) -> Neighbours:
         subscribe=lambda *_, **__: None,
     )
     made = Neighbours(SimpleNamespace(site=site, machine="zx200", log=structlog.stdlib.get_logger("test"), ros=ros))  # type: ignore[arg-type]
-    made._look()
-    made._look()
+    made._take_frames()
+    made._take_frames()
     return made
 
 

@@ -73,10 +73,10 @@ def test_the_oldest_of_one_address_go(monkeypatch: pytest.MonkeyPatch) -> None:
     door = Door()
     other = door.come("192.0.2.2")
     many = [door.come() for _ in range(MAX_OF_ONE + 10)]
-    door.gate.look()
+    door.gate.close_hanging()
     assert len(there(many)) == MAX_OF_ONE + 10  # they get a moment for their request
     door.now = GRACE
-    door.gate.look()
+    door.gate.close_hanging()
     assert there(many) == list(range(10, MAX_OF_ONE + 10))
     assert there([other]) == [0]
 
@@ -86,7 +86,7 @@ def test_what_is_answered_stays() -> None:
     viewers = [door.come(busy=True) for _ in range(50)]
     many = [door.come() for _ in range(100)]
     door.now = GRACE
-    door.gate.look()
+    door.gate.close_hanging()
     assert len(there(viewers)) == 50
     assert there(many) == list(range(86, 100))
 
@@ -95,7 +95,7 @@ def test_all_together_are_limited() -> None:
     door = Door()
     many = [door.come(f"198.51.{number // 200}.{number % 200}") for number in range(MAX_CONNECTIONS + 100)]
     door.now = GRACE
-    door.gate.look()
+    door.gate.close_hanging()
     assert there(many) == list(range(100, MAX_CONNECTIONS + 100))
 
 
@@ -118,7 +118,7 @@ def test_a_handshake_takes_seconds_at_most() -> None:
     slow = door.come()
     door.now = HEADERS + 0.1
     new = door.come()
-    door.gate.look()
+    door.gate.close_hanging()
     assert there([slow, new]) == [1]
 
 
@@ -127,7 +127,7 @@ def test_who_was_cut_during_the_handshake_is_not_served() -> None:
     sock = door.come()
     number = sock.fileno()
     door.now = HEADERS + 1
-    door.gate.look()
+    door.gate.close_hanging()
     assert door.gate.serve(number, FakeServed(sock, hangs=True)) is None
 
 
