@@ -1,14 +1,19 @@
-"""The Chromium of this PC, without a screen: for tests, benchmarks and pictures."""
+"""The Chromium of this PC, without a screen, and calls of the console: for tests, benchmarks and pictures."""
 
 from __future__ import annotations
 
+import json
+import urllib.error
+import urllib.request
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
 from playwright.sync_api import Browser, sync_playwright
 
 from conftest import tool
 
+LIMIT = 60.0  # s for whatever must happen at all
 FLAGS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking"]
 
 
@@ -20,3 +25,17 @@ def chromium() -> Iterator[Browser]:
         browser = playwright.chromium.launch(executable_path=program, args=FLAGS)
         yield browser
         browser.close()
+
+
+def ask(address: str, path: str, body: Any = None) -> Any:
+    """An answer of the API; an error of a run that has just ended is none."""
+    data = None if body is None else json.dumps(body).encode()
+    request = urllib.request.Request(address + path, data, {"Content-Type": "application/json"})
+    try:
+        with urllib.request.urlopen(request, timeout=LIMIT) as answer:
+            return json.load(answer)
+    except urllib.error.HTTPError as error:
+        with error:
+            found = json.load(error)
+        assert found["code"] == "NO_RUN", found
+        return None

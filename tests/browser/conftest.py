@@ -1,19 +1,15 @@
 """A real headless Chromium in front of the console of the session's mesh; screenshots are kept as artefacts."""
 
-import json
 import re
-import urllib.error
-import urllib.request
 from collections.abc import Iterator
-from typing import Any
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
 import browsers
+from browsers import LIMIT, ask
 from conftest import PROJECT, Mesh, wait_until
 
-LIMIT = 60.0  # s for whatever must happen at all
 SHOTS = PROJECT / ".state" / "screenshots"
 
 
@@ -67,17 +63,3 @@ def _armed(address: str) -> bool:
         ask(address, "/api/machines/zx200/rearm", {"token": first["token"]})
         return False
     return bool(machine["state"] == "standing")
-
-
-def ask(address: str, path: str, body: Any = None) -> Any:
-    """An answer of the API; an error of a run that has just ended is none."""
-    data = None if body is None else json.dumps(body).encode()
-    request = urllib.request.Request(address + path, data, {"Content-Type": "application/json"})
-    try:
-        with urllib.request.urlopen(request, timeout=LIMIT) as answer:
-            return json.load(answer)
-    except urllib.error.HTTPError as error:
-        with error:
-            found = json.load(error)
-        assert found["code"] == "NO_RUN", found
-        return None
