@@ -187,7 +187,7 @@ def mesh_apart(folder: Path, **changes: object) -> Iterator[Mesh]:
 def mesh(domain: int, first_port: int, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Mesh]:
     """A running mesh with a simulated zx200, its records and three tasks; one for the whole test run.
 
-    Tasks: 1 one loading cycle, 2 four of them, 3 long swings to and fro.
+    Tasks: 1 one loading cycle, 2 four of them, 3 long swings to and fro, 4 a few of these, 5 one move.
     """
     folder = tmp_path_factory.mktemp("mesh")
     site = folder / "site.yaml"
@@ -197,7 +197,8 @@ def mesh(domain: int, first_port: int, tmp_path_factory: pytest.TempPathFactory)
         made.tms("task", "add", "configs/tasks/one_loading_cycle.xml")
         made.tms("task", "add", "configs/tasks/four_loading_cycles.xml")
         made.tms("param", "load", str(PROJECT / "tests" / "data" / "swings.yaml"))
-        made.tms("task", "add", str(PROJECT / "tests" / "data" / "swings.xml"))
+        for name in ("swings", "few_swings", "one_move"):
+            made.tms("task", "add", str(PROJECT / "tests" / "data" / f"{name}.xml"))
         yield made
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import psutil
 import pytest
-from test_mesh import CHANGE_POSE, events, newest, processes, run, stops, swinging
+from test_mesh import CHANGE_POSE, FEW_SWINGS, ONE_MOVE, events, newest, processes, run, stops, swinging
 from test_stop import rearm, state_of
 
 from conftest import PROJECT, Mesh, wait_until
@@ -23,7 +23,7 @@ pytestmark = [pytest.mark.system, pytest.mark.timeout(300)]
 def test_a_run_goes_on_after_the_loss_of_planner_or_gateway(mesh: Mesh, node: Ros, name: str) -> None:
     mesh.wait_ready()
     old = processes(mesh)[name]["pid"]
-    with swinging(mesh, node) as client:
+    with swinging(mesh, node, FEW_SWINGS) as client:
         os.kill(old, signal.SIGKILL)
         out, _ = client.communicate(timeout=150)
     answer = json.loads(out)
@@ -34,7 +34,7 @@ def test_a_run_goes_on_after_the_loss_of_planner_or_gateway(mesh: Mesh, node: Ro
 
 
 def test_a_run_does_not_need_the_store_and_its_history_comes_later(mesh: Mesh, node: Ros) -> None:
-    run(mesh, "1")
+    run(mesh, ONE_MOVE)
     with swinging(mesh, node) as client:
         run_id = newest(mesh)
         known = len(events(mesh, run_id))
@@ -51,7 +51,7 @@ def test_a_run_does_not_need_the_store_and_its_history_comes_later(mesh: Mesh, n
 
 
 def test_a_process_that_ends_again_and_again_fails_its_leaf_and_nothing_else(mesh: Mesh, node: Ros) -> None:
-    run(mesh, "1")
+    run(mesh, ONE_MOVE)
     others = {name: row["pid"] for name, row in processes(mesh).items() if name != CHANGE_POSE}
     with swinging(mesh, node) as client:
         crash_until_fatal(mesh, CHANGE_POSE)
@@ -63,7 +63,7 @@ def test_a_process_that_ends_again_and_again_fails_its_leaf_and_nothing_else(mes
     assert CHANGE_POSE in mesh.tms("status", expect=1).stdout
     assert {name: row["pid"] for name, row in processes(mesh).items() if name != CHANGE_POSE} == others
     mesh.tms("restart", CHANGE_POSE)
-    assert run(mesh, "1")["outcome"] == "success"
+    assert run(mesh, ONE_MOVE)["outcome"] == "success"
 
 
 def crash_until_fatal(mesh: Mesh, name: str) -> None:
@@ -90,7 +90,7 @@ def load_site_of(mesh: Mesh) -> Site:
 def test_a_stop_gets_through_to_a_tree_that_spins(mesh: Mesh, node: Ros) -> None:
     file = PROJECT / "tests" / "data" / "spin.xml"
     task = str(json.loads(mesh.tms("task", "add", str(file), "--json").stdout)["task_id"])
-    run(mesh, "1")
+    run(mesh, ONE_MOVE)
     with swinging(mesh, node, task) as client:
         mesh.tms("stop")
         out, _ = client.communicate(timeout=60)
@@ -112,4 +112,4 @@ def test_without_supervisord_everything_ends_and_the_run_can_be_given_up(mesh: M
     mesh.tms("abandon", run_id)
     if not Path(mesh.state, "rc", "zx200.armed").exists():
         rearm(mesh)
-    assert run(mesh, "1")["outcome"] == "success"
+    assert run(mesh, ONE_MOVE)["outcome"] == "success"

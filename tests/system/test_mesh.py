@@ -21,6 +21,7 @@ from tms_ros.node import Ros
 
 pytestmark = pytest.mark.system
 CHANGE_POSE = "zx200:subtask_zx200_change_pose"
+FEW_SWINGS, ONE_MOVE = "4", "5"  # tasks of the mesh
 
 
 def run(mesh: Mesh, *words: str, expect: int = 0) -> dict[str, Any]:
@@ -46,7 +47,7 @@ def test_a_task_runs_to_success_and_again_without_a_restart(mesh: Mesh) -> None:
 
 
 def test_nobody_else_reads_the_state_folder(mesh: Mesh) -> None:
-    run(mesh, "1")
+    run(mesh, ONE_MOVE)
     places = (mesh.state, *mesh.state.rglob("*"))
     assert {"log", "store", "supervisord.conf", "prometheus", "ros", "tms.ts.log"} <= {path.name for path in places}
     ours = f"_{os.getpid()}_"  # in the name of the log of this test's own node
@@ -74,11 +75,11 @@ def test_four_cycles_send_24_goals(mesh: Mesh) -> None:
 
 
 def test_a_killed_subtask_comes_back_and_the_next_run_works(mesh: Mesh) -> None:
-    run(mesh, "1")
+    run(mesh, ONE_MOVE)
     old = processes(mesh)[CHANGE_POSE]["pid"]
     os.kill(old, signal.SIGKILL)
     wait_until(lambda: processes(mesh)[CHANGE_POSE]["pid"] not in (0, old), 60, "change_pose is back")
-    assert run(mesh, "1")["outcome"] == "success"
+    assert run(mesh, ONE_MOVE)["outcome"] == "success"
 
 
 @contextmanager
@@ -120,13 +121,13 @@ def test_cancel_ends_with_the_machine_standing(mesh: Mesh, node: Ros) -> None:
     assert client.returncode == 1
     seen = stops(mesh, run_id)
     assert seen and all(text.startswith("zx200 stood after") for text in seen)
-    assert run(mesh, "1")["outcome"] == "success"
+    assert run(mesh, ONE_MOVE)["outcome"] == "success"
 
 
 def test_a_subtask_killed_during_its_goal_comes_back_and_the_run_goes_on(mesh: Mesh, node: Ros) -> None:
-    run(mesh, "1")  # so that the subtask runs and its pid is known
+    run(mesh, ONE_MOVE)  # so that the subtask runs and its pid is known
     pid = processes(mesh)[CHANGE_POSE]["pid"]
-    with swinging(mesh, node) as client:
+    with swinging(mesh, node, FEW_SWINGS) as client:
         os.kill(pid, signal.SIGKILL)
         out, _ = client.communicate(timeout=150)
     answer = json.loads(out)
@@ -150,7 +151,7 @@ def test_a_killed_scheduler_comes_back_and_closes_its_run(mesh: Mesh, node: Ros)
     wait_until(lambda: state() == "interrupted", 60, "the run is closed")
     mesh.tms("rearm", "zx200", "--yes")  # the loss of the scheduler latches until a person has looked
     mesh.tms("param", "set", "zx200/swing_left", "swing_joint=1.5")  # static records are free again
-    assert run(mesh, "1")["outcome"] == "success"
+    assert run(mesh, ONE_MOVE)["outcome"] == "success"
 
 
 def test_up_twice_is_harmless(mesh: Mesh) -> None:

@@ -93,7 +93,7 @@ def test_health_and_readiness_are_two_things(mesh: Mesh) -> None:
 
 
 def test_the_log_of_a_goal_names_process_machine_run_and_goal(mesh: Mesh) -> None:
-    mesh.tms("run", "1", "--wait", "--json")
+    mesh.tms("run", "5", "--wait", "--json")
     lines = (mesh.state / "log" / "tms.ts.log").read_text(encoding="utf-8").splitlines()
     reported = [line for line in lines if "event=run" in line and "success" in line]
     assert reported and all(

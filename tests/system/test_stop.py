@@ -11,7 +11,7 @@ import pytest
 from builtin_interfaces.msg import Duration
 from control_msgs.action import FollowJointTrajectory
 from std_msgs.msg import Bool
-from test_mesh import CHANGE_POSE, events, newest, processes, run, stops, swinging
+from test_mesh import CHANGE_POSE, FEW_SWINGS, ONE_MOVE, events, newest, processes, run, stops, swinging
 from tms_msg_host.msg import Processes
 from tms_msg_rc.msg import MachineState
 from tms_msg_ts.msg import RunStates
@@ -89,7 +89,7 @@ def test_a_stop_while_a_run_prepares_keeps_it_from_moving(mesh: Mesh, node: Ros)
     assert "software stop" in answer["error_msg"]
     assert not [row for row in events(mesh, answer["run_id"]) if row["kind"] == "goal"]
     rearm(mesh)
-    assert run(mesh, "1")["outcome"] == "success"
+    assert run(mesh, ONE_MOVE)["outcome"] == "success"
 
 
 def test_rearming_takes_two_steps_and_is_refused_while_the_stop_is_pressed(mesh: Mesh, node: Ros) -> None:
@@ -122,9 +122,9 @@ def test_goals_of_an_abandoned_run_are_refused(mesh: Mesh, node: Ros) -> None:
 
 
 def test_a_killed_scheduler_leaves_a_run_that_can_be_resumed(mesh: Mesh, node: Ros) -> None:
-    run(mesh, "1")
+    run(mesh, ONE_MOVE)
     pid = processes(mesh)["tms:ts"]["pid"]
-    with swinging(mesh, node):
+    with swinging(mesh, node, FEW_SWINGS):
         run_id = newest(mesh)
         os.kill(pid, signal.SIGKILL)
         wait_until(lambda: state_of(mesh, run_id) == "interrupted", 40, "the run is closed as interrupted")
