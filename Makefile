@@ -102,8 +102,8 @@ restart: setup ## restart one process (P=name)
 test: setup ## all tests that a laptop can run
 	@DOCKER=$(DOCKER) sh deploy/system-packages.sh test
 	$(PY) -m pytest -n $(WORKERS) tests/unit tests/contract tests/conformance
-	$(PY) -m pytest -n 2 --dist loadfile tests/ros tests/browser  # they wait more than they work
-	$(PY) -m pytest tests/system  # a whole mesh a test, with leases of half a second: two cores carry one at a time
+	$(PY) -m pytest -n 2 --dist loadfile -m "not alone" tests/ros tests/system tests/browser  # they wait more than they work
+	$(PY) -m pytest -m alone tests/system
 
 test-fast: setup ## unit, contract and conformance tests: no ROS processes, two minutes (WORKERS=2)
 	@DOCKER=$(DOCKER) sh deploy/system-packages.sh test

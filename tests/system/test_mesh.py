@@ -19,7 +19,7 @@ from conftest import PROJECT, Mesh, wait_until
 from lateness import Lateness
 from tms_ros.node import Ros
 
-pytestmark = pytest.mark.system
+pytestmark = [pytest.mark.system, pytest.mark.alone]
 CHANGE_POSE = "zx200:subtask_zx200_change_pose"
 FEW_SWINGS, ONE_MOVE = "4", "5"  # tasks of the mesh
 

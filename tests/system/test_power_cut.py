@@ -27,7 +27,7 @@ from power_cut import Disk, family, own_disk
 from tms_ros.node import Ros
 from words import words
 
-pytestmark = pytest.mark.system
+pytestmark = [pytest.mark.system, pytest.mark.alone]
 CUTS = int(os.environ.get("TMS_POWER_CUTS", "3"))
 STALL = 2.0  # s
 STANDING = 1.5  # s; between two swings it stands for a moment only

@@ -16,7 +16,7 @@ from test_mesh import processes, swinging
 from conftest import PROJECT, Mesh, mesh_apart, running, wait_until
 from tms_ros.node import Ros
 
-pytestmark = [pytest.mark.system, pytest.mark.timeout(300)]
+pytestmark = [pytest.mark.system, pytest.mark.alone, pytest.mark.timeout(300)]
 STATUS = "/zx200/upper_arm_controller/follow_joint_trajectory/_action/status"
 OPEN = (GoalStatus.STATUS_ACCEPTED, GoalStatus.STATUS_EXECUTING)
 STOPPED = (GoalStatus.STATUS_CANCELING, GoalStatus.STATUS_CANCELED)

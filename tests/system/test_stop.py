@@ -25,7 +25,7 @@ from tms_ros.goals import Outcome
 from tms_ros.node import Ros
 from tms_runtime.fence import Owner
 
-pytestmark = pytest.mark.system
+pytestmark = [pytest.mark.system, pytest.mark.alone]
 JOINTS = ["swing_joint", "boom_joint", "arm_joint", "bucket_joint", "bucket_end_joint"]
 
 
