@@ -1,4 +1,4 @@
-"""/diagnostics for the tools of ROS (rqt_robot_monitor, diagnostic_aggregator): one status a process of this PC."""
+"""/diagnostics for the tools of ROS (rqt_robot_monitor, diagnostic_aggregator): a status for each process here."""
 
 import threading
 from collections.abc import Callable, Mapping
@@ -14,13 +14,13 @@ from tms_runtime import metrics
 from tms_runtime.app import App
 
 PUBLISH_PERIOD = 1.0  # s between messages
-READY_CHECK_PERIOD = 5.0  # s between questions to a process whether it is ready: each costs a few milliseconds
+READY_CHECK_PERIOD = 5.0  # s between the readiness checks of a process: each costs a few milliseconds
 ANSWER = 0.5  # s
 OK, WARN, ERROR, STALE = 0, 1, 2, 3
 
 
 class Diagnostics:
-    """Publishes in a thread of its own; `rows` and `restarts` are what supervisord said last."""
+    """Publishes in a thread of its own; `rows` and `restarts` are supervisord's last answer."""
 
     def __init__(self, app: App, silent: Callable[[], Mapping[str, float]]) -> None:
         """`silent` gives the gateways without a pulse, and for how long [s]."""
@@ -33,14 +33,14 @@ class Diagnostics:
         threading.Thread(target=self._publish, name="diagnostics", daemon=True).start()
 
     def update(self, rows: list[Running], restarts: dict[str, int]) -> None:
-        """From the thread that looks at supervisord."""
+        """Take supervisord's answer, from the thread that asks it."""
         self._rows, self._restarts = rows, dict(restarts)
 
     def _publish(self) -> None:
         looks = 0
         while not self._app.stopping.wait(PUBLISH_PERIOD):
             if not self._publisher.get_subscription_count():
-                looks = 0  # the next reader gets what is so then
+                looks = 0  # the next reader gets fresh answers
                 continue
             rows = self._rows
             if looks % round(READY_CHECK_PERIOD / PUBLISH_PERIOD) == 0:
@@ -67,9 +67,9 @@ class Diagnostics:
 
 
 def judge(row: Running, process: Process | None, reason: Reason | None, silent: float | None = None) -> tuple[int, str]:
-    """Level and English text of one process; a subtask that nobody has asked for yet is in order.
+    """Level and English text of one process; a subtask that no task has named yet is OK.
 
-    `silent`: for how long a gateway has given no pulse [s], None while it does.
+    `silent`: for how long a gateway has had no pulse [s]; None while it has one.
     """
     if silent is not None:
         return ERROR, text(NoPulse(silent, row.name), "en")

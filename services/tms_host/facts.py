@@ -29,7 +29,7 @@ PER_PROGRAM = {
 
 @dataclass(frozen=True)
 class Clock:
-    """What the kernel knows of this PC's clock."""
+    """The kernel's figures on this PC's clock."""
 
     synchronised: bool
     error: float  # s, bound that the time daemon gives
@@ -44,7 +44,7 @@ class _Timex(ctypes.Structure):
 
 
 def clock() -> Clock | None:
-    """State of the clock, from adjtimex(2) as chrony and ntpd set it; None where the kernel does not tell."""
+    """State of the clock, from adjtimex(2) as chrony and ntpd set it; None where the kernel does not report it."""
     facts = _Timex()
     libc = ctypes.CDLL(ctypes.util.find_library("c"), use_errno=True)
     if libc.adjtimex(ctypes.byref(facts)) < 0:  # modes 0 only reads
@@ -54,7 +54,7 @@ def clock() -> Clock | None:
 
 
 class Facts(Collector):
-    """Collects at every scrape; `update` gives it what supervisord said last."""
+    """Collects at every scrape; `update` sets supervisord's last answer."""
 
     def __init__(self, state: Path, read_clock: Callable[[], Clock | None] = clock) -> None:
         self._state, self._clock = state, read_clock
@@ -63,12 +63,12 @@ class Facts(Collector):
         self._lock = threading.Lock()
 
     def update(self, rows: list[Running], restarts: dict[str, int]) -> None:
-        """From the thread that looks at supervisord."""
+        """Take supervisord's answer, from the thread that asks it."""
         with self._lock:
             self._rows, self._restarts = rows, dict(restarts)
 
     def collect(self) -> Iterator[Metric]:
-        """All families; a process that has just ended is left out of those that read /proc."""
+        """All families of metrics; those from /proc leave out a process that has just ended."""
         with self._lock:
             rows, restarts = self._rows, self._restarts
         up = GaugeMetricFamily("tms_host_program_up", "1 while supervisord runs it", labels=["program"])

@@ -1,8 +1,8 @@
-"""Notices processes that live but do not answer: frozen, or with a ROS thread that hangs.
+"""Finds processes that exist but do not answer: they are frozen, or their ROS thread hangs.
 
-supervisord sees only processes that end. Each process tells on its health port whether it runs; one that has told so
-and then does not for some seconds is restarted. A process that has not been heard yet is still starting, for a minute:
-it may also have frozen while nobody watched. A gateway without a pulse is killed much sooner: its machine waits for it.
+supervisord sees only processes that end. Each process answers on its health port that it runs; if it has answered once
+and then does not for some seconds, it is restarted. Before its first answer, a process has a minute more: it may still
+be starting, or have frozen before this thread began. A gateway without a pulse is killed much sooner: a machine waits.
 """
 
 import contextlib
@@ -18,12 +18,12 @@ from tms_host.supervisor import Running, Supervisor
 from tms_reason.errors import TmsError
 from tms_runtime.app import App
 
-ROUND_PERIOD = 2.0  # s between rounds; a question costs about a millisecond of both processes
+ROUND_PERIOD = 2.0  # s between rounds; a request costs about a millisecond of both processes
 ANSWER_LIMIT = 2.0  # s
 PULSE_LIMIT = 3.0  # s without a pulse until a gateway is killed
-PULSE_PERIOD = 0.5  # s between looks
-OLDER = 2.0  # s; its pulse was given up 0.6 s after the last beat, and supervisord counts whole seconds
-STARTING = 60.0  # s more for a process that has not answered yet; forty at once take 15 s
+PULSE_PERIOD = 0.5  # s between checks
+OLDER = 2.0  # s; its pulse counts as lost 0.6 s after the last beat, and supervisord counts whole seconds
+STARTING = 60.0  # s more for a process that has not answered yet; forty that start at once take 15 s
 
 
 class Answers:
@@ -34,7 +34,7 @@ class Answers:
         self._last: dict[str, tuple[int, float]] = {}  # name -> pid, time
 
     def frozen(self, name: str, pid: int, answered: bool, now: float) -> bool:
-        """Take the result of a question; whether the process has been silent for too long."""
+        """Take the result of a request; returns whether the process has been silent for too long."""
         if answered:
             self._last[name] = (pid, now)
             return False
@@ -51,7 +51,7 @@ class Watchdog:
     def __init__(
         self, app: App, running: Callable[[], Sequence[Running]], silent: Callable[[], Mapping[str, float]]
     ) -> None:
-        """`running`: processes as supervisord saw them last; `silent`: gateways without a pulse, since how long [s]."""
+        """`running`: processes in supervisord's last answer; `silent`: gateways without a pulse, for how long [s]."""
         self._app, self._running, self._silent = app, running, silent
         self._asked = {row.full: row for row in here(app.site) if row.ours and row.full != app.process.full}
         self._killed: dict[str, int] = {}  # pids by name; supervisord needs up to 1 s to notice
@@ -70,7 +70,7 @@ class Watchdog:
                     self._restart(supervisor, row)
 
     def answers(self, name: str) -> bool:
-        """Whether a process of this PC says that it runs."""
+        """Whether a process of this PC answers that it runs."""
         row = self._asked[name]
         asked = http.client.HTTPConnection(row.address, row.port, timeout=ANSWER_LIMIT)
         try:
@@ -84,7 +84,7 @@ class Watchdog:
     def _restart(self, supervisor: Supervisor, row: Running) -> None:
         try:
             now = supervisor.process(row.name)
-            if (now.state, now.pid) != ("RUNNING", row.pid):  # somebody has stopped it while it was asked
+            if (now.state, now.pid) != ("RUNNING", row.pid):  # it was stopped while it was asked
                 return
             self._app.log.error("frozen", target=row.name, pid=row.pid, action="restarted")
             supervisor.control("restart", row.name)
@@ -92,7 +92,7 @@ class Watchdog:
             self._app.log.error("not_restarted", target=row.name, reason=error.reason)
 
     def _watch_gateways(self) -> None:
-        """In a thread of its own: the other one waits for answers of whatever else is frozen."""
+        """Kill gateways without a pulse; in a thread of its own, as the other one waits for frozen processes."""
         supervisor = Supervisor(self._app.site)
         while not self._app.stopping.wait(PULSE_PERIOD):
             for name, seconds in self._silent().items():
@@ -100,13 +100,13 @@ class Watchdog:
                     self._kill(supervisor, name)
 
     def _kill(self, supervisor: Supervisor, name: str) -> None:
-        """End a gateway that was there before its pulse was lost; not its successor, which may take long to start."""
+        """Kill a gateway that ran before its pulse was lost; not its successor, which may take long to start."""
         try:
             row = supervisor.process(name)
         except TmsError as error:
             self._app.log.error("not_killed", target=name, reason=error.reason)
             return
-        seconds = self._silent().get(name)  # now: the answer may have taken seconds, and it may be back
+        seconds = self._silent().get(name)  # asked again: supervisord may have taken seconds, and the pulse may be back
         if seconds is None:
             return
         older = row.state == "RUNNING" and row.uptime > seconds + OLDER

@@ -1,4 +1,4 @@
-"""Process `tms:host`: tells the site which processes run on this PC, and starts and stops them on request."""
+"""Process `tms:host`: publishes which processes run on this PC, and starts and stops them on request."""
 
 import os
 import re
@@ -23,14 +23,14 @@ from tms_reason.errors import TmsError
 from tms_reason.wire import to_line
 from tms_runtime.app import App
 
-HEARTBEAT = 2.0  # s between messages when nothing changes, so that a dead PC can be told from a quiet one
+HEARTBEAT = 2.0  # s between messages without changes, so that a dead PC can be distinguished from a quiet one
 LOG_BYTES, MAX_LOG_BYTES = 16_384, 262_144
-CHILDREN_CHECK_PERIOD = 0.1  # s between looks whether supervisord has other children: its socket has no events
+CHILDREN_CHECK_PERIOD = 0.1  # s between checks whether supervisord has other children: its socket has no events
 CHANGING = ("STARTING", "STOPPING", "BACKOFF")  # states that end without a new pid
 
 
 def start(app: App) -> None:
-    """Publish /tms/host/processes and offer /tms/host/<host name>/control and /log."""
+    """Publish /tms/host/processes and serve /tms/host/<host name>/control and /log."""
     stand_in = StandIn(app)
     host = Host(app, stand_in.silent)
     app.ros.offer_slow(ControlProcess, f"/tms/host/{host.name}/control", host.control)
@@ -41,20 +41,20 @@ def start(app: App) -> None:
 
 
 def ros_name(host: str) -> str:
-    """A host as a part of ROS names: these hold no dash and do not start with a digit, as the id of a container may."""
+    """A host as a part of ROS names: without dashes, and without a digit at the start, as a container's id may have."""
     plain = re.sub(r"[^a-z0-9]", "_", host.lower())
     return plain if plain[:1].isalpha() else f"pc_{plain}"
 
 
 class Children:
-    """Whether a process has other children than at the last look: asking supervisord costs fifty times as much."""
+    """Finds out whether a process's children have changed: a call of supervisord costs fifty times as much."""
 
     def __init__(self, pid: int) -> None:
         self._file = Path(f"/proc/{pid}/task/{pid}/children")
         self._last = ""
 
     def changed(self) -> bool:
-        """Also true where the kernel does not tell."""
+        """Whether the children have changed since the last call; always true where the kernel does not report them."""
         try:
             now = self._file.read_text()
         except FileNotFoundError:
@@ -64,13 +64,13 @@ class Children:
 
 
 class Host:
-    """Looks at supervisord in a thread of its own and publishes what changed."""
+    """Asks supervisord in a thread of its own and publishes changes."""
 
     def __init__(self, app: App, silent: Callable[[], Mapping[str, float]]) -> None:
         """`silent` gives the gateways without a pulse, and for how long [s]."""
         self.name = ros_name(socket.gethostname())
         self.seen = False
-        self.rows: list[Running] = []  # as supervisord told last
+        self.rows: list[Running] = []  # supervisord's last answer
         self._app = app
         self._publisher = app.ros.publisher(Processes, "/tms/host/processes", depth=10, latched=True)
         self._restarts: dict[str, int] = {}

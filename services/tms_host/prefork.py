@@ -36,7 +36,7 @@ HANDLED = (signal.SIGTERM, signal.SIGINT, signal.SIGQUIT, signal.SIGHUP, signal.
 
 
 class Options(ServerOptions):  # type: ignore[misc]
-    """supervisord's dealings with the operating system, but for one call."""
+    """supervisord's calls of the operating system, with one of them replaced."""
 
     parent = 0  # pid of supervisord, in its child
 
@@ -45,7 +45,7 @@ class Options(ServerOptions):  # type: ignore[misc]
         return os.fork()
 
     def execve(self, filename: str, argv: list[str], env: dict[str, str]) -> None:
-        """In the child: become the program. Pipes, group and working folder are set by supervisord already."""
+        """Become the program, in the child. supervisord has already set pipes, group and working folder."""
         if argv[1:2] == ["-m"] and argv[2:3] == [MODULE]:
             exec_entry(argv, env, self.parent)
         super().execve(filename, argv, env)
@@ -53,18 +53,18 @@ class Options(ServerOptions):  # type: ignore[misc]
 
 def exec_entry(argv: list[str], env: dict[str, str], parent: int) -> NoReturn:
     """Run `python -m tms_runtime.run NAME` in this fork, and end with its exit code."""
-    gc.freeze()  # what supervisord held is never collected here: its file numbers belong to others now
+    gc.freeze()  # supervisord's objects are never collected here: their file numbers belong to other files now
     for number in HANDLED:
         signal.signal(number, signal.SIG_DFL)
     _end_with(parent)
-    setproctitle.setproctitle(" ".join(argv))  # before the environment goes: it looks for its place there
+    setproctitle.setproctitle(" ".join(argv))  # before the environment is replaced: setproctitle finds its place there
     os.environ.clear()
     os.environ.update(env)
     sys.argv = argv[2:]
     code = 1
     try:
         code = importlib.import_module(MODULE).main(*argv[3:])
-    except BaseException:  # as the interpreter does at the end of a program
+    except BaseException:  # do what the interpreter does at the end of a program
         sys.excepthook(*sys.exc_info())
     logging.shutdown()
     sys.stdout.flush()
@@ -72,14 +72,14 @@ def exec_entry(argv: list[str], env: dict[str, str], parent: int) -> NoReturn:
 
 
 def _end_with(parent: int) -> None:
-    """Before anything is imported: a supervisord that is killed meanwhile would leave an orphan."""
+    """End with the parent. Called before any import: a supervisord that is killed meanwhile would leave an orphan."""
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)
     if os.getppid() != parent:
         os._exit(1)
 
 
 def load() -> None:
-    """Import what most processes use."""
+    """Import the libraries that most processes use."""
     for name in LIBRARIES:
         importlib.import_module(name)
     pydantic.create_model("Loaded", name=(str, ...))  # it imports most of itself with the first model

@@ -1,15 +1,15 @@
-"""Stops a machine in place of its gateway when that cannot: it was killed, is frozen, or has a thread that hangs.
+"""Stops a machine in place of its gateway, if that was killed, is frozen, or has a thread that hangs.
 
-The gateway's pulse, the lease of its permit, tells; not that its process exists. A pulse that is lost means:
+The sign of a working gateway is its pulse, the lease of its permit, not its process. When the pulse is lost:
 
 - at once, and every 0.5 s until a gateway is back: cancel the goals of all clients, zero velocities;
 - `emg_stop`, where the machine has one: at once when the scheduler behind the machine's run is lost as well, since the
-  machine is latched then anyway; else after 1 s more, if the machine was last told to move, or a goal or a run has it.
-  Most gateways are back before that. An idle machine that stands is left at cancel and zero: a person may be at its
-  levers, and a crash of software that moves nothing must not take it from them;
-- a gateway that takes leave (`tms restart`, `tms down`) has stopped the machine: cancel and zero once more, no alarm.
+  machine is latched then anyway; else after 1 s more, if the machine was last reported to move, or has a goal or run.
+    Most gateways are back before that. An idle machine that stands only gets cancel and zero: a person may be at its
+    levers, and a crash of software that does not move the machine must not take it from that person;
+  - a gateway that ends in order (`tms restart`, `tms down`) has stopped the machine: cancel and zero again, no alarm.
 
-Only a gateway releases `emg_stop`. The commands leave from the pulse's thread, before anything is logged or counted.
+  Only a gateway releases `emg_stop`. The commands leave from the pulse's thread, before they are logged and counted.
 """
 
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ from tms_runtime.app import App
 LEASE_MARGIN = 0.09  # s more than the lease: a process frozen for 0.4 s may have asserted itself 0.1 s before
 AGAIN = 0.5  # s between repeated commands
 ESCALATE = 1.0  # s without a gateway until emg_stop
-TOGETHER = 1.0  # s between the losses of scheduler and gateway that count as one
+TOGETHER = 1.0  # s between the losses of scheduler and gateway within which they count as one
 GATEWAY = "tms_rc.node"
 
 STOOD_IN = Counter("tms_host_stood_in", "Times that a machine was stopped in place of its lost gateway", ["machine"])
@@ -36,7 +36,7 @@ LOST = Gauge("tms_host_gateway_lost", "1 while a machine's gateway gives no puls
 
 
 class Act(Enum):
-    """What is commanded in place of a gateway."""
+    """The command in place of a gateway."""
 
     STOP = "cancelled its goals"
     EMERGENCY = "cancelled its goals, emg_stop"
@@ -44,12 +44,12 @@ class Act(Enum):
 
 @dataclass(frozen=True)
 class Seen:
-    """One look at a gateway."""
+    """The state of a gateway at one beat."""
 
-    alive: bool  # it gives its pulse
-    left: bool = False  # it gave none because it took leave
-    reported: bool = False  # it has told its state since the last look
-    busy: bool = False  # the machine was last told to move, or a goal or a run has it
+    alive: bool  # it has its pulse
+    left: bool = False  # it has none because it ended in order
+    reported: bool = False  # it has published its state since the last beat
+    busy: bool = False  # the machine was last reported to move, or has a goal or a run
     run_lost: bool = False  # the scheduler behind the machine's run is lost, too
 
 
@@ -58,13 +58,13 @@ class Duty:
 
     def __init__(self) -> None:
         self.lost_since: float | None = None
-        self._watched = False  # a gateway is there, or was a moment ago
+        self._watched = False  # a gateway works, or did a moment ago
         self._silent_since: float | None = None
         self._reported = self._emergency = False
         self._again = 0.0
 
     def check(self, now: float, seen: Seen) -> Act | None:
-        """What must be commanded now."""
+        """The command that is due now."""
         if self.lost_since is not None:
             return self._stand_in(now, self.lost_since, seen)
         if seen.alive:
@@ -99,25 +99,25 @@ class Duty:
 
 
 class Post:
-    """One machine, with everything that its stop needs prepared."""
+    """The stand-in for one machine's gateway; all that a stop needs is prepared."""
 
     def __init__(self, app: App, machine: str) -> None:
         ros = app.ros
         self.machine, self.duty = machine, Duty()
         self._log = app.log
-        self._done: Act | None = None  # what was commanded since the gateway was lost, and told
+        self._done: Act | None = None  # the command since the gateway was lost, as it was logged
         self._controls = Controls(ros, machine, app.site.border(machine), keeps_emergency=False)
         self._now, self._stood_in = ros.now, ros.publisher(Time, stood_in(machine), 1, latched=True)
         self._gateway = Link(ros, app.pulse, machine, "rc", _looked_at)
         self._scheduler = Link(ros, app.pulse, machine, "ts", _looked_at)
         self._samples = ros.sample(MachineState, f"/{machine}/rc/state")
-        self._state: MachineState | None = None  # the last one of a gateway that is lost
-        self._held_at = float("-inf")  # when a run last had the machine
+        self._state: MachineState | None = None  # the last one of a lost gateway
+        self._held_at = float("-inf")  # when a run last held the machine
         LOST.labels(machine).set(0)
         STOOD_IN.labels(machine)
 
     def check(self, now: float) -> None:
-        """At every beat of the pulse."""
+        """Command what is due, at every beat of the pulse."""
         act = self.duty.check(now, self._seen(now))
         if act is not None:
             self._command(act)
@@ -130,7 +130,7 @@ class Post:
         if gateway.alive and not is_lost:
             return Seen(alive=True)
         reported = self._samples()
-        if reported and not is_lost:  # its last words; a successor knows nothing yet, and says that the machine moves
+        if reported and not is_lost:  # not of a successor, which has no samples yet and reports a motion
             self._state = reported[-1]
         state = self._state
         run_lost = scheduler.goal != NOBODY and not scheduler.alive and now - self._held_at < TOGETHER
@@ -161,7 +161,7 @@ class Post:
 
 
 class StandIn:
-    """All machines whose gateways run on this PC."""
+    """Stands in for the gateways that run on this PC."""
 
     def __init__(self, app: App) -> None:
         rows = [row for row in here(app.site) if row.module == GATEWAY]
@@ -182,4 +182,4 @@ class StandIn:
 
 
 def _looked_at(link: Link) -> None:
-    """A link is looked at with every beat."""
+    """No callback is needed: `Post` reads its links at every beat."""

@@ -42,7 +42,7 @@ def exec_program(site: Site) -> None:
         ConfigError: as `check`.
     """
     folder = check(site)
-    # The ROS wheels' variables would make the other environment load this one's native libraries.
+    # With the ROS wheels' variables, the store would load the native libraries of this environment.
     hidden = ("LD_LIBRARY_PATH", "_ROS_WHEELS_BOOTSTRAP_COMPLETE", "PYTHONPATH")
     clean = {key: value for key, value in os.environ.items() if key not in hidden}
     argv = [str(PROGRAM), "--host", "127.0.0.1", "--port", str(site.file.ports.store)]

@@ -29,7 +29,7 @@ from tms_runtime.state_folder import UMASK
 START_SECONDS = 1  # a process that ends sooner counts as failed to start
 STOP_SECONDS = 3  # the runtime ends within 2
 END_LIMIT = STOP_SECONDS + 1.0  # s; supervisord kills after STOP_SECONDS
-END_CHECK_PERIOD = 0.1  # s between looks at a process that is being stopped
+END_CHECK_PERIOD = 0.1  # s between checks of a process that is being stopped
 LOG_SIZE, LOG_FILES = "10MB", 3
 
 
@@ -52,7 +52,7 @@ def runtime_folder() -> Path:
     """Private folder for sockets and locks: unix socket paths may hold 107 characters at most.
 
     Raises:
-        ConfigError: somebody else owns it.
+        ConfigError: another user owns it.
     """
     base = Path(os.environ.get("XDG_RUNTIME_DIR") or tempfile.gettempdir())
     folder = base / f"tms-{os.getuid()}"
@@ -69,7 +69,7 @@ def socket_path(site: Site) -> Path:
 
 
 def render(site: Site, rows: tuple[Process, ...] | None = None) -> str:
-    """supervisord.conf for these rows (default: those of this PC)."""
+    """The text of supervisord.conf for these rows (default: those of this PC)."""
     rows = here(site) if rows is None else rows
     parts = [_daemon(site), *(_program(site, row) for row in rows)]
     for group in dict.fromkeys(row.group for row in rows):
@@ -123,7 +123,7 @@ redirect_stderr=true
 
 
 def log_file(site: Site, name: str) -> Path:
-    """Where a process's output goes."""
+    """The file of a process's output."""
     group, _, process = name.partition(":")
     return site.state / "log" / f"{group}.{process}.log"
 
@@ -133,14 +133,14 @@ def _section(row: Process) -> str:
 
 
 def _escape(text: str) -> str:
-    """Supervisord expands %(name)s in values."""
+    """Escape a value: supervisord expands %(name)s in it."""
     if '"' in text or "\n" in text:
         raise ConfigError(PathQuoted(repr(text)))
     return text.replace("%", "%%")
 
 
 class Supervisor:
-    """Calls to the supervisord of a site. Not thread safe: one object a thread."""
+    """Calls the supervisord of a site. Not thread safe: each thread needs its own object."""
 
     def __init__(self, site: Site) -> None:
         self._site, self._path = site, socket_path(site)
@@ -157,11 +157,11 @@ class Supervisor:
             raise TmsError(SupervisordSays(fault.faultString, f"{method}{words}")) from fault
         except (OSError, xmlrpc.client.ProtocolError) as error:
             self._proxy("close")()
-            self._proxy = self._connect()  # the broken connection of the old one cannot be used again
+            self._proxy = self._connect()  # the old proxy's broken connection cannot be used again
             raise SupervisorDown(MeshDown()) from error
 
     def close(self) -> None:
-        """Free the connection."""
+        """Close the connection."""
         self._proxy("close")()
 
     def alive(self) -> bool:
@@ -196,7 +196,7 @@ class Supervisor:
         raise TmsError(NoProcessHere(name), "NO_PROCESS")
 
     def control(self, command: str, name: str) -> None:
-        """start, stop or restart one process; already started or stopped is no error.
+        """Start, stop or restart one process; that it already runs or stands is no error.
 
         Raises:
             TmsError: it cannot be started; the message says where its log is.
@@ -210,8 +210,8 @@ class Supervisor:
             self._call("startProcess", name, False)
 
     def _settled(self, name: str) -> str:
-        """State of a process once it is not being stopped any more: until then supervisord takes a start, and starts
-        nothing.
+        """State of a process once it is not being stopped any more: until then, supervisord accepts a start without
+        starting it.
 
         Raises:
             TmsError: there is no such process, or it does not end.
@@ -226,7 +226,7 @@ class Supervisor:
     def log(self, name: str, size: int) -> str:
         """Whole lines from the end of a process's log, `size` bytes at most.
 
-        From the file: supervisord fails where a piece of it begins within a character.
+        They are read from the file: supervisord fails if a piece of it begins within a character.
 
         Raises:
             TmsError: there is no such process, or it has no log yet.

@@ -1,4 +1,4 @@
-"""What processes take of this PC, for people who look at the console: processor time and memory."""
+"""Processor time and memory of processes, for the console."""
 
 import psutil
 
@@ -6,13 +6,13 @@ from tms_config.clock import monotonic
 
 
 class Usage:
-    """Keeps what a process had used when it was looked at before."""
+    """Keeps the processor time of each process at the last call."""
 
     def __init__(self) -> None:
         self._before: dict[int, tuple[float, float]] = {}  # pid -> when, s of processor time
 
     def of(self, pid: int) -> tuple[float, int]:
-        """(% of one core since the last look, bytes in RAM); zeros for a process that is gone."""
+        """(% of one core since the last call, bytes in RAM); zeros for a process that has ended."""
         try:
             process = psutil.Process(pid)
             with process.oneshot():
@@ -27,5 +27,5 @@ class Usage:
         return (used - before) / (now - then) * 100 if now > then else 0.0, memory
 
     def keep(self, pids: set[int]) -> None:
-        """Forget all others."""
+        """Forget all processes but these."""
         self._before = {pid: seen for pid, seen in self._before.items() if pid in pids}

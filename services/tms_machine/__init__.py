@@ -1,1 +1,1 @@
-"""Machines: border, leases, permit, geometry, and the kit of those who write subtasks."""
+"""Machines: border, leases, permit, geometry, and the interface for authors of subtasks."""

@@ -1,4 +1,4 @@
-"""A machine's goals: send one, wait for its end with cancel and time-out built in, stop what still runs."""
+"""Goals for a machine: send one, wait for its end, a cancel or the time-out, stop motions that still run."""
 
 import threading
 from collections.abc import Callable, Mapping
@@ -30,12 +30,12 @@ from tms_ros.reasons import LostMeanwhile, NoAnswer, ProcessLost
 from tms_runtime.fence import derived
 
 SERVER_LIMIT = 5.0  # s for an action server to appear
-ACCEPT_LIMIT = 3.0  # s for it to answer a goal
+ACCEPT_LIMIT = 3.0  # s for the server to answer a goal
 MOTION_END_LIMIT = STOP_PROVEN + 2.5  # s for a cancelled motion to end
-SERVER_CHECK_PERIOD = 0.2  # s between looks whether the server is still there
+SERVER_CHECK_PERIOD = 0.2  # s between checks whether the server is still there
 UNANSWERED_LIMIT = 1.0  # s for a goal to be accepted after all
 
-Progress = Callable[[Reason | str], None]  # words of a subtask's own are shown as they are
+Progress = Callable[[Reason | str], None]  # a subtask's own texts are shown as they are
 ENDED = {Outcome.ABORTED: Aborted, Outcome.CANCELED: Canceled, Outcome.REJECTED: Rejected}
 
 
@@ -44,7 +44,7 @@ class Cancelled(Exception):
 
 
 class Acting:
-    """What every capability builds on. Motions that still run when the goal ends are stopped by the runtime."""
+    """The base of every capability. The runtime stops motions that still run when the goal ends."""
 
     def __init__(
         self,
@@ -56,7 +56,7 @@ class Acting:
         goal_id: bytes = b"",
         watches: Mapping[str, Callable[[AnyPeer], None]] | None = None,
     ) -> None:
-        """`goal_id` is of the goal this is for; `watches` make calls to rc and rp end when those processes die."""
+        """`goal_id`: of the subtask's goal; `watches` end calls to rc and rp when those processes are lost."""
         self._goal_id, self._watches = goal_id, watches or {}
         self.name = name
         self.model = model
@@ -76,7 +76,7 @@ class Acting:
         return self.model.joints[name]
 
     def cancel(self) -> None:
-        """End whatever waits, with Cancelled. Called by the runtime."""
+        """End the call that waits, with Cancelled. Called by the runtime."""
         self._cancelled.set()
         for _, call in self._calls:
             call.changed()
@@ -132,25 +132,25 @@ class Acting:
         while not (done() or self._cancelled.is_set()) and monotonic() < end:
             call.wait_for(lambda: done() or self._cancelled.is_set(), min(SERVER_CHECK_PERIOD, end - monotonic()))
             if call.accepted and call.outcome is None and peer.left():
-                peer.mark_lost()  # it left in order, but without a result
+                peer.mark_lost()  # it ended in order, but without a result
         if not done():
             self.check()
             raise SubtaskFailed(NoAnswer(process_of(peer.name), peer.name, limit or 0.0))
 
     def release(self) -> bool:
-        """Stop every motion that still runs and wait until it has; False if nobody has told of its end."""
+        """Stop every motion that still runs and wait for its end; False if no end was reported."""
         running = [(peer, call) for peer, call in self._calls if call.outcome is None]
         for peer, call in running:
             peer.cancel(call)
         deadline = monotonic() + MOTION_END_LIMIT
-        # One that nobody has accepted moves nothing: if it is accepted after all, its cancel follows at once.
+        # A goal without acceptance moves no machine: if it is accepted after all, its cancel follows at once.
         accepted = [call for _, call in running if call.wait_for(_known(call), UNANSWERED_LIMIT) and call.accepted]
         ended = [call.wait_for(_ended(call), deadline - monotonic()) for call in accepted]
         return all(ended) and not any(call.outcome is Outcome.LOST for call in accepted)
 
 
 def missed(result: Any) -> list[int]:
-    """Waypoints that a FollowWaypoints result calls missed; Humble gives numbers, Jazzy messages."""
+    """The missed waypoints of a FollowWaypoints result; Humble gives numbers, Jazzy messages."""
     return [int(getattr(one, "index", one)) for one in getattr(result, "missed_waypoints", ())]
 
 

@@ -1,4 +1,4 @@
-"""The machine's own border: its motion actions, and the commands that stop it. Blocks nowhere, asks nobody."""
+"""The machine's own border: its motion actions, and the commands that stop it. No call here waits."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -14,8 +14,8 @@ from tms_config.models import Border
 from tms_ros.interface_types import ActionType
 from tms_ros.node import Ros
 
-STOP_PROVEN = 10.0  # s after which a gateway has seen that a machine stands, or says that it has not
-RECEIPT_LIMIT = STOP_PROVEN + 3.0  # s after which a gateway that has sent no receipt of a stop does not answer
+STOP_PROVEN = 10.0  # s within which a gateway sees that a machine stands, or reports that it does not
+RECEIPT_LIMIT = STOP_PROVEN + 3.0  # s without a receipt of a stop after which a gateway counts as silent
 
 
 @dataclass(frozen=True)
@@ -43,16 +43,16 @@ def motions(border: Border) -> list[Motion]:
 
 
 def stood_in(machine: str) -> str:
-    """Topic on which a host agent keeps when it last pressed `emg_stop` in place of a lost gateway."""
+    """Latched topic of the host agent: when it last pressed `emg_stop` in place of a lost gateway."""
     return f"/{machine}/rc/stood_in"
 
 
 class Controls:
-    """Direct access to a machine; only the gateway, and whoever stands in for a lost one, may have it."""
+    """Direct access to a machine; only for the gateway and for the stand-ins of a lost one."""
 
     def __init__(self, ros: Ros, machine: str, border: Border, keeps_emergency: bool = True) -> None:
-        """`keeps_emergency`: a machine that is switched on later still gets the last `emg_stop`. For the gateway only,
-        which also releases it: a machine would keep to the old `true` of anybody else.
+        """`keeps_emergency`: a machine that is switched on later still receives the last `emg_stop`. Only for the
+        gateway, which also releases it: an old `true` of another publisher would hold the machine.
         """
         self._ros = ros
         self._cancels = [f"/{machine}/{getattr(border, m.field)}/_action/cancel_goal" for m in motions(border)]
@@ -63,13 +63,13 @@ class Controls:
         self._emg_stop = ros.publisher(Bool, emg_stop, 1, latched=keeps_emergency) if border.emg_stop else None
 
     def cancel_everything(self) -> None:
-        """A cancel request with zero id reaches the goals of all clients."""
+        """Cancel the goals of all clients, by requests with zero id."""
         for service in self._cancels:
             if self._ros.has_service(CancelGoal, service):
                 self._ros.call_unanswered(CancelGoal, service, CancelGoal.Request())
 
     def zero(self) -> None:
-        """Ask for no velocity, where the machine takes velocities."""
+        """Command zero velocity, where the machine takes velocities."""
         if self._cmd_vel is not None:
             self._cmd_vel.publish(Twist())
 
@@ -79,5 +79,5 @@ class Controls:
             self._emg_stop.publish(Bool(data=on))
 
     def reachable(self) -> bool:
-        """Whether every action server of the machine could be told to cancel now."""
+        """Whether a cancel would reach every action server of the machine now."""
         return all(self._ros.has_service(CancelGoal, service) for service in self._cancels)

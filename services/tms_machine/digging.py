@@ -15,7 +15,7 @@ from tms_ros.interface_types import ActionType, G, Message, R
 
 
 class Feedback(Message, Protocol):
-    """Of the planner's actions."""
+    """Feedback of the planner's actions."""
 
     state: str
 
@@ -24,7 +24,7 @@ Telling = TypeVar("Telling", bound=Feedback)
 
 
 class Digging(Acting):
-    """An arm with boom, arm and bucket. `plan_only` asks whether it could, and never moves."""
+    """An arm with boom, arm and bucket. With `plan_only` the motion is only planned, and the arm does not move."""
 
     def change_pose(
         self,

@@ -13,7 +13,7 @@ from tms_reason.errors import SubtaskFailed
 
 
 class Driving(Acting):
-    """Tracks and a navigation that knows the way."""
+    """Tracks and a navigation."""
 
     def navigate_to(self, progress: Progress, pose: Pose) -> None:
         """Drive to a pose and stand there."""

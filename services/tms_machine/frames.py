@@ -1,4 +1,4 @@
-"""Where machines stand in the map, as /tf and /tf_static tell; a machine's Nav2 puts `odom` between the two."""
+"""Where machines stand in the map, from /tf and /tf_static; a machine's Nav2 puts `odom` between the two."""
 
 import math
 from collections.abc import Callable, Iterable
@@ -18,22 +18,22 @@ class Seen(NamedTuple):
     x: float  # m
     y: float  # m
     yaw: float  # rad
-    received: float  # monotonic, s; infinite for what never moves
+    received: float  # monotonic, s; infinite for fixed frames
 
 
 class Frames:
-    """Keeps the last place of the given frames, and of those between them and the map; nobody needs the others."""
+    """Keeps the last place of the given frames, and of the frames between them and the map."""
 
     def __init__(self, frames: Iterable[str], clock: Callable[[], float] = monotonic) -> None:
         self._wanted, self._clock = set(frames), clock
-        self._seen: dict[str, tuple[str, Seen]] = {}  # frame -> its parent, and where it is in that
+        self._seen: dict[str, tuple[str, Seen]] = {}  # frame -> its parent, and its place in the parent
 
     def receive(self, message: TFMessage) -> set[str]:
-        """Take a tf2_msgs/TFMessage of /tf; the frames of interest that it told of."""
+        """Take a tf2_msgs/TFMessage of /tf; returns the frames of interest in it."""
         return self._take(message, self._clock())
 
     def receive_fixed(self, message: TFMessage) -> None:
-        """Take one of /tf_static."""
+        """Take a message of /tf_static."""
         self._take(message, math.inf)
 
     def _take(self, message: TFMessage, received: float) -> set[str]:
@@ -43,7 +43,7 @@ class Frames:
             turn = (q.x, q.y, q.z, q.w)
             if not all(map(math.isfinite, (at.x, at.y, *turn))):
                 continue  # a localisation without a fix
-            # A fixed one is reported only once, maybe before it is wanted.
+            # A fixed frame is published only once, maybe before it is wanted.
             if one.child_frame_id in self._wanted or received == math.inf:
                 self._seen[one.child_frame_id] = one.header.frame_id, Seen(at.x, at.y, yaw_of(turn), received)
                 self._wanted.add(one.header.frame_id)
@@ -51,7 +51,7 @@ class Frames:
         return reported
 
     def place(self, frame: str) -> Seen | None:
-        """In the map, as old as the oldest of what tells it; None as long as the frames do not lead there."""
+        """Its place in the map, as old as the oldest transform used; None if the frames do not lead to the map."""
         x, y, yaw, received = 0.0, 0.0, 0.0, math.inf
         passed = set[str]()
         while frame != MAP:

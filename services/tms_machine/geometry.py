@@ -4,16 +4,16 @@ import math
 
 Quaternion = tuple[float, float, float, float]  # x, y, z, w
 
-QUATERNION_TOLERANCE = 0.02  # how far a length may be from 1: records are typed by hand with two or three decimals
+QUATERNION_TOLERANCE = 0.02  # of a length from 1: people type records with two or three decimals
 
 
 def length(turn: Quaternion) -> float:
-    """1 for an orientation."""
+    """The length of a quaternion: 1 for an orientation."""
     return math.hypot(*turn)
 
 
 def is_orientation(turn: Quaternion) -> bool:
-    """Whether it is meant as one: its length is 1 within what people type."""
+    """Whether a quaternion is meant as an orientation: its length is 1 within QUATERNION_TOLERANCE."""
     return abs(length(turn) - 1.0) <= QUATERNION_TOLERANCE
 
 
@@ -37,7 +37,7 @@ def yaw_of(turn: Quaternion) -> float:
 
 
 def x_axis(turn: Quaternion) -> tuple[float, float, float]:
-    """Where the x axis points after the turn, which has the length 1."""
+    """Direction of the x axis after the turn, whose length must be 1."""
     x, y, z, w = turn
     return 1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)
 

@@ -1,4 +1,4 @@
-"""Who asserts a leased topic, as one that subscribes to it knows."""
+"""How many publishers assert a leased topic, as a subscription knows it."""
 
 from collections.abc import Callable
 from typing import Any
@@ -6,7 +6,7 @@ from typing import Any
 from tms_ros.interface_types import M
 from tms_ros.node import Ros
 
-ASSERTED = 0.1  # s in which the news that a publisher is asserted follows its message, twice
+ASSERTED = 0.1  # s, waited twice, for DDS to report a publisher as asserted after its message
 
 
 def subscribe(
@@ -26,7 +26,7 @@ def subscribe(
 
     def received_first(message: M) -> None:
         if not count.known:
-            # In two steps: what was reported meanwhile is handled before the second one.
+            # In two steps: reports that have come meanwhile are handled before the second one.
             ros.after(ASSERTED, lambda: ros.after(ASSERTED, count.made_up))
         on_message(message)
 
@@ -36,25 +36,25 @@ def subscribe(
 class _Count:
     """Publishers that are, and are not, asserted, as one subscription knows them.
 
-    Fast DDS tells a reader of changes only, and not of those from before it is registered: of a publisher that was
-    asserted a moment too early, or that another reader of this process knows already, it counts from 0 down to -1.
-    Such a one has sent its message all the same, and that counts as an assertion.
+    Fast DDS reports only changes to a reader, and only those after its registration: a publisher that was asserted a
+    moment too early, or that another reader of this process already knows, is counted from 0 down to -1.
+    Such a publisher has sent its message all the same, and that counts as an assertion.
     """
 
     def __init__(self, alive: Callable[[int, int], None]) -> None:
         self._alive, self._missed = alive, 0
-        self.known = False  # whether anything was reported
+        self.known = False  # whether DDS has reported a change
 
     def reported(self, event: Any) -> None:
-        """By DDS."""
+        """Take a report of DDS."""
         self.known = True
         self._missed = max(self._missed, -event.alive_count)
-        if event.not_alive_count < 0:  # the one that was missed has ended since, and that was missed, too
+        if event.not_alive_count < 0:  # DDS has not reported the end of the missed one either
             self._missed = 0
         self._alive(max(0, event.alive_count + self._missed), max(0, event.not_alive_count))
 
     def made_up(self) -> None:
-        """A message came, and nothing was reported."""
+        """Count a publisher whose message came without a report of DDS."""
         if not self.known:
             self.known, self._missed = True, 1
             self._alive(1, 0)

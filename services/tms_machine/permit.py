@@ -1,8 +1,8 @@
-"""The motion permit: processes stand behind goals by DDS liveliness, and others notice when one is lost.
+"""The motion permit: processes stand behind goals by DDS liveliness, so that others detect the loss of one.
 
 Every process between scheduler and machine publishes on /<machine>/permit/<process> which goal it works for, and
-asserts that topic as long as it does (MANUAL_BY_TOPIC, lease 500 ms). DDS tells the readers when the lease runs
-out, whether the process was killed, frozen or cut off. A process that works for nothing asserts nothing.
+asserts that topic as long as it does (MANUAL_BY_TOPIC, lease 500 ms). When the lease runs out, DDS notifies the
+readers, whether the process was killed, frozen or cut off. A process without a goal does not assert its topic.
 """
 
 from collections.abc import Callable
@@ -15,24 +15,24 @@ from tms_ros.client import AnyPeer
 from tms_ros.node import Ros
 from tms_runtime.pulse import Pulse
 
-BEATS = 2  # of the pulse from one assertion to the next: each wakes every process of the machine
+BEATS = 2  # beats of the pulse from one assertion to the next: each assertion wakes every process of the machine
 LEASE = 0.5  # s without an assertion until a process counts as lost
-GRACE = 0.1  # s more when the PC of the watcher itself did not run for a moment
+GRACE = 0.1  # s more when the reader's own PC did not run for a moment
 NOBODY = bytes(16)
 
 
 def topic(machine: str, process: str) -> str:
-    """Where a process of a machine tells what it works for; `ts` stands for the scheduler."""
+    """The topic of a process's permit; `ts` stands for the scheduler."""
     return f"/{machine}/permit/{process}"
 
 
 class Permit:
-    """The side of the process itself: `hold` while it works for a goal, `drop` afterwards."""
+    """The permit of this process: `hold` while it works for a goal, `drop` afterwards."""
 
     def __init__(
         self, ros: Ros, pulse: Pulse, machine: str, process: str, alive: Callable[[], bool] = lambda: True
     ) -> None:
-        """`alive` tells at every beat whether the process still does its work."""
+        """`alive` is called at every beat: whether the process still does its work."""
         self._pulse, self._process, self._alive = pulse, process, alive
         self._beats = 0
         self._publisher = ros.lease_publisher(Message, topic(machine, process), LEASE)
@@ -43,7 +43,7 @@ class Permit:
         self._pulse.add(self._beat)
 
     def drop(self) -> None:
-        """The goal is over; nothing is asserted any more."""
+        """End the assertions, as the goal is over."""
         self._pulse.remove(self._beat)
         self._publisher.publish(Message(process=self._process))
 
@@ -54,7 +54,7 @@ class Permit:
 
 
 class Link:
-    """What one process says that it works for, and whether it is still there. Readable from any thread."""
+    """The permit of another process: its goal, and whether it is alive. Readable from any thread."""
 
     def __init__(self, ros: Ros, pulse: Pulse, machine: str, process: str, changed: Callable[["Link"], None]) -> None:
         self.process, self.goal, self.holder = process, NOBODY, ""
@@ -62,14 +62,14 @@ class Link:
         self.stale_writers = (
             0  # predecessors that discovery has not dropped yet, or the process itself while it is frozen
         )
-        self.left = False  # the last one took leave, in order; a killed one leaves a stale writer
+        self.left = False  # the last one ended in order; a killed one leaves a stale writer
         self._received, self._alive, self._asserted = 0.0, False, 0
         leases.subscribe(ros, Message, topic(machine, process), LEASE, self._on_message, self._on_liveliness)
 
     @property
     def alive(self) -> bool:
         """Whether the process works for `goal` now."""
-        # A message may be handled before the news that its writer lives again.
+        # A message may be handled before the report that its writer is asserted again.
         return self.goal != NOBODY and (self._alive or monotonic() - self._received < LEASE)
 
     def _on_message(self, message: Message) -> None:
@@ -83,7 +83,7 @@ class Link:
         self._asserted, self.stale_writers = alive_count, not_alive_count
         if alive_count > 0:
             self._alive = True
-        elif self._pulse.late():  # its assertions may be there, but not handled yet
+        elif self._pulse.late():  # its assertions may have come, but not been handled yet
             self._ros.after(GRACE, self._judge)
             return
         else:
@@ -97,15 +97,15 @@ class Link:
 
 
 def watch_server(ros: Ros, pulse: Pulse, machine: str, process: str) -> Callable[[AnyPeer], None]:
-    """A function that makes open calls to a peer end as LOST when the process behind it is lost.
+    """A function that adds a peer, whose open calls end as LOST when the process behind it is lost.
 
-    Discovery does not tell: a restarted server has the same name, so the peer stays ready throughout.
+    Discovery does not show this loss: a restarted server has the same name, so the peer stays ready throughout.
     """
     peers: list[AnyPeer] = []
 
     def changed(link: Link) -> None:
         for peer in peers:
-            if link.alive and not link.stale_writers:  # with one, it is the first sign of a successor
+            if link.alive and not link.stale_writers:  # with a stale writer, this is the first sign of a successor
                 peer.mark_alive()
             elif not link.alive and link.goal != NOBODY:
                 peer.mark_lost()

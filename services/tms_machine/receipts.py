@@ -1,4 +1,4 @@
-"""What a receipt of a stop tells, as a reason."""
+"""A receipt of a stop as a reason."""
 
 from tms_msg_rc.msg import StopReceipt
 

@@ -1,8 +1,8 @@
-"""LOCK_FLG of a dynamic record, as a lease: between planning with it and moving with it, sensing leaves it alone.
+"""LOCK_FLG of a dynamic record, as a lease: from the plan to the end of the motion, sensing does not write it.
 
-In the C++ system it is a bare flag, and a crash in between leaves it set for ever. Here LOCK_OWNER and LOCK_UNTIL
-stand beside it, so that it ends by itself. The `_plan` variant of a subtask takes it and gives it back when it fails;
-the variant that moves gives it back however it ends.
+In the C++ system it is only a flag, and a crash in between leaves it set for ever. Here the record also has LOCK_OWNER
+and LOCK_UNTIL, so that the lock ends by itself. The `_plan` variant of a subtask takes it and releases it when it
+fails; the variant that moves always releases it at its end.
 """
 
 from collections.abc import Mapping
@@ -23,9 +23,9 @@ SERVICE = "/tms/db/set_parameter"
 
 
 def holder(fields: Mapping[str, Value], now: float) -> str | None:
-    """Who has locked a record, as its fields tell; None if nobody has (any more). `now` is Unix time [s].
+    """Who has locked a record, by its fields; None if it is not locked (any more). `now` is Unix time [s].
 
-    A flag without an end was set by the C++ system and holds until it is cleared.
+    A flag without LOCK_UNTIL was set by the C++ system and holds until it is cleared.
     """
     until = fields.get(UNTIL)
     if fields.get(FLAG) is not True or (isinstance(until, (int, float)) and now >= until):
@@ -34,7 +34,7 @@ def holder(fields: Mapping[str, Value], now: float) -> str | None:
 
 
 def locked_since(fields: Mapping[str, Value], now: float) -> float | None:
-    """Unix time [s] since which nobody but its holder changes the record; None if nobody holds a lease of it."""
+    """Unix time [s] since which only its holder changes the record; None if no process holds a lease of it."""
     until = fields.get(UNTIL)
     return until - LEASE if isinstance(until, (int, float)) and holder(fields, now) is not None else None
 
@@ -45,7 +45,7 @@ def taken(owner: str, now: float) -> dict[str, Value]:
 
 
 def released() -> dict[str, Value]:
-    """Fields that free it."""
+    """Fields that release the lock."""
     return {FLAG: False, OWNER: "", UNTIL: 0.0}
 
 
@@ -57,7 +57,7 @@ class RecordLock:
         self._model_name, self._record_name = model_name, record_name
 
     def take(self) -> None:
-        """Lock it, or say why not; from worker threads only.
+        """Lock the record; from worker threads only.
 
         Raises:
             SubtaskFailed, RosError: the database refused or did not answer.
@@ -67,7 +67,7 @@ class RecordLock:
             raise SubtaskFailed(refusal(answer.error_code, answer.error_msg))
 
     def release(self) -> None:
-        """Free it. Waits for nobody: the end of a motion must not depend on a database."""
+        """Release the lock, without waiting for an answer: the end of a motion must not depend on a database."""
         self._ros.call_unanswered(SetParameter, SERVICE, self._request(released()))
 
     def _request(self, values: Mapping[str, Value]) -> SetParameter.Request:

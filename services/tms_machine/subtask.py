@@ -1,4 +1,4 @@
-"""What the author of a subtask writes against: one function or one class, and the record as a model."""
+"""The interface for authors of subtasks: one function or one class, and the record as a model."""
 
 import importlib
 import inspect
@@ -28,8 +28,8 @@ class Params(BaseModel):
 class Subtask:
     """Class form, for subtasks that read records while they run.
 
-    The runtime makes one instance a goal, calls `execute` in a worker thread, and stops whatever the
-    machine still does when it ends, however it ends. Returning is success.
+    The runtime makes one instance per goal, calls `execute` in a worker thread, and at any end of it stops the motions
+    that the machine still does. Returning is success.
     """
 
     timeout: float = 60.0  # s for the whole goal
@@ -41,7 +41,7 @@ class Subtask:
         self._read = read
 
     def execute(self, model_name: str, record_name: str, progress: Progress) -> None:
-        """Do it.
+        """Do the work of the subtask.
 
         Raises:
             SubtaskFailed: the machine cannot; the code and text reach the leaf node.
@@ -52,9 +52,9 @@ class Subtask:
         """Called before the motion is stopped, twice if the cancel comes at the begin; must return at once."""
 
     def get_param_from_db(self, model_name: str, record_name: str, max_age: float = 0.0) -> dict[str, Value]:
-        """The record as it is now, at any time and any number of times.
+        """The present record; may be called at any time, any number of times.
 
-        `max_age`: s that a dynamic record may be old; 0 = as the record itself says.
+        `max_age`: age that a dynamic record may have [s]; 0: the record's own limit.
 
         Raises:
             SubtaskFailed: it is missing or too old, or the database does not answer.

@@ -25,7 +25,7 @@ from tms_ros.reasons import Internal
 from tms_ros.server import Goal
 from tms_runtime.app import App
 
-DB_LIMIT = 10.0  # s to wait for it at the start; goals are refused with a reason after that
+DB_LIMIT = 10.0  # s to wait for the database at the start; after that, goals are refused with a reason
 RECORD_LIMIT = 0.8  # s for the database while a goal waits for its answer: a C++ leaf gives up after 1 s
 FEEDBACK_GAP = 0.1  # s between feedbacks
 LeafGoal = Goal[LeafNodeBase.Goal, LeafNodeBase.Feedback]
@@ -41,7 +41,7 @@ def start(app: App) -> None:
 
 
 class _Server:
-    """One goal at a time: a machine does one thing at a time."""
+    """Serves one goal at a time: a machine does one thing at a time."""
 
     def __init__(self, app: App, kind: type[Subtask], inputs: dict[str, Any], max_age: float) -> None:
         self._app, self._kind, self._inputs, self._max_age = app, kind, inputs, max_age
@@ -54,7 +54,7 @@ class _Server:
         self.offered = False
 
     def offer(self) -> None:
-        """Serve once the database is there: the first goal comes as soon as the action is seen."""
+        """Serve once the database answers: the first goal comes as soon as the action is discovered."""
         app, deadline = self._app, monotonic() + DB_LIMIT
         while not app.ros.has_service(GetParameter, "/tms/db/get_parameter") and monotonic() < deadline:
             app.stopping.wait(0.02)
@@ -75,7 +75,7 @@ class _Server:
         self._want = self._lock = None
         if self._kind.params is None:
             return None
-        if set(self._kind.params.model_fields) <= set(self._inputs):  # nothing is left that a record could tell
+        if set(self._kind.params.model_fields) <= set(self._inputs):  # no parameter is left for a record
             self._want = self._kind.params.model_validate(self._inputs)
             return None
         wanted = GetParameter.Request(
@@ -93,12 +93,12 @@ class _Server:
             self._want = self._checked(request, fields)
         except SubtaskFailed as error:
             if self._lock is not None and not self._plans:
-                self._lock.release()  # the variant that moves gives it back however it ends
+                self._lock.release()  # the variant that moves always releases it
             return error.reason
         return None
 
     def _checked(self, request: LeafNodeBase.Goal, fields: dict[str, Value]) -> Params:
-        """What the subtask needs of a record's fields.
+        """The parameters of the subtask, from a record's fields.
 
         Raises:
             SubtaskFailed: BadRecord, with what is wrong.
@@ -121,7 +121,7 @@ class _Server:
         return outcome, LeafNodeBase.Result(result=outcome is Outcome.SUCCEEDED)
 
     def _execute(self, goal: LeafGoal) -> Outcome:
-        """However the subtask ends, its motion has ended when this returns."""
+        """Run the subtask; when this returns, its motion has ended in any case."""
         request, lock = goal.request, self._lock
         machine, subtask = self._begin(goal)
         say = _Feedback(goal)
@@ -130,7 +130,7 @@ class _Server:
         try:
             if lock is not None and self._plans:
                 lock.take()
-                # Sensing may have written between the goal's check and the lock; what is planned is what is locked.
+                # Sensing may have written between the goal's check and the lock; the plan must use the locked record.
                 subtask.want = self._checked(request, self._read(request.model_name, request.record_name, 0.0))
             subtask.execute(request.model_name, request.record_name, say)
             finished = True
@@ -155,7 +155,7 @@ class _Server:
         return Outcome.ABORTED
 
     def _begin(self, goal: LeafGoal) -> tuple[Machine, Subtask]:
-        """The machine as the goal may move it, and the subtask, which a cancel reaches from now on."""
+        """The machine for this goal, and the subtask; from now on a cancel reaches both."""
         app = self._app
         model, limit = app.site.model_of(app.machine), self._kind.timeout
         name = app.site.file.machines[app.machine].model
@@ -172,7 +172,7 @@ class _Server:
         return machine, subtask
 
     def _watched(self) -> dict[str, Callable[[AnyPeer], None]]:
-        """Begins with the first goal: the gateway's lease, ten times a second, must not wake what nobody uses."""
+        """Begin with the first goal: the gateway's lease, ten times a second, must not wake an unused process."""
         if not self._watches:
             self._watches = {
                 name: watch_server(self._app.ros, self._app.pulse, self._app.machine, name) for name in ("rc", "rp")

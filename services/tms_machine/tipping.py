@@ -10,7 +10,7 @@ from tms_machine.acting import Acting, Progress
 from tms_machine.reasons import NoJointState, NotReached, Turning
 from tms_reason.errors import SubtaskFailed
 
-STATE_LIMIT = 2.0  # s for the gateway to tell where the joints are
+STATE_LIMIT = 2.0  # s for the gateway to report the joints
 
 
 class Tipping(Acting):
@@ -25,7 +25,7 @@ class Tipping(Acting):
         self._turn("set_swing_angle", SetSwingAngle, target_angle, progress)
 
     def angle_of(self, joint: str) -> float:
-        """Where a joint is now [rad], as the gateway hears it from the machine.
+        """The present angle of a joint [rad], as the gateway publishes it.
 
         Raises:
             SubtaskFailed: NoSuchJoint, or NoJointState within 2 s.

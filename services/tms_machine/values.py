@@ -65,12 +65,12 @@ def _to_value(name: str, value: Any) -> ParameterValue:
 def _kind(value: Any) -> type | None:
     """Base type of a value; bool before int, since True is an int, and the store's own integers are ints."""
     if isinstance(value, int) and not -(2**63) <= value < 2**63:
-        return None  # the wire has 64 bits
+        return None  # parameters have 64 bits
     return next((kind for kind in ALONE if isinstance(value, kind)), None)
 
 
 def _kind_of_all(values: list[Any]) -> type | None:
-    """The one type of an array; integers among doubles count as doubles, and so does an empty array."""
+    """The type of all values of an array; integers among doubles count as doubles, and so does an empty array."""
     kinds = {_kind(value) for value in values} or {float}
     if kinds == {int, float}:
         return float

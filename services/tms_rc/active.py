@@ -31,7 +31,7 @@ class Active:
     chain: dict[str, Owner]
     start: dict[str, float]  # rad, joints when it began
     sent: float = 0.0  # s, monotonic: when it left for the machine; 0 before
-    begun: float = 0.0  # s, monotonic: when it was received that it was accepted; 0 before
+    begun: float = 0.0  # s, monotonic: when the machine's acceptance was received; 0 before
     follower: Follower | None = None  # of a trajectory, once it was accepted
     call: AnyCall | None = None
     stop: Stop | None = None
@@ -40,7 +40,7 @@ class Active:
     def expected(self, now: float, dead_times: Mapping[str, float]) -> Expected:
         """The motion that must be seen if it is stopped now.
 
-        A machine may have begun as soon as the goal was sent: its answer comes later, or never.
+        The machine may have begun to move as soon as the goal was sent: its answer comes later, or never.
         """
         if not self.sent:
             return NOTHING
@@ -50,7 +50,7 @@ class Active:
         return Expected(since, self.follower.on_its_way(now, dead_times))
 
     def ended(self) -> bool:
-        """Whether nothing of it can move the machine any more."""
+        """Whether this goal can no longer move the machine."""
         return self.call is None or self.call.outcome is not None
 
     def wake(self) -> None:

@@ -35,13 +35,13 @@ MANUAL = to_line(ManualMode())  # as the name of who drives
 
 
 class Arming:
-    """Of one machine."""
+    """Serves re-arm, take and give back of one machine."""
 
     def __init__(self, app: App, guard: Guard) -> None:
         self._app, self._guard = app, guard
 
     def rearm(self, request: Rearm.Request, response: Rearm.Response) -> Rearm.Response:
-        """Two steps: without a token the cause and a token, with it the machine is armed. It may wait for the disk."""
+        """Two steps: a call without a token returns cause and token, one with it arms. It may wait for the disk."""
         guard = self._guard
         guard.stopper.wait_idle(PROOF_LIMIT)
         now = monotonic()
@@ -58,7 +58,7 @@ class Arming:
         return response
 
     def _arm(self, cause: Reason) -> Reason | None:
-        """The note first: a machine counts as armed when the disk says so."""
+        """Write the note first: a machine counts as armed only when the note on the disk says so."""
         guard = self._guard
         unkept = guard.notes.hold("", 0)
         if unkept is not None:
@@ -94,9 +94,9 @@ class Arming:
     # by hand
 
     def take(self, request: TakeMachine.Request, response: TakeMachine.Response) -> TakeMachine.Response:
-        """Let a person drive: nothing of ours moves the machine, and nothing is commanded against it. Or the end of it.
+        """Let a person drive the machine, or end that: meanwhile no goal moves it, and no command opposes the person.
 
-        Watching, latch and alarms stay as they are.
+        The gateway still watches the machine; latch and alarms stay as they are.
         """
         wrong = self._keeps_from_giving() if request.back else self._keeps_from_taking(request.who)
         if wrong is None and (unkept := self._guard.notes.take("" if request.back else request.who)) is not None:
@@ -145,5 +145,5 @@ class Arming:
 
 
 def _fill(response: Rearm.Response | TakeMachine.Response, wrong: Reason | None) -> None:
-    """Answer with why it was refused, or with nothing."""
+    """Fill in why the call was refused, or that it was not."""
     response.error_code, response.error_msg = ("", "") if wrong is None else (wrong.code, to_line(wrong))

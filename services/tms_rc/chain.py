@@ -1,4 +1,4 @@
-"""Whether everyone behind a goal is still there: scheduler, subtask, planner. Pure logic."""
+"""Whether all processes behind a goal are alive: scheduler, subtask, planner. Pure logic."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ class Gap:
 def gap(owner: Owner | None, held: Mapping[str, Owner]) -> Gap | None:
     """What is missing behind a goal; `held` is what each living process stands behind.
 
-    A goal of a foreign client (owner None) needs nobody, but a run that holds the machine shuts it out.
+    A goal of a foreign client (owner None) needs no process behind it, but is refused while a run holds the machine.
     """
     run = held.get(SCHEDULER)
     if owner is None:

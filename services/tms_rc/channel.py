@@ -7,12 +7,12 @@ from itertools import pairwise
 from tms_rc.reasons import PositionsMove, VelocitiesMove
 from tms_reason.reason import Reason
 
-WORST = 0.3  # s; the worst speed within this time counts, not the last message
+WORST = 0.3  # s; the highest speed within this time counts, not the last message
 KEPT = 1.2  # s of samples
 SPAN = 0.8  # share of WORST that samples must span before positions and velocities are compared
 HIDES = 0.25  # s of the machine between two samples in which a whole motion may be hidden: it begins and ends at rest
-CLEARLY = 2.0  # times the limit: slower motions may be told either way
-SPEED_MARGIN = 1.5  # times its top speed: nothing goes further from one sample to the next
+CLEARLY = 2.0  # times the limit: below it, positions and velocities may disagree on whether there is a motion
+SPEED_MARGIN = 1.5  # times its top speed: no motion goes further from one sample to the next
 BETWEEN = 0.004  # rad or m that a motion may differ from what the velocities at both its ends allow ...
 JITTER = 0.025  # s, ... and as far as it goes in this time: drivers stamp what they have measured a little earlier
 
@@ -24,7 +24,7 @@ class Limits:
     """When the quantity counts as standing."""
 
     speed: float  # rad/s or m/s, of the machine's own time
-    top: float = float("inf")  # rad/s or m/s that it can go
+    top: float = float("inf")  # rad/s or m/s, its top speed
     resolution: float = 0.0  # rad or m by which positions jitter
     turns: bool = False  # an angle that may wrap
     scale: float = 1.0  # seconds of the machine in one second: the speed of a stand-in
@@ -35,19 +35,19 @@ class Seen:
     """One sample; times are seconds of the receiver's monotonic clock."""
 
     received: float
-    stamped: float  # when it was measured, as far as its stamp tells
+    stamped: float  # when it was measured, by its stamp
     place: Place
-    speed: float | None  # rad/s or m/s as told
+    speed: float | None  # rad/s or m/s, as the message gives it
     fast: bool  # it showed a motion, by its speed or against the sample before
 
 
 class Channel:
-    """Fed in order of time by one thread, read by any."""
+    """One thread adds samples in order of time, any thread reads."""
 
     def __init__(self, limits: Limits) -> None:
         self._limits = limits
-        self._seen: tuple[Seen, ...] = ()  # a new one a sample, never changed: other threads read it without a lock
-        self.surprised = float("-inf")  # when it was last somewhere that no motion leads to, as a replayed record is
+        self._seen: tuple[Seen, ...] = ()  # replaced at each sample, not changed: other threads read it without a lock
+        self.surprised = float("-inf")  # when it last was at a place that no motion leads to, as in a replayed record
 
     @property
     def last(self) -> Seen | None:
@@ -93,7 +93,7 @@ class Channel:
         return min(last.received - first.received, last.stamped - first.stamped) >= seconds
 
     def disagreement(self) -> Reason | None:
-        """Which of position and velocity says motion while the other one says none; None if they agree."""
+        """Which of position and velocity shows a motion while the other shows none; None if they agree."""
         recent = self._recent()
         if not recent or not recent[0].place or recent[-1].received - recent[0].received < SPAN * WORST:
             return None
@@ -135,7 +135,7 @@ class Channel:
             return True
         if speed is None or before.speed is None or seconds > WORST / 2 * limits.scale:
             return False
-        if len(place) == 1:  # with its direction
+        if len(place) == 1:  # the direction of the speed counts, too
             way = math.remainder(place[0] - before.place[0], math.tau) if limits.turns else place[0] - before.place[0]
             speeds = before.speed, speed
         else:

@@ -1,4 +1,4 @@
-"""One gateway a machine: each asserts that it is there, and one that finds another at work does not serve."""
+"""One gateway per machine: each asserts its claim, and a gateway that finds another one serving does not serve."""
 
 import os
 import secrets
@@ -14,13 +14,13 @@ from tms_rc.reasons import Rival
 from tms_reason.reason import Reason
 from tms_runtime.app import App
 
-SETTLE = 0.4  # s for gateways to find each other; one that is found later is reported then
+SETTLE = 0.4  # s for gateways to discover each other; a gateway that is discovered later is reported then
 CLAIM_CHECK_PERIOD = 0.1  # s
 GATEWAYS = Gauge("tms_rc_gateways", "Gateways of this machine, this one included; more than one is a mistake")
 
 
 class Claim:
-    """Of this process. All but `rival` and `serve` happens on the executor thread."""
+    """The claim of this process. All methods but `rival` and `serve` run on the executor thread."""
 
     def __init__(self, app: App) -> None:
         self._app, self._id, self._serving = app, secrets.token_hex(8), False
@@ -43,7 +43,7 @@ class Claim:
         return Rival(self._app.machine, other.where) if other is not None else None
 
     def serve(self) -> bool:
-        """Wait until no other gateway is at work, then say that this one is; False when the process ends before."""
+        """Wait until no other gateway serves, then publish that this one does; False when the process ends before."""
         self._app.stopping.wait(SETTLE)
         reported = False
         while not self._app.stopping.is_set():
@@ -91,6 +91,6 @@ class Claim:
         GATEWAYS.set(1 if other is None else self._alive)
         if other is None or not self._serving or not other.serving:
             return
-        if other.id < self._id:  # both were at work before they found each other: one of them ends, and comes back
+        if other.id < self._id:  # both served before they discovered each other: one of them ends and is restarted
             self._app.log.error("second_gateway", other=other.where, action="ends")
             self._app.ros.failed.set()

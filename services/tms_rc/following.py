@@ -1,7 +1,7 @@
-"""Whether the machine does what it was commanded: joints that do not follow, or go the wrong way. Pure.
+"""Whether the machine follows its commands: finds joints that stand still or go the wrong way. Pure logic.
 
-Controllers differ in how far they run behind their reference, so nothing is compared with the reference of this moment
-but with what must have been reached after dead time and lag, and with the way as a whole.
+Controllers differ in how far they run behind their reference. So an angle is not compared with the reference of this
+moment, but with what the joint must have reached after dead time and lag, and with the reference as a whole.
 """
 
 import bisect
@@ -16,7 +16,7 @@ from tms_reason.reason import Reason
 QUIET = 0.8  # s for which a joint that is behind must not have moved at all
 QUIET_ANGLE = 0.005  # rad that count as no motion
 BEHIND = 0.05  # rad
-OFF_PATH = 0.2  # rad outside of everything the reference has been through
+OFF_PATH = 0.2  # rad outside of the range that the reference has passed through
 AHEAD = 1.0  # s that a controller may have begun before its acceptance was received here
 SMALLEST = 0.0005  # rad of a reference that must show as motion: from stand-still it is faster than the limit by then
 
@@ -51,7 +51,7 @@ def ways(
 ) -> dict[str, Way]:
     """The reference of each joint that is known; points are times [s] and angles [rad] in the order of `names`.
 
-    Angles that turn for ever may be told some whole turns away from where the joint is.
+    The angles of a joint without end stops may be commanded whole turns away from where the joint is.
     """
     found = {}
     for i, name in enumerate(names):
@@ -66,10 +66,10 @@ def ways(
 
 
 class Follower:
-    """Looked at while one goal runs; times are monotonic seconds."""
+    """Checks the joints while one goal runs; times are monotonic seconds."""
 
     def __init__(self, found: Mapping[str, Way], reached: float, begun: float, scale: float = 1.0) -> None:
-        """`reached`: s after which a joint is where its reference was, dead time and lag; `scale` of a stand-in."""
+        """`reached`: dead time and lag [s], then a joint is where its reference was; `scale`: speed of a stand-in."""
         self._ways, self._reached, self._begun, self._scale = dict(found), reached, begun, scale
         self._seen: dict[str, deque[tuple[float, float]]] = {name: deque() for name in found}
 
@@ -80,9 +80,9 @@ class Follower:
                    for way in self._ways.values() for low, high in [way.hull(0.0, passed)])  # fmt: skip
 
     def on_its_way(self, now: float, dead_times: Mapping[str, float]) -> dict[str, float]:
-        """How far each joint [rad] must go after a stop: what it was commanded within its dead time [s].
+        """How far each joint [rad] must go after a stop: what was commanded within the joint's dead time [s].
 
-        Some controllers command every joint at the time of its reference, some so that all joints follow together.
+        Some controllers command each joint at the time of its reference, others delay them so that all follow together.
         """
         longest = max(dead_times.values(), default=0.0)
         found = {}
@@ -117,7 +117,7 @@ class Follower:
         while len(seen) > 1 and now - seen[1][0] >= QUIET:
             seen.popleft()
         passed, past = (now - self._begun) * self._scale, [at for _, at in seen]
-        low, high = way.hull(passed - self._reached, passed + AHEAD * self._scale)  # some run behind, some do not
+        low, high = way.hull(passed - self._reached, passed + AHEAD * self._scale)  # not every controller runs behind
         there = low - BEHIND <= angle <= high + BEHIND
         if there or now - seen[0][0] < QUIET or max(past) - min(past) > QUIET_ANGLE:
             return None

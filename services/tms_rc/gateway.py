@@ -1,4 +1,4 @@
-"""Passes goals on to the machine's own action servers, one at a time, and ends them when they must end."""
+"""Passes goals on to the machine's own action servers, one at a time, and stops them when the machine must stop."""
 
 from collections.abc import Callable
 from typing import Any
@@ -40,15 +40,15 @@ from tms_ros.server import AnyGoal
 from tms_runtime.app import App
 from tms_runtime.fence import parse
 
-SERVER_LIMIT = 3.0  # s for the machine's server to be there, and for news of the machine to be heard
-ACCEPT_LIMIT = 3.0  # s for it to answer a goal
+SERVER_LIMIT = 3.0  # s for the machine's server to be there, and for the machine's messages to be received
+ACCEPT_LIMIT = 3.0  # s for the machine's server to answer a goal
 OVERRUN = 10.0  # s that a trajectory may last beyond its own duration
-FROZEN = 0.65  # s that a look may take: a gateway that stood still for 0.7 s stops its machine
-LIMIT_CHECK_PERIOD = 0.1  # s between looks at limits and sensors while it moves
+FROZEN = 0.65  # s that one check may take: a gateway that stood still for 0.7 s stops its machine
+LIMIT_CHECK_PERIOD = 0.1  # s between checks of limits and sensors while the machine moves
 
 
 class Gateway:
-    """Between everyone who wants a motion and the machine."""
+    """Stands between all clients that ask for a motion and the machine."""
 
     def __init__(self, app: App, guard: Guard, watch: StandStill) -> None:
         self._app, self._guard, self._watch = app, guard, watch
@@ -107,7 +107,7 @@ class Gateway:
             return self._stopped(motion, active)
         if call.outcome is Outcome.SUCCEEDED:
             return Outcome.SUCCEEDED, call.result
-        if call.outcome is Outcome.CANCELED:  # nobody asked us: whoever stands in for a gateway that seems lost
+        if call.outcome is Outcome.CANCELED:  # not by our client: a stand-in for a gateway that seems lost did it
             return aborted(motion, ProcessLost(CancelledElsewhere()))
         if reason_of(call.result):
             return Outcome.ABORTED, call.result
@@ -123,9 +123,9 @@ class Gateway:
         return True
 
     def _unseen(self, goal: AnyGoal) -> Reason | None:
-        """What is not heard of the machine: it would be stopped and latched as soon as it moves.
+        """Which source of the machine is silent: the machine would be stopped and latched as soon as it moves.
 
-        A machine that was switched on just now may be heard here a moment later than where the goal comes from.
+        The messages of a machine that was just switched on may arrive here a moment later than at the goal's sender.
         """
         deadline = monotonic() + SERVER_LIMIT
         while (silent := self._guard.silent()) is not None and monotonic() < deadline:
@@ -134,7 +134,7 @@ class Gateway:
         return silent
 
     def _send(self, active: Active) -> None:
-        """On the executor thread, like stops: after a stop no goal leaves, nor one that has been answered meanwhile."""
+        """Send the goal, on the executor thread like stops: none leaves after a stop, or after it has been answered."""
         if self._guard.active is not active:  # this thread stood still for so long that it was given up
             return
         self._guard.last_look(active)
@@ -151,18 +151,18 @@ class Gateway:
             self._guard.stop_now(Cancelled(), Kind.PLAIN)
 
     def _watch_motion(self, motion: Motion, active: Active) -> None:
-        """Until the goal is terminal or a stop has begun."""
+        """Watch the motion until the goal has ended or a stop has begun."""
         deadline = monotonic() + duration(active.goal.request) + OVERRUN
         while active.stop is None and not (active.call is not None and active.ended()):
             before = monotonic()
             self._wait(active, lambda call: call.outcome is not None, LIMIT_CHECK_PERIOD)
             frozen = monotonic() - before
-            if frozen > FROZEN and active.stop is None:  # its own news of the machine are old, not the machine silent
+            if frozen > FROZEN and active.stop is None:  # the gateway has read no message, the machine is not silent
                 self._guard.stop(ProcessLost(GatewayStood(frozen)), Kind.HOLD)
                 break
             if active.stop is None and active.call is not None and active.call.accepted and active.peer.left():
                 self._guard.stop(ProcessLost(ControllerLeft(self._app.machine, active.peer.name)), Kind.PLAIN)
-                active.peer.mark_lost()  # ends the goal, which nobody answers any more
+                active.peer.mark_lost()  # ends the goal, as no server is left to end it
                 break
             wrong = self._wrong(motion, active)
             if wrong is not None and active.stop is None:
@@ -171,7 +171,7 @@ class Gateway:
                 self._guard.stop(TooLong(), Kind.PLAIN)
 
     def _wrong(self, motion: Motion, active: Active) -> tuple[Reason, Kind] | None:
-        """What makes it stop, and what that means for the next motion."""
+        """Why the machine must stop, and what that means for the next motion."""
         now, watch = monotonic(), self._watch
         escaped = limits.escaped(self._model, watch.positions, active.start)
         if escaped is not None:
@@ -203,7 +203,7 @@ class Gateway:
         active.begun = now
 
     def _turn(self, motion: Motion, active: Active, now: float) -> Follower | None:
-        """One joint to an angle, as slowly as its server may do it: no way of it is known but the end."""
+        """Follow one joint to an angle at the slowest pace of its server: only the end of its motion is known."""
         joint = self._model.turned(motion.field)
         if joint is None or joint not in active.start:
             return None
@@ -213,7 +213,7 @@ class Gateway:
         return Follower(found, self._watch.reached, now, self._speed)
 
     def _frozen(self, active: Active, follower: Follower, now: float) -> Reason | None:
-        """Values that are bit for bit the same while the goal should change them."""
+        """Whether the joint states are bit for bit the same while the goal should change them."""
         source = self._watch.sources.get(JOINTS)
         if source is None:
             return None

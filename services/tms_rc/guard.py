@@ -1,7 +1,7 @@
-"""Decides whether the machine may move, and stops it: permit, latch, software stop, stand-still that stays proven.
+"""Decides whether the machine may move, and stops it: permits, latch, software stop, watch over its stand-still.
 
-Stops begin on the executor thread, as goals are sent there: a goal either left before the stop, and is cancelled by
-it, or does not leave any more.
+Stops begin on the executor thread, where goals are sent, too: a goal has either left before the stop, which then
+cancels it, or it is not sent any more.
 """
 
 import threading
@@ -39,36 +39,36 @@ from tms_ros.reasons import ProcessLost
 from tms_runtime.app import App
 from tms_runtime.fence import Owner
 
-PERMIT_LIMIT = 3.0  # s that a goal may come before the permits behind it: a new process is discovered late on a busy PC
+PERMIT_LIMIT = 3.0  # s that a goal may arrive before the permits behind it: a busy PC discovers new processes late
 PRESSED = 1.0  # s that a software stop counts as pressed after its last message
-FRESH = 1.0  # s, older news of the machine make it not ready
+FRESH = 1.0  # s; with older messages the machine is not ready
 FOREIGN = "a foreign client"
 
 
 class Guard:
-    """Of one machine."""
+    """Guards one machine."""
 
     def __init__(self, app: App, watch: StandStill, controls: Controls, latch: Latch, notes: Notes) -> None:
         self._app, self.watch, self.controls = app, watch, controls
         self.latch, self.notes = latch, notes
         self.stopper = Stopper(app, controls, watch, self._note)
         self.vigil = Vigil()
-        self._changed = threading.Condition()  # of permits
+        self._changed = threading.Condition()  # notified when permits change
         self._taking = threading.Lock()
-        self.run: int | None = None  # that holds the machine
+        self.run: int | None = None  # the run that holds the machine
         self.run_reported: Callable[[int], None] = lambda run: None  # called with each run that takes the machine
         self.pressed = 0.0  # monotonic time of the last software stop message
         self.by_hand = ""  # who drives it by hand
         self.stood_in = False  # the host agent has pressed `emg_stop` in place of this gateway
-        self.press_known = threading.Event()  # cleared while it is not known whose press of `emg_stop` it was
+        self.press_known = threading.Event()  # cleared while it is not known who has pressed `emg_stop`
         self.press_known.set()
-        self.recovering = False  # what the last gateway may have left moving is being stopped
+        self.recovering = False  # a motion that the last gateway may have left is being stopped
         self.active: Active | None = None
-        self.reported: Callable[[], None] = lambda: None  # called when the latch has changed, to tell it at once
+        self.reported: Callable[[], None] = lambda: None  # called when the latch has changed, publishes it at once
         self.permits = Permits(app, self._permit_changed)
 
     def silent(self) -> Reason | None:
-        """What is not heard of the machine."""
+        """Which source of the machine is silent."""
         return self.watch.silent(monotonic(), FRESH)
 
     # who may move
@@ -100,13 +100,13 @@ class Guard:
         return DrivenByHand(wire.known(self.by_hand), self._app.machine) if self.by_hand else None
 
     def _noted(self, owner: Owner | None) -> Reason | None:
-        """Whose goal it is has to be on the disk before it leaves: a power cut must not leave the machine armed."""
+        """Note on the disk whose goal it is, before it leaves: else a power cut would leave the machine armed."""
         if owner is None:
             return self.notes.hold(FOREIGN, 0)
         return self.notes.hold(self.permits.holder() or f"run number {owner.run}", owner.run)
 
     def last_look(self, active: Active) -> None:
-        """Stop a goal that is about to leave if a stop or a loss came since it was let in. On the executor thread."""
+        """Stop a goal before it leaves if a stop or a loss came since it was admitted. On the executor thread."""
         if active.stop is not None:
             return
         refusal, missing = self.latch.refusal(active.owner), gap(active.owner, self.permits.held())
@@ -117,7 +117,7 @@ class Guard:
             self.stop_now(ProcessLost(missing.reason) if lost else missing.reason, Kind.HOLD if lost else Kind.PLAIN)
 
     def release(self) -> None:
-        """The goal is over."""
+        """Note that the goal has ended."""
         active, self.active = self.active, None
         if active is not None and active.owner is None and active.stop is None:
             self.notes.release()
@@ -157,7 +157,7 @@ class Guard:
             self.notes.release()
 
     def check_chain(self) -> None:
-        """Stop when a process behind the present goal is gone."""
+        """Stop the machine when a process behind the present goal is gone."""
         active = self.active
         if active is None or active.stop is not None or active.owner is None:
             return
@@ -172,9 +172,9 @@ class Guard:
     def stop_now(
         self, cause: Reason, kind: Kind, run: int = 0, expected: Expected = NOTHING, broken: Reason | None = None
     ) -> Stop:
-        """Stop whoever moves the machine. On the executor thread only; returns at once.
+        """Stop the machine, whichever client moves it. On the executor thread only; returns at once.
 
-        `expected`, `broken`: see `Stopper.begin`; of a goal under way it is known here what it must move.
+        `expected`, `broken`: see `Stopper.begin`; with a goal under way, `expected` is worked out from that goal.
         """
         active, now, stamp = self.active, monotonic(), self._app.ros.now()
         if kind is Kind.LATCH:
@@ -184,9 +184,9 @@ class Guard:
         ended = active.ended if active is not None else lambda: True
         run = run or (active.owner.run if active is not None and active.owner is not None else self.run or 0)
         latched = kind is Kind.LATCH
-        self.stopper.command(latched)  # before anything that takes time
+        self.stopper.command(latched)  # before all steps that take time
         if active is not None and active.call is not None:
-            active.peer.cancel(active.call)  # also one that the machine has not answered yet
+            active.peer.cancel(active.call)  # also a goal that the machine has not answered yet
         if active is not None and active.stop is None:
             expected = active.expected(now, self.watch.dead_times)
         stop = self.stopper.begin(
@@ -202,7 +202,7 @@ class Guard:
         return stop
 
     def check(self) -> None:
-        """At every beat of the pulse: a machine that was stopped must go on standing."""
+        """Check at every beat of the pulse that a stopped machine still stands."""
         now = monotonic()
         self.watch.settle(now)
         if self.active is not None:
@@ -230,7 +230,7 @@ class Guard:
         return begun[0]
 
     def signal(self, message: Bool) -> None:
-        """/emergency_signal: true stops and latches, as often as it is repeated; false does not arm anything."""
+        """Receive /emergency_signal: true stops and latches, however often it is repeated; false does not re-arm."""
         now = monotonic()
         if not message.data:
             self.pressed = 0.0
@@ -241,7 +241,7 @@ class Guard:
             self.stop_now(SoftwareStop(), Kind.LATCH)
 
     def stop_service(self, request: StopMachine.Request, response: StopMachine.Response) -> StopMachine.Response:
-        """Stop whoever moves the machine, foreign clients too; answers with what was seen."""
+        """Stop the machine, also a motion of a foreign client; answers with the receipt."""
         cause = wire.of(request.cause) or SoftwareStop()
         if not request.orderly and cause.find(SoftwareStop) is None:
             cause = SoftwareStopSaying(cause)
@@ -250,7 +250,7 @@ class Guard:
         return response
 
     def _note(self, receipt: StopReceipt) -> None:
-        """What a stop has shown, kept before it is reported."""
+        """Keep what a stop has shown, before the receipt is published."""
         if not receipt.confirmed:
             cause, detail = wire.known(receipt.cause), wire.known(receipt.detail)
             self.latch.close(NotSeenToStand(cause, detail, self._app.machine))
@@ -259,7 +259,7 @@ class Guard:
         elif self.stood_in and not self.latch.cause:
             self.stood_in = False
             self.controls.emergency(False)
-        if receipt.confirmed and self.run is None:  # it stands, and nobody's goal moves it
+        if receipt.confirmed and self.run is None:  # it stands, and no run's goal moves it
             self.notes.hold("", 0)
         else:
             self.notes.keep()

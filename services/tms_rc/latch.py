@@ -1,8 +1,8 @@
 """Whether a machine may move: armed, held for its own run, or latched until a person re-arms it. Pure logic.
 
 A stop latches. Only one kind of stop does not: when a subtask, the planner or the gateway itself is lost during a
-run, the machine is *held*: the run that it was lost from may go on with a new leaf goal, nobody else may move the
-machine, and if that run is lost too, the hold becomes a latch. An orderly end of the run ends the hold.
+run, the machine is *held*: only the run that has lost the process may move it, with a new leaf goal. If that run is
+lost too, the hold becomes a latch. An orderly end of the run ends the hold.
 """
 
 import secrets
@@ -16,12 +16,12 @@ from tms_runtime.fence import Owner
 
 TOKEN_SECONDS = 60.0  # s that a person has between the two steps
 ANY_LEAF = -1  # no leaf has this number: any leaf of the run may leave the hold
-UNKNOWN_RUN = -1  # no run has this number: nobody may leave the hold until it is known whose it is
+UNKNOWN_RUN = -1  # no run has this number: no goal may leave the hold until its run is known
 
 
 @dataclass(frozen=True)
 class Hold:
-    """A stop that its own run may leave."""
+    """The state after a stop that only its own run may leave."""
 
     cause: Reason
     run: int
@@ -29,7 +29,7 @@ class Hold:
 
 
 class Latch:
-    """Safe to call from several threads; never waits for anything but its own short lock."""
+    """Safe to call from several threads; waits only for its own short lock."""
 
     def __init__(self, machine: str, cause: Reason | None = None) -> None:
         self._lock = threading.Lock()
@@ -49,7 +49,7 @@ class Latch:
         return hold.cause if hold is not None else None
 
     def close(self, cause: Reason) -> None:
-        """Latch. The first cause stays; a token that somebody got before is worth nothing any more."""
+        """Latch. The first cause stays; tokens that were given out before become invalid."""
         with self._lock:
             self._cause = self._cause or cause
             self._hold = self._token = None
@@ -74,19 +74,19 @@ class Latch:
             return Held(hold.cause)
 
     def run_is(self, run: int | None) -> None:
-        """Tell which run holds the machine; its orderly change ends a hold for another one."""
+        """Set which run holds the machine; an orderly change of the run ends a hold for another run."""
         with self._lock:
             if self._hold is not None and self._hold.run not in (UNKNOWN_RUN, run):
                 self._hold = None
 
     def run_lost(self) -> None:
-        """The scheduler behind the hold is gone as well."""
+        """Latch a held machine: the scheduler of its run is lost as well."""
         with self._lock:
             if self._hold is not None:
                 self._cause, self._hold = ThenSchedulerLost(self._hold.cause), None
 
     def request(self, now: float) -> str:
-        """First step of re-arming: a token for the second."""
+        """First step of re-arming: returns a token for the second."""
         with self._lock:
             token = secrets.token_hex(4)
             self._token = (token, now + TOKEN_SECONDS)

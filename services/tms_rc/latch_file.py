@@ -1,8 +1,8 @@
-"""What a gateway knows of the time before its start: notes on the disk of this PC, where no proof means latched.
+"""What a gateway knows of the time before its start: notes on the disk of this PC. Without a note, it latches.
 
-A machine is armed while its note says so, and only then: the note is synced before the machine counts as armed, and
-before the first goal of a run leaves it says which run that is. To latch is to take the note away, which also works on
-a full disk. Nothing here is called on the executor thread.
+A machine is armed only while its note says so: the note is synced before the machine counts as armed, and before the
+first goal of a run leaves, it names that run. To latch, the note is deleted, which also works on a full disk. No
+function of this module is called on the executor thread.
 """
 
 import json
@@ -23,10 +23,10 @@ class Left:
     """How the machine was left; `latched` is None when it was armed."""
 
     latched: Reason | None
-    holder: str = ""  # the run, or the foreign goal, that may have left it moving
+    holder: str = ""  # the run or the foreign client that may have left it moving
     run: int = 0  # fencing number of that run
     taken: str = ""  # who drives it by hand
-    unproven: bool = False  # it was latched, and the receipt of that stop never came to the disk
+    unproven: bool = False  # it was latched, but the receipt of that stop was never written to the disk
 
 
 class LatchFile:
@@ -61,7 +61,7 @@ class LatchFile:
         return wire.known(cause) if isinstance(cause, str) and cause else NoNote()
 
     def arm(self, holder: str = "", run: int = 0) -> None:
-        """From now on a restart finds the machine armed, and held by a run where one is named.
+        """Note that the machine is armed, and which run or client may move it, for the next start.
 
         Raises:
             OSError: it could not be written: the machine must not count as armed.
@@ -70,10 +70,10 @@ class LatchFile:
             _write(self._armed, {"armed": True, "holder": holder, "run": run})
 
     def latch(self, cause: Reason) -> None:
-        """From now on a restart finds the machine latched; the cause is kept where there is room for it.
+        """Note that the machine is latched, for the next start; the cause is kept if the disk has room for it.
 
         Raises:
-            OSError: the note could not be taken away.
+            OSError: the note could not be deleted.
         """
         with self._writing:
             self._armed.unlink(missing_ok=True)
@@ -85,7 +85,7 @@ class LatchFile:
                 self._latched.unlink(missing_ok=True)  # an older cause would be a wrong one
 
     def take(self, who: str) -> None:
-        """Who drives the machine by hand, empty for nobody.
+        """Note who drives the machine by hand; empty: no person does.
 
         Raises:
             OSError: it could not be written.
@@ -104,5 +104,5 @@ def _load(path: Path) -> dict[str, Any] | None:
 
 
 def _write(path: Path, note: dict[str, Any]) -> None:
-    """The whole note or the old one, whatever happens, and on the disk before this returns."""
+    """Replace a note as a whole, also if power fails meanwhile; it is on the disk when this returns."""
     durable.replace(path, json.dumps(note).encode())

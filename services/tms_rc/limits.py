@@ -27,9 +27,9 @@ from tms_rc.reasons import (
 from tms_reason.reason import Reason
 
 SPEED_MARGIN = 1.1  # times the limit of speed that a trajectory may ask for
-UNHEARD = 0.2  # s; as far as it goes in this time, a joint may be away from where its trajectory begins
+UNHEARD = 0.2  # s; a joint may be as far from the start of its trajectory as it can go in this time
 ANGLE_EPSILON = 1e-4  # rad
-MARGIN = 0.05  # rad beyond a limit, and further out than at the start, that a moving joint may be seen
+MARGIN = 0.05  # rad that a moving joint may be measured beyond a limit, and further out than at the start
 
 
 def problem(
@@ -40,8 +40,8 @@ def problem(
 ) -> Reason | None:
     """What is wrong with a trajectory (points x joints, rad), with the joint and the bound; None if nothing.
 
-    `present` are the joints now [rad]: one that sags beyond its limit must be able to come back, so points that
-    are no further out than it is are allowed.
+    `present` are the joints now [rad]: a joint that sags beyond its limit must be able to come back, so points no
+    further out than its present angle are allowed.
     """
     unknown = [name for name in joints if name not in model.joints]
     if unknown:
@@ -66,7 +66,7 @@ class Point:
 
     time: float  # s from the start
     positions: Sequence[float]  # rad
-    rest: Sequence[float]  # velocities, accelerations and efforts, whatever is given
+    rest: Sequence[float]  # velocities, accelerations and efforts, as far as they are given
 
 
 def pace_problem(
@@ -78,8 +78,8 @@ def pace_problem(
 ) -> Reason | None:
     """What is wrong with the times of a trajectory whose positions are right; `present` are the joints now [rad].
 
-    Between two points a joint may go at most as fast as its limit of speed, and a little more, for planners round.
-    `speed` is that of a simulated machine: one that has just moved was last heard `speed` times further away.
+    Between two points a joint may go at most a little faster than its limit of speed: planners round their figures.
+    `speed` is that of a simulated machine: since its last message, it may have gone `speed` times further.
     """
     before, unreceived = Point(0.0, [present.get(name, math.nan) for name in joints], []), UNHEARD * speed
     for number, point in enumerate(points):
@@ -90,7 +90,7 @@ def pace_problem(
             return _at(number, len(points), TimeNotAfter(point.time))
         for name, old, new in zip(joints, before.positions, point.positions, strict=True):
             allowed = model.joints[name].velocity * (SPEED_MARGIN * passed + unreceived) + ANGLE_EPSILON
-            if abs(new - old) > allowed:  # false where nobody knows the joint's place
+            if abs(new - old) > allowed:  # false where the joint's place is unknown
                 fast = TooFast(abs(new - old), passed, model.joints[name].velocity)
                 return _at(number, len(points), AtJoint(name, fast))
         before, unreceived = point, 0.0
@@ -98,7 +98,7 @@ def pace_problem(
 
 
 def _at(number: int, count: int, why: Reason) -> Reason:
-    """A trajectory of one point is a target: its number tells nothing."""
+    """Name the point, unless the trajectory has only one."""
     return AtPoint(number, why) if count > 1 else why
 
 
@@ -111,7 +111,7 @@ def angle_problem(model: MachineModel, action: str, angle: float, present: Mappi
 
 
 def pose_problem(poses: Sequence[tuple[float, ...]]) -> Reason | None:
-    """What is wrong with poses as x, y, z [m], qx, qy, qz, qw; a navigation would go somewhere with it."""
+    """What is wrong with poses as x, y, z [m], qx, qy, qz, qw; a navigation would accept them and go somewhere."""
     if not poses:
         return NoPose()
     for number, pose in enumerate(poses):

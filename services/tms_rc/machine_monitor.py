@@ -1,4 +1,4 @@
-"""What is received of the machine: ROS messages of every source into samples, and who else publishes them."""
+"""Turns the ROS messages of every source of the machine into samples, and finds other publishers of these topics."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -19,14 +19,14 @@ from tms_ros.node import Ros
 from tms_ros.topics import Arrival
 from tms_runtime.app import App
 
-DEPTH = 10  # messages of a source that may come between two looks
-VOICES = 0.25  # s between looks at who publishes
+DEPTH = 10  # messages of a source that may come between two beats
+VOICES = 0.25  # s between checks of who publishes
 
 Numbers = tuple[Mapping[str, Place], Mapping[str, float]]  # places and speeds by channel
 
 
 class MachineMonitor:
-    """Takes what the machine has told since the last look, at every beat of the pulse: no callback delays it."""
+    """Takes the messages that have come since the last beat, at every beat of the pulse: no callback delays it."""
 
     def __init__(self, app: App, watch: StandStill) -> None:
         self._app, self._watch = app, watch
@@ -40,12 +40,12 @@ class MachineMonitor:
         self._counted = 0.0  # monotonic
 
     def take_samples(self) -> None:
-        """Take what waits."""
+        """Take the waiting messages."""
         now = monotonic()
         for name, take_new, read in self._inputs:
             source, arrivals = self._watch.sources[name], take_new()
             if arrivals and source.age(now) > source.longest:
-                self._count(name)  # before its word counts: whoever speaks now may not be the only one
+                self._count(name)  # before its messages count: the topic may have several publishers now
             for arrival in arrivals:
                 self._watch.take(name, _sample(arrival, *read(arrival.message)))
         if now - self._counted >= VOICES:
@@ -54,7 +54,7 @@ class MachineMonitor:
                 self._count(name)
 
     def _count(self, name: str) -> None:
-        """Whether somebody else speaks for the machine. Its own publisher, killed, counts until discovery drops it."""
+        """Find other publishers of a source. The machine's own one, if killed, counts until discovery drops it."""
         source, topic = self._watch.sources[name], self._topics[name]
         count = int(self._app.ros.node.count_publishers(topic))
         if count < 2:
@@ -63,7 +63,7 @@ class MachineMonitor:
             source.publishers = tuple(node for node, _ in _publishers(self._app.ros, topic))
 
     def strange_type(self) -> Reason | None:
-        """A source that is published under another type than the border has: nothing of it can be heard."""
+        """A source that is published with another type than in the border: none of its messages can be received."""
         for name, topic in self._topics.items():
             source = self._watch.sources[name]
             if source.age(monotonic()) <= source.longest:
@@ -114,7 +114,7 @@ def _sample(arrival: Arrival[Any], places: Mapping[str, Place], speeds: Mapping[
 
 
 def _numbers(known: list[tuple[int, str]], values: Sequence[float]) -> dict[str, float]:
-    """By joint; what is not there or not a number was not heard."""
+    """Numbers by joint, without those that are missing or not finite."""
     return {name: values[i] for i, name in known if i < len(values) and math.isfinite(values[i])}
 
 
@@ -131,7 +131,7 @@ def _pose(message: PoseStamped) -> Numbers:
 
 
 def _global_odometry(message: Odometry) -> Numbers:
-    """A pose as odometry: its twist is empty, which is no speed of 0."""
+    """A pose as odometry: its twist is not filled in, which does not mean a speed of 0."""
     return _placed(message.pose.pose), {}
 
 

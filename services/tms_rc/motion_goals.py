@@ -1,4 +1,4 @@
-"""What the gateway reads from goals, whose types differ, and writes into their results."""
+"""What the gateway reads from goals of different types, and writes into their results."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -14,7 +14,7 @@ from tms_reason.wire import to_line
 from tms_ros.goals import Ended, Outcome
 
 REFUSED = -1  # control_msgs INVALID_GOAL
-UNKNOWN = 600  # nav2_msgs, where a result has an unsigned code
+UNKNOWN = 600  # for nav2_msgs, whose results have an unsigned code
 
 
 def poses_of(request: Any) -> Sequence[PoseStamped]:
@@ -34,13 +34,13 @@ def seconds(duration: Duration) -> float:
 
 
 def point_of(point: JointTrajectoryPoint) -> Point:
-    """What the limits need of a point of a trajectory."""
+    """The part of a trajectory's point that the limits check."""
     rest = [*point.velocities, *point.accelerations, *point.effort]
     return Point(seconds(point.time_from_start), point.positions, rest)
 
 
 def duration(request: Any) -> float:
-    """How long a goal says that it lasts [s]; navigation does not say."""
+    """How long a goal says that it lasts [s]; a goal for the navigation does not say."""
     if not hasattr(request, "trajectory"):
         return float("inf")
     return seconds(request.trajectory.points[-1].time_from_start)
@@ -52,7 +52,7 @@ def reason_of(result: Any) -> str:
 
 
 def with_reason(motion: Motion, reason: Reason, code: int | None = None) -> Any:
-    """A result of the motion's type that tells as much as the type has room for."""
+    """A result of the motion's type, with as much of the reason as the type has room for."""
     result, line = motion.type.Result(), to_line(reason)
     if hasattr(result, "error_string"):
         result.error_code, result.error_string = REFUSED if code is None else code, line

@@ -1,4 +1,4 @@
-"""Process `<machine>:rc`: the machine's gateway. It depends on no database, no scheduler and no console to stop."""
+"""Process `<machine>:rc`: the machine's gateway. Its stops need no database, no scheduler and no console."""
 
 import threading
 from collections.abc import Callable
@@ -29,7 +29,7 @@ from tms_ros.client import AnyPeer
 from tms_runtime.app import App
 
 MOVING_PERIOD, STILL_PERIOD = 0.2, 0.5  # s between messages about the machine; a change is reported at once
-SIGNALS = 100  # of all buttons that may wait: no `false` may push out the `true` of another one
+SIGNALS = 100  # messages of all stop buttons that may wait: no `false` of one may push out the `true` of another
 PERMIT = Gauge("tms_rc_permit", "1 while a run stands behind the machine's motions")
 LATCHED = Gauge("tms_rc_latched", "1 while the machine is stopped until a person re-arms it")
 HELD = Gauge("tms_rc_held", "1 while only the run that lost a process may move the machine")
@@ -37,11 +37,11 @@ TAKEN = Gauge("tms_rc_taken", "1 while a person drives the machine by hand")
 MOVING = Gauge("tms_rc_moving", "1 while the machine is seen to move")
 STATE_AGE = Gauge("tms_rc_machine_news_age_seconds", "Age of the oldest of joint states and odometry")
 NEVER = 1e9  # s
-GATEWAY = bytes([255]) * 16  # what the gateway's own permit stands behind: the machine itself
+GATEWAY = bytes([255]) * 16  # the goal in the gateway's own permit: it stands behind the machine itself
 
 
 def start(app: App) -> None:
-    """Offer guarded motion, stop and re-arm of one machine, and tell its state; not where another gateway does."""
+    """Serve motion, stop and re-arm of one machine and publish its state, unless another gateway does."""
     threading.Thread(target=_begin, args=(app, Claim(app)), name="claim", daemon=True).start()
 
 
@@ -51,7 +51,7 @@ def _begin(app: App, claim: Claim) -> None:
         _serve(app, claim)
         over = True
     finally:
-        if not over and not app.ros.closing:  # a bug: half a gateway is none
+        if not over and not app.ros.closing:  # a bug: half a gateway must not stay
             app.ros.failed.set()
 
 
@@ -75,7 +75,7 @@ def _serve(app: App, claim: Claim) -> None:
     for step in (view.take_samples, guard.check, state_publisher.check):
         app.pulse.add(step)
     permit = Permit(app.ros, app.pulse, machine, "rc")
-    # Not before the lease of a predecessor that was killed has run out: nobody would notice its loss.
+    # Wait until the lease of a killed predecessor has run out: before, its loss would go unnoticed.
     app.ros.on_executor(lambda: app.ros.after(LEASE, lambda: permit.hold(GATEWAY)))
     app.ready_when(reported.unready)
     recovery.run()
@@ -93,13 +93,13 @@ def _offer(app: App, guard: Guard, gateway: Gateway, reported: "StateTopic") -> 
     if border.manual:
         ros.subscribe(Bool, f"/{machine}/{border.manual}", arming.manual, depth=SIGNALS)
     ros.offer_slow(StopMachine, f"/{machine}/rc/stop", guard.stop_service)
-    ros.offer_slow(StopMachine, "/tms/stop", guard.stop_service)  # every gateway hears it; the first one answers
+    ros.offer_slow(StopMachine, "/tms/stop", guard.stop_service)  # all gateways get it, the first one answers
     ros.offer_slow(Rearm, f"/{machine}/rearm", arming.rearm)
     ros.offer_slow(TakeMachine, f"/{machine}/take", arming.take)
 
 
 class StatePublisher:
-    """When the state is published: by the pulse, since a timer and every reader's callback cost more than the news."""
+    """Publishes the state by the pulse: a timer, and a callback of every reader, would cost more than the message."""
 
     def __init__(self, guard: Guard, watch: StandStill, publish: Callable[[], None]) -> None:
         self._guard, self._watch, self._publish = guard, watch, publish
@@ -107,7 +107,7 @@ class StatePublisher:
         self._at = 0.0  # monotonic
 
     def check(self) -> None:
-        """At every beat."""
+        """Publish at a beat if the state has changed or the period is over."""
         guard, moving = self._guard, self._watch.moving()
         active, latch = guard.active, guard.latch
         now = (moving, active and active.goal.id, latch.cause, latch.hold, guard.permits.holder(), guard.by_hand)
@@ -117,13 +117,13 @@ class StatePublisher:
             self.publish_now()
 
     def publish_now(self) -> None:
-        """From any thread."""
+        """Publish the state; from any thread."""
         self._at = monotonic()
         self._publish()
 
 
 class StateTopic:
-    """What a gateway tells of its machine."""
+    """The state of the machine as the gateway publishes it."""
 
     def __init__(self, app: App, guard: Guard, view: MachineMonitor, claim: Claim) -> None:
         self._app, self._guard, self._view, self._claim = app, guard, view, claim
@@ -143,7 +143,7 @@ class StateTopic:
         return next((ControllerAway(machine, peer.name) for peer in self.peers if not peer.ready()), None)
 
     def state(self) -> MachineState:
-        """What is published."""
+        """The message to publish."""
         guard, now, reason = self._guard, monotonic(), self.unready()
         active, watch, latch = guard.active, guard.watch, guard.latch
         positions, velocities = watch.positions, watch.velocities

@@ -1,4 +1,4 @@
-"""Keeps on disk what the latch is: the last word counts, what cannot be kept is reported."""
+"""Keeps the state of the latch on the disk, the newest one only; reports a state that cannot be kept."""
 
 import threading
 
@@ -11,16 +11,16 @@ from tms_runtime.app import App
 
 
 class Notes:
-    """Between a machine's latch and its memory."""
+    """Writes the latch of a machine into its latch file."""
 
     def __init__(self, app: App, memory: LatchFile, latch: Latch) -> None:
         self._app, self._memory, self._latch = app, memory, latch
         self._writing = threading.Lock()
-        self._kept: tuple[Reason | None, str, int] | None = None  # what the disk says
+        self._kept: tuple[Reason | None, str, int] | None = None  # the state on the disk
         self._holder, self._run = "", 0  # who may move the machine now
 
     def keep(self) -> Reason | None:
-        """Have what is so now on the disk; why it is not there."""
+        """Write the present state to the disk; returns why that failed."""
         with self._writing:
             now = (self._latch.cause, self._holder, self._run)
             if now == self._kept:
@@ -39,21 +39,21 @@ class Notes:
         return None
 
     def soon(self) -> None:
-        """`keep`, from the executor thread."""
+        """Call `keep` in a thread, for callers on the executor thread."""
         threading.Thread(target=self.keep, name="note", daemon=True).start()
 
     def hold(self, holder: str, run: int) -> Reason | None:
-        """Who may move the machine from now on, empty for nobody, has to be on the disk; why it is not there."""
+        """Write who may move the machine from now on (empty: no run) to the disk; returns why that failed."""
         self._holder, self._run = holder, run
         return self.keep()
 
     def release(self) -> None:
-        """Nobody's goal moves the machine any more."""
+        """Write that no goal moves the machine any more."""
         self._holder, self._run = "", 0
         self.soon()
 
     def take(self, who: str) -> Reason | None:
-        """Who drives by hand; why it is not on the disk."""
+        """Write who drives by hand; returns why that failed."""
         try:
             self._memory.take(who)
         except OSError as error:

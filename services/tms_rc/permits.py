@@ -1,4 +1,4 @@
-"""Listens to everyone who may stand behind a goal of this machine."""
+"""Receives the permits of all processes that may stand behind a goal of this machine."""
 
 from collections.abc import Callable
 
@@ -19,14 +19,14 @@ class Permits:
         def listen() -> None:
             self._links = [Link(app.ros, app.pulse, app.machine, name, changed) for name in names]
 
-        app.ros.on_executor(listen)  # where no news can come before all links, and their owner, are there
+        app.ros.on_executor(listen)  # no callback may come before all links and their owner exist
 
     def held(self) -> dict[str, Owner]:
-        """Living processes and what they stand behind."""
+        """The living processes, and what each stands behind."""
         found = {link.process: parse(link.goal) for link in self._links if link.alive}
         return {name: owner for name, owner in found.items() if owner is not None}
 
     def holder(self) -> str:
-        """The run that holds the machine, for people."""
+        """The name of the run that holds the machine, for people."""
         scheduler = self._links[0] if self._links else None
         return scheduler.holder if scheduler is not None and scheduler.alive else ""

@@ -17,20 +17,20 @@ class Receipts:
     def __init__(self, folder: Path, machine: str) -> None:
         self._path = folder / "rc" / f"{machine}.receipts"
         self._last = deque(self._read(), maxlen=KEPT)
-        self._lines = ROOM  # the first one that is kept makes a new file, without what a crash has cut
+        self._lines = ROOM  # the first receipt that is kept rewrites the file, without a line that a crash has cut
 
     def all(self) -> list[bytes]:
-        """The last ones, oldest first."""
+        """The last receipts, oldest first."""
         return list(self._last)
 
     def keep(self, data: bytes) -> None:
-        """Have one more on the disk.
+        """Write one more receipt to the disk.
 
         Raises:
-            OSError: it is not there.
+            OSError: it could not be written.
         """
         self._last.append(data)
-        lines, self._lines = self._lines, ROOM  # where this fails, the next one does not go on behind a cut line
+        lines, self._lines = self._lines, ROOM  # after a failure, the next receipt rewrites the file
         if lines >= ROOM:
             durable.replace(self._path, b"".join(map(_line, self._last)))
             self._lines = len(self._last)
@@ -53,7 +53,7 @@ class Receipts:
             try:
                 found.append(base64.b64decode(line, validate=True))
             except ValueError:
-                continue  # cut by a crash, with a whole one behind it
+                continue  # a line that a crash has cut, with a whole line after it
         return found
 
 

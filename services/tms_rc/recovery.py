@@ -1,4 +1,4 @@
-"""The start of a gateway: nobody knows what the last one left moving, so it is stopped, proven, and held or latched."""
+"""The start of a gateway: the last one may have left the machine moving, so it is stopped and held or latched."""
 
 from tms_config.clock import monotonic
 from tms_rc.active import Kind
@@ -15,16 +15,16 @@ from tms_runtime.fence import Owner
 
 REACHED = 5.0  # s for the machine's servers to be there
 LEFT_MOVING = 2.0  # s that a machine that was left armed and idle is watched for a motion
-RUN_KNOWN_LIMIT = 3.0  # s to hear of the run whose machine was stopped, before it is latched
+RUN_KNOWN_LIMIT = 3.0  # s in which the run of a stopped machine must report itself, else the machine is latched
 RECOVERY_CHECK_PERIOD = 0.02  # s
 
 
 class Recovery:
-    """Runs in a thread of its own; `claimed` and what it starts there run on the executor thread."""
+    """Its `run` has a thread of its own; `claimed`, and what `run` posts, run on the executor thread."""
 
     def __init__(self, app: App, guard: Guard, left: Left) -> None:
         self._app, self._guard, self._left = app, guard, left
-        self._open = True  # whether the last gateway may have left a motion of a run that has not told of itself yet
+        self._open = True  # whether the last gateway may have left a motion of a run that has not reported itself yet
         self._stop: Stop | None = None
         self._begun = monotonic()
         guard.run_reported = self.claimed
@@ -41,7 +41,7 @@ class Recovery:
         return ProcessLost(GatewayRestartedHeld(process, left.holder) if left.holder else GatewayRestarted(process))
 
     def run(self) -> None:
-        """Cancel whatever runs; stop a machine that a run held, or that moves."""
+        """Cancel all goals of the machine; stop it if a run held it, or if it moves."""
         guard, app = self._guard, self._app
         deadline = monotonic() + REACHED
         self._command()
@@ -72,7 +72,7 @@ class Recovery:
         controls.cancel_everything()
 
     def claimed(self, run: int) -> None:
-        """A scheduler stands behind a run: the machine is held for it, if it may have been left moving."""
+        """Hold the machine for a run that its scheduler reports, if the machine may have been left moving."""
         if not self._open or self._guard.active is not None:
             return
         self._open = False
@@ -94,7 +94,7 @@ class Recovery:
         self._stop = self._guard.stop_now(self._cause, Kind.PLAIN, run=number, expected=UNKNOWN)
 
     def _close(self) -> None:
-        """Whose motion was stopped is known by now, or it was nobody's."""
+        """End the wait for a run; latch if a motion was stopped and no run has reported itself."""
         known = self._guard.latch.cause or self._guard.active is not None
         if self._open and self._stop is not None and not known:
             self._guard.stop_now(NoRunTold(self._cause), Kind.LATCH, expected=UNKNOWN)

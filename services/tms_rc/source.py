@@ -1,4 +1,4 @@
-"""One source that tells of a machine's motion: what it said, and why its word may count for nothing. Pure logic."""
+"""One source of a machine's motion: its samples, and why they may not be believed. Pure logic."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -24,10 +24,10 @@ from tms_rc.stamps import StampClock, Verdict
 from tms_reason.reason import Reason
 
 LABELS: dict[str, Reason] = {"joint_states": JointStates(), "odom": Odometry(), "pose": Pose(), "imu": Imu()}
-PERIODS = 3  # that a stamp may stand still, or nothing come
-SHORTEST = 0.2  # s; the gateway looks 20 times a second, and PCs are busy
-SETTLED = 5.0  # s that a machine must have stood before a new clock of its source is taken for good
-MIXED = 2.0  # s in which publication numbers that go back twice tell of two publishers
+PERIODS = 3  # periods in which a stamp may stand still, or no message come
+SHORTEST = 0.2  # s; the gateway takes messages 20 times a second, and PCs are busy
+SETTLED = 5.0  # s that a machine must have stood before a new clock of its source is accepted
+MIXED = 2.0  # s; publication numbers that go back twice in this time mean two publishers
 
 
 @dataclass(frozen=True)
@@ -37,13 +37,13 @@ class Sample:
     received: float  # s, monotonic
     stamp: float  # s of the source's own clock
     number: int  # publication sequence number of its publisher
-    places: Mapping[str, Place]  # channels of the source only -> rad, or m
-    speeds: Mapping[str, float]  # channel -> rad/s or m/s, where told
+    places: Mapping[str, Place]  # channel, of this source only -> rad or m
+    speeds: Mapping[str, float]  # channel -> rad/s or m/s, where the message has it
 
 
 @dataclass(frozen=True)
 class Trouble:
-    """Why a source cannot be believed; one that `passes` goes away by itself, and its machine is held, not latched."""
+    """Why a source cannot be believed; one that `passes` ends by itself, and the machine is held, not latched."""
 
     reason: Reason
     passes: bool = False
@@ -57,19 +57,19 @@ class SourceWatch:
         self.channels = {key: Channel(limits) for key, limits in channels.items()}
         self._limits = dict(channels)
         self._clock = StampClock(source.stamps)
-        self._advanced: float | None = None  # when a sample with a new stamp came
-        # Tuples that are replaced, never changed: other threads read them without a lock.
-        self._repeats: tuple[float, ...] = ()  # when stamps came that did not advance
-        self._number, self._back = 0, tuple[float, ...]()  # last number, and when numbers went back
+        self._advanced: float | None = None  # when the last sample with a new stamp came
+        # Tuples are replaced, never changed: other threads read them without a lock.
+        self._repeats: tuple[float, ...] = ()  # when messages came whose stamps did not advance
+        self._number, self._back = 0, tuple[float, ...]()  # the last number, and when numbers went back
         self.new_clock: tuple[float, Reason] | None = None  # since when, why
-        self.fast = False  # its last message showed a motion
+        self.fast = False  # whether its last message showed a motion
         self.publishers: tuple[str, ...] = ()  # nodes, where there is more than one
         self._values: object = None
-        self.changed = float("-inf")  # when its values were last not the same bit for bit
+        self.changed = float("-inf")  # when its values last changed in any bit
 
     @property
     def longest(self) -> float:
-        """Seconds without a new stamp after which it proves nothing."""
+        """Seconds without a new stamp after which the source no longer counts as proof."""
         return max(PERIODS * self.source.period, SHORTEST)
 
     def take(self, sample: Sample) -> None:
@@ -98,12 +98,12 @@ class SourceWatch:
             self.fast = self.fast or (channel.last is not None and channel.last.fast)
 
     def age(self, now: float) -> float:
-        """Seconds since the channel that was silent for longest was received; infinite before the first word of it."""
+        """Seconds since the last sample of the channel that is silent for longest; infinite before its first one."""
         last = [channel.last for channel in self.channels.values()]
         return max((float("inf") if one is None else now - one.received for one in last), default=float("inf"))
 
     def silent(self, now: float, limit: float) -> Reason | None:
-        """What was not heard for `limit` seconds."""
+        """The channel of which no sample has come for `limit` seconds."""
         for name, channel in self.channels.items():
             last = channel.last
             whole = len(self.channels) == 1 or self._advanced is None
@@ -115,7 +115,7 @@ class SourceWatch:
         return None
 
     def trouble(self, now: float) -> Trouble | None:
-        """Why its word counts for nothing now."""
+        """Why the source cannot be believed now."""
         publishers, back, repeats, new_clock = self.publishers, self._back, self._repeats, self.new_clock
         if publishers:
             return Trouble(ManyPublishers(self.label, len(publishers), publishers))
@@ -131,11 +131,11 @@ class SourceWatch:
         return None
 
     def accept_clock(self) -> None:
-        """A person has looked: the new clock is the source's."""
+        """Accept a new clock, as a person has looked at the machine."""
         self.new_clock = None
 
     def settle(self, now: float, stands: bool) -> None:
-        """Take a new clock for good once the machine has stood long enough by it."""
+        """Accept a new clock once the machine has stood long enough by its stamps."""
         new_clock = self.new_clock
         if new_clock is not None and not stands:
             self.new_clock = max(new_clock[0], now), new_clock[1]
@@ -144,11 +144,11 @@ class SourceWatch:
 
     @property
     def surprised(self) -> float:
-        """When a channel was last somewhere that no motion leads to."""
+        """When a channel last was at a place that no motion leads to."""
         return max(channel.surprised for channel in self.channels.values())
 
     def moving(self) -> bool:
-        """Whether any channel moved, or nobody knows."""
+        """Whether any channel moved; unknown counts as moving."""
         return any(channel.moving() for channel in self.channels.values())
 
     def proves(self, start: float, now: float, seconds: float) -> bool:

@@ -1,4 +1,4 @@
-"""The stamps of one source: what they mean on this PC's clock, and whether they can be believed. Pure logic."""
+"""The stamps of one source: their times on this PC's clock, and whether they can be believed. Pure logic."""
 
 from dataclasses import dataclass
 from enum import Enum
@@ -8,13 +8,13 @@ from tms_rc.reasons import ClockAhead, ClockBack, SimulatorClock, UtcClock
 from tms_reason.reason import Reason
 
 AHEAD = 1.0  # s that a stamp may be ahead of its estimated offset
-BACK = 0.5  # s that a stamp may be before the last one without a new clock behind it
+BACK = 0.5  # s that a stamp may be before the last one; further back means a new clock
 REMEMBERED = 30.0  # s for which the smallest delay is remembered: clocks drift
 CLOCKS: dict[str, Reason] = {"utc": UtcClock(), "since_start": SimulatorClock()}
 
 
 class Verdict(Enum):
-    """What a stamp says of its message."""
+    """What a stamp shows about its message."""
 
     NEW = "measured after the one before"
     REPEATED = "not measured after the one before"
@@ -23,7 +23,7 @@ class Verdict(Enum):
 
 @dataclass(frozen=True)
 class Judged:
-    """`measured` is on this PC's monotonic clock [s]; `why` tells of a new clock."""
+    """`measured` is on this PC's monotonic clock [s]; `why` is set for a new clock."""
 
     verdict: Verdict
     measured: float
@@ -31,13 +31,13 @@ class Judged:
 
 
 class StampClock:
-    """Estimates the offset of a source's clock: the smallest delay seen between measuring and hearing."""
+    """Estimates the offset of a source's clock: the smallest delay between measurement and reception."""
 
     def __init__(self, kind: Stamps) -> None:
         self.kind = kind
         self._last: float | None = None
-        self._delay: float | None = None  # s, smallest of this period
-        self._delay_before: float | None = None  # and of the one before
+        self._delay: float | None = None  # s, the smallest of this period
+        self._delay_before: float | None = None  # and of the period before
         self._begun = 0.0
 
     def judge(self, received: float, stamp: float) -> Judged:
@@ -56,7 +56,7 @@ class StampClock:
         return Judged(Verdict.NEW, stamp + self._known())
 
     def _begin(self, received: float, stamp: float, why: Reason) -> Judged:
-        """A new epoch: nothing that was learnt of the old clock holds."""
+        """Begin anew: all estimates of the old clock are void."""
         self._last, self._delay, self._delay_before, self._begun = stamp, received - stamp, None, received
         return Judged(Verdict.NEW_CLOCK, received, why)
 

@@ -1,8 +1,8 @@
-"""What counts as seen to stand: every joint and every source, after the stop, by positions and velocities. Pure logic.
+"""When a machine counts as standing: every joint and source, after the stop, by position and velocity. Pure logic.
 
 A stop is proven when samples that were received *and* measured after the stop and after the machine's dead time show,
 for every channel of every source, that it stood for a while: before that, a command that is still on its way through
-the hydraulics may move it. Nothing that was not heard counts as standing.
+the hydraulics may move it. A channel without samples does not count as standing.
 """
 
 import math
@@ -17,47 +17,47 @@ from tms_reason.reason import Reason
 
 JOINTS, ODOM, POSE, IMU = "joint_states", "odom", "pose", "imu"
 PLACE, HEADING, TURNING = "place", "heading", "turning"
-HARD = 0.2  # rad beyond its limit at which a joint cannot be: its sensor, or its name, is wrong
+HARD = 0.2  # rad; a joint that far beyond its limit is impossible: its sensor, or its name, is wrong
 INFINITE = float("inf")
-SEEN, SHARE = 0.003, 0.5  # rad that were commanded must be seen, and this share of them after the stop
-OBEYS = 3.5  # s for which a machine may go on after an order to stop, where nothing has shown that it obeys
+SEEN, SHARE = 0.003, 0.5  # a commanded motion above so many rad must be seen, and this share of it after the stop
+OBEYS = 3.5  # s that a machine may go on after the command to stop, unless it was seen to obey
 
 
 @dataclass(frozen=True)
 class Travel:
     """How far a machine went."""
 
-    joint: str = ""  # that went furthest, or `heading`
+    joint: str = ""  # the joint that went furthest, or `heading`
     angle: float = 0.0  # rad
     way: float = 0.0  # m, of the base
 
 
 @dataclass(frozen=True)
 class Expected:
-    """The motion that must be seen, or must have been, for what is received to be believed."""
+    """The motion that must be seen, or must have been seen, for the sources to be believed."""
 
-    since: float | None = None  # s, monotonic, when it began; None: nothing was to move
+    since: float | None = None  # s, monotonic, when it began; None: no motion was commanded
     to_come: Mapping[str, float] = field(default_factory=dict)  # joint -> rad that were commanded and not seen yet
 
 
 NOTHING = Expected()
-# Of a gateway that was started anew: no motion that it sees was all that had been commanded. A machine that coasts and
+# For a restarted gateway: it sees only a part of the motion that was commanded. Without this, a machine that coasts and
 # replays a record of its last seconds, in which the motion had just begun, would be believed to stand.
 UNKNOWN = Expected(INFINITE)
 
 
 @dataclass(frozen=True)
 class Proof:
-    """What has to be seen after one stop."""
+    """What must be seen after one stop."""
 
-    start: float  # s, monotonic: only what is measured later counts ...
-    unseen: float  # s, ... and later than this, where the expected motion was never seen
+    start: float  # s, monotonic: only later measurements count ...
+    unseen: float  # s, ... and only those after this, if the expected motion was never seen
     expected: Expected
     seconds: float  # s of standing
-    immediate: bool = False  # the stop takes back what is on its way
+    immediate: bool = False  # the stop also cancels commands that are on their way
 
     def after(self, other: "Proof") -> "Proof":
-        """What must be seen if another stop was commanded before: what that one waits for may still come."""
+        """What must be seen if another stop was commanded before: the motion that it waits for may still come."""
         if self.immediate:
             return self
         since = [one for one in (self.expected.since, other.expected.since) if one is not None]
@@ -70,7 +70,7 @@ class Proof:
 
 
 class StandStill:
-    """Of one machine; all times are seconds of one monotonic clock."""
+    """The watch over one machine; all times are seconds of one monotonic clock."""
 
     def __init__(self, model: MachineModel, border: Border, scale: float = 1.0) -> None:
         """`scale`: seconds of the machine in one second, the speed of a stand-in."""
@@ -83,8 +83,8 @@ class StandStill:
         self._marks: dict[str, dict[str, Place]] = {}
         self._angles: dict[str, float] = {}
         self._way = 0.0
-        self._quiet_since = -INFINITE  # when the last goal of ours ended: what it commanded may still be on its way
-        self._motion_at = -INFINITE  # when a motion was seen last
+        self._quiet_since = -INFINITE  # when our last goal ended: its last commands may still be on their way
+        self._motion_at = -INFINITE  # when a motion was last seen
 
     @property
     def dead_times(self) -> dict[str, float]:
@@ -107,7 +107,7 @@ class StandStill:
 
     @property
     def reached(self) -> float:
-        """Seconds of the machine after which it is where its reference was: dead time and lag of the slowest joint."""
+        """Dead time and lag of the slowest joint [s of the machine]: then it is where its reference was."""
         response = [one for name, one in self._model.response.items() if name != DRIVE]
         return max((one.dead_time for one in response), default=0.0) + max((one.lag for one in response), default=0.0)
 
@@ -125,7 +125,7 @@ class StandStill:
         return [one.label for one in self.sources.values() if one.source.stamps == "none"]
 
     def take(self, name: str, sample: Sample) -> None:
-        """One message of a source."""
+        """Take one message of a source."""
         source = self.sources[name]
         source.take(sample)
         if source.fast:
@@ -153,17 +153,17 @@ class StandStill:
         return {name: seen.speed for name, seen in last.items() if seen is not None and seen.speed is not None}
 
     def age(self, now: float) -> float:
-        """Seconds since the last word of the channel that is silent for longest, infinite before the first."""
+        """Seconds since the last sample of the channel that is silent for longest, infinite before the first."""
         return max((source.age(now) for source in self.sources.values()), default=INFINITE)
 
     def silent(self, now: float, limit: float) -> Reason | None:
-        """What was not heard for `limit` seconds."""
+        """The channel of which no sample has come for `limit` seconds."""
         if not self.sources:
             return NoSource()
         return next(filter(None, (source.silent(now, limit) for source in self.sources.values())), None)
 
     def trouble(self, now: float) -> Trouble | None:
-        """Why what is received cannot be believed; what does not pass comes first."""
+        """Why a source cannot be believed; a trouble that does not pass comes first."""
         found = [one for source in self.sources.values() if (one := source.trouble(now)) is not None]
         found += [Trouble(beyond) for beyond in [self._beyond()] if beyond is not None]
         return min(found, key=lambda one: one.passes, default=None)
@@ -181,15 +181,15 @@ class StandStill:
 
     @property
     def moved_at(self) -> float:
-        """When a motion was seen last [s]; infinitely long ago if never."""
+        """When a motion was last seen [s]; minus infinity if never."""
         return self._motion_at
 
     def moving(self) -> bool:
-        """Whether any of the last messages showed a motion, or something was not heard."""
+        """Whether any of the last messages showed a motion, or a channel has no samples."""
         return not self.sources or any(source.moving() for source in self.sources.values())
 
     def standing(self, now: float, passing: bool = False) -> bool:
-        """Whether it has been seen to stand for long enough, whatever came before; `passing`: by a new clock, too."""
+        """Whether it was seen to stand for long enough, with or without a stop; `passing`: also by a new clock."""
         trouble = self.trouble(now)
         return (trouble is None or (passing and trouble.passes)) and self._stands(-INFINITE, now)
 
@@ -198,30 +198,30 @@ class StandStill:
         return bool(self.sources) and all(one.proves(start, now, seconds) for one in self.sources.values())
 
     def settle(self, now: float) -> None:
-        """Take new clocks for good once the machine has stood by them for a while."""
+        """Accept new clocks once the machine has stood long enough by their stamps."""
         if any(source.new_clock for source in self.sources.values()):
             stands = self._stands(-INFINITE, now)
             for source in self.sources.values():
                 source.settle(now, stands)
 
     def accept_clocks(self) -> None:
-        """A person has looked at the machine."""
+        """Accept new clocks, as a person has looked at the machine."""
         for source in self.sources.values():
             source.accept_clock()
 
     # proof
 
     def commanded(self, now: float) -> None:
-        """A goal of ours moves the machine now."""
+        """Note that a goal of ours moves the machine now."""
         self._quiet_since = now
 
     def proof(self, begun: float, strongest: bool, expected: Expected = NOTHING) -> Proof:
         """What must be seen after a stop that was commanded at `begun`.
 
-        A strongest stop that acts at once (`emg_stop_at_once`) needs no dead time if it can be seen to act: the machine
-        moves, or nothing is on its way. Else one that ignores it would be believed to stand.
-        An expected motion that was never seen makes what is received doubtful, as a replayed record is: then nothing
-        counts before every motion must have ended, also that of a machine which goes on for a while.
+        A strongest stop that acts at once (`emg_stop_at_once`) needs no dead time if its effect can be seen: the
+        machine moves, or no command is on its way. Else a machine that ignores it would be believed to stand.
+        If an expected motion was never seen, the sources are doubtful (they may replay a record): then no sample counts
+        before every motion must have ended, also that of a machine which goes on for a while.
         """
         visible = self._motion_at > begun - WORST or begun - self._quiet_since > self.dead_time
         immediate = strongest and self._at_once and visible
@@ -231,7 +231,7 @@ class StandStill:
         return Proof(begun + wait, unseen, expected, self._model.still.seconds, immediate)
 
     def proven(self, proof: Proof, now: float) -> bool:
-        """Whether it was seen."""
+        """Whether all that the proof asks for was seen."""
         if self.trouble(now) is not None:
             return False
         return self._stands(max(self._start(proof), self._surprised() + self.dead_time + self.braking), now)
@@ -263,14 +263,14 @@ class StandStill:
         self._angles, self._way = {}, 0.0
 
     def travel(self) -> Travel:
-        """Furthest that each part was away since the mark."""
+        """How far each part has been from the mark at most."""
         angles = self._angles
         joint = max(angles, key=lambda name: angles[name], default="")
         return Travel(joint, angles.get(joint, 0.0), self._way)
 
 
 def _channels(name: str, model: MachineModel, resolution: float, scale: float) -> dict[str, Limits]:
-    """What a source tells of, and when that counts as standing."""
+    """The channels of a source, and when each counts as standing."""
     still, drive = model.still, model.drive
     if name == JOINTS:
         return {

@@ -1,8 +1,8 @@
-"""Stops a machine and proves it: commands at once, then watches until it was seen to stand, then a receipt.
+"""Stops a machine and proves it: commands at once, watches until the machine was seen to stand, publishes a receipt.
 
-The commands leave in the caller's thread, which is the executor thread for software stops and lost permits: nothing
-here waits for a database, a scheduler, a console, a disk or a lock that one of those holds. The order of a stop is
-command, proof, note, receipt: what is reported is on the disk.
+The commands leave in the caller's thread, which is the executor thread for software stops and lost permits: they
+wait for no database, scheduler, console or disk, and for no lock that one of those holds. The order of a stop is
+command, proof, note, receipt: a receipt is on the disk before it is published.
 """
 
 import threading
@@ -28,7 +28,7 @@ AGAIN = 0.5  # s between repeated commands while it is not proven
 STANDSTILL_CHECK_PERIOD = 0.01  # s
 
 STOPS = Counter("tms_rc_stops_total", "Stops by whether the machine was seen to stand", ["confirmed"])
-for _answer in ("yes", "no"):  # a series that only appears with its first stop has no increase to alert on
+for _answer in ("yes", "no"):  # a series that first appears with its first stop has no increase for an alert
     STOPS.labels(_answer)
 STOP_SECONDS = Histogram(
     "tms_rc_stop_seconds", "From the wish to stop until it was proven", buckets=(0.35, 0.5, 0.7, 1, 1.5, 2, 3, 5, 10)
@@ -43,16 +43,16 @@ class Stop:
     cause: Reason
     latched: bool
     run: int
-    ended: Callable[[], bool]  # whether the goal that was stopped is terminal
+    ended: Callable[[], bool]  # whether the stopped goal has ended
     begun: float  # s, monotonic, and on the wall clock:
     stamp: Time
     proof: Proof
-    broken: Reason | None = None  # why it cannot be confirmed whatever is seen: it had moved without a goal
+    broken: Reason | None = None  # why it cannot be confirmed in any case: the machine had moved without a goal
     receipt: StopReceipt | None = None
     over: threading.Event = field(default_factory=threading.Event)
 
     def wait(self, machine: str) -> StopReceipt:
-        """The receipt; an unconfirmed one when there is none in time."""
+        """Wait for the receipt; an unconfirmed one if none comes in time."""
         self.over.wait(STOP_PROVEN + 1.0)
         return self.receipt or StopReceipt(
             machine=machine, cause=to_line(self.cause), detail=to_line(NoEnd()), stamp=self.stamp,
@@ -61,7 +61,7 @@ class Stop:
 
 
 class Stopper:
-    """Of one machine; several stops may be under way."""
+    """Stops one machine; several stops may be under way."""
 
     def __init__(self, app: App, controls: Controls, watch: StandStill, note: Callable[[StopReceipt], None]) -> None:
         """`note` is called in the stop's own thread with the receipt, before it is sent, and may wait for the disk."""
@@ -90,7 +90,7 @@ class Stopper:
         self, cause: Reason, begun: float, stamp: Time, *, latched: bool, run: int = 0,
         ended: Callable[[], bool] = lambda: True, expected: Expected = NOTHING, broken: Reason | None = None,
     ) -> Stop:  # fmt: skip
-        """Have a stop watched that was wanted at `begun` [s, monotonic], `stamp`, and has been commanded by now.
+        """Watch over a stop that was asked for at `begun` [s, monotonic], `stamp`, and has been commanded by now.
 
         `expected`: see `StandStill.proof`.
         """
@@ -119,7 +119,7 @@ class Stopper:
                 self._app.ros.failed.set()
 
     def _watch_over(self, stop: Stop) -> None:
-        """Watch until the stop is proven, repeating the commands; then tell."""
+        """Repeat the commands until the stop is proven, then publish the receipt."""
         now, again = stop.begun, stop.begun + AGAIN
         while not self._seen(stop, now) and now - stop.begun < STOP_PROVEN:
             sleep(STANDSTILL_CHECK_PERIOD)
@@ -156,7 +156,7 @@ class Stopper:
         try:
             with self._keeping:
                 self._kept.keep(pack(receipt))
-        except OSError as error:  # told all the same, with what is wrong: a run must not wait for a full disk
+        except OSError as error:  # the receipt is published, with this error: a run must not wait for a full disk
             UNKEPT.inc()
             known, lost = wire.of(receipt.evidence), NotOnDisk(str(error.strerror))
             receipt.evidence = to_line(lost if known is None else Several((known, lost)))

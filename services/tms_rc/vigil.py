@@ -1,11 +1,11 @@
-"""A machine that was stopped stays proven to stand: one that moves without a goal is stopped again."""
+"""Watches a stopped machine: if it moves without a goal, it is stopped again."""
 
 LASTS = 0.2  # s for which a motion must be seen: one shake of the ground is none
 SETTLED = 5.0  # s after a re-arm for which it is still watched: some machines jump when their stop is released
 
 
 class Vigil:
-    """Looked at by the pulse; times are monotonic seconds."""
+    """The pulse asks it; times are monotonic seconds."""
 
     def __init__(self) -> None:
         self._watching = False
@@ -13,11 +13,11 @@ class Vigil:
         self._since: float | None = None
 
     def begin(self) -> None:
-        """It was stopped, or is held or latched."""
+        """Begin to watch: the machine was stopped, or is held or latched."""
         self._watching, self._until = True, None
 
     def end(self, now: float | None = None) -> None:
-        """A goal may move it again; or it was re-armed at `now`."""
+        """End the watch, as a goal may move the machine; after a re-arm at `now`, only after SETTLED."""
         self._watching, self._since = now is not None and self._watching, None
         self._until = None if now is None else now + SETTLED
 

@@ -1,7 +1,7 @@
 """Goals that this process sends.
 
-- Goals are sent on the executor thread only: rclpy books a goal's sequence number after sending it, so
-  from another thread the answer can come first and is lost.
+- Goals are sent on the executor thread only: rclpy notes a goal's sequence number after sending it, so
+  with another thread the answer can come first and is lost.
 - A client takes all feedback before the result, since rclpy forgets the feedback callback with the result
   and the last feedback carries the reason of a failure.
 """
@@ -41,7 +41,7 @@ class Call(Generic[R, F]):
         self.accepted = False
         self.outcome: Outcome | None = None  # set once the goal is terminal
         self.result: R | None = None  # of a goal that its server ended
-        self.feedback: F | None = None  # the last one
+        self.feedback: F | None = None  # the last feedback
         self._cancel_wanted = False
         self._handle: Any = None
         self._on_change, self._on_feedback = on_change, on_feedback
@@ -76,7 +76,7 @@ class Call(Generic[R, F]):
             return
         self._handle, self.accepted = handle, True
         handle.get_result_async().add_done_callback(self._finished)
-        if self._cancel_wanted:  # asked for before the server had answered: it must not get lost
+        if self._cancel_wanted:  # a cancel before the server's answer must not get lost
             self._send_cancel()
         self.changed()
 
@@ -86,14 +86,14 @@ class Call(Generic[R, F]):
         self.end(known.get(answer.status, Outcome.LOST), answer.result)
 
     def ask_again(self) -> None:
-        """Ask for the result once more: a reply to a client that is very new may be lost by discovery."""
+        """Ask for the result once more: the reply to a very new client may get lost before discovery is complete."""
         if self._handle is not None and self.outcome is None:
             self._handle.get_result_async().add_done_callback(self._finished)
 
     def resolve_unanswered(self, handle: ClientGoalHandle) -> None:
-        """Its answer is overdue: a server that does not know the goal says so, another one ends it."""
+        """Cancel a goal without an answer: a server that does not know it reports that, any other one ends it."""
         if self._handle is None and self.outcome is None:
-            self._cancel_wanted = True  # should the answer come after all
+            self._cancel_wanted = True  # in case the answer comes after all
             handle.cancel_goal_async()
             handle.get_result_async().add_done_callback(self._finished)
 
@@ -115,14 +115,14 @@ AnyCall = Call[Any, Any]  # of any action
 
 
 class Peer(Generic[G, R, F]):
-    """An action server elsewhere, as this process reaches it."""
+    """An action server elsewhere, and the client for it."""
 
     def __init__(self, loop: Loop, action_type: ActionType[G, R, F], name: str) -> None:
         self._loop, self.name = loop, name
         self._open: list[Call[R, F]] = []  # used on the executor thread only
         self._taken_by: frozenset[bytes] = frozenset()  # servers that could have taken the last goal
         self._dead_until = 0.0
-        self._dead: frozenset[bytes] = frozenset()  # servers that are known to be gone, though discovery is slower
+        self._dead: frozenset[bytes] = frozenset()  # servers that are known to be gone, before discovery drops them
         self._client = SureActionClient(
             loop.node, action_type, name, callback_group=loop.group, goal_service_qos_profile=SERVICE,
             result_service_qos_profile=SERVICE, cancel_service_qos_profile=SERVICE,
@@ -135,11 +135,11 @@ class Peer(Generic[G, R, F]):
         return not self._dead and bool(self._client.server_is_ready())
 
     def left(self) -> bool:
-        """Whether every server that could have taken the last goal is gone; its successor knows nothing of it."""
+        """Whether every server that could have taken the last goal is gone; a successor does not know the goal."""
         return not self.ready() or (bool(self._taken_by) and not self._taken_by & self._servers())
 
     def mark_alive(self) -> None:
-        """It was not dead, only frozen for a while."""
+        """Note that the server was not dead, only frozen for a while."""
         self._dead = frozenset()
 
     def _servers(self) -> frozenset[bytes]:
@@ -174,16 +174,16 @@ class Peer(Generic[G, R, F]):
             goal_id = UUID(uuid=list(call.id))
             future = self._client.send_goal_async(goal, feedback_callback=call.received, goal_uuid=goal_id)
             future.add_done_callback(lambda done: call.answered(done.result()))
-            self._taken_by = self._servers()  # takes a while: the goal is on its way meanwhile
+            self._taken_by = self._servers()  # after sending, as it takes a while
 
         self._loop.on_executor(send)
         return call
 
     def mark_lost(self) -> None:
-        """The process behind the server is gone: whatever it had accepted never ends by itself.
+        """End the goals that the server has accepted: its process is gone, so they never end by themselves.
 
-        Discovery counts it for some seconds more, and its successor has the same name: a goal sent before the
-        successor is there would get lost, so `ready` waits for a server that is not one of the old ones.
+        Discovery counts it for some seconds more, and its successor has the same name. A goal sent before the
+        successor serves would get lost, so `ready` waits for a server that is not one of the old ones.
         """
         self._dead, self._dead_until = self._taken_by, monotonic() + DISCOVERY_LEASE
         self._loop.on_executor(self._end_open)
@@ -194,15 +194,15 @@ class Peer(Generic[G, R, F]):
                 call.end(Outcome.LOST)
 
     def ask_again(self, call: Call[R, F]) -> None:
-        """Ask for a result that should be there by now. Returns at once."""
+        """Ask once more for a result that is overdue. Returns at once."""
         self._loop.on_executor(call.ask_again)
 
     def resolve_unanswered(self, call: Call[R, F]) -> None:
-        """Give up a goal that was not answered in time; it ends as LOST when the server knows nothing of it."""
+        """Give up a goal that was not answered in time; it ends as LOST if the server does not know it."""
         self._loop.on_executor(lambda: call.resolve_unanswered(self._client.handle_of(call.id)))
 
     def cancel(self, call: Call[R, F]) -> None:
-        """Ask for the end of a goal, also before it was accepted. Returns at once."""
+        """Cancel a goal, also before it was accepted. Returns at once."""
         self._loop.on_executor(call.cancel_now)
 
 

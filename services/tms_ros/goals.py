@@ -1,4 +1,4 @@
-"""What both sides of an action share: how a goal ends, and what a server says of it."""
+"""Types for both sides of an action: how a goal ends, and whether a server accepts it."""
 
 from collections.abc import Awaitable, Callable
 from enum import Enum
@@ -18,5 +18,5 @@ class Outcome(Enum):
 
 
 Ended = tuple[Outcome, R]  # SUCCEEDED, CANCELED or ABORTED, and the result
-# Why a goal is not accepted, which reaches the client as a feedback of that goal; None to accept it.
+# Returns why a goal is refused, which reaches the client as a feedback of that goal; None accepts it.
 Accept = Callable[[G], "Reason | Awaitable[Reason | None] | None"]

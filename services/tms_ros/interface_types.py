@@ -1,4 +1,4 @@
-"""What generated ROS classes look like to mypy, which knows their fields from stubs (`make interfaces`).
+"""Generated ROS classes as mypy sees them; it knows their fields from stubs (`make interfaces`).
 
 Services and actions are classes that hold others: a method here stands for the class of that name, which is called
 to make a message.
@@ -15,7 +15,7 @@ class Message(Protocol):
 
 
 class Coded(Message, Protocol):
-    """An answer that says why it is none: an empty code is success."""
+    """An answer with an error code; an empty code is success."""
 
     error_code: str
     error_msg: str
@@ -32,16 +32,16 @@ F = TypeVar("F", bound=Message)
 
 
 class Publisher(Protocol[M_in]):
-    """What sends the messages of a topic."""
+    """Sends the messages of a topic."""
 
-    def publish(self, message: M_in | bytes, /) -> None: ...  # bytes are a message as it is on the wire
+    def publish(self, message: M_in | bytes, /) -> None: ...  # bytes are a serialised message
     def assert_liveliness(self) -> None: ...
     def get_subscription_count(self) -> int: ...
     def wait_for_all_acked(self, timeout: Any) -> bool: ...
 
 
 class ServiceType(Protocol[Req, Res]):
-    """A service: what is asked and what is answered."""
+    """A service: its request and its response."""
 
     def Request(self) -> Req: ...
     def Response(self) -> Res: ...
@@ -49,7 +49,7 @@ class ServiceType(Protocol[Req, Res]):
 
 
 class ActionType(Protocol[G, R, F]):
-    """An action: what is wanted, how it ended, what is reported meanwhile."""
+    """An action: its goal, its result and its feedback."""
 
     def Goal(self) -> G: ...
     def Result(self) -> R: ...

@@ -3,7 +3,7 @@
 Why it is built this way (all measured with the rclpy in use):
 - One SingleThreadedExecutor in a thread of its own.
 - All callbacks share a reentrant group: with rclpy's default group, a callback that awaits an answer
-  keeps the answer from being delivered. One thread runs them all, so nothing runs at the same time.
+  keeps the answer from being delivered. One thread runs them all, so no two run at the same time.
 """
 
 import threading
@@ -29,11 +29,11 @@ from tms_reason.errors import RosError
 from tms_reason.reason import Reason
 from tms_ros.privates import TimedExecutor
 
-POLL = 0.02  # s between looks at the ROS graph, which has no cheap event in rclpy
+POLL = 0.02  # s between checks of the ROS graph, which has no cheap event in rclpy
 
 
 class Loop:
-    """A node, the thread that runs its callbacks, and what else runs there."""
+    """A node, the thread that runs its callbacks, and the steps and coroutines that run there, too."""
 
     def __init__(
         self,
@@ -51,12 +51,12 @@ class Loop:
                 name, namespace=namespace, context=self._context, start_parameter_services=False, enable_rosout=False
             )
         self.group = ReentrantCallbackGroup()
-        self._steady = Clock(clock_type=ClockType.STEADY_TIME)  # a node's own stands still when NTP sets it back
+        self._steady = Clock(clock_type=ClockType.STEADY_TIME)  # a node's own clock stands still when NTP sets it back
         self._executor = TimedExecutor(context=self._context)
         self._executor.add_node(self.node)
         self._coming, self._starting = deque[Callable[[], None]](), deque[Callable[[], Awaitable[None]]]()
-        self.failed = threading.Event()  # a thread of this node died of an exception: the process ends, not half of it
-        self.closing = False  # nothing can be sent any more
+        self.failed = threading.Event()  # a thread of this node died of an exception: the whole process must end
+        self.closing = False  # no message can be sent any more
         self._ends: list[Callable[[], None]] = []
         self._thread = self.begin(self._spin, "ros")
 
@@ -65,7 +65,7 @@ class Loop:
         return self._executor.busy_since
 
     def is_current(self) -> bool:
-        """Whether this is called on the executor thread."""
+        """Whether the caller is on the executor thread."""
         return threading.current_thread() is self._thread
 
     def thread_number(self) -> int | None:
@@ -77,7 +77,7 @@ class Loop:
         self._ends.append(step)
 
     def begin(self, work: Callable[[], None], name: str) -> threading.Thread:
-        """Start a thread that does this; when it dies of an exception, so does the process."""
+        """Start a thread that does `work`; if it dies of an exception, the process ends."""
 
         def run() -> None:
             try:
@@ -100,7 +100,7 @@ class Loop:
                 raise
 
     def stop(self) -> None:
-        """End the thread: nothing is received any more."""
+        """End the thread: no message is received any more."""
         self.closing = True
         for step in self._ends:
             step()
@@ -113,7 +113,7 @@ class Loop:
         rclpy.shutdown(context=self._context)
 
     def on_executor(self, step: Callable[[], None]) -> None:
-        """Run `step` on the executor thread, soon, behind those that were asked for before."""
+        """Run `step` on the executor thread, soon, after the steps of earlier calls."""
         if threading.current_thread() is self._thread:
             step()
         else:
@@ -121,7 +121,7 @@ class Loop:
             self._executor.create_task(lambda: self._coming.popleft()())  # rclpy runs the newest task first
 
     def start(self, step: Callable[[], Awaitable[None]]) -> None:
-        """Run a coroutine function on the executor thread, begun behind those that were asked for before."""
+        """Run a coroutine function on the executor thread; it begins after the steps of earlier calls."""
 
         async def oldest() -> None:
             await self._starting.popleft()()
@@ -157,20 +157,20 @@ class Loop:
         return self.node.create_timer(seconds, step, callback_group=self.group, clock=self._steady)
 
     def poll_in_thread(self, seconds: float, step: Callable[[], None], name: str) -> None:
-        """Call `step` at a fixed rate in a thread of its own, for what only samples: it costs a tenth of a timer."""
+        """Call `step` at a fixed rate in a thread of its own, if it only samples: this costs a tenth of a timer."""
 
         def sample() -> None:
             while not self.closing:
                 try:
                     step()
-                except InvalidHandle:  # the node is gone
+                except InvalidHandle:  # the node was destroyed
                     return
                 sleep(seconds)
 
         self.begin(sample, name)
 
     def after(self, seconds: float, step: Callable[[], None]) -> None:
-        """Call `step` on the executor thread once, in a while. On the executor thread only."""
+        """Call `step` on the executor thread once, after `seconds`. On the executor thread only."""
 
         def once() -> None:
             self.node.destroy_timer(timer)

@@ -12,11 +12,11 @@ from tms_ros.services import Services
 from tms_ros.topics import Topics
 
 WORKERS_LIMIT = 1.0  # s for the workers of served goals to stop their motions
-LAST_WORDS = 0.1  # s for results and reasons to leave before this process does
+LAST_WORDS = 0.1  # s for results and reasons to be sent before this process leaves
 
 
 class Ros:
-    """One node, made of its thread and times (loop.py), topics, services and actions; their methods are its own."""
+    """One node, with the methods of its thread and timers (loop.py), topics, services and actions."""
 
     def __init__(
         self, name: str, namespace: str = "/", process: str = "", creating: AbstractContextManager[None] | None = None
@@ -50,11 +50,11 @@ class Ros:
 
     @property
     def closing(self) -> bool:
-        """Nothing can be sent any more."""
+        """Whether no message can be sent any more."""
         return self.loop.closing
 
     def stop(self) -> None:
-        """Cancel what is served, give its workers a moment, and receive nothing any more."""
+        """Cancel the served goals, give their workers a moment, and end all reception."""
         self._served.leave(WORKERS_LIMIT)
         sleep(LAST_WORDS)
         self.loop.stop()
@@ -65,7 +65,7 @@ class Ros:
         self.leave()
 
     def peer(self, action_type: ActionType[G, R, F], name: str) -> Peer[G, R, F]:
-        """The action server called `name`; one client is kept for all goals."""
+        """The action server `name`; all goals use one client."""
         with self._making:
             if name not in self._peers:
                 self._peers[name] = Peer(self.loop, action_type, name)

@@ -1,4 +1,4 @@
-"""Messages as bytes."""
+"""Messages as bytes, and back."""
 
 from rclpy.serialization import deserialize_message, serialize_message
 
@@ -6,7 +6,7 @@ from tms_ros.interface_types import M, Message
 
 
 def pack(message: Message) -> bytes:
-    """A message as it would be on the wire."""
+    """A message, serialised as for the wire."""
     return bytes(serialize_message(message))
 
 

@@ -1,4 +1,4 @@
-"""What of rclpy is not public, in one place: a new release of rclpy is checked against tests/ros/test_privates.py."""
+"""All uses of rclpy's private parts: tests/ros/test_privates.py checks a new release of rclpy for them."""
 
 import warnings
 from collections.abc import Callable
@@ -21,10 +21,10 @@ Later = Callable[[float, Callable[[], None]], None]
 
 
 def send_surely(service: Any, later: Later) -> None:
-    """Have a service send its answers again when rmw drops them, and nothing for None; on the executor thread.
+    """Have a service send answers again that rmw drops, and no answer for None; on the executor thread.
 
-    A client sees a server a moment before the server sees the client's reader, longer while a whole site starts. rmw
-    waits 0.1 s for the reader, then drops the answer with a warning; the client would wait in vain.
+    A client discovers a server a moment before the server discovers the client's reader, and more while a whole site
+    starts. rmw waits 0.1 s for the reader, then drops the answer with a warning; the client would wait in vain.
     """
     send = service.send_response
 
@@ -33,7 +33,7 @@ def send_surely(service: Any, later: Later) -> None:
             warnings.simplefilter("always")
             try:
                 send(response, header)
-            except InvalidHandle:  # the service was taken away meanwhile, and an exception would end the executor
+            except InvalidHandle:  # the service was destroyed meanwhile, and an exception would end the executor
                 return
         dropped = [one for one in shown if DROPPED in str(one.message)]  # rclpy has no other sign of it
         if dropped and left > 1:
@@ -45,7 +45,7 @@ def send_surely(service: Any, later: Later) -> None:
 
 
 def take(subscription: Any) -> tuple[Any, float, int] | None:
-    """The oldest message that waits, when it was received [s, monotonic], and its publisher's number for it."""
+    """The oldest waiting message, when it was received [s, monotonic], and its number by its publisher."""
     with subscription.handle:
         taken = subscription.handle.take_message(subscription.msg_type, False)
     if taken is None:
@@ -56,7 +56,7 @@ def take(subscription: Any) -> tuple[Any, float, int] | None:
 
 
 class TimedExecutor(SingleThreadedExecutor):  # type: ignore[misc]
-    """Knows since when it has been in its present callback."""
+    """An executor that knows when its present callback began."""
 
     busy_since: float | None = None  # monotonic; None while it waits
 
@@ -69,7 +69,7 @@ class TimedExecutor(SingleThreadedExecutor):  # type: ignore[misc]
 
 
 class Asleep(CallbackGroup):  # type: ignore[misc]
-    """Of subscriptions that the executor must not wait for."""
+    """The group of subscriptions that must not wake the executor."""
 
     def can_execute(self, entity: Any) -> bool:
         """Never."""
@@ -85,7 +85,7 @@ class Asleep(CallbackGroup):  # type: ignore[misc]
 
 
 class NamingActionServer(ActionServer):  # type: ignore[misc]
-    """An action server that tells its goal callback which goal id is arriving."""
+    """An action server that gives its goal callback the id of the arriving goal."""
 
     arriving: Any = None
 
@@ -97,8 +97,8 @@ class NamingActionServer(ActionServer):  # type: ignore[misc]
 class SureActionClient(ActionClient):  # type: ignore[misc]
     """An action client that takes all waiting feedback before a result or a rejection.
 
-    A server drops its answer when it has not yet discovered a client that has long discovered it; its status, which
-    is kept for late comers, then tells that the goal was accepted.
+    A server drops its answer while it has not yet discovered a client that has long discovered it; its status topic,
+    which is latched, then shows that the goal was accepted.
     """
 
     def __init__(self, *args: Any, **settings: Any) -> None:
@@ -106,7 +106,7 @@ class SureActionClient(ActionClient):  # type: ignore[misc]
         self._known_by_status: set[int] = set()  # goal requests whose answer may still come
 
     def take_data(self) -> dict[str, Any]:
-        """What waits, with all feedback."""
+        """Take the waiting data, with all feedback."""
         data: dict[str, Any] = super().take_data()
         first = data.pop("feedback", None)
         waiting = [] if first is None else [first]
@@ -116,7 +116,7 @@ class SureActionClient(ActionClient):  # type: ignore[misc]
         return {"waiting": waiting, **data}
 
     async def execute(self, taken_data: dict[str, Any]) -> None:
-        """Feedback first, then answers, then what statuses tell."""
+        """Handle feedback first, then answers, then the acceptances that statuses show."""
         for message in taken_data.pop("waiting"):
             await super().execute({"feedback": message})
         if "goal" in taken_data and taken_data["goal"][0] in self._known_by_status:
@@ -134,10 +134,10 @@ class SureActionClient(ActionClient):  # type: ignore[misc]
                 await super().execute({"goal": (number, answer)})
 
     def forget(self, goal_id: bytes) -> None:
-        """Of a goal that has ended; rclpy itself forgets only those that had a result."""
+        """Drop the callback of a goal that has ended; rclpy itself drops only those of goals with a result."""
         self._feedback_callbacks.pop(goal_id, None)
 
     def handle_of(self, goal_id: bytes) -> ClientGoalHandle:
-        """A handle for a goal that the server has not answered, to ask whether it has it after all."""
+        """A handle for a goal without an answer, to ask the server whether it has the goal after all."""
         answer = self._action_type.Impl.SendGoalService.Response(accepted=True)
         return ClientGoalHandle(self, UUID(uuid=list(goal_id)), answer)

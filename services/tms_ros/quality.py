@@ -1,4 +1,4 @@
-"""Qualities of service, and why they are as they are."""
+"""Qualities of service, with the reasons for them."""
 
 from collections.abc import Sequence
 
@@ -18,7 +18,7 @@ SERVICE = QoSProfile(depth=100, durability=qos_profile_services_default.durabili
 
 
 def lease(seconds: float) -> QoSProfile:
-    """Latched; readers are told when a writer has not asserted itself for `seconds`."""
+    """Latched; DDS notifies readers when a writer has not asserted itself for `seconds`."""
     return QoSProfile(
         depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL, liveliness=LivelinessPolicy.MANUAL_BY_TOPIC,
         liveliness_lease_duration=Duration(seconds=seconds),
@@ -26,7 +26,7 @@ def lease(seconds: float) -> QoSProfile:
 
 
 def topic(depth: int, latched: bool, best_effort: bool = False) -> QoSProfile:
-    """`latched` keeps the last messages for late comers."""
+    """`latched`: readers that come later get the last messages."""
     durability = DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE
     reliability = ReliabilityPolicy.BEST_EFFORT if best_effort else ReliabilityPolicy.RELIABLE
     return QoSProfile(depth=depth, durability=durability, reliability=reliability)
@@ -35,7 +35,7 @@ def topic(depth: int, latched: bool, best_effort: bool = False) -> QoSProfile:
 def as_offered(offered: Sequence[QoSProfile]) -> QoSProfile:
     """For topics that this system did not define.
 
-    A reliable reader would not hear a best-effort writer, and a volatile one not what was said before it came.
+    A reliable reader would not receive from a best-effort writer, and a volatile reader no earlier messages.
     """
     latched = bool(offered) and all(one.durability == DurabilityPolicy.TRANSIENT_LOCAL for one in offered)
     found = topic(10, latched)
@@ -45,6 +45,6 @@ def as_offered(offered: Sequence[QoSProfile]) -> QoSProfile:
 
 
 def misfit(writer: QoSProfile, reader: QoSProfile) -> str:
-    """Why DDS does not connect two ends of a topic, in rclpy's words; empty when it does."""
+    """Why DDS does not connect two endpoints of a topic, in rclpy's words; empty when it does."""
     found, reason = qos_check_compatible(writer, reader)
     return str(reason).removeprefix("ERROR: ").rstrip("; ") if found == QoSCompatibility.ERROR else ""

@@ -1,4 +1,4 @@
-"""Goals that this process serves: a worker thread each.
+"""Goals that this process serves, each in a worker thread.
 
 Blocking callbacks in a MultiThreadedExecutor starve cancels, and `async` execute callbacks hang (measured with the
 rclpy in use); so rclpy's execute callback is never used.
@@ -57,7 +57,7 @@ class Goal(Generic[G, F]):
             self.publish(feedback)
 
     def cancel(self) -> None:
-        """What a cancel request does; also called when the process stops."""
+        """Handle a cancel request; also called when the process stops."""
         first = not self.cancelled.is_set()
         self.cancelled.set()
         step = self.on_cancel  # a copy: its worker may end this moment
@@ -73,12 +73,12 @@ class Served:
 
     def __init__(self, loop: Loop, topics: Topics) -> None:
         self._loop, self._topics = loop, topics
-        # By action and id; a goal on its handle would be a cycle, which is freed late.
+        # By action and id; a goal as an attribute of its handle would be a cycle, which is freed late.
         self._goals: dict[tuple[str, bytes], AnyGoal] = {}
         self._leaving = False
 
     def leave(self, seconds: float) -> None:
-        """Cancel what is served and give the workers `seconds` to stop their motions."""
+        """Cancel the served goals and give their workers `seconds` to stop the motions."""
         self._leaving = True
         for goal in list(self._goals.values()):
             goal.cancel()
@@ -93,7 +93,7 @@ class Served:
         run: Callable[[Goal[G, F]], Ended[R]],
         accept: Accept[G] | None = None,
     ) -> None:
-        """Serve an action: `run` in a worker thread a goal, `accept` on the executor thread before.
+        """Serve an action: `accept` runs on the executor thread, then `run` in a worker thread per goal.
 
         `run` must return soon after `goal.cancelled` is set. When it raises, the goal is aborted and the
         traceback logged.
@@ -136,7 +136,7 @@ class Served:
     ) -> None:
         goal = Goal(handle, action_type)
         self._goals[name, goal.uuid] = goal
-        if self._leaving:  # since the decision
+        if self._leaving:  # it began to leave after the decision
             goal.cancel()
         threading.Thread(target=self._work, args=(action_type, run, goal, name), name=name, daemon=True).start()
 
@@ -155,7 +155,7 @@ class Served:
         try:
             ended = run(goal)
         finally:
-            goal.on_cancel = None  # it refers to what the goal did, and that to the goal
+            goal.on_cancel = None  # it refers to the goal's objects, and they refer to the goal
             SECONDS.labels(name).observe(monotonic() - begun)
             GOALS.labels(name, ended[0].name.lower()).inc()
             self._loop.on_executor(lambda: self._deliver(name, goal, *ended))

@@ -1,4 +1,4 @@
-"""Services: offered, called, and asked from callbacks."""
+"""Services: served, called from threads, and called from callbacks."""
 
 import threading
 from collections.abc import Awaitable, Callable
@@ -17,11 +17,11 @@ from tms_ros.loop import POLL, Loop
 from tms_ros.privates import send_surely
 from tms_ros.reasons import BadServiceName, Internal, LostMeanwhile, NoAnswer, NoServer, ProcessLost
 
-SERVER_CHECK_PERIOD = 0.1  # s between looks whether a server that owes an answer is still there
+SERVER_CHECK_PERIOD = 0.1  # s between checks whether a server that must still answer exists
 
 
 class Services:
-    """The services of a node, offered and called."""
+    """The services that a node serves and calls."""
 
     def __init__(self, loop: Loop) -> None:
         self._loop = loop
@@ -34,7 +34,7 @@ class Services:
         name: str,
         handler: Callable[[Req, Res], Res | Awaitable[Res]],
     ) -> None:
-        """Offer a service; the handler runs on the executor thread and must be quick, or be a coroutine function."""
+        """Serve a service; the handler runs on the executor thread and must be quick, or be a coroutine function."""
         self._offered(service_type, name, handler)
 
     def _offered(self, service_type: ServiceType[Req, Res], name: str, handler: Callable[..., Any]) -> Any:
@@ -47,7 +47,7 @@ class Services:
     def offer_slow(
         self, service_type: ServiceType[Req, Res], name: str, handler: Callable[[Req, Res], Res | None]
     ) -> Any:
-        """Offer a service whose handler may block: each call runs in a thread of its own; None is no answer at all."""
+        """Serve a service whose handler may block: each call runs in a thread of its own; None sends no answer."""
 
         async def answer(request: Req, response: Res) -> Any:
             done = self._loop.create_future()
@@ -77,7 +77,7 @@ class Services:
             return self._clients[key]
 
     def prepare(self, service_type: ServiceType[Req, Res], name: str) -> None:
-        """Make the client of a service now, for requests that must not wait for discovery when they count."""
+        """Make the client of a service now, so that a later urgent request need not wait for discovery."""
         self._service(service_type, name)
 
     def call(
@@ -90,7 +90,7 @@ class Services:
     ) -> Res:
         """Call a service and wait for its answer; from worker threads only.
 
-        `lost` tells of a server that is known to be gone, so that nobody waits for what it will not say any more.
+        `lost` returns whether the server is known to be gone, so that the caller does not wait for its answer.
 
         Raises:
             RosError: NoServer or NoAnswer within `seconds`, or ProcessLost.
@@ -112,11 +112,11 @@ class Services:
         return answer
 
     def has_service(self, service_type: ServiceType[Req, Res], name: str) -> bool:
-        """Whether a service is there now."""
+        """Whether a service exists now."""
         return bool(self._service(service_type, name).service_is_ready())
 
     def call_unanswered(self, service_type: ServiceType[Req, Res], name: str, request: Req) -> None:
-        """Send a service request; nobody waits for its answer, which may never come."""
+        """Send a service request without waiting for its answer, which may never come."""
         client = self._service(service_type, name)
         self._loop.on_executor(lambda: client.remove_pending_request(client.call_async(request)))
 
@@ -125,7 +125,7 @@ class Services:
     ) -> Callable[[], None] | None:
         """Send a request; `answered` is called on the executor thread, where this must be called, too.
 
-        Returns what forgets the request, or None when the service is not there.
+        Returns a function that drops the request, or None when the service does not exist.
         """
         client = self._service(service_type, name)
         if not client.service_is_ready():
@@ -170,7 +170,7 @@ class Services:
 
 
 def _failed(response: Any, process: str) -> Any:
-    """What a caller receives when a handler has a bug."""
+    """The answer to a caller when a handler has raised."""
     if hasattr(response, "error_code") and isinstance(response.error_code, str):
         bug = Internal(process)
         response.error_code, response.error_msg = bug.code, to_line(bug)

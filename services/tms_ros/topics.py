@@ -1,7 +1,7 @@
-"""Topics: what is published, heard, sampled, and leased.
+"""Topics: published, subscribed, sampled, and leased.
 
-rclpy's own warnings of ends that do not fit are switched off: they are events that the executor waits for, and each
-topic's cost every wake-up 10 us, three quarters of it all. `tms_runtime.graph` tells the same.
+rclpy's own warnings of endpoints that do not fit are switched off: they are events that the executor waits for, and
+those of each topic cost every wake-up 10 us, three quarters of its time. `tms_runtime.graph` reports the same.
 """
 
 from collections.abc import Callable
@@ -22,11 +22,11 @@ from tms_ros.privates import Asleep, take
 
 @dataclass(frozen=True)
 class Arrival(Generic[M]):
-    """A message with what the middleware knows of its way."""
+    """A message, with its reception time and number."""
 
     message: M
     received: float  # s, monotonic
-    number: int  # of the publisher's messages
+    number: int  # counted by the publisher
 
 
 class Topics:
@@ -36,7 +36,7 @@ class Topics:
         self._loop = loop
 
     def publisher(self, message_type: type[M], topic: str, depth: int = 10, latched: bool = False) -> Publisher[M]:
-        """A reliable publisher; `latched` gives the last message to whoever comes later."""
+        """A reliable publisher; `latched`: subscribers that come later get the last message."""
         return self._published(message_type, topic, quality.topic(depth, latched))
 
     def _published(self, message_type: type[M], topic: str, quality_of_service: QoSProfile) -> Publisher[M]:
@@ -63,7 +63,7 @@ class Topics:
         )  # fmt: skip
 
     def delivered(self, publisher: Publisher[M], seconds: float) -> bool:
-        """Wait until all readers have what was published; False: not within `seconds`."""
+        """Wait until all readers have the published messages; False if they do not within `seconds`."""
         return bool(publisher.wait_for_all_acked(Duration(seconds=seconds)))
 
     def subscribe(
@@ -75,21 +75,21 @@ class Topics:
         latched: bool = False,
         best_effort: bool = False,
     ) -> Any:
-        """Call `heard` on the executor thread; depth 1 means that only the latest counts.
+        """Call `on_message` on the executor thread; depth 1 means that only the latest message counts.
 
-        A best-effort subscription also hears reliable publishers, a reliable one hears no best-effort publisher.
-        What waits is handled in one go: a turn of the executor for each message costs four times a callback's work.
+        A best-effort subscription also receives from reliable publishers, a reliable one not from best-effort ones.
+        Waiting messages are handled in one go: a turn of the executor for each costs four times a callback's work.
         """
         subscription: Any = None
 
         def all_that_wait(message: M) -> None:
             on_message(message)
-            if subscription is None:  # this one came before the assignment below
+            if subscription is None:  # this message came before the assignment below
                 return
             for _ in range(depth - 1):
                 try:
                     waiting = take(subscription)
-                except InvalidHandle:  # `heard` has ended the subscription
+                except InvalidHandle:  # `on_message` has ended the subscription
                     return
                 if waiting is None:
                     return
@@ -99,7 +99,7 @@ class Topics:
         return subscription
 
     def sample(self, message_type: type[M], topic: str, depth: int = 1) -> Callable[[], list[M]]:
-        """What asks for the last `depth` messages that came since it was asked last, oldest first; from any thread.
+        """A function that returns the last `depth` messages since its last call, oldest first; from any thread.
 
         Messages do not wake the executor, which costs more than to take them.
         """
@@ -109,7 +109,7 @@ class Topics:
     def sample_arrivals(
         self, message_type: type[M], topic: str, depth: int = 1, best_effort: bool = True
     ) -> Callable[[], list[Arrival[M]]]:
-        """As `sample`, with when each message came and its number; `best_effort`: lost ones are not asked for again."""
+        """As `sample`, with each message's reception time and number; `best_effort`: lost ones are not sent again."""
         subscription = self._subscribed(
             message_type, topic, _unheard, quality.topic(depth, False, best_effort=best_effort), Asleep()
         )
@@ -123,12 +123,12 @@ class Topics:
         return take_new
 
     def subscribe_raw(self, message_type: type[Message], topic: str, on_message: Callable[[bytes], None]) -> Any:
-        """Call `heard` with each message as it is on the wire, with the QoS of those who publish now."""
+        """Call `on_message` with each serialised message, with the QoS of the present publishers."""
         offered = [info.qos_profile for info in self._loop.node.get_publishers_info_by_topic(topic)]
         return self._subscribed(message_type, topic, on_message, quality.as_offered(offered), raw=True)
 
     def lease_publisher(self, message_type: type[M], topic: str, seconds: float) -> Publisher[M]:
-        """A latched publisher whose readers are told when it was not asserted for `seconds`."""
+        """A latched publisher; DDS notifies its readers when it was not asserted for `seconds`."""
         return self._published(message_type, topic, quality.lease(seconds))
 
     def lease_subscribe(
@@ -139,12 +139,12 @@ class Topics:
         on_message: Callable[[M], None],
         on_liveliness: Callable[[Any], None],
     ) -> Any:
-        """Call `on_message` with messages and `on_liveliness` with what DDS tells of those who assert the topic."""
+        """Call `on_message` with messages and `on_liveliness` with DDS's reports on the assertions of publishers."""
         return self._subscribed(message_type, topic, on_message, quality.lease(seconds), liveliness=on_liveliness)
 
 
 def _arrival(subscription: Any) -> Arrival[Any] | None:
-    """The oldest message that waits, and how it came."""
+    """The oldest waiting message, with its reception time and number."""
     taken = take(subscription)
     return None if taken is None else Arrival(*taken)
 

@@ -22,7 +22,7 @@ from tms_rp.reasons import Collision, Part
 from tms_rp.trajectory import Joints, Trajectory
 
 PADDING = 0.1  # m around the bodies that the arm moves
-STEP = 0.03  # rad, of the joint that moves most, between two looks
+STEP = 0.03  # rad, of the joint that moves most, between two checked samples
 
 Matrix = NDArray[np.float64]  # 4 x 4
 Body = str | Reason  # a link of this machine, or the name of an obstacle
@@ -31,7 +31,7 @@ Pair = tuple[Body, Body]
 
 @dataclass(frozen=True)
 class Obstacle:
-    """A body that stands: its name (as a reason says it), its box, and where its frame is in our base_link."""
+    """A body that does not move: its name in reasons, its box, and the place of its frame in our base_link."""
 
     name: Reason
     box: Box
@@ -39,7 +39,7 @@ class Obstacle:
 
 
 class Clearance:
-    """Looks along trajectories of one machine."""
+    """Checks trajectories of one machine."""
 
     def __init__(self, model: MachineModel) -> None:
         self._model = model
@@ -47,7 +47,7 @@ class Clearance:
         self._bodies = {link: _object(box, PADDING if link in moved else 0.0) for link, box in model.shapes.items()}
         self._inner = {link: _box_place(box) for link, box in model.shapes.items()}
         self._others: dict[tuple[Reason, Box], Any] = {}  # bodies of other machines: as many as the site has
-        self._looking = threading.Lock()  # over the places of all bodies
+        self._looking = threading.Lock()  # guards the places of all bodies
         parent = {origin.child: origin.parent for origin in model.geometry.values()}
         self._pairs = [
             (a, b) for a, b in combinations(self._bodies, 2) if parent.get(a) != b and parent.get(b) != a
@@ -55,7 +55,7 @@ class Clearance:
         self._moved = moved
 
     def check(self, made: Trajectory, obstacles: Sequence[Obstacle] = ()) -> None:
-        """Look at the whole trajectory. What touches at its start may part, but must be apart at its end.
+        """Check the whole trajectory. Bodies that touch at its start may part, but must be apart at its end.
 
         Raises:
             SubtaskFailed: Collision, with the two bodies and the time.

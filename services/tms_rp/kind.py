@@ -1,4 +1,4 @@
-"""What a kind of machine brings so that its motions are planned: one folder of `kinds`, whose KIND this is."""
+"""The parts with which a kind of machine makes its motions plannable; each folder of `kinds` has one as its KIND."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ class Moves:
 
 @dataclass(frozen=True)
 class Action:
-    """One action that is served: how its goal becomes moves, and whether they are executed.
+    """One served action: how its goal becomes moves, and whether they are executed.
 
     `plan` gets the planner, the present angles and the goal; it raises SubtaskFailed with a reason.
     """
@@ -35,6 +35,6 @@ class Action:
 class Kind:
     """A kind of machine whose motions are planned."""
 
-    joints: tuple[str, ...]  # that goals move
+    joints: tuple[str, ...]  # joints that goals move
     planner: Callable[[MachineModel], Any]  # raises ConfigError: the model is not of this kind
     actions: tuple[Action, ...]

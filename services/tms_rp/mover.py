@@ -21,24 +21,24 @@ from tms_rp.trajectory import Trajectory
 from tms_runtime.fence import derived
 
 SERVER_LIMIT = 3.0  # s for the gateway to be there
-ACCEPT_LIMIT = 5.0  # s for it to answer; it asks nobody before it does
+ACCEPT_LIMIT = 5.0  # s for the gateway to answer; it does so without calls of its own
 OVERRUN = 20.0  # s beyond the trajectory's own duration: the gateway gives up after 10 s and needs 5 s to stop
 MOTION_END_LIMIT = STOP_PROVEN + 2.0  # s for a cancelled motion to have ended
-GATEWAY_CHECK_PERIOD = 0.5  # s between looks whether the gateway is still there
+GATEWAY_CHECK_PERIOD = 0.5  # s between checks whether the gateway is still there
 
 Gateway = Peer[FollowJointTrajectory.Goal, FollowJointTrajectory.Result, FollowJointTrajectory.Feedback]
 Motion = Call[FollowJointTrajectory.Result, FollowJointTrajectory.Feedback]
 
 
 class Mover:
-    """The way to one machine's gateway."""
+    """Sends trajectories to one machine's gateway."""
 
     def __init__(self, peer: Gateway) -> None:
         self._peer, self._process = peer, process_of(peer.name)
         self._machine = self._process.split(":")[0]
 
     def move(self, goal: AnyGoal, made: Trajectory, say: Callable[[Reason], None]) -> Outcome:
-        """Execute `made` for `goal`, saying how far it is; SUCCEEDED, or CANCELED once the machine has stopped.
+        """Execute `made` for `goal` and report the progress; SUCCEEDED, or CANCELED once the machine has stopped.
 
         Raises:
             SubtaskFailed, RosError: anything else, with the reason; the motion was cancelled then.
@@ -66,7 +66,7 @@ class Mover:
             if monotonic() > deadline:
                 return MotionLate(self._machine, OVERRUN)
             if self._peer.left():
-                self._peer.mark_lost()  # it left in order, but without a result
+                self._peer.mark_lost()  # it ended in order, but without a result
             call.wait_for(lambda: _over(goal, call), min(GATEWAY_CHECK_PERIOD, deadline - monotonic()))
         return None
 
@@ -78,7 +78,7 @@ class Mover:
 
 
 class _Progress:
-    """Turns the controller's feedback into progress, each said once."""
+    """Turns the controller's feedback into progress, and reports each step once."""
 
     def __init__(self, made: Trajectory, say: Callable[[Reason], None]) -> None:
         self._made, self._say = made, say
@@ -87,7 +87,7 @@ class _Progress:
 
     def __call__(self, feedback: FollowJointTrajectory.Feedback) -> None:
         at = feedback.desired.time_from_start
-        # Not every controller fills in its time; then the clock tells it.
+        # Not every controller fills in its time; else the clock gives it.
         seconds = at.sec + at.nanosec * 1e-9 or monotonic() - self._begun
         number, percent = self._made.progress(seconds)
         progress = MoveOf(number, len(self._made.stops), percent)
@@ -104,7 +104,7 @@ def _verdict(goal: AnyGoal, call: Motion, name: str) -> Outcome:
     if call.outcome is Outcome.SUCCEEDED and not goal.cancelled.is_set():
         return Outcome.SUCCEEDED
     if goal.cancelled.is_set() and call.outcome not in (Outcome.ABORTED, Outcome.LOST):
-        return Outcome.CANCELED  # also when it arrived, or was refused, just before: nothing moves
+        return Outcome.CANCELED  # also if it arrived, or was refused, just before: the machine does not move
     if call.outcome is Outcome.LOST:
         raise SubtaskFailed(ProcessLost(LostMeanwhile(process_of(name), name)))
     why = wire.of(getattr(call.result, "error_string", "")) or NoReason()

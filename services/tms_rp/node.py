@@ -37,7 +37,7 @@ from tms_rp.trajectory import Trajectory, trajectory
 from tms_runtime.app import App
 
 FRESH = 1.0  # s, older joint states are no start for a motion
-JOINTS_PERIOD = 0.25  # s between looks at joint states, to know their age
+JOINTS_PERIOD = 0.25  # s between samples of joint states, to know their age
 
 PLANNING = Histogram("tms_rp_planning_seconds", "From goal to trajectory", buckets=(0.001, 0.005, 0.02, 0.05, 0.2, 1))
 
@@ -57,7 +57,7 @@ class Planner:
     def __init__(self, app: App) -> None:
         self._app = app
         self._model = app.site.model_of(app.machine)
-        assert self._model.planner is not None  # else the process table has no planner for the machine
+        assert self._model.planner is not None  # without it, the process table has no planner for the machine
         self.kind = load(self._model.planner)
         self._planner = self.kind.planner(self._model)
         self._clearance, self._neighbours = Clearance(self._model), Neighbours(app)
@@ -92,7 +92,7 @@ class Planner:
         return None if self._rc.ready() else GatewayAway(process_of(self._rc.name), self._rc.name)
 
     def joints(self) -> Angles:
-        """Where the arm is.
+        """The present joint angles of the arm.
 
         Raises:
             SubtaskFailed: JointsUnheard, JointsOld.
@@ -108,7 +108,7 @@ class Planner:
         return last[1]
 
     def serve(self, action: Action, name: str) -> None:
-        """Offer one action under its full name."""
+        """Serve one action under its full name."""
 
         def accept(_request: Any) -> Reason | None:
             if action.moves and self._busy:
@@ -153,7 +153,7 @@ class Planner:
         return outcome
 
     def _plan(self, action: Action, goal: AnyGoal) -> tuple[Trajectory, tuple[Reason, ...]]:
-        """The trajectory, and what of the goal was changed for it."""
+        """The trajectory, and the changes to the goal that it needed."""
         begun = monotonic()
         now = self.joints()
         moves = action.plan(self._planner, now, goal.request)
@@ -173,7 +173,7 @@ class Planner:
         return made, moves.notes
 
     def _trajectory(self, now: Angles, moves: Moves) -> Trajectory:
-        """Through all targets; joints that no kind of goal moves (the tool frame) stay at 0."""
+        """The trajectory through all targets; joints that no kind of goal moves (the tool frame) stay at 0."""
 
         def all_joints(pose: Angles) -> tuple[float, ...]:
             angles = dict(zip(self.kind.joints, pose, strict=True))

@@ -16,7 +16,7 @@ from tms_reason.errors import SubtaskFailed
 from tms_rp.reasons import LimitsLeft, NoTrajectory
 
 STEP = 0.05  # s, at most, between two samples
-ROUNDING = 1e-6  # of the limit: what floating-point arithmetic may add
+ROUNDING = 1e-6  # share of the limit that floating-point arithmetic may add
 
 Joints = tuple[float, ...]
 
@@ -72,7 +72,7 @@ def trajectory(
     for target in targets:
         samples += _move(limits, samples[-1], tuple(target), step)
         stops.append(samples[-1].time)
-    if len(samples) == 1:  # nothing moves: a controller still wants a second point
+    if len(samples) == 1:  # no joint moves: a controller still needs a second point
         samples.append(_rest(step, samples[0].positions))
     _check(joints, samples, targets)
     return Trajectory(tuple(joints), tuple(samples), tuple(stops))
@@ -116,7 +116,7 @@ def _profile(limits: Sequence[Joint], start: Joints, target: Joints) -> Profile:
 
 
 def _check(joints: dict[str, Joint], samples: Sequence[Sample], targets: Sequence[Sequence[float]]) -> None:
-    """Refuse samples outside the limits, whatever made them."""
+    """Refuse samples outside the limits, also if ruckig made them."""
     for i, (name, joint) in enumerate(joints.items()):
         reached = [samples[0].positions[i], *(target[i] for target in targets)]
         low = min(reached) if joint.min is None else min(joint.min, *reached)

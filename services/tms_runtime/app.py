@@ -1,4 +1,4 @@
-"""What the runtime gives to every process."""
+"""The objects that the runtime gives to every process."""
 
 import threading
 from collections.abc import Callable
@@ -34,7 +34,7 @@ class App:
         return self.process.machine
 
     def ready_when(self, unready: Callable[[], Reason | None]) -> None:
-        """Say how to tell why this process cannot work now; None means that it can."""
+        """Set the function that returns why this process cannot work now, or None if it can."""
         self._unready = unready
 
     def unready(self) -> Reason | None:
@@ -46,7 +46,7 @@ class App:
         self._cleanup.append(step)
 
     def stop(self) -> None:
-        """Run what was registered; called once by the runtime."""
+        """Run the registered steps; called once by the runtime."""
         self.stopping.set()
         for step in reversed(self._cleanup):
             step()

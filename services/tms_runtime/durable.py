@@ -1,4 +1,4 @@
-"""Files that are there after a power cut: what was written is on the disk, and so is the name it is found by."""
+"""Files that survive a power cut: their content is on the disk, and so is their name in the folder."""
 
 import os
 from contextlib import suppress
@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 def sync_folder(folder: Path) -> None:
-    """Put the names in a folder on the disk: those of files just made, renamed or removed."""
+    """Sync the names in a folder to the disk: those of files just made, renamed or removed."""
     file = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:
         os.fsync(file)
@@ -15,7 +15,7 @@ def sync_folder(folder: Path) -> None:
 
 
 def make_folder(folder: Path) -> None:
-    """Make a folder and those above it, as far as they are missing."""
+    """Make a folder and the folders above it, as far as they are missing."""
     if not folder.is_dir():
         make_folder(folder.parent)
         folder.mkdir(exist_ok=True)
@@ -29,7 +29,7 @@ def replace(path: Path, data: bytes) -> None:
         OSError: the disk is full or fails.
     """
     make_folder(path.parent)
-    part = path.with_name(path.name + ".part")  # files that differ in their suffix alone are written side by side
+    part = path.with_name(path.name + ".part")  # files that differ only in their suffix are written at the same time
     file = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
     try:
         write_all(file, data)
@@ -48,7 +48,7 @@ def write_all(file: int, data: bytes) -> None:
 
 
 def set_aside(path: Path) -> Path:
-    """Rename a file that cannot be read, for a person to look at; where even that fails, it stays where it is."""
+    """Rename a file that cannot be read, for a person to inspect; if that fails, it keeps its name."""
     aside = path.with_name(path.name + ".unreadable")
     with suppress(OSError):
         path.replace(aside)

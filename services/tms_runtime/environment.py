@@ -14,13 +14,13 @@ LOOPBACK = "<address>127.0.0.1</address>"
 
 
 def environment(site: Site) -> dict[str, str]:
-    """What a process of this site needs beside PATH and HOME.
+    """The variables that a process of this site needs in addition to PATH and HOME.
 
     Raises:
         ConfigError: it is not known which PC of the site this is, or its address is not known.
     """
     server = pcs.discovery_server(site)
-    # A super client hears of all endpoints, not only of those that it uses: preflight asks for others' servers.
+    # A super client discovers all endpoints, not only those that it uses: preflight asks for others' servers.
     discovery = {"ROS_DISCOVERY_SERVER": server, "ROS_SUPER_CLIENT": "TRUE"} if server else {}
     return {
         **discovery,
@@ -32,7 +32,7 @@ def environment(site: Site) -> dict[str, str]:
         "RMW_FASTRTPS_USE_QOS_FROM_XML": "1",  # heartbeats: see the profile
         "TMS_SITE": str(site.path),
         "TMS_STATE": str(site.state),
-        "OPENBLAS_NUM_THREADS": "1",  # numpy comes with rclpy; its threads are of no use here
+        "OPENBLAS_NUM_THREADS": "1",  # rclpy loads numpy, whose threads are of no use here
         "HOME": os.environ.get("HOME") or str(Path("/tmp")),  # rclpy does not start without one
         "PYTHONPATH": str(PROJECT / "services"),
         "PYTHONUNBUFFERED": "1",
@@ -40,7 +40,7 @@ def environment(site: Site) -> dict[str, str]:
 
 
 def _profile(site: Site) -> Path:
-    """The loopback profile; on a site of several PCs the same with this PC's address beside it."""
+    """The loopback profile; on a site of several PCs, a copy with this PC's address added."""
     if not site.file.pcs:
         return PROFILE
     pcs.required(site)

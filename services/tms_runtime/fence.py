@@ -1,7 +1,7 @@
-"""Fencing numbers: which run, leaf and process a goal comes from, told by the goal's UUID.
+"""Fencing numbers: the goal's UUID says which run, leaf and process the goal comes from.
 
-The client of an action chooses the UUID, so the types on the wire stay as they are and the gateway can still tell
-the goals of the present run from late ones of an abandoned run. Pure logic.
+The client of an action chooses the UUID. So the types on the wire stay unchanged, and the gateway can distinguish
+goals of the present run from late goals of an abandoned run. Pure logic.
 """
 
 import secrets
@@ -25,12 +25,12 @@ class Owner:
         return head + secrets.token_bytes(3)
 
     def next(self) -> "Owner":
-        """The owner of goals that this one's server sends on."""
+        """The owner of goals that the server of this owner's goal sends on."""
         return replace(self, hop=self.hop + 1)
 
 
 def parse(goal_id: bytes) -> Owner | None:
-    """The owner told by a goal's UUID, None for a foreign client's."""
+    """The owner in a goal's UUID; None for a foreign client's goal."""
     if len(goal_id) != 16 or not goal_id.startswith(MAGIC):
         return None
     return Owner(int.from_bytes(goal_id[4:10], "big"), int.from_bytes(goal_id[10:12], "big"), goal_id[12])

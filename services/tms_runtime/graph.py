@@ -1,4 +1,4 @@
-"""What a process sees of the ROS graph: how many ends it is connected to, and which ones it cannot be connected to."""
+"""A process's part of the ROS graph: how many endpoints it is connected to, and which it cannot connect to."""
 
 from itertools import product
 from typing import Any
@@ -9,24 +9,24 @@ from tms_runtime import metrics
 from tms_runtime.log import Logger
 from tms_runtime.reasons import NotConnected
 
-GRAPH_CHECK_PERIOD = 5.0  # s between looks
-UNKNOWN = "_NODE_NAME_UNKNOWN_"  # of an end that discovery has found a moment before its node
+GRAPH_CHECK_PERIOD = 5.0  # s between checks
+UNKNOWN = "_NODE_NAME_UNKNOWN_"  # of an endpoint that was discovered a moment before its node
 RCLPYS_OWN = "/parameter_events"
-TOPICS = 20  # looked at in one go: each takes some 0.3 ms of the executor
+TOPICS = 20  # topics per check: each takes some 0.3 ms of the executor
 
 
 class Graph:
-    """Looks from time to time; an end that does not fit is reported in the log when it is seen first."""
+    """Checks the graph periodically; logs an endpoint that does not fit when it is first seen."""
 
     def __init__(self, ros: Ros, log: Logger) -> None:
         self._ros, self._log = ros, log
         self._peers: dict[str, tuple[int, int]] = {}
-        self._changed: list[str] = []  # topics that are still to be looked at
+        self._changed: list[str] = []  # topics that are still to be checked
         self._reported: dict[str, set[NotConnected]] = {}  # by topic
         ros.every(GRAPH_CHECK_PERIOD, self.check)
 
     def check(self) -> None:
-        """On the executor thread; also called by itself."""
+        """Check the graph; on the executor thread, where it is also called periodically."""
         readers, writers, nodes = endpoint_counts(self._ros)
         metrics.ENDPOINTS.labels("readers").set(readers)
         metrics.ENDPOINTS.labels("writers").set(writers)
@@ -65,7 +65,7 @@ def peer_counts(ros: Ros) -> dict[str, tuple[int, int]]:
 
 
 def mismatches(ros: Ros, topic: str) -> set[NotConnected] | None:
-    """What of others is on a topic of ours but not connected to us, and why; None while one's name is not known."""
+    """Others' endpoints on a topic of ours without a connection to us, and why; None while a name is unknown."""
     writers = ros.node.get_publishers_info_by_topic(topic)
     readers = ros.node.get_subscriptions_info_by_topic(topic)
     if any(end.node_name == UNKNOWN for end in [*writers, *readers]):
@@ -79,7 +79,7 @@ def mismatches(ros: Ros, topic: str) -> set[NotConnected] | None:
 
 
 def _mismatch(writer: Any, reader: Any) -> str:
-    """Why DDS does not connect two ends of a topic; empty when it does."""
+    """Why DDS does not connect two endpoints of a topic; empty when it does."""
     if writer.topic_type != reader.topic_type:
         return f"{writer.topic_type} is not {reader.topic_type}"
     return misfit(writer.qos_profile, reader.qos_profile)

@@ -1,4 +1,4 @@
-"""Whether the executor of a process still runs: its health port tells, and the host agent restarts one that hangs."""
+"""Checks whether a process's executor still runs: the health port reports it, the host agent restarts the process."""
 
 from tms_config.clock import monotonic
 from tms_reason.reason import Reason
@@ -9,14 +9,14 @@ HANGS = 5.0  # s after which an executor that does not run counts as hanging
 
 
 class Hanging:
-    """Looks at the executor of one node."""
+    """Checks the executor of one node."""
 
     def __init__(self, ros: Ros) -> None:
         self._ros = ros
-        self._asked: float | None = None  # monotonic time since which the executor has not shown itself
+        self._asked: float | None = None  # monotonic time of the request that the executor has not answered
 
     def check(self) -> Reason | None:
-        """Asks the executor to show itself; why it should be restarted when it has not done so since it was asked."""
+        """Ask the executor for an answer; returns why it must be restarted if it has not answered the last request."""
         asked = self._asked
         if asked is not None:
             seconds = monotonic() - asked

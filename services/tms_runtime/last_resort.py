@@ -10,7 +10,7 @@ import ctypes
 import os
 import time
 
-LEAVE_LIMIT = 1.0  # s to leave the ROS graph; without its goodbye, the others forget a process after some seconds
+LEAVE_LIMIT = 1.0  # s to leave the ROS graph; without its goodbye, other processes drop this one after some seconds
 SIGEV_THREAD = 2  # of <signal.h>: the timer calls a function in a thread of its own
 
 
@@ -28,7 +28,7 @@ class _Event(ctypes.Structure):
 
 
 class _Time(ctypes.Structure):
-    """`struct itimerspec`; no interval, so it comes once."""
+    """`struct itimerspec`; without an interval, the timer expires once."""
 
     _fields_ = (
         ("interval_s", ctypes.c_long),
@@ -39,10 +39,10 @@ class _Time(ctypes.Structure):
 
 
 def end_after(seconds: float, code: int) -> None:
-    """End this process with an exit code in a while (more than 0 s), unless it has ended by itself.
+    """End this process with an exit code after `seconds` (more than 0), unless it has ended by itself.
 
     Raises:
-        OSError: the system gives no timer.
+        OSError: the system has no timer left.
     """
     library = ctypes.CDLL(None, use_errno=True)
     event = _Event(value=code, notify=SIGEV_THREAD, function=ctypes.cast(library._exit, ctypes.c_void_p))

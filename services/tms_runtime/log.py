@@ -1,4 +1,4 @@
-"""One line an event: `key=value` for people, or a JSON object for Loki; process, run and goal are bound to it.
+"""One line per event: `key=value` for people, or a JSON object for Loki, with process, run and goal.
 
 A goal's worker thread binds `goal` and `run` (structlog.contextvars), so everything that it logs carries them; threads
 that it starts do not.
@@ -24,8 +24,8 @@ from tms_runtime.fence import parse
 Logger = structlog.stdlib.BoundLogger
 
 GOAL_ID = re.compile("[0-9a-f]{32}")
-BREAKS = str.maketrans({"\n": "\\n", "\r": "\\r"})  # an event is one line, whatever its text holds
-FIRST = ("process", "machine", "run", "goal", "event")  # keys, in this order; the others follow as they were given
+BREAKS = str.maketrans({"\n": "\\n", "\r": "\\r"})  # an event is one line, also if its text has line breaks
+FIRST = ("process", "machine", "run", "goal", "event")  # keys in this order; the others follow in the caller's order
 WAITING = 10_000  # lines at most that wait for a reader of stdout
 LOST = Counter("tms_log_lines_lost_total", "Log lines that nobody read in time")
 
@@ -33,7 +33,7 @@ _listeners: list["Listener"] = []
 
 
 class Queue(QueueHandler):
-    """A thread that logs waits for no reader: a full pipe would stand still with everything that stops machines."""
+    """A thread that logs does not wait for the reader of stdout: a full pipe would block the stop of machines."""
 
     def enqueue(self, record: logging.LogRecord) -> None:
         """Take a finished line, or count that it was lost."""
@@ -44,16 +44,16 @@ class Queue(QueueHandler):
 
 
 class Listener(QueueListener):
-    """Writes what waits to stdout."""
+    """Writes waiting lines to stdout."""
 
     def enqueue_sentinel(self) -> None:
-        """Wait for room where the standard library would fail: what waits is still to be written."""
+        """Wait for room where the standard library would fail: waiting lines must still be written."""
         assert isinstance(self.queue, queue.Queue)
         self.queue.put(None)
 
 
 def setup(process: str, machine: str | None = None, *, level: str = "INFO", as_json: bool = False) -> Logger:
-    """Send everything to stdout, which supervisord keeps and rotates; returns the process's logger."""
+    """Log to stdout, which supervisord keeps and rotates; returns the process's logger."""
     fields = {"process": process, **({"machine": machine} if machine else {})}
     lines: queue.Queue[logging.LogRecord] = queue.Queue(WAITING)
     handler = Queue(lines)
@@ -74,13 +74,13 @@ def setup(process: str, machine: str | None = None, *, level: str = "INFO", as_j
 
 
 def close() -> None:
-    """Write what waits; a reader that does not read is waited for."""
+    """Write the waiting lines; this waits for a reader that does not read."""
     while _listeners:
         _listeners.pop().stop()
 
 
 def formatter(fields: dict[str, str], as_json: bool) -> logging.Formatter:
-    """Lines of this process; libraries that use the standard library's loggers come out the same way."""
+    """The format of this process's lines, also for libraries that use the standard library's loggers."""
 
     def about(_logger: WrappedLogger, method: str, event: EventDict) -> EventDict:
         return {"level": method.upper(), **fields, **event}
@@ -100,7 +100,7 @@ def formatter(fields: dict[str, str], as_json: bool) -> logging.Formatter:
 
 
 def _run_of_goal(_logger: WrappedLogger, _method: str, event: EventDict) -> EventDict:
-    """The run that a goal belongs to, as its id tells."""
+    """Add the run that a goal belongs to, from the goal's id."""
     goal = event.get("goal")
     owner = parse(bytes.fromhex(goal)) if isinstance(goal, str) and GOAL_ID.fullmatch(goal) else None
     return event if owner is None else {**event, "run_number": owner.run}

@@ -1,7 +1,7 @@
 """Metrics and health of a process on its own port: /metrics, /healthz (alive), /readyz (can work).
 
-Which process, machine and role a figure belongs to is reported by the scrape target's labels, not by every metric.
-Labels in a metric take their values from the code or from the process table, never from data.
+The labels of the scrape target, not of each metric, name process, machine and role of a figure.
+Labels of a metric take their values from the code or from the process table, never from data.
 """
 
 import asyncio
@@ -26,22 +26,22 @@ ENDPOINTS = Gauge("tms_ros_matched_endpoints", "Remote ends that this process is
 NODES = Gauge("tms_ros_nodes", "Nodes that this process sees in its domain")
 STOOD_STILL = Counter("tms_stood_still_seconds", "Time in which this PC did not run the process, or it was frozen")
 
-MAX_CONNECTIONS = 64  # connections; the oldest that has asked nothing yet gives way
-BACKLOG = 512  # connections that wait to be taken; beyond it the system keeps them waiting for a second and more
-REQUEST_LIMIT = 5.0  # s for a request to be there, and again for its answer to be taken
-LONGEST = 8192  # bytes of a request's line and headers
+MAX_CONNECTIONS = 64  # connections; beyond it, the oldest one without a request is closed
+BACKLOG = 512  # connections that wait to be accepted; beyond it, the system makes them wait for a second or more
+REQUEST_LIMIT = 5.0  # s for a request to arrive, and again for its answer to be read
+LONGEST = 8192  # bytes of a request's first line and headers
 END = b"\r\n\r\n"
 REQUEST = re.compile(rb"([A-Z]{1,20}) (/[!-~]*) HTTP/1\.[0-9]\r\n")
 
 
 def unready(row: Process, seconds: float = 2.0) -> Reason | None:
-    """Why a process cannot work now, as it says itself on its port; None when it can."""
+    """Why a process cannot work now, from its health port; None when it can."""
     asked = http.client.HTTPConnection(row.address, row.port, timeout=seconds)
     try:
         asked.request("GET", "/readyz")
         answer = asked.getresponse()
         text = answer.read().decode("utf-8", "replace").strip()
-    except (OSError, http.client.HTTPException):  # also one that ends while it answers
+    except (OSError, http.client.HTTPException):  # also of a process that ends while it answers
         return PortSilent(row.full)
     finally:
         asked.close()
@@ -51,7 +51,7 @@ def unready(row: Process, seconds: float = 2.0) -> Reason | None:
 class Health:
     """HTTP server of one process; `unready` returns why it cannot work, `hangs` why it needs a restart, or None.
 
-    One thread for all connections, which sleeps while nobody asks. Each connection is for one answer.
+    One thread serves all connections and sleeps while there is no request. Each connection is for one answer.
     """
 
     def __init__(
@@ -64,7 +64,7 @@ class Health:
     ) -> None:
         self._answer = lambda path: _answer(path, unready, hangs, registry)
         try:
-            self._socket = socket.create_server((bind, port), backlog=BACKLOG)  # asks no name server
+            self._socket = socket.create_server((bind, port), backlog=BACKLOG)  # without a call of a name server
         except OSError as error:
             raise ConfigError(PortTaken(port, bind, str(error.strerror))) from error
         self._loop, self._stop = asyncio.new_event_loop(), asyncio.Event()
@@ -73,7 +73,7 @@ class Health:
         self._thread.start()
 
     def close(self) -> None:
-        """Free the port; whoever is connected gets no answer."""
+        """Close the port; open connections get no answer."""
         self._loop.call_soon_threadsafe(self._stop.set)
         self._thread.join()
 
@@ -86,7 +86,7 @@ class Health:
             lambda: _Connection(self._connections, self._answer), sock=self._socket, backlog=BACKLOG
         )
         await self._stop.wait()
-        self._loop.remove_reader(self._socket)  # nobody else is taken; asyncio would lose who is being taken now
+        self._loop.remove_reader(self._socket)  # asyncio would lose a connection that is being accepted now
         self._connections.limit = 0
         while self._connections.drop_oldest() or len(asyncio.all_tasks()) > 1:
             await asyncio.sleep(0)
@@ -95,7 +95,7 @@ class Health:
 
 
 class _Connections:
-    """Those that are open, in the order in which they came, or were answered."""
+    """The open connections, in the order in which they came, or were answered."""
 
     def __init__(self) -> None:
         self.limit = MAX_CONNECTIONS
@@ -139,9 +139,9 @@ class _Connection(asyncio.Protocol):
         if END in self._request or len(self._request) > LONGEST:
             self._time.cancel()
             self._limit_time()
-            self._connections.add(self._transport)  # those that have not asked yet go first
+            self._connections.add(self._transport)  # connections without a request are closed first
             self._transport.write(self._response())
-            self._transport.close()  # once it is written
+            self._transport.close()  # closes once the answer is written
 
     def connection_lost(self, exc: Exception | None) -> None:
         self._time.cancel()

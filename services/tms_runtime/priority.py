@@ -1,4 +1,4 @@
-"""Which threads get a processor first on a busy PC. Needs CAP_SYS_NICE; without it nothing changes."""
+"""Which threads get a processor first on a busy PC. Needs CAP_SYS_NICE; without it, these functions do nothing."""
 
 import os
 import threading
@@ -8,20 +8,20 @@ from pathlib import Path
 
 
 def threads() -> set[int]:
-    """Of this process."""
+    """The numbers of this process's threads."""
     return {int(thread.name) for thread in Path("/proc/self/task").iterdir()}
 
 
 def come_first(nice: int, numbers: set[int]) -> None:
-    """Give these threads a share of the processors: -20 is the largest, 0 is usual. Those they start inherit it."""
+    """Give these threads a share of the processors: -20 is the largest, 0 is usual. Threads they start inherit it."""
     for number in numbers:
-        with suppress(ProcessLookupError, PermissionError):  # it has ended; or without the right to
+        with suppress(ProcessLookupError, PermissionError):  # the thread has ended, or this process lacks the right
             os.setpriority(os.PRIO_PROCESS, number, nice)
 
 
 def session_first(pid: int, nice: int) -> None:
     """Give the login session of a process a share: Linux weighs sessions before it weighs processes (autogroup)."""
-    with suppress(OSError):  # without the right to; or no such thing here
+    with suppress(OSError):  # this process lacks the right, or the kernel has no autogroups
         Path(f"/proc/{pid}/autogroup").write_text(str(nice), encoding="ascii")
 
 
@@ -29,31 +29,31 @@ def waited(numbers: set[int]) -> float:
     """How long these threads have waited for a processor since they began [s]; 0.0 where the kernel does not count."""
     found = 0.0
     for number in numbers:
-        with suppress(OSError):  # it has ended; or a kernel without this count
+        with suppress(OSError):  # the thread has ended, or the kernel does not count
             found += int(Path(f"/proc/self/task/{number}/schedstat").read_text("ascii").split()[1]) * 1e-9
     return found
 
 
 def others() -> set[int]:
-    """All threads but the one that asks."""
+    """All threads but the calling one."""
     return threads() - {threading.get_native_id()}
 
 
 @contextmanager
 def undisturbed() -> Iterator[None]:
-    """No other process takes this thread's processor, where the system allows it (CAP_SYS_NICE or LimitRTPRIO).
+    """Keep other processes from this thread's processor, where the system allows it (CAP_SYS_NICE or LimitRTPRIO).
 
     Fast DDS announces a participant a moment before it listens. On a PC with forty processes, all of them wake up to
-    answer; if they run before the participant listens, it hears of them only with their next announcement: measured
-    2.1 s instead of 0.25 s. It takes 3 ms, in a program that has to load the middleware first 25 ms.
+    answer; if they run before the participant listens, it discovers them only with their next announcement: measured
+    2.1 s instead of 0.25 s. This takes 3 ms, in a program that has to load the middleware first 25 ms.
 
-    Threads that are started meanwhile do not come first: theirs are some hundred milliseconds of answers to read, and
-    seven processes that started at once kept everything else on the PC from its two processors for up to 2.8 s.
+    Threads that are started meanwhile do not come first: they read answers for some hundred milliseconds, and seven
+    processes that started at once kept all others on the PC from its two processors for up to 2.8 s.
     """
     before = threads()
     try:
         os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(1))
-    except OSError:  # not allowed, or not known here
+    except OSError:  # the system does not allow it, or does not have it
         yield
         return
     try:

@@ -1,9 +1,9 @@
-"""A thread of its own that beats at a fixed rate, and knows how late it was.
+"""A thread of its own that beats at a fixed rate, and measures how late each beat is.
 
 Leases are asserted here and not on the executor thread: its timers come late when callbacks are long, and each of
-their wake-ups costs ten times as much. What the executor does is still what counts: a process whose executor has been
-in one callback for long, or does not come out of its waiting when it is asked, asserts nothing. Whoever judges others
-by their silence asks first whether this process itself, or the whole PC, did not run meanwhile.
+their wake-ups costs ten times as much. But the state of the executor decides: while it has been in one callback for
+long, or does not answer a request, no lease is asserted. Code that judges another process by its silence first calls
+`late`: this process itself, or the whole PC, may not have run meanwhile.
 """
 
 import threading
@@ -14,11 +14,11 @@ from tms_config.clock import monotonic
 from tms_runtime.priority import waited
 
 BEAT = 0.05  # s
-LATE = 0.1  # s that a beat may come late before it tells of a PC that is too busy
-STOOD_STILL = 0.3  # s without an assertion that are reported: others take it for lost after 0.5 s
+LATE = 0.1  # s that a beat may come late before the PC counts as too busy
+STOOD_STILL = 0.3  # s without an assertion after which that is logged: for others the process is lost after 0.5 s
 REMEMBERED = 1.0  # s for which a late beat is remembered
-ASK = 1.0  # s between questions to the executor whether it runs: each wakes it
-STUCK = 0.18  # s in one callback, or without an answer, after which nothing is asserted; with the lease below 0.7 s
+ASK = 1.0  # s between requests to the executor: each wakes it
+STUCK = 0.18  # s in one callback, or without an answer, after which assertions end; with the lease below 0.7 s
 
 Step = Callable[[], None]
 
@@ -30,13 +30,13 @@ class Executor(Protocol):
         """Start a thread whose death ends the process."""
 
     def on_executor(self, step: Step) -> None:
-        """Have a step run on the executor thread, soon."""
+        """Run a step on the executor thread, soon."""
 
     def busy_since(self) -> float | None:
-        """When its present callback began, monotonic [s]; None while it waits."""
+        """When the present callback began, monotonic [s]; None while the executor waits."""
 
     def thread_number(self) -> int | None:
-        """Its number in the kernel."""
+        """The thread's number in the kernel."""
 
     def on_stop(self, step: Step) -> None:
         """Run a step before the node stops."""
@@ -50,7 +50,7 @@ class Lateness:
         self._late_at = float("-inf")
 
     def beat(self, now: float) -> float:
-        """Note a beat; how late it was [s]."""
+        """Note a beat; returns how late it was [s]."""
         last, self._last = self._last, now
         if self._overdue(now, last):
             self._late_at = now
@@ -61,7 +61,7 @@ class Lateness:
         return self._overdue(now, self._last) or now - self._late_at < REMEMBERED
 
     def pause(self) -> None:
-        """Nothing beats for a while, on purpose."""
+        """Note that the beats pause on purpose."""
         self._last = None
 
     @staticmethod
@@ -70,7 +70,7 @@ class Lateness:
 
 
 class Pulse:
-    """One a process. Without steps its thread sleeps, so an idle process costs nothing."""
+    """The pulse of this process. Without steps its thread sleeps, so an idle process uses no processor time."""
 
     def __init__(self, executor: Executor) -> None:
         self._executor = executor
@@ -80,8 +80,8 @@ class Pulse:
         self._asked = self._answered = 0.0
         self._lateness = Lateness()
         self._worked: float | None = None  # when this process was last seen to work
-        self._waited = 0.0  # s for which its threads had waited for a processor by the last question
-        self.stood_still: Callable[[float, float], None] = lambda silent, waited: None  # see `_tell`
+        self._waited = 0.0  # s for which its threads had waited for a processor by the last request
+        self.stood_still: Callable[[float, float], None] = lambda silent, waited: None  # see `_publish`
         self._thread = executor.begin(self._run, "pulse")
         executor.on_stop(self.close)
 
@@ -94,7 +94,7 @@ class Pulse:
             self._wanted.set()
 
     def remove(self, step: Step) -> None:
-        """Not any more; one call may still be under way."""
+        """End the calls of `step`; one may still be under way."""
         with self._changing:
             self._steps = tuple(other for other in self._steps if other != step)
             if not self._steps:
@@ -105,7 +105,7 @@ class Pulse:
         return self._lateness.late(monotonic())
 
     def works(self) -> bool:
-        """Whether the executor is in no long callback, and has answered when it was asked."""
+        """Whether the executor is in no long callback, and has answered the last request."""
         now, since, asked = monotonic(), self._executor.busy_since(), self._asked
         answered = self._answered >= asked or now - asked < STUCK
         return answered and (since is None or now - since < STUCK)
@@ -137,7 +137,7 @@ class Pulse:
             self._executor.on_executor(self._answer)
 
     def _publish(self, now: float) -> None:
-        """Of a long time in which nothing was asserted [s], and for how much of it a processor was waited for [s]."""
+        """Report a long time without assertions [s], and how much of it was spent waiting for a processor [s]."""
         silent = now - (self._worked or now) - BEAT
         self._worked = now
         if silent > STOOD_STILL:

@@ -21,12 +21,12 @@ from tms_runtime.reasons import LongCallback, ParentGone, PcBusy, ProcessStartin
 
 END_CHECK_PERIOD = 0.5  # s
 FORGOTTEN = 3.0  # s; lease of discovery (5 s) less the time since the last announcement (1.5 s at most), 0.5 s to spare
-EXIT_LIMIT = 2.0  # s from SIGTERM to the end, whatever hangs
+EXIT_LIMIT = 2.0  # s from SIGTERM to the end, even if the clean-up hangs
 PR_SET_PDEATHSIG = 1
-# Nice of processes that must not miss a beat on a busy PC, nor see one missed, once they have started: none that starts
-# keeps one that works from its beats.
+# Nice of processes that must not miss a beat on a busy PC, nor a beat of others, once they have started: processes that
+# are starting must not keep working ones from their beats.
 FIRST = {"tms_ts.node": -15, "tms_rc.node": -12, "tms_host.node": -12}
-OF_A_MACHINE = -5  # planner and subtasks; those above, too, while they start
+OF_A_MACHINE = -5  # planner and subtasks; the processes above, too, while they start
 
 
 def main(name: str) -> int:
@@ -89,28 +89,28 @@ def _serve(site: Site, row: Process) -> int:
 
 
 def _stood_still(logger: Logger, silent: float, waited: float) -> None:
-    """Why others took this process for lost: whoever debugs at night looks into its log."""
+    """Log why other processes may have taken this one for lost."""
     metrics.STOOD_STILL.inc(silent)
     reason = PcBusy(waited) if waited > silent / 2 else LongCallback(silent)
     logger.warning("stood_still", seconds=round(silent, 2), waited=round(waited, 2), reason=reason)
 
 
 def _wait_for_end(stop: threading.Event, failed: threading.Event, logger: Logger) -> None:
-    """Until the process is asked to end, or has failed.
+    """Wait until the process is asked to end, or has failed.
 
-    One that stood still for long has failed: others may have forgotten it, and two of which one has forgotten the other
-    may stay deaf to each other for ever. Its successor is found by all.
+    A process that stood still for long has failed: others may have dropped it from discovery, and two processes of
+    which one has dropped the other may stay disconnected for ever. All processes discover its successor.
     """
     before = monotonic()
     while not stop.wait(END_CHECK_PERIOD) and not failed.is_set():
         before, gap = monotonic(), monotonic() - before
-        if gap > FORGOTTEN:  # it may have begun just after a look, or just before the next
+        if gap > FORGOTTEN:  # it may have begun just after a check, or just before the next
             logger.error("forgotten", seconds=round(gap, 1), action="restarted")
             failed.set()
 
 
 def _die_with_parent() -> None:
-    """After a `kill -9` of supervisord no orphan may live on beside the processes of the next one."""
+    """End with supervisord: after its `kill -9`, no orphan may run along with the processes of the next one."""
     parent = os.getppid()
     ctypes.CDLL(None, use_errno=True).prctl(PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)
     if os.getppid() != parent:

@@ -1,4 +1,4 @@
-"""The state folder of a site is for its user alone: logs, latches, journals and the embedded store tell of the work."""
+"""Keeps a site's state folder private to its user: logs, latches, journals and the embedded store describe the work."""
 
 import os
 import stat
@@ -11,17 +11,17 @@ from tms_reason.errors import ConfigError
 from tms_runtime.reasons import OthersFile
 
 UMASK = 0o077
-OTHERS = 0o077  # what group and others may do
+OTHERS = 0o077  # permissions of group and others
 
 
 def make(folder: Path) -> None:
-    """The folder, private from its first moment; folders above it are as this user makes folders."""
+    """Make the folder, private from its first moment; folders above it get this user's usual permissions."""
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
 
 
 @contextmanager
 def private() -> Iterator[None]:
-    """What is written meanwhile, and by processes that are started, is for this user alone."""
+    """Keep files private that this process, or a process it starts, makes meanwhile."""
     before = os.umask(UMASK)
     try:
         yield
@@ -30,10 +30,10 @@ def private() -> Iterator[None]:
 
 
 def tighten(folder: Path) -> int:
-    """Take away what others may do with the folder and everything in it, as older releases left it; how many.
+    """Remove others' permissions on the folder and all in it, as older releases left them; returns how many.
 
     Raises:
-        ConfigError: something in it belongs to another user.
+        ConfigError: a file in it belongs to another user.
     """
     closed = 0
     for place, folders, files in os.walk(folder):
@@ -41,7 +41,7 @@ def tighten(folder: Path) -> int:
             try:
                 closed += _close(path)
             except FileNotFoundError:
-                continue  # it came and went
+                continue  # it was removed meanwhile
             except PermissionError as error:
                 raise ConfigError(BadFile(str(path), OthersFile(os.getuid()))) from error
     return closed

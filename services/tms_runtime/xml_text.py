@@ -1,6 +1,6 @@
-"""XML from outside: whatever a hostile or broken text can do ends here, in one refusal with its line.
+"""XML from outside: a hostile or broken text is refused here, with its line.
 
-One place for both who read tasks: tms_db stores their text, tms_ts builds their trees.
+Both readers of tasks use it: tms_db stores their text, tms_ts builds their trees.
 """
 
 import re
@@ -34,7 +34,7 @@ from tms_runtime.reasons import (
 
 MAX_BYTES = 5_000_000
 MAX_TAGS = 200_000  # "<" in the text; bounds the memory that the parser takes
-MAX_DEPTH = 200  # a tree that people drew is a tenth as deep
+MAX_DEPTH = 200  # trees drawn by people have a tenth of it
 MAX_EQUALS = 5000  # "=" in one tag; the parser compares attribute names pairwise
 
 _PROLOG = re.compile(r"\s+|<\?.*?\?>|<!--.*?-->", re.DOTALL)
@@ -42,7 +42,7 @@ _DECLARATION = re.compile(r"<\?xml\s.*?\?>", re.DOTALL)
 
 
 class XmlRefused(TaskError):
-    """A text that is no XML, or none that a task may be."""
+    """The text is not XML, or not XML that a task may be."""
 
     def __init__(self, what: Reason, line: int | None = None, hint: Reason | None = None) -> None:
         hinted = what if hint is None else XmlHint(what, hint)
@@ -86,7 +86,7 @@ def elements(text: str, comments: bool) -> etree._Element:
     if max(tag.count("=") for tag in text.split("<")) > MAX_EQUALS:
         raise XmlRefused(ManyAttributes())
     declaration = _DECLARATION.match(text)
-    if declaration is not None:  # its encoding would be believed; keep the lines
+    if declaration is not None:  # the parser would follow its encoding; keep the lines
         text = "\n" * declaration[0].count("\n") + text[declaration.end() :]
     try:
         root = etree.fromstring(text.encode(), _parser(comments))
@@ -106,7 +106,7 @@ def _parser(comments: bool) -> etree.XMLParser:
 
 
 def _refuse_dtd(text: str) -> None:
-    """It can stand before the root element only; nothing of it (entities!) may reach the parser."""
+    """Refuse a DTD, which can stand only before the root element: its entities must not reach the parser."""
     position = 0
     while (found := _PROLOG.match(text, position)) is not None:
         position = found.end()

@@ -14,7 +14,7 @@ class ActiveRuns:
     def __init__(self) -> None:
         self._runs: dict[str, Run] = {}
         self._holders: dict[str, str] = {}  # machine -> run that moves it
-        self._lock = threading.Lock()  # over the two above; held for moments only
+        self._lock = threading.Lock()  # guards the two above; held for moments only
 
     def __iter__(self) -> Iterator[Run]:
         with self._lock:
@@ -26,17 +26,17 @@ class ActiveRuns:
             return self._runs.get(run_id)
 
     def names(self) -> tuple[str, ...]:
-        """Of all runs."""
+        """The names of all active runs."""
         with self._lock:
             return tuple(self._runs)
 
     def add(self, run: Run) -> None:
-        """A run begins; it holds no machine yet."""
+        """Add a run that begins; it holds no machine yet."""
         with self._lock:
             self._runs[run.facts.run_id] = run
 
     def remove(self, run: Run) -> None:
-        """A run is over: its machines are free."""
+        """Remove a run that has ended: its machines are free."""
         run_id = run.facts.run_id
         with self._lock:
             del self._runs[run_id]
@@ -44,7 +44,7 @@ class ActiveRuns:
                 del self._holders[machine]
 
     def hold(self, run: Run) -> None:
-        """The run's machines are its own from now on.
+        """Give a run its machines, for it alone.
 
         Raises:
             TaskError: MachineBusy, another run holds one of them.

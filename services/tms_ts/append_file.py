@@ -1,4 +1,4 @@
-"""A file of lines that only grows: a group of lines is in it as a whole, or will be written again."""
+"""A file of lines that only grows: it holds each group of lines as a whole, or the group is written again."""
 
 import os
 from pathlib import Path
@@ -7,7 +7,7 @@ from tms_runtime.durable import make_folder, sync_folder, write_all
 
 
 class AppendFile:
-    """Used by one writing thread. What a failed group has left is cut off before the next one is written."""
+    """Used by one writing thread. The rest of a failed group is cut off before the next group is written."""
 
     def __init__(self, path: Path) -> None:
         """Opens or makes the file; both may wait for the disk."""
@@ -19,7 +19,7 @@ class AppendFile:
         self.busy = False  # whether the file may hold more than `size` bytes
 
     def write(self, data: bytes) -> None:
-        """A group of lines, into the page cache.
+        """Write a group of lines into the page cache.
 
         Raises:
             OSError: the disk is full or fails.
@@ -33,7 +33,7 @@ class AppendFile:
         """Wait until the group is on the disk.
 
         Raises:
-            OSError: the disk fails; the system has forgotten what it did not write, so the group is written again.
+            OSError: the disk fails; the system drops what it could not write, so the group must be written again.
         """
         os.fdatasync(self.file)
         if self._new:
@@ -41,10 +41,10 @@ class AppendFile:
             self._new = False
 
     def keep(self) -> None:
-        """The group counts from now on."""
+        """Count the group as part of the file."""
         self.size += self._written
         self.busy, self._written = False, 0
 
     def close(self) -> None:
-        """Free the file."""
+        """Close the file."""
         os.close(self.file)

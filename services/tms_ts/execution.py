@@ -40,8 +40,8 @@ from tms_ts.shared_records import SharedRecords
 from tms_ts.task_check import TaskCheck
 from tms_ts.world import World
 
-BEGIN_STORED = 5.0  # s for what is known of a run to be on the disk before it moves anything
-END_STORED = 5.0  # s for its end, before it is reported without
+BEGIN_STORED = 5.0  # s for the known facts of a run to be on the disk before it moves a machine
+END_STORED = 5.0  # s for its end to be on the disk, before it is reported with a note that it is not
 SERVERS_LIMIT = 15.0  # s for the subtasks' servers to be there after their start ...
 SERVER_START = 3.0  # s, ... and this for each of them: many starting at once share the cores
 CODES = {
@@ -80,7 +80,7 @@ class Execution:
         self._parts, self._ros = parts, parts.app.ros
 
     def execute(self, goal: TaskGoal) -> Ended[ExecuteTask.Result]:
-        """From the database to the machines' stand-still; the end is stored, then reported."""
+        """Run a task from the database to the machines' stand-still; the end is stored, then reported."""
         how, result = self._execute_any(goal)
         if not self._parts.disk.wait(END_STORED):
             end = wire.of(result.error_msg) or STATES[result.outcome]
@@ -110,7 +110,7 @@ class Execution:
         record = parts.records.open(facts.run_id)
         run = Run(self._ros, parts.journal, parts.app.log, goal, facts, record, parts.publisher.changed)
         run.number = past.last_event if past is not None else 0
-        goal.publish(ExecuteTask.Feedback(run_id=facts.run_id, state=facts.state))  # the client can ask for it now
+        goal.publish(ExecuteTask.Feedback(run_id=facts.run_id, state=facts.state))  # now the client knows the run
         goal.on_cancel = run.cancel
         if goal.cancelled.is_set():
             run.cancel()
@@ -125,7 +125,7 @@ class Execution:
 
     def _leave(self, run: Run) -> None:
         parts = self._parts
-        if not run.over:  # a bug; what failed is in the log
+        if not run.over:  # a bug; the log has the error
             run.refuse(Internal(parts.app.process.full))
         if run.flags is not None:
             run.flags.close()
@@ -166,13 +166,13 @@ class Execution:
         holder = Holder(facts.number, started, run.stopped, machines.stops.receipt, run.alive)
         parts.gateways.hold(facts.machines, facts.run_id, holder)
         if not run.cancelled.is_set():
-            parts.check.refuse_latched(facts.machines)  # stopped meanwhile
+            parts.check.refuse_latched(facts.machines)  # a machine may have been stopped meanwhile
         with parts.monitors.watch(facts.run_id, tree):
             outcome = run.execute(tree, machines)
         return _ended(facts, outcome)
 
     def _xml(self, facts: Facts, past: InterruptedRun | None) -> str:
-        """Of the stored task; of a resumed run as it was then."""
+        """The text of the stored task; of a resumed run, as it was at its start."""
         if past is not None and past.header is not None:
             return past.header.xml
         task = self._parts.check.task(facts.task_id)

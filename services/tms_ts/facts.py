@@ -18,8 +18,8 @@ class Facts:
     description: str
     machines: list[str]
     started: Time
-    records: list[str] = field(default_factory=list)  # that the tree names
+    records: list[str] = field(default_factory=list)  # records that the tree names
     writes: set[tuple[str, str]] = field(default_factory=set)  # shared records and fields that it writes
-    values: dict[str, Value] = field(default_factory=dict)  # more fields of the run: whoever shows it shows them
+    values: dict[str, Value] = field(default_factory=dict)  # more fields of the run, which are shown with it
     state: str = "preparing"
     reason: Reason | None = None

@@ -20,7 +20,7 @@ DATABASE_LIMIT = 5.0  # s for the database to answer
 
 
 class Answer(Generic[T]):
-    """An answer that comes later; it wakes the run when it is there."""
+    """An answer that comes later and then wakes the run."""
 
     def __init__(self) -> None:
         self.done = False
@@ -39,13 +39,13 @@ class Answer(Generic[T]):
 
 
 class Flags:
-    """Records without a machine are shared by all tasks."""
+    """Access to records without a machine, which all tasks share."""
 
     def __init__(self, ros: Ros, records: SharedRecords, wake: Callable[[], None], run_id: str) -> None:
         self._ros, self._records, self._wake, self._source = ros, records, wake, f"run {run_id}"
 
     def close(self) -> None:
-        """The run is over."""
+        """End the access, as the run is over."""
         self._records.unwatch(self._wake)
 
     def read(self, record: str, field: str) -> Answer[Any]:

@@ -17,13 +17,13 @@ from tms_runtime.app import App
 from tms_runtime.fence import Owner
 from tms_ts.reasons import MachineNotReady, ProcessAway
 
-SETTLE = 0.3  # s from the first word of a new gateway until it has discovered us as well
-SIGNALS = 100  # of all buttons that may wait: no `false` may push out the `true` of another one
+SETTLE = 0.3  # s from the first message of a new gateway until it has discovered the scheduler, too
+SIGNALS = 100  # messages of all stop buttons that may wait: no `false` of one may push out the `true` of another
 
 
 @dataclass(frozen=True)
 class Holder:
-    """A run as the gateways' news reach it; what is called is called on the executor thread and must be quick."""
+    """A run that receives gateways' messages; its functions are called on the executor thread and return at once."""
 
     number: int  # fencing number
     started: tuple[int, int]  # s and ns of the wall clock
@@ -32,17 +32,17 @@ class Holder:
     alive: Callable[[], bool]
 
     def concerns(self, receipt: StopReceipt) -> bool:
-        """Whether a stop belongs to this run: a gateway that starts tells those of earlier runs and days once more."""
-        if receipt.run == 0:  # the gateway had not heard of any run
+        """Whether a stop belongs to this run: a gateway that starts publishes its old receipts, also of other runs."""
+        if receipt.run == 0:  # the gateway knew of no run
             return (receipt.stamp.sec, receipt.stamp.nanosec) >= self.started
         return receipt.run == self.number
 
 
 class Gateways:
-    """All machines of the site."""
+    """The gateways of all machines of the site."""
 
     def __init__(self, app: App, late_receipt: Callable[[StopReceipt], None]) -> None:
-        """`late_receipt` is called with stops that belong to no present run; kept ones come at once."""
+        """`late_receipt` is called with stops that belong to no present run; those that gateways keep come at once."""
         self._app, self._late_receipt = app, late_receipt
         self._states: dict[str, MachineState] = {}
         self._links: dict[str, Link] = {}
@@ -67,14 +67,14 @@ class Gateways:
     # permits
 
     def hold(self, machines: list[str], run_id: str, holder: Holder) -> None:
-        """Stand behind a run that moves these machines."""
+        """Publish permits for a run that moves these machines."""
         for machine in machines:
             if machine in self._permits:
                 self._holders[machine] = holder
                 self._permits[machine].hold(Owner(holder.number).goal_id(), run_id)
 
     def drop(self, machines: list[str]) -> None:
-        """The run is over and its machines were stopped."""
+        """End the permits of a run that is over and whose machines were stopped."""
         for machine in machines:
             if self._holders.pop(machine, None) is not None:
                 self._permits[machine].drop()
@@ -83,7 +83,7 @@ class Gateways:
         holder = self._holders.get(machine)
         return holder is not None and holder.alive()
 
-    # news
+    # messages
 
     def obstacle(self, machine: str) -> Reason | None:
         """Why a goal would not move the machine now; None if it would, or if nothing is known of it."""
@@ -98,7 +98,7 @@ class Gateways:
         return MachineNotReady(machine, wire.of(state.reason) or NoReason())
 
     def held_back(self, machine: str) -> Reason | None:
-        """What only a person ends: the machine is latched, or somebody drives it."""
+        """A state that only a person ends: the machine is latched, or is driven by hand."""
         latch, state = self.latch(machine), self._states.get(machine)
         if latch is not None:
             return MachineLatched(machine, latch)
@@ -106,7 +106,7 @@ class Gateways:
         return None if by_hand is None else DrivenByHand(by_hand, machine)
 
     def wait_alive(self, machine: str, seconds: float) -> None:
-        """Give a gateway that is being restarted a moment, so that a request to it does not get lost."""
+        """Wait for a gateway that is being restarted, so that a request to it does not get lost."""
         link, deadline = self._links.get(machine), monotonic() + seconds
         if link is None or link.alive:
             return
@@ -117,9 +117,9 @@ class Gateways:
                 return
 
     def loss(self, machine: str) -> Callable[[], bool]:
-        """What tells whether a request to the gateway has to be made again.
+        """A function that says whether a request to the gateway must be repeated.
 
-        It was lost since; or it is lost now and a successor has come, which never saw a request to the dead one.
+        It must if the gateway is lost after this call, or if it is lost now and its successor comes later.
         """
         link = self._links.get(machine)
         if link is None:
@@ -151,7 +151,7 @@ class Gateways:
                 holder.stopped(machine, SoftwareStop())
 
     def _gateway_changed(self, machine: str, link: Link) -> None:
-        """A lost gateway cannot stop its machine: do what it would do. Its successor does the same, but later."""
+        """Stop the machine of a lost gateway at once, as the gateway would; its successor does the same, but later."""
         if link.alive or link.goal == NOBODY:
             return
         self._controls[machine].zero()

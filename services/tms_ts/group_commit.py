@@ -1,9 +1,9 @@
 """Group commit: any thread puts entries, one thread writes those that wait and syncs the disk once for all of them.
 
-Whoever puts waits for nothing but a short lock. An entry is *stored* when it is on the disk: a power cut does not take
-it back. While the disk is full, or does not answer, entries wait in memory up to a bound and in their order; beyond the
-bound they are refused, and who put them tells what is lost. A process that is killed loses what waits here, which is
-what came within the last moment (GATHER): nobody was told that it is stored.
+`put` waits only for a short lock. An entry is *stored* when it is on the disk: it survives a power cut. While the disk
+is full, or does not answer, entries wait in memory in their order, up to a bound; beyond the bound they are refused,
+and the caller reports the loss. A process that is killed loses the entries that wait here, those of the last moment
+(GATHER): none of them was reported as stored.
 """
 
 import threading
@@ -18,12 +18,12 @@ from prometheus_client import Gauge
 from tms_config.clock import monotonic
 from tms_runtime.log import Logger
 
-GATHER = 0.05  # s from the first entry to its writing, so that many share a sync; an urgent one is written at once
+GATHER = 0.05  # s from the first entry to its writing, so that many share a sync; urgent entries are written at once
 RETRY = 0.5  # s between attempts at a disk that is full
 GROUP = 2000  # entries of one group
 MAX_WAITING = 32 * 2**20  # bytes that may wait ...
-SPARE = 4 * 2**20  # bytes, ... of which so many are kept for vital entries
-SLOW = 5.0  # s without an answer of the disk that are reported
+SPARE = 4 * 2**20  # bytes, ... of which this share is reserved for vital entries
+SLOW = 5.0  # s without an answer of the disk until that is reported
 
 WAITING = Gauge("tms_unstored_bytes", "Entries in memory that are not on the disk yet")
 
@@ -31,16 +31,16 @@ WAITING = Gauge("tms_unstored_bytes", "Entries in memory that are not on the dis
 class Sink(Protocol):
     """A file that entries go to; called by the writing thread only."""
 
-    order: int  # in which the files of one group are synced: what others rely on comes first
+    order: int  # order in which the files of one group are synced: files that others rely on come first
 
     def write(self, entries: list[bytes]) -> None:
-        """Entries of one group; after an OSError they come again."""
+        """Write the entries of one group; after an OSError it is called with them again."""
 
     def sync(self) -> None:
-        """Wait until the entries are on the disk; after an OSError they come again."""
+        """Wait until the entries are on the disk; after an OSError they are written again."""
 
     def keep(self) -> None:
-        """The whole group is on the disk."""
+        """Called when the whole group is on the disk."""
 
 
 Step = Callable[[], None]
@@ -48,7 +48,7 @@ Step = Callable[[], None]
 
 @dataclass(frozen=True)
 class Entry:
-    """Data for a sink, or a step to be done when everything before it is stored."""
+    """Data for a sink, or a step to be done when all entries before it are stored."""
 
     sink: Sink | None
     data: bytes = b""
@@ -57,36 +57,36 @@ class Entry:
 
 
 class GroupCommit:
-    """The queue and its writing thread; one a process."""
+    """The queue and its writing thread; one per process."""
 
     def __init__(self, log: Logger, most: int = MAX_WAITING) -> None:
         self._log, self._most = log, most
-        self._changed = threading.Condition()  # over the next four; held for moments only
+        self._changed = threading.Condition()  # guards the next four; held for moments only
         self._waiting: deque[Entry] = deque()
         self._bytes = 0
         self._put = self._stored = 0  # entries, since the start
         self._some, self._urgent, self._closed = threading.Event(), threading.Event(), threading.Event()
-        self._problem = ""  # why the disk takes nothing now
+        self._problem = ""  # why the disk takes no entries now
         self._thread = threading.Thread(target=self._run, name="disk", daemon=True)
         self._thread.start()
 
     def put(self, sink: Sink, data: bytes, *, vital: bool = False, urgent: bool = False) -> bool:
-        """Take an entry for a file; False when too much waits already, then it is lost. Waits for nobody.
+        """Take an entry for a file, without waiting; False when too much waits already, then the entry is lost.
 
         Args:
             sink: the file.
             data: the entry.
-            vital: it may use the room that is kept for what must not be lost.
-            urgent: do not wait for others to share the sync with.
+            vital: it may use the room that is reserved for entries that must not be lost.
+            urgent: write it at once, without waiting for other entries to share the sync.
         """
         return self._take(Entry(sink, data), self._most if vital else self._most - SPARE, urgent)
 
     def after(self, step: Step) -> None:
-        """Do a step (it may raise OSError) in the writing thread once all that was put before is stored."""
+        """Do a step (it may raise OSError) in the writing thread once all entries before it are stored."""
         self._take(Entry(None, step=step), 2 * self._most, False)
 
     def wait(self, seconds: float) -> bool:
-        """Wait until all that was put before is stored; False when it is not within the time."""
+        """Wait until all entries so far are stored; False when they are not within the time."""
         with self._changed:
             end = self._put
             if self._stored < end:
@@ -95,7 +95,7 @@ class GroupCommit:
             return self._stored >= end
 
     def trouble(self) -> str:
-        """Why nothing is stored now, empty if all is well."""
+        """Why no entries are stored now; empty if they are."""
         with self._changed:
             if self._problem or not self._waiting:
                 return self._problem
@@ -103,7 +103,7 @@ class GroupCommit:
         return f"the disk has not answered for {since:.0f} s" if since > SLOW else ""
 
     def close(self, seconds: float) -> None:
-        """Give what waits some time to be stored; then nothing more is."""
+        """Give waiting entries some time to be stored, then end: later entries are refused."""
         self.wait(seconds)
         with self._changed:
             self._closed.set()

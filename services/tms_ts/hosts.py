@@ -1,4 +1,4 @@
-"""What runs where, as the host agents tell, and the way to have a process started."""
+"""Which process runs on which host, as the host agents publish it, and how to start one there."""
 
 from collections.abc import Callable
 
@@ -33,7 +33,7 @@ class Hosts:
         return None if found is None else int(found[1].pid)
 
     def fatal(self, machine: str, process: str) -> Reason | None:
-        """That supervisord has given up a process."""
+        """The reason FATAL if supervisord has given up a process."""
         name = f"{machine}:{process}"
         found = self._known.get(name)
         return ProcessState(name, "FATAL") if found and found[1].state == "FATAL" else None
@@ -47,7 +47,7 @@ class Hosts:
         return ProcessState(name, found[1].state)
 
     def start(self, names: list[str], give_up: Callable[[], bool]) -> Reason | None:
-        """Have processes started that do not run; returns what went wrong.
+        """Have the host agents start processes that do not run; returns why one could not be started.
 
         Processes that no host agent knows are left alone: they may be servers of another system.
         """
@@ -67,7 +67,7 @@ class Hosts:
         return None
 
     def wait_known(self, seconds: float) -> None:
-        """Wait until a host agent has been heard; without one, processes cannot be started on demand."""
+        """Wait for a host agent's first message; without a host agent, processes cannot be started on demand."""
         deadline = monotonic() + seconds
         while not self._known and monotonic() < deadline:
             sleep(0.02)

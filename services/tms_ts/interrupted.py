@@ -41,20 +41,20 @@ RECEIPTS = 1000  # every gateway keeps its last 20 for late comers
 
 
 class Interrupted:
-    """Looks at the records of this PC; runs that are active again are not its business."""
+    """Closes the runs that the checkpoints of this PC show as open, except those that are active again."""
 
     def __init__(self, app: App, journal: Journal, records: Records) -> None:
         self._app, self._journal, self._records = app, journal, records
         self._active: set[str] = set()
         self._receipts: deque[StopReceipt] = deque(maxlen=RECEIPTS)
-        self._lock = threading.Lock()  # over the receipts; taken on the executor thread, so held for moments only
-        self._choosing = threading.Lock()  # a run is resumed or abandoned, and once
+        self._lock = threading.Lock()  # guards the receipts; the executor thread takes it: held for moments only
+        self._choosing = threading.Lock()  # a run is resumed or abandoned, and only once
         threading.Thread(target=self._close_all, name="interrupted", daemon=True).start()
 
     # closing
 
     def receipt(self, receipt: StopReceipt) -> None:
-        """A gateway tells of a stop that belongs to no active run."""
+        """Receive the receipt of a stop that belongs to no active run."""
         with self._lock:
             self._receipts.append(receipt)
 
@@ -76,7 +76,7 @@ class Interrupted:
         return past.header is None or set(past.header.machines) <= {r.machine for r in self._stops(past, past.header)}
 
     def _stops(self, past: InterruptedRun, header: Header) -> list[StopReceipt]:
-        """What the gateways have told of the end of this run, in order; a latched receipt may come twice."""
+        """The receipts of the stops at the end of this run, in order; latched topics may deliver one twice."""
         with self._lock:
             seen = {(_seconds(r.stamp), r.machine): r for r in self._receipts if r.run == header.number}
         begin = {machine: max(past.last_time - 1.0, past.sent_at.get(machine, 0.0)) for machine in header.machines}
@@ -98,7 +98,7 @@ class Interrupted:
         self._app.log.warning("interrupted", run=header.run_id)
 
     def _complete(self, past: InterruptedRun, header: Header, over: Over) -> None:
-        """The run had ended, but perhaps nobody was told before the power went: report it, maybe once more."""
+        """Report the end of a run that had ended before the power went: that report may be lost, or comes twice."""
         stamp = Time(sec=int(past.last_time), nanosec=int(past.last_time % 1 * 1e9))
         why = wire.of(over.reason)
         text = to_line(entered(over.outcome, why))
@@ -120,11 +120,11 @@ class Interrupted:
         return past, header
 
     def over(self, run_id: str) -> None:
-        """A resumed run has ended, in whatever way."""
+        """Note that a resumed run has ended, successfully or not."""
         self._active.discard(run_id)
 
     def plan(self, request: ResumePlan.Request, response: ResumePlan.Response) -> ResumePlan.Response:
-        """What resuming would do first."""
+        """Answer with the goals that a resumed run would do first."""
         try:
             past, header = self._find(request.run_id)
         except TaskError as error:
@@ -136,7 +136,7 @@ class Interrupted:
         return response
 
     def abandon(self, request: CancelRun.Request, response: CancelRun.Response) -> CancelRun.Response:
-        """Give an interrupted run up for good."""
+        """Abandon an interrupted run: it can no longer be resumed."""
         try:
             with self._choosing:
                 self._give_up(*self._find(request.run_id))
@@ -161,7 +161,7 @@ class Interrupted:
 
 
 def _what_was_seen(header: Header, stops: list[StopReceipt]) -> tuple[Reason, list[Reason]]:
-    """Why the run is interrupted, with each machine's last receipt or the lack of one; and what to alarm of."""
+    """Why the run is interrupted, with each machine's last receipt or the lack of one; and the alarms to raise."""
     last = {receipt.machine: receipt for receipt in stops}
     stood = tuple(machine for machine in header.machines if machine in last and last[machine].confirmed)
     unseen = tuple(machine for machine in header.machines if machine not in stood)

@@ -1,4 +1,4 @@
-"""A run's record as it is read after a crash or a power cut; what is damaged in it is counted. Pure logic."""
+"""A run's checkpoint as it is read after a crash or a power cut; damaged lines are counted. Pure logic."""
 
 import json
 from collections.abc import Iterator
@@ -11,7 +11,7 @@ Key = tuple[str, str, str, str]  # node path, machine, subtask, record
 
 @dataclass(frozen=True)
 class Header:
-    """The run, as far as it is known before its first tick."""
+    """The facts of the run that are known before its first tick."""
 
     run_id: str
     number: int  # fencing number
@@ -20,21 +20,21 @@ class Header:
     machines: list[str]
     xml: str
     started: tuple[int, int]  # s, ns
-    records: list[str] = field(default_factory=list)  # that the tree names; none in records of earlier versions
+    records: list[str] = field(default_factory=list)  # that the tree names; none in checkpoints of earlier versions
     values: dict[str, Any] = field(default_factory=dict)  # more fields of the run that are known by then
 
 
 @dataclass(frozen=True)
 class Over:
-    """How a run ended; its record is there still, since the power went before it was removed."""
+    """How a run ended whose checkpoint still exists, since the power went before it was removed."""
 
     outcome: str
     reason: str
-    event: int  # number of the event that tells
+    event: int  # number of the event that reports the end
 
 
 class InterruptedRun:
-    """A record. Without a header nothing can be done with it."""
+    """A checkpoint. Without a header it cannot be used."""
 
     def __init__(self, path: Path) -> None:
         """Raises OSError: the file cannot be read."""
@@ -45,9 +45,9 @@ class InterruptedRun:
         self.closed = False
         self.over: Over | None = None
         self.ended: list[tuple[Key, bool]] = []
-        self.open: list[Key] = []  # sent, but not ended
+        self.open: list[Key] = []  # goals that were sent and have not ended
         self.sent_at: dict[str, float] = {}  # machine -> s since 1970 of its last goal
-        self.damaged = 0  # lines that say nothing, but for the last one, which any crash cuts short
+        self.damaged = 0  # unreadable lines, without the last one, which any crash may cut short
         for line in self._lines():
             try:
                 self._take(line)
@@ -58,7 +58,7 @@ class InterruptedRun:
         try:
             texts = self.path.read_bytes().split(b"\n")
         except FileNotFoundError:
-            return  # its run has ended in order just now
+            return  # its run has just ended in order
         for place, text in enumerate(texts, 1):
             try:
                 line = json.loads(text) if text else {}

@@ -1,9 +1,9 @@
 """The history of runs: stored on the disk of this PC first, then written through TMS_DB by a thread of its own.
 
-A tick waits for neither, and nothing is lost while the database is away: what was not delivered is delivered in order
-later, if need be by the next process. The database, and so everybody who asks for the history, gets an entry only when
-it is on this disk: what was reported is there after a power cut, too. Writing an entry twice changes nothing in the
-database. An entry that the database will never take is dropped, so that the others do not wait for it.
+A tick waits for neither, and no entry is lost while the database is away: entries are delivered later, in order, if
+need be by the next process. The database, and so every reader of the history, gets an entry only when it is on this
+disk: a reported entry survives a power cut. Writing an entry twice does not change the database. An entry that the
+database refuses for good is dropped, so that the others do not wait for it.
 """
 
 import threading
@@ -26,10 +26,10 @@ from tms_ts.spool import Spool
 
 BATCH = 200
 RETRY = 0.5  # s
-GATHER = 0.1  # s from the first entry to its writing: ten calls beside a hand-over make it half as long again
-VITAL = {"run", "tree", "stop", "alarm", "warning"}  # kinds of events that a flood of others must not push out
-LARGEST = 16 * 2**20 * 4 // 3  # bytes of a line, 16 MB in base64: the store takes no larger document, nor ROS in time
-# What is wrong with the store, not with an entry: it passes, or a person mends it.
+GATHER = 0.1  # s from the first entry to its writing: ten calls during a hand-over make it half as long again
+VITAL = {"run", "tree", "stop", "alarm", "warning"}  # kinds of events that a flood of other events must not push out
+LARGEST = 16 * 2**20 * 4 // 3  # bytes of a line, 16 MB in base64: more is too large for the store and too slow over ROS
+# Errors of the store, not of an entry: they pass, or a person repairs the store.
 MAY_PASS = {"STORE_DOWN", "STORE_FULL", "STORE_REFUSED", "STORE_NEWER", "STORE_CONFLICT", "DB_FAILED", "BUSY"}
 
 WAITING = Gauge("tms_ts_journal_waiting_bytes", "Journal entries not yet written to the database")
@@ -37,28 +37,28 @@ LOST = Counter("tms_ts_journal_lost_total", "Journal entries that could not be k
 
 
 class Journal:
-    """Keeps the order; repeats a batch until the database has it."""
+    """Delivers entries in order; repeats a batch until the database has it."""
 
     def __init__(self, ros: Ros, log: Logger, disk: GroupCommit, state: Path) -> None:
         self._ros, self._log, self._disk = ros, log, disk
         self._changed, self._urgent = threading.Event(), threading.Event()
         self._spool = Spool(state / "ts" / "journal", self._changed.set)
         self._closing = threading.Event()
-        self._away = False  # the database; told
-        self._trouble = ""  # of the disk; told
-        self._losing = threading.Lock()  # over the next
+        self._away = False  # the database is away, and that is logged
+        self._trouble = ""  # of the disk, as it was last reported
+        self._losing = threading.Lock()  # guards the next
         self._unreported: dict[str, tuple[int, int, int]] = {}  # run -> entries lost, and the first and last number
         self._thread = threading.Thread(target=self._write, name="journal", daemon=True)
         self._thread.start()
 
     def put(self, entry: Run | Event) -> None:
-        """Take an entry; waits for nobody."""
+        """Take an entry, without waiting."""
         line = to_line(entry)
         if len(line) > LARGEST:
             self._lost(entry, EntryTooLarge(len(line), LARGEST))
             return
         event = "" if isinstance(entry, Run) else entry.kind
-        urgent = isinstance(entry, Run) or event == "tree"  # somebody looks at a run that begins or ends
+        urgent = isinstance(entry, Run) or event == "tree"  # operators watch runs that begin or end
         vital = urgent or event in VITAL
         if self._spool.full():
             self._lost(entry, JournalFull(self._spool.waiting()))
@@ -69,7 +69,7 @@ class Journal:
             self._disk.after(self._urgent.set)
 
     def alarms(self) -> list[Reason]:
-        """What went wrong with the history since the last call."""
+        """The new problems with the history since the last call."""
         trouble = self._disk.trouble()
         reported, self._trouble = self._trouble, trouble
         found: list[Reason] = [HistoryInMemory(Foreign(trouble))] if trouble and not reported else []
@@ -80,7 +80,7 @@ class Journal:
         return found
 
     def close(self) -> None:
-        """Give the last entries a moment to be delivered; the rest waits on disk, which takes nothing more before."""
+        """Give the last entries a moment to be delivered; the rest waits on the disk for the next process."""
         deadline = monotonic() + 0.5
         while self._spool.waiting() and monotonic() < deadline:
             sleep(0.01)
@@ -103,19 +103,19 @@ class Journal:
                 if len(lines) == 1:
                     self._lost(self._entry(lines[0]), problem.reason)
                     self._spool.done(end)
-                most = max(1, len(lines) // 2)  # one of them is refused for good: which one?
-            self._closing.wait(RETRY)  # also then: a database that is just ending may refuse anything
+                most = max(1, len(lines) // 2)  # halve the batch, to find the entry that is refused for good
+            self._closing.wait(RETRY)  # also after a refusal: a database that is just ending may refuse any entry
         self._spool.close()
 
     def _gather(self) -> None:
-        """Wait for news, and a moment longer for what comes right after."""
+        """Wait for entries, and a moment longer for those that follow at once."""
         if self._changed.wait(0.2):
             self._changed.clear()
             self._urgent.wait(GATHER)
             self._urgent.clear()
 
     def _passes(self, problem: DbError | RosError) -> bool:
-        """Whether the same entries can be written later; told once."""
+        """Whether the same entries can be written later; logged once."""
         passes = isinstance(problem, RosError) or problem.code in MAY_PASS
         if passes and not self._away:
             self._log.warning("journal_waits", reason=problem.reason)

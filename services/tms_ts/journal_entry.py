@@ -7,7 +7,7 @@ from tms_msg_db.msg import Event, Run
 from tms_ros.packing import pack, unpack
 
 KINDS: dict[bytes, type[Run] | type[Event]] = {b"V": Run, b"E": Event}
-EARLIER = b"R"  # a run as of releases before it had `values`, which are the last field: it ends before their number
+EARLIER = b"R"  # a run of earlier releases, without its last field `values`: the message ends before their number
 NO_VALUES = bytes(4)  # how many values there are, as CDR has it
 
 
@@ -17,7 +17,7 @@ def to_line(entry: Run | Event) -> bytes:
 
 
 def of_line(line: bytes) -> Run | Event:
-    """The entry of a line, also of one that an earlier release has left behind.
+    """The entry of a line, also of a line that an earlier release has written.
 
     Raises:
         ValueError, RuntimeError: it is damaged.

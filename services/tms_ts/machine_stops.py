@@ -19,13 +19,13 @@ from tms_ros.reasons import ProcessLost
 from tms_ts.gateways import Gateways
 from tms_ts.reasons import MachineStood, MachineStoodBy, MachineUnconfirmed
 
-GATEWAY_LIMIT = 3.0  # s for a gateway that was lost to be back
+GATEWAY_LIMIT = 3.0  # s for a lost gateway to come back
 
 LogEvent = Callable[[str, str, Reason], None]  # kind, node path, what: for the journal
 
 
 class MachineStops:
-    """Of one run. Any thread may call."""
+    """The stops of one run. Any thread may call."""
 
     def __init__(self, ros: Ros, gateways: Gateways, log_event: LogEvent) -> None:
         self._ros, self._gateways, self._log_event = ros, gateways, log_event
@@ -34,7 +34,7 @@ class MachineStops:
     def stop(self, machine: str, cause: Reason) -> StopReceipt:
         """Have the gateway stop the machine and watch it stand. Blocks; never raises.
 
-        A gateway that is lost meanwhile has a successor, which is asked again.
+        If the gateway is lost meanwhile, its successor is asked again.
         """
         line, deadline = to_line(cause), monotonic() + RECEIPT_LIMIT
         request = StopMachine.Request(cause=line, orderly=True)
@@ -58,7 +58,7 @@ class MachineStops:
             return list(pool.map(lambda machine: self.stop(machine, cause), machines))
 
     def receipt(self, receipt: StopReceipt) -> None:
-        """A stop into the journal, once, from wherever it is received first."""
+        """Put a stop into the journal once: its receipt comes as an answer and on a topic."""
         key = (receipt.machine, receipt.stamp.sec, receipt.stamp.nanosec)
         if key not in self._reported:
             self._reported.add(key)

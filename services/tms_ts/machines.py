@@ -1,4 +1,4 @@
-"""Leaf nodes' way to the subtasks: goals as action clients, one stopped machine before the next goal."""
+"""Sends the goals of leaf nodes to the subtasks; a machine gets its next goal only after its last one has ended."""
 
 import threading
 from collections.abc import Callable
@@ -46,9 +46,9 @@ from tms_ts.world import GoalState
 
 SERVER_LIMIT = 10.0  # s for a subtask's server to be there
 DATABASE_LIMIT = 15.0  # s that a leaf waits for a database that is away
-ASK_AGAIN = 0.5  # s; also from a failure to the same goal: a loop around a leaf must not flood the history
+ASK_AGAIN = 0.5  # s until a goal is sent again, also after a failure: a loop around a leaf must not flood the history
 AWAY = (NoDatabase.code, "STORE_DOWN")  # why a subtask refuses a goal when its record cannot be read now
-# What a goal ends with while a process comes back.
+# Reasons with which a goal fails while a process is being restarted.
 UNREACHED = (NoAnswer, NoServer, Rejected, NoJointState, NoPermit)
 
 HANDOVER = Histogram(
@@ -59,7 +59,7 @@ HANDOVER = Histogram(
 
 @dataclass(frozen=True)
 class Identity:
-    """Of the run whose goals these are."""
+    """Identifies the run whose goals these are."""
 
     number: int  # fencing number
     retries: int  # times that a goal is sent again after a loss
@@ -85,9 +85,9 @@ class Machines:
         self._number, self._retries = identity.number, identity.retries
         self._record, self._replay = identity.record, identity.replay
         self._leaves = 0  # goals sent so far
-        self._handed_over: float | None = None  # monotonic time of the last result that no acceptance has followed
+        self._handed_over: float | None = None  # monotonic time of the last result, until the next goal is accepted
         self._failed: dict[Key, float] = {}  # monotonic time of each goal's last failure
-        self._given_up: set[Reason] = set()  # processes in the journal that supervisord does not start any more
+        self._given_up: set[Reason] = set()  # processes that supervisord has given up, already in the journal
         self._open: list[SentGoal] = []
         self._stopping: set[str] = set()  # machines that are being stopped after a lost goal
 
@@ -96,7 +96,7 @@ class Machines:
         return self._ros.peer(LeafNodeBase, f"/{machine}/{subtask}")
 
     def send(self, machine: str, subtask: str, record: str, node: str) -> SentGoal:
-        """Begin a goal; it leaves at once when the machine is free and the server is there."""
+        """Begin a goal; it is sent at once if the machine is free and the server is there."""
         goal = SentGoal(machine, subtask, record, node)
         before = self._replay.take(goal.key)
         if before is not None:
@@ -112,7 +112,7 @@ class Machines:
         return goal
 
     def advance(self) -> None:
-        """Send what waits, notice what is lost, forget what has ended."""
+        """Send waiting goals, detect lost ones, forget ended ones."""
         for goal in list(self._open):
             if goal.call is None and not goal.state.final:
                 self._try_send(goal)
@@ -132,7 +132,7 @@ class Machines:
 
     def _try_send(self, goal: SentGoal) -> None:
         assert goal.peer is not None
-        if goal.cancelled:  # while it waited to be sent again
+        if goal.cancelled:  # cancelled while it waited to be sent again
             self._end(goal, GoalState.CANCELLED, GoalCancelled(goal.name))
             return
         if monotonic() < goal.not_before:
@@ -155,7 +155,7 @@ class Machines:
         goal.call = goal.peer.send(request, goal_id=goal_id, on_change=lambda call: self._changed(goal, call))
 
     def _obstacle(self, goal: SentGoal) -> Reason | None:
-        """Why the goal cannot leave now."""
+        """Why the goal cannot be sent now."""
         if goal.machine in self._stopping:
             return MachineStopping(goal.machine)
         before = [other for other in self._open if other.cancelled and other.machine == goal.machine]
@@ -170,7 +170,7 @@ class Machines:
         return self._gateways.obstacle(goal.machine)
 
     def _gone_for_good(self, goal: SentGoal) -> Reason | None:
-        """A process that supervisord has given up, or a machine that only a person can arm again."""
+        """Why waiting cannot help: supervisord has given up a process, or only a person can re-arm the machine."""
         latch = self._gateways.latch(goal.machine)
         if latch is not None:
             return MachineLatched(goal.machine, latch)
@@ -181,9 +181,9 @@ class Machines:
         return fatal
 
     def _changed(self, goal: SentGoal, call: LeafCall) -> None:
-        """A step of the action protocol, on the executor thread."""
+        """Handle a step of the action protocol, on the executor thread."""
         if call.outcome is Outcome.LOST if goal.call is None else call is not goal.call:
-            return  # of a goal that is sent again (None alone is a goal whose sending is just being booked)
+            return  # an old call of a goal that is sent again (None alone: `send` has not returned the call yet)
         if call.outcome is not None and not goal.state.final:
             self._ended(goal, call)
         elif call.accepted and goal.state is GoalState.SENDING:
@@ -215,7 +215,7 @@ class Machines:
             self._end(goal, GoalState.FAILED, GoalGaveUp(goal.name, why))
 
     def _may_ask_again(self, goal: SentGoal, why: Reason) -> bool:
-        """Soon after a loss the processes below may not have found each other yet; that is no further loss."""
+        """Whether to send again soon after a loss: the processes below may not have discovered each other yet."""
         return goal.recovers() and not goal.cancelled and any(why.find(kind) is not None for kind in UNREACHED)
 
     def _may_wait(self, goal: SentGoal) -> bool:
@@ -234,7 +234,7 @@ class Machines:
         self._log_event("goal", goal.node, reason or GoalSucceeded(goal.name))
 
     def _look_for_loss(self, goal: SentGoal, call: LeafCall) -> None:
-        """A server that is gone never answers: end the goal, and stop what it may have left moving."""
+        """End a goal whose server is gone and never answers, and stop the machine that it may have left moving."""
         why = self._loss(goal)
         if why is None:
             return
@@ -242,7 +242,7 @@ class Machines:
         unreceived = goal.unreceived()
         goal.call = None if not final else call
         if unreceived and goal.peer is not None:
-            goal.peer.cancel(call)  # should it be accepted after all
+            goal.peer.cancel(call)  # in case it is accepted after all
         call.end(Outcome.LOST)
         if goal.peer is not None and self._replaced(goal):
             goal.peer.mark_lost()
@@ -250,9 +250,9 @@ class Machines:
             self._lost(goal, why, counts=not (unreceived and goal.recovers()))
 
     def _lost(self, goal: SentGoal, why: Reason, *, counts: bool = True) -> None:
-        """A process ended during a goal: have the machine seen to stand, then send the goal again, a few times.
+        """Handle the loss of a process during a goal: have the machine stopped, then send the goal again, a few times.
 
-        A server that does not answer soon after a loss had not found us yet: that is no further loss.
+        `counts`: a server that does not answer soon after a loss has not discovered us yet, which is no further loss.
         """
         if counts:
             goal.losses += 1

@@ -25,11 +25,11 @@ from tms_ts.shared_records import SharedRecords
 from tms_ts.task_check import TaskCheck
 
 DISK_END = 0.2  # s for the last entries when the process ends
-MEASURE = 1.0  # s between looks at the runs for metrics
+MEASURE = 1.0  # s between updates of the metrics of runs
 
 
 def start(app: App) -> None:
-    """Serve /tms/execute_task and what belongs to it."""
+    """Serve /tms/execute_task and the services for runs."""
     parts = _parts(app)
     scheduler = Scheduler(parts)
     app.ros.serve(ExecuteTask, "/tms/execute_task", Execution(parts).execute)
@@ -60,13 +60,13 @@ def _parts(app: App) -> Parts:
 
 
 class Scheduler:
-    """What is asked of all active runs together."""
+    """Serves requests that concern all active runs."""
 
     def __init__(self, parts: Parts) -> None:
         self._parts, self._runs = parts, parts.runs
 
     def unready(self) -> Reason | None:
-        """The scheduler works only with the database."""
+        """Why the scheduler cannot work: it needs the database."""
         return None if self._parts.app.ros.has_service(GetTask, "/tms/db/get_task") else WaitingFor("tms:db")
 
     def answer(self, request: AnswerQuestion.Request, response: AnswerQuestion.Response) -> AnswerQuestion.Response:
@@ -77,7 +77,7 @@ class Scheduler:
         return response
 
     def cancel(self, request: CancelRun.Request, response: CancelRun.Response) -> CancelRun.Response:
-        """Ask a run to stop; its end comes with its result."""
+        """Ask a run to stop; its result reports the end."""
         run = self._runs.find(request.run_id)
         if run is None:
             none = NoRun(request.run_id, self._runs.names())
@@ -87,7 +87,7 @@ class Scheduler:
         return response
 
     def measure(self) -> None:
-        """The metrics of the active runs, and whether their history is in danger."""
+        """Update the metrics of the active runs, and raise alarms about their history."""
         for alarm in self._parts.journal.alarms():
             self._parts.app.log.error("alarm", reason=alarm)
             for run in self._runs:
@@ -95,7 +95,7 @@ class Scheduler:
         self._parts.publisher.measure()
 
     def close(self) -> None:
-        """The process ends: runs stop their machines; the runtime waits a moment for their threads."""
+        """Let the runs stop their machines, as the process ends; the runtime waits a moment for their threads."""
         runs = list(self._runs)
         for run in runs:
             run.cancel("interrupted", SchedulerStopped())

@@ -1,4 +1,4 @@
-"""What is reported of the nodes of a run: every change for the client, most of them for the history."""
+"""Reports the nodes of a run: every change goes to the client, most changes go into the history."""
 
 from collections.abc import Callable
 
@@ -15,33 +15,33 @@ from tms_ts.reasons import LeftOut, NodeChanged, NodeChangedBecause, NodeFailed
 
 FEEDBACK_PERIOD = 0.1  # s between messages to the client
 CHANGES_A_TICK = 200  # node changes recorded of one tick; an endless loop makes thousands
-FLOOD_REPORTED = 10.0  # s between notes that changes are left out
+FLOOD_REPORTED = 10.0  # s between events that count the changes left out
 CHANGES_A_MESSAGE = 1000
 
 LogNode = Callable[[str, Reason], None]  # path of the node, what
 
 
 class NodeReport:
-    """Of one run; called by its thread."""
+    """The report of one run; called by its thread."""
 
     def __init__(self, facts: Facts, log_node: LogNode, changed: Callable[[], None]) -> None:
         self._facts, self._log_node, self._changed = facts, log_node, changed
         self.failure: Reason | None = None  # of the last leaf that failed
-        self.states = b""  # of every node, for those who watch the run
-        self.leaf = ""  # path of the first running leaf that says why
+        self.states = b""  # of every node, for the topic of active runs
+        self.leaf = ""  # path of the first running leaf that has a reason
         self._changes: list[NodeStatus] = []  # for the client, in order
-        self._all_reported = False  # the client knows the state of every node
+        self._all_reported = False  # whether the client knows the state of every node
         self._budget = Budget()
         self._changes_of_tick = self._left_out = 0
         self._flood_reported = -FLOOD_REPORTED
         self._next_feedback = 0.0
 
     def begin_tick(self) -> None:
-        """A tick has changes of its own."""
+        """Count the changes of a tick anew."""
         self._changes_of_tick = 0
 
     def changed(self, node: Node, old: Status, new: Status) -> None:
-        """An observer of the tree."""
+        """Take a change of a node; called by the tree."""
         if new is Status.FAILURE and node.reason and not node.children:
             self.failure = NodeFailed(node.name, node.reason, node.path)
         self._changes_of_tick += 1
@@ -56,7 +56,7 @@ class NodeReport:
         self._log_node(node.path, _change(node, old, new))
 
     def report_flood(self, last: bool = False) -> None:
-        """A loop that spins, or waits for hours, must not fill the history with its rounds."""
+        """Record how many changes were left out: a loop that spins, or waits for hours, must not fill the history."""
         now = monotonic()
         if self._left_out and (last or now - self._flood_reported >= FLOOD_REPORTED):
             self._log_node("", LeftOut(self._left_out))
@@ -74,7 +74,7 @@ class NodeReport:
             self._changed()
 
     def feedback(self, tree: Tree, last: bool = False) -> ExecuteTask.Feedback | None:
-        """The next message to the client; None while it is too early or nothing is new."""
+        """The next message to the client; None while it is too early or there is no change."""
         now, facts = monotonic(), self._facts
         if now < self._next_feedback and not last:
             return None
@@ -90,7 +90,7 @@ class NodeReport:
         return message
 
     def _nodes(self, tree: Tree, running: list[Node]) -> list[NodeStatus]:
-        """Every node in the first message; later the changes in their order, and what the running leaves say."""
+        """Every node in the first message; later the changes in their order, and running leaves with a reason."""
         if not self._all_reported or len(self._changes) > CHANGES_A_MESSAGE:
             return [_message(node, node.state) for node in tree.nodes]
         return [*self._changes, *(_message(node, node.state) for node in running)]

@@ -1,4 +1,4 @@
-"""Fencing numbers of runs: always growing, also over restarts, power cuts, and when the clock goes back."""
+"""Fencing numbers of runs: they always grow, also over restarts, power cuts, and when the clock goes back."""
 
 import threading
 from pathlib import Path
@@ -23,14 +23,14 @@ class Numbers:
 
     def __init__(self, folder: Path, disk: GroupCommit) -> None:
         self._path, self._disk = folder / "ts" / "number", disk
-        self._giving = threading.Lock()  # two runs that start at once must not get one number
+        self._giving = threading.Lock()  # two runs that start at once must not get the same number
         self._last = self._read()
         self._text = b""
 
     def next(self) -> int:
         """A number for a new run, on the disk; fits into 48 bits until the year 10889. Waits; from any thread.
 
-        A number that a power cut takes back would be given again, and late goals of the one run would pass for the
+        A number that was lost in a power cut would be given again, and late goals of one run would count as the
         other's.
 
         Raises:
@@ -44,7 +44,7 @@ class Numbers:
         return number
 
     def write(self, entries: list[bytes]) -> None:
-        """For group commit: the last number is the largest."""
+        """For group commit: keep the last number, which is the largest."""
         self._text = entries[-1]
 
     def sync(self) -> None:

@@ -1,4 +1,4 @@
-"""What can be known to go wrong before a run starts. Pure logic."""
+"""Finds errors of a run before it starts. Pure logic."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -39,12 +39,12 @@ class Findings:
 
 
 def machines_of(tree: Tree) -> list[str]:
-    """Machines that a tree will move, in document order; names that only the run decides are left out."""
+    """Machines that a tree will move, in document order; names that are known only during the run are left out."""
     return list(dict.fromkeys(goal.machine for goal in tree.leaf_goals() if "{" not in goal.machine))
 
 
 def records_of(tree: Tree) -> list[str]:
-    """Records that a tree names, as MODEL/RECORD; MODEL/* where only the run decides which."""
+    """Records that a tree names, as MODEL/RECORD; MODEL/* where the record is known only during the run."""
     shared = [(value.record, "") for value in tree.shared_values()]
     goals = [(goal.record, goal.machine) for goal in tree.leaf_goals() if "{" not in goal.machine]
     names = [f"{model}/{'*' if '{' in record else record}" for record, model in [*goals, *shared] if record]
@@ -66,32 +66,32 @@ class Stored:
 
     values: Values
     type: str = "static"
-    age: float | None = None  # s; None: nobody knows
+    age: float | None = None  # s; None: unknown
     max_age: float = 0.0  # s; 0: it never gets too old
 
 
 class Surroundings(Protocol):
-    """What a tree meets outside."""
+    """What preflight asks about the system around a tree."""
 
     def record(self, machine: str, record: str) -> Stored | None: ...
 
     def names(self, machine: str) -> list[str]: ...  # of its records
 
-    def served(self, machine: str, subtask: str) -> bool: ...  # whether another system has an action server for it
+    def served(self, machine: str, subtask: str) -> bool: ...  # whether another system serves its action
 
-    def problem(self, machine: str) -> Reason | None: ...  # why it could not move now
+    def problem(self, machine: str) -> Reason | None: ...  # why the machine could not move now
 
     def written(self, record: str, field: str) -> bool: ...  # whether an active run or sensing writes a shared value
 
     def silent(self, machine: str, record: str) -> str: ...  # the sensing input that should write it and does not
 
-    def unfit(self, machine: str, subtask: str, values: Values) -> Reason | None: ...  # why it cannot use them
+    def unfit(self, machine: str, subtask: str, values: Values) -> Reason | None: ...  # why the subtask cannot use them
 
     def oldest(self, machine: str, subtask: str) -> float: ...  # s that a subtask lets its record be old; 0: as it says
 
 
 def preflight(tree: Tree, site: Site, around: Surroundings) -> Findings:
-    """Check every leaf of a tree against the site, the database and what else runs."""
+    """Check every leaf of a tree against the site, the database and the running processes."""
     found = Findings([fault.reason for fault in tree.faults], [at(line, what) for line, what in tree.warnings])
     for goal in tree.leaf_goals():
         _check_goal(found, goal, site, around)
@@ -104,7 +104,7 @@ def preflight(tree: Tree, site: Site, around: Surroundings) -> Findings:
 
 
 def at(line: int, what: Reason) -> Reason:
-    """What is wrong in a line of the task."""
+    """A reason with the line of the task."""
     return Placed(Line(line), what)
 
 

@@ -1,4 +1,4 @@
-"""Questions of WaitForClick nodes: shown wherever an operator looks, answered once by whoever is first."""
+"""Questions of WaitForClick nodes: all clients show them, and the first answer counts."""
 
 import itertools
 import threading
@@ -18,7 +18,7 @@ LogEvent = Callable[[str, str, Reason], None]  # kind, node, what
 
 @dataclass(slots=True)
 class Asked:
-    """An open question and who waits for it."""
+    """An open question and the node that waits for its answer."""
 
     message: Question
     answer: Answer[bool]
@@ -30,13 +30,13 @@ class Questions:
 
     def __init__(self, ros: Ros, changed: Callable[[], None]) -> None:
         self._ros, self._changed = ros, changed
-        # From the present second: no id comes again after a restart, and none is the beginning of another one.
+        # Ids begin at the present second: none is used again after a restart, and none is the beginning of another one.
         self._numbers = itertools.count(ros.now().sec)
         self._open: dict[str, Asked] = {}
         self._lock = threading.Lock()
 
     def messages(self) -> list[Question]:
-        """For the topic of active runs."""
+        """The open questions, for the topic of active runs."""
         with self._lock:
             return [asked.message for asked in self._open.values()]
 
@@ -55,7 +55,7 @@ class Questions:
         return answer
 
     def answer(self, name: str, yes: bool, by: str) -> bool:
-        """Take an answer; False when nobody asks that any more."""
+        """Take an answer; False when the question is no longer open."""
         with self._lock:
             asked = self._open.pop(name, None)
         if asked is None:
@@ -78,7 +78,7 @@ class Questions:
 
 
 class Clicks:
-    """What the nodes of one run see of it."""
+    """The questions of one run, as its nodes ask them."""
 
     def __init__(self, questions: Questions, run_id: str, wake: Callable[[], None], log_event: LogEvent) -> None:
         self.run_id, self.wake, self.log_event = run_id, wake, log_event

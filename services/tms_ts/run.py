@@ -38,8 +38,8 @@ from tms_ts.run_checkpoint import RunCheckpoint
 from tms_ts.run_states import STATES, entered
 
 TICK_PERIOD = 0.05  # s between ticks when nothing wakes the loop
-TICK_LIMIT = 0.4  # s without a tick after which the scheduler does not stand behind its motions any more
-SETTLE_LIMIT = STOP_PROVEN + 7.0  # s for goals to become terminal after a halt
+TICK_LIMIT = 0.4  # s without a tick after which the scheduler ends the permits of its motions
+SETTLE_LIMIT = STOP_PROVEN + 7.0  # s for goals to end after a halt
 
 RUNS = Counter("tms_ts_runs_total", "Runs by outcome", ["outcome"])
 TICKS = Histogram("tms_ts_tick_seconds", "Duration of a tick", buckets=(0.001, 0.005, 0.01, 0.05, 0.1, 0.25, 0.5))
@@ -50,49 +50,49 @@ TaskGoal = Goal[ExecuteTask.Goal, ExecuteTask.Feedback]
 
 
 class Run:
-    """Lives as long as its ExecuteTask goal."""
+    """One run; it exists as long as its ExecuteTask goal."""
 
     def __init__(
         self, ros: Ros, journal: Journal, log: Logger, goal: TaskGoal, facts: Facts, record: RunCheckpoint,
         changed: Callable[[], None],
     ) -> None:  # fmt: skip
         self.facts = facts
-        self._changed = changed  # there is something new in state()
+        self._changed = changed  # called when state() has changed
         self.wake = threading.Event()
         self.cancelled = threading.Event()
         self.ended = threading.Event()
-        self.over = False  # its end is in the history
+        self.over = False  # whether its end is in the history
         self._ros, self._journal, self._log, self._goal = ros, journal, log, goal
         self.record = record
-        self.flags: Flags | None = None  # of its tree
+        self.flags: Flags | None = None  # the flags of its tree
         self._resumed = bool(goal.request.resume)
-        self.number = 0  # of the last event
-        self._numbering = threading.Lock()  # events come from the executor thread too
-        self._ending: tuple[str, Reason | None] = ("cancelled", None)  # how it ends from outside
+        self.number = 0  # number of the last event
+        self._numbering = threading.Lock()  # the executor thread logs events, too
+        self._ending: tuple[str, Reason | None] = ("cancelled", None)  # outcome and reason if it is ended from outside
         self.nodes = NodeReport(facts, lambda node, what: self.log_event("node", node, what), changed)
-        self._ticked: float | None = None  # when the last tick ended; None while nothing ticks
+        self._ticked: float | None = None  # when the last tick ended; None while the tree is not ticked
 
     def cancel(self, outcome: str = "cancelled", reason: Reason | None = None) -> None:
-        """Ask the run to stop; returns at once. The first one says why."""
+        """Ask the run to stop; returns at once. The reason of the first call counts."""
         if not self.cancelled.is_set():
             self._ending = (outcome, reason)
         self.cancelled.set()
         self.wake.set()
 
     def stopped(self, machine: str, cause: Reason) -> None:
-        """A machine was reported to stop from outside, and moves no more until somebody re-arms it."""
+        """End the run, as a machine was stopped from outside and stays latched until a person re-arms it."""
         wanted = cause.find(SoftwareStop) is not None
         self.cancel("cancelled" if wanted else "failure", StopRequested(machine, cause))
 
     def alive(self) -> bool:
-        """Whether the loop that decides about motions still runs."""
+        """Whether the loop that decides about motions still ticks."""
         ticked = self._ticked
         return ticked is None or monotonic() - ticked < TICK_LIMIT
 
     # what is reported
 
     def log_event(self, kind: str, node: str, what: Reason, values: Mapping[str, Any] | None = None) -> None:
-        """One event into the journal and the log."""
+        """Write one event into the journal and the log."""
         with self._numbering:
             self.number += 1
             self.record.event(self.number)
@@ -122,7 +122,7 @@ class Run:
         )  # fmt: skip
 
     def state(self) -> RunState:
-        """For the topic of active runs."""
+        """The message for the topic of active runs."""
         facts = self.facts
         return RunState(
             run_id=facts.run_id, task_id=facts.task_id, state=facts.state, machines=facts.machines,
@@ -130,7 +130,7 @@ class Run:
         )  # fmt: skip
 
     def publish_tree(self, tree: Tree) -> None:
-        """The shape of the tree, once: what shows states later, live or from the history, draws them on it."""
+        """Publish the shape of the tree once: the console draws states on it, live or from the history."""
         nodes = tree.nodes
         values = {
             "paths": [node.path for node in nodes],
@@ -149,7 +149,7 @@ class Run:
     # the loop
 
     def execute(self, tree: Tree, machines: Machines) -> str:
-        """Tick to the end and stop what still moves; returns the outcome."""
+        """Tick to the end and stop machines that still move; returns the outcome."""
         tree.observers.append(self.nodes.changed)
         self.enter("running")
         outcome = "failure"
@@ -179,14 +179,14 @@ class Run:
                 return "success" if status is Status.SUCCESS else "failure"
             if took > TICK_PERIOD:
                 OVERRUNS.inc()
-            next_tick = min(max(next_tick + TICK_PERIOD, begun), begun + TICK_PERIOD)  # however often something woke it
+            next_tick = min(max(next_tick + TICK_PERIOD, begun), begun + TICK_PERIOD)  # also if it was woken often
             self.wake.wait(max(0.0, next_tick - monotonic()))
             self.wake.clear()
         outcome, self.nodes.failure = self._ending
         return outcome
 
     def _settle(self, tree: Tree, machines: Machines, outcome: str) -> str:
-        """Machines are stopped and watched, but after a success that left no goal open: then nothing moves."""
+        """Stop the machines and watch them stand, except after a success without open goals: then no machine moves."""
         self._ticked = None
         moving, receipts = True, []
         try:
@@ -199,10 +199,10 @@ class Run:
             if moving and outcome == "success":  # the tree succeeded in the tick that halted a leaf
                 self.nodes.failure = None
                 self.enter("stopping", HaltedGoalsEnd())
-        finally:  # also when the lines above have a bug
+        finally:  # also if the lines above raise
             if moving:
-                # Straight to the gateways, beside the cancels on their way through subtask and planner: a stop takes
-                # the shortest way, and its receipt measures from here.
+                # Call the gateways directly, while the cancels still pass subtask and planner: a stop takes the
+                # shortest way, and its receipt measures from here.
                 receipts = machines.stops.stop_all(self.facts.machines, STATES[outcome])
         if not moving:
             return self._end(outcome, None)
@@ -232,7 +232,7 @@ class Run:
         return outcome
 
     def close_record(self, outcome: str) -> None:
-        """Only an interrupted run can be resumed."""
+        """Keep the checkpoint of an interrupted run, which can be resumed; remove all others."""
         if outcome == "interrupted":
             self.record.interrupted()
             self.record.close()
@@ -240,9 +240,9 @@ class Run:
             self.record.remove()
 
     def refuse(self, reason: Reason) -> None:
-        """End before anything moved."""
+        """End the run before any machine has moved."""
         self.over = True
-        if self._resumed:  # the run stays what it was: interrupted
+        if self._resumed:  # the run stays interrupted
             self.enter("interrupted", NotResumed(reason), ended=True)
             self.record.interrupted()
             self.record.close()

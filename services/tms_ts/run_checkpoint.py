@@ -1,8 +1,8 @@
-"""What this PC keeps of a run until it has ended: enough to close it after a crash, and to resume it. Pure logic.
+"""The checkpoint of a run on this PC until the run has ended: it serves to close it after a crash, and to resume it.
 
-One file a run, one JSON object a line: first the run, then every event's number and every leaf goal that was sent
-or has ended. A run that ended in order leaves no file. Lines are written by group commit: whoever adds one waits for
-nothing. In each group the records are on the disk before the journal: no event is reported with a number unknown here.
+Each run has a file with one JSON object per line: first the run, then the number of every event and every leaf goal
+that was sent or has ended. A run that ended in order leaves no file. Group commit writes the lines, so adding one does
+not wait. In each group, checkpoints are on the disk before the journal: each reported event has its number here. Pure.
 """
 
 import json
@@ -20,16 +20,16 @@ from tms_ts.append_file import AppendFile
 from tms_ts.group_commit import GroupCommit
 from tms_ts.interrupted_run import Header, InterruptedRun, Key
 
-READ_LIMIT = 2.0  # s for lines on their way to the disk before it is read
+READ_LIMIT = 2.0  # s for waiting lines to be on the disk before a checkpoint is read
 
 log = structlog.stdlib.get_logger(__name__)
 LOST = Counter("tms_ts_record_lost_total", "Lines of a run's record that could not be kept; it cannot be resumed")
 
 
 class RunCheckpoint:
-    """Written by the run.
+    """The checkpoint of one run, written by it.
 
-    A line begins with its line break: what a crash has cut off before it spoils no other line.
+    Each line begins with its line break: a line that a crash has cut does not damage the next one.
     """
 
     order = 0
@@ -40,9 +40,9 @@ class RunCheckpoint:
         self._ended = False
 
     def _line(self, data: dict[str, Any], urgent: bool = False) -> None:
-        """`urgent`: what a resume relies on is written at once; a killed process loses what still gathers."""
+        """Write a line; `urgent`: at once, as a resume relies on it (a killed process loses lines that still wait)."""
         if self._ended:
-            return  # news of a run that is over
+            return  # the run is over
         if not self._disk.put(self, b"\n" + json.dumps({**data, "t": unix_time()}).encode(), vital=True, urgent=urgent):
             LOST.inc()
             log.error("record_lost", file=self.path.name, line=next(iter(data)))
@@ -60,24 +60,24 @@ class RunCheckpoint:
         self._line({"done": key, "ok": succeeded}, urgent=True)
 
     def gone(self, key: Key, left: int) -> None:
-        """The last `left` ends of that leaf goal belong to the past: they are not skipped by a later resume."""
+        """Note that a later resume must not skip the last `left` ends of that leaf goal: the run has passed them."""
         self._line({"gone": key, "left": left})
 
     def over(self, outcome: str, reason: str) -> None:
-        """The run ends, as the next event tells."""
+        """Note that the run ends; the next event reports it."""
         self._line({"over": outcome, "reason": reason})
 
     def interrupted(self) -> None:
-        """The history says now that the run was interrupted."""
+        """Note that the history has the run as interrupted."""
         self._line({"interrupted": True})
 
     def close(self) -> None:
-        """Nothing more is written; the file stays."""
+        """Refuse further lines; the file stays."""
         self._ended = True
         self._disk.after(self._close)
 
     def remove(self) -> None:
-        """The run has ended in order, and that is stored before the file is gone."""
+        """Remove the file of a run that has ended in order, after its end is stored."""
         self._ended = True
         self._disk.after(self._remove)
 
@@ -106,17 +106,17 @@ class RunCheckpoint:
 
 
 class Records:
-    """All records of this PC, in `<state>/ts/runs/`."""
+    """All checkpoints of this PC, in `<state>/ts/runs/`."""
 
     def __init__(self, state: Path, disk: GroupCommit) -> None:
         self._folder, self._disk = state / "ts" / "runs", disk
 
     def open(self, run_id: str) -> RunCheckpoint:
-        """The record of a run, new or continued."""
+        """The checkpoint of a run, new or continued."""
         return RunCheckpoint(self._folder / f"{run_id}.jsonl", self._disk)
 
     def check(self) -> None:
-        """Before the first run: put aside what cannot be read, tell it, and go on with the others."""
+        """Before the first run: set unreadable files aside, log that, and go on with the others."""
         for path in sorted(self._folder.glob("*.jsonl")):
             try:
                 past = InterruptedRun(path)
@@ -129,11 +129,11 @@ class Records:
                 log.error("record_damaged", file=path, lines=past.damaged)
 
     def past(self) -> list[InterruptedRun]:
-        """Runs that did not end in order, oldest first. Waits a moment for what is on its way to the disk."""
+        """Runs that did not end in order, oldest first. Waits a moment for lines that are not on the disk yet."""
         self._disk.wait(READ_LIMIT)
         found = []
         for path in sorted(self._folder.glob("*.jsonl")):
-            with suppress(OSError):  # told at the start
+            with suppress(OSError):  # `check` has logged it at the start
                 found.append(InterruptedRun(path))
         return [past for past in found if past.header is not None]
 

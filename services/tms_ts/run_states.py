@@ -1,4 +1,4 @@
-"""The states of a run, as its history tells them."""
+"""The states of a run, as its history shows them."""
 
 from tms_reason.reason import Reason
 from tms_ts.reasons import (
@@ -24,5 +24,5 @@ STATES: dict[str, Reason] = {
 
 
 def entered(state: str, why: Reason | None) -> Reason:
-    """That a run is in a state now."""
+    """The reason that says which state a run has entered, and why."""
     return STATES[state] if why is None else StateBecause(STATES[state], why)

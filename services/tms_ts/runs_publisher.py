@@ -1,4 +1,4 @@
-"""What others see of the active runs: the latched topic /tms/runs and the metrics."""
+"""Publishes the active runs: the latched topic /tms/runs and the metrics."""
 
 import threading
 from collections import Counter
@@ -14,12 +14,12 @@ from tms_ts.questions import Questions
 STATES = ("preparing", "running", "stopping")
 ACTIVE = Gauge("tms_ts_active_runs", "Active runs by state", ["state"])
 NODES = Gauge("tms_ts_tree_nodes", "Nodes of the active runs' trees by status", ["status"])
-LONGEST_PERIOD = 1.0  # s between messages on the topic of active runs ...
-SHORTEST_PERIOD = 0.05  # s ... and when something changes all the time
+LONGEST_PERIOD = 1.0  # s between messages on the topic of active runs without changes ...
+SHORTEST_PERIOD = 0.05  # s ... and with changes all the time
 
 
 class RunsPublisher:
-    """Publishes what changed at once, but not more often than anybody can see."""
+    """Publishes changes at once, but not more often than a person can see."""
 
     def __init__(self, ros: Ros, runs: ActiveRuns) -> None:
         self._runs = runs
@@ -29,11 +29,11 @@ class RunsPublisher:
         threading.Thread(target=self._publish, name="runs", daemon=True).start()
 
     def changed(self) -> None:
-        """There is something new; returns at once."""
+        """Have a change published; returns at once."""
         self._changed.set()
 
     def close(self) -> None:
-        """Publish nothing more."""
+        """End publishing."""
         self._closing.set()
 
     def _publish(self) -> None:

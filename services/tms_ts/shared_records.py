@@ -1,7 +1,7 @@
-"""What this scheduler knows of shared records (the global blackboard), so that waiting for a flag asks nobody.
+"""The scheduler's copy of shared records (the global blackboard): a leaf that waits for a flag does not call tms:db.
 
-A record is read once and kept until tms:db tells of a change, or for KEPT at most: somebody may write to the store past
-tms:db, and a message may get lost with a process.
+A record is read once and kept until tms:db publishes a change of it, or for KEPT at most: another program may write to
+the store without tms:db, and a message may get lost with a process.
 """
 
 import threading
@@ -15,7 +15,7 @@ from tms_config.clock import monotonic
 from tms_ros.node import Ros
 
 KEPT = 1.0  # s
-CHANGES_KEPT = 100  # messages that may wait
+CHANGES_KEPT = 100  # messages about changes that may wait
 
 
 @dataclass(frozen=True)
@@ -43,18 +43,18 @@ class SharedRecords:
             return found.fields if found is not None and monotonic() < found.until else None
 
     def asked(self, record: str) -> int:
-        """Before reading a record: what `keep` needs to know whether it has changed meanwhile."""
+        """Call it before reading a record: with its result, `keep` detects a change meanwhile."""
         with self._lock:
             return self._changes.get(record, 0)
 
     def keep(self, record: str, asked: int, fields: dict[str, Any], max_age: float) -> None:
-        """Remember a record that was just read; one that may get too old is asked for every time."""
+        """Keep a record that was just read, unless it can get too old: such records are read every time."""
         with self._lock:
             if self._changes.get(record, 0) == asked and max_age <= 0:
                 self._kept[record] = Kept(fields, monotonic() + KEPT)
 
     def forget(self, record: str) -> None:
-        """It was changed from here."""
+        """Drop the copy of a record that was changed."""
         with self._lock:
             self._kept.pop(record, None)
             self._changes[record] = self._changes.get(record, 0) + 1
@@ -65,7 +65,7 @@ class SharedRecords:
             self._readers.setdefault(record, set()).add(wake)
 
     def unwatch(self, wake: Callable[[], None]) -> None:
-        """Of all records."""
+        """End the calls of `wake`, for all records."""
         with self._lock:
             for readers in self._readers.values():
                 readers.discard(wake)

@@ -1,4 +1,4 @@
-"""What preflight asks: the records as they are now, the servers, machines, runs and sensing inputs that are there."""
+"""Answers preflight: the present records, and the servers, machines, runs and sensing inputs that exist."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -23,11 +23,11 @@ from tms_ts.reasons import JointUnfit
 DB_LIMIT = 5.0  # s
 DISCOVERY_LIMIT = 1.5  # s, for one preflight as a whole
 CHECK_PERIOD = 0.05  # s
-DEAF = ("silent", "waiting")  # states of an input that writes nothing
+DEAF = ("silent", "waiting")  # states of an input that does not write
 
 
 class Sensing:
-    """The sensing inputs as tms:sp tells of them."""
+    """The sensing inputs as tms:sp publishes them."""
 
     def __init__(self, app: App) -> None:
         self._inputs: list[InputState] = []
@@ -41,7 +41,7 @@ class Sensing:
         return any(record in one.records and one.state not in DEAF for one in self._inputs)
 
     def silent(self, record: str) -> str:
-        """An input that has written a record and has stopped to."""
+        """An input that wrote a record and does not any more."""
         return next((one.name for one in self._inputs if record in one.records and one.state in DEAF), "")
 
 
@@ -70,7 +70,7 @@ class PreflightContext:
         return [record for of, record in self._records if of == machine]
 
     def served(self, machine: str, subtask: str) -> bool:
-        """Whether an action server of that name is in the ROS graph, whoever runs it; one may have begun just now."""
+        """Whether the ROS graph has an action server of that name, of any system; waits for one that has just begun."""
         status, count = f"/{machine}/{subtask}/_action/status", self._app.ros.node.count_publishers
         while not (found := count(status)) and monotonic() < self._found_by:
             sleep(CHECK_PERIOD)

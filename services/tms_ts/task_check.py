@@ -1,4 +1,4 @@
-"""Preflight: of a stored task or of XML, and of a run before it begins."""
+"""Runs the preflight of a stored task, of XML, and of a run before it begins."""
 
 from tms_msg_db.msg import Task
 from tms_msg_db.srv import GetTask
@@ -55,11 +55,11 @@ class TaskCheck:
         return answer.task
 
     def before_run(self, tree: bt.Tree) -> Findings:
-        """Preflight of a run that is about to begin; what keeps its machines from moving now is asked later."""
+        """Preflight of a run that is about to begin; whether its machines may move now is checked later."""
         return self._preflight(tree, present=False)
 
     def refuse_latched(self, machines: list[str]) -> None:
-        """A run may begin only with machines that are armed and free.
+        """Refuse to begin a run unless its machines are armed and free.
 
         Raises:
             TaskError: why one of them may not move now; NOT_ARMED if it is latched.
@@ -70,7 +70,7 @@ class TaskCheck:
                 raise TaskError(found, "NOT_ARMED" if isinstance(found, MachineLatched) else found.code)
 
     def _preflight(self, tree: bt.Tree, present: bool) -> Findings:
-        """`present`: also say what keeps the machines from moving now; a run is refused for that later."""
+        """`present`: also report why machines may not move now; a run is refused for that later."""
         problem = self._problem if present else _no_problem
         return preflight(tree, self._app.site, PreflightContext(self._app, self._sensing, problem, self._runs.writes))
 

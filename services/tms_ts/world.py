@@ -1,4 +1,4 @@
-"""What leaf nodes ask of the outside. Every call returns at once: a leaf asks, and looks at the answer later."""
+"""The interface of leaf nodes to the outside. Every call returns at once: a leaf asks, and reads the answer later."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Goal(Protocol):
     def reason(self) -> Reason | None: ...  # why it waits or ended
 
     @property
-    def feedback(self) -> Reason | None: ...  # what the subtask said last
+    def feedback(self) -> Reason | None: ...  # the subtask's last feedback
 
     def cancel(self) -> None: ...
 

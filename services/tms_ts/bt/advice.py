@@ -1,6 +1,6 @@
 """Preflight: what the author should know before a run, found without running anything.
 
-Mostly the places where this engine is kinder than the C++ system, which would hang or throw there.
+Most of it concerns trees that run here, but hang or throw in the C++ system.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def text_keys(nodes: list[Node]) -> Mapping[str, str]:
 
 
 def literals(node: Node) -> list[Reason]:
-    """Port texts that do not fit the port's type, and ports that the node cannot do without."""
+    """Port texts that do not fit the port's type, and missing ports without which the node throws."""
     notes: list[Reason] = [
         ThrowsWithoutPort(node.registration_name, port)
         for port in node.needs

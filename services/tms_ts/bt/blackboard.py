@@ -1,6 +1,6 @@
 """Blackboards: typed entries, shared with a parent blackboard through remaps.
 
-The first port that names a key decides its type ("strong"); an entry without a type ("weak") takes whatever comes.
+The first port that names a key decides its type ("strong"); an entry without a type ("weak") takes any value.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ class Blackboard:
         return entry
 
     def declare(self, key: str, kind: Any) -> None:
-        """What loading does for every port that points at a key."""
+        """Make the entry of a key that a port points at, when the tree is loaded."""
         known = self.find(key)
         entry = self.touch(key, kind, has_converter=True)
         if known is None or Any in (entry.kind, kind) or entry.kind in (kind, str):
@@ -77,7 +77,7 @@ class Blackboard:
         raise TreeError(KeyOfAnotherType(key, CPP_NAMES[entry.kind], CPP_NAMES[kind]), hint=UseAnotherKey())
 
     def place(self, key: str) -> tuple[int, str]:
-        """What tells a key from others of the tree: its name at the far end of all remaps, and where that is."""
+        """What identifies a key in the tree: its name at the far end of all remaps, and the blackboard there."""
         outer = self._outer(key)
         return (id(self), key) if outer is None or self._parent is None else self._parent.place(outer)
 
@@ -86,12 +86,12 @@ class Blackboard:
         return MISSING if entry is None else entry.value
 
     def constant(self, key: str) -> Any:
-        """The value that a key has before the first tick and keeps; MISSING if the run decides it."""
+        """The value that a key has before the first tick and keeps; MISSING if it is known only during the run."""
         entry = self.find(key)
         return MISSING if entry is None or entry.varies else entry.value
 
     def vary(self, key: str) -> None:
-        """A node may write the key, if it is there."""
+        """Mark the entry of a key, if there is one, as written by a node."""
         entry = self.find(key)
         if entry is not None:
             entry.varies = True
@@ -112,14 +112,14 @@ class Blackboard:
         entry.value = converted
 
     def copy(self, source: str, target: str) -> None:
-        """Value and type of one entry to another, without any check."""
+        """Copy value and type of one entry to another, without any check."""
         origin = self.find(source)
         if origin is None:
             return
         self.touch(target, origin.kind, has_converter=origin.has_converter).value = origin.value
 
     def replace(self, key: str, value: Any) -> bool:
-        """Write by the same rules, but where they refuse change the key's type; True if that was so."""
+        """Write by the same rules, but change the key's type where they refuse the value; True if it was changed."""
         try:
             self.set(key, value)
         except TickError:
@@ -130,5 +130,5 @@ class Blackboard:
         return False
 
     def items(self) -> Iterator[tuple[str, Any]]:
-        """Keys seen here that have a value; may be asked while another thread ticks."""
+        """Keys of this blackboard that have a value; may be called while another thread ticks."""
         return ((key, entry.value) for key, entry in list(self._entries.items()) if entry.value is not MISSING)

@@ -16,7 +16,7 @@ from tms_ts.bt.status import FAILURE, IDLE, RUNNING, SUCCESS, Status
 
 
 def chosen_synchronously(children: list[AtOnce]) -> AtOnce:
-    """What one of the children may do within one tick, the first being a condition that may itself be the end."""
+    """Whether the node may succeed and may fail within one tick; its first child, a condition, may also end it."""
     return any(succeeds for succeeds, _ in children[1:]), any(fails for _, fails in children[1:])
 
 

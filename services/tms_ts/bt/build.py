@@ -39,7 +39,7 @@ class Builder:
 
     @staticmethod
     def mark_written(node: Node) -> None:
-        """Which keys are no constants: outputs, and every key whose name a port gives as text, as Counter's does."""
+        """Mark the keys that are no constants: outputs, and keys whose names ports give as text, as Counter's does."""
         for port, bound in node.bindings.items():
             if isinstance(bound, str):
                 node.blackboard.vary(bound)
@@ -127,7 +127,7 @@ class Builder:
                     inner.remap_all(but_private=v4)
             elif isinstance(bound := bind(key, value, v4=v4), Pointer) and bound.text != "=":
                 inner.remap(key, bound.key)
-            else:  # once, now; after __autoremap it goes to the outer blackboard, as in the library
+            else:  # set once, at loading; after __autoremap it goes to the outer blackboard, as in the library
                 inner.set(key, value)
         return inner
 

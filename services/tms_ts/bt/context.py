@@ -11,7 +11,7 @@ from tms_ts.bt.errors import MAX_WARNINGS, shortened
 from tms_ts.bt.status import Status
 from tms_ts.world import World
 
-N = TypeVar("N")  # the nodes that observers are told of
+N = TypeVar("N")  # the nodes that observers are called with
 
 ENDLESS_ROUNDS = 100  # rounds that one endless loop may make in a tick
 ALL_ROUNDS = 10_000  # rounds of all loops of the tree together in a tick
@@ -55,7 +55,7 @@ class Context(Generic[N]):
         self._yield_at = self.clock() + TICK_SECONDS
 
     def may_loop(self, rounds: int, *, endless: bool) -> bool:
-        """Whether a loop that has made so many rounds in this tick may go on in it."""
+        """Whether a loop that has made `rounds` rounds in this tick may make another one in it."""
         self._rounds_left -= 1
         if endless and rounds >= ENDLESS_ROUNDS:
             return False

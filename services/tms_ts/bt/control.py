@@ -30,7 +30,7 @@ class Control(Node):
 
 
 def in_order(children: list[AtOnce], goes_on: Status) -> AtOnce:
-    """What a sequence (or, mirrored, a fallback) of children may do within one tick."""
+    """Whether a sequence (or, mirrored, a fallback) of children may succeed and may fail within one tick."""
     through, ended = True, False
     for succeeds, fails in children:
         on, off = (succeeds, fails) if goes_on is SUCCESS else (fails, succeeds)

@@ -58,18 +58,18 @@ def text_to_integer(text: str, low: int, high: int) -> int | Missing:
 
 
 def text_to_int(text: str) -> int | Missing:
-    """As C++ reads an int."""
+    """Read an int as C++ does."""
     return text_to_integer(text, -(2**31), 2**31 - 1)
 
 
 def text_to_unsigned(text: str) -> int | Missing:
-    """As C++ reads an unsigned int: a negative number wraps around."""
+    """Read an unsigned int as C++ does: a negative number wraps around."""
     number = text_to_integer(text, -(2**64) + 1, 2**64 - 1)
     return number if isinstance(number, Missing) else number & 0xFFFFFFFF  # -1 wraps, as in C
 
 
 def text_to_double(text: str) -> float | Missing:
-    """As C++ reads a double in the locale C."""
+    """Read a double as C++ does in the locale C."""
     found = _REAL.match(text)
     if found is None:
         return MISSING
@@ -89,7 +89,7 @@ def text_to_double(text: str) -> float | Missing:
 
 
 def text_to_bool(text: str) -> bool | Missing:
-    """As the library reads a bool: true, false, 1, 0 and their capital forms."""
+    """Read a bool as the library does: true, false, 1, 0 and their capital forms."""
     if text in TRUE_WORDS:
         return True
     return False if text in FALSE_WORDS else MISSING

@@ -1,4 +1,4 @@
-"""Decorators: one child, its result changed on the way."""
+"""Decorators: nodes with one child, whose result they change."""
 
 from __future__ import annotations
 

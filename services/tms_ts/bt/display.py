@@ -1,7 +1,7 @@
 """A tree as py_trees shows trees: as text, as a dot graph, and to its visitors.
 
-Every node gets a twin of the class of py_trees that is nearest to it, because symbols and shapes of the displays go by
-class. The twins hold names and statuses of one moment and are never ticked.
+Every node gets a twin of the nearest class of py_trees, because the displays choose symbols and shapes by class. The
+twins hold names and statuses of one moment and are never ticked.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ LONGEST = 80  # letters of a port's text
 
 
 class Shown(Behaviour):
-    """The twin of a leaf, and of a control node that py_trees has no like of."""
+    """The twin of a leaf, and of a control node to which no class of py_trees corresponds."""
 
     def update(self) -> PyTreesStatus:
         """Never called in a display."""
@@ -47,7 +47,7 @@ class ShownDecorator(PyTreesDecorator):
 
 
 class Thresholds(ParallelPolicy.Base):
-    """The policy of a Parallel; its ports tell the numbers."""
+    """The policy of a Parallel; its ports have the numbers."""
 
 
 def ascii_tree(tree: Tree, *, status: bool = False) -> str:
@@ -61,8 +61,8 @@ def dot(tree: Tree) -> str:
     labels = {node.path: label(node).replace("\\", "\\\\") for node in tree.nodes}
     for shown in graph.get_nodes():
         path = str(shown.get_name()).strip('"')
-        if path in labels:  # the others are defaults of the graph
-            symbol = str(shown.get("label")).strip('"').partition(path)[0]  # of a node with memory
+        if path in labels:  # all other nodes are defaults of the graph
+            symbol = str(shown.get("label")).strip('"').partition(path)[0]  # the symbol of a node with memory
             shown.set("label", symbol + labels[path])
     return str(graph.to_string())
 

@@ -1,4 +1,4 @@
-"""A tree document with everything it includes: which trees there are, and what the editor's palette says."""
+"""A tree document with its includes: the trees in it, and the models of the editor's palette."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class TreeElement:
 @dataclass(slots=True)
 class Document:
     sources: list[Source] = field(default_factory=list)
-    trees: list[TreeElement] = field(default_factory=list)  # all of them, first registered first
+    trees: list[TreeElement] = field(default_factory=list)  # all trees, in order of registration
     models: dict[str, frozenset[str]] = field(default_factory=dict)  # ID -> ports, by TreeNodesModel
     warnings: list[tuple[int, Reason]] = field(default_factory=list)
 

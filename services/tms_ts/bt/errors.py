@@ -1,4 +1,4 @@
-"""What can go wrong with a tree, told with line, node path and a hint.
+"""Errors of trees, with line, node path and a hint.
 
 TreeError                a tree that cannot be loaded (or the root of what follows)
 └── TickError            a node that cannot go on while it is ticked or halted
@@ -17,9 +17,9 @@ from tms_reason.texts import text
 from tms_ts.bt.reasons import AtNode, DidYouMean, FileLine, FileLineAt, Hinted, InFile, Line, LineAt, Placed
 
 R = TypeVar("R", bound=Reason)
-MAX_WARNINGS = 500  # of one tree; more than that helps nobody
+MAX_WARNINGS = 500  # of one tree; more are no help to the author
 MAX_LISTED = 12  # names in one text
-MAX_NAMES = 1000  # to look for a near one among, which takes some 30 ms
+MAX_NAMES = 1000  # names among which a near one is searched, which takes some 30 ms
 
 
 class TreeError(TaskError):
@@ -41,7 +41,7 @@ class TreeError(TaskError):
         self.place(line, path)
 
     def place(self, line: int | None, path: str) -> None:
-        """Say where it is."""
+        """Set line and path of the error."""
         self.line, self.path = line, path
         where = _place(self.file, line, short(path, 120))
         placed = self.what if where is None else Placed(where, self.what)

@@ -1,4 +1,4 @@
-"""Base classes for leaves. A leaf never works and never waits: it asks, and looks again at the next tick."""
+"""Base classes for leaves. A leaf does no long work and never waits: it asks, and checks at the next tick."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ class PlainAction(Leaf):
     __slots__ = ()
 
     def reported(self, port: str) -> str:
-        """What the document says of a port, if need be as a constant of a SubTreePlus.
+        """The text of a port in the document, also where it is a constant of a SubTreePlus.
 
-        What only the run decides reads as its {key}.
+        A value that is known only during the run is returned as its {key}.
         """
         bound: Any = self.bindings.get(port)
         if isinstance(bound, Pointer):

@@ -1,4 +1,4 @@
-"""The two entries: `load` makes a tree, `check` only tells what is in a document and what is wrong with it."""
+"""The two entry points: `load` makes a tree, `check` only reports content and errors of a document."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from tms_ts.bt.tree import LeafGoal, Tree
 from tms_ts.bt.verify import Rules
 from tms_ts.world import World
 
-MAX_ERRORS = 100  # more than that helps nobody
+MAX_ERRORS = 100  # more are no help to the author
 
 
 def load(
@@ -64,14 +64,14 @@ def _build(document: Document, rules: Rules, context: Context[Node], values: Map
     builder = Builder(document, rules, context)
     root = builder.build(outermost)
     advise(builder.nodes)
-    for line, what in document.warnings:  # last: what is not used must leave room for what is
+    for line, what in document.warnings:  # last: warnings of unused trees must leave room for those of used ones
         context.warn(line, what)
     return Tree(root, builder.nodes, builder.blackboards, context, document.text, document.main)
 
 
 @dataclass(slots=True)
 class Report:
-    """What `check` found; nothing was run."""
+    """What `check` found, without a run."""
 
     goals: list[LeafGoal] = field(default_factory=list)
     warnings: list[tuple[int, Reason]] = field(default_factory=list)

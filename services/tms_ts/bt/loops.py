@@ -53,7 +53,7 @@ class Loop(Decorator):
         super().halt()
 
     def may_ask(self, limit: int) -> bool:
-        """Whether a further round in this tick makes sense: shared values that are known are the same in each."""
+        """Whether another round in this tick can differ: the known shared values are the same in each round."""
         if self.asks is None:
             self.asks = _asks(self.child)
         return limit != -1 or not self.asks

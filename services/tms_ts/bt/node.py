@@ -1,8 +1,8 @@
 """The base of every node. A tree is ticked by plain recursion: a parent calls `execute_tick` of its child.
 
-Nodes are no behaviours of py_trees, whose tick is a generator per node and visit, some fifty times slower than the C
-library, and resets finished nodes by other rules. py_trees is at the borders: its behaviours are leaves
-(py_trees_leaf.py), and its displays and visitors see any tree (display.py).
+Nodes are not behaviours of py_trees: its tick makes a generator per node and visit, is some fifty times slower than
+the C library, and resets finished nodes by other rules. py_trees is used at the borders: its behaviours can be leaves
+(py_trees_leaf.py), and its displays and visitors work on every tree (display.py).
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from tms_ts.bt.status import IDLE, RUNNING, Kind, Status
 
 @dataclass(slots=True)
 class NodeSpec:
-    """What a node is given when it is made."""
+    """The arguments with which a node is made."""
 
     registration_name: str
     name: str
@@ -56,11 +56,11 @@ class Node:
         "uid",
     )
     kind: ClassVar[Kind] = Kind.UNDEFINED
-    builtin: ClassVar[bool] = False  # part of the engine, known to Groot
+    builtin: ClassVar[bool] = False  # part of the engine; Groot knows it
     ports: ClassVar[Mapping[str, Port]] = {}
-    required: ClassVar[frozenset[str]] = frozenset()  # ports without which it is not even loaded
-    needs: ClassVar[tuple[str, ...]] = ()  # ports without which it throws
-    asking: ClassVar[bool] = False  # RUNNING only because an answer is not there yet
+    required: ClassVar[frozenset[str]] = frozenset()  # ports without which loading fails
+    needs: ClassVar[tuple[str, ...]] = ()  # ports without which the node throws
+    asking: ClassVar[bool] = False  # RUNNING only because an answer has not come yet
 
     def __init__(self, birth: NodeSpec) -> None:
         self.name = birth.name
@@ -78,7 +78,7 @@ class Node:
         self.prepare()
 
     def endless(self) -> bool:
-        """Whether it runs its child again and again, without an end that the document tells."""
+        """Whether it runs its child again and again, without an end that the document gives."""
         return False
 
     def prepare(self) -> None:
@@ -108,7 +108,7 @@ class Node:
                 self.reason = None
 
     def reset(self) -> None:
-        """What parents do to a child: halt it if it is RUNNING, and make it IDLE even if its halt raises."""
+        """Called by the parent: halt the node if it is RUNNING, and make it IDLE even if its halt raises."""
         try:
             if self.state is RUNNING:
                 self.halt()
@@ -116,7 +116,7 @@ class Node:
             self.set_state(IDLE)
 
     def only_asks(self) -> bool:
-        """Whether everything RUNNING here does no more than wait for an answer."""
+        """Whether all RUNNING leaves here only wait for an answer."""
         running = [child for child in self.children if child.state is RUNNING]
         return all(child.only_asks() for child in running) if running else self.asking
 
@@ -148,7 +148,7 @@ class Node:
         self.blackboard.set(key, value, self.ports[port].kind)
 
     def store(self, key: str, value: Any) -> None:
-        """Write a key whose name the node worked out, whatever type it had."""
+        """Write a key whose name the node has computed, also if that changes the key's type."""
         if self.blackboard.replace(key, value):
             self.warn(KeyChangesType(key))
 
@@ -181,11 +181,11 @@ class Node:
     # --- preflight
 
     def faults(self) -> list[Reason]:
-        """What makes it throw whenever it is ticked."""
+        """Why it throws whenever it is ticked."""
         return []
 
     def written(self) -> list[tuple[str, Any]]:
-        """Keys that it writes with a type that the document tells, and that type."""
+        """Keys that it writes with a type that the document determines, and that type."""
         outputs = [port for port in self.ports.values() if port.direction is Direction.OUTPUT and port.kind is not Any]
         bound = [(self.bindings.get(port.name), port.kind) for port in outputs]
         return [(one.key if isinstance(one, Pointer) else one, kind) for one, kind in bound if one is not None]

@@ -1,14 +1,14 @@
-"""Leaves that are behaviours of py_trees: a behaviour that somebody wrote for py_trees becomes a node of the palette.
+"""Leaves that are behaviours of py_trees: a behaviour that was written for py_trees becomes a node of the palette.
 
 A node class of this kind declares its ports and makes the behaviour from them, anew at each start. py_trees' own `tick`
 drives it, so `setup`, `initialise`, `update`, `terminate` and `shutdown` are called as py_trees documents them, all on
 the thread of the run and never two at a time. It may be a whole tree of py_trees, too: to the outside it is one leaf.
 
 Rules for a behaviour with threads or processes of its own:
-- Each is kept in an attribute of the behaviour, or it is not seen here.
-- `initialise` starts them and `update` looks at what they have done; both return at once.
-- `terminate` tells them to end and returns at once, too: nothing may delay the halt of a machine. This leaf does not
-  start again before they have ended, and `Tree.workers` tells those that are left behind.
+- Each is kept in an attribute of the behaviour, where this leaf finds it.
+- `initialise` starts them and `update` reads their results; both return at once.
+- `terminate` asks them to end and returns at once, too: the halt of a machine must not be delayed. This leaf does not
+  start again before they have ended, and `Tree.workers` lists those that have not ended yet.
 - The blackboard of py_trees is refused: all runs of the process would share it. Values come and go through ports.
 """
 
@@ -41,24 +41,24 @@ class PyTreesLeaf(StatefulAction):
     reports: ClassVar[bool] = True  # `feedback_message` of the behaviour is why it is RUNNING or has failed
 
     def prepare(self) -> None:
-        """Nothing runs yet."""
+        """Begin without a behaviour."""
         self._live: Behaviour | None = None
         self._reported: list[Worker] = []  # to end
 
     def behaviour(self) -> Behaviour:
-        """For node authors: make the behaviour from what the ports hold now."""
+        """For node authors: make the behaviour from the present values of the ports."""
         raise NotImplementedError
 
     def ended(self, behaviour: Behaviour) -> None:
         """For node authors: write outputs when the behaviour has completed."""
 
     def workers(self) -> list[Worker]:
-        """Threads and processes of earlier starts that were told to end and have not ended yet."""
+        """Threads and processes of earlier starts that were asked to end and have not ended yet."""
         self._reported = [worker for worker in self._reported if worker.is_alive()]
         return self._reported
 
     def on_start(self) -> Status:
-        """Begin, unless something of the last start still goes on."""
+        """Make the behaviour, unless threads or processes of the last start still run."""
         return RUNNING if self._waits() else self._begin()
 
     def on_running(self) -> Status:
@@ -74,7 +74,7 @@ class PyTreesLeaf(StatefulAction):
             self._drop(live, stop=True)
 
     def synchronous_outcomes(self, children: list[AtOnce]) -> AtOnce:
-        """Nobody knows."""
+        """Both: what a behaviour of py_trees may do is unknown."""
         return True, True
 
     def _waits(self) -> bool:

@@ -1,4 +1,4 @@
-"""Which node classes exist. Importing a module of nodes records its classes and does nothing else."""
+"""The registry of node classes. Importing a module of nodes only registers its classes."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class Registry(Mapping[str, type[Node]]):
         return Registry({**self._classes, **{cls.__name__: cls for cls in classes}}, self._stand_ins)
 
     def stand_in_for(self, name: str, ports: frozenset[str]) -> type[Node] | None:
-        """A class for an ID that only the document's TreeNodesModel knows, if its ports tell what it is."""
+        """A class for an ID that only the document's TreeNodesModel has, if its ports fit a class that may stand in."""
         for base in self._stand_ins:
             if set(base.ports) <= ports:
                 cls: type[Node] = type(name, (base,), {"__slots__": (), "__doc__": base.__doc__})
@@ -78,7 +78,7 @@ class Registry(Mapping[str, type[Node]]):
 
 
 def registry() -> Registry:
-    """Every node class there is: the built-in ones and one file each in tms_ts/nodes."""
+    """All node classes: the built-in ones, and those of the files in tms_ts/nodes."""
     for name in BUILTIN_MODULES:
         importlib.import_module(f"tms_ts.bt.{name}")
     package = importlib.import_module("tms_ts.nodes")

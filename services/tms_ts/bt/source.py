@@ -1,4 +1,4 @@
-"""From a task's bytes to XML elements whose lines are those that people see.
+"""From a task's bytes to XML elements that know their line in the file.
 
 Attribute values keep their line breaks, as in the library's parser (an XML parser would turn them into blanks).
 """
@@ -21,7 +21,7 @@ _MARKUP = re.compile(
 )  # fmt: skip
 _QUOTED = re.compile(r"\"[^\"]*\"|'[^']*'")
 _BREAK = re.compile(r"=\s*(?:\"[^\"<]*[\n\t]|'[^'<]*[\n\t])")
-LAST_LINE = 65_535  # that lxml can note at an element
+LAST_LINE = 65_535  # the last line that lxml can store at an element
 _PRIVATE = range(0xE000, 0xF8FF)
 
 
@@ -65,7 +65,7 @@ def read_file(path: Path, limit: int = MAX_BYTES) -> bytes:
 
 
 def _keep_breaks(text: str) -> tuple[str, tuple[str, str]]:
-    """Put marks before line breaks and tabs in attribute values; line numbers stay what they are."""
+    """Put marks before line breaks and tabs in attribute values; line numbers do not change."""
     if _BREAK.search(text) is None:
         return text, ("", "")
     free = [mark for mark in map(chr, _PRIVATE) if mark not in text][:2]
@@ -83,7 +83,7 @@ def _keep_breaks(text: str) -> tuple[str, tuple[str, str]]:
 
 
 def _set_lines(root: etree._Element, text: str) -> None:
-    """The parser tells the line where a start tag ends; people look for the one where it begins."""
+    """Set the line where each start tag begins, as people expect it; the parser gives the line where the tag ends."""
     tags = [found for found in _MARKUP.finditer(text) if found[0][1] not in "!?/"]
     if not any("\n" in found[0] for found in tags):
         return

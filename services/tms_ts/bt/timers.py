@@ -1,4 +1,4 @@
-"""Delay and Timeout. Time is looked at, never waited for: the clock is read when the tree is ticked or polled."""
+"""Delay and Timeout. They never sleep: the clock is read when the tree is ticked or polled."""
 
 from __future__ import annotations
 

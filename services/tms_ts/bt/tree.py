@@ -1,4 +1,4 @@
-"""A loaded tree: tick it, halt it, look at it."""
+"""A loaded tree, which can be ticked, halted and inspected."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _uid_lock = threading.Lock()
 
 @dataclass(frozen=True, slots=True)
 class LeafGoal:
-    """What a leaf will ask of a machine; a part that only the run decides reads as its {key}."""
+    """The goal that a leaf will send; a part that is known only during the run is its {key}."""
 
     machine: str
     subtask: str
@@ -47,7 +47,7 @@ class UsesRecord(Protocol):
 
     writes: ClassVar[bool]
 
-    def record_asked(self) -> tuple[str, str]: ...  # record, field; a part that only the run decides is its {key}
+    def record_asked(self) -> tuple[str, str]: ...  # record, field; a part known only during the run is its {key}
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +59,7 @@ class SharedValue:
     writes: bool
     path: str
     line: int
-    looped: bool  # again and again, as long as it takes
+    looped: bool  # whether the leaf is repeated in an endless loop
 
 
 class Tree:
@@ -90,16 +90,16 @@ class Tree:
 
     @property
     def faults(self) -> list[TreeError]:
-        """Nodes that throw whenever they are ticked: the tree can be loaded, but must not run."""
+        """Errors of nodes that throw whenever they are ticked: the tree can be loaded, but must not run."""
         return [TreeError(what, line=line, path=path) for line, path, what in self.context.faults]
 
     @property
     def warnings(self) -> list[tuple[int, Reason]]:
-        """What this engine does more kindly than the library: (line, what)."""
+        """Advice for the author, mostly on what runs here but hangs or throws in the library: (line, what)."""
         return self.context.warnings
 
     def tick(self) -> Status:
-        """One tick of the root. An exception out of a node leaves statuses as they are: halt the tree then."""
+        """Tick the root once. An exception of a node leaves the statuses as they are: the caller must halt the tree."""
         self.context.begin_tick()
         try:
             self.poll()
@@ -115,13 +115,13 @@ class Tree:
         return status
 
     def poll(self) -> None:
-        """Let timers expire that are due; a Timeout halts its child here."""
+        """Expire the timers that are due; a Timeout halts its child here."""
         context = self.context
         if context.timers:
             now = context.clock()
             due = [(timer.deadline, timer) for timer in context.timers if timer.deadline is not None]
             for deadline, timer in sorted(due, key=lambda item: item[0]):
-                if deadline <= now and timer.deadline is not None:  # not disarmed by an earlier one
+                if deadline <= now and timer.deadline is not None:  # an earlier timer has not disarmed it
                     timer.expire()
 
     def halt(self) -> None:
@@ -133,7 +133,7 @@ class Tree:
                     node.halt()
                 finally:
                     node.set_state(IDLE)
-            except Exception as error:  # a machine that cannot be told must not keep another one moving
+            except Exception as error:  # a leaf that cannot stop its machine must not keep other machines moving
                 problems.append(error)
         if problems:
             first = problems[0]
@@ -141,11 +141,11 @@ class Tree:
             raise _place(found.with_traceback(first.__traceback__)) from first
 
     def halt_root(self) -> None:
-        """What the library's `root.halt()` alone does: the root keeps its own status."""
+        """Do only what the library's `root.halt()` does: the root keeps its own status."""
         self.root.halt()
 
     def workers(self) -> list[Worker]:
-        """Threads and processes of behaviours that were told to end and have not ended."""
+        """Threads and processes of behaviours that were asked to end and have not ended."""
         return [worker for node in self.nodes if isinstance(node, PyTreesLeaf) for worker in node.workers()]
 
     def leaf_goals(self) -> list[LeafGoal]:
@@ -179,7 +179,7 @@ def _looped(node: Node) -> bool:
 
 
 def _place(error: TreeError) -> TreeError:
-    """Give an error the node that raised it: the innermost one on the way out."""
+    """Add to an error the node that raised it: the innermost node with an entry in the traceback."""
     trace: TracebackType | None = error.__traceback__
     thrower: Node | None = None
     while trace is not None:

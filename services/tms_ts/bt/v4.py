@@ -1,4 +1,4 @@
-"""Documents of BehaviorTree.CPP v4: what means the same here is translated, the rest is refused by name."""
+"""Documents of BehaviorTree.CPP v4: elements with the same meaning are translated, others are refused by name."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ RENAMED_PORTS = {"Parallel": {"success_count": "success_threshold", "failure_cou
 
 
 def feature(name: str, attributes: dict[str, str], *, v4: bool) -> Reason | None:
-    """The v4 feature that an element uses and that has no like here."""
+    """The feature of v4 that an element uses and that this engine does not have."""
     if name in V4_NODES and not (v4 and name in RENAMED_NODES):
         return V4Node(name)
     for key, value in attributes.items():
@@ -32,7 +32,7 @@ def feature(name: str, attributes: dict[str, str], *, v4: bool) -> Reason | None
 
 
 def translated(name: str, attributes: dict[str, str]) -> tuple[str, dict[str, str]]:
-    """Name and attributes of a v4 element in the words of v3."""
+    """Name and attributes of a v4 element, as v3 writes them."""
     ports = RENAMED_PORTS.get(name, {})
     attributes = {ports.get(key, key): value for key, value in attributes.items()}
     if name == "Parallel":

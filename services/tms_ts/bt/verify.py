@@ -1,4 +1,4 @@
-"""The loading rules of the library, applied to every tree of a document; nothing is made or run here."""
+"""The loading rules of the library, applied to every tree of a document; no node is made or run here."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ class Rules:
     def errors(self) -> Iterator[TreeError]:
         """Every broken rule, in document order.
 
-        As in the library, a tree that the main tree does not lead to must be well formed, but need not be makeable.
+        As in the library, a tree that the main tree does not use must be well formed, but its nodes need not be known.
         """
         used = self.used_trees()
         for tree in self.document.trees:
@@ -128,7 +128,7 @@ class Rules:
             count = sum(1 for _ in children(element))
             broken = self.broken_form(use, count, tree)
             if not broken and not self.document.warns and (not used or ignored(element)):
-                continue  # looking for near names takes long: not for an error that nobody reads
+                continue  # the search for near names takes long and is left out for errors that are not shown
             problem = broken or self.cannot_be_made(use, count, tree)
             if problem is None:
                 continue
@@ -164,7 +164,7 @@ class Rules:
         return TreeError(what, line=line_of(element), path=path, hint=hint, file=tree.source.file)
 
     def broken_form(self, use: Use, count: int, tree: TreeElement) -> Problem | None:
-        """What the library finds in any tree of a document, used or not."""
+        """The error that the library finds in every tree of a document, also in an unused one."""
         if not use.id:
             return NeedsId(use.tag), None
         if use.subtree:
@@ -174,7 +174,7 @@ class Rules:
         return None if use.tag in CATEGORIES else self.v4_feature(use, tree) or self.unknown(use)
 
     def cannot_be_made(self, use: Use, count: int, tree: TreeElement) -> Problem | None:
-        """What the library finds when it makes the nodes."""
+        """The error that the library finds when it makes the nodes."""
         feature = self.v4_feature(use, tree)
         if feature:
             return feature
@@ -220,5 +220,5 @@ class Rules:
 
 
 def ignored(element: etree._Element) -> bool:
-    """Whether the library does not look at an element."""
+    """Whether the library ignores an element."""
     return any(above.tag == "SubTreePlus" for above in element.iterancestors())

@@ -1,7 +1,7 @@
 """Groot 1's wire: the tree as a flatbuffer, and messages about changes. Little endian throughout.
 
-The viewer looks up every uid and every registration name that it is sent, and dies on strings and vectors that are
-absent, so everything is always there, if empty.
+The viewer looks up every uid and every registration name that it receives, and crashes on absent strings and vectors.
+So all of them are sent, empty ones too.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Groot 2's wire: requests of one letter, answered with the tree as v4 XML, states, or blackboards.
+"""Groot 2's wire: requests are one letter, answers are the tree as v4 XML, states, or blackboards.
 
 Breakpoints are refused: a viewer must not be able to hold a machine's tree.
 """
@@ -31,7 +31,7 @@ V4_PORTS = {"success_threshold": "success_count", "failure_threshold": "failure_
 
 
 class Groot2:
-    """Answers requests about one tree; knows the states that it was given."""
+    """Answers requests about one tree, with the states that the caller gives."""
 
     def __init__(self, tree: Tree) -> None:
         self._id = uuid.uuid4().bytes
@@ -130,7 +130,7 @@ def _element(parent: etree._Element, node: Node, paths: Mapping[int, str]) -> No
 def _named(parent: etree._Element, node: Node, name: str) -> etree._Element:
     try:
         return etree.SubElement(parent, name)
-    except ValueError:  # an ID that can be no tag, which documents give as <Action ID="2nd try">
+    except ValueError:  # an ID that cannot be a tag; documents write it as <Action ID="2nd try">
         return etree.SubElement(parent, node.kind.name.capitalize(), ID=name)
 
 

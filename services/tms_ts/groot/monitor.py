@@ -1,4 +1,4 @@
-"""Sockets for Groot: one set of ports a run, served by a thread that looks at the tree and never touches it."""
+"""Sockets for Groot: one set of ports per run, served by a thread that only reads the tree."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tms_ts.groot.groot2 import Groot2
 STEP = 10  # ports from one run to the next
 MAX_RUNS = 10
 MESSAGE_PERIOD = 0.04  # s between messages: the library's 25 a second
-MAX_CHANGES = 10_000  # kept for one message; a tree that spins makes more than anybody can see
+MAX_CHANGES = 10_000  # kept for one message; a tree that spins makes more than a person can see
 
 
 class Monitors:
@@ -33,7 +33,7 @@ class Monitors:
 
     @contextmanager
     def watch(self, run_id: str, tree: Tree) -> Iterator[None]:
-        """Let Groot look at a tree; what goes wrong costs the view, never the run."""
+        """Let Groot show a tree; an error ends the view, never the run."""
         with self._lock:
             slot = next((slot for slot in range(MAX_RUNS) if slot not in self._used), None)
             if slot is not None:
@@ -51,7 +51,7 @@ class Monitors:
     def _open(self, run_id: str, tree: Tree, port: int) -> Monitor | None:
         try:
             monitor = Monitor(tree, self._bind, port)
-        except (zmq.ZMQError, ValueError) as error:  # a port that is taken, an ID that no document can have
+        except (zmq.ZMQError, ValueError) as error:  # a port is in use, or a document cannot have this ID
             self._log.warning("no_groot", run=run_id, port=port, reason=str(error))
             return None
         self._log.info("groot", run=run_id, groot1=port, groot2=port + 2)
@@ -82,7 +82,7 @@ class Monitor:
         self._thread.start()
 
     def close(self) -> None:
-        """Send the last changes and let the ports go."""
+        """Send the last changes and close the ports."""
         if self._changed in self._tree.observers:
             self._tree.observers.remove(self._changed)
         self._closing.set()
@@ -103,7 +103,7 @@ class Monitor:
         return socket
 
     def _changed(self, node: Node, old: Status, new: Status) -> None:
-        """On the run's thread: takes a note, nothing else."""
+        """Note a change, and do no more: this runs on the run's thread."""
         if len(self._changes) == MAX_CHANGES:
             self._flooded = True
         self._changes.append((unix_time(), node.uid, int(old), int(new)))
@@ -144,6 +144,6 @@ class Monitor:
             self._states[uid] = new
             if new == IDLE and old != IDLE:
                 self._before[uid] = old
-        if self._flooded:  # changes were lost; what stands in the tree is right again
+        if self._flooded:  # changes were lost; the states of the tree are right again
             self._flooded = False
             self._states.update({node.uid: int(node.state) for node in self._tree.nodes})

@@ -1,4 +1,4 @@
-"""A tree and its node types as both versions of Groot want to know them."""
+"""A tree and its node types in the form that both versions of Groot need."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Model:
 
 
 def models(tree: Tree) -> list[Model]:
-    """Every known type, and those that only this tree's document describes."""
+    """All known types, and those that only this tree's document describes."""
     found = {name: Model(name, cls.kind, tuple(cls.ports.values())) for name, cls in registry().items()}
     for node in tree.nodes:
         name = node.registration_name

@@ -1,7 +1,7 @@
-"""The base of leaves that wait for an answer which the C++ system waits for inside the tick.
+"""The base of leaves that wait for an answer for which the C++ system waits inside the tick.
 
-There the whole tree stands still until the answer is there. Here the leaf is RUNNING meanwhile; parents that start
-over at every tick (ReactiveSequence, ReactiveFallback) know such a leaf by `asking` and go on where they were.
+There the whole tree stands still until the answer comes. Here the leaf is RUNNING meanwhile; parents that start
+over at every tick (ReactiveSequence, ReactiveFallback) recognise such a leaf by `asking` and go on where they were.
 """
 
 from __future__ import annotations

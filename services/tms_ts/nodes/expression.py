@@ -1,7 +1,7 @@
 """Expressions over blackboard values: identifiers, numbers, true, false, == != < > <= >=, and, or, parentheses.
 
-Evaluated by simpleeval with nothing but those operations allowed. The rules are those of the C++ system: every part
-is evaluated (no short cut), a key without a value is the empty text, text compares with text and numbers with numbers
+simpleeval evaluates them and allows only these operations. The rules are those of the C++ system: every part is
+evaluated (no short cut), a key without a value is the empty text, text compares with text and numbers with numbers
 (true is 1), and an expression that breaks this is invalid as a whole.
 """
 
@@ -40,10 +40,10 @@ _IDENTIFIER = re.compile(r"(?<![\w.])[A-Za-z_]\w*", re.ASCII)
 _NUMBER = re.compile(r"(?<![\w.])0*(?!0[0-9])([0-9]+(?:\.[0-9]*)?(?:[eE]-?[0-9]+)?)(and|or|)(?![\w.])", re.ASCII)
 _NO_NUMBER = re.compile(r"(?<![\w.])[0-9][0-9.]*(?![eE]-?[0-9]+(?![\w.]))[A-Za-z_]", re.ASCII)
 _WORDS = frozenset({"and", "or"})
-_PREFIX = "k_"  # keeps Python's own words from meaning anything
+_PREFIX = "k_"  # a prefix, so that no key is a word of Python
 TRUTH = {"true": True, "false": False}
 
-_local = threading.local()  # an evaluator a thread: making one costs more than most expressions
+_local = threading.local()  # one evaluator per thread: making one costs more than most expressions
 
 Lookup = Callable[[str], Any]  # value of a key, "" if there is none
 Scalar = str | bool | int | float
@@ -134,7 +134,7 @@ class _Evaluator(SimpleEval):  # type: ignore[misc,unused-ignore]
         return bool(function(left, right))
 
     def as_bool(self, value: Scalar, other: Scalar) -> Scalar:
-        """A text true or false that meets a boolean counts as one; any other text next to a number is invalid."""
+        """Read a text true or false as a boolean beside a boolean; any other text beside a number is invalid."""
         if not isinstance(value, str):
             return value
         if isinstance(other, bool) and value in TRUTH:
@@ -157,7 +157,7 @@ _COMPARISONS: dict[type[ast.cmpop], Callable[[Any, Any], Any]] = {
 
 
 def evaluate(text: str, lookup: Lookup, warn: Callable[[Reason], None] = lambda what: None) -> bool:
-    """Whether an expression is true; Invalid if that cannot be said."""
+    """Whether an expression is true; raises Invalid if it cannot be evaluated."""
     evaluator: _Evaluator | None = getattr(_local, "evaluator", None)
     if evaluator is None:
         evaluator = _local.evaluator = _Evaluator()

@@ -1,7 +1,7 @@
-"""The leaf that makes a machine do a subtask; one subclass per machine model, which is its name and its ports.
+"""The leaf that makes a machine do a subtask; each machine model has a subclass, with its name and its ports.
 
-On halt it asks for the cancel and goes; that the machine has stopped is confirmed by the goal, which the scheduler
-keeps watching, not by a loop in here.
+On halt it asks for the cancel and returns at once: the scheduler goes on watching the goal, whose end confirms that the
+machine has stopped.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from tms_ts.bt.registry import stand_in
 from tms_ts.bt.status import FAILURE, RUNNING, SUCCESS, Status
 from tms_ts.world import Goal, GoalState
 
-# Names that ROS takes and prolongs: a topic may have 247 letters, with the machine and what an action adds.
+# Names that ROS accepts: a topic may have 247 letters, including the machine's name and the endings of an action.
 ROS_NAME = re.compile(r"(?!.{201})[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*", re.ASCII)
 
 
@@ -43,7 +43,7 @@ class LeafNode(PlainAction):
         self.goal: Goal | None = None
 
     def goal_asked(self) -> tuple[str, str, str]:
-        """Machine, subtask and record, as far as the document tells."""
+        """Machine, subtask and record, as far as the document gives them."""
         return self.reported("model_name"), self.reported("subtask_name"), self.reported("record_name")
 
     def tick(self) -> Status:

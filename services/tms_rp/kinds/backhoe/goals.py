@@ -1,4 +1,4 @@
-"""What a planner can be asked for, without ROS types."""
+"""The goals that a planner takes, without ROS types."""
 
 import math
 from collections.abc import Mapping, Sequence

@@ -86,7 +86,7 @@ class Linkage:
         """Swing angle [rad], in (-pi, pi], that brings the arm's plane over a point of base_link [m].
 
         Raises:
-            SubtaskFailed: TooNearAxis, the point is beside the swing axis, nearer than the plane ever gets.
+            SubtaskFailed: TooNearAxis, the point is nearer to the swing axis than the arm's plane.
         """
         px, py = x - self.axis[0], y - self.axis[1]
         out = _root(px * px + py * py - self.lateral**2)

@@ -33,7 +33,7 @@ SEARCH_STEP = 0.01  # rad, of theta_w
 CURLED = 1.7  # rad, bucket joint that holds the soil
 CLEAR_ARM = 0.1  # rad, arm curls in by this much when the bucket closes or opens
 CLEAR_BOOM = -0.15  # rad, boom rises by this much when the bucket opens
-EMPTY = 1e-3  # length of a quaternion that nobody has filled in; others are brought to 1, as MoveIt does
+EMPTY = 1e-3  # a shorter quaternion counts as not filled in; others are brought to the length 1, as MoveIt does
 OUT_OF_PLANE = 0.05  # rad, how far an orientation may point out of the arm's plane
 
 
@@ -45,7 +45,7 @@ class Backhoe:
 
     def __init__(self, model: MachineModel) -> None:
         missing = [name for name in (*NAMES, TOOL) if name not in model.joints or name not in model.geometry]
-        if "base_joint" not in model.geometry:  # fixed, so it is no joint of joints:
+        if "base_joint" not in model.geometry:  # it is fixed, so `joints:` does not have it
             missing.append("base_joint")
         if missing:
             raise ConfigError(NoArm(tuple(missing)))
@@ -163,7 +163,7 @@ def _tip(goal: TipGoal) -> Tip:
 
 
 def _short_way(before: Pose, target: Pose) -> Pose:
-    """The target with its swing on the turn that is nearest to where the upper body is."""
+    """The target with its swing on the turn nearest to the present angle of the upper body."""
     return target._replace(swing=before.swing + wrap(target.swing - before.swing))
 
 
