@@ -9,11 +9,12 @@ WORKERS ?= auto
 # Key under pcs: of the site file, where a PC is not named after its role, as the compose files are. (make knows a PC itself.)
 PC = $(ROLE)
 RUNTIME ?= native
-# Debian's client first: it needs no plugin to build. Looked for when it is used: `make containers` may just have installed it.
+# Debian's client has priority, since it builds without a plugin. Each use searches it, since `make containers` may have
+# just installed it.
 DOCKER ?= $(shell command -v /usr/bin/docker || echo docker)
-# Debian's Compose is a program of its own, others' are a plugin of the client.
+# Debian's Compose is a program of its own; other distributions have a plugin of the client.
 COMPOSE ?= $(if $(shell $(DOCKER) compose version 2>/dev/null),$(DOCKER) compose,docker-compose)
-# The one that is built here: the next `make` must not undo `make interfaces NAV2_DISTRO=humble`.
+# The distribution that is built here: the next `make` must not undo `make interfaces NAV2_DISTRO=humble`.
 NAV2_DISTRO ?= $(or $(patsubst .interfaces-%,%,$(notdir $(firstword $(wildcard $(VENV)/.interfaces-*)))),jazzy)
 LOCKS := deploy/requirements
 LOCK ?= requirements-dev.lock
@@ -58,7 +59,7 @@ $(VENV)/.ready: $(VENV)/.interfaces-$(NAV2_DISTRO) pyproject.toml
 	$(UV) pip install -q -p $(PY) --no-deps --build-constraints $(LOCKS)/build.lock -e .
 	@touch $@
 
-# uv keeps the versions that a lock has already.
+# uv keeps the versions that are in a lock already.
 COMPILE = $(UV) --directory $(LOCKS) pip compile -q --universal --python-version 3.10 --custom-compile-command "make locks" \
   $(addprefix --upgrade-package=,$(UPGRADE))
 locks: | $(UV) ## lock the requirements of deploy/requirements/*.in anew (UPGRADE="name other": newest of these)

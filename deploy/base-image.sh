@@ -14,6 +14,6 @@ root=$(mktemp -d)
 trap 'rm -rf "$root"' EXIT
 debootstrap --variant=minbase --include=ca-certificates,python3 bookworm "$root" >&2
 rm -rf "$root"/var/lib/apt/lists/* "$root"/var/cache/apt/* "$root"/usr/share/locale/* "$root"/usr/share/man/* "$root"/usr/share/info/*
-find "$root"/usr/share/doc -type f ! -name copyright -delete # licences stay
+find "$root"/usr/share/doc -type f ! -name copyright -delete # keeps the licences
 tar -C "$root" -c . | "$docker" import - "$made" >/dev/null
 echo "$made"

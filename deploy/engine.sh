@@ -1,12 +1,12 @@
 #!/bin/sh
-# Makes sure that a Docker engine answers: starts the one that `make containers` installs, as root and where none runs.
-# Prints the pid of an engine that it started, so that whoever called can stop just that one: `engine.sh stop PID`,
-# which returns when it is gone (one that is still leaving keeps the next from starting).
+# Ensures that a Docker engine runs: where none answers, it starts the one that `make containers` installs (as root).
+# It prints the pid of an engine that it has started, so that the caller can stop only that one: `engine.sh stop PID`.
+# That command returns when the engine has ended, since an engine that is still ending prevents the next from starting.
 set -eu
 if [ "${1:-start}" = stop ]; then
   kill "$2" 2>/dev/null || exit 0
   for _ in $(seq 100); do
-    # Gone, or a zombie that nobody has collected yet.
+    # The process has ended, or is a zombie that its parent has not collected yet.
     case $(cut -d" " -f3 "/proc/$2/stat" 2>/dev/null) in "" | Z) exit 0 ;; esac
     sleep 0.3
   done

@@ -6,6 +6,6 @@ cd "$(dirname "$0")/.."
 docker=${DOCKER:-docker}
 base=$(DOCKER=$docker sh deploy/base-image.sh)
 set -- --target "${2:-site}" --tag "$1"
-certificates=/etc/ssl/certs/ca-certificates.crt # with those of an inspecting proxy, where this PC knows one
+certificates=/etc/ssl/certs/ca-certificates.crt # includes those of an inspecting proxy, where this PC has one
 [ ! -s "$certificates" ] || set -- "$@" --secret "id=ca,src=$certificates"
 DOCKER_BUILDKIT=1 exec "$docker" build --quiet --network host --file deploy/Dockerfile --build-arg "BASE_IMAGE=$base" "$@" .

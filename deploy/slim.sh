@@ -1,5 +1,5 @@
 #!/bin/sh
-# Takes out of a virtual environment what only building needs; wheels hold copies where libraries have links.
+# Removes from a virtual environment the files that only building needs, and replaces copies of libraries by links.
 set -eu
 venv=$1
 packages=$(echo "$venv"/lib/python3*/site-packages)

@@ -1,12 +1,12 @@
 #!/bin/sh
-# Names the system packages that are missing with the one command that installs them; as root, installs them.
+# Prints the command that installs the missing system packages; as root, installs them.
 # Arguments are groups: setup (when there is none), test, containers, chromium, japanese, debootstrap.
 set -eu
-PATH=$PATH:${SBIN:-/usr/local/sbin:/usr/sbin:/sbin} # where nft and others are, and only root looks
+PATH=$PATH:${SBIN:-/usr/local/sbin:/usr/sbin:/sbin} # folders of nft and others, only in root's PATH
 missing=""
 has() { command -v "$1" >/dev/null; }
 lacks() { case " $missing " in *" $1 "*) ;; *) missing="$missing $1" ;; esac; }
-need() { # PACKAGE COMMAND...: the package, unless one of the commands is there
+need() { # PACKAGE COMMAND...: the package is missing unless one of the commands exists
   package=$1
   shift
   for name in "$@"; do
@@ -33,18 +33,18 @@ sys.exit(not pathlib.Path(sysconfig.get_path("include"), "Python.h").exists())' 
 
 browser() { need chromium chromium chromium-browser; }
 
-letters() { # of Japanese: a browser without a font of them shows boxes
+letters() { # a font for Japanese: a browser without one shows boxes
   need fontconfig fc-list
   [ -n "$(fc-list :lang=ja 2>/dev/null)" ] || lacks fonts-ipafont-gothic
 }
 
-compose() { # a plugin of the client, or a program of its own
+compose() { # Compose: a plugin of the client, or a program of its own
   client=${DOCKER:-docker}
   [ -n "${DOCKER:-}" ] || [ ! -x /usr/bin/docker ] || client=/usr/bin/docker
   "$client" compose version >/dev/null 2>&1 || need docker-compose docker-compose
 }
 
-shared() { # what both kinds of tests call
+shared() { # commands that both kinds of tests call
   need prometheus promtool
   need prometheus prometheus
   need nftables nft
@@ -65,7 +65,7 @@ containers() {
   shared
   need debootstrap debootstrap
   need iptables iptables
-  "$client" info >/dev/null 2>&1 || need docker.io dockerd # an engine that answers may be another's
+  "$client" info >/dev/null 2>&1 || need docker.io dockerd # an engine that answers may be another package's
 }
 
 [ $# -gt 0 ] || set -- setup
@@ -83,14 +83,14 @@ done
 root=$([ "$(id -u)" != 0 ] || command -v apt-get || true)
 [ -z "$root" ] || apt-get update -qq >/dev/null
 case "$missing " in
-  *" docker.io "*) # newer distributions have the client and the builder apart
+  *" docker.io "*) # newer distributions have packages of their own for client and builder
     for package in docker-cli docker-buildx; do
       if apt-cache show $package >/dev/null 2>&1; then lacks $package; fi
     done ;;
 esac
 if [ -n "$root" ]; then
   echo "installing system packages:$missing"
-  # RUNLEVEL: a service that comes with its program is not started.
+  # RUNLEVEL=1: the installation does not start services.
   # shellcheck disable=SC2086  # a list of words
   RUNLEVEL=1 DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing >/dev/null
 else

@@ -1,4 +1,4 @@
-"""How `tms task check` shows what it found."""
+"""Shows the findings of `tms task check`."""
 
 from collections.abc import Iterable
 
@@ -10,7 +10,7 @@ from tms_cli.words import say
 
 
 def show_one(found: Checked, *, as_json: bool) -> bool:
-    """Whether a task has no errors."""
+    """Show the findings about one task; returns whether it has no errors."""
     if as_json:
         session.show_json(found.as_dict())
     else:
@@ -35,7 +35,7 @@ def goal_table(found: Checked) -> list[str]:
 
 
 def show_folder(files: Iterable[Checked], *, as_json: bool) -> bool:
-    """Whether no file of a folder has errors; each is shown as soon as it is checked."""
+    """Show the files of a folder, each as soon as it is checked; returns whether none has errors."""
     done = []
     for found in files:
         done.append(found)
@@ -55,7 +55,7 @@ def show_folder(files: Iterable[Checked], *, as_json: bool) -> bool:
 
 
 def report_unchecked(done: list[Checked]) -> None:
-    """Say on stderr that no scheduler looked at what was checked."""
+    """Print on stderr that no scheduler has checked these files."""
     if any(found.by != "scheduler" and not found.errors and not found.no_task for found in done):
         click.echo(say("no scheduler answers: records and subtasks are unchecked"), err=True)
     elif any(found.by != "scheduler" and found.errors and not found.no_task for found in done):

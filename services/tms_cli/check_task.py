@@ -1,4 +1,4 @@
-"""What `tms task check` finds in a task: structure here, records and subtasks by the scheduler if a mesh runs."""
+"""The checks of `tms task check`: structure here, records and subtasks by the scheduler of a running mesh."""
 
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, ExitStack
@@ -23,7 +23,7 @@ from tms_ts.bt.source import parse
 if TYPE_CHECKING:
     from tms_ros.node import Ros
 
-PROGRESS = 2.0  # s between two lines that tell how far a folder is checked
+PROGRESS = 2.0  # s between two lines about the progress of a folder
 
 
 @dataclass
@@ -35,8 +35,8 @@ class Checked:
     goals: list[bt.LeafGoal] = field(default_factory=list)
     errors: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
-    no_task: str = ""  # why it is none
-    by: str = "structure"  # or scheduler
+    no_task: str = ""  # why it is no task
+    by: str = "structure"  # what has checked it: structure or scheduler
 
     def as_dict(self) -> dict[str, Any]:
         return {
@@ -49,7 +49,7 @@ class Checked:
         }
 
     def verdict(self) -> str:
-        """One line: what a folder's list shows."""
+        """One line for the list of a folder."""
         if self.no_task:
             return say("no task: {why}", why=self.no_task)
         counts = []
@@ -64,7 +64,7 @@ class Checked:
 
 
 class Scheduler(AbstractContextManager["Scheduler"]):
-    """The scheduler of the mesh; when it is not there, it is not asked a second time."""
+    """The scheduler of the mesh; when it does not answer, it is not called a second time."""
 
     def __init__(self) -> None:
         self._open = ExitStack()
@@ -80,7 +80,7 @@ class Scheduler(AbstractContextManager["Scheduler"]):
         return self._node
 
     def ask_scheduler(self, found: Checked, **task: Any) -> None:
-        """Let it check what is right by its structure."""
+        """Have the scheduler check a task whose structure has no errors."""
         if self._absent or found.errors:
             return
         try:
@@ -99,7 +99,7 @@ class Scheduler(AbstractContextManager["Scheduler"]):
 
 
 def structure(what: str, text: str, folder: Path | None = None) -> Checked:
-    """Check the tree alone, without a site."""
+    """Check the structure of a tree, without a site."""
     report = bt.check(text, folder=folder)
     warnings = [sentence(Placed(Line(line), warning)) for line, warning in report.warnings]
     if report.ok and "<include" in text:

@@ -1,4 +1,4 @@
-"""How a run is shown while it goes on: as a live tree on a terminal, as one line per change on a pipe."""
+"""Shows the progress of a run: as a live tree on a terminal, as one line per change on a pipe."""
 
 import math
 import re
@@ -27,13 +27,13 @@ MARKS = {IDLE: "·", RUNNING: "▶", SUCCESS: "✔", FAILURE: "✘"}
 COLOURS = {IDLE: "bright_black", RUNNING: "dark_orange", SUCCESS: "green", FAILURE: "red"}  # as in Groot
 OUTCOME_COLOURS = {"success": "green", "running": "yellow", "preparing": "yellow", "stopping": "yellow"}
 DIGITS = re.compile(r"[0-9]+")
-ALL_SUCCEED = frozenset({"Sequence", "SequenceStar", "Repeat", "SubTree", "SubTreePlus"})  # when they do themselves
-MAX_ROWS = 40  # of a tree on the screen; longer ones show the part that works
+ALL_SUCCEED = frozenset({"Sequence", "SequenceStar", "Repeat", "SubTree", "SubTreePlus"})  # as all children do
+MAX_ROWS = 40  # rows of a tree on the screen; of a longer one the running part is shown
 
 
 @dataclass
 class Node:
-    """One node of the tree as last heard of."""
+    """One node of the tree with its last received state."""
 
     uid: int
     parent: int
@@ -41,11 +41,11 @@ class Node:
     type: str
     status: int = IDLE
     reason: str = ""
-    goal: str = ""  # what a leaf asks of a machine, as far as the task's text tells
+    goal: str = ""  # goal of a leaf, as far as it is in the task's text
     result: int = IDLE  # how it ended last: a control node sets its children back to idle when it ends
 
     def take(self, status: int, reason: str) -> None:
-        """A new state; the reason stays when only the state goes back to idle."""
+        """Take a new state; the reason stays when the state only goes back to idle."""
         self.status, self.reason = status, reason
         if status != IDLE:
             self.result = status if status in (SUCCESS, FAILURE) else IDLE
@@ -60,7 +60,7 @@ class Node:
 
 @dataclass
 class View:
-    """What is known of one run; fed with the feedback of ExecuteTask."""
+    """The state of one run from the feedback of ExecuteTask."""
 
     task_id: int
     description: str = ""
@@ -98,7 +98,7 @@ class View:
         return changed
 
     def close(self, outcome: str) -> list[Node]:
-        """The run has ended. Returns nodes that went idle before their success was received of, where it is sure."""
+        """End the view. Returns nodes that went idle before their success was received, where that is certain."""
         self.state, self.leaf, self.reason, self.over = outcome, "", "", True
         found, sure = [], {0}  # parents whose success means that their children succeeded
         for _, node in self.rows() if outcome == "success" else ():
@@ -111,7 +111,7 @@ class View:
         return found[::-1]  # children end before their parents
 
     def _first(self, statuses: Sequence["NodeStatus"]) -> None:
-        """The first message holds the whole tree: if it is the one we read ourselves, leaves get their goals."""
+        """Take the first message, which has the whole tree; if it equals the task's text, leaves get their goals."""
         same = [status.type for status in statuses] == [kind for kind, _ in self.goals]
         goals = [goal for _, goal in self.goals] if same else [""] * len(statuses)
         for status, goal in zip(statuses, goals, strict=True):
@@ -144,7 +144,7 @@ def tree_rows(view: View, most: int = MAX_ROWS) -> list[tuple[int, str]]:
 
 
 def _colour(view: View, node: Node) -> int:
-    """As in Groot while it runs; afterwards, when all are idle, how each ended."""
+    """The colour as in Groot while the run goes on; after its end, when all nodes are idle, the result of the node."""
     return node.result if view.over else node.status
 
 
@@ -178,7 +178,7 @@ def change_line(view: View, node: Node) -> str:
 
 
 class Display(Protocol):
-    """Where the progress of a run goes."""
+    """An output for the progress of a run."""
 
     def __enter__(self) -> "Display": ...
 
@@ -211,9 +211,9 @@ class Lines:
             line = say("run {run}: {state}{reason}", run=view.run_id, state=state(view.state), reason="")
             click.echo(f"{view.elapsed:7.1f} s  {line}", err=self._err)
         for node in changed:
-            if node.status != IDLE:  # going back to idle is no news
+            if node.status != IDLE:  # going back to idle is not shown
                 click.echo(change_line(view, node), err=self._err)
-        reason = DIGITS.sub("", view.reason)  # a percentage that grows is no news
+        reason = DIGITS.sub("", view.reason)  # a growing percentage is not shown
         if reason and reason != self._reason and not any(node.reason == view.reason for node in changed):
             click.echo(f"{view.elapsed:7.1f} s  {'':8} {view.reason}", err=self._err)
         self._reason = reason
@@ -267,13 +267,13 @@ def moment(stamp: "Time") -> datetime | None:
 
 
 def iso(stamp: "Time") -> str | None:
-    """The same for machines."""
+    """The time in ISO 8601 for programs; None for zero."""
     when = moment(stamp)
     return when.isoformat(timespec="milliseconds") if when else None
 
 
 def clock_time(stamp: "Time") -> str:
-    """The same for people."""
+    """The time of day for people."""
     when = moment(stamp)
     return when.strftime("%Y-%m-%d %H:%M:%S") if when else "-"
 

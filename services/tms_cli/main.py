@@ -52,7 +52,7 @@ def tms(ctx: click.Context, site: str | None) -> None:
 
 
 def _as_ours(error: OSError) -> TmsError:
-    """What the operating system did not do, and what helps."""
+    """A TmsError for an error of the operating system, with its remedy."""
     what = error.strerror or str(error) or type(error).__name__
     if error.filename is None:
         return TmsError(SystemSays(what))
@@ -60,19 +60,19 @@ def _as_ours(error: OSError) -> TmsError:
 
 
 def _words(error: TmsError) -> str:
-    """What went wrong, and what to do."""
+    """The text of an error, and what to do."""
     return str(error) if isinstance(error.reason, Foreign) else texts.sentence(error.reason, words.language())
 
 
 def main() -> None:
-    """0 done, 1 refused or failed, 2 usage, 130 interrupted."""
+    """Run a command. Exit codes: 0 done, 1 refused or failed, 2 usage, 130 interrupted."""
     try:
         sys.exit(tms(standalone_mode=False, prog_name="tms") or 0)
     except click.UsageError as error:
         error.show()
         sys.exit(2)
     except click.exceptions.Abort as error:
-        if isinstance(error.__context__, EOFError):  # and not Ctrl-C, or "no" for an answer
+        if isinstance(error.__context__, EOFError):  # not Ctrl-C, and not the answer "no"
             text = (
                 "nothing was done, since nobody can answer here: use a terminal (`docker exec -it`), "
                 "or --yes where the command has it"
@@ -92,17 +92,17 @@ def main() -> None:
 
 
 def entry() -> NoReturn:
-    """`main`; then leaves the ROS graph, which keeps nobody waiting for long, and ends without a clean-up of C++."""
-    code = 1  # of a bug, which the interpreter tells
+    """Run `main`, then leave the ROS graph within LEAVE_LIMIT, and end without a clean-up of C++."""
+    code = 1  # exit code of a bug, whose traceback the interpreter prints
     try:
         main()
         code = 0
     except SystemExit as end:
         code = int(end.code or 0)
     finally:
-        with contextlib.suppress(BrokenPipeError):  # whoever read us has heard enough
+        with contextlib.suppress(BrokenPipeError):  # the reader of our output has ended
             sys.stdout.flush()
-        signal.signal(signal.SIGINT, signal.SIG_IGN)  # all is said and done
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # the command is done
         end_after(LEAVE_LIMIT, code)
         session.leaving.close()
     os._exit(code)

@@ -42,22 +42,22 @@ from tms_runtime.priority import session_first
 from tms_ur.address import certificate, users
 
 NEEDED_BYTES = 100 * 2**20  # for logs
-READY_LIMIT = 60.0  # s for all processes to be able to work
+READY_LIMIT = 60.0  # s for all processes to be ready
 START_LIMIT = 10.0  # s for supervisord to answer
-MESH_END_LIMIT = 20.0  # s for everything to end
-NICE = -10  # of all processes together, against the other sessions of this PC: one command there could take half of it
+MESH_END_LIMIT = 20.0  # s for all processes to end
+NICE = -10  # of all processes together, against other sessions of this PC, where one command could take half the PC
 
 
 @dataclass(frozen=True)
 class Owner:
-    """Who uses a ROS domain on this PC."""
+    """The mesh that uses a ROS domain on this PC."""
 
     pid: int
     started: float
     state: str
 
     def alive(self) -> bool:
-        """Whether that very process still runs (a pid alone may have been given to another)."""
+        """Whether the same process still runs (the system may have given its pid to another one)."""
         try:
             return abs(psutil.Process(self.pid).create_time() - self.started) < 1.0
         except psutil.NoSuchProcess:
@@ -65,14 +65,14 @@ class Owner:
 
 
 def check(site: Site) -> tuple[Process, ...]:
-    """Everything that can be known to be wrong before a process starts; returns the rows.
+    """Check everything that can be checked before a process starts; returns the rows.
 
     Raises:
-        ConfigError: the first thing that is wrong and what to do.
+        ConfigError: names the first fault and what to do.
     """
     rows = here(site)
     environment(site)
-    if any(row.name == "store" for row in rows):  # another PC of the site has no need of it
+    if any(row.name == "store" for row in rows):  # other PCs of the site do not need it
         store.check(site)
     if any(row.name == "ur" for row in rows):
         certificate(site)
@@ -109,7 +109,7 @@ def up(site: Site, foreground: bool = False, without: str = "") -> bool:
 
 def _up(site: Site, rows: tuple[Process, ...], foreground: bool) -> bool:
     if site.pc is not None:
-        (site.state / CHOICE).write_text(site.pc, encoding="utf-8")  # for the verbs that follow
+        (site.state / CHOICE).write_text(site.pc, encoding="utf-8")  # for later verbs
     supervisor = Supervisor(site)
     with _domain(site.domain) as lock:
         if supervisor.alive():
@@ -133,7 +133,7 @@ def down(site: Site) -> bool:
     """Stop every process and supervisord; False when nothing ran.
 
     Raises:
-        TmsError: something is left.
+        TmsError: a process is left.
     """
     supervisor = Supervisor(site)
     if not supervisor.alive():
@@ -142,7 +142,7 @@ def down(site: Site) -> bool:
     ours = [psutil.Process(pid), *psutil.Process(pid).children(recursive=True)]
     supervisor.shutdown()
     _, left = psutil.wait_procs(ours, MESH_END_LIMIT)
-    for process in left:  # children of ours that did not listen to supervisord's own kill
+    for process in left:  # children that supervisord could not end
         process.send_signal(signal.SIGKILL)
     _, left = psutil.wait_procs(left, 2.0)
     if left:
@@ -161,7 +161,7 @@ def _start(site: Site, conf: Path) -> None:
 
 
 def _exec_entry(site: Site, conf: Path) -> None:
-    """Does not return. The lock of the domain is freed by exec: its file closes."""
+    """Become supervisord; does not return. exec frees the lock of the domain, since it closes the file."""
     words = [sys.executable, "-m", "tms_host.prefork", "--nodaemon", "-c", str(conf)]
     sys.stdout.flush()
     sys.stderr.flush()
@@ -192,7 +192,7 @@ def _refuse_taken_ports(site: Site, rows: tuple[Process, ...]) -> None:
 
 
 def _holder(port: int) -> str:
-    """Who listens on a port, as far as this user may know."""
+    """The process that listens on a port, as far as this user may see it."""
     for connection in psutil.net_connections("tcp"):
         if connection.status == psutil.CONN_LISTEN and connection.laddr[1:] == (port,) and connection.pid:
             process = psutil.Process(connection.pid)
@@ -213,7 +213,7 @@ def _read(path: Path) -> Owner | None:
     try:
         return Owner(**json.loads(path.read_text()))
     except (FileNotFoundError, ValueError, TypeError):
-        return None  # no note, or one cut short by a crash: nobody owns the domain
+        return None  # no note, or one cut short by a crash: the domain has no owner
 
 
 def _write(path: Path, owner: Owner) -> None:
@@ -229,7 +229,7 @@ def _wait(holds: Callable[[], bool], seconds: float, otherwise: Reason) -> None:
 
 
 def wait_ready(site: Site, report: Callable[[str], None]) -> None:
-    """Wait until every process that starts by itself can do its job; `report` gets one line per process.
+    """Wait until every process that starts by itself is ready; `report` gets one line per process.
 
     Raises:
         TmsError: names the first process that did not get ready, why, and where its log is.

@@ -17,7 +17,7 @@ HOST_PORT = re.compile(r"(\[[0-9A-Fa-f:.]+\]|[0-9A-Za-z._-]+):([0-9]{1,5})")
 
 
 def folder(site: Site) -> Path:
-    """Where Prometheus' folder is: TMS_PROMETHEUS, or in the state folder, which is for this user alone."""
+    """Prometheus' folder: TMS_PROMETHEUS, or one in the state folder, which only this user can read."""
     return Path(os.environ.get("TMS_PROMETHEUS") or site.state / "prometheus").resolve()
 
 
@@ -72,7 +72,7 @@ def _check(alertmanager: str) -> None:
 
 
 def _replace(path: Path, text: str, mode: int) -> None:
-    """At once: Prometheus may read at any moment."""
+    """Replace a file in one step, since Prometheus may read it at any moment."""
     new = path.with_suffix(".new")
     new.write_text(text, encoding="utf-8")
     new.chmod(mode)

@@ -1,4 +1,4 @@
-"""The site's database itself, for verbs that move more than a service should carry."""
+"""Opens the site's database directly, for verbs that move more data than a service should carry."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -1,4 +1,4 @@
-"""Why a command of `tms` did not do what it was asked."""
+"""Reasons why a command of `tms` failed."""
 
 from tms_reason.quantities import Megabytes, Seconds
 from tms_reason.reason import Reason

@@ -1,4 +1,4 @@
-"""What people write about records on the command line: MODEL/RECORD and field=value."""
+"""Parses records on the command line: MODEL/RECORD and field=value."""
 
 import re
 from collections.abc import Iterable
@@ -15,7 +15,7 @@ NOT_FINITE = re.compile(r"[-+]?\.?(nan|inf|infinity)", re.IGNORECASE)
 
 
 class _Scalars(yaml.SafeLoader):
-    """The scalars of YAML 1.2: 1e3 is a number, but `010`, `yes` and `1:30` are no other numbers in disguise."""
+    """The scalars of YAML 1.2: 1e3 is a number; `010`, `yes` and `1:30` have no hidden meaning as in YAML 1.1."""
 
 
 _Scalars.yaml_implicit_resolvers = {}
@@ -34,7 +34,7 @@ def parse_value(text: str) -> Any:
     """The value that `field=text` means: number, true/false, array, or text.
 
     Raises:
-        Wrong: it is none of these; says why.
+        Wrong: the text is none of these; says why.
     """
     if NOT_FINITE.fullmatch(text):
         raise Wrong(NotAFiniteNumber(text))

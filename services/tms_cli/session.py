@@ -1,4 +1,4 @@
-"""What verbs share: the site, a short-lived ROS node, typed calls to the services, output for people or machines."""
+"""Functions for all verbs: the site, a short-lived ROS node, typed service calls, output for people and programs."""
 
 import json
 import math
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from tms_ros.node import Ros
 
 CALL_LIMIT = 5.0  # s
-LATCHED_LIMIT = 5.0  # s for a module to tell its state
-leaving = ExitStack()  # leaves the ROS graph; for the end of this process, since DDS hangs there now and then
+LATCHED_LIMIT = 5.0  # s for the latched state of a module to arrive
+leaving = ExitStack()  # leaves the ROS graph; closed at the end of this process, since DDS sometimes hangs there
 
 
 def site() -> Site:
@@ -39,7 +39,7 @@ def ros() -> Iterator["Ros"]:
     environment.enter(site())
     from tms_ros.node import Ros
 
-    with state_folder.private():  # it writes a log of its own
+    with state_folder.private():  # rclpy writes a log of its own
         node = Ros(f"tms_cli_{os.getpid()}", creating=undisturbed())
     leaving.callback(node.leave)
     try:
@@ -49,10 +49,10 @@ def ros() -> Iterator["Ros"]:
 
 
 def machines(names: tuple[str, ...], every: bool) -> list[str]:
-    """Machines that a user has named, or all of the site.
+    """The machines that a user has named, or all machines of the site.
 
     Raises:
-        ConfigError: one is not there; UsageError: none is named.
+        ConfigError: the site does not have one of them; UsageError: none is named.
     """
     known = site().file.machines
     if every and not names:
@@ -68,10 +68,10 @@ def machines(names: tuple[str, ...], every: bool) -> list[str]:
 def call(
     node: "Ros", service_type: ServiceType[Req, Reply], name: str, *, seconds: float = CALL_LIMIT, **fields: Any
 ) -> Reply:
-    """Call a service of ours and raise what it reports.
+    """Call a service of ours; an error in its answer is raised.
 
     Raises:
-        TmsError: the service refused, is not there, or did not answer; or a text would arrive cut.
+        TmsError: the service refused, does not exist, or did not answer; or a text would be cut on the way.
     """
     request_type: Any = service_type.Request
     request: Req = request_type(**fields)
@@ -83,7 +83,7 @@ def call(
 
 
 def latched(node: "Ros", message_type: type[M], topic: str) -> M | None:
-    """The state that a module keeps on a latched topic; None if it says nothing."""
+    """The state on a latched topic of a module; None if none arrives."""
     received: list[M] = []
     there = threading.Event()
 
@@ -96,12 +96,12 @@ def latched(node: "Ros", message_type: type[M], topic: str) -> M | None:
 
 
 def show_json(data: Any) -> None:
-    """The one JSON document that --json promises on stdout."""
+    """Print the JSON document of --json on stdout."""
     click.echo(json.dumps(_finite(data), ensure_ascii=False, indent=2, allow_nan=False))
 
 
 def _finite(data: Any) -> Any:
-    """JSON has no NaN and no infinity: null, as the API answers."""
+    """Replace NaN and infinity, which JSON does not have, by null, as in the API."""
     if isinstance(data, float):
         return data if math.isfinite(data) else None
     if isinstance(data, dict):

@@ -1,4 +1,4 @@
-"""Records as verbs need them: asked of tms:db, written, loaded from a file, and shown."""
+"""Functions for verbs about records: read from tms:db, write, load from a file, and show."""
 
 import os
 from collections.abc import Mapping
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def source() -> str:
-    """Who writes, as the records show it."""
+    """The user of the command line, for the field `source` of records."""
     return f"cli {os.environ.get('USER', '')}".strip()
 
 
@@ -33,7 +33,7 @@ def records(node: "Ros", model: str = "") -> "list[Message]":
 def write(
     node: "Ros", key: tuple[str, str], values: Mapping[str, Any], expected: Mapping[str, Any] | None = None, **more: Any
 ) -> bool:
-    """Set fields of a record, if others hold what is expected; tells whether the record was made."""
+    """Set fields of a record, if other fields have the expected values; returns whether the record was made."""
     from tms_msg_db.srv import SetParameter
 
     from tms_machine.values import to_parameters
@@ -47,10 +47,10 @@ def write(
 
 
 def load_file(node: "Ros", file: Path) -> dict[str, list[str]]:
-    """Load a file; record names by what was done with them.
+    """Load a file; returns the record names by their result.
 
     Raises:
-        TmsError: the file is wrong (nothing is written), or a record was refused (says how far it got).
+        TmsError: the file is wrong (nothing is written), or a record was refused (reports the records before it).
     """
     from tms_db.records import read_file
 
@@ -72,7 +72,7 @@ def load_file(node: "Ros", file: Path) -> dict[str, list[str]]:
 
 
 def _says(stored: "Message", wanted: "Record") -> bool:
-    """Whether a stored record has all that a file says, types included."""
+    """Whether a stored record has all values of the file's record, with the same types."""
     from tms_machine.values import to_parameters
 
     there = {value.name: value.value for value in stored.values}
@@ -85,7 +85,7 @@ def _says(stored: "Message", wanted: "Record") -> bool:
 
 
 def summary(done: Mapping[str, list[str]]) -> str:
-    """What a load did, in one line."""
+    """The result of a load in one line."""
     return say("{created} created, {changed} changed, {unchanged} unchanged", **{k: len(v) for k, v in done.items()})
 
 
@@ -113,7 +113,7 @@ def as_dict(record: "Message") -> dict[str, Any]:
 
 
 def age(record: "Message") -> str:
-    """How old a record's values are, in words."""
+    """The age of a record's values as text."""
     updated = live.moment(record.updated_at)
     if updated is None:
         return say("age unknown")
@@ -126,7 +126,7 @@ def text(value: Any) -> str:
 
 
 def kind(value: Any) -> str:
-    """The type of a value in words."""
+    """The type of a value as text."""
     if isinstance(value, list):
         return say("{kind} array", kind=kind(value[0])) if value else say("empty array")
     if isinstance(value, bool):

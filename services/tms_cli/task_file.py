@@ -10,7 +10,7 @@ def read(file: str) -> str:
     """Text of a task file.
 
     Raises:
-        TaskError: it is missing, no file, too big or no text.
+        TaskError: the file is missing, too big, no regular file or no text.
     """
     from tms_db import task_text
 

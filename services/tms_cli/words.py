@@ -1,4 +1,4 @@
-"""What `tms` says to people, in the language of the user's locale (LC_ALL, LC_MESSAGES, LANG: ja*).
+"""The texts of `tms` for people, in the language of the user's locale (LC_ALL, LC_MESSAGES, LANG: ja*).
 
 The English text in the code is the key of its Japanese in the catalogues (tms_reason/locale/ja/tms_cli*.po). JSON
 output is never translated.
@@ -26,29 +26,29 @@ def say(english: str, **values: Any) -> str:
 
 
 def language() -> str:
-    """Of the texts of reasons."""
+    """The language for the texts of reasons."""
     return "ja" if japanese() else "en"
 
 
 def reason(line: str) -> str:
-    """A reason as a message carries it, in words; empty for none."""
+    """The text of a reason in a message; empty for none."""
     found = wire.of(line)
     return "" if found is None else texts.text(found, language())
 
 
 def sentence(found: Reason) -> str:
-    """A reason in words."""
+    """The text of a reason."""
     return texts.text(found, language())
 
 
 def with_advice(line: str) -> str:
-    """As `reason`, and what to do about it."""
+    """Like `reason`, and what to do about it."""
     found = wire.of(line)
     return "" if found is None else texts.sentence(found, language())
 
 
 def english(line: str) -> str:
-    """As `reason`, for JSON, which is never translated."""
+    """Like `reason`, for JSON, which is never translated."""
     found = wire.of(line)
     return "" if found is None else texts.text(found, "en")
 
@@ -59,12 +59,12 @@ def state(word: str) -> str:
 
 
 def padded(text: str, width: int) -> str:
-    """Filled with spaces to so many columns of a table."""
+    """A text, filled with spaces to this width in columns."""
     return text + " " * (width - columns(text))
 
 
 def help_text(english: str) -> str:
-    """A paragraph or an option's help."""
+    """The help text of a paragraph or an option."""
     folded = " ".join(english.split())
     shown = texts.translated(folded, language())
     return english if shown == folded else shown
@@ -76,7 +76,7 @@ def columns(text: str) -> int:
 
 
 class Formatter(click.HelpFormatter):
-    """click's help pages with their words looked up."""
+    """click's help pages with translated headings."""
 
     def write_usage(self, prog: str, args: str = "", prefix: str | None = None) -> None:
         super().write_usage(prog, args, prefix or f"{_heading('Usage')}: ")
@@ -109,7 +109,7 @@ class Group(click.Group):
 
 
 def _summary(verb: click.Command) -> str:
-    """Its first sentence."""
+    """The first sentence of a verb's help."""
     if not japanese():
         return verb.get_short_help_str(70)
     return help_text((verb.help or "").split("\n\n")[0]).split("。")[0]
@@ -120,14 +120,14 @@ def _heading(english: str) -> str:
 
 
 def _option(english: str) -> str:
-    """An option's help; click puts `[required]` or `[default: 20]` behind it."""
+    """The help of an option; click adds `[required]` or `[default: 20]` after it."""
     text, extra, more = english.partition("  [")
     whole = help_text(english)
     return whole if whole != english else help_text(text) + extra + more
 
 
 def _folded(text: str, width: int) -> str:
-    """Japanese has no spaces to break lines at."""
+    """Break the lines of a Japanese text, which has no spaces to break at."""
     lines = [""]
     for letter in text:
         if columns(lines[-1] + letter) > width and letter not in "。、)」":

@@ -1,6 +1,6 @@
-"""Time, from one place: a rehearsal can give the whole mesh another one.
+"""The source of all time, so that a rehearsal can give the whole mesh another clock.
 
-Leases of DDS, `fsync` and the kernel have their own.
+DDS leases, `fsync` and the kernel use clocks of their own.
 """
 
 import time
@@ -8,12 +8,12 @@ from datetime import datetime, timezone
 
 
 def monotonic() -> float:
-    """s, for waits, limits and ages; never jumps."""
+    """Time [s] for waits, limits and ages; it never jumps."""
     return time.monotonic()
 
 
 def unix_time() -> float:
-    """S since 1970, for stamps that other PCs read; jumps when somebody sets the clock."""
+    """Seconds since 1970, for stamps that other PCs read; it jumps when the clock is set."""
     return time.time()
 
 
@@ -23,7 +23,7 @@ def unix_ns() -> int:
 
 
 def utc_now() -> datetime:
-    """As `unix_time`, for records and people."""
+    """`unix_time` as a date, for records and people."""
     return datetime.now(timezone.utc)
 
 

@@ -18,7 +18,7 @@ CHOICE = "pc"  # file in the state folder: which PC this is, as chosen by `tms u
 
 @dataclass(frozen=True)
 class Site:
-    """A checked site: its file, the machine models it uses, and where its state lives."""
+    """A checked site: its file, the machine models it uses, and its state folder."""
 
     path: Path
     file: SiteFile
@@ -62,18 +62,18 @@ class Site:
         return self.models[use.model]
 
     def border(self, machine: str) -> Border:
-        """Border names of a machine for this site's backend, with the machine's own name filled in."""
+        """The border of a machine for this site's backend, with the machine's own name in its names."""
         border = self.model_of(machine).borders[self.file.names]
         own = {key: getattr(border, key).format(name=machine) for key in ("frame_prefix", "base_frame")}
         return border.model_copy(update=own)
 
     def start_of(self, machine: str) -> tuple[float, float, float]:
-        """Where a stand-in begins: x [m], y [m], yaw [rad] in map."""
+        """Start place of a stand-in: x [m], y [m], yaw [rad] in map."""
         return self.file.machines[machine].start or self.model_of(machine).start
 
 
 def version() -> str:
-    """Version of this project, as it is installed."""
+    """Version of the installed project."""
     return importlib.metadata.version("ros2-tms")
 
 
@@ -108,7 +108,7 @@ def load_site(chosen: str | None = None) -> Site:
 
 
 def _check_machines(path: Path, file: SiteFile, models: dict[str, MachineModel]) -> None:
-    """Refuse two machines in one frame and faults of machines that are not there."""
+    """Refuse two machines in one frame, and faults of machines that the site does not have."""
     frames: dict[str, str] = {}
     for machine, use in file.machines.items():
         prefix = models[use.model].borders[file.names].frame_prefix.format(name=machine)

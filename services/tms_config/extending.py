@@ -10,12 +10,12 @@ EXTENDS = "extends"
 
 
 def extended(borders: Mapping[str, Any]) -> dict[str, Any]:
-    """Every border with what it extends filled in.
+    """Every border with the keys of the border that it extends.
 
-    A key that the border has itself wins; a mapping, as `sources`, is merged key by key; a key set to null is gone.
+    A border's own key wins; a mapping, such as `sources`, is merged key by key; a key that is set to null is removed.
 
     Raises:
-        Wrong: a border extends none of this machine, or itself by way of others.
+        Wrong: a border extends one that the machine does not have, or itself through others.
     """
     return {name: _whole(borders, name, ()) for name in borders}
 
@@ -34,7 +34,7 @@ def _whole(borders: Mapping[str, Any], name: str, below: tuple[str, ...]) -> Any
 
 
 def _merged(base: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
-    """One level deep: what a border says of one source is never mixed with what another one says of it."""
+    """Merge one level deep: the settings of one source are never mixed from two borders."""
     both = {key: _present({**base[key], **own[key]}) for key in own if _mappings(base.get(key), own[key])}
     return _present({**base, **own, **both})
 

@@ -1,4 +1,4 @@
-"""What configs/machines/<model>.yaml may hold: a machine's body, its limits, its border names, its subtasks."""
+"""Model of configs/machines/<model>.yaml: a machine's body, its limits, its border names, its subtasks."""
 
 from typing import Any, Literal, get_args
 
@@ -10,10 +10,10 @@ from tms_reason.reason import Reason
 from tms_reason.validation import Wrong
 
 Backend = Literal["sim", "opera", "physx"]
-Kind = Literal["backhoe", "crawler_dump", "bulldozer"]  # as the console draws it
+Kind = Literal["backhoe", "crawler_dump", "bulldozer"]  # the shape that the console draws
 DRIVE = "drive"  # key of the tracks in `response`
 NAME = r"^[a-z][a-z0-9_]*$"
-# Action that brings one joint to an angle -> the names that models have for this joint.
+# Action that brings one joint to an angle -> the names of this joint in the models.
 TURNED = {"set_dump_angle": ("vessel_pin_joint", "dump_joint"), "set_swing_angle": ("rotate_joint",)}
 
 
@@ -31,7 +31,7 @@ class Joint(Settings):
     velocity: float = Field(gt=0)  # rad/s
     acceleration: float = Field(gt=0)  # rad/s^2
     jerk: float = Field(gt=0)  # rad/s^3
-    passive: bool = False  # no command moves it, such as a virtual tool frame; it is still watched
+    passive: bool = False  # no command moves it, as for a virtual tool frame; the gateway still watches it
 
     def violation(self, angle: float) -> Reason | None:
         """Which bound `angle` [rad] breaks, or None."""
@@ -43,7 +43,7 @@ class Joint(Settings):
 
 
 class Origin(Settings):
-    """Where a joint sits on its parent link (URDF joint origin) and about what it turns."""
+    """The place of a joint on its parent link (URDF joint origin) and its axis."""
 
     parent: str
     child: str
@@ -61,7 +61,7 @@ class Box(Settings):
 
 
 class Drive(Settings):
-    """How the machine travels: what its navigation and its stand-in may use."""
+    """Limits of travel for the navigation and the stand-in."""
 
     velocity: float = Field(gt=0)  # m/s
     acceleration: float = Field(gt=0)  # m/s^2
@@ -73,14 +73,14 @@ class Still(Settings):
     """When the machine counts as standing."""
 
     velocity: float = Field(gt=0)  # rad/s, every joint below it ...
-    linear: float = Field(gt=0)  # m/s, ... and, where a source tells of the base, the base below this ...
+    linear: float = Field(gt=0)  # m/s, ... and, where a source reports the base, the base below this ...
     angular: float = Field(gt=0)  # rad/s, ... and this ...
     seconds: float = Field(gt=0)  # s, ... for this long, counted from the end of the dead time
     origin: str = Field(min_length=1)  # where the figures come from
 
 
 class Response(Settings):
-    """How a joint, or the tracks, answer a command: not at all for the dead time, then as a first-order lag."""
+    """The answer of a joint, or of the tracks, to a command: none for the dead time, then a first-order lag."""
 
     dead_time: float = Field(ge=0)  # s
     lag: float = Field(gt=0)  # s, time constant
@@ -92,20 +92,20 @@ Stamps = Literal["utc", "since_start", "none"]
 
 
 class Source(Settings):
-    """What a border promises of one topic that tells of the machine's motion."""
+    """Properties of one topic that reports the machine's motion."""
 
     period: float = Field(gt=0, le=0.25)  # s between messages; a slower source cannot prove that a machine stands
-    stamps: Stamps  # what the header's time counts from; `none`: it is empty, and only the arrival counts
-    frozen_after: float = Field(gt=0)  # s of values that are bit for bit the same while a goal should change them
+    stamps: Stamps  # origin of the header's time; `none`: it is empty, and the arrival is used
+    frozen_after: float = Field(gt=0)  # s with bitwise equal values while a goal should change them
     origin: str = Field(min_length=1)  # where the figures come from
     resolution: float = Field(ge=0, default=0.0)  # rad or m by which positions jitter while it stands
     message: Literal["PoseStamped", "Odometry"] = "PoseStamped"  # type of `pose`
 
 
 class Border(Settings):
-    """Names at the machine's own border, relative to its namespace; absent: the machine has no such thing."""
+    """Names at the machine's own border, relative to its namespace; an absent name: the machine lacks it."""
 
-    # actions; the gateway offers each under /<machine>/rc/<key>, the trajectory as follow_joint_trajectory
+    # actions; the gateway serves each under /<machine>/rc/<key>, the trajectory as follow_joint_trajectory
     trajectory: str | None = None
     navigate_to_pose: str | None = None
     navigate_through_poses: str | None = None
@@ -117,18 +117,18 @@ class Border(Settings):
     odom: str | None = None
     pose: str | None = None  # of the base in `map`
     imu: str | None = None
-    sources: dict[SourceName, Source] = {}  # of the four above; each that is there has its entry
+    sources: dict[SourceName, Source] = {}  # each of the four topics above that is present has its entry
     cmd_vel: str | None = None
     emg_stop: str | None = None
     emg_stop_at_once: bool = False  # emg_stop acts without the machine's dead time
     manual: str | None = None  # std_msgs/Bool, true while a person drives the machine by its own levers
-    joint_cmd: str | None = None  # com3_msgs/JointCmd; what a controller of the machine sends, nothing of ours
-    joint_angles: dict[str, str] = {}  # joint -> topic of std_msgs/Float64 [rad], as some simulated machines take them
+    joint_cmd: str | None = None  # com3_msgs/JointCmd; a controller of the machine publishes it, no process of ours
+    joint_angles: dict[str, str] = {}  # joint -> topic of std_msgs/Float64 [rad], for some simulated machines
     dump_returns: bool = False  # a goal for the vessel is a whole cycle there: it tips, waits, and comes back by itself
     # frames; {name} is the machine, so that two machines of one model never share a frame
     frame_prefix: str = "{name}/"
-    base_frame: str = "{name}/base_link"  # child of `map` that tells where the machine is
-    joints: dict[str, str] = {}  # joint of the model -> its name here, where they differ
+    base_frame: str = "{name}/base_link"  # child of `map`: the place of the machine
+    joints: dict[str, str] = {}  # joint of the model -> its name at this border, where they differ
 
     @model_validator(mode="after")
     def _sources_known(self) -> "Border":
@@ -141,11 +141,11 @@ class Border(Settings):
 
 
 class SubtaskUse(Settings):
-    """Which subtask file serves an action name, and the fixed inputs of this variant."""
+    """The subtask file for an action name, and the fixed inputs of this variant."""
 
     run: str = Field(pattern=NAME)
     inputs: dict[str, Any] = {}
-    max_age: float = Field(ge=0, default=0.0)  # s that a dynamic record may be old; 0: as the record itself says
+    max_age: float = Field(ge=0, default=0.0)  # s that a dynamic record may be old; 0: the record's own limit
     example: str | None = None  # a record of configs/parameters that shows its use; the contract test runs it
 
 
@@ -158,7 +158,7 @@ class MachineModel(Settings):
     )  # a folder of services/tms_rp/kinds; absent: plans no motions
     joints: dict[str, Joint]
     geometry: dict[str, Origin]
-    footprint: dict[str, Box] = {}  # what other machines must not touch, base_link
+    footprint: dict[str, Box] = {}  # boxes that other machines must not touch, base_link
     shapes: dict[str, Box] = {}  # link -> its body in its own frame, for the planner
     drive: Drive | None = None
     response: dict[str, Response] = {}  # joint, or `drive` for the tracks -> how it answers commands
@@ -169,7 +169,7 @@ class MachineModel(Settings):
     subtasks: dict[str, SubtaskUse | str] = {}
 
     def subtask(self, action: str) -> SubtaskUse:
-        """The use behind an action name; the short form `action: file` is filled in."""
+        """The use for an action name; the short form `action: file` is completed."""
         use = self.subtasks[action]
         return SubtaskUse(run=use) if isinstance(use, str) else use
 
@@ -193,7 +193,7 @@ class MachineModel(Settings):
 
     @model_validator(mode="after")
     def _response_known(self) -> "MachineModel":
-        """Without dead time and lag nobody can tell when a stop is proven."""
+        """Refuse a model without dead time and lag: a stop could not be proven."""
         moved = [name for name, joint in self.joints.items() if not joint.passive] + [DRIVE] * (self.drive is not None)
         for name in moved:
             if name not in self.response:

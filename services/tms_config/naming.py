@@ -1,10 +1,10 @@
-"""Which process serves a name of ROS, as `tms ps` lists it: people restart processes, not services."""
+"""Finds the process behind a ROS name, as `tms ps` lists it: people restart processes, not services."""
 
 OF_GATEWAY = ("rc", "rearm", "take")
 
 
 def process_of(name: str) -> str:
-    """`/tms/db/get_task` -> `tms:db`, `/zx200/rc/stop` -> `zx200:rc`; the machine itself for its own controllers."""
+    """`/tms/db/get_task` -> `tms:db`, `/zx200/rc/stop` -> `zx200:rc`; for its own controllers, the machine."""
     parts = name.strip("/").split("/")
     if len(parts) < 2:
         return parts[0]

@@ -1,4 +1,4 @@
-"""The PCs of a site: under which addresses they reach each other, and how DDS goes between them.
+"""The PCs of a site: their addresses, and the way of DDS between them.
 
 Without `pcs:` in the site file everything runs on one PC and DDS stays on its loopback interface. Otherwise every
 process of a PC listens on that PC's address only, and DDS uses that address and the loopback interface: a machine's
@@ -18,17 +18,17 @@ LOOPBACK = "127.0.0.1"
 
 
 def required(site: Site) -> None:
-    """Refuse to start or to talk while it is not known which PC this is.
+    """Refuse to start or to use ROS while it is not known which PC this is.
 
     Raises:
-        ConfigError: says how to tell.
+        ConfigError: says how to choose the PC.
     """
     if site.file.pcs and site.pc is None:
         raise ConfigError(WhichPc(site.name, tuple(site.file.pcs)))
 
 
 def discovery_server(site: Site) -> str | None:
-    """host:port of the discovery server, where the site uses one; on loopback where the site is one PC.
+    """host:port of the discovery server, None where the site uses none; on loopback for a site of one PC.
 
     Raises:
         ConfigError: no PC would run it, or its address is not known.
@@ -44,7 +44,7 @@ def discovery_server(site: Site) -> str | None:
 
 
 def resolve(site: Site, address: str) -> str:
-    """IPv4 address of a PC; DDS takes no names.
+    """IPv4 address of a PC, since DDS accepts no names.
 
     Raises:
         ConfigError: the name is not known.

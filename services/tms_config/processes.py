@@ -1,4 +1,4 @@
-"""The process table: services + machines x subtasks. Nothing else starts processes."""
+"""The process table: services + machines x subtasks. No other part starts processes."""
 
 import difflib
 from dataclasses import dataclass, replace
@@ -21,7 +21,7 @@ from tms_config.site_file import Role, roles
 from tms_config.yaml_file import located
 from tms_reason.errors import ConfigError
 
-# package of a service -> what it is for, shown by `tms ps`
+# package of a service -> its purpose, shown by `tms ps`
 SERVICES = {
     "db": "tasks, parameters and history in MongoDB",
     "sp": "sensing topics into dynamic parameters",
@@ -47,11 +47,11 @@ class Process:
     autostart: bool = True
     pc: str = ""  # which PC of the site runs it; empty when there is one only
     address: str = "127.0.0.1"  # where its port is
-    ours: bool = True  # has metrics and health; not so for programs of others
+    ours: bool = True  # has metrics and health, which foreign programs do not have
 
     @property
     def full(self) -> str:
-        """Name as supervisord and `tms ps` show it."""
+        """Name that supervisord and `tms ps` show."""
         return f"{self.group}:{self.name}"
 
 
@@ -81,10 +81,10 @@ def here(site: Site) -> tuple[Process, ...]:
 
 
 def find(site: Site, name: str) -> Process:
-    """The row called `name`; a part of the name is enough when only one row has it.
+    """The row with this name; a part of the name is enough when only one row matches.
 
     Raises:
-        ConfigError: none or several match; names them.
+        ConfigError: no row or several match; names them.
     """
     rows = table(site)
     exact = [row for row in rows if row.full == name]
@@ -111,7 +111,7 @@ def _place(site: Site, row: Process) -> str:
     """Name of the PC that runs a process; empty when the site is one PC.
 
     Raises:
-        ConfigError: no PC or several would run it.
+        ConfigError: no PC, or more than one, would run it.
     """
     known = site.file.pcs
     able = [name for name, pc in known.items() if row.role in roles(name, pc)]
@@ -169,7 +169,7 @@ def _subtask(site: Site, machine: str, model: MachineModel, action: str) -> Proc
 
 
 def _require(site: Site, machine: str, path: str, *keys: str) -> None:
-    """A machine file names a file of ours, which must be there."""
+    """Refuse a machine file that names a file of ours which does not exist."""
     if not (CONFIGS.parent / "services" / path).exists():
         where = CONFIGS / "machines" / f"{site.file.machines[machine].model}.yaml"
         raise ConfigError(located(where, NoCodeFile(path), *keys))

@@ -1,10 +1,10 @@
-"""What is wrong with a configuration, and with what is measured against it."""
+"""Faults of a configuration, and violations of its limits."""
 
 from tms_reason.quantities import Radians
 from tms_reason.reason import Reason
 from tms_reason.remedies import EDIT_CONFIG, PROCESSES, STATUS, Remedy
 
-# What helps only here: it all is done in an editor or a shell.
+# Remedies for configurations: all are done in an editor or a shell.
 KEY_AS_TEXT = Remedy("edit_config", "", "Fill in the placeholder, or put the key in quotes")
 READABLE = Remedy("edit_config", "", "Give the file to the user of this system, or name another file")
 DOMAIN = Remedy("edit_config", "", "Use a number from 0 to 101, or unset the variable")
@@ -16,7 +16,7 @@ FULL_NAME = Remedy("processes", "tms ps", "Give the full name")
 
 
 # fmt: off
-# measured against a configuration
+# violations of limits
 class BelowLimit(Reason, text="{angle} is below its limit {limit}"): angle: Radians; limit: Radians
 class AboveLimit(Reason, text="{angle} is above its limit {limit}"): angle: Radians; limit: Radians
 

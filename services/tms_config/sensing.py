@@ -1,4 +1,4 @@
-"""What configs/sensing.yaml may hold: inputs, each from a topic into parameter records."""
+"""Model of configs/sensing.yaml: inputs, each from a topic into parameter records."""
 
 import math
 from collections.abc import Mapping
@@ -24,16 +24,16 @@ Limits = tuple[float, float]
 
 
 class FieldRule(Settings):
-    """Where the value of one field of the record comes from.
+    """The source of one field of the record.
 
     `path` names a field of the message, through sub-messages (`pose.pose.position.x`), an element of an array
     (`data[0]`), or the element whose `name` beside it is the given one (`position[swing_joint]`).
     """
 
     path: str = Field(pattern=PATH)
-    unit: str | None = None  # of the message; the record gets SI
+    unit: str | None = None  # unit in the message; the record gets SI
     scale: float = 1.0
-    size: int | None = Field(ge=1, default=None)  # elements that an array must have
+    size: int | None = Field(ge=1, default=None)  # number of elements that an array must have
 
     @field_validator("unit")
     @classmethod
@@ -52,26 +52,26 @@ def _short(given: Any) -> Any:
 
 
 class Input(Settings):
-    """One topic. A `model` or `record` that begins with $ is a field of the message, else it is the name itself."""
+    """One topic. A `model` or `record` that begins with $ names a field of the message; else it is the name itself."""
 
     topic: str = Field(pattern=r"^/?[A-Za-z][A-Za-z0-9_/]*$")
     type: str = Field(pattern=r"^[a-z][a-z0-9_]*/msg/[A-Z][A-Za-z0-9]*$")
     reliability: Literal["reliable", "best_effort"] = "reliable"
-    depth: int = Field(ge=1, le=1000, default=500)  # half a second at the highest rate: a busy PC loses nothing
+    depth: int = Field(ge=1, le=1000, default=500)  # half a second at the highest rate: a busy PC loses no message
     model: Text = "$model_name"  # "" = a record that all machines share
     record: Name = "$record_name"
-    # Empty: every field of the message into the field of the record with that name, whatever its case, if there is one.
+    # Empty: every field of the message goes into the record's field of the same name in any case, if there is one.
     fields: dict[Name, Annotated[FieldRule, BeforeValidator(_short)]] = Field(default_factory=dict)
     range: dict[str, Limits] = Field(
         default_factory=dict
     )  # field of the record (in lower case without `fields`) -> least, most
-    keep: str | None = None  # a field of the message that lists fields of the record which must stay
+    keep: str | None = None  # field of the message with a list of the record's fields that must stay
     only_if: dict[str, bool | int | float | str] = Field(
         default_factory=dict
     )  # fields of the record that must hold these values
-    stamp: str | None = None  # path of the time of measurement; a header's stamp is known without
-    hz: float = Field(ge=0, default=0.0)  # expected rate; 0: it comes when it comes
-    max_hz: float | None = Field(gt=0, default=None)  # messages of one record that come faster are left out
+    stamp: str | None = None  # path of the time of measurement; a header's stamp needs no path
+    hz: float = Field(ge=0, default=0.0)  # expected rate; 0: no rate is expected
+    max_hz: float | None = Field(gt=0, default=None)  # faster messages of one record are left out
 
     @field_validator("range")
     @classmethod
@@ -90,7 +90,7 @@ class Input(Settings):
 
     @property
     def fixed_target(self) -> tuple[str, str] | None:
-        """Model and record, where both are named here."""
+        """Model and record, where neither comes from the message; else None."""
         return None if "$" in (self.model[:1], self.record[:1]) else (self.model, self.record)
 
 
@@ -101,11 +101,11 @@ class MachineState(Settings):
 
 
 class Sensing(Settings):
-    """What sensing.yaml may hold."""
+    """The content of sensing.yaml."""
 
     clock_limit: float = Field(
         gt=0, default=0.5
-    )  # s that a source's clock may be off; stamps further ahead are refused
+    )  # s that a source's clock may be off; stamps further in the future are refused
     machine_state: MachineState = MachineState()
     inputs: dict[Annotated[str, Field(pattern=NAME)], Input] = Field(default_factory=dict)
 

@@ -1,4 +1,4 @@
-"""What configs/site.yaml and configs/sites/*.yaml may hold."""
+"""Model of configs/site.yaml and configs/sites/*.yaml."""
 
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -24,12 +24,12 @@ class Bridge(Service):
 
     role: Role = "sim"
     port: int = Field(ge=1024, le=65535, default=10000)
-    bind: str = "127.0.0.1"  # whoever reaches it may publish sensor data: open it to the simulator's network only
-    joint_cmd: Literal["plain", "control_type"] = "plain"  # layout of com3_msgs/JointCmd that the simulator knows
+    bind: str = "127.0.0.1"  # a client may publish sensor data: open it to the simulator's network only
+    joint_cmd: Literal["plain", "control_type"] = "plain"  # the simulator's layout of com3_msgs/JointCmd
     message_limit: int = Field(ge=1024, le=64 * 1024 * 1024, default=4 * 1024 * 1024)  # bytes a message
-    clock: bool = False  # pass on the simulator's time as /clock
+    clock: bool = False  # publish the simulator's time as /clock
     calls: dict[ServiceName, ServiceType] = Field(default_factory=dict)  # ROS services that a client may call
-    offers: dict[ServiceName, ServiceType] = Field(default_factory=dict)  # services that a client may offer
+    offers: dict[ServiceName, ServiceType] = Field(default_factory=dict)  # services that a client may serve
 
 
 class MachineUse(Settings):
@@ -37,11 +37,11 @@ class MachineUse(Settings):
 
     model: str = Field(pattern=NAME)
     role: Role = "machine"
-    start: tuple[float, float, float] | None = None  # x m, y m, yaw rad: where its stand-in begins, if not as the model
+    start: tuple[float, float, float] | None = None  # x m, y m, yaw rad: start of its stand-in, if not the model's
 
 
 class Ports(Settings):
-    """First of the consecutive metrics ports, and the fixed ones. All on `bind`."""
+    """The first of the consecutive metrics ports, and the fixed ports. All are on `bind`."""
 
     metrics: int = Field(ge=1024, le=65000, default=9410)
     console: int = Field(ge=1024, le=65535, default=8080)
@@ -57,10 +57,10 @@ def _holds_password(uri: str) -> bool:
 
 
 class Store(Settings):
-    """`embedded` is the demo's own store; `mongodb` is a server that the site runs.
+    """The database's store: `embedded` is the demo's own; `mongodb` is a server that the site runs.
 
-    A password never stands here: it is in `password_file`, or in a whole URI that comes from TMS_MONGODB_URI or the
-    file that TMS_MONGODB_URI_FILE names; what is here about user and TLS then does not count.
+    The site file never holds the password: it is in `password_file`, or in a whole URI from TMS_MONGODB_URI or from the
+    file that TMS_MONGODB_URI_FILE names; user and TLS of the site file are then ignored.
     """
 
     kind: Literal["embedded", "mongodb"] = "embedded"
@@ -70,7 +70,7 @@ class Store(Settings):
     tls_ca: Path | None = None  # PEM of the authority that signed the server's certificate; its use means TLS
     tls_certificate: Path | None = None  # PEM of our own certificate and key, where the server asks for one
     database: str = Field(pattern=r"^[A-Za-z][A-Za-z0-9_-]*$", default="rostmsdb")
-    history_days: int | None = Field(ge=1, default=365)  # that an ended run and its events stay; null: for ever
+    history_days: int | None = Field(ge=1, default=365)  # days for which ended runs and events are kept; null: for ever
     machine_state_days: int | None = Field(ge=1, default=None)  # the same for machine_pose and machine_joints
 
     @model_validator(mode="after")
@@ -87,29 +87,29 @@ class Store(Settings):
 
 
 class Fault(Settings):
-    """What goes wrong in a stand-in; times are seconds of the machine, 0 is off.
+    """Faults of a stand-in; times are seconds of the machine, and 0 is off.
 
-    What it reports lies: `zero_velocity` to `back_in_time`. How it moves is unkind: `coast` to `ignore_emg_stop`.
+    `zero_velocity` to `back_in_time` falsify its reports; `coast` to `ignore_emg_stop` change its motion.
     """
 
-    stall: float | None = Field(ge=0, default=None)  # s in motion after which the machine stands and the goal goes on
-    die: float | None = Field(ge=0, default=None)  # s in motion after which the process is gone
+    stall: float | None = Field(ge=0, default=None)  # s in motion after which the machine stands; the goal goes on
+    die: float | None = Field(ge=0, default=None)  # s in motion after which the process ends
     late: float = Field(ge=0, default=0.0)  # s from every command to its effect
     drift: float = 0.0  # m/s or rad/s that the machine creeps while it should stand
-    refuse: tuple[str, ...] = ()  # actions, by their key under borders:, that take no goal
+    refuse: tuple[str, ...] = ()  # actions, by their key under borders:, that refuse goals
     drop_feedback: bool = False
     miss: tuple[int, ...] = ()  # waypoints, from 0, that follow_waypoints cannot reach
     zero_velocity: bool = False  # every velocity is reported as 0
-    frozen_stamp: bool = False  # the last message again and again, with its old stamp
-    replay: bool = False  # its last 2 s again and again, with new stamps
+    frozen_stamp: bool = False  # the last message is repeated with its old stamp
+    replay: bool = False  # the last 2 s are repeated with new stamps
     mute: tuple[str, ...] = ()  # joints that are left out
-    second_publisher: bool = False  # another publisher says at 60 Hz that the machine stands
-    jump: float = 0.0  # rad, m: every position is reported this far off
+    second_publisher: bool = False  # another publisher reports at 60 Hz that the machine stands
+    jump: float = 0.0  # rad, m: offset of every reported position
     nan: bool = False  # every number is reported as NaN
-    back_in_time: float = Field(ge=0, default=0.0)  # s that stamps jump back
-    coast: float = Field(ge=0, default=0.0)  # s that it goes on as it was after every order to stop
-    dead_time: float = Field(ge=0, default=0.0)  # s more than its model has
-    creep: float = 0.0  # m/s or rad/s at which it leaves stand-still, 3 s after it came to it
+    back_in_time: float = Field(ge=0, default=0.0)  # s by which stamps jump back
+    coast: float = Field(ge=0, default=0.0)  # s that its motion goes on after every order to stop
+    dead_time: float = Field(ge=0, default=0.0)  # s in addition to the model's dead time
+    creep: float = 0.0  # m/s or rad/s of a motion that begins after 3 s of stand-still
     ignore_cancel: bool = False
     ignore_emg_stop: bool = False
 
@@ -117,13 +117,13 @@ class Fault(Settings):
 class Simulator(Settings):
     speed: float = Field(gt=0, le=100, default=1.0)  # times real time
     seed: int = 0
-    response: Literal["machine", "ideal"] = "machine"  # ideal: without dead time and lag, where no stop is tried
+    response: Literal["machine", "ideal"] = "machine"  # ideal: no dead time, no lag; for sites that try no stops
     names: Backend = "sim"  # whose names and joint names the stand-ins use
-    faults: dict[str, Fault] = Field(default_factory=dict)  # machine -> what goes wrong from the start
+    faults: dict[str, Fault] = Field(default_factory=dict)  # machine -> its faults from the start
 
 
 class Groot(Settings):
-    """Who may look at running trees with Groot: its protocols know no passwords."""
+    """Access for Groot to running trees; its protocols have no passwords."""
 
     bind: str = "127.0.0.1"
 
@@ -136,22 +136,22 @@ class Files(Settings):
 
 
 class Console(Settings):
-    """Who may use the console; see `tms user --help`."""
+    """Access to the console; see `tms user --help`."""
 
-    users: Path | None = None  # file that `tms user` writes; absent: only this PC, without asking who
+    users: Path | None = None  # file that `tms user` writes; absent: only this PC, without login
     tls: Files | None = None
     names: tuple[str, ...] = ()  # further names under which browsers reach it, e.g. site-pc.example
 
 
 class OnLoss(Settings):
-    """What happens when a process is lost."""
+    """Reactions to the loss of a process."""
 
     retries: int = Field(ge=0, le=10, default=2)  # times that a leaf sends its goal again
     frozen: float = Field(ge=0, default=20.0)  # s without an answer after which tms:host restarts a process; 0: never
 
 
 class Log(Settings):
-    """How processes log; supervisord keeps and rotates the files."""
+    """Logs of the processes; supervisord keeps and rotates the files."""
 
     level: Literal["DEBUG", "INFO", "WARNING", "ERROR"] = "INFO"
     json_lines: bool = False  # a JSON object a line, for Loki
@@ -160,27 +160,27 @@ class Log(Settings):
 class Pc(Settings):
     """One PC of the site; its name is its key."""
 
-    address: str = Field(min_length=1)  # IP address or name, as the other PCs reach it
-    roles: tuple[Role, ...] = ()  # default: the one that the PC is named after
-    machines: tuple[str, ...] = ()  # whose processes run here; default: those of no other PC with that role
+    address: str = Field(min_length=1)  # IP address or name, for the other PCs
+    roles: tuple[Role, ...] = ()  # default: the role that is the PC's name
+    machines: tuple[str, ...] = ()  # whose processes run here; default: machines that no other PC with that role has
 
 
 class Network(Settings):
-    """How processes of different PCs find each other."""
+    """Discovery between processes of different PCs."""
 
-    # server: across segments that pass no multicast. A server that is killed may leave new processes unfound for half a
-    # minute, so it is no default, not even for the many processes that it makes cheaper.
+    # server: for network segments without multicast. After the server was killed, new processes may stay unfound for
+    # half a minute, so it is not the default, although it is cheaper for many processes.
     discovery: Literal["multicast", "server"] = "multicast"
     port: int = Field(ge=1024, le=65535, default=11811)  # of the discovery server, on the PC with the role cps
 
 
 def roles(name: str, pc: Pc) -> tuple[Role, ...]:
-    """What a PC does."""
+    """The roles of a PC."""
     return pc.roles or tuple(role for role in ROLES if role == name)
 
 
 class SiteFile(Settings):
-    """What site.yaml may hold."""
+    """The content of site.yaml."""
 
     name: str = Field(pattern=NAME)
     domain: int = Field(ge=0, le=101)  # ROS_DOMAIN_ID
@@ -202,7 +202,7 @@ class SiteFile(Settings):
     @field_validator("services", mode="before")
     @classmethod
     def _bridge(cls, services: Any) -> Any:
-        """The bridge has settings of its own."""
+        """Parse the bridge's settings, which other services do not have."""
         if not (isinstance(services, dict) and isinstance(services.get("if"), dict)):
             return services
         try:
@@ -213,5 +213,5 @@ class SiteFile(Settings):
 
     @property
     def names(self) -> Backend:
-        """Whose border names hold here: stand-ins may use those of another backend."""
+        """The backend whose border names are valid: stand-ins may use those of another backend."""
         return self.sim.names if self.backend == "sim" else self.backend

@@ -1,4 +1,4 @@
-"""Reads a YAML file into a frozen model; whatever is wrong is an error that names file, line and key."""
+"""Reads a YAML file into a frozen model; every fault is an error that names file, line and key."""
 
 from collections.abc import Hashable
 from itertools import islice
@@ -16,11 +16,11 @@ from tms_reason.validation import Keys, dotted, problems
 
 T = TypeVar("T", bound=Settings)
 MERGE = "tag:yaml.org,2002:merge"
-MAX_SHOWN = 5  # problems of one file
+MAX_SHOWN = 5  # problems of one file in a message
 
 
 class _BadMapping(yaml.MarkedYAMLError):
-    """A mapping that PyYAML would take, and we do not."""
+    """A mapping that PyYAML accepts and this project refuses."""
 
     def __init__(self, reason: Reason, mark: yaml.Mark) -> None:
         super().__init__(problem_mark=mark)
@@ -35,7 +35,7 @@ def _mapping(loader: _Loader, node: yaml.MappingNode) -> dict[Any, Any]:
     merged: dict[Any, Any] = {}
     seen: dict[Any, Any] = {}
     for key_node, value_node in node.value:
-        if key_node.tag == MERGE:  # `<<: *other`: the keys of the other mapping, but for those given here
+        if key_node.tag == MERGE:  # `<<: *other`: the keys of the other mapping, except those given here
             for other in value_node.value if isinstance(value_node, yaml.SequenceNode) else [value_node]:
                 merged = {**_merged(loader, other, key_node.start_mark), **merged}
             continue
@@ -85,7 +85,7 @@ def read_yaml(path: Path) -> Any:
         line = error.problem_mark.line + 1 if error.problem_mark else 0
         reason = error.reason if isinstance(error, _BadMapping) else reasons.NoYaml(str(error.problem))
         raise ConfigError(reasons.BadLine(str(path), line, reason)) from error
-    except yaml.YAMLError as error:  # a character that no YAML may hold
+    except yaml.YAMLError as error:  # a character that YAML does not allow
         raise ConfigError(reasons.BadFile(str(path), reasons.NoYaml(str(error).splitlines()[0]))) from error
 
 
@@ -109,14 +109,14 @@ def parse(path: Path, model: type[T]) -> T:
 
 
 def located(path: Path, problem: Reason, *keys: int | str) -> Reason:
-    """A problem with the file, the line and the key that it is about."""
+    """A problem with its file, line and key."""
     if not keys:
         return reasons.BadFile(str(path), problem)
     return reasons.BadKey(str(path), _line(yaml.compose(read_text(path), _Loader), keys), dotted(keys), problem)
 
 
 def _line(node: yaml.Node | None, keys: Keys) -> int:
-    """Line of a key, or of the nearest one above it that is there."""
+    """Line of a key, or of the nearest existing key above it."""
     line = 1 if node is None else node.start_mark.line + 1
     for key in keys:
         if isinstance(node, yaml.SequenceNode) and isinstance(key, int) and key < len(node.value):

@@ -1,4 +1,4 @@
-"""How every service of tms:db answers: counted, timed, and with errors as code and text."""
+"""Serves the services of tms:db: every call is counted and timed, and an error becomes code and text."""
 
 from collections.abc import Awaitable, Callable
 
@@ -19,21 +19,21 @@ LaterHandler = Callable[[Req, Reply], Awaitable[None]]
 
 
 class Answering:
-    """Offers handlers as services below /tms/db/."""
+    """Serves handlers as services below /tms/db/."""
 
     def __init__(self, app: App, connection: Connection) -> None:
         self._app, self._connection = app, connection
 
     def quick(self, service_type: ServiceType[Req, Reply], name: str, handler: Handler[Req, Reply]) -> None:
-        """A handler for one document, about a millisecond; on the executor thread these keep their order."""
+        """Serve a handler for one document, about a millisecond; the executor thread keeps the order of the calls."""
         self._app.ros.offer(service_type, f"/tms/db/{name}", self._guard(name, handler))
 
     def slow(self, service_type: ServiceType[Req, Reply], name: str, handler: Handler[Req, Reply]) -> None:
-        """A handler that may block; each call has a thread of its own."""
+        """Serve a handler that may block; each call has a thread of its own."""
         self._app.ros.offer_slow(service_type, f"/tms/db/{name}", self._guard(name, handler))
 
     def later(self, service_type: ServiceType[Req, Reply], name: str, handler: LaterHandler[Req, Reply]) -> None:
-        """A coroutine on the executor thread: it begins in order, and others are answered while it waits."""
+        """Serve a coroutine on the executor thread: calls begin in order, and others are served while one waits."""
 
         async def answer(request: Req, response: Reply) -> Reply:
             begin = monotonic()

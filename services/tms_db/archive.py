@@ -42,7 +42,7 @@ from tms_reason.reason import Reason
 
 MAGIC = bytes.fromhex("6de29981")
 GZIP = b"\x1f\x8b"
-END = b"\xff\xff\xff\xff"  # of a segment
+END = b"\xff\xff\xff\xff"  # terminator of a segment
 FORMAT = "0.1"
 SMALLEST = 5  # bytes of a document
 LARGEST = 16 * 2**20 + 16 * 2**10  # what a MongoDB server takes at most, with its overhead
@@ -64,7 +64,7 @@ class Writer:
         self._document({"concurrent_collections": 1, "version": FORMAT, "server_version": server, "tool_version": tool})
 
     def describe(self, collections: Mapping[str, Sequence[Mapping[str, Any]]]) -> None:
-        """The collections that follow, each with its indexes as the server lists them."""
+        """Write the descriptions of the collections that follow, each with its indexes as the server lists them."""
         for name, indexes in collections.items():
             metadata = {"indexes": list(indexes), "collectionName": name, "type": "collection"}
             text = json_util.dumps(metadata, json_options=json_util.CANONICAL_JSON_OPTIONS)
@@ -74,7 +74,7 @@ class Writer:
         self._put(END)
 
     def collection(self, name: str, documents: Iterator[bytes]) -> None:
-        """All documents of a collection, as BSON."""
+        """Write all documents of a collection; they are BSON."""
         crc, begun = 0, False
         for document in documents:
             if not begun:
@@ -103,10 +103,10 @@ def signed(crc: int) -> int:
 
 
 class Reader:
-    """Reads and checks an archive; everything that is wrong is a DbError BAD_ARCHIVE with file and place."""
+    """Reads and checks an archive; every fault raises a DbError BAD_ARCHIVE with file and place."""
 
     def __init__(self, path: Path, file: BinaryIO, plain: BinaryIO) -> None:
-        """`plain` is the file itself, `file` what is read: the same, or its decompressed content."""
+        """`plain` is the file itself; `file` is the stream to read: the same file, or its decompressed content."""
         self._path, self._file, self._plain = path, file, plain
         self._at = 0  # bytes read, after decompression
         if self._bytes(len(MAGIC)) != MAGIC:

@@ -1,6 +1,6 @@
 """The whole database into an archive file and back; tools of MongoDB read and write the same files.
 
-These open the store themselves, as mongodump does: a backup must not need a running system.
+These functions open the store themselves, as mongodump does: a backup must not need a running system.
 """
 
 import os
@@ -42,7 +42,7 @@ BATCH_BYTES = 4 * 2**20
 FIRST = ("run", "fs.files")
 DUPLICATE = 11000  # MongoDB's code of a unique key that is there already
 RAW: CodecOptions[RawBSONDocument] = CodecOptions(document_class=RawBSONDocument)
-NEEDED = {"task": ("task_id", "task_sequence"), "parameter": ("record_name",)}  # what tells a TMS database
+NEEDED = {"task": ("task_id", "task_sequence"), "parameter": ("record_name",)}  # fields that identify a TMS database
 
 Say = Callable[[str], None]
 
@@ -62,7 +62,7 @@ class Report:
 
 
 def describe(db: Db) -> Report:
-    """What the database holds.
+    """Report what the database holds.
 
     Raises:
         DbError: the store is away.
@@ -147,7 +147,8 @@ def check(path: Path, wanted: str, say: Say) -> Report:
 def restore(db: Db, path: Path, say: Say, *, drop: bool = False) -> Report:
     """Put an archive's documents into the database, unchanged but for runs that were active at the time of the backup.
 
-    Everything is read and checked first, then written beside what is there; only then the collections change places.
+    The archive is read and checked first, then written into collections of other names; at the end these replace the
+    present ones.
 
     Raises:
         DbError: the archive is wrong, the database is not empty (and not to be dropped), a run is active, or the
@@ -199,7 +200,7 @@ def _stage(db: Db, path: Path, database: str, names: list[str], say: Say) -> Non
 
 
 def _abandon(db: Db, names: list[str]) -> None:
-    """Close the runs that a backup saw active: nobody goes on with them, and an open one locks records for ever."""
+    """Close runs that were active at the backup: no process continues them, and an open one locks records for ever."""
     if "run" not in names:
         return
     end = {"state": "abandoned", "reason": "restored from a backup", "ended_at": utc_now()}
@@ -233,7 +234,7 @@ def _exchange(db: Db, names: list[str]) -> None:
 
 
 def _clear(db: Db) -> None:
-    """What a restore left that did not get done."""
+    """Drop the collections that an unfinished restore has left."""
     with errors():
         for name in db.list_collection_names():
             if name.startswith(STAGED):

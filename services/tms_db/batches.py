@@ -1,7 +1,7 @@
 """Writes many small updates in few steps: readable at once, acknowledged when stored, the newest value wins.
 
-The store takes about a millisecond for each update however they are sent, so what comes for one record within a
-moment becomes one update. Callers wait for the writer's next round; what failed they send again.
+The store takes about a millisecond for each update however they are sent, so the updates of one record within a
+moment become one. Callers wait for the writer's next round and send again what failed.
 """
 
 import math
@@ -25,7 +25,7 @@ from tms_reason.errors import DbError
 from tms_runtime.log import Logger
 
 END_LIMIT = 1.0  # s that the last round may take
-LINGER = 0.25  # s that updates of sensing wait for company
+LINGER = 0.25  # s that updates of sensing wait for further ones
 WAITING = 10_000  # records whose updates may wait at the same time
 SETTLE_LIMIT = 4.0  # s for a round of the writer, a little more than the store may take to answer
 
@@ -43,7 +43,7 @@ class Update:
 
     id: Any
     fields: dict[str, Value]
-    updated_at: datetime | None  # None: what the record says is as old as before, and from whom it was
+    updated_at: datetime | None  # None: age and source of the record stay
     source: str
 
     def stored(self) -> Document:
@@ -52,7 +52,7 @@ class Update:
         return {**self.fields, "updated_at": self.updated_at, "source": self.source}
 
     def after(self, before: "Update") -> "Update":
-        """Both in one step."""
+        """Merge this update and the one before it."""
         reported = self if self.updated_at is not None else before
         return Update(self.id, {**before.fields, **self.fields}, reported.updated_at, reported.source)
 
@@ -64,23 +64,23 @@ class Batches:
         self._records, self._connection, self._log = db["parameter"], connection, log
         self._changed = threading.Condition()
         self._waiting: dict[Key, Update] = {}
-        self._written: dict[Key, Update] = {}  # by the round that runs now
+        self._written: dict[Key, Update] = {}  # updates that the present round writes
         self._callers: list[Done] = []
-        self.gone = threading.Event()  # a record was not there any more
+        self.gone = threading.Event()  # set when a record did not exist any more
         self._worker = Worker("batches", self._write_round, first=math.inf, finish=True)
 
     def start(self) -> None:
         self._worker.start()
 
     def stop(self) -> None:
-        """Write what waits and end."""
+        """Write the waiting updates and end."""
         self._worker.stop(END_LIMIT)
 
     def put(self, updates: dict[Key, Update], done: Done, hurry: bool) -> None:
-        """Take updates; `done` is reported when they are stored or why not.
+        """Take updates; `done` is called when they are stored, or with the error.
 
         Raises:
-            DbError: BUSY; too much waits.
+            DbError: BUSY; too many updates wait.
         """
         with self._changed:
             if len(self._waiting) > WAITING:
@@ -105,7 +105,7 @@ class Batches:
         return {name: value for update in rounds for name, value in update.stored().items()}
 
     def settle(self, key: Key) -> None:
-        """Wait until the store has all updates of a record: for what must be done by the store itself.
+        """Wait until the store has all updates of a record, for a step that the store itself must do.
 
         Raises:
             DbError: STORE_DOWN; it takes too long.
@@ -117,7 +117,7 @@ class Batches:
                 raise DbError(StoreDown(StoreSlow()))
 
     def _write_round(self) -> float:
-        """Store all that waits; answers math.inf, as `put` says when the next round is due."""
+        """Store all waiting updates; returns math.inf, since `put` wakes the next round."""
         with self._changed:
             callers, self._callers = self._callers, []
             self._written, self._waiting = self._waiting, {}

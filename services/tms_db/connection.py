@@ -15,7 +15,7 @@ from tms_runtime.log import Logger
 FIRST_WAIT = 0.2  # s after a failed attempt; doubles up to LAST_WAIT
 LAST_WAIT = 2.0
 UP = Gauge("tms_db_store_up", "1 while the store answers")
-IDLE_CHECK_PERIOD = 2.0  # s between looks at a store that nobody asks
+IDLE_CHECK_PERIOD = 2.0  # s between checks of a store that is not in use
 
 
 class Connection:
@@ -24,7 +24,7 @@ class Connection:
     def __init__(self, db: store.Db, address: str, log: Logger) -> None:
         self._db, self._address, self._log = db, address, log
         self._trouble: DbError | None = store.down()  # until the first attempt says otherwise
-        self._reported = ""  # code of the trouble that the log has told, so that it tells it once
+        self._reported = ""  # code of the trouble that is in the log already, so that it is logged once
         self._wait = FIRST_WAIT
         self._worker = Worker("store", self._keep)
 

@@ -1,4 +1,4 @@
-"""The C++ system's services under their names, for its nodes and tools; they know no error codes."""
+"""The C++ system's services under their names, for its nodes and tools; their types have no error codes."""
 
 import json
 
@@ -54,7 +54,7 @@ class CppServices:
                 "refused", service="tms_db_param_reader", reason="there is no such record", record=name
             )
             return []
-        first = documents[0]  # the C++ reader knows no model_name either
+        first = documents[0]  # the C++ reader ignores model_name, too
         text = json.dumps(content(first, what), ensure_ascii=False, default=str)
         return [Tmsdb(type=str(first.get("type") or ""), name=name, msg=text)]
 

@@ -1,4 +1,4 @@
-"""Refuses values that are too old: a stale number looks like any other."""
+"""Refuses values that are too old: a stale number looks like a fresh one."""
 
 from datetime import datetime
 
@@ -12,8 +12,8 @@ from tms_reason.errors import DbError
 def check(document: Document, max_age: float, now: datetime | None = None) -> None:
     """Refuse a dynamic record that is older than allowed; all ages are by the clock of this PC.
 
-    A locked record is judged as it was when it was locked: since then the lock itself has kept sensing out, and what
-    moves now was planned with it.
+    The age of a locked record is its age when it was locked: since then the lock itself has kept updates of sensing
+    out, and the present motion was planned with these values.
 
     Args:
         document: the record as stored.

@@ -15,7 +15,7 @@ from tms_reason.errors import DbError
 
 RUNS = 50
 EVENTS = 1000
-MAX_EVENTS = 10_000  # of one answer, so that it stays a few MB
+MAX_EVENTS = 10_000  # events in one answer, so that it stays a few MB
 ATTEMPTS = 20
 
 
@@ -31,8 +31,8 @@ class Run:
     machines: tuple[str, ...]
     started_at: datetime
     ended_at: datetime | None
-    records: tuple[str, ...] = ()  # that the tree names: MODEL/RECORD; MODEL/* where only the run decides
-    values: dict[str, Value] = field(default_factory=dict)  # what else the scheduler tells of it
+    records: tuple[str, ...] = ()  # records that the tree names: MODEL/RECORD; MODEL/* where only the run decides
+    values: dict[str, Value] = field(default_factory=dict)  # further facts that the scheduler records
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class History:
     def write(self, runs: Sequence[Run], events: Sequence[Event]) -> None:
         """Store run headers (the last one counts) and events.
 
-        The end of a run is written after its events: a run that says it has ended has its whole journal.
+        The end of a run is written after its events: the journal of a run with an end is complete.
 
         Raises:
             DbError: BAD_JOURNAL, or the store is away; then the whole batch may be sent again.
@@ -98,7 +98,7 @@ class History:
                     try:
                         self._runs.replace_one({"run_id": run.run_id}, document, upsert=True)
                         break
-                    except DuplicateKeyError:  # two upserts of a new run at once: the second time it is there
+                    except DuplicateKeyError:  # two upserts of a new run at the same time: it exists now
                         continue
             else:
                 raise _rival()

@@ -9,7 +9,7 @@ from tms_db.reasons import NoCollection, StateNoJson, StateNoObject
 from tms_db.records import Document, bad
 from tms_db.store import Db, errors
 
-MACHINE = 3012  # the C++ system's id of everything about machines
+MACHINE = 3012  # the C++ system's id for all states of machines
 COLLECTIONS = ("machine_pose", "machine_joints")
 
 
@@ -31,7 +31,7 @@ class MachineStates:
 
 
 def envelope(collection: str, machine: str, stamp: datetime, text: str) -> Document:
-    """One state as the C++ system writes it.
+    """One state in the form that the C++ system writes.
 
     Raises:
         DbError: BAD_RECORD; there is no such collection, or the text is no JSON object.

@@ -17,7 +17,7 @@ def task(task: Task) -> msg.Task:
 
 
 def record(document: Document) -> tuple[msg.Record, list[str]]:
-    """The record, and the names of fields that cannot travel."""
+    """The record as a message, and the names of fields that a message cannot hold."""
     values, left_out = to_parameters(document)
     heads = ("model_name", "record_name", "type", "description", "source")
     texts = {key: str(document.get(key) or "") for key in heads}
@@ -71,7 +71,7 @@ def stored_event(message: msg.Event) -> Event:
 
 
 def past(change: dict[str, Any]) -> msg.PastValues:
-    """One change of a record."""
+    """One change of a record as a message."""
     values, _ = to_parameters(change["values"], hidden=())
     return msg.PastValues(stamp=to_time(change["stamp"]), source=change["source"], values=values)
 

@@ -1,4 +1,4 @@
-"""`tms:db`: offers tasks, parameters and history as ROS services; stays up while the store is away."""
+"""`tms:db`: serves tasks, parameters and history as ROS services; stays up while the store is away."""
 
 from tms_msg_db.srv import (
     AddTask,
@@ -37,7 +37,7 @@ class Services:
     def offer(self, answering: Answering) -> None:
         answering.quick(GetTask, "get_task", self.get_task)
         answering.quick(RemoveTask, "remove_task", self.remove_task)
-        # Beside the executor: a leaf that reads its record must not wait for the events of the one before.
+        # In threads of their own: a leaf that reads its record must not wait for the events of the leaf before.
         answering.slow(WriteJournal, "write_journal", self.write_journal)
         answering.slow(WriteMachineStates, "write_machine_states", self.write_machine_states)
         answering.slow(AddTask, "add_task", self.add_task)
@@ -77,7 +77,7 @@ class Services:
 
 
 def start(app: App) -> None:
-    """Offer the services; connecting goes on in the background.
+    """Serve the services; the connection to the store is made in the background.
 
     Raises:
         ConfigError: the store's address is wrong.

@@ -35,7 +35,7 @@ class ParameterHistory:
         self._lock = threading.Lock()
         self._storing = threading.Lock()  # while changes are on their way from memory to the store
         self._new: dict[Key, list[Change]] = {}
-        self._unclear = False  # nobody knows how much of an earlier write was done
+        self._unclear = False  # it is not known how much of an earlier write was done
         self._worker = Worker("past", self._run, first=WRITE_PERIOD, finish=True)
 
     def start(self) -> None:
@@ -45,8 +45,8 @@ class ParameterHistory:
         self._worker.stop(END_LIMIT)
 
     def note(self, key: Key, stamp: datetime, source: str, values: Mapping[str, Value], often: bool = False) -> None:
-        """Remember one change; returns at once. One that comes `often` takes the place of the one before."""
-        stamp = stamp.replace(microsecond=stamp.microsecond // 1000 * 1000)  # as the store gives it back
+        """Remember one change; returns at once. `often`: it is merged into the last change of the same source."""
+        stamp = stamp.replace(microsecond=stamp.microsecond // 1000 * 1000)  # the store keeps milliseconds
         change = {"stamp": stamp, "source": source, "values": dict(values)}
         with self._lock:
             changes = self._new.setdefault(key, [])
@@ -95,7 +95,7 @@ class ParameterHistory:
                 self._new = new
 
     def _missing(self, new: Mapping[Key, list[Change]]) -> dict[Key, list[Change]]:
-        """What an earlier write left undone: a change pushed twice is reported twice. Reads once for each key."""
+        """Changes that an earlier write has not stored: pushed twice, they would be listed twice. Reads once a key."""
         return {key: others for key, changes in new.items() if (others := _others(changes, self._load(key)))}
 
     def _save(self, new: Mapping[Key, list[Change]]) -> None:
@@ -116,8 +116,8 @@ class ParameterHistory:
 def _room(changes: list[Change]) -> int:
     """How many changes may be kept together with these; none when one of them alone is too large.
 
-    Whatever sizes came before, a document of changes that were let in like this holds at most 4.5 times ROOM: the
-    second oldest has left room for two of its size, the third oldest for three, and so on.
+    With this rule a document holds at most 4.5 times ROOM, whatever the sizes of earlier changes: the second oldest
+    change has left room for two of its size, the third oldest for three, and so on.
     """
     return min(KEPT, ROOM // max(len(bson.encode(change)) for change in changes))
 

@@ -1,6 +1,6 @@
-"""The services for parameter records: reading, changing, batches of sensing, and what tells readers of changes.
+"""The services for parameter records: reading, changing, batches of sensing, and the topic of changes.
 
-All of them run on the executor thread, which is what keeps their order: a value that was read or acknowledged is never
+All of them run on the executor thread, which keeps their order: a value that was read or acknowledged is never
 followed by an older one.
 """
 
@@ -35,12 +35,12 @@ from tms_reason.errors import DbError
 from tms_reason.wire import to_line
 from tms_runtime.app import App
 
-CHANGES_KEPT = 100  # messages for a reader that is slow
-OLDEST = 10 * 365 * 86400.0  # s; whatever is older than that, or of an age that is no number, counts as that old
+CHANGES_KEPT = 100  # messages that wait for a slow reader
+OLDEST = 10 * 365 * 86400.0  # s; a larger age, or one that is no number, counts as this
 
 
 class ParameterServices:
-    """Everything below /tms/db/ that is about parameter records."""
+    """The services below /tms/db/ for parameter records."""
 
     def __init__(self, app: App, db: Db, connection: Connection) -> None:
         self._app, self._ros = app, app.ros
@@ -87,7 +87,7 @@ class ParameterServices:
         if change.plain and self._may_batch(key):
             change.check(where)
             locks = bool(change.values) and FIELDS.issuperset(change.values)
-            stamp = None if locks else _now()  # a lock says nothing new in the record
+            stamp = None if locks else _now()  # a lock gives the record no new values
             update = Update(self._heads.get(key).id, dict(change.values), stamp, request.source)
             await self._put({key: update}, hurry=True)
         else:
@@ -122,10 +122,10 @@ class ParameterServices:
         key = (request.model_name, request.record_name)
         response.changes = [messages.past(change) for change in self._past.changes(key, request.limit)]
         if not response.changes:
-            self._parameters.get(*key)  # says so when there is no such record
+            self._parameters.get(*key)  # raises RECORD_MISSING when there is no such record
 
     def _take(self, taken: dict[Key, Update], key: Key, wanted: RecordUpdate) -> None:
-        """One update of a batch."""
+        """Take one update of a batch."""
         if self._batches.gone.is_set():
             self._batches.gone.clear()
             self._heads.forget()
@@ -138,7 +138,7 @@ class ParameterServices:
         fitting = head.fit(where, values, wanted.loose)
         fields = {name: value for name, value in fitting.items() if name not in wanted.keep}
         stamp = _now() - timedelta(seconds=max(0.0, wanted.age if wanted.age < OLDEST else OLDEST))
-        if wanted.expected:  # only the store can tell and write in one step
+        if wanted.expected:  # only the store can compare and write in one step
             self._batches.settle(key)
             change = Change(fields, source=wanted.source, expected=from_parameters(where, wanted.expected))
             self._parameters.set(*key, change)
@@ -179,7 +179,7 @@ class ParameterServices:
             raise DbError(problem.reason, problem.code)
 
     def _report(self, keys: Iterable[Key]) -> None:
-        """Readers of shared records look again."""
+        """Publish that records have changed, so that readers of shared records read them again."""
         names = [name for model, name in keys if not model]
         if names:
             self._changes.publish(RecordChanges(record_names=names))

@@ -25,12 +25,12 @@ from tms_db.store import Db, errors
 from tms_reason.errors import DbError
 from tms_reason.reason import Reason
 
-ATTEMPTS = 20  # somebody creates and removes the record between our steps: does not go on for long
+ATTEMPTS = 20  # other processes may create and remove the record between our steps, but not for long
 
 
 @dataclass(frozen=True)
 class Change:
-    """What to do to one record. An empty `type` or `description` and a `max_age` of 0 keep what is there."""
+    """A change of one record. An empty `type` or `description` and a `max_age` of 0 keep the stored ones."""
 
     values: Mapping[str, Value]
     type: str = ""
@@ -38,7 +38,7 @@ class Change:
     source: str = ""
     remove: Collection[str] = ()
     max_age: float = 0.0  # s; below 0 = no limit
-    expected: Mapping[str, Value] = field(default_factory=dict)  # nothing is done unless these hold
+    expected: Mapping[str, Value] = field(default_factory=dict)  # nothing is changed unless the record has these values
 
     @property
     def plain(self) -> bool:
@@ -70,7 +70,7 @@ class Change:
 
 @dataclass(frozen=True)
 class Loaded:
-    """Names of what a load did."""
+    """Names of the records that a load has made, changed or left."""
 
     created: list[str]
     changed: list[str]
@@ -108,12 +108,12 @@ class Parameters:
             return list(self._records.find({"_id": {"$in": ids}}))
 
     def named(self, record_name: str) -> list[Document]:
-        """Documents of this record name, whatever their model, oldest first: what the C++ system's reader looks for."""
+        """Documents of this record name of all models, oldest first: the C++ system's reader asks by name only."""
         with errors():
             return list(self._records.find({"record_name": record_name}).sort("_id", 1))
 
     def set(self, model_name: str, record_name: str, change: Change, create: bool = False) -> bool:
-        """Change the given fields in one atomic step, or make the record; tells whether it was made.
+        """Change the given fields in one atomic step, or make the record; returns whether it was made.
 
         Raises:
             DbError: BAD_RECORD, RECORD_MISSING, CONFLICT, or STATIC_RECORD while a run uses the record.
@@ -151,7 +151,7 @@ class Parameters:
         raise _missing(model_name, record_name)
 
     def load(self, records: Iterable[Record], source: str) -> Loaded:
-        """Make or change records as a file gives them; a record that says the same already is not written.
+        """Make or change the records of a file; a record that has the same values already is not written.
 
         Fields that the file does not name stay: sensing may have added them.
         """
@@ -167,7 +167,7 @@ class Parameters:
         return done
 
     def _writable(self, model_name: str, record_name: str) -> Document | None:
-        """The key to write with, None if there is no such record.
+        """The filter to write with, None if there is no such record.
 
         Two steps, since the embedded store scans the collection when a filter holds more than the key; a record
         that becomes static in between is changed once more.
@@ -207,13 +207,13 @@ class Parameters:
         new = {**head, "type": "dynamic", "record_name": record_name, "description": "", **fields}
         try:
             self._records.insert_one(new)
-        except DuplicateKeyError:  # made by somebody else since our update: update that one
+        except DuplicateKeyError:  # another process has made it since our update: update that one
             return False
         return True
 
 
 def _key(model_name: str, record_name: str) -> Document:
-    # Shared records of the C++ system have no model_name at all.
+    # Shared records of the C++ system have no field model_name.
     return {"model_name": model_name if model_name else {"$in": [None, ""]}, "record_name": record_name}
 
 

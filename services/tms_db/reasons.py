@@ -1,4 +1,4 @@
-"""Why the database module refuses something, and what is wrong with its store and its files.
+"""Reasons why the database module refuses a request, and faults of its store and its files.
 
 `record` is MODEL/NAME, /NAME for a shared one; `place` is a record or one of its fields, or a place in a file.
 """

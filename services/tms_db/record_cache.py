@@ -1,7 +1,7 @@
-"""What tms:db remembers of records: they are checked and read without asking the store.
+"""The records that tms:db keeps in memory, so that it can check and read them without a call of the store.
 
-The store does one thing at a time, so a read behind a write of fifty records would wait for all of them. Records that
-are written here are remembered for a moment; those that are only read until the store tells of a change.
+The store does one thing at a time, so a read after a write of fifty records would wait for all of them. Records that
+are written here are kept for a moment; records that are only read are kept until the store reports a change.
 """
 
 import threading
@@ -16,27 +16,27 @@ from tms_db.records import RESERVED, Document, Value, bad, title
 from tms_reason.errors import DbError
 from tms_ros.node import Ros
 
-KEPT = 2.0  # s: others may write to the same database
+KEPT = 2.0  # s: other programs may write to the same database
 FOR_EVER = float("inf")
 Key = tuple[str, str]
 
 
 @dataclass
 class Head:
-    """A record as it is, with what was not stored yet."""
+    """A record with its updates that are not stored yet."""
 
     document: Document
-    until: float  # monotonic; after that it is read again, while this one is still used
-    since: Document | None = None  # what was changed since that reading began
-    written: float = float("-inf")  # monotonic; here
+    until: float  # s, monotonic; after that it is read again, and this one is used meanwhile
+    since: Document | None = None  # fields that have changed since that reading began
+    written: float = float("-inf")  # s, monotonic; last write by this process
 
     @property
     def quiet(self) -> bool:
-        """Whether it was only read, and the store tells of changes."""
+        """Whether it was only read, and the store reports changes."""
         return self.until == FOR_EVER
 
     def change(self, fields: Document) -> None:
-        """New values that are on their way into the store."""
+        """Take new values that are not stored yet."""
         self.written = monotonic()
         self.until = min(self.until, self.written + KEPT)
         self.document.update(fields)
@@ -52,7 +52,7 @@ class Head:
         return str(self.document.get("type") or "")
 
     def fit(self, where: str, values: Mapping[str, Value], loose: bool) -> dict[str, Value]:
-        """The values as the record can take them.
+        """The values in the types of the record's fields.
 
         A loose update names fields in whatever case and drops what the record does not have.
 
@@ -69,19 +69,19 @@ class Head:
 
 
 class RecordCache:
-    """RecordCache by key; used on the executor thread, but for the reading again."""
+    """Heads by key; used on the executor thread, except for reading again in the background."""
 
     def __init__(
         self, parameters: Parameters, newest: Callable[[Key], Document], ros: Ros, watched: Callable[[], bool]
     ) -> None:
-        """`newest`: fields of a record that are not stored yet; `watched`: whether the store tells of changes."""
+        """`newest`: fields of a record that are not stored yet; `watched`: whether the store reports changes."""
         self._parameters, self._newest, self._ros, self._watched = parameters, newest, ros, watched
         self._heads: dict[Key, Head] = {}
-        self._keys: dict[Any, Key] = {}  # by _id, of heads that are or were there
+        self._keys: dict[Any, Key] = {}  # by _id, of present and former heads
         self._reading = False
 
     def known(self, key: Key) -> Head | None:
-        """The head of a record that is remembered."""
+        """The head of a record that is in memory; None if there is none that may be used."""
         head = self._heads.get(key)
         if head is None or (head.quiet and not self._watched()) or monotonic() > head.until + KEPT:
             return None
@@ -103,12 +103,12 @@ class RecordCache:
         return head.document
 
     def changed(self, identity: Any) -> None:
-        """The store tells of a change of the record with this _id, of any with None; from any thread."""
+        """Take the store's report that the record with this _id has changed, with None any record; from any thread."""
         key = self._keys.get(identity)
         head = self._heads.get(key) if key is not None else None
-        if head is not None and monotonic() - head.written < KEPT:  # our own, most likely; read again soon anyway
+        if head is not None and monotonic() - head.written < KEPT:  # most likely our own; it is read again soon
             return
-        # On the executor thread, behind a reading that is under way there.
+        # On the executor thread, so after a reading that runs there.
         self._ros.on_executor(lambda: self.forget() if identity is None else self._drop(identity))
 
     def _keep(self, key: Key, head: Head) -> None:
@@ -136,7 +136,7 @@ class RecordCache:
         return head
 
     def _read_again(self) -> None:
-        """All heads that are due, in the background: others may have changed, made or removed these records."""
+        """Read all heads that are due, in the background: other programs may have changed these records."""
         now = monotonic()
         self._heads = {key: head for key, head in self._heads.items() if now < head.until + KEPT}
         due = {key: head for key, head in self._heads.items() if now > head.until - KEPT / 2}
@@ -166,7 +166,7 @@ class RecordCache:
                 del self._heads[key]
 
     def read(self, key: Key) -> Document:
-        """The record with what is not stored yet; that is looked at first, so that nothing falls in between.
+        """The record with its updates that are not stored yet; these are read first, so that none is missed.
 
         Raises:
             DbError: RECORD_MISSING, or the store is away.
@@ -186,7 +186,7 @@ class RecordCache:
         return head
 
     def forget(self) -> None:
-        """Look again next time: records were made, changed by hand or removed, or updates could not be stored."""
+        """Drop all heads: records were made, changed by hand or removed, or updates could not be stored."""
         self._heads.clear()
         self._keys.clear()
 

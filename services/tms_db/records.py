@@ -1,4 +1,4 @@
-"""What a parameter record may hold, and reading records from a file; knows no database."""
+"""Checks what a parameter record may hold, and reads records from a file; uses no database."""
 
 import math
 import re
@@ -52,7 +52,7 @@ EXPONENT = re.compile(r"[-+]?\d+[eE][-+]?\d+")
 
 @dataclass(frozen=True)
 class Record:
-    """A record from outside, checked."""
+    """A checked record from a file or a message."""
 
     model_name: str  # "" = shared by all machines
     record_name: str
@@ -67,12 +67,12 @@ class Record:
 
 
 def title(model_name: str, record_name: str) -> str:
-    """How messages name a record."""
+    """The name of a record in texts."""
     return f"{model_name}/{record_name}"
 
 
 def bad(what: Reason) -> DbError:
-    """A record, or a value of one, that is refused."""
+    """The error for a record, or a value of one, that is refused."""
     return DbError(what, "BAD_RECORD")
 
 

@@ -20,10 +20,10 @@ from tms_db.worker import Worker
 from tms_reason.errors import DbError
 from tms_runtime.log import Logger
 
-FIRST = 1.0  # s from the start to the first look: the store is there by then, as a rule
-RETENTION_PERIOD = 24 * 3600.0  # s between looks
-AGAIN = 60.0  # s after one that the store did not allow, or that comes before the store is there
-ROUND = 100  # runs at a time, so that the store answers others in between
+FIRST = 1.0  # s from the start to the first round: the store is up by then, as a rule
+RETENTION_PERIOD = 24 * 3600.0  # s between rounds
+AGAIN = 60.0  # s after a round that the store refused, or that began before the store was up
+ROUND = 100  # runs at a time, so that the store serves other requests in between
 MANY = 1000  # states at a time
 
 DELETED = Counter("tms_db_deleted", "Documents deleted for their age", ["collection"])
@@ -33,7 +33,7 @@ def delete_runs(db: Db, days: int, now: datetime) -> int:
     """Delete runs that ended more than `days` ago, with their events. Returns how many runs.
 
     Raises:
-        DbError: the store is away; a run whose events are partly gone is taken up again next time.
+        DbError: the store is away; the next round deletes the rest of a run whose events are partly deleted.
     """
     runs, events, deleted = db["run"], db["event"], 0
     with errors():
@@ -44,7 +44,7 @@ def delete_runs(db: Db, days: int, now: datetime) -> int:
     while True:
         with store.long_work(db):
             old = list(runs.find({"ended_at": {"$lt": before}}, {"run_id": 1}).limit(ROUND))
-            for run in old:  # its header last: a crash leaves nothing behind that nobody finds
+            for run in old:  # its header last: after a crash the next round finds the remaining events by it
                 DELETED.labels("event").inc(events.delete_many({"run_id": run["run_id"]}).deleted_count)
                 runs.delete_one({"_id": run["_id"]})
         deleted += len(old)
@@ -91,7 +91,7 @@ def _date(text: str) -> datetime:
 
 
 class Retention:
-    """Looks when the store is there first, and then once a day."""
+    """Deletes when the store is up for the first time, and then once a day."""
 
     def __init__(self, db: Db, connection: Connection, settings: Store, log: Logger) -> None:
         self._db, self._connection, self._settings, self._log = db, connection, settings, log
@@ -108,7 +108,7 @@ class Retention:
             with self._connection.use():
                 self._delete_old(utc_now())
         except DbError as error:
-            if error.code != "STORE_DOWN":  # which the connection tells
+            if error.code != "STORE_DOWN":  # which the connection logs
                 self._log.warning("retention_waits", code=error.code, reason=error.reason)
             return AGAIN
         return RETENTION_PERIOD

@@ -1,6 +1,6 @@
-"""The version of what the database holds, and the steps that bring an older one to it.
+"""The version of the database's schema, and the migrations that bring an older database to it.
 
-A database without a version is one of the C++ system, or ours from before versions. The documents of the C++ system
+A database without a version is the C++ system's, or ours from before there were versions. Documents of the C++ system
 (`task`, `parameter`, `machine_pose`, ...) have no migration: they stay as they are, for its nodes may go on using them.
 """
 
@@ -15,7 +15,7 @@ from tms_db.store import Db, errors
 from tms_reason.errors import DbError
 
 COLLECTION = "schema"
-KEY = {"_id": "tms"}  # its one document
+KEY = {"_id": "tms"}  # key of the only document
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ NEWEST = len(MIGRATIONS)
 
 
 def bring_up(db: Db) -> list[str]:
-    """Make the database what this program knows: migrations, then indexes. Returns what was done.
+    """Bring the database to this program's version: migrations, then indexes. Returns the steps that were done.
 
     Raises:
         DbError: STORE_NEWER when a newer program has changed it, STORE_CONFLICT, or the store is away.
@@ -62,7 +62,7 @@ def bring_up(db: Db) -> list[str]:
 
 
 def stored(db: Db) -> int:
-    """The version that the database says it has; 0 if it says none.
+    """The version in the database; 0 if there is none.
 
     Raises:
         DbError: the store is away.

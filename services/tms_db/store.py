@@ -69,7 +69,7 @@ INDEXES: dict[str, list[tuple[list[tuple[str, int]], dict[str, Any]]]] = {
     ],
     "parameter": [
         ([("model_name", ASCENDING), ("record_name", ASCENDING)], {"unique": True}),
-        ([("record_name", ASCENDING)], {}),  # the C++ system's reader knows no model
+        ([("record_name", ASCENDING)], {}),  # the C++ system's reader asks without a model
     ],
     "run": [
         ([("run_id", ASCENDING)], {"unique": True}),
@@ -81,7 +81,7 @@ INDEXES: dict[str, list[tuple[list[tuple[str, int]], dict[str, Any]]]] = {
     "machine_joints": [([("time", DESCENDING)], {})],
     "event": [([("run_id", ASCENDING), ("number", ASCENDING)], {"unique": True})],
 }
-# Made by GridFS itself with its first file, but not in collections that hold one already: for what is restored.
+# GridFS makes these with its first file, but not in collections that have files already, as after a restore.
 GRIDFS: dict[str, list[tuple[list[tuple[str, int]], dict[str, Any]]]] = {
     "fs.files": [([("filename", ASCENDING), ("uploadDate", ASCENDING)], {})],
     "fs.chunks": [([("files_id", ASCENDING), ("n", ASCENDING)], {"unique": True})],
@@ -100,7 +100,7 @@ def connect(uri: str, database: str, answer_ms: int = ANSWER_MS) -> Db:
     Args:
         uri: of MongoDB, with user and password where the server wants them.
         database: its name.
-        answer_ms: how long one answer may take; what is made by hand on a whole database takes longer than a service.
+        answer_ms: time-out of one answer; commands by hand on a whole database take longer than a service.
 
     Raises:
         ConfigError: the URI is wrong; the message holds no password.
@@ -125,7 +125,7 @@ def connect(uri: str, database: str, answer_ms: int = ANSWER_MS) -> Db:
 
 
 def prepare(db: Db) -> None:
-    """Create what is missing of the unique indexes.
+    """Create the unique indexes that are missing.
 
     Raises:
         DbError: STORE_DOWN, or STORE_CONFLICT when stored documents break a key.
@@ -135,7 +135,7 @@ def prepare(db: Db) -> None:
 
 
 def index(db: Db, collection: str, name: str = "") -> None:
-    """Create what is missing of a collection's indexes; `name` where it is being restored under another one.
+    """Create the missing indexes of a collection; `name` is its temporary name during a restore.
 
     Raises:
         DbError: as `prepare`.
@@ -158,7 +158,7 @@ def conflict(db: Db, collection: str, key: object) -> DbError:
 def long_work(db: Db) -> Iterator[None]:
     """Around steps that may take longer than an answer to a service; a store that is away still fails soon."""
     with errors():
-        db["schema"].find_one({}, {"_id": 1})  # inside the time-out the driver would look for a server that long
+        db["schema"].find_one({}, {"_id": 1})  # with LONG as time-out the driver would look for a server that long
         with pymongo.timeout(LONG):
             yield
 
@@ -170,7 +170,7 @@ def errors() -> Iterator[None]:
         yield
     except DuplicateKeyError:
         raise
-    except NetworkTimeout as error:  # reached, yet silent: what the embedded store does when its disk is full
+    except NetworkTimeout as error:  # connected but silent, as the embedded store with a full disk
         raise DbError(StoreDown(StoreSilent(ANSWER_MS / 1000))) from error
     except ConnectionFailure as error:
         raise _unreachable(str(error)) from error
@@ -178,19 +178,19 @@ def errors() -> Iterator[None]:
         raise _too_large() from error
     except OperationFailure as error:
         raise _refused(error) from error
-    except InvalidBSON as error:  # text that is no UTF-8, a date that no calendar has: other systems write here, too
+    except InvalidBSON as error:  # other systems write here, too: text that is no UTF-8, an impossible date
         raise DbError(DocumentUnreadable(_first(error)), "BAD_RECORD") from error
     except PyMongoError as error:
         raise DbError(StoreFailed(type(error).__name__, "tms:db"), "DB_FAILED") from error
 
 
 def down() -> DbError:
-    """That the store does not answer."""
+    """The error that the store does not answer."""
     return DbError(StoreDown(NoStore()))
 
 
 def _unreachable(text: str) -> DbError:
-    """Why there is no connection, as far as the driver knows; its text may be a page long."""
+    """The error that there is no connection, with the driver's text, which may be a page long."""
     hint = next((hint for part, hint in HINTS.items() if part in text), None)
     return DbError(StoreDown(StoreUnusable(hint))) if hint is not None else down()
 
@@ -206,10 +206,10 @@ def _too_large() -> DbError:
 
 def _refused(error: OperationFailure) -> DbError:
     details = error.details or {}
-    first = (details.get("writeErrors") or [details])[0]  # of many writes, the one that it refused
+    first = (details.get("writeErrors") or [details])[0]  # among many writes, the one that the store refused
     code = first.get("code", error.code)
     text = _first(first.get("errmsg", type(error).__name__))
-    if code in SIZE_CODES or "object to insert too large" in text:  # which MongoDB itself gives a common code
+    if code in SIZE_CODES or "object to insert too large" in text:  # which has no code of its own in MongoDB
         return _too_large()
     if code in AUTH_CODES:
         return DbError(StoreDown(StoreLogin()))

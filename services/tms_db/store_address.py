@@ -1,4 +1,4 @@
-"""The URI of the site's MongoDB out of what the site file says and a password that stands in a file of its own."""
+"""Makes the URI of the site's MongoDB from the site file and the password file."""
 
 import os
 from pathlib import Path

@@ -23,7 +23,7 @@ ANSWER = 10.0  # s
 
 
 def find(name: str) -> Path:
-    """The file of that name: a path, or a name below configs/tasks/ with or without .xml.
+    """Find a task file by a path, or by a name below configs/tasks/ with or without .xml.
 
     Raises:
         TaskError: there is none.
@@ -67,7 +67,7 @@ def _register(ros: "Ros") -> str:
     from rcl_interfaces.msg import ParameterDescriptor
     from tms_msg_db.srv import AddTask
 
-    loose = ParameterDescriptor(dynamic_typing=True)  # a name or text that looks like a number is fine
+    loose = ParameterDescriptor(dynamic_typing=True)  # a name or a description may look like a number
 
     def given(name: str) -> str:
         value: Any = ros.node.declare_parameter(name, "", loose).value

@@ -1,4 +1,4 @@
-"""Which task numbers are taken, remembered for a moment: to look at every task for each new one takes too long."""
+"""The task numbers in use, kept for a moment: reading all tasks for each new one takes too long."""
 
 from collections.abc import Callable, Iterator
 from itertools import count, islice
@@ -8,11 +8,11 @@ from pymongo.collection import Collection
 
 from tms_config.clock import monotonic
 
-KEPT = 2.0  # s: others may store and remove tasks in the same database
+KEPT = 2.0  # s: other programs may store and remove tasks in the same database
 
 
 class TaskNumbers:
-    """For one caller at a time. The unique index of the store has the last word."""
+    """For one caller at a time. The unique index of the store decides."""
 
     def __init__(self, tasks: Collection[dict[str, Any]], clock: Callable[[], float] = monotonic) -> None:
         self._tasks, self._clock = tasks, clock
@@ -26,16 +26,16 @@ class TaskNumbers:
         return list(islice(self._free(), how_many))
 
     def foreign(self) -> bool:
-        """Whether there are tasks without a hash of their text, of the C++ system."""
+        """Whether there are tasks of the C++ system, which have no hash of their text."""
         self._refresh()
         return self._foreign
 
     def took(self, number: int) -> None:
-        """A task has it now."""
+        """Note that a task has this number now."""
         self._taken.add(number)
 
     def forget(self) -> None:
-        """Look again: somebody else has stored or removed a task."""
+        """Read the numbers again next time: another program has stored or removed a task."""
         self._until = float("-inf")
 
     def _free(self) -> Iterator[int]:

@@ -1,4 +1,4 @@
-"""Checks a task's XML text before it is stored, finds what tells it apart, and its main machine model."""
+"""Checks a task's XML text before it is stored, and finds its essence and its main machine model."""
 
 import re
 from collections import Counter
@@ -35,7 +35,7 @@ def read_file(path: Path) -> str:
 
 
 def essence(text: str) -> str:
-    """The checked text without the layout between tags: what tells two tasks apart, and how the C++ system stores it.
+    """The checked text without the layout between tags: it identifies a task, and the C++ system stores it so.
 
     Raises:
         TaskError: it is no task; says what, at which line, and what to do.

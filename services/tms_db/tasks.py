@@ -17,7 +17,7 @@ from tms_db.task_numbers import TaskNumbers
 from tms_reason.errors import DbError
 from tms_reason.names import check_text
 
-ATTEMPTS = 1000  # each lost race means that somebody else has registered a task
+ATTEMPTS = 1000  # each lost race means that another process has stored a task
 DUPLICATE = 11000  # MongoDB's code for a key that is there already
 EPOCH = datetime.fromtimestamp(0, timezone.utc)
 MAX_TASK_ID = 2**31 - 1  # task_id is int32
@@ -44,7 +44,7 @@ class Added:
 
 @dataclass
 class _Wish:
-    """A text that somebody wants to have stored."""
+    """A text that a caller wants to store."""
 
     essence: str
     document: dict[str, Any]
@@ -72,7 +72,7 @@ class Tasks:
     def add(self, text: str, description: str = "", models: Collection[str] = task_text.MODELS) -> Added:
         """Store a task's XML text, or find the number under which it is stored.
 
-        What threads want stored at the same time goes into the store together; each of them waits for it.
+        The texts of threads that call at the same time are stored together; each thread waits for that.
 
         Raises:
             TaskError: the text is no task.
@@ -92,7 +92,7 @@ class Tasks:
         return wish.added
 
     def _store(self, wishes: list[_Wish]) -> None:
-        """The unique indexes decide races between processes: who loses one looks again."""
+        """Store the wishes. Unique indexes decide races between processes; who loses one searches again."""
         try:
             with errors():
                 for _ in range(ATTEMPTS):
@@ -106,7 +106,7 @@ class Tasks:
                 wish.failure = error if wish.open else None
 
     def _find(self, wishes: list[_Wish]) -> None:
-        """Which of them are stored."""
+        """Find the wishes that are stored already."""
         what = {"task_id": 1, "model_name": 1, "text_sha256": 1}
         digests = list({wish.digest for wish in wishes if wish.open})
         stored = {same["text_sha256"]: same for same in self._tasks.find({"text_sha256": {"$in": digests}}, what)}
@@ -119,7 +119,7 @@ class Tasks:
                 wish.added = Added(int(same["task_id"]), str(same.get("model_name") or ""), True)
 
     def _insert(self, wishes: list[_Wish]) -> None:
-        """Store them under the lowest free numbers, but for those where somebody else was quicker."""
+        """Store the wishes under the lowest free numbers, except where another process was faster."""
         now = utc_now()
         numbers = self._numbers.lowest_free(len(wishes))
         documents = [{"task_id": n, **w.document, "added_at": now} for n, w in zip(numbers, wishes, strict=True)]
@@ -174,7 +174,7 @@ def _wish(text: str, description: str, models: Collection[str]) -> _Wish:
         "type": "task",
         "model_name": task_text.main_model(essence, models),
         "description": description.strip() or task_text.NO_DESCRIPTION,
-        "task_sequence": text.removeprefix("\ufeff"),  # as it was drawn: line numbers stay those of the file
+        "task_sequence": text.removeprefix("\ufeff"),  # unchanged, so that line numbers are those of the file
         "text_sha256": hashlib.sha256(essence.encode()).hexdigest(),
     }
     return _Wish(essence, document)

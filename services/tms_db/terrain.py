@@ -29,7 +29,7 @@ SIZES = ("width", "height", "elevation", "offset_x", "offset_y")
 class Stored:
     """A terrain file in the database."""
 
-    key: Any  # of GridFS
+    key: Any  # _id in GridFS
     filename: str
     type: str
     id: int
@@ -44,7 +44,7 @@ class Stored:
 
 
 class Terrain:
-    """The files; the newest of a name counts."""
+    """The files in GridFS; the newest one of a name is valid."""
 
     def __init__(self, db: Db) -> None:
         self._db = db
@@ -65,7 +65,7 @@ class Terrain:
         return self.put(path.name, type_, data, vars(size) if size is not None else {})
 
     def put(self, filename: str, type_: str, data: bytes, more: Mapping[str, Any]) -> Stored:
-        """Store data that was checked.
+        """Store checked data.
 
         Raises:
             DbError: the store is away.
@@ -78,7 +78,7 @@ class Terrain:
         return Stored(key, filename, type_, id_, time, len(data), more)
 
     def put_dynamic(self, filename: str, data: bytes, more: Mapping[str, Any]) -> Stored:
-        """Store a cloud and forget all but the newest few of its name.
+        """Store a cloud and delete all but the newest few of its name.
 
         Raises:
             DbError: the store is away.
@@ -103,7 +103,7 @@ class Terrain:
         """The content of a file.
 
         Raises:
-            DbError: TERRAIN_MISSING; it was removed meanwhile, or a part of it is not there.
+            DbError: TERRAIN_MISSING; it was removed meanwhile, or a part of it is missing.
         """
         from gridfs.errors import GridFSError
 
@@ -143,7 +143,7 @@ def missing(filename: str) -> DbError:
 
 
 def _stored(document: Mapping[str, Any]) -> Stored:
-    # Drivers other than Python's put what belongs to a file below `metadata`.
+    # Drivers other than Python's put the fields of a file below `metadata`.
     more = {**(document.get("metadata") or {}), **document}
     id_ = more.get("id")
     return Stored(

@@ -1,4 +1,4 @@
-"""Checks terrain files before they are stored: an image or a cloud that nobody could read later is refused."""
+"""Checks terrain files before they are stored: an image or a cloud that cannot be read is refused."""
 
 import struct
 import zlib
@@ -23,7 +23,7 @@ from tms_db.reasons import (
 from tms_reason.errors import DbError
 from tms_reason.reason import Reason
 
-# What the C++ system calls them, with its ids and file endings. Dynamic clouds come over ROS, not as files.
+# The C++ system's names of the types, with its ids and file endings. Dynamic clouds come over ROS, not as files.
 IDS = {"static": 3030, "mesh": 3030, "dem": 3030, "dynamic": 3031, "heightmap": 4031, "texture": 4031}
 ENDINGS = {"heightmap": ".png", "texture": ".png", "static": ".pcd", "mesh": ".ply", "dem": ".npy"}
 IMAGES = ("heightmap", "texture")
@@ -46,7 +46,7 @@ class Size:
 
 
 def bad(what: Reason) -> DbError:
-    """Terrain that is refused."""
+    """The error for terrain that is refused."""
     return DbError(what, "BAD_TERRAIN")
 
 

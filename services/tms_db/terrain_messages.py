@@ -32,12 +32,12 @@ def image(where: str, data: bytes) -> Image:
     except (OSError, SyntaxError, ValueError) as error:
         raise bad(ImageUnreadable(where, str(error))) from error
     message = Image(width=width, height=height, encoding=encoding, step=len(pixels) // height)
-    message.data.frombytes(pixels)  # the setter would look at each byte
+    message.data.frombytes(pixels)  # the setter would check each byte
     return message
 
 
 def cloud_head(message: PointCloud2) -> dict[str, Any]:
-    """What is stored beside the bytes of a PointCloud2.
+    """The fields that are stored with the bytes of a PointCloud2.
 
     Raises:
         DbError: BAD_TERRAIN; its sizes contradict each other, or it is too large.

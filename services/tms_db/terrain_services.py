@@ -1,6 +1,6 @@
 """Terrain over ROS with the C++ system's types: images and clouds for readers, dynamic clouds from sensing.
 
-These types have no error fields: who asks for what is not there gets an empty answer, and the log says why.
+These types have no error fields: a request for terrain that is not stored gets an empty answer and a line in the log.
 """
 
 import math
@@ -21,11 +21,11 @@ from tms_runtime.app import App
 
 CLOUDS = Counter("tms_db_clouds", "Dynamic terrain that came over ROS", ["what"])
 TOPIC = "tms_db_gridfs_data"
-NAMES = 20  # clouds of different names that may wait for the store
+NAMES = 20  # names whose clouds may wait for the store
 
 
 class TerrainServices:
-    """Reads in a thread a call; writes in one thread, the newest cloud of each name."""
+    """Each call reads in a thread of its own; one thread writes the newest cloud of each name."""
 
     def __init__(self, app: App, db: store.Db, connection: Connection) -> None:
         self._app, self._connection = app, connection
@@ -76,7 +76,7 @@ class TerrainServices:
         return response
 
     def received(self, message: TmsdbGridFS) -> None:
-        """A cloud from sensing; on the executor thread."""
+        """Take a cloud from sensing; on the executor thread."""
         name = message.filename or message.type
         with self._lock:
             full = len(self._waiting) >= NAMES and name not in self._waiting

@@ -1,4 +1,4 @@
-"""Documents <-> ROS messages: what of a document travels, and what of a message is stored."""
+"""Converts the values of documents to ROS messages and back."""
 
 from collections.abc import Iterable, Mapping
 from datetime import datetime, timezone
@@ -15,7 +15,7 @@ LAST_SECOND = 2**31 - 1  # of builtin_interfaces/Time
 
 
 def to_parameters(document: Mapping[str, Any], hidden: Iterable[str] = RESERVED) -> tuple[list[Parameter], list[str]]:
-    """The document's values as messages, and the names of those that cannot travel (nested, binary, dates)."""
+    """The document's values as messages, and the names of values that a message cannot hold (nested, binary, dates)."""
     hidden = frozenset(hidden)
     shown = {name: value for name, value in document.items() if name not in hidden}
     left_out = [name for name, value in shown.items() if not values.can_travel(value)]
@@ -26,7 +26,7 @@ def from_parameters(where: str, parameters: Iterable[Parameter]) -> dict[str, Va
     """Values by name.
 
     Raises:
-        DbError: BAD_RECORD; a value is not set or is bytes, or a name is there twice.
+        DbError: BAD_RECORD; a value is not set or is bytes, or a name occurs twice.
     """
     found: dict[str, Value] = {}
     for parameter in parameters:

@@ -1,6 +1,6 @@
-"""Hears from the store itself which records change, so that a record that was read once need not be read again.
+"""Receives from the store which records change, so that a record that was read once need not be read again.
 
-A change stream tells of everybody's writes, also of another system's in the same database. It needs a replica set (the
+A change stream reports all writes, also another system's in the same database. It needs a replica set (the
 embedded store does without); where there is none, records are read from the store each time.
 """
 
@@ -15,10 +15,10 @@ from tms_db.store import Db
 from tms_db.worker import Worker
 from tms_runtime.log import Logger
 
-AWAIT_MS = 500  # that the store waits for a change before it says that there is none
-SURE = 2.0  # s since its last word for which the stream counts as there
+AWAIT_MS = 500  # the store waits this long for a change before it answers that there is none
+SURE = 2.0  # s since its last answer for which the stream counts as up
 RETRY = 2.0  # s after the stream broke ...
-RETRY_REFUSED = 60.0  # s ... and after a store that has none
+RETRY_REFUSED = 60.0  # s ... and after a store without change streams
 WANTED = [{"$project": {"documentKey": 1, "operationType": 1}}]
 
 
@@ -26,20 +26,20 @@ class Watching:
     """A thread with the change stream of the records."""
 
     def __init__(self, db: Db, connection: Connection, log: Logger, changed: Callable[[Any], None]) -> None:
-        """`changed` is called in that thread with the _id of a record, or with None: any of them."""
+        """`changed` is called in that thread with the _id of a record; None: any record may have changed."""
         self._records, self._connection, self._log, self._changed = db["parameter"], connection, log, changed
-        self._received = float("-inf")  # monotonic; read in other threads
+        self._received = float("-inf")  # s, monotonic; other threads read it
         self._worker = Worker("watching", self._keep)
 
     def start(self) -> None:
         self._worker.start()
 
     def stop(self) -> None:
-        """Ends with the client at the latest."""
+        """End the thread; it ends with the client at the latest."""
         self._worker.stop()
 
     def sure(self) -> bool:
-        """Whether every change is reported, but for those of the last moments."""
+        """Whether the stream reports every change, except for those of the last moments."""
         return monotonic() - self._received < SURE
 
     def _keep(self) -> float:
@@ -57,7 +57,7 @@ class Watching:
 
     def _listen(self) -> None:
         with self._records.watch(WANTED, max_await_time_ms=AWAIT_MS) as stream:
-            self._changed(None)  # whatever happened before
+            self._changed(None)  # changes before the stream began are not reported
             while stream.alive and not self._worker.stopping:
                 change = stream.try_next()
                 self._received = monotonic()

@@ -8,14 +8,14 @@ from tms_config.clock import monotonic
 
 
 class Worker:
-    """Calls `step` again and again, each time after as many seconds as the step before has answered.
+    """Calls `step` again and again, each time after as many seconds as the step before has returned.
 
-    `step` may answer math.inf: the next one comes when somebody asks for it. It gives its errors to others; one that it
-    raises ends the thread.
+    `step` may return math.inf: the next step then runs when `wake` is called. It handles its errors itself; an error
+    that it raises ends the thread.
     """
 
     def __init__(self, name: str, step: Callable[[], float], first: float = 0.0, finish: bool = False) -> None:
-        """`first`: seconds before the first step; `finish`: one more step comes at the end, for what still waits."""
+        """`first`: seconds before the first step; `finish`: one more step runs at the end, for waiting work."""
         self._step, self._first, self._finish = step, first, finish
         self._changed = threading.Condition()
         self._due = math.inf  # monotonic [s]
@@ -24,7 +24,7 @@ class Worker:
 
     @property
     def stopping(self) -> bool:
-        """Whether the present step is the last: a long one looks here."""
+        """Whether the present step is the last; a long step checks this."""
         return self._stopping
 
     def start(self) -> None:
@@ -41,7 +41,7 @@ class Worker:
             self._thread.join(limit)
 
     def wake(self, within: float = 0.0) -> None:
-        """Have the next step come within so many seconds, if it is not nearer already."""
+        """Have the next step run within this many seconds, if it is not due earlier."""
         with self._changed:
             self._due = min(self._due, monotonic() + within)
             self._changed.notify_all()
@@ -54,7 +54,7 @@ class Worker:
             self._step()
 
     def _wait(self) -> bool:
-        """Until a step is due; False at the end."""
+        """Wait until a step is due; returns False at the end."""
         with self._changed:
             while not self._stopping and (left := self._due - monotonic()) > 0:
                 self._changed.wait(left if left < threading.TIMEOUT_MAX else None)

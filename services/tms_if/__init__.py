@@ -1,1 +1,1 @@
-"""Borders to other stacks: the TCP bridge that OperaSim-PhysX connects to. Mapping only, no decisions."""
+"""Connects other stacks: the TCP bridge for OperaSim-PhysX. It maps messages only and decides nothing."""

@@ -1,4 +1,4 @@
-"""One connection to the bridge, from handshake to its end. Whatever a client does, only its own connection suffers."""
+"""One connection to the bridge, from handshake to end. A faulty client can harm only its own connection."""
 
 import socket
 import threading
@@ -13,8 +13,8 @@ from tms_if.outbox import Outbox
 from tms_runtime.log import Logger
 
 SILENCE = 10.0  # s; the simulator sends a keep-alive every second
-PIECE = 65536  # bytes
-TROUBLES = 50  # different ones that are reported; each once
+PIECE = 65536  # bytes of one read
+TROUBLES = 50  # different troubles that are reported, each once
 
 FRAMES = Counter("tms_if_frames_total", "Frames by direction", ["direction"])
 DROPPED = Counter("tms_if_dropped_total", "Messages that a client did not read in time")
@@ -36,7 +36,7 @@ REMOVALS: dict[str, Callable[[ClientEndpoints, str], None]] = {
 
 
 class Client:
-    """Reads in the thread that calls `run`, sends in one of its own."""
+    """Reads in the thread that calls `run`, and sends in a thread of its own."""
 
     def __init__(
         self,
@@ -49,12 +49,12 @@ class Client:
         self._socket, self._name, self._log = connection, name, log
         self._splitter, self._outbox = Splitter(message_limit), Outbox()
         self._ends = ends(self._send, self._trouble)
-        self._expected: tuple[str, int] | None = None  # what the next frame is: __request or __response, and its number
+        self._expected: tuple[str, int] | None = None  # kind of the next frame, __request or __response, and its number
         self._reported: set[str] = set()
-        self._why = ""  # why it was closed from our side
+        self._why = ""  # why the bridge has closed it
 
     def run(self) -> None:
-        """Serve until the client leaves, breaks the protocol, or `close`."""
+        """Serve until the client leaves or breaks the protocol, or `close` is called."""
         self._log.info("client_connected", client=self._name)
         CLIENTS.inc()
         self._socket.settimeout(SILENCE)
@@ -83,7 +83,7 @@ class Client:
         self._socket.close()
 
     def _read_all(self) -> str:
-        """Until the end, which it tells in words."""
+        """Read frames until the end of the connection; returns the reason of the end as text."""
         try:
             while data := self._socket.recv(PIECE):
                 for frame in self._splitter.feed(data):
@@ -133,7 +133,7 @@ class Client:
             self._ends.message(name, payload)
 
     def _trouble(self, text: str) -> None:
-        """Tell client and log, each trouble once: a client that is wrong is so at 50 Hz."""
+        """Report a trouble to the client and the log, each once: a faulty client repeats it at 50 Hz."""
         TROUBLE.inc()
         if text in self._reported or len(self._reported) >= TROUBLES:
             return
@@ -142,7 +142,7 @@ class Client:
         self._send(command("__error", text=text), False)
 
     def _send(self, frame: bytes, droppable: bool) -> None:
-        """From any thread; never waits."""
+        """Queue a frame; may be called from any thread and never waits."""
         before = self._outbox.dropped
         if not self._outbox.put(frame, droppable):
             self.close("it does not read: even answers find no room any more")

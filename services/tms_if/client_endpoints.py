@@ -1,4 +1,4 @@
-"""The ROS side of one client: its publishers, subscriptions and services, and nothing that outlives it."""
+"""The ROS side of one client: its publishers, subscriptions and services, which end with it."""
 
 import itertools
 import threading
@@ -20,8 +20,8 @@ from tms_ros.packing import pack, unpack
 
 ROS_LIMIT = 5.0  # s for the ROS thread to make or remove something
 ANSWER_LIMIT = 30.0  # s for a service to answer, on either side
-OPEN_CALLS = 100  # calls under way, on either side
-REFUSED = 1000  # topics of one client that are remembered
+OPEN_CALLS = 100  # calls that wait for an answer, on either side
+REFUSED = 1000  # refused topics that are kept for one client
 
 LEFT_OUT = Counter("tms_if_left_out_total", "Messages on topics that a client may not publish")
 
@@ -30,7 +30,7 @@ T = TypeVar("T")
 
 @dataclass
 class Asked:
-    """A request that the client has to answer."""
+    """A request to a service of the client, which waits for its response."""
 
     topic: str
     type: Any
@@ -39,10 +39,10 @@ class Asked:
 
 
 class ClientEndpoints:
-    """`send` takes a frame and whether it may be dropped; `say` takes a trouble that is no one's fault but worth a
-    line. What is echoed is keyed as the client writes it, what is published by its full name.
+    """`send` takes a frame and whether it may be dropped; `say` takes a text for client and log. Subscriptions and
+    services are keyed by the name as the client writes it, publishers by the full name.
 
-    `speakers` tells which client publishes a topic; all clients share it. Each of its calls is one step.
+    `speakers` maps a topic to the client that publishes it; all clients share it. Each operation on it is atomic.
     """
 
     def __init__(
@@ -58,7 +58,7 @@ class ClientEndpoints:
         self._ros, self._layout, self._allowed, self._send, self._say = ros, layout, allowed, send, say
         self._speakers, self._client = speakers, client
         self._published: dict[str, tuple[Any, Any]] = {}  # publisher, type
-        self._waiting: dict[str, Registration] = {}  # for another client that publishes the topic
+        self._waiting: dict[str, Registration] = {}  # until another client stops publishing the topic
         self._refused: set[str] = set()
         self._received: dict[str, Any] = {}
         self._called: dict[str, Any] = {}  # type
@@ -80,7 +80,7 @@ class ClientEndpoints:
         self._refused.discard(name)
         made = interface(wanted.message_name, "msg")
         if self._published.get(name, (None, None))[1] is made:
-            return  # the simulator may say it twice
+            return  # the simulator may register twice
         self.remove_publisher(name)
         speaker = self._speakers.setdefault(name, self._client)
         if speaker != self._client:
@@ -128,7 +128,7 @@ class ClientEndpoints:
         self._waiting.pop(name, None)
         if (gone := self._published.pop(name, None)) is not None:
             self._drop(lambda: self._ros.node.destroy_publisher(gone[0]))
-            del self._speakers[name]  # the next one's publisher is made after this one has gone
+            del self._speakers[name]  # the next client's publisher is made after this one is destroyed
 
     def remove_subscriber(self, topic: str) -> None:
         if (gone := self._received.pop(topic, None)) is not None:
@@ -142,7 +142,7 @@ class ClientEndpoints:
             self._drop(lambda: self._ros.node.destroy_service(gone[0]))
 
     def close(self) -> None:
-        """Remove everything; whoever still waits for the client gets no answer."""
+        """Remove everything; callers that still wait for the client get no answer."""
         self._closed = True
         for asked in list(self._asked.values()):
             asked.over.set()
@@ -156,13 +156,13 @@ class ClientEndpoints:
     # traffic
 
     def message(self, topic: str, payload: bytes) -> None:
-        """Publish what the client sent, byte for byte, once it is known to be what it should be."""
+        """Publish a message of the client byte for byte, after a check that it decodes as its type."""
         name = full_name(topic)
         if name in self._waiting and name not in self._speakers:
             self.publish(self._waiting[name])
             self._say(f"{name}: the other client has left: the messages of this one are taken from now on")
         if name in self._waiting or name in self._refused:
-            LEFT_OUT.inc()  # told once, at the registration
+            LEFT_OUT.inc()  # the client got the reason at its registration
             return
         if name not in self._published:
             raise CommandError(f"Not registered to publish topic '{topic}'! Send __publish first")
@@ -183,7 +183,7 @@ class ClientEndpoints:
             self._calls += 1
             try:
                 answer = await self._ros.call_async(kind, full_name(topic), wanted, ANSWER_LIMIT)
-            except RosError as error:  # no reason to end the executor, and with it all clients
+            except RosError as error:  # must not end the executor and with it all clients
                 self._say(str(error))
                 return
             finally:
@@ -196,7 +196,7 @@ class ClientEndpoints:
         self._ros.start(call)
 
     def response(self, payload: bytes, number: int) -> None:
-        """The client's answer to a request that it got."""
+        """Take the client's answer to a request."""
         asked = self._asked.get(number)
         if asked is None:
             raise CommandError(f"a response to request {number}, which nobody waits for (any more)")
@@ -211,7 +211,7 @@ class ClientEndpoints:
         return [name for name, _ in known], [short_name(types[0]) for _, types in known]
 
     def _ask_client(self, asked: Asked, request: Any) -> Any:
-        """In a thread of this call. None, which is no answer, when the client gives none."""
+        """Send a request to the client and wait; None when it does not answer. Runs in the thread of this call."""
         if self._closed or len(self._asked) >= OPEN_CALLS:
             return None
         number = next(self._numbers)
@@ -247,7 +247,7 @@ class ClientEndpoints:
 
 
 def _read(payload: bytes, kind: Any, topic: str) -> Any:
-    """Decode a message: whatever is damaged must not get any further."""
+    """Decode a message, so that a damaged one is refused."""
     try:
         return unpack(payload, kind)
     except RuntimeError as error:

@@ -8,9 +8,9 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 from tms_if.framing import encode
 from tms_reason.validation import explain
 
-VERSION = "v0.7.0"  # the simulator wants v0.7; of its protocol, not of this project
+VERSION = "v0.7.0"  # version of the protocol, not of this project; the simulator wants v0.7
 NAME = r"^/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*$"
-LONGEST = 246  # letters of a name; rmw takes 247 with the leading slash
+LONGEST = 246  # letters of a name; rmw allows 247 with the leading slash
 DEEPEST_QUEUE = 1000  # messages; a client may ask for more
 
 
@@ -19,7 +19,7 @@ class CommandError(Exception):
 
 
 class Registration(BaseModel):
-    """What a client wants to publish, hear, call or offer."""
+    """A topic or service that a client wants to publish, receive, call or serve."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -50,10 +50,10 @@ T = TypeVar("T", bound=BaseModel)
 
 
 def parse(kind: type[T], command: str, payload: bytes) -> T:
-    """What a command says; the simulator ends its JSON with a NUL.
+    """Parse a command's JSON, which the simulator ends with a NUL.
 
     Raises:
-        CommandError: it is no JSON or not what the command needs.
+        CommandError: it is no JSON, or does not have the fields of the command.
     """
     try:
         return kind.model_validate_json(payload.rstrip(b"\0"))
@@ -67,10 +67,10 @@ def command(name: str, **fields: Any) -> bytes:
 
 
 def handshake() -> bytes:
-    """What the simulator wants first; the metadata are JSON in a string of JSON."""
+    """The first frame that the simulator expects; its metadata are JSON in a string of JSON."""
     return command("__handshake", version=VERSION, metadata=json.dumps({"protocol": "ROS2"}))
 
 
 def full_name(topic: str) -> str:
-    """The simulator's names have no leading slash; they are resolved in the root namespace."""
+    """The full name of a topic: the simulator's names have no leading slash and belong to the root namespace."""
     return f"/{topic.removeprefix('/')}"

@@ -8,7 +8,7 @@ _LENGTH = struct.Struct("<I")
 
 
 class FrameError(Exception):
-    """The stream is no longer readable: what came is no frame, and nobody knows where the next one begins."""
+    """The stream is no longer readable: the bytes are no frame, and the begin of the next frame is unknown."""
 
 
 @dataclass(frozen=True)
@@ -24,13 +24,13 @@ class Frame:
 
 
 def encode(destination: str, payload: bytes) -> bytes:
-    """A frame as the simulator wants it: without the NUL that it sends itself."""
+    """Encode a frame for the simulator: without the NUL that the simulator itself sends."""
     name = destination.encode()
     return b"".join((_LENGTH.pack(len(name)), name, _LENGTH.pack(len(payload)), payload))
 
 
 class Splitter:
-    """Cuts a stream into frames, however it arrives in pieces. It keeps at most one frame."""
+    """Cuts a stream into frames, whatever pieces it arrives in. It keeps at most one frame."""
 
     def __init__(self, payload_limit: int) -> None:
         """`payload_limit` [bytes] bounds what one frame may hold."""
@@ -39,7 +39,7 @@ class Splitter:
 
     @property
     def pending(self) -> int:
-        """Bytes of a frame that has begun."""
+        """Received bytes of an incomplete frame."""
         return len(self._buffer)
 
     def feed(self, data: bytes) -> list[Frame]:
@@ -69,7 +69,7 @@ class Splitter:
             raise FrameError(f"a destination that is no text: {name[:40]!r}") from error
 
     def _part(self, start: int, limit: int, what: str) -> int | None:
-        """Where a length and its bytes end; None while they are not all there. The length is checked at once."""
+        """Where a length and its bytes end; None until all have arrived. The length is checked at once."""
         if len(self._buffer) < start + 4:
             return None
         (length,) = _LENGTH.unpack_from(self._buffer, start)

@@ -1,4 +1,4 @@
-"""Finds interface types by the names that the simulator writes: pkg/Type, or in full pkg/msg/Type."""
+"""Finds interface types by the names that the simulator uses: pkg/Type, or in full pkg/msg/Type."""
 
 import importlib
 from importlib.machinery import PathFinder
@@ -14,7 +14,7 @@ def interface(name: str, kind: Kind) -> Any:
     """The Python class of a message or service.
 
     Raises:
-        CommandError: it is not built here.
+        CommandError: the type is not built here.
     """
     package, *between, short = name.split("/")
     if between not in ([], [kind]):
@@ -32,7 +32,7 @@ def short_name(full: str) -> str:
 
 
 def _module(package: str, kind: Kind) -> Any:
-    """Only interface packages are imported: a client must not make this process run any other module."""
+    """Import an interface package, and no other: a client must not make this process run any other module."""
     spec = PathFinder.find_spec(package)
     places = list(spec.submodule_search_locations or ()) if spec is not None else []
     if not any((Path(place) / kind / "__init__.py").is_file() for place in places):

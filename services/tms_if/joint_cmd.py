@@ -1,8 +1,8 @@
-"""The two layouts of com3_msgs/JointCmd on the wire, told apart by nothing but a site setting. Pure logic.
+"""The two layouts of com3_msgs/JointCmd on the wire, which only a site setting distinguishes. Pure logic.
 
 OPERA's main branch has `uint8 control_type` after `joint_name`; OperaSim-PhysX, and OperaSim-AGX, were built without
-it. A reader of the other layout sees right values as long as the length of the last name leaves room in the padding,
-and takes positions for velocities otherwise. So messages are rewritten, never passed on in hope.
+it. A reader of the other layout gets right values as long as the length of the last name leaves room in the padding,
+and otherwise takes positions for velocities. So a message for the other layout is rewritten, never passed on unchanged.
 """
 
 import struct
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 Layout = Literal["control_type", "plain"]
-OURS: Layout = "control_type"  # of the package in services/interfaces
+OURS: Layout = "control_type"  # layout of the package in services/interfaces
 TYPE = "com3_msgs/JointCmd"
 HEADER = b"\0\1\0\0"  # CDR, little-endian
 POSITION, VELOCITY, EFFORT = 0, 1, 2
@@ -32,7 +32,7 @@ class JointCmd:
 
     @property
     def meant(self) -> int:
-        """The kind of control: as told, or the first that is filled in."""
+        """The kind of control: `control_type`, or where that is None, the first array that is filled in."""
         if self.control_type is not None:
             return self.control_type
         filled = [kind for kind, values in enumerate((self.position, self.velocity, self.effort)) if any(values)]
@@ -43,7 +43,7 @@ class JointCmd:
 
 
 def convert(data: bytes, into: Layout) -> bytes:
-    """A message of the one layout as the other.
+    """Rewrite a message of the other layout in the layout `into`.
 
     Raises:
         LayoutError: it is damaged, or already has the other layout.
@@ -52,10 +52,10 @@ def convert(data: bytes, into: Layout) -> bytes:
 
 
 def read(data: bytes, layout: Layout) -> JointCmd:
-    """Decode one layout; every byte must be accounted for, but for padding at the end.
+    """Decode one layout; every byte must belong to a field, except for padding at the end.
 
     Raises:
-        LayoutError: it does not fit.
+        LayoutError: the bytes do not fit.
     """
     reader = _Reader(data)
     names = reader.strings()

@@ -1,4 +1,4 @@
-"""What a client of the bridge may publish, hear, call and offer: what is listed here or in the site file, no more."""
+"""The topics and services that a client may publish, receive, call and serve: only those listed here or in the site."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,12 +11,12 @@ Named = Mapping[str, frozenset[str]]  # full name -> types that it may have, as 
 
 POSE = {"PoseStamped": "geometry_msgs/PoseStamped", "Odometry": "nav_msgs/Odometry"}
 CLOCK = "/clock"
-# What the simulators' machines publish beyond their borders; taken where a sensing input reads it.
+# Topics that simulated machines publish beyond their borders; allowed where a sensing input reads them.
 FURTHER = (
     "gnss_compass/fix", "gnss_compass/heading", "g2_imu", "swing/g2_imu", "boom/g2_imu", "arm/g2_imu", "bucket/g2_imu",
     "bucket/g2_imu_sim", "base_link/pose", "global_pose", "odom", "odom_pose", "soil_volume",
 )  # fmt: skip
-# What they hear beyond the commands of their borders.
+# Topics that they receive beyond the commands of their borders.
 RECEIVED = {"track_cmd": "com3_msgs/JointCmd", "unity/drive_params": "std_msgs/Float64MultiArray"}
 RECEIVED_BY_ALL = {
     "/tf": "tf2_msgs/TFMessage", "/move_group/fake_controller_joint_states": "sensor_msgs/JointState",
@@ -25,7 +25,7 @@ RECEIVED_BY_ALL = {
 
 @dataclass(frozen=True)
 class Allowed:
-    """The lists of a site."""
+    """The allowed names of a site."""
 
     published: Named
     received: Named
@@ -41,22 +41,22 @@ class Allowed:
         )
 
     def hearing(self, name: str, kind: str) -> str | None:
-        """Why a client may not hear it."""
+        """Why a client may not receive this topic; None if it may."""
         return _refusal(
             self.received, name, kind, "is no command to this site's machines: a client may not listen there"
         )
 
     def calling(self, name: str, kind: str) -> str | None:
-        """Why a client may not call this service."""
+        """Why a client may not call this service; None if it may."""
         return _refusal(self.called, name, kind, "is not among services.if.calls of the site file: it is not called")
 
     def offering(self, name: str, kind: str) -> str | None:
-        """Why a client may not offer this service."""
+        """Why a client may not serve this service; None if it may."""
         return _refusal(self.offered, name, kind, "is not among services.if.offers of the site file: it is not offered")
 
 
 def allowed(site: Site) -> Allowed:
-    """The lists of a site, from its machines' borders, its sensing inputs and its settings of the bridge.
+    """The allowed names of a site, from its machines' borders, its sensing inputs and its settings of the bridge.
 
     Raises:
         ConfigError: the sensing inputs cannot be read.
@@ -87,7 +87,7 @@ def _one(kind: str) -> frozenset[str]:
 
 
 def _sensors(site: Site) -> dict[str, frozenset[str]]:
-    """Topics that tell of the machines' motion."""
+    """Topics that report the machines' motion."""
     found: dict[str, frozenset[str]] = {}
     for machine in site.file.machines:
         border = site.border(machine)

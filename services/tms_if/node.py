@@ -1,4 +1,4 @@
-"""Process `tms:if`: the ROS-TCP endpoint that OperaSim-PhysX dials, so that it needs no other ROS installation."""
+"""Process `tms:if`: the ROS-TCP endpoint that OperaSim-PhysX connects to; no other ROS installation is needed."""
 
 import socket
 import threading
@@ -15,7 +15,7 @@ PAUSE = 1.0  # s after the system could not accept a connection
 
 
 def start(app: App) -> None:
-    """Listen for simulators."""
+    """Listen for connections of simulators."""
     settings = app.site.bridge
     try:
         server = socket.create_server((settings.bind, settings.port), backlog=MAX_CLIENTS)
@@ -29,7 +29,7 @@ def start(app: App) -> None:
 
 
 class Endpoint:
-    """Takes connections; each has ROS ends of its own, and no two publish one topic."""
+    """Accepts connections; each has ROS endpoints of its own, and no two publish one topic."""
 
     def __init__(self, app: App, server: socket.socket) -> None:
         self._app, self._server = app, server
@@ -38,7 +38,7 @@ class Endpoint:
         self._clients: set[Client] = set()
 
     def accept(self) -> None:
-        """Until the process stops."""
+        """Accept connections until the process stops."""
         while not self._app.stopping.is_set():
             try:
                 connection, (host, port, *_) = self._server.accept()

@@ -1,4 +1,4 @@
-"""Steps that a thread has the executor do for it."""
+"""Runs steps of another thread on the executor."""
 
 import threading
 from collections.abc import Callable
@@ -15,7 +15,7 @@ def do(ros: Ros, step: Callable[[], T], seconds: float) -> T:
     """Run `step` on the executor thread and wait for what it returns or raises; from worker threads only.
 
     Raises:
-        RosError: the executor did not come to it within `seconds`.
+        RosError: the executor did not run it within `seconds`.
     """
     there = threading.Event()
     results: list[T] = []
@@ -24,7 +24,7 @@ def do(ros: Ros, step: Callable[[], T], seconds: float) -> T:
     def run() -> None:
         try:
             results.append(step())
-        except Exception as error:  # raised again in the caller's thread; here it would end the executor
+        except Exception as error:  # raised in the caller's thread; raised here it would end the executor
             errors.append(error)
         there.set()
 

@@ -1,4 +1,4 @@
-"""What waits to be sent to one client: bounded, the oldest messages of topics give way. Pure logic."""
+"""Queue of frames for one client: bounded; the oldest messages of topics are dropped. Pure logic."""
 
 import threading
 from collections import deque
@@ -8,17 +8,17 @@ BYTES = 32 * 1024 * 1024
 
 
 class Outbox:
-    """Frames in the order they are to be sent. Safe to call from several threads; `put` never waits."""
+    """Frames in the order of sending. Safe to call from several threads; `put` never waits."""
 
     def __init__(self, frames: int = FRAMES, size: int = BYTES) -> None:
         self._waiting: deque[tuple[bytes, bool]] = deque()
         self._frames, self._most, self._size = frames, size, 0
         self._changed = threading.Condition()
         self._closed = False
-        self.dropped = 0  # messages that gave way
+        self.dropped = 0  # messages that were left out
 
     def put(self, frame: bytes, droppable: bool = False) -> bool:
-        """Queue a frame; False when there is no room even without the messages that may be dropped."""
+        """Queue a frame; False when there is no room even after all droppable messages are dropped."""
         with self._changed:
             if self._closed:
                 return True
@@ -44,7 +44,7 @@ class Outbox:
         return False
 
     def take(self) -> bytes | None:
-        """The next frame, when there is one; None when the box was closed."""
+        """Wait for the next frame; None when the outbox was closed."""
         with self._changed:
             self._changed.wait_for(lambda: self._waiting or self._closed)
             if self._closed:
@@ -54,7 +54,7 @@ class Outbox:
             return frame
 
     def close(self) -> None:
-        """Nothing more is sent."""
+        """Drop all frames and end `take`."""
         with self._changed:
             self._closed = True
             self._waiting.clear()

@@ -1,4 +1,4 @@
-"""Why the ROS-TCP interface cannot be offered."""
+"""Reasons why the ROS-TCP endpoint cannot be served."""
 
 from tms_reason.quantities import Seconds
 from tms_reason.reason import Reason

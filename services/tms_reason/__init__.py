@@ -1,4 +1,4 @@
-"""Why: the errors that cross a border, as codes with arguments, their texts, and the checks of data from outside.
+"""Reasons: errors between processes as codes with arguments, their texts, and the checks of data from outside.
 
-No ROS, no files of a site.
+This package needs no ROS and reads no files of a site.
 """

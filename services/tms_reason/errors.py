@@ -1,9 +1,9 @@
-"""The errors that cross a border, one tree; each carries the reason why.
+"""The errors that modules exchange, as one tree of classes; each carries its reason.
 
 TmsError                 code and one line: what is wrong, where, what to do next
 ├── ConfigError          a file of configs/ is wrong: fix the file
 ├── TaskError            a task's XML is wrong: fix it in the editor
-├── RosError             a peer did not answer or is not there: retry, see `tms ps`
+├── RosError             a peer did not answer or does not run: retry, see `tms ps`
 ├── DbError              the database refused or is away
 └── SubtaskFailed        the machine cannot, or must not, do what was asked
 """
@@ -13,12 +13,12 @@ from tms_reason.texts import sentence
 
 
 class TmsError(Exception):
-    """An error that a person reads: its reason for programs, and the reason's English text for the log."""
+    """An error that people read: it has a reason for programs, and the reason's English text for the log."""
 
     code = "FAILED"
 
     def __init__(self, reason: Reason, code: str = "") -> None:
-        """`code`: of a service's answer, where it is another one than the reason's."""
+        """`code`: the code in a service's answer, where it differs from the reason's."""
         super().__init__(sentence(reason, "en"))
         self.reason = reason
         self.code = code or (type(self).code if isinstance(reason, Foreign) else reason.code)

@@ -1,7 +1,7 @@
-"""The one check of names and short texts that come from outside and go into ROS, file names or the database.
+"""The check of names and short texts from outside, before they go into ROS, file names or the database.
 
-A ROS string ends at its first NUL: the rest is lost without an error, and the receiver cannot see that. So whoever
-sends checks first.
+A ROS string ends at its first NUL: the rest is lost without an error, and the receiver cannot see that. So the sender
+checks first.
 """
 
 import re
@@ -24,7 +24,7 @@ CONTROL = ("Cc", "Cs", "Zl", "Zp")  # Unicode categories: control characters, ha
 
 
 def control_letter(text: str) -> ControlLetter | None:
-    """The first control character, as people write it; None if there is none."""
+    """The first control character in a readable form; None if there is none."""
     found = next((letter for letter in text if unicodedata.category(letter) in CONTROL), None)
     return None if found is None else ControlLetter(f"U+{ord(found):04X}")
 
@@ -63,7 +63,7 @@ def check_text(field: str, text: str) -> None:
 
 
 def check_sent(service: str, message: Any) -> None:
-    """Refuse a ROS message of ours that would not arrive whole: a text is cut at a NUL, half a character has no bytes.
+    """Refuse a ROS message that would not arrive whole: a text is cut at a NUL, and half a character has no bytes.
 
     Raises:
         TmsError: BAD_TEXT.
@@ -97,6 +97,6 @@ def _plain_text(text: str) -> str:
     return text
 
 
-_SHOWN = {"pattern": r"^[^\u0000-\u001f\u007f-\u009f\u2028\u2029]*$"}  # to readers of the API's description
+_SHOWN = {"pattern": r"^[^\u0000-\u001f\u007f-\u009f\u2028\u2029]*$"}  # the same rule for the API's description
 Name = Annotated[str, AfterValidator(_plain_name), Field(min_length=1, max_length=MAX_LENGTH, json_schema_extra=_SHOWN)]
 Text = Annotated[str, AfterValidator(_plain_text), Field(json_schema_extra=_SHOWN)]

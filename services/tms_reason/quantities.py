@@ -1,4 +1,4 @@
-"""Units of a reason's arguments: how many digits a person reads, and what stands behind them."""
+"""Units of a reason's arguments: the number of shown digits, and the symbol after them."""
 
 from dataclasses import dataclass
 from typing import Annotated
@@ -17,7 +17,7 @@ class Unit:
 
 
 Seconds = Annotated[float, Unit("s", 1)]
-Moments = Annotated[float, Unit("s", 2)]  # of stops and stand-still, where hundredths count
+Moments = Annotated[float, Unit("s", 2)]  # times of stops and stand-still, where hundredths matter
 Metres = Annotated[float, Unit("m", 2)]
 MetresPerSecond = Annotated[float, Unit("m/s", 3)]
 Radians = Annotated[float, Unit("rad", 3)]

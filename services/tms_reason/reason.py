@@ -5,8 +5,8 @@
 
 The class name gives the code (`GATEWAY_LOST`), the annotations its arguments, with units (`Seconds`, see
 quantities.py); an argument may be a reason itself, or a tuple of reasons or texts. `text` is the English text and the
-key of the Japanese one (locale/ja/*.po). `details` is shown to who asks for them
-only: names of topics, errors of a system. No argument is called text, code, details, remedy or args.
+key of the Japanese one (locale/ja/*.po). `details` is shown only on request:
+names of topics, errors of a system. No argument is called text, code, details, remedy or args.
 Every package declares its reasons in a module `reasons.py`, one line a reason.
 """
 
@@ -48,7 +48,7 @@ class Reason:
         return {one.name: getattr(self, one.name) for one in fields(self)}  # type: ignore[arg-type]
 
     def find(self, kind: type[R]) -> R | None:
-        """This reason, or the first inside it, of a kind: what is decided goes by kinds, never by words."""
+        """This reason, or the first inside it, of a kind: decisions use kinds, never texts."""
         if isinstance(self, kind):
             return self
         inner = [one for value in self.args.values() for one in (value if isinstance(value, tuple) else (value,))]
@@ -63,7 +63,7 @@ REGISTRY: dict[str, type[Reason]] = {}  # by code
 
 
 # fmt: off
-class Foreign(Reason, text="{words}"): words: str  # of another system, or of a library
+class Foreign(Reason, text="{words}"): words: str  # text of another system, or of a library
 class Unknown(Reason, text="{name}", details="{arguments}"): name: str; arguments: str  # a code of another release
 class Several(Reason, text="{reasons}"): reasons: tuple[Reason, ...]
 # fmt: on

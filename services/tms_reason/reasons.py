@@ -1,4 +1,4 @@
-"""What is wrong with data from outside: keys and values of any kind, names and texts."""
+"""Faults of data from outside: keys and values of any kind, names and texts."""
 
 from tms_reason.reason import Reason
 from tms_reason.remedies import EDIT_CONFIG, Remedy

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Remedy:
-    """`name` is the console's; `command` and `text` are format strings over the arguments of the reason."""
+    """`name` is the name in the console; `command` and `text` are format strings over the reason's arguments."""
 
     name: str
-    command: str  # of a shell; empty where only hands help
+    command: str  # shell command; empty where only work by hand helps
     text: str  # English; the key of its Japanese text
 
 

@@ -1,7 +1,7 @@
-"""Reasons in words, for people: at the edge of the system only (command line, console, log).
+"""Makes texts of reasons for people; used only by command line, console and log.
 
 The English text is declared with the reason. Other languages are gettext catalogues, a file a package and language
-(`locale/ja/tms_rc.po`), read as they are: an installation compiles nothing.
+(`locale/ja/tms_rc.po`), which are read as text: an installation compiles nothing.
 """
 
 import typing
@@ -17,7 +17,7 @@ from tms_reason.reason import REGISTRY, Foreign, Reason
 
 LOCALE = Path(__file__).resolve().parent / "locale"
 LANGUAGES = ("en", "ja")
-BETWEEN = {"en": "; ", "ja": "。"}  # reasons in a list
+BETWEEN = {"en": "; ", "ja": "。"}  # separator of reasons in a list
 COMMA = {"en": ", ", "ja": "、"}
 FORMATTER = Formatter()
 
@@ -28,14 +28,14 @@ def text(reason: Reason, language: str) -> str:
 
 
 def details(reason: Reason, language: str) -> str:
-    """What only somebody who looks for the fault wants to read, of this reason and of those inside it."""
+    """The details for the search of a fault, of this reason and of those inside it."""
     own = _filled(reason, translated(type(reason).details, language), language) if type(reason).details else ""
     inner = [details(one, language) for one in _inside(reason)]
     return BETWEEN[language].join(filter(None, [own, *inner]))
 
 
 def advice(reason: Reason, language: str) -> str:
-    """What to do about it; empty when nothing helps."""
+    """What to do about a reason; empty when nothing helps."""
     remedy = remedy_of(reason)
     if remedy is None:
         return ""
@@ -45,18 +45,18 @@ def advice(reason: Reason, language: str) -> str:
 
 
 def remedy_text(reason: Reason, language: str) -> str:
-    """The words of a reason's own remedy."""
+    """The text of a reason's own remedy."""
     remedy = type(reason).remedy
     return "" if remedy is None else _filled(reason, translated(remedy.text, language), language)
 
 
 def sentence(reason: Reason, language: str) -> str:
-    """The text, and what to do about it."""
+    """The text of a reason, and what to do about it."""
     return BETWEEN[language].join(filter(None, [text(reason, language), advice(reason, language)]))
 
 
 def remedy_of(reason: Reason) -> tuple[Reason, str] | None:
-    """The reason, of this one and those inside it, that an operator can do something about; and the command."""
+    """The reason, among this one and those inside it, that has a remedy, and the command of the remedy."""
     remedy = type(reason).remedy
     if remedy is not None:
         return reason, _filled(reason, remedy.command, "en")
@@ -64,13 +64,13 @@ def remedy_of(reason: Reason) -> tuple[Reason, str] | None:
 
 
 def translated(english: str, language: str) -> str:
-    """The text of a catalogue; English where the catalogue has none."""
+    """The text in a language; English where the catalogue has none."""
     return english if language == "en" else catalogue(language).get(english, english)
 
 
 @cache
 def catalogue(language: str) -> dict[str, str]:
-    """All texts of a language by their English."""
+    """All texts of a language by their English text."""
     found: dict[str, str] = {}
     for path in sorted((LOCALE / language).glob("*.po")):
         with path.open("rb") as file:
@@ -89,7 +89,7 @@ def _inside(reason: Reason) -> list[Reason]:
 
 def _filled(reason: Reason, template: str, language: str) -> str:
     units = _units(reason.code)
-    if isinstance(reason, Foreign):  # as it came
+    if isinstance(reason, Foreign):  # shown unchanged
         return reason.words
     shown = {name: _shown(value, units.get(name), language) for name, value in reason.args.items()}
     return FORMATTER.vformat(template, (), shown)
@@ -107,7 +107,7 @@ def _shown(value: Any, unit: Unit | None, language: str) -> str:
 
 
 def _visible(text: str) -> str:
-    """A text that stays in its line, whatever somebody has put into it."""
+    """A text without line breaks and control characters, whatever another system has sent."""
     return text if text.isprintable() else "".join(one if one.isprintable() else repr(one)[1:-1] for one in text)
 
 

@@ -1,4 +1,4 @@
-"""Units of the fields of records. They are known by the fields' names, which mean the same in every record."""
+"""Units of the fields of records, by the fields' names, which mean the same in every record."""
 
 NAMES = {"x": "m", "y": "m", "z": "m", "offset": "m", "theta_w": "rad", "target_angle": "rad", "yaw": "deg"}
 ENDINGS = {"_joint": "rad", "_goal_pos": "deg"}  # angles of joints; the joint samples of the C++ system use degrees

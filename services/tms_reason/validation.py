@@ -1,4 +1,4 @@
-"""What pydantic finds wrong with data, as reasons: each with the key that it is about."""
+"""Turns pydantic's findings about data into reasons, each with its key."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -15,7 +15,7 @@ SECRET = ("uri", "password")  # parts of keys whose values are never shown
 
 
 class Wrong(ValueError):
-    """What a validator raises: a reason, and the key below the validated value that it is about."""
+    """The error of our validators: a reason, and its key below the validated value."""
 
     def __init__(self, reason: Reason, *key: int | str) -> None:
         super().__init__(sentence(reason, "en"))
@@ -23,7 +23,7 @@ class Wrong(ValueError):
 
 
 def problems(error: ValidationError) -> Iterator[tuple[Keys, Reason]]:
-    """Key and reason of everything that a validation found, in the order of the data."""
+    """Key and reason of each finding of a validation, in the order of the data."""
     for one in error.errors(include_url=False):
         own = one.get("ctx", {}).get("error")
         keys = one["loc"]
@@ -38,7 +38,7 @@ def problems(error: ValidationError) -> Iterator[tuple[Keys, Reason]]:
 
 
 def explain(error: ValidationError) -> str:
-    """First problem of a validation, as `key: what`; says how many more there are."""
+    """The first problem of a validation as `key: text`, and the number of further ones."""
     keys, reason = next(problems(error))
     key, more = dotted(keys), error.error_count() - 1
     return (f"{key}: " if key else "") + text(reason, "en") + (f" (and {more} more)" if more else "")
@@ -50,7 +50,7 @@ def dotted(keys: Keys) -> str:
 
 
 def _refused(keys: Keys, words: str, value: Any) -> Reason:
-    """Pydantic's own words, and the value where it is short and no secret."""
+    """Pydantic's own text, and the value where it is short and not secret."""
     secret = any(part in str(key) for key in keys for part in SECRET)
     if secret or not isinstance(value, (str, int, float)):
         return BadSetting(Foreign(words))

@@ -1,6 +1,6 @@
-"""Reasons as one string: `CODE key=value ...`, the values as JSON; for messages that have a string for a reason.
+"""Reasons as one string `CODE key=value ...` with JSON values, for messages with a string for a reason.
 
-A string that is none of ours is a reason all the same: `FOREIGN words=...`.
+A string of another form becomes the reason `FOREIGN words=...`.
 """
 
 import importlib
@@ -22,7 +22,7 @@ DECODER = json.JSONDecoder()
 
 
 def to_line(reason: Reason | None) -> str:
-    """One line for a message; empty for no reason."""
+    """A reason as one line for a message; empty for no reason."""
     if reason is None:
         return ""
     words = (f" {name}={json.dumps(_plain(value), ensure_ascii=False)}" for name, value in reason.args.items())
@@ -41,14 +41,14 @@ def of(line: str) -> Reason | None:
 
 
 def known(line: str) -> Reason:
-    """As `of`, for a string that is not empty."""
+    """Like `of`, for a string that is not empty."""
     reason = of(line)
     assert reason is not None, "a reason was promised"
     return reason
 
 
 def refusal(error_code: str, error_msg: str) -> Reason:
-    """Why a service refused; the words of another system keep their code."""
+    """The reason of a service's refusal; a text of another system keeps its code."""
     reason = of(error_msg)
     if reason is None or isinstance(reason, Foreign):
         return Foreign(f"{error_code}: {error_msg}")
@@ -56,7 +56,7 @@ def refusal(error_code: str, error_msg: str) -> Reason:
 
 
 def to_data(reason: Reason) -> dict[str, Any]:
-    """For JSON documents: `{"code": ..., "args": {...}}`."""
+    """A reason for JSON documents: `{"code": ..., "args": {...}}`."""
     return {"code": reason.code, "args": {name: _plain(value) for name, value in reason.args.items()}}
 
 
@@ -67,7 +67,7 @@ def of_data(data: Mapping[str, Any]) -> Reason:
 
 @cache
 def load() -> None:
-    """Import every `reasons` module of the system, so that all codes are known: for who shows reasons of others."""
+    """Import all `reasons` modules, so that all codes are known; for processes that show reasons of others."""
     services = Path(__file__).resolve().parent.parent
     for path in sorted(services.glob("tms_*/**/reasons.py")):
         importlib.import_module(".".join(path.relative_to(services).with_suffix("").parts))
@@ -106,18 +106,18 @@ def _made(code: str, args: dict[str, Any], depth: int) -> Reason:
     return kind(**values)
 
 
-WRONG = object()  # a value of another type than was declared
+WRONG = object()  # mark for a value of another type than declared
 
 
 @cache
 def _hints(code: str) -> dict[str, Any]:
-    """What the arguments of a code are declared to be, in their order."""
+    """The declared types of a code's arguments, in their order."""
     found = typing.get_type_hints(REGISTRY[code])
     return {one.name: found[one.name] for one in fields(REGISTRY[code])}  # type: ignore[arg-type]
 
 
 def _value(wanted: Any, value: Any, depth: int) -> Any:
-    """A value as its annotation wants it."""
+    """A value in the type of its annotation; WRONG if it does not fit."""
     options = typing.get_args(wanted) if _is_union(wanted) else (wanted,)
     for option in options:
         found = _as(option, value, depth)

@@ -1,1 +1,1 @@
-"""Stand-in for a machine: the same ROS names and types, moved by arithmetic instead of hydraulics."""
+"""The stand-in for a machine: it has the same ROS names and types, and computes the motion of the hydraulics."""

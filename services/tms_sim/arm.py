@@ -1,4 +1,4 @@
-"""Joints that are led along a reference as well as their limits let them. Pure logic."""
+"""Joints that follow a reference within their limits. Pure logic."""
 
 import math
 import threading
@@ -10,7 +10,7 @@ from tms_sim.servo import Servo
 
 SUBSTEP = 0.01  # s: the same motion at any time scale
 EXACT = 1e-9  # rad
-TURN = 2  # substeps a turn of the controllers: 50 Hz
+TURN = 2  # substeps in a period of the controllers: 50 Hz
 
 
 class Arm:
@@ -23,15 +23,15 @@ class Arm:
         self.joints = dict(joints)
         self.servos = {name: Servo(joint, initial.get(name, 0.0), response.get(name)) for name, joint in joints.items()}
         self.now = 0.0  # s
-        self.elapsed = 0.0  # s since the present path began; below 0: it waits for the longest dead time
-        self.more_dead_time = 0.0  # s, which the controllers do not know of
+        self.elapsed = 0.0  # s since the present path began; below 0 during the longest dead time
+        self.more_dead_time = 0.0  # s, not known to the controllers
         self.targets: dict[str, float] = {}  # rad, of joints that turn by themselves while there is no path
         self.speeds: dict[str, float] = {}  # rad/s, of joints that turn until they are commanded something else
-        self.lock = threading.RLock()  # of whoever gives goals, and of the time
+        self.lock = threading.RLock()  # shared by the servers of goals and the steps of time
         self._longest = max((servo.ahead for servo in self.servos.values()), default=0.0)
         self._path: Path | None = None
         self._stuck = False
-        self._owed, self._count = 0.0, 0  # s not yet stepped; substeps so far
+        self._owed, self._count = 0.0, 0  # s that are not stepped yet; substeps so far
 
     @property
     def positions(self) -> list[float]:
@@ -45,22 +45,22 @@ class Arm:
 
     @property
     def driven(self) -> bool:
-        """Whether anything moves because it was commanded to."""
+        """Whether a command moves any joint."""
         return any(servo.driven for servo in self.servos.values())
 
     @property
     def still(self) -> bool:
-        """Whether nothing moves or will move."""
+        """Whether no joint moves or will move."""
         return self._idle() and all(servo.still for servo in self.servos.values())
 
     @property
     def stands(self) -> bool:
-        """Whether nothing moves, as far as a controller can tell."""
+        """Whether no joint moves, as far as a controller can measure."""
         return all(servo.stands for servo in self.servos.values())
 
     @property
     def stuck(self) -> bool:
-        """Nothing moves, whatever is asked; what is sent meanwhile is lost."""
+        """Whether no joint moves, whatever is commanded; commands meanwhile are lost."""
         return self._stuck
 
     @stuck.setter
@@ -71,16 +71,16 @@ class Arm:
         self._stuck = stuck
 
     def follow(self, names: Sequence[str], points: Sequence[Point]) -> Path:
-        """Begin a trajectory from wherever the arm is, moving or not."""
+        """Begin a trajectory from the present state of the arm, moving or not."""
         servos = self.servos.values()
         start = Point(0.0, tuple(s.setpoint if s.led else s.position for s in servos), tuple(s.rate for s in servos))
         self._path, self.elapsed = Path(self.joints, start, names, points), -self._longest
-        self.targets.clear()  # what was commanded before must not go on afterwards
+        self.targets.clear()  # earlier commands must not go on afterwards
         self.speeds.clear()
         return self._path
 
     def finish(self) -> None:
-        """The path is done: stay at its end."""
+        """End the path and stay at its end."""
         self._path = None
 
     def hold(self) -> None:
@@ -95,7 +95,7 @@ class Arm:
         self.servos[name].brake(self.now)
 
     def halt(self, immediately: bool) -> None:
-        """Emergency stop, with or without the dead time."""
+        """Do the emergency stop, with or without the dead time."""
         self._path = None
         self.targets.clear()
         self.speeds.clear()
@@ -103,7 +103,7 @@ class Arm:
             servo.halt(self.now, immediately, self.more_dead_time)
 
     def leak(self, velocity: float, seconds: float) -> None:
-        """The first joint moves [rad/s] without being told."""
+        """Move the first joint at a velocity [rad/s] without a command."""
         next(iter(self.servos.values())).leak(velocity, seconds)
 
     def step(self, seconds: float) -> None:
@@ -129,7 +129,7 @@ class Arm:
         self.elapsed += h
 
     def _wanted(self, i: int, name: str, servo: Servo, h: float) -> float | None:
-        """Velocity [rad/s] to lead a joint with; None: it has nothing to do."""
+        """Velocity [rad/s] of a joint's reference; None: the joint has none."""
         acceleration = servo.joint.acceleration
         if self._path is not None:
             since = self.elapsed + servo.ahead

@@ -22,7 +22,7 @@ def trajectory_server(controller: Controller) -> Served:
 
     def feedback(motion: PathMotion) -> FollowJointTrajectory.Feedback:
         arm = controller.arm
-        since = max(0.0, arm.elapsed)  # s, it begins a dead time after the goal was taken
+        since = max(0.0, arm.elapsed)  # s, it begins a dead time after the goal was accepted
         desired, actual = list(motion.path.at(since)), arm.positions
         return FollowJointTrajectory.Feedback(
             joint_names=list(arm.joints),

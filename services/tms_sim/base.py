@@ -1,4 +1,4 @@
-"""A way along poses, for tracks on flat ground. Pure logic, all in the frame `map`."""
+"""Drives tracks along poses on flat ground. Pure logic, all in the frame `map`."""
 
 import itertools
 import math
@@ -10,14 +10,14 @@ from tms_sim.tracks import SUBSTEP, Tracks, cut
 
 THERE = 0.05  # m
 ALIGNED = 0.01  # rad
-PASSED = 0.5  # m, a pose that is only passed counts from here
-STEERS = 0.35  # rad, beyond it the machine turns on the spot
+PASSED = 0.5  # m, within which a pose that is only passed counts as reached
+STEERS = 0.35  # rad off the direction, beyond which the machine turns on the spot
 GENTLE = 0.8  # share of the acceleration that braking for a goal uses
 STOPPED = 1e-3  # m/s
 
 
 class Leg(NamedTuple):
-    """A place to go [m] and how to stand there [rad]; without yaw it is only passed."""
+    """A place to drive to [m] and the heading there [rad]; a place without yaw is only passed."""
 
     x: float
     y: float
@@ -25,22 +25,22 @@ class Leg(NamedTuple):
 
 
 class Base(Tracks):
-    """Tracks, and the navigation that leads them."""
+    """The tracks and their navigation."""
 
     def __init__(self, drive: Drive, start: tuple[float, float, float], response: Response | None = None) -> None:
         super().__init__(drive, start, response)
-        self.stuck = False  # nothing moves, whatever is asked
+        self.stuck = False  # the tracks do not move, whatever is commanded
         self.legs: list[Leg] = []
         self._aligning = False
         self._owed = 0.0  # s not yet stepped
 
     def command(self, v: float, w: float) -> None:
-        """Velocities that hold until the next command, as the simulator's tracks have them; a way goes first."""
+        """Take velocities that stay until the next command, as in the simulator; a way has priority."""
         if math.isfinite(v) and math.isfinite(w) and not self.legs:
             self.send(cut(v, self.drive.velocity), cut(w, self.drive.turn_velocity))
 
     def go(self, legs: Sequence[Leg]) -> None:
-        """Begin a way from wherever the machine is."""
+        """Begin a way from the present place of the machine."""
         self.legs, self._aligning = list(legs), False
 
     def hold(self) -> None:
@@ -49,7 +49,7 @@ class Base(Tracks):
         self.send(0.0, 0.0)
 
     def halt(self, immediately: bool) -> None:
-        """Emergency stop, with or without the dead time."""
+        """Do the emergency stop, with or without the dead time."""
         self.hold()
         if immediately:
             self.brake_at_once()
@@ -81,7 +81,7 @@ class Base(Tracks):
         self.move(h)
 
     def _wanted(self) -> tuple[float, float]:
-        """Velocities for the first leg; takes it off the way when it is done."""
+        """Velocities for the first leg; removes the leg from the way when it is done."""
         leg, last = self.legs[0], len(self.legs) == 1
         away = math.hypot(leg.x - self.x, leg.y - self.y)
         if leg.yaw is None and not last and away <= PASSED:

@@ -1,7 +1,7 @@
 """The control law for a joint that answers its commands late and sluggishly. Pure logic, any clock.
 
 A drive brings its joint to the angle u that it was sent, dq/dt = (u(t - D) - q) / tau: after a dead time D, as a
-first-order lag tau. What is sent now takes effect a dead time later. So the law predicts where the joint is then, from
+first-order lag tau. A command takes effect a dead time later. So the law predicts where the joint is then, from
 the last measurement through the commands that are under way, and sends the angle at which the lag gives the velocity of
 the reference and takes back what is missing.
 """
@@ -15,17 +15,17 @@ MARGIN = 1.5  # times its velocity limit: room to catch up at the limit, also wi
 
 
 class ControlLaw:
-    """What one joint is sent, so that it follows a reference.
+    """Computes the commands with which one joint follows a reference.
 
-    The reference has to be asked for a dead time ahead. Joints of one motion have different dead times: their common
-    clock starts the longest of them after the goal was taken, and each is led `dead_time` ahead of this clock.
+    The caller evaluates the reference a dead time ahead. Joints of one motion have different dead times: their common
+    clock starts the longest of them after the goal was accepted, and each reference is `dead_time` ahead of this clock.
     """
 
     def __init__(self, dead_time: float, lag: float, velocity: float) -> None:
         """`dead_time` and `lag` [s] as far as they are known; `velocity` is the joint's limit [rad/s]."""
         self.dead_time, self.lag = dead_time, lag
         self._most = MARGIN * velocity
-        self._sent: deque[tuple[float, float]] = deque()  # s, rad: the one in effect, and those under way
+        self._sent: deque[tuple[float, float]] = deque()  # s, rad: the command in effect, and those under way
 
     def command(self, now: float, measured: float, position: float, velocity: float) -> float:
         """Angle to send now [rad], for a joint that should be at `position` with `velocity` a dead time from now."""
@@ -36,7 +36,7 @@ class ControlLaw:
         return sent
 
     def predicted(self, now: float, measured: float) -> float:
-        """Where the joint will be [rad] when all that was sent so far has taken effect."""
+        """Where the joint will be [rad] when all commands so far have taken effect."""
         self._forget(now - self.dead_time)
         if not self._sent:
             return measured
@@ -47,14 +47,14 @@ class ControlLaw:
         return measured
 
     def predicted_velocity(self, now: float, measured: float) -> float:
-        """How fast it will then be [rad/s]."""
+        """The velocity of the joint then [rad/s]."""
         return (self._sent[-1][1] - self.predicted(now, measured)) / self.lag if self._sent else 0.0
 
     def rest(self) -> None:
-        """The joint stands, and nothing is under way any more."""
+        """Forget all commands: the joint stands, and none is under way."""
         self._sent.clear()
 
     def _forget(self, time: float) -> None:
-        """All but the command that is in effect at `time` and those after it."""
+        """Forget the commands before the one that is in effect at `time`."""
         while len(self._sent) > 1 and self._sent[1][0] <= time:
             self._sent.popleft()

@@ -8,7 +8,7 @@ from tms_sim.motion import Motion, Verdict
 from tms_sim.path import Path, Point, refusal
 
 TOLERANCE = 0.03  # rad, at the end of a goal
-STOPPED = 0.01  # rad/s, the same
+STOPPED = 0.01  # rad/s, at the end of a goal
 GOAL_TIME = 60.0  # s after the end in which the arm may still arrive
 SUCCESSFUL, INVALID_GOAL, PATH_VIOLATED, GOAL_VIOLATED = 0, -1, -4, -5  # control_msgs result codes
 
@@ -22,7 +22,7 @@ class PathMotion(Motion):
 
 
 class Controller:
-    """Goals in, arm motion out. Safe to call from several threads."""
+    """Turns goals into motion of the arm. Safe to call from several threads."""
 
     def __init__(self, arm: Arm) -> None:
         self.arm = arm
@@ -37,7 +37,7 @@ class Controller:
         return self._motion is not None
 
     def refusal(self, names: Sequence[str], points: Sequence[Point]) -> tuple[int, str] | None:
-        """Result code and reason why a goal is not taken, or None."""
+        """Result code and reason of a goal's refusal, or None."""
         if self.emergency:
             return INVALID_GOAL, "the emergency stop is on: publish false on emg_stop to release it"
         return refusal(self.arm.joints, names, points)
@@ -60,7 +60,7 @@ class Controller:
                 self._brake(Verdict("CANCELED", SUCCESSFUL, "stopped on request"))
 
     def stop(self, on: bool) -> None:
-        """Level of the emergency stop: while true motions are ignored. Who presses it stops the arm."""
+        """Set the level of the emergency stop: while true, goals are refused. The caller stops the arm."""
         with self._lock:
             self.emergency = on
             if on and self._braking is None:

@@ -1,16 +1,16 @@
-"""Commands on their way to what they move. Pure logic."""
+"""Queue of commands that take effect after a dead time. Pure logic."""
 
 from collections import deque
 from collections.abc import Iterator
 from typing import Generic, TypeVar
 
 T = TypeVar("T")
-MAX_COMMANDS = 10_000  # commands under way; older ones are lost beyond it
+MAX_COMMANDS = 10_000  # commands under way; beyond it the oldest ones are lost
 EARLY = 1e-6  # s, a command that is due within this is due
 
 
 class DeadTime(Generic[T]):
-    """First in, first out, each a dead time after it was sent."""
+    """A first-in, first-out queue; each command is due a dead time after it was sent."""
 
     def __init__(self, seconds: float) -> None:
         self._seconds = seconds
@@ -21,7 +21,7 @@ class DeadTime(Generic[T]):
 
     @property
     def under_way(self) -> Iterator[T]:
-        """What was sent and is not due yet."""
+        """The commands that are not due yet."""
         return (command for _, command in self._under_way)
 
     def put(self, now: float, command: T, more: float = 0.0) -> None:
@@ -29,10 +29,10 @@ class DeadTime(Generic[T]):
         self._under_way.append((now + self._seconds + more, command))
 
     def due(self, now: float) -> Iterator[T]:
-        """Take those whose time has come, the oldest first."""
+        """Take the commands that are due, the oldest first."""
         while self._under_way and self._under_way[0][0] <= now + EARLY:
             yield self._under_way.popleft()[1]
 
     def clear(self) -> None:
-        """Lose what is under way."""
+        """Drop the commands under way."""
         self._under_way.clear()

@@ -1,4 +1,4 @@
-"""What a joint's hydraulics do with the angles they are sent: dead time, lag, end stops. Pure logic.
+"""Simulates how a joint's hydraulics answer commanded angles: dead time, lag, end stops. Pure logic.
 
 dq/dt = (u(t - D) - q) / tau, as in the simulator, whose drives were fitted to the real machines. The torque limit
 shapes only how a motion starts and ends. It is given as an acceleration: the simulator's torque gives the swing of a
@@ -11,7 +11,7 @@ from tms_config.models import Joint, Response
 from tms_sim.dead_time import DeadTime
 
 TORQUE = 2.0  # times the acceleration limit of planned motions
-STICKS = 5e-4  # rad/s, slower than this a joint stands as soon as nothing more is on its way to it
+STICKS = 5e-4  # rad/s, slower than this a joint stands when no command is under way
 
 
 class Drive:
@@ -27,7 +27,7 @@ class Drive:
 
     @property
     def still(self) -> bool:
-        """Whether it stands and nothing is on its way to it."""
+        """Whether it stands and no command is under way."""
         return self._target is None and self.velocity == 0.0 and not self._commands
 
     def slower(self, velocity: float) -> bool:
@@ -36,11 +36,11 @@ class Drive:
         return not self._commands and max(abs(self.velocity), abs(towards)) < velocity
 
     def send(self, angle: float, now: float, more: float = 0.0) -> None:
-        """Bring it to an angle [rad], as far as the end stops let it; `more` [s] lengthens the dead time."""
+        """Command an angle [rad], which the end stops may limit; `more` [s] lengthens the dead time."""
         self._commands.put(now, angle, more)
 
     def halt(self, now: float, immediately: bool, more: float = 0.0) -> None:
-        """Emergency stop: hold where it is when the stop takes effect. At once: what is under way is dropped."""
+        """Do the emergency stop: hold the position at its effect. `immediately`: commands under way are dropped."""
         if immediately:
             self._commands.clear()
             self._target = self.position
@@ -48,12 +48,12 @@ class Drive:
             self._commands.put(now, None, more)
 
     def rest(self) -> None:
-        """Stand from this moment on; what is under way is lost."""
+        """Stand from this moment on; commands under way are lost."""
         self._commands.clear()
         self._target, self.velocity = None, 0.0
 
     def shift(self, way: float) -> None:
-        """Leak: it moves [rad] without being told."""
+        """Move by `way` [rad] without a command, as by a leak."""
         self.position = max(self._low, min(self._high, self.position + way))
         if self._target is not None:
             self._target += way

@@ -23,7 +23,7 @@ class Chain:
     """All frames of one machine, the first being its base in the map."""
 
     model: MachineModel
-    border: Border  # with the machine's name filled in
+    border: Border  # its names hold the machine's name already
 
     def frames(self, place: tuple[float, float, float], positions: Mapping[str, float]) -> list[Frame]:
         """Frames for a place (x m, y m, yaw rad) and joint positions [rad]; joints left out are at 0."""

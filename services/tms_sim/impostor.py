@@ -1,4 +1,4 @@
-"""The fault `second_publisher`: somebody else tells that the machine stands where it was when the fault began."""
+"""The fault `second_publisher`: another publisher reports that the machine stands where the fault began."""
 
 from collections.abc import Callable
 from typing import Any
@@ -12,7 +12,7 @@ PUBLISH_PERIOD = 1 / 60  # s
 
 
 class Impostor:
-    """Publishers of its own on the topics of the machine, while the fault is on."""
+    """Has publishers of its own on the machine's topics while the fault is on."""
 
     def __init__(self, ros: Ros, made: Callable[[], list[Topic]]) -> None:
         self._ros, self._made = ros, made

@@ -1,4 +1,4 @@
-"""Joints moved by commands without a goal, as machines and simulators take them: angles or velocities. Pure logic."""
+"""Moves joints by commands without a goal, as machines and simulators do: angles or velocities. Pure logic."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -10,17 +10,17 @@ THERE = 1e-4  # rad
 
 
 class JointCommands:
-    """Angles hold until they are reached, velocities until the next command: nothing times out."""
+    """An angle stays until it is reached, a velocity until the next command: there is no time-out."""
 
     def __init__(self, arm: Arm, names: Mapping[str, str]) -> None:
-        """`names` are those that the border has for joints of the model, where they differ."""
+        """`names` maps joints of the model to their names at the border, where these differ."""
         self._arm, self._own = arm, {theirs: ours for ours, theirs in names.items()}
         self.emergency = False
 
     def take(
         self, names: Sequence[str], control: int, position: Sequence[float], velocity: Sequence[float]
     ) -> str | None:
-        """One JointCmd; returns why it is ignored as a whole. Unknown joints are skipped, as in the simulator."""
+        """Take one JointCmd; returns why it is ignored as a whole. Unknown joints are skipped, as in the simulator."""
         if control not in (POSITION, VELOCITY):
             return f"control_type {control}: a stand-in knows 0 (position) and 1 (velocity)"
         values = position if control == POSITION else velocity
@@ -45,11 +45,11 @@ class JointCommands:
         arm.targets[joint] = max(low, min(high, value))
 
     def stop(self, on: bool) -> None:
-        """Level of the emergency stop: while true nothing is taken."""
+        """Set the level of the emergency stop: while true, commands are ignored."""
         self.emergency = on
 
     def step(self) -> None:
-        """Forget what the joints have been led to; the arm itself has been stepped."""
+        """Forget the angles that are reached; the arm has been stepped before."""
         arm = self._arm
         for name, servo in arm.servos.items():
             if name in arm.targets and servo.rate == 0 and abs(arm.targets[name] - servo.setpoint) < THERE:

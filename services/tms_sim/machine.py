@@ -1,4 +1,4 @@
-"""A stand-in machine as a whole: joints, tracks, what goes wrong, and its time. Pure logic."""
+"""A whole stand-in: joints, tracks, faults, and its time. Pure logic."""
 
 import threading
 from collections.abc import Callable, Sequence
@@ -13,12 +13,12 @@ from tms_sim.tracks import ZERO
 from tms_sim.travel import Travel
 from tms_sim.turner import Turner
 
-MAX_STEP = 0.04  # s, step: goals end and faults strike as exactly at any time scale
+MAX_STEP = 0.04  # s a step, so that goals end and faults begin equally exactly at any time scale
 CREEPS = 3.0  # s of stand-still after which the fault `creep` begins
 
 
 class StandIn:
-    """Everything that moves, in one time. `die` is called when the fault of that name strikes."""
+    """All moving parts, with one common time. `die` is called when the fault of that name strikes."""
 
     def __init__(
         self,
@@ -41,17 +41,17 @@ class StandIn:
         self.fault = fault
         self.time = 0.0  # s
         self._die = die
-        self._pressed = False  # the emergency stop
-        self._releases = 0  # of it: a stop on its way that has been released since is void
+        self._pressed = False  # level of the emergency stop
+        self._releases = 0  # count of releases: a delayed stop is void when it was released since
         self._in_motion = 0.0  # s since the first of the open goals
         self._stood = 0.0  # s since it came to stand
         self._leaking = 0.0  # m/s, rad/s
         self._later: list[tuple[float, Callable[[], object]]] = []
-        self._lock = threading.Lock()  # of what comes later
+        self._lock = threading.Lock()  # guards the delayed commands
 
     @property
     def fault(self) -> Fault:
-        """What goes wrong."""
+        """The present fault."""
         return self._fault
 
     @fault.setter
@@ -67,7 +67,7 @@ class StandIn:
         return self.controller.busy or self.turner.busy or (self.travel is not None and self.travel.busy)
 
     def stop(self, on: bool) -> None:
-        """Level of the emergency stop."""
+        """Set the level of the emergency stop."""
         if not on:
             self.later(lambda: self._stop(False))
         elif not self.fault.ignore_emg_stop:
@@ -78,7 +78,7 @@ class StandIn:
         for part in (self.controller, self.turner, self.commands, self.travel):
             if part is not None:
                 part.stop(on)
-        if on and not self._pressed:  # it holds what was measured when it was pressed
+        if on and not self._pressed:  # the position when it was pressed is held
             self.arm.halt(self._border.emg_stop_at_once)
             if self.base is not None:
                 self.base.halt(self._border.emg_stop_at_once)
@@ -86,28 +86,28 @@ class StandIn:
         self._releases += not on
 
     def cancel(self, command: Callable[[], object]) -> None:
-        """A request to cancel a goal."""
+        """Cancel a goal, unless the fault `ignore_cancel` is on."""
         if not self.fault.ignore_cancel:
             self._order_stop(command)
 
     def drive(self, v: float, w: float) -> None:
-        """A velocity command [m/s, rad/s]; zero is an order to stop."""
+        """Take a velocity command [m/s, rad/s]; zero is an order to stop."""
         base, travel = self.base, self.travel
         if base is not None and travel is not None and not travel.emergency:
             order = self._order_stop if max(abs(v), abs(w)) < ZERO else self.later
             order(lambda: base.command(v, w))
 
     def turn(self, names: Sequence[str], control: int, position: Sequence[float], velocity: Sequence[float]) -> None:
-        """A joint command; a goal goes first."""
+        """Take a joint command; goals have priority."""
         if not self.busy:
             self.later(lambda: self.commands.take(names, control, position, velocity))
 
     def later(self, command: Callable[[], object]) -> None:
-        """Do it now, or `late` seconds of the machine's time from now."""
+        """Run a command now, or with the fault `late` that many seconds of the machine's time later."""
         self._after(self.fault.late, command)
 
     def _order_stop(self, command: Callable[[], object]) -> None:
-        """A machine that coasts goes on as it was for a while."""
+        """Run an order to stop; with the fault `coast` it takes effect later."""
         self._after(self.fault.late + self.fault.coast, command)
 
     def _after(self, seconds: float, command: Callable[[], object]) -> None:
@@ -128,7 +128,7 @@ class StandIn:
             seconds -= part
 
     def _sleeps(self) -> bool:
-        """Whether nothing will happen however long it waits."""
+        """Whether the state cannot change by time alone."""
         moves = (
             self.fault.drift
             or self.fault.creep
@@ -168,7 +168,7 @@ class StandIn:
             self.base.stuck = stuck
 
     def _leak(self, busy: bool, seconds: float) -> None:
-        """`drift` and `creep` move it although nobody told it to."""
+        """Move the machine without a command, by the faults `drift` and `creep`."""
         base = self.base
         moves = busy or self.arm.driven or (base is not None and (base.v != 0.0 or base.w != 0.0))
         self._stood = 0.0 if moves else self._stood + seconds

@@ -1,4 +1,4 @@
-"""One goal while a stand-in works on it, and how it ended."""
+"""One goal of a stand-in and its verdict."""
 
 import threading
 from dataclasses import dataclass, field
@@ -11,7 +11,7 @@ class Verdict:
     """How a motion ended."""
 
     outcome: str  # SUCCEEDED, CANCELED or ABORTED
-    code: int = 0  # of the action's own result
+    code: int = 0  # code in the action's own result
     text: str = ""
 
 

@@ -1,4 +1,4 @@
-"""The navigation's actions, with the messages of Jazzy or of Humble, whichever are built."""
+"""The navigation's actions, with the messages of Jazzy or of Humble, as built."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -17,7 +17,7 @@ from tms_sim.travel import MISSED, Travel, Trip
 
 
 def nav_servers(machine: StandIn, travel: Travel) -> list[Served]:
-    """All three."""
+    """The three actions of the navigation."""
 
     def served(field: str, action: Any, poses: Callable[[Any], Sequence[PoseStamped]], through: bool = False) -> Served:
         def begin(request: Any) -> Trip:
@@ -44,7 +44,7 @@ def _strange_frame(poses: Sequence[PoseStamped]) -> str | None:
 
 
 def _legs(poses: Sequence[PoseStamped], through: bool) -> list[Leg]:
-    """Poses that are only passed have no yaw, but for the last."""
+    """The legs for poses; a pose that is only passed has no yaw, except the last."""
     last = len(poses) - 1
     return [_leg(stamped.pose, not through or i == last) for i, stamped in enumerate(poses)]
 
@@ -73,7 +73,7 @@ def _feedback(action: Any, travel: Travel, trip: Trip) -> Any:
 
 def _result(action: Any, trip: Trip, verdict: Verdict) -> Any:
     reported = action.Result()
-    if hasattr(reported, "error_code"):  # Humble's results tell no reason
+    if hasattr(reported, "error_code"):  # Humble's results have no reason
         reported.error_code, reported.error_msg = verdict.code, verdict.text
     if action is FollowWaypoints and trip.missed:
         reported.missed_waypoints = _missed(trip.missed)

@@ -1,4 +1,4 @@
-"""Process `sim:<machine>`: stands in for one machine under the names of its border; absent names are not offered."""
+"""Process `sim:<machine>`: the stand-in of one machine with the names of its border; absent names are not served."""
 
 import os
 from collections.abc import Callable
@@ -22,7 +22,7 @@ from tms_sim.turn_server import TYPES, turn_server
 
 
 def start(app: App) -> None:
-    """Actions, commands and telemetry of one machine; /<machine>/sim/fault takes a Fault as JSON."""
+    """Serve actions, commands and telemetry of one machine; /<machine>/sim/fault takes a Fault as JSON."""
     site, name = app.site, app.machine
     border, model, settings = site.border(name), site.model_of(name), site.file.sim
     fault = settings.faults.get(name, Fault())
@@ -62,7 +62,7 @@ def _served(machine: StandIn, border: Border) -> list[Served]:
 
 
 def _break(app: App, machine: StandIn, text: str) -> None:
-    """Change what goes wrong, from now on; an empty object is a machine in order."""
+    """Set the fault from now on; an empty object means no fault."""
     try:
         machine.fault = Fault.model_validate_json(text or "{}")
     except ValidationError as error:

@@ -59,7 +59,7 @@ class Path:
 
     @staticmethod
     def _turns(joints: Mapping[str, Joint], start: Point, first: Point, order: Sequence[int]) -> list[float]:
-        """Whole turns [rad] to add to joints that turn for ever, so that none is unwound."""
+        """Whole turns [rad] to add for joints without limits, so that none turns back by whole turns."""
         offsets = []
         for joint, now, i in zip(joints.values(), start.positions, order, strict=True):
             apart = round((now - first.positions[i]) / math.tau) if joint.min is None and joint.max is None else 0

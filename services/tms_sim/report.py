@@ -1,4 +1,4 @@
-"""What a stand-in says of its motion, and how faults make a lie of it. Pure logic."""
+"""The motion that a stand-in reports, and the faults that falsify it. Pure logic."""
 
 import math
 from collections import deque
@@ -11,7 +11,7 @@ SECOND = 1_000_000_000  # ns
 
 
 class Reading(NamedTuple):
-    """One look at a machine: joints in the order of the controller, place and speeds of the base."""
+    """The state of a machine at one time: joints in the order of the controller, place and speeds of the base."""
 
     stamp: int  # ns, utc
     positions: tuple[float, ...]  # rad
@@ -32,21 +32,21 @@ class Reading(NamedTuple):
         return self._replace(velocities=(0.0,) * len(self.velocities), speeds=(0.0, 0.0))
 
     def displaced(self, way: float) -> "Reading":
-        """The same with every position [rad, m] this far off; the heading counts as none."""
+        """The same with every position [rad, m] off by `way`; the heading stays."""
         x, y, yaw = self.place
         return self._replace(positions=tuple(q + way for q in self.positions), place=(x + way, y + way, yaw))
 
 
 class Report:
-    """Readings in, what is reported out."""
+    """Turns true readings into reported ones."""
 
     def __init__(self, kept: int) -> None:
-        """`kept` readings are repeated by the fault `replay`."""
+        """`kept`: number of readings that the fault `replay` repeats."""
         self._last: deque[Reading] = deque(maxlen=max(1, kept))
         self._frozen: Reading | None = None
 
     def apply(self, true: Reading, fault: Fault) -> Reading:
-        """What is reported at the time of a reading."""
+        """The reading that is reported instead of the true one."""
         if fault.frozen_stamp:
             if self._frozen is None:
                 self._frozen = self._last[-1] if self._last else true

@@ -16,9 +16,9 @@ FEEDBACK = 0.1  # s
 
 @dataclass(frozen=True)
 class Served:
-    """One action. `begin` gets the request, the others what `begin` gave."""
+    """One action. `begin` gets the request; the others get the motion that `begin` returned."""
 
-    field: str  # under borders:
+    field: str  # its key under borders:
     type: Any
     refusal: Callable[[Any], tuple[int, str] | str | None]
     begin: Callable[[Any], Any]
@@ -34,7 +34,7 @@ class Server:
         self._log, self._machine, self._served = app.log, machine, served
 
     def accept(self, request: Any) -> Reason | None:
-        """Refuse what cannot be done, as the real servers do: without a result, the reason in the log."""
+        """Refuse an impossible goal as the real servers do: without a result, and with the reason in the log."""
         refused = self._served.refusal(request)
         if self._served.field in self._machine.fault.refuse:
             refused = "the fault 'refuse' is on"
@@ -53,7 +53,7 @@ class Server:
                 return Outcome.CANCELED, served.type.Result()
         motion: Motion = served.begin(goal.request)
         goal.on_cancel = lambda: machine.cancel(lambda: served.cancel(motion))
-        if goal.cancelled.is_set():  # it came before there was something to cancel
+        if goal.cancelled.is_set():  # the request came before the motion began
             goal.on_cancel()
         while not motion.over.wait(FEEDBACK):
             if not machine.fault.drop_feedback:

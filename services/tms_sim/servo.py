@@ -1,4 +1,4 @@
-"""One joint of a stand-in: where its controller leads it, and the drive that follows. Pure logic."""
+"""One joint of a stand-in: the setpoint of its controller, and the drive that follows it. Pure logic."""
 
 import math
 
@@ -6,18 +6,18 @@ from tms_config.models import Joint, Response
 from tms_sim.control_law import ControlLaw
 from tms_sim.drive import Drive
 
-SETTLED = 1e-3  # rad and rad/s, then the controller is done with it
+SETTLED = 1e-3  # rad and rad/s, within which the controller ends its commands
 STANDS = 5e-3  # rad/s, slower than this it counts as standing for a goal that is being cancelled
 
 
 class Servo:
-    """Without a response the joint is where it is led to, within its limits."""
+    """A joint without a response is at its setpoint, within its limits."""
 
     def __init__(self, joint: Joint, position: float, response: Response | None) -> None:
         self.joint = joint
-        self.setpoint, self.rate = position, 0.0  # rad, rad/s: where it is led to, `ahead` from now
+        self.setpoint, self.rate = position, 0.0  # rad, rad/s: the reference `ahead` seconds from now
         self.led = False  # the controller sends commands
-        self._leak = 0.0  # rad/s, it moves without being told
+        self._leak = 0.0  # rad/s, motion without a command
         self._stood = math.inf  # s since the setpoint came to stand
         self._braking = self._halted = False
         self._drive = Drive(joint, response, position) if response else None
@@ -25,7 +25,7 @@ class Servo:
 
     @property
     def ahead(self) -> float:
-        """How far ahead of the time the setpoint is [s]: the dead time, as far as it is known."""
+        """How far the setpoint is ahead of the time [s]: the known dead time."""
         return self._law.dead_time if self._law else 0.0
 
     @property
@@ -40,7 +40,7 @@ class Servo:
 
     @property
     def driven(self) -> bool:
-        """Whether it moves because it was commanded to."""
+        """Whether a command moves it."""
         return (self._drive.velocity if self._drive else self.rate) != 0.0
 
     @property
@@ -50,7 +50,7 @@ class Servo:
 
     @property
     def stands(self) -> bool:
-        """Whether a goal that was cancelled is over, as far as a controller can tell."""
+        """Whether a cancelled goal is over, as far as a controller can measure."""
         if self._drive is None:
             return self.still
         if self._halted:
@@ -58,7 +58,7 @@ class Servo:
         return self._stood >= self.ahead and abs(self._drive.velocity) <= STANDS
 
     def step(self, now: float, h: float, wanted: float | None) -> None:
-        """Let `h` seconds pass up to `now`; `wanted` is the velocity [rad/s] to lead it with, None: nothing to do."""
+        """Let `h` seconds pass up to `now`; `wanted` is the velocity [rad/s] of the reference, None: there is none."""
         if self._drive is not None:
             self._drive.step(now, h)
         if wanted is not None:
@@ -67,21 +67,21 @@ class Servo:
         self._stood = 0.0 if wanted or self.rate else self._stood + h
 
     def send(self, now: float, more: float, done: bool) -> None:
-        """One turn of the controller; `more` [s] is dead time that it does not know of, `done`: nothing is wanted."""
+        """Do one period of the controller; `more` [s] is dead time unknown to it, `done`: there is no reference."""
         drive, law = self._drive, self._law
         if drive is None or law is None or not self.led:
             return
-        if self._braking and self.rate == 0.0:  # the ramp is over: hold where this leaves the joint
+        if self._braking and self.rate == 0.0:  # the ramp is over: hold the position that it leads to
             self.setpoint, self._braking = law.predicted(now, drive.position), False
         drive.send(law.command(now, drive.position, self.setpoint, self.rate), now, more)
         near = abs(self.setpoint - drive.position) < SETTLED and abs(drive.velocity) < SETTLED
         if done and near and self._stood > self.ahead:
-            drive.send(self.setpoint, now, more)  # not an angle that leads
+            drive.send(self.setpoint, now, more)  # the setpoint itself, without a lead
             self.led = False
             law.rest()
 
     def brake(self, now: float) -> None:
-        """Ramp down from where the joint will be when what is sent from now on takes effect."""
+        """Ramp down from the position that the joint will have when commands from now on take effect."""
         drive, law, most = self._drive, self._law, self.joint.velocity
         if drive is not None and law is not None and self.led:
             self.rate = max(-most, min(most, law.predicted_velocity(now, drive.position)))
@@ -95,7 +95,7 @@ class Servo:
             self.led, self.rate, self._halted = False, 0.0, True
 
     def rest(self) -> None:
-        """It stands from this moment on, whatever is under way."""
+        """Stand from this moment on; commands under way are lost."""
         if self._drive is not None and self._law is not None:
             self._drive.rest()
             self._law.rest()
@@ -103,7 +103,7 @@ class Servo:
         self.setpoint = self.position
 
     def leak(self, velocity: float, h: float) -> None:
-        """Move without being told, as far as the end stops let it."""
+        """Move without a command, within the end stops."""
         before = self.position
         if velocity and self._drive is not None:
             self._drive.shift(velocity * h)

@@ -1,6 +1,6 @@
-"""The topics that tell of a machine's motion, as its border has them.
+"""The topics that report a machine's motion, as its border has them.
 
-A message is made once a topic and changed in place, since making them is what a process spends most on.
+Each topic has one message, which is changed in place: making messages would be most of the process's load.
 """
 
 import math
@@ -18,7 +18,7 @@ from tms_machine.geometry import about
 from tms_ros.node import Ros
 from tms_sim.report import SECOND, Reading
 
-Fill = Callable[[Any, Reading], None]  # a message from a reading
+Fill = Callable[[Any, Reading], None]  # fills a message from a reading
 
 
 class Topic:
@@ -30,12 +30,12 @@ class Topic:
         self._message, self._fill, self._source, self._begun = message, fill, source, begun
 
     def due(self, tick: int, period: float) -> bool:
-        """Whether it is reported at this tick, where a tick comes every `period` [s]: as often as declared at most."""
+        """Whether to publish at this tick, with a tick every `period` [s]: at most as often as declared."""
         share = period / self._source.period
         return share >= 1 or int(tick * share + 1e-6) != int((tick - 1) * share + 1e-6)
 
     def publish(self, reading: Reading) -> None:
-        """Publish it."""
+        """Publish a reading."""
         self._message.header.stamp = self._stamp(reading.stamp)
         self._fill(self._message, reading)
         self.publisher.publish(self._message)
@@ -47,7 +47,7 @@ class Topic:
 
 
 def time_of(nanoseconds: int) -> Time:
-    """A time as messages have it."""
+    """A time as a ROS message."""
     seconds, rest = divmod(nanoseconds, SECOND)
     return Time(sec=seconds, nanosec=rest)
 
@@ -56,7 +56,7 @@ def topics(
     ros: Ros, machine: str, border: Border, joints: Sequence[str], origin: tuple[float, float, float],
     muted: Callable[[], Collection[str]], begun: int,
 ) -> list[Topic]:  # fmt: skip
-    """All sources of a border that a stand-in has. `muted` gives the joints of the model that are left out now."""
+    """All sources of a border that a stand-in has. `muted` returns the joints that are left out now."""
     made: dict[str, tuple[Any, Fill]] = {"joint_states": (JointState(), _joint_states(border, joints, muted))}
     odom = Odometry(child_frame_id=f"{border.frame_prefix}base_link")
     odom.header.frame_id = f"{border.frame_prefix}odom"
@@ -86,7 +86,7 @@ def _joint_states(border: Border, joints: Sequence[str], muted: Callable[[], Col
 
 
 def _odometry(odom: Odometry, reading: Reading, origin: tuple[float, float, float]) -> None:
-    """Position since the start, in a frame of its own, as encoders count it."""
+    """Fill in the position since the start, in a frame of its own, as encoders measure it."""
     (x, y, yaw), (x0, y0, yaw0) = reading.place, origin
     dx, dy, c, s = x - x0, y - y0, math.cos(yaw0), math.sin(yaw0)
     _place(odom.pose.pose, c * dx + s * dy, c * dy - s * dx, yaw - yaw0)
@@ -94,7 +94,7 @@ def _odometry(odom: Odometry, reading: Reading, origin: tuple[float, float, floa
 
 
 def _global_pose(odom: Odometry, reading: Reading) -> None:
-    """Without velocities, as the simulator sends it."""
+    """Fill in the pose without velocities, as in the simulator."""
     _place(odom.pose.pose, *reading.place)
 
 

@@ -1,7 +1,7 @@
-"""What a stand-in tells, all from one timer, since a timer costs more than its work: sources of its border and frames.
+"""Publishes sources and frames of a stand-in from one timer, since a timer costs more than the work in it.
 
 25 Hz is the rate of the simulator's excavators. Velocities are those of the machine, also when its time runs faster
-than real time. The frames are true whatever its sources say: they come from elsewhere.
+than real time. Faults of the sources do not change the frames, which a real site gets from elsewhere.
 """
 
 from typing import Any
@@ -20,13 +20,13 @@ from tms_sim.truth import Truth
 
 STEP_PERIOD = 0.04  # s
 TF_EVERY = 2  # periods a set of frames while something moves
-TF_STILL = 10  # and while nothing does: every listener pays for each
-LAG = 0.5  # s at most that are caught up after the process was held up
+TF_STILL = 10  # periods while it stands: each set costs every subscriber
+LAG = 0.5  # s at most that are made up for after the process was held up
 REPLAYED = 2.0  # s of the machine
 
 
 class Telemetry:
-    """Lets the machine's time pass, and tells."""
+    """Lets the machine's time pass, and publishes its motion."""
 
     def __init__(self, app: App, machine: StandIn, name: str) -> None:
         border, model, ros = app.site.border(name), app.site.model_of(name), app.ros
@@ -49,7 +49,7 @@ class Telemetry:
         self._stepped, self._ticks = monotonic(), 0
 
     def tick(self) -> None:
-        """One timer call: let the machine's time catch up with ours, and tell."""
+        """Let the machine's time catch up with ours, and publish. The timer calls this."""
         now = monotonic()
         self._machine.step(min(now - self._stepped, LAG) * self._speed)
         self._stepped = now

@@ -7,44 +7,44 @@ from tms_sim.dead_time import DeadTime
 
 SUBSTEP = 0.02  # s: the same motion at any time scale
 ZERO = 1e-3  # m/s, rad/s: a smaller command is one to brake, as in the simulator
-BRAKE = 0.1  # s, lag of the brakes: practically instant, and far shorter than that of any drive
+BRAKE = 0.1  # s, lag of the brakes: far shorter than the lag of any drive
 SLOW = 2e-3  # m/s, rad/s: the brakes hold what is slower
 
 
 class Tracks:
-    """Position [m], heading [rad] and velocities [m/s, rad/s]. Without a response, speeds follow at their limits."""
+    """Position [m], heading [rad], velocities [m/s, rad/s]. Without a response, only limits delay the velocities."""
 
     def __init__(self, drive: Drive, start: tuple[float, float, float], response: Response | None) -> None:
         self.drive = drive
         self.x, self.y, self.yaw = start
         self.v = self.w = 0.0
         self.now = 0.0  # s
-        self.more_dead_time = 0.0  # s, that no controller knows of
-        self.leak = 0.0  # m/s, it moves without being told
+        self.more_dead_time = 0.0  # s, not known to any controller
+        self.leak = 0.0  # m/s, motion without a command
         self._lag = response.lag if response else None  # s
         self._commands: DeadTime[tuple[float, float]] = DeadTime(response.dead_time if response else 0.0)
-        self._command = (0.0, 0.0)  # in effect
+        self._command = (0.0, 0.0)  # the command in effect
 
     @property
     def still(self) -> bool:
-        """Whether nothing moves or will move, as far as it is commanded to."""
+        """Whether no command moves the tracks or will move them."""
         return self.v == 0.0 and self.w == 0.0 and all(map(_brakes, (self._command, *self._commands.under_way)))
 
     def send(self, v: float, w: float) -> None:
-        """Velocities [m/s, rad/s] that hold until the next command."""
+        """Command velocities [m/s, rad/s], which stay until the next command."""
         self._commands.put(self.now, (v, w), self.more_dead_time)
 
     def brake_at_once(self) -> None:
-        """Emergency stop that knows no dead time: what is under way is lost."""
+        """Do an emergency stop without dead time: commands under way are lost."""
         self._commands.clear()
         self._command = (0.0, 0.0)
 
     def lead(self, v: float, w: float, h: float) -> None:
-        """Send what the tracks need to have these velocities, as far as limits let them, `h` seconds from now."""
+        """Send the command that brings the tracks to these velocities, within their limits, `h` seconds from now."""
         v = self._leading(self.v, v, self.drive.acceleration * h, h)
         w = self._leading(self.w, w, self.drive.turn_acceleration * h, h)
         if self._lag is not None and max(abs(v), abs(w)) < ZERO <= abs(self.v):
-            v = ZERO  # slower, but not by the brakes
+            v = ZERO  # slow down without the brakes
         self.send(v, w)
 
     def _leading(self, now: float, wanted: float, most: float, h: float) -> float:
@@ -78,5 +78,5 @@ def _brakes(command: tuple[float, float]) -> bool:
 
 
 def cut(value: float, most: float) -> float:
-    """The value within plus and minus `most`."""
+    """The value, limited to plus and minus `most`."""
     return max(-most, min(most, value))

@@ -1,4 +1,4 @@
-"""Goals of the navigation: one at a time, a newer one preempts, and no progress is a failure, as Nav2 has it."""
+"""Goals of the navigation as in Nav2: one at a time, a newer one preempts, and a lack of progress is a failure."""
 
 import math
 import threading
@@ -8,26 +8,26 @@ from dataclasses import dataclass, field
 from tms_sim.base import Base, Leg
 from tms_sim.motion import ABORTED, CANCELED, SUCCEEDED, Motion, Verdict
 
-PROGRESS, PATIENCE = 0.5, 10.0  # m in s: the machines' progress checker
-TURNED = 0.3  # rad that count as progress, too
+PROGRESS, PATIENCE = 0.5, 10.0  # m within s: figures of the machines' progress checker
+TURNED = 0.3  # rad, a turn that counts as progress, too
 FAILED = 1  # error code of the navigation
 MISSED = 601  # error code of a waypoint that was not reached
 
 
 @dataclass
 class Trip(Motion):
-    """One goal: places one after another. A trip whose legs are waypoints goes on when one cannot be reached."""
+    """One goal of several places. A trip of waypoints goes on when one of them cannot be reached."""
 
     legs: Sequence[Leg]
     waypoints: bool = False
     seconds: float = 0.0  # on the way so far
     missed: list[int] = field(default_factory=list)
-    braking: Verdict | None = None  # verdict once the machine stands
-    mark: tuple[float, float, float, float] = (math.inf, 0.0, 0.0, 0.0)  # x, y, yaw at a time: the last progress
+    braking: Verdict | None = None  # verdict when the machine stands
+    mark: tuple[float, float, float, float] = (math.inf, 0.0, 0.0, 0.0)  # x, y, yaw and time of the last progress
 
 
 class Travel:
-    """Trips in, motion of the base out."""
+    """Turns trips into motion of the base."""
 
     def __init__(self, base: Base) -> None:
         self.base = base
@@ -41,7 +41,7 @@ class Travel:
         return self._trip is not None
 
     def refusal(self, legs: Sequence[Leg]) -> str | None:
-        """Why a goal is not taken, or None."""
+        """Why a goal is refused, or None."""
         if self.emergency:
             return "the emergency stop is on: publish false on emg_stop to release it"
         if not all(math.isfinite(number) for leg in legs for number in leg if number is not None):
@@ -49,7 +49,7 @@ class Travel:
         return None
 
     def begin(self, legs: Sequence[Leg], *, waypoints: bool = False, miss: Sequence[int] = ()) -> Trip:
-        """Set out; waypoints in `miss` cannot be reached."""
+        """Begin a trip; the waypoints in `miss` cannot be reached."""
         with self._lock:
             if self._trip is not None:
                 self._trip.end(Verdict(ABORTED, FAILED, "preempted by a newer goal"))
@@ -71,7 +71,7 @@ class Travel:
                 self._brake(Verdict(CANCELED, text="stopped on request"))
 
     def stop(self, on: bool) -> None:
-        """Level of the emergency stop."""
+        """Set the level of the emergency stop."""
         with self._lock:
             self.emergency = on
             if on:
@@ -89,7 +89,7 @@ class Travel:
             self._trip.braking = verdict
 
     def step(self, seconds: float) -> None:
-        """Let time pass and end what is due."""
+        """Let time pass, and end the trip when it is due."""
         with self._lock:
             self.base.step(seconds)
             trip = self._trip
@@ -112,5 +112,5 @@ class Travel:
 
 
 def _arrived(trip: Trip) -> Verdict:
-    """Nav2 calls a path with missed waypoints a success unless it is told otherwise; so does its stand-in."""
+    """The verdict at the end: like Nav2 by default, a path with missed waypoints is a success."""
     return Verdict(SUCCEEDED)

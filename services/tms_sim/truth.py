@@ -1,6 +1,6 @@
-"""The true motion of a stand-in on a way of its own, /<machine>/sim/truth, which no fault changes. For drills.
+"""The true motion of a stand-in on a topic of its own, /<machine>/sim/truth, which no fault changes. For drills.
 
-Its time passes in the steps of its telemetry, 0.04 s unless the process was held up, and each is reported.
+The time passes in the steps of telemetry.py, 0.04 s unless the process was held up, and each step is published.
 """
 
 import math
@@ -17,7 +17,7 @@ TRACKS = ["x", "y", "yaw"]  # m, m, rad in `map`
 
 
 class Truth:
-    """Positions and velocities in the machine's time. Costs nothing while nobody listens."""
+    """Positions and velocities in the machine's time. Costs nothing without a subscriber."""
 
     def __init__(self, ros: Ros, name: str, machine: StandIn) -> None:
         self._machine = machine
@@ -25,7 +25,7 @@ class Truth:
         self._message = JointState(name=[*machine.arm.joints, *(TRACKS if machine.base else [])])
 
     def publish(self) -> None:
-        """After every step."""
+        """Publish the motion; called after every step."""
         if not self._publisher.get_subscription_count():
             return
         arm, base, message = self._machine.arm, self._machine.base, self._message

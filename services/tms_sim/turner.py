@@ -1,4 +1,4 @@
-"""Joints that go to an angle on request, as the servers of a carrier's vessel and upper body do."""
+"""Turns joints to an angle on request, like the servers of a carrier's vessel and upper body."""
 
 import math
 from dataclasses import dataclass
@@ -18,16 +18,16 @@ class Turn(Motion):
 
     joint: str
     target: float  # rad
-    braking: Verdict | None = None  # verdict once the joint stands
-    held: float = 0.0  # s at the target, where the joint then returns to 0
+    braking: Verdict | None = None  # verdict when the joint stands
+    held: float = 0.0  # s at the target, for a joint that then returns to 0
 
 
 class Turner:
-    """Goals in, motion of single joints out; a new goal for a joint preempts the old one."""
+    """Turns goals into motion of single joints; a new goal for a joint preempts the old one."""
 
     def __init__(self, arm: Arm, returns: bool = False) -> None:
-        """`returns`: a goal tips, waits and comes back to 0, and nothing ends it on the way, as OPERA's helper for
-        the simulator has it.
+        """`returns`: a goal tips, waits and returns to 0, and cannot be cancelled, as in OPERA's helper for the
+        simulator.
         """
         self.arm, self._returns = arm, returns
         self._turns: dict[str, Turn] = {}
@@ -40,7 +40,7 @@ class Turner:
         return bool(self._turns)
 
     def refusal(self, joint: str, angle: float) -> str | None:
-        """Why a goal is not taken, or None."""
+        """Why a goal is refused, or None."""
         if self.emergency:
             return "the emergency stop is on: publish false on emg_stop to release it"
         if not math.isfinite(angle):
@@ -49,7 +49,7 @@ class Turner:
         return f"{joint}: {text(broken, 'en')}" if broken else None
 
     def begin(self, joint: str, angle: float) -> Turn:
-        """Turn a joint that was not refused; one that turns for ever takes the shorter way."""
+        """Turn a joint whose goal was not refused; a joint without limits takes the shorter way."""
         limits = self.arm.joints[joint]
         if limits.min is None and limits.max is None:
             now = self.angle(joint)
@@ -72,7 +72,7 @@ class Turner:
                 self._brake(turn, Verdict(CANCELED, text="stopped on request"))
 
     def stop(self, on: bool) -> None:
-        """Level of the emergency stop."""
+        """Set the level of the emergency stop."""
         with self._lock:
             self.emergency = on
             for turn in self._turns.values():
@@ -80,7 +80,7 @@ class Turner:
                     self._brake(turn, Verdict(ABORTED, text="emergency stop"))
 
     def angle(self, joint: str) -> float:
-        """Where a joint is [rad]."""
+        """Position of a joint [rad]."""
         return self.arm.servos[joint].position
 
     def _brake(self, turn: Turn, verdict: Verdict) -> None:
@@ -88,7 +88,7 @@ class Turner:
         turn.braking = verdict
 
     def step(self, seconds: float) -> None:
-        """End what is due; the arm itself has been stepped."""
+        """End the goals that are due; the arm has been stepped before."""
         with self._lock:
             for turn in list(self._turns.values()):
                 verdict = self._ended(turn, seconds)
@@ -107,7 +107,7 @@ class Turner:
         return Verdict(SUCCEEDED) if there else None
 
     def _return(self, turn: Turn, seconds: float) -> bool:
-        """Wait at the target, then go back; it is not there yet."""
+        """Wait at the target, then return to 0; False, since the goal is not over yet."""
         turn.held += seconds
         if turn.held >= HELD:
             turn.target = self.arm.targets[turn.joint] = 0.0

@@ -1,1 +1,1 @@
-"""TMS_SP: what sensing PCs measure becomes parameter records."""
+"""TMS_SP: writes the measurements of sensing PCs into parameter records."""

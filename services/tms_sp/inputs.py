@@ -1,4 +1,4 @@
-"""One sensing input: hears its topic, refuses what must not be written, and knows how it is."""
+"""One sensing input: receives messages, refuses those that must not be written, and judges the state of the topic."""
 
 import math
 from collections import deque
@@ -22,10 +22,10 @@ OFFSET = Gauge("tms_sp_clock_offset_seconds", "How far our clock is ahead of the
 OFFSET_LIMIT = Gauge("tms_sp_clock_limit_seconds", "How far it may be ahead or behind")
 AGE = Gauge("tms_sp_input_age_seconds", "Time since the last accepted message, or since the start", ["input"])
 AGE_LIMIT = Gauge("tms_sp_input_age_limit_seconds", "Age at which an input with a declared rate is silent", ["input"])
-SILENT_PERIODS = 10  # of the declared rate
-ARRIVALS = 50  # for the rate
+SILENT_PERIODS = 10  # periods of the declared rate without a message
+ARRIVALS = 50  # messages that the rate is measured over
 MAX_RECORDS = 20
-RECORDS_KNOWN = 5000  # whose stamps are remembered
+RECORDS_KNOWN = 5000  # records whose last stamps are kept
 
 
 class SensingInput:
@@ -40,16 +40,16 @@ class SensingInput:
         self._taken: dict[Key, float] = {}
         self._arrivals: deque[float] = deque(maxlen=ARRIVALS)
         self._began = monotonic()
-        AGE.labels(name).set_function(self._age_now)  # told at the scrape, whatever the executor does
+        AGE.labels(name).set_function(self._age_now)  # computed at the scrape, also while the executor is busy
         if given.hz:
             AGE_LIMIT.labels(name).set(SILENT_PERIODS / given.hz)
         OFFSET_LIMIT.set(clock_limit)
         self.accepted = self.refused = 0
         self.last_refusal: Reason | None = None
-        self.unlogged: Reason | None = None  # a refusal
+        self.unlogged: Reason | None = None  # a refusal that is not in the log yet
 
     def receive(self, message: Message) -> None:
-        """One message."""
+        """Take one message."""
         try:
             result = self._take(message)
         except Refused as refusal:
@@ -58,7 +58,7 @@ class SensingInput:
         MESSAGES.labels(self.name, result).inc()
 
     def refuse(self, code: str, why: Reason) -> None:
-        """Count and remember a refusal."""
+        """Count a refusal and keep it as the last one."""
         self.refused += 1
         self.last_refusal = self.unlogged = why
         MESSAGES.labels(self.name, code).inc()
@@ -80,7 +80,7 @@ class SensingInput:
         return "accepted"
 
     def _age(self, reading: Reading, wall: float) -> float:
-        """S since the measurement.
+        """Seconds since the measurement.
 
         Raises:
             Refused: StampInFuture, MeasuredEarlier.
@@ -91,13 +91,13 @@ class SensingInput:
         if ahead > 0:
             raise Refused(StampInFuture(ahead + self._clock_limit))
         before = self._stamps.get(reading.key)
-        set_back = before is not None and self._clock.ahead(before, wall) > 0  # ours: it was no future when it came
+        set_back = before is not None and self._clock.ahead(before, wall) > 0  # our clock was, after the stamp came
         if before is not None and reading.stamp < before and not set_back:
             raise Refused(MeasuredEarlier(before - reading.stamp))
         return self._clock.age(reading.stamp, wall)
 
     def judge(self) -> str:
-        """waiting, alive, silent or clock."""
+        """The state: waiting, alive, silent or clock."""
         last = self._arrivals[-1] if self._arrivals else None
         if last is None:
             return "waiting"
@@ -106,7 +106,7 @@ class SensingInput:
         return "clock" if self._clock.off else "alive"
 
     def state(self) -> InputState:
-        """For the topic of input states; also brings the metrics up to date."""
+        """The message for the topic of input states; updates the metrics, too."""
         now = monotonic()
         age = now - self._arrivals[-1] if self._arrivals else -1.0
         offset = self._clock.offset
@@ -128,7 +128,7 @@ class SensingInput:
         return sorted(self._taken)[:MAX_RECORDS]
 
     def _rate(self, now: float) -> float:
-        """Messages a second over the last ones, and over the silence since."""
+        """Messages a second, from the first of the last ARRIVALS until now."""
         if len(self._arrivals) < 2:
             return 0.0
         return (len(self._arrivals) - 1) / max(now - self._arrivals[0], 1e-3)

@@ -1,4 +1,4 @@
-"""Where the site's machines are, at a low rate, into the collections that the C++ system's readers know."""
+"""Writes pose and joints of the site's machines at a low rate into the collections that the C++ system reads."""
 
 import json
 from collections.abc import Callable, Sequence
@@ -14,7 +14,7 @@ from tms_runtime.app import App
 
 
 class MachineStates:
-    """Looks at the topics of all machines; messages in between cost nothing."""
+    """Samples the topics of all machines; messages between two samples cost nothing."""
 
     def __init__(self, app: App, hz: float) -> None:
         self._ros = app.ros
@@ -31,7 +31,7 @@ class MachineStates:
             app.ros.every(1.0 / hz, self._write_due)
 
     def _write_due(self) -> None:
-        if self._waiting:  # for the database: a state that is not written now is written with the next ones
+        if self._waiting:  # for the database's answer: these states are written with the next ones
             self._waiting = False
             return
         states = [

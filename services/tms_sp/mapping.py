@@ -1,4 +1,4 @@
-"""From a message to new values of a record, or to the reason why not; a message is whatever has fields."""
+"""Maps a message to new values of a record, or to the reason why not; a message is any object with fields."""
 
 import math
 from collections.abc import Callable
@@ -30,16 +30,16 @@ from tms_sp.reasons import (
 
 Key = tuple[str, str]  # model, record
 Getter = Callable[[Any], Any]
-LARGEST = 2**63 - 1  # whole number, on the wire and in the store
+LARGEST = 2**63 - 1  # whole number that messages and the store can hold
 
 
 class Refused(TmsError):
-    """A message that must not change anything; its code is counted."""
+    """A message that must not change a record; refusals are counted by their code."""
 
 
 @dataclass(frozen=True)
 class Reading:
-    """What one message says."""
+    """The values of one message, and the record that they belong to."""
 
     key: Key
     values: dict[str, Any]
@@ -48,13 +48,13 @@ class Reading:
 
 
 class Mapping:
-    """One input's way from messages to readings."""
+    """Maps the messages of one input to readings."""
 
     def __init__(self, given: Input, fields: Fields, fields_of: FieldsOf) -> None:
         """`fields`: names and types of the message's fields; `fields_of`: those of the messages inside it.
 
         Raises:
-            Wrong: the message has no such field, or none that a record can hold; names it.
+            Wrong: names a field that the message does not have, or that a record cannot hold.
         """
         self._input = given
         types = FieldTypes(fields, fields_of)
@@ -108,7 +108,7 @@ class Mapping:
     def _checked(self, name: str, value: Any) -> Any:
         if isinstance(value, float) and not math.isfinite(value):
             raise Refused(ValueNotFinite(name, str(value)))
-        if isinstance(value, int) and value > LARGEST:  # of a uint64
+        if isinstance(value, int) and value > LARGEST:  # possible in a uint64
             raise Refused(ValueTooLarge(name, value, LARGEST))
         limits = self._input.range.get(name.lower() if self.loose else name)
         if limits is not None and not isinstance(value, str) and not limits[0] <= value <= limits[1]:
@@ -116,7 +116,7 @@ class Mapping:
         return value
 
     def _check_sizes(self, values: dict[str, Any]) -> None:
-        """Arrays of one message belong together: the n-th elements of x, y and z are one point."""
+        """Refuse arrays of different sizes: the n-th elements of x, y and z are one point."""
         sizes = {name: len(value) for name, value in values.items() if isinstance(value, list)}
         if len(set(sizes.values())) > 1:
             raise Refused(SizesDiffer(tuple(f"{name} {size}" for name, size in sizes.items())))
@@ -125,7 +125,7 @@ class Mapping:
 
 
 def stamp_path(given: Input, fields: dict[str, str]) -> str | None:
-    """Where the messages of an input say when they were measured."""
+    """The path of the time of measurement in an input's messages; None if they have none."""
     return given.stamp or ("header.stamp" if fields.get("header") == "std_msgs/Header" else None)
 
 
@@ -137,7 +137,7 @@ def _name(text: str, fields: dict[str, str]) -> Callable[[Any], str]:
 
 
 def field_getter(path: str, fields: dict[str, str]) -> Getter:
-    """What reads a field by its path.
+    """Make a function that reads a field by its path.
 
     Raises:
         Wrong: the message has no such field.

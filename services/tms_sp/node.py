@@ -1,4 +1,4 @@
-"""`tms:sp`: hears the declared sensing inputs and keeps parameter records up to date; waits for no machine."""
+"""`tms:sp`: receives the declared sensing inputs and updates parameter records; does not wait for machines."""
 
 import importlib
 from collections.abc import Callable
@@ -25,15 +25,15 @@ from tms_sp.mapping import Mapping
 from tms_sp.outbox import Outbox, Post
 from tms_sp.reasons import DatabaseAway, DatabaseSilent, NoMessageType
 
-GAP = 0.015  # s between batches; what comes in between goes together
+GAP = 0.015  # s between batches; the values that arrive in between are sent together
 RETRY = 0.5  # s between attempts while the database or its store is away
 ANSWER_LIMIT = 5.0  # s for the database to answer a batch
 STATE_PERIOD = 1.0  # s between messages about the inputs
-PUBLISHERS_CHECK_PERIOD = 0.5  # s between looks at who publishes a topic that several inputs share
+PUBLISHERS_CHECK_PERIOD = 0.5  # s between checks of which type is published on a topic that several inputs share
 
 
 def start(app: App) -> None:
-    """Hear the inputs.
+    """Subscribe to the inputs.
 
     Raises:
         ConfigError: sensing.yaml is wrong.
@@ -90,7 +90,7 @@ def _state(app: App, one: SensingInput) -> InputState:
 
 
 class Listener:
-    """The subscription of one topic. Inputs that share a topic have different types: the one that comes is received."""
+    """The subscription of one topic. Of inputs that share it, the one whose type is published is received."""
 
     def __init__(self, app: App, topic: str, inputs: list[SensingInput]) -> None:
         self._ros, self._log, self._topic, self._inputs = app.ros, app.log, topic, inputs
@@ -122,19 +122,19 @@ class Listener:
 
 
 class Sender:
-    """Carries the outbox to the database: a batch at most every GAP, several on their way at the same time."""
+    """Sends the outbox to the database: a batch at most every GAP; several may wait for their answers."""
 
     def __init__(self, app: App) -> None:
         self._ros, self._log = app.ros, app.log
         self.inputs: dict[str, SensingInput] = {}
         self._outbox = Outbox(lambda name: self.inputs[name].counts)
-        self._flights: dict[int, float] = {}  # number -> when it is given up
+        self._flights: dict[int, float] = {}  # batch number -> time limit of its answer [s, monotonic]
         self._forget: dict[int, Callable[[], None]] = {}
         self._not_before = 0.0
         self._trouble: Reason | None = None
-        self._clock = app.ros.every(GAP, self._send)  # stands while nothing waits
+        self._clock = app.ros.every(GAP, self._send)  # cancelled while no values wait
         self._clock.cancel()
-        self._retry = app.ros.every(RETRY, self._expire)  # so does this one while nothing waits or is on its way
+        self._retry = app.ros.every(RETRY, self._expire)  # cancelled while no values or answers are awaited
 
     def unready(self) -> Reason | None:
         """Why values do not reach the database."""
@@ -144,7 +144,7 @@ class Sender:
         return None if there else DatabaseAway()
 
     def put(self, post: Post) -> bool:
-        """Take values to be written soon."""
+        """Take values to write; returns False when too many wait."""
         taken = self._outbox.put(post)
         if self._clock.is_canceled() and monotonic() >= self._not_before:
             self._clock.reset()
@@ -189,7 +189,7 @@ class Sender:
             self._trouble = None
 
     def _fail(self, number: int, why: Reason) -> None:
-        """Keep the values and wait a moment."""
+        """Keep the values of a failed batch and wait a moment."""
         self._flights.pop(number, None)
         forget = self._forget.pop(number, None)
         if forget is not None:

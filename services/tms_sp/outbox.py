@@ -1,4 +1,4 @@
-"""The newest values of each record on their way to the database: bounded, sent again until they are stored."""
+"""Queue of the newest values of each record for the database: bounded, and sent again until they are stored."""
 
 import itertools
 from collections.abc import Callable, Iterable
@@ -7,7 +7,7 @@ from typing import Any
 
 from tms_reason.reason import Reason
 
-RECORDS = 5000  # that may wait at the same time
+RECORDS = 5000  # records whose values may wait at the same time
 BATCH = 200  # updates in one request
 FLIGHTS = 90  # requests without an answer, fewer than a service keeps: a slow store takes a second to acknowledge
 
@@ -25,7 +25,7 @@ class Post:
 
 @dataclass
 class Counts:
-    """Of one input."""
+    """Counts of one input."""
 
     written: int = 0
     superseded: int = 0
@@ -42,11 +42,11 @@ class Outbox:
         self._counts = counts
         self._waiting: dict[Place, Post] = {}
         self._flights: dict[int, list[Post]] = {}
-        self._last: dict[Place, int] = {}  # flight of the newest values sent
+        self._last: dict[Place, int] = {}  # number of the batch with the newest sent values
         self._numbers = itertools.count()
 
     def put(self, post: Post) -> bool:
-        """Take values; older ones of the same record that still wait are left out. False: too much waits."""
+        """Take values; they replace older waiting ones of the same record. Returns False when too many records wait."""
         place = _place(post)
         if place in self._waiting:
             self._counts(post.source).superseded += 1
@@ -57,7 +57,7 @@ class Outbox:
 
     @property
     def ready(self) -> bool:
-        """Whether something should be sent now."""
+        """Whether a batch can be sent now."""
         return bool(self._waiting) and len(self._flights) < FLIGHTS
 
     def take(self) -> tuple[int, list[Post]]:
@@ -69,7 +69,7 @@ class Outbox:
         return number, self._flights[number]
 
     def stored(self, number: int, refused: Iterable[tuple[int, str, Reason]]) -> None:
-        """The database has a batch, but for what it refused: index, code and reason."""
+        """Note that a batch is stored, except for the refused updates: index, code and reason of each."""
         posts = self._flights.pop(number, [])
         unwanted = {index: (code, why) for index, code, why in refused}
         for index, post in enumerate(posts):
@@ -79,7 +79,7 @@ class Outbox:
                 self._counts(post.source).written += 1
 
     def failed(self, number: int) -> None:
-        """Nobody knows whether a batch was stored: send it again, where nothing newer is there."""
+        """Queue a batch again, except for values that newer ones replace: it is not known whether it was stored."""
         again: dict[Place, Post] = {}
         for post in self._flights.pop(number, []):
             place = _place(post)

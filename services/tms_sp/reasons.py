@@ -1,4 +1,4 @@
-"""Why a sensing message changes no record, why an input cannot be heard, and why values do not reach the database."""
+"""Reasons why a message changes no record, an input cannot be received, and values do not reach the database."""
 
 from tms_reason.quantities import Moments, Number, Seconds
 from tms_reason.reason import Reason

@@ -1,1 +1,1 @@
-"""The catalogue of what machines can do: one file a subtask."""
+"""The catalogue of subtasks that machines can run: one file a subtask."""

@@ -11,9 +11,9 @@ ARM = ("swing_joint", "boom_joint", "arm_joint", "bucket_joint", "bucket_end_joi
 
 
 class Target(Params):
-    """One of the three flags says which fields count."""
+    """One of the three flags selects the fields that are used."""
 
-    plan_only: bool = False  # an input of the variant: ask whether it can be reached, and do not move
+    plan_only: bool = False  # an input of the variant: check whether the target can be reached, without a motion
     trajectory: float = 0.0  # flag: joint angles [rad]
     pose: float = 0.0  # flag: position [m] and orientation, base_link
     position_with_angle: float = 0.0  # flag: position [m] and theta_w [rad], base_link
@@ -32,7 +32,7 @@ class Target(Params):
     theta_w: float | None = None
 
     def numbers(self, *names: str) -> list[float]:
-        """The fields of these names, all of which must be there."""
+        """The values of these fields, all of which must be present."""
         missing = [name for name in names if getattr(self, name) is None]
         if missing:
             raise SubtaskFailed(FieldMissing(missing[0]))

@@ -4,8 +4,8 @@ from tms_machine.subtask import Machine, Params, Progress, subtask
 
 
 class Place(Params):
-    plan_only: bool = False  # an input of the variant: ask whether it can be dug, and do not move
-    position_with_angle: float  # must be there, as in the C++ system
+    plan_only: bool = False  # an input of the variant: check whether the point can be dug, without a motion
+    position_with_angle: float  # must be present, as in the C++ system
     x: float  # m, base_link
     y: float  # m, base_link
     z: float  # m, base_link, ground level: the bucket goes 1 m below

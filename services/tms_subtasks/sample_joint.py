@@ -12,7 +12,7 @@ from tms_machine.subtask import Machine, Params, Progress, subtask
 class Angle(Params):
     joint: str  # an input of the variant
     field: str  # an input of the variant: the field of the record that holds the angle
-    angle: float  # deg, taken from there
+    angle: float  # deg, from that field
 
     @model_validator(mode="before")
     @classmethod
@@ -24,7 +24,7 @@ class Angle(Params):
     @field_validator("angle")
     @classmethod
     def _within_a_turn(cls, angle: float) -> float:
-        if abs(angle) > 360.0:  # the planner takes it for "as it stands"
+        if abs(angle) > 360.0:  # which means "keep the present angle" to the planner
             raise ValueError(f"{angle:g} deg is more than one turn")
         return angle
 

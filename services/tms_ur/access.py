@@ -1,4 +1,4 @@
-"""Who may do what: users of a file, passwords and tokens as argon2 hashes, and sessions."""
+"""Users and their roles: the users file, passwords and tokens as argon2 hashes, and sessions."""
 
 import hashlib
 import secrets
@@ -24,7 +24,7 @@ from tms_ur.reasons import Login, NoUsersFile, UnreadableUsers, UsersForAll, Wro
 
 RoleName = Literal["viewer", "operator", "admin"]
 RANK: dict[RoleName, int] = {"viewer": 0, "operator": 1, "admin": 2}
-HASHER = PasswordHasher(time_cost=2, memory_cost=19_456, parallelism=1)  # OWASP's least: a site PC has other work
+HASHER = PasswordHasher(time_cost=2, memory_cost=19_456, parallelism=1)  # OWASP's minimum: a site PC has other work
 SESSION_IDLE = 12 * 3600.0  # s: one shift
 MAX_SESSIONS = 500
 
@@ -51,7 +51,7 @@ class Users(Settings):
 
 @dataclass(frozen=True)
 class Person:
-    """Who asks."""
+    """The person or program that sends a request."""
 
     name: str
     role: RoleName
@@ -61,25 +61,25 @@ class Person:
 
 
 class Access:
-    """All that is known of users; thread safe."""
+    """Users, sessions and verified tokens; thread safe."""
 
     def __init__(self, file: Path | None, clock: Callable[[], float] = monotonic) -> None:
         """Read the users.
 
         Raises:
-            ConfigError: the file cannot be read, is wrong, or may be read by everybody.
+            ConfigError: the file cannot be read, is wrong, or is readable by other users.
         """
         self.asks = file is not None
         self._users: dict[str, User] = {} if file is None else read_users(file)
         self._clock = clock
         self._throttle = LoginThrottle(clock)
         self._decoy = hashed(secrets.token_urlsafe()) if self.asks else ""
-        self._sessions: OrderedDict[str, tuple[Person, float]] = OrderedDict()  # digest of the key -> since when idle
+        self._sessions: OrderedDict[str, tuple[Person, float]] = OrderedDict()  # key's digest -> person, last use [s]
         self._tokens: OrderedDict[str, Person] = OrderedDict()  # digest of a token that was verified
         self._lock = threading.Lock()
 
     def login(self, name: str, password: str, source: str) -> tuple[str, Person]:
-        """A new session's key.
+        """Check a password and begin a session; returns the session's key and the person.
 
         Raises:
             TmsError: LOGIN, or THROTTLED.
@@ -98,7 +98,7 @@ class Access:
             self._sessions.pop(_digest(key), None)
 
     def session(self, key: str) -> Person | None:
-        """Whose session this is; every use prolongs it."""
+        """The person of a session, None if it is over; every use prolongs it."""
         digest = _digest(key)
         with self._lock:
             person, used = self._sessions.pop(digest, (None, 0.0))
@@ -108,12 +108,12 @@ class Access:
             return person
 
     def known_token(self, text: str) -> Person | None:
-        """Whose token this is, if it was verified before: quick."""
+        """The person of a token that was verified before, else None; quick."""
         with self._lock:
             return self._tokens.get(_digest(text))
 
     def token(self, text: str, source: str) -> Person:
-        """Whose token `name:secret` this is; slow.
+        """Verify a token `name:secret` and return its person; slow.
 
         Raises:
             TmsError: LOGIN, or THROTTLED.
@@ -129,7 +129,7 @@ class Access:
 
     def _verified(self, name: str, user: User | None, kept: str | None, secret: str, source: str) -> Person:
         self._throttle.attempt(name, source)
-        right = _matches(kept or self._decoy, secret)  # a name that is not there takes as long as one that is
+        right = _matches(kept or self._decoy, secret)  # an unknown name takes as long as a known one
         if not right or user is None or kept is None:
             raise TmsError(Login(WrongPassword()))
         self._throttle.right(name, source)
@@ -137,7 +137,7 @@ class Access:
 
 
 def hashed(secret: str) -> str:
-    """What the users file keeps of a password or token."""
+    """The hash of a password or token for the users file."""
     return HASHER.hash(secret)
 
 
@@ -153,10 +153,10 @@ def _digest(key: str) -> str:
 
 
 def read_users(file: Path) -> dict[str, User]:
-    """The users of a file that nobody else may read.
+    """Read a users file, which other users of the PC must not be able to read.
 
     Raises:
-        ConfigError: it cannot be read, is wrong, or may be read by everybody.
+        ConfigError: it cannot be read, is wrong, or is readable by other users.
     """
     try:
         mode = file.stat().st_mode

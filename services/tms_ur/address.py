@@ -1,6 +1,6 @@
-"""The console's address, certificate and users as the site file says; loads no web server, so that `tms` may ask.
+"""The console's address, certificate and users as the site file says; loads no web server, so that `tms` may use it.
 
-A path of the site file is relative to it, whatever the folder is in which somebody starts the mesh.
+A path in the site file is relative to that file, whatever folder the mesh is started in.
 """
 
 import ssl
@@ -12,21 +12,21 @@ from tms_reason.errors import ConfigError
 from tms_reason.reason import Reason
 from tms_ur.reasons import NoCertificate, UnreadableCertificate
 
-ALL = {"0.0.0.0": "127.0.0.1", "::": "::1"}  # bound to all addresses: a browser of this PC takes this one
+ALL = {"0.0.0.0": "127.0.0.1", "::": "::1"}  # bound to all addresses: a browser on this PC uses this one
 
 
 def url(file: SiteFile) -> str:
-    """Where a browser of this PC finds the console."""
+    """The console's URL for a browser on this PC."""
     host = ALL.get(file.bind, file.bind)
     shown = f"[{host}]" if ":" in host else host
     return f"http{'s' if file.console.tls else ''}://{shown}:{file.ports.console}"
 
 
 def certificate(site: Site) -> Files | None:
-    """Certificate and key that the web server can use; None where the site has none.
+    """Certificate and key for the web server, checked; None where the site has none.
 
     Raises:
-        ConfigError: one cannot be read, or they do not belong together.
+        ConfigError: one of them cannot be read, or they do not belong together.
     """
     given = site.file.console.tls
     if given is None:
@@ -39,7 +39,7 @@ def certificate(site: Site) -> Files | None:
             reason: Reason = UnreadableCertificate(str(site.path), name, str(path), str(error.strerror))
             raise ConfigError(reason) from error
     try:
-        # Without a password of ours OpenSSL would ask for that of an encrypted key on the terminal.
+        # Without this password OpenSSL would ask on the terminal for the password of an encrypted key.
         ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER).load_cert_chain(found.certificate, found.key, password=lambda: "none")
     except ssl.SSLError as error:
         problem = str(error.reason or error)
@@ -49,12 +49,12 @@ def certificate(site: Site) -> Files | None:
 
 
 def users(site: Site) -> Path | None:
-    """The users file that `tms:ur` can use; None where the site has none.
+    """The users file for `tms:ur`, checked; None where the site has none.
 
     Raises:
-        ConfigError: it cannot be read, is wrong, or may be read by everybody.
+        ConfigError: it cannot be read, is wrong, or is readable by other users.
     """
-    from tms_ur.access import read_users  # hashing takes a moment to load, and most of `tms` needs none
+    from tms_ur.access import read_users  # hashing takes a moment to load, and most verbs of `tms` do not need it
 
     given = site.file.console.users
     if given is None:

@@ -1,4 +1,4 @@
-"""The HTTP API and the console's files; `/openapi.json` describes it."""
+"""The HTTP API and the console's files; `/openapi.json` describes the API."""
 
 import json
 from collections.abc import AsyncIterator
@@ -39,8 +39,8 @@ def create_app(client: "SiteClient", audit: "Audit", site: Site, access: Access)
     """The application for one site."""
     app = FastAPI(
         title="ROS2-TMS for Construction, task management", version="0.1.0", lifespan=_lifespan,
-        docs_url=None, redoc_url=None,  # they load scripts from elsewhere, and a site may be offline
-        openapi_url=None,  # ours below
+        docs_url=None, redoc_url=None,  # these pages load scripts from the internet, and a site may be offline
+        openapi_url=None,  # served by _describe
         # nothing leaves the site because of an environment variable
         telemetry={"tracing": False, "metrics": False, "logs": False, "auto_configure": False},
         responses=problems(400, 401, 422),
@@ -73,7 +73,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
 
 
 def _describe(app: FastAPI) -> None:
-    """`/openapi.json`, written once: anybody may ask for it, as often as he likes."""
+    """Serve `/openapi.json`, which is made once: any client may ask for it, as often as it likes."""
     text = json.dumps(app.openapi(), ensure_ascii=False, separators=(",", ":"))
 
     @app.get("/openapi.json", include_in_schema=False)
@@ -107,7 +107,7 @@ def _bad_request(_request: Request, error: Exception) -> JSONResponse:
 
 
 def _bug(_request: Request, error: Exception) -> JSONResponse:
-    """The traceback goes to the log; the server writes it."""
+    """Answer for an unexpected exception; the server writes its traceback into the log."""
     answer = problem(TmsError(InternalError(type(error).__name__, "tms:ur")), HTTPStatus.INTERNAL_SERVER_ERROR)
-    answer.headers.update(SECURITY)  # it is made outside the middleware
+    answer.headers.update(SECURITY)  # this answer does not pass the middleware
     return answer

@@ -1,8 +1,8 @@
-"""Who did what, from where: every command goes to the log at once, to the disk of this PC, and to the database.
+"""Records who gave which command from where: at once in the log, then on the disk of this PC and in the database.
 
 The entries are the journal of a run called `audit`: numbered one by one, each tied to the one before (audit_chain.py).
-One thread writes to the disk, another one sends from there to the database. Nothing here waits on the thread of a
-request; a stop is sent whether or not its entry is on the disk, any other command waits for that a moment.
+One thread writes to the disk, another one sends from there to the database. The thread of a request does not wait
+here: a stop is sent whether or not its entry is on the disk; for any other command commands.py waits a moment.
 """
 
 import queue
@@ -28,17 +28,17 @@ from tms_ur.audit_chain import RUN, Entry, Note, Place, entry, highest, tied
 from tms_ur.audit_ledger import Ledger, LedgerFull, opened
 from tms_ur.strangers import Strangers
 
-MAX_NEW = 1000  # notes that wait for the disk
-BATCH = 100  # notes in one request to the database, which a crash may leave half done
-STRANGERS_PERIOD = 1.0  # s between looks at what strangers did
+MAX_NEW = 1000  # notes that may wait for the disk
+BATCH = 100  # notes in one request to the database; a crash may leave a part of them stored
+STRANGERS_PERIOD = 1.0  # s between checks for refusals to report
 RETRY = 1.0  # s
-LONGEST = 600  # characters of a text
+LONGEST = 600  # characters of a text; the rest is cut
 LOST = Counter("tms_ur_audit_lost_total", "Commands that are in the log only: the disk failed or was full")
 log = structlog.stdlib.get_logger(__name__)
 
 
 class Audit:
-    """Two threads: to the disk, and from there to the database."""
+    """Has two threads: one writes to the disk, the other sends from there to the database."""
 
     def __init__(self, ros: Ros, file: Path) -> None:
         self._ros, self._file = ros, file
@@ -53,7 +53,7 @@ class Audit:
         self._sender.start()
 
     def put(self, who: str, source: str, what: str, target: str, times: int = 1) -> threading.Event:
-        """Take a note; waits for nobody. The event is set once it is on the disk."""
+        """Take a note without waiting. The returned event is set when the note is on the disk."""
         log.info("command", what=what, target=target, who=who, source=source, times=times)
         kept = threading.Event()
         note = Note(unix_ns() // 1_000_000, what, _clean(target), _clean(f"{who} from {source}"), times)
@@ -64,7 +64,7 @@ class Audit:
         return kept
 
     def refused(self, who: str, source: str, what: str, why: str) -> None:
-        """Take a note of a stranger; a minute's are reported together."""
+        """Take a note of a refused request; those of a minute become one entry."""
         if self._strangers.add(who, source, what, why):
             self.put(who, source, what, why)
 
@@ -73,12 +73,12 @@ class Audit:
         return self._number
 
     def close(self) -> None:
-        """Get the last notes to the disk; what the database has not by then, it gets after the next start."""
+        """Write the last notes to the disk; notes that the database does not have yet are sent after the next start."""
         for refused in self._strangers.due(everything=True):
             self.put(refused.who, refused.source, refused.what, refused.why, refused.times)
         self._closing.set()
         self._changed.set()
-        with suppress(queue.Full):  # then it has something to wake up for
+        with suppress(queue.Full):  # a full queue wakes the thread as well
             self._new.put_nowait(None)
         self._keeper.join(0.5)
         self._sender.join(0.2)
@@ -142,7 +142,7 @@ class Audit:
         placed = False
         while not self._closing.is_set():
             try:
-                assert self._ledger is not None  # there is news of it
+                assert self._ledger is not None  # the first event is set after it was opened
                 if not placed:
                     self._take_place(self._ledger)
                     placed = True
@@ -150,21 +150,21 @@ class Audit:
                 while self._sent(self._ledger) and not self._closing.is_set():
                     pass
                 self._changed.wait()
-            except TmsError:  # the database is away, which others tell
+            except TmsError:  # the database is away, which other processes report
                 self._closing.wait(RETRY)
             except (sqlite3.Error, OSError) as error:
                 log.error("audit_disk_failed", file=self._file, reason=str(error))
                 self._closing.wait(RETRY)
 
     def _take_place(self, ledger: Ledger) -> None:
-        """Where the chain goes on: as the disk remembers, or behind what the database has beyond that."""
+        """Find where the chain goes on: after the place on the disk, or after later entries in the database."""
         place = ledger.place()
         if place is not None:
             self._number = place.number
             stored = self._stored(place.number, BATCH)
             ours = tied(place, ledger.waiting(BATCH)[1])[: len(stored)]
             if [one.hash for one in ours] == [one.hash for one in stored]:
-                return  # what the database has already, if anything, is sent once more and changes nothing
+                return  # entries that the database has already are sent again, which changes nothing
             log.error("audit_place_lost", number=place.number, reason="the database has others behind it")
         number = highest(lambda after: bool(self._stored(after, 1)))
         last = self._stored(number - 1, 1) if number else []
@@ -172,7 +172,7 @@ class Audit:
         ledger.move(Place(number, last[0].hash if last else ""))
 
     def _sent(self, ledger: Ledger) -> bool:
-        """Send the oldest notes; whether there were any."""
+        """Send the oldest notes; returns whether there were any."""
         place = ledger.place()
         assert place is not None
         ids, notes = ledger.waiting(BATCH)
@@ -216,5 +216,5 @@ def of_event(event: Event) -> Entry:
 
 
 def _clean(text: str) -> str:
-    """What ROS and the database give back as they got it: valid Unicode without NUL, and not too long."""
+    """A text that passes ROS and the database unchanged: valid Unicode without NUL, and not too long."""
     return text.encode(errors="replace").decode().replace("\0", "�")[:LONGEST]

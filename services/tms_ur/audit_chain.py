@@ -1,7 +1,7 @@
 """The chain of the audit's entries: each carries the hash of the one before and its own. Pure logic.
 
-It shows whoever looks (`tms audit verify`) that an entry was changed, taken out or put in afterwards, as long as it was
-not the whole rest of the chain that somebody made anew.
+`tms audit verify` finds by it an entry that was changed, removed or inserted afterwards. It cannot find that the whole
+rest of the chain was made anew.
 """
 
 import hashlib
@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 RUN = "audit"  # the entries are the journal of this run
-MAX_FAULTS = 20  # that a report names
+MAX_FAULTS = 20  # faults that a report names
 LARGEST = 2**32 - 1  # number of an entry
 
 Value = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
@@ -19,21 +19,21 @@ Value = bool | int | float | str | list[bool] | list[int] | list[float] | list[s
 
 @dataclass(frozen=True)
 class Note:
-    """What is audited, before it has a place in the chain."""
+    """A command or refusal to record, before it has a place in the chain."""
 
     at: int  # ms since 1970
     kind: str
-    node: str  # what it was done to
-    text: str  # who, from where
+    node: str  # target of the command
+    text: str  # person and address
     times: int = 1
 
 
 @dataclass(frozen=True)
 class Place:
-    """Number and hash of an entry; of the last one, to which the next one is tied."""
+    """Number and hash of the last entry, to which the next one is tied."""
 
     number: int
-    hash: str  # empty: an entry from before there was a chain, or none
+    hash: str  # empty: the entry is older than the chain, or there is none
 
 
 @dataclass(frozen=True)
@@ -43,21 +43,21 @@ class Entry:
     number: int
     note: Note
     previous: str
-    hash: str  # as it is stored; empty in entries from before there was a chain
+    hash: str  # as stored; empty in entries that are older than the chain
 
     def right_hash(self) -> str:
-        """The hash that its content has."""
+        """The hash of its content."""
         note = self.note
         content = [self.number, note.at, note.kind, note.node, note.text, note.times, self.previous]
         return hashlib.sha256(json.dumps(content, separators=(",", ":")).encode()).hexdigest()
 
     def values(self) -> dict[str, Value]:
-        """What is stored beside the fields that every event has."""
+        """The stored values, apart from the fields that every event has."""
         return {"times": self.note.times, "previous": self.previous, "hash": self.hash}
 
 
 def entry(number: int, note: Note, values: dict[str, Value]) -> Entry:
-    """An entry as the database has it."""
+    """An entry from its stored number, note and values."""
     times = values.get("times", 1)
     return Entry(
         number, Note(note.at, note.kind, note.node, note.text, times if isinstance(times, int) else 0),
@@ -66,7 +66,7 @@ def entry(number: int, note: Note, values: dict[str, Value]) -> Entry:
 
 
 def tied(last: Place, notes: Iterable[Note]) -> list[Entry]:
-    """Entries behind `last`; the same ones whenever it is asked again."""
+    """The entries for notes after `last`; the same arguments give the same entries."""
     made: list[Entry] = []
     for note in notes:
         bare = Entry(last.number + 1, note, last.hash, "")
@@ -76,8 +76,8 @@ def tied(last: Place, notes: Iterable[Note]) -> list[Entry]:
 
 
 def highest(is_any_after: Callable[[int], bool]) -> int:
-    """The highest number that is stored, 0 if there is none; asks some 32 times."""
-    low, high = 0, LARGEST  # there is none above `high`
+    """The highest number that is stored, 0 if there is none; calls `is_any_after` some 32 times."""
+    low, high = 0, LARGEST  # no entry has a number above `high`
     while low < high:
         middle = (low + high) // 2
         if is_any_after(middle):
@@ -89,23 +89,23 @@ def highest(is_any_after: Callable[[int], bool]) -> int:
 
 @dataclass(frozen=True)
 class Fault:
-    """What is wrong at an entry."""
+    """A fault at an entry."""
 
     number: int
     what: Literal["missing", "changed", "out_of_order", "no_hash"]
-    until: int  # the last one that is missing; else the same number
+    until: int  # the last missing number; for other faults the same number
 
 
 @dataclass
 class Verdict:
-    """Goes along the entries in the order of their numbers."""
+    """Checks the entries in the order of their numbers."""
 
-    older: int = 0  # from before there was a chain
+    older: int = 0  # entries that are older than the chain
     chained: int = 0
-    first: int = 0  # of the chain
+    first: int = 0  # number of the chain's first entry
     cut: bool = False  # whether entries before the first one have been deleted
     faults: list[Fault] = field(default_factory=list)
-    found: int = 0  # faults, of which `faults` has the first ones
+    found: int = 0  # number of faults; `faults` holds the first ones
     last: Place = field(default_factory=lambda: Place(0, ""))
 
     @property
@@ -113,7 +113,7 @@ class Verdict:
         return self.found == 0
 
     def add(self, one: Entry) -> None:
-        """The next entry."""
+        """Check the next entry."""
         if not one.hash and not self.chained:
             self.older += 1
         elif not self.chained:
@@ -128,7 +128,7 @@ class Verdict:
         self.last = Place(one.number, one.hash)
 
     def end(self, reported: Place) -> None:
-        """What the console remembers of its last entry that was stored."""
+        """Compare the end of the chain with the last stored entry that the console's PC remembers."""
         if reported.number > self.last.number:
             self._fault(self.last.number + 1, "missing", reported.number)
         elif reported.number == self.last.number and reported.hash != self.last.hash:

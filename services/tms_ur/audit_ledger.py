@@ -1,7 +1,7 @@
-"""What the audit keeps on this PC's disk, in SQLite: notes that wait for the database, and the last place in the chain.
+"""The audit's file on this PC's disk (SQLite): notes that wait for the database, and the last place in the chain.
 
-A note is there before whoever waits for it goes on, and leaves in the same transaction in which the place moves behind
-it: after a crash each note is tied in once, with the number that it had.
+A note is on the disk before the thread that waits for it goes on. It is deleted in the same transaction that moves the
+place after it: after a crash each note enters the chain once, with the number that it had.
 """
 
 import json
@@ -25,10 +25,10 @@ class LedgerFull(Exception):
 
 
 class Ledger:
-    """Every method may wait for the disk, and raises sqlite3.Error or OSError when it fails."""
+    """Every method may wait for the disk; when the disk fails, it raises sqlite3.Error or OSError."""
 
     def __init__(self, file: Path) -> None:
-        """Open or make it."""
+        """Open the file or make it."""
         file.parent.mkdir(parents=True, exist_ok=True)
         os.close(os.open(file, os.O_CREAT | os.O_RDWR, 0o600))
         self._lock = threading.Lock()
@@ -44,7 +44,7 @@ class Ledger:
         """Keep notes; they are on the disk when this returns.
 
         Raises:
-            LedgerFull: there are too many.
+            LedgerFull: too many notes wait.
         """
         with self._lock, self._db:
             (waiting,) = self._db.execute("select count(*) from waiting").fetchone()
@@ -53,19 +53,19 @@ class Ledger:
             self._db.executemany("insert into waiting (note) values (?)", ((json.dumps(vars(one)),) for one in notes))
 
     def waiting(self, most: int) -> tuple[list[int], list[Note]]:
-        """The oldest notes, and what to give to `move` for each once it is stored."""
+        """The oldest notes, and for each the number to give to `move` when it is stored."""
         with self._lock:
             rows = self._db.execute("select id, note from waiting order by id limit ?", (most,)).fetchall()
         return [row[0] for row in rows], [Note(**json.loads(row[1])) for row in rows]
 
     def place(self) -> Place | None:
-        """The last entry that is stored; None if this ledger has never known."""
+        """The last entry that is stored; None if this ledger has never been given one."""
         with self._lock:
             row = self._db.execute("select number, hash from place").fetchone()
         return None if row is None else Place(*row)
 
     def move(self, place: Place, done: int = 0) -> None:
-        """The chain goes on behind `place`; notes up to `done` are stored."""
+        """Note that the chain goes on after `place`, and delete the notes up to `done`, which are stored."""
         with self._lock, self._db:
             self._db.execute("insert or replace into place values (1, ?, ?)", (place.number, place.hash))
             self._db.execute("delete from waiting where id <= ?", (done,))
@@ -76,10 +76,10 @@ class Ledger:
 
 
 def opened(file: Path) -> tuple[Ledger, bool]:
-    """The ledger, and whether it is a new one beside an unreadable one, which is kept under another name."""
+    """Open the ledger; True if it is new because the old one is unreadable and was renamed."""
     try:
         return Ledger(file), False
-    except sqlite3.OperationalError:  # no room, no permission: it may be readable again
+    except sqlite3.OperationalError:  # no room, no permission: it may be readable later
         raise
     except sqlite3.DatabaseError:
         file.replace(file.with_suffix(".unreadable"))
@@ -88,7 +88,7 @@ def opened(file: Path) -> tuple[Ledger, bool]:
 
 
 def reported(file: Path) -> Place | None:
-    """What the console of this PC remembers of its last stored entry; None if it has run elsewhere."""
+    """The last stored entry by the ledger of this PC; None if the console has run on another PC."""
     if not file.exists():
         return None
     ledger = sqlite3.connect(f"file:{file}?mode=ro", uri=True)

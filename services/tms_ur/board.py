@@ -1,4 +1,4 @@
-"""The latest of what the site says, with its age: fed by the ROS thread of site_client.py, read by the web server's."""
+"""The latest state of the site with its age: the ROS thread of site_client.py writes, the web server's thread reads."""
 
 import threading
 from collections.abc import Callable, Iterable
@@ -10,11 +10,11 @@ from tms_ur.reasons import MachineSilent, MachineUnheard
 
 MACHINE_SILENT = 2.0  # s, four periods of a machine's gateway
 SCHEDULER_SILENT = 5.0  # s, five periods of the scheduler's list of runs
-HOST_SILENT = 6.0  # s, three periods of a host agent: its PC may have no power
+HOST_SILENT = 6.0  # s, three periods of a host agent; after that its PC may have no power
 
 
 class Board:
-    """Keeps one snapshot's worth of state and tells listeners when its content, not only an age, has changed."""
+    """Keeps the state for one snapshot and calls listeners when its content, not only an age, has changed."""
 
     def __init__(self, machines: Iterable[str], clock: Callable[[], float] = monotonic) -> None:
         self._clock = clock
@@ -28,10 +28,10 @@ class Board:
         self._listeners: list[Callable[[], None]] = []
         self.closed = False
 
-    # fed
+    # written by the ROS thread
 
     def put_machine(self, machine: Machine) -> None:
-        """A machine's report; `joint_age` is what the gateway measured."""
+        """Take a machine's state; `joint_age` is the age that the gateway measured."""
         with self._lock:
             before, _ = self._machines.get(machine.name, (None, None))
             self._machines[machine.name] = (machine, self._clock())
@@ -39,7 +39,7 @@ class Board:
             self._publish()
 
     def put_place(self, name: str, place: Place, age: float = 0.0) -> None:
-        """Where a machine stood `age` seconds ago."""
+        """Take the place where a machine stood `age` seconds ago."""
         with self._lock:
             before, _ = self._places.get(name, (None, None))
             self._places[name] = (place, self._clock() - age)
@@ -47,7 +47,7 @@ class Board:
             self._publish()
 
     def put_runs(self, runs: list[ActiveRun], questions: list[Question] | None = None) -> None:
-        """The scheduler's whole lists."""
+        """Take the scheduler's lists, which are complete."""
         asked = questions or []
         with self._lock:
             changed = runs != self._runs or asked != self._questions or self._runs_at is None
@@ -56,13 +56,13 @@ class Board:
             self._publish()
 
     def put_host(self, host: Host) -> None:
-        """All processes of one PC; its agent tells of changes at once, and every 2 s without one."""
+        """Take all processes of one PC; its agent publishes them at every change, and every 2 s without one."""
         with self._lock:
             self._hosts[host.name] = (host, self._clock())
         self._publish()
 
     def close(self) -> None:
-        """No more news: listeners let their clients go."""
+        """End the updates: listeners close the connections of their clients."""
         self.closed = True
         self._publish()
 
@@ -72,14 +72,14 @@ class Board:
             names = {row.name: pc for pc, (host, _) in self._hosts.items() for row in host.processes}
         return names.get(process)
 
-    # read
+    # read by the web server
 
     def on_change(self, listener: Callable[[], None]) -> None:
         """Call `listener` after every change, on the thread that brought it; it must be quick."""
         self._listeners.append(listener)
 
     def snapshot(self) -> State:
-        """Everything as it stands now."""
+        """The present state."""
         with self._lock:
             now = self._clock()
             return State(
@@ -115,7 +115,7 @@ def _aged(machine: Machine, now: float, at: float | None, place: tuple[Place, fl
 
 
 def _placed(now: float, place: tuple[Place, float] | None) -> dict[str, object]:
-    """The last place stays, as an old one: whoever looks for the machine begins there."""
+    """The fields of a place. The last one stays, marked as old: a search for the machine begins there."""
     return {} if place is None else {"place": place[0], "place_age": round(now - place[1], 1)}
 
 

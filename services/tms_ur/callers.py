@@ -1,4 +1,4 @@
-"""Who counts as one caller where somebody might want to be many: an IPv4 address, or the /64 of an IPv6 address."""
+"""What counts as one caller, so that a client cannot pose as many: an IPv4 address, or the /64 of an IPv6 address."""
 
 import ipaddress
 
@@ -6,7 +6,7 @@ import ipaddress
 def caller(address: str) -> str:
     """The key under which connections and wrong passwords from `address` are counted.
 
-    Whoever has one IPv6 address has, as a rule, all that begin with the same 64 bits.
+    A host with one IPv6 address can, as a rule, use all addresses with the same first 64 bits.
     """
     try:
         found = ipaddress.ip_address(address)

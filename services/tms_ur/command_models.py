@@ -1,4 +1,4 @@
-"""What clients send; data_models.py has the records."""
+"""Models of the commands that clients send; those about records are in data_models.py."""
 
 from pydantic import ConfigDict, Field
 

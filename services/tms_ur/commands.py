@@ -1,4 +1,4 @@
-"""Endpoints that change something: each says who may, and each is audited."""
+"""Endpoints that change something: each names the role that it needs, and each is audited."""
 
 import math
 import threading
@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from tms_ur.site_client import SiteClient
 
 ANSWERS = problems(403, 404, 409, 411, 413, 415, 503)
-STOPS = 40  # stops at the same time, each with a thread a machine: no worker that waits is in their way
-CANCELS = 10  # runs that are asked to stop at the same time
+STOPS = 40  # stops at the same time, each with a thread a machine, so that they do not wait for other workers
+CANCELS = 10  # runs that are cancelled at the same time
 KEPT_LIMIT = 1.0  # s that a command waits for its entry to be on the disk
 MachineName = Annotated[str, Path(pattern=r"^[a-z][a-z0-9_]{0,63}$")]
 QuestionId = Annotated[str, Path(pattern=r"^[0-9A-Za-z_-]{1,100}$")]
@@ -40,7 +40,7 @@ log = structlog.stdlib.get_logger(__name__)
 
 
 def add(app: FastAPI, client: "SiteClient", audit: "Audit", site: Site) -> None:
-    """Put them into the application."""
+    """Add these endpoints to the application."""
     note = _Note(audit)
     _runs(app, client, note)
     _machines(app, client, note, site)
@@ -49,20 +49,20 @@ def add(app: FastAPI, client: "SiteClient", audit: "Audit", site: Site) -> None:
 
 
 class _Note:
-    """Audits what a request asked for."""
+    """Audits the command of a request."""
 
     def __init__(self, audit: "Audit") -> None:
         self._audit = audit
 
     def __call__(self, request: Request, person: Person, what: str, target: object) -> str:
-        """Of a command: what is reported as done is on the disk. Not on the event loop."""
+        """Audit a command and wait until the entry is on the disk. Not on the event loop."""
         where = source(request.scope)
         if not self._audit.put(person.name, where, what, str(target)).wait(KEPT_LIMIT):
             log.warning("audit_late", what=what, reason="the disk is slow; the command is in the log")
         return f"{person.name} at {where}"
 
     def of_stop(self, request: Request, person: Person, what: str, target: str) -> str:
-        """Of a stop, which waits for no disk."""
+        """Audit a stop, which does not wait for the disk."""
         where = source(request.scope)
         self._audit.put(person.name, where, what, target)
         return f"{person.name} at {where}"
@@ -93,7 +93,7 @@ def _runs(app: FastAPI, client: "SiteClient", note: _Note) -> None:
 
 
 class _Once:
-    """One start of a task at a time, so that a double click starts one run."""
+    """Allows one start of a task at a time, so that a double click starts one run."""
 
     def __init__(self) -> None:
         self._open: set[int] = set()
@@ -169,7 +169,7 @@ LIMITS: dict[str, type[Reason]] = {"int": IntTooLong, "double": NotFinite, "stri
 
 
 def _typed(field: FieldGiven) -> Any:
-    """The value as its type says: JSON writes 3.0 as 3."""
+    """The value in its type: JSON writes 3.0 as 3."""
     kinds: dict[str, tuple[type, ...]] = {"bool": (bool,), "int": (int,), "double": (int, float), "string": (str,)}
     kind = field.type.removesuffix("[]")
     several = field.type.endswith("[]")
@@ -184,13 +184,13 @@ def _typed(field: FieldGiven) -> Any:
 
 
 def _fits(kind: str, value: Any) -> bool:
-    """Whether ROS and the database can hold it: JSON also has longer numbers, and halves of characters."""
+    """Whether ROS and the database can hold the value: JSON also has longer numbers, and halves of characters."""
     try:
         if kind == "double":
             return math.isfinite(value)
         if kind == "string":
             value.encode()
-            return "\0" not in value  # ROS would cut it there
+            return "\0" not in value  # ROS would cut the text at a NUL
     except (OverflowError, UnicodeEncodeError):
         return False
     return kind != "int" or -(2**63) <= value < 2**63

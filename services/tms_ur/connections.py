@@ -1,8 +1,9 @@
-"""The console's connections: how many there are, and which of them must go so that a stop always gets in.
+"""Bounds the console's connections and closes hanging ones, so that a stop always gets a connection.
 
-A connection is accepted always; what makes room is the oldest one that has not sent a whole request: half a TLS
-handshake, half a header, half a body, or nothing at all. One that is being answered, a stream of a viewer above all,
-is never cut for others. Besides, a request must be there within seconds, and an answer must be read.
+A new connection is always accepted. To make room, the gate closes the oldest hanging connection, which has not sent
+a whole request: half a TLS handshake, half a header, half a body, or nothing at all. A connection that is being
+answered, such as a viewer's stream, is never closed to make room. A request must arrive within seconds, and the client
+must read its answer.
 Used on the event loop only.
 """
 
@@ -16,30 +17,30 @@ from prometheus_client import Counter as Metric
 from tms_config.clock import monotonic
 from tms_ur.callers import caller
 
-MAX_CONNECTIONS = 300  # connections once those that hang are cut
+MAX_CONNECTIONS = 300  # connections after hanging ones were closed
 MAX_OF_ONE = 64  # of them from one address
-FULL = 600  # connections in the moment before; below FD_SETSIZE (1024), beyond which DDS may not open its files
-ROOM = 50  # that are cut at once when it is full
-GRACE = 0.5  # s that a connection has for its request before it may be cut for others
+FULL = 600  # connections before that; below FD_SETSIZE (1024), beyond which DDS may not open its files
+ROOM = 50  # connections that are closed together when the gate is full
+GRACE = 0.5  # s that a connection has for its request before it may be closed to make room
 HEADERS = 5.0  # s for the TLS handshake and the headers of a request
 SILENCE = 5.0  # s between two pieces of a body, and without a byte of an answer being read
-SENT = 128 * 1024  # bytes (the system doubles it) of an answer that wait in the system for a slow reader
+SENT = 128 * 1024  # bytes of an answer that wait in the system for a slow reader; the system doubles this number
 BODY = 60.0  # s for a whole request: a tree of 6 MB by a slow line
 
 CUT = Metric("tms_ur_connections_cut_total", "Connections that were closed by the console", ["reason"])
 
 
 class Served(Protocol):
-    """What the gate asks the web server about a connection (server.py)."""
+    """A connection of the web server (server.py) as the gate uses it."""
 
     def hanging(self) -> bool:
-        """Whether a whole request is awaited."""
+        """Whether it waits for a complete request."""
 
     def overdue(self, now: float) -> str:
-        """Why it must go by itself, empty if it need not."""
+        """Why it must be closed even when there is room; empty if it need not."""
 
     def abort(self) -> None:
-        """Close at once, whatever was not sent yet."""
+        """Close at once; data that was not sent yet is lost."""
 
 
 class Connection:
@@ -63,20 +64,20 @@ class Connection:
             self.served.abort()
             return
         try:
-            self.sock.shutdown(socket.SHUT_RDWR)  # the event loop, which owns it, closes it then
-        except OSError:  # it has gone by itself
+            self.sock.shutdown(socket.SHUT_RDWR)  # the event loop owns the socket and closes it then
+        except OSError:  # the client has closed it
             return
 
 
 class Gate:
-    """All connections by their file descriptor, which is free for another one as soon as one is closed."""
+    """All connections by their file descriptor; the system reuses a descriptor as soon as it is closed."""
 
     def __init__(self, clock: Callable[[], float] = monotonic) -> None:
         self._clock = clock
         self._there: dict[int, Connection] = {}
 
     def room(self) -> bool:
-        """Whether one more may be accepted now; False once room was made, which takes a turn of the event loop."""
+        """Whether one more may be accepted now; False after others were closed, since that takes a turn of the loop."""
         if len(self._there) < FULL:
             return True
         self.close_hanging()
@@ -86,7 +87,7 @@ class Gate:
         return not oldest
 
     def admit(self, sock: socket.socket, address: str) -> bool:
-        """Take in a new one; False if it had to be closed, since all others are being answered."""
+        """Take a new connection; False if it had to be closed, since all others are being answered."""
         if len(self._there) >= FULL:
             CUT.labels("refused").inc()
             sock.close()
@@ -95,14 +96,14 @@ class Gate:
         return True
 
     def serve(self, descriptor: int, served: Served) -> Connection | None:
-        """The connection that the web server talks to from now on; None if it was cut meanwhile."""
+        """Note that the web server serves a connection from now on; None if it was closed meanwhile."""
         found = self._there.get(descriptor)
         if found is not None:
             found.served = served
         return found
 
     def close_hanging(self) -> None:
-        """Close what hangs for too long, and the oldest that hang where there are too many."""
+        """Close connections that hang for too long, and the oldest hanging ones where there are too many."""
         self._there = {fd: one for fd, one in self._there.items() if one.sock.fileno() == fd}
         now = self._clock()
         for one in list(self._there.values()):
@@ -126,7 +127,7 @@ class Gate:
 
 
 class Listener(socket.socket):
-    """A listening socket whose connections pass the gate: before the TLS handshake, which may hang, too."""
+    """A listening socket that passes connections to the gate before the TLS handshake, which may hang, too."""
 
     gate: Gate
 

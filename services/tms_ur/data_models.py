@@ -1,4 +1,4 @@
-"""What the API answers and takes about parameter records and the sensing that changes them."""
+"""Models of the API's answers and commands about parameter records and sensing inputs."""
 
 from datetime import datetime
 from typing import Literal

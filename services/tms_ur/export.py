@@ -19,7 +19,7 @@ def as_json(run_id: str, events: list[Event]) -> bytes:
 
 
 def as_csv(run_id: str, events: list[Event]) -> bytes:
-    """With a byte order mark, so that Excel reads Japanese; reasons as their English text."""
+    """A table of the events with a byte order mark, so that Excel reads Japanese; reasons as their English text."""
     out = io.StringIO()
     rows = csv.writer(out)
     rows.writerow(("run_id", *COLUMNS))
@@ -32,13 +32,13 @@ def as_csv(run_id: str, events: list[Event]) -> bytes:
 
 
 def _harmless(cell: object) -> object:
-    """A text that a table program would take for a formula is marked as text."""
+    """Mark a text as text that a table program would take for a formula."""
     return f"'{cell}" if isinstance(cell, str) and cell.startswith(("=", "+", "-", "@", "\t")) else cell
 
 
 def as_mcap(run_id: str, events: list[Event]) -> bytes:
-    """One channel `/tms/events` of JSON messages."""
-    from mcap.writer import CompressionType, Writer  # only who exports pays for it
+    """An MCAP file with one channel `/tms/events` of JSON messages."""
+    from mcap.writer import CompressionType, Writer  # loaded for an export only
 
     out = io.BytesIO()
     writer = Writer(out, compression=CompressionType.NONE)

@@ -1,4 +1,4 @@
-"""Where passwords and tokens are verified: one at a time, in a short queue in which nobody takes more than his part."""
+"""Verifies passwords and tokens one at a time, in a short queue with a bounded number of entries an address."""
 
 from collections import Counter
 from collections.abc import Callable
@@ -11,21 +11,21 @@ from tms_reason.errors import TmsError
 from tms_ur.callers import caller
 from tms_ur.reasons import ManyLogins
 
-MAX_WAITING = 16  # each takes 19 MB and some 30 ms while its turn lasts
+MAX_WAITING = 16  # verifications; each takes 19 MB and some 30 ms while it runs
 MAX_OF_ONE = 2  # of them from one address, so that a guesser leaves room for others
 
 T = TypeVar("T")
 
 
 class Hashing:
-    """Used on the event loop only. Stops have a lane of their own, where no login is before them."""
+    """Used on the event loop only. Stops have a queue of their own, so that they do not wait for logins."""
 
     def __init__(self) -> None:
         self._lane, self._stop_lane = anyio.CapacityLimiter(1), anyio.CapacityLimiter(1)
         self._waiting: Counter[tuple[bool, str]] = Counter()
 
     async def run(self, address: str, work: Callable[[], T], stop: bool = False) -> T:
-        """Do `work` in a thread when it is its turn.
+        """Run `work` in a thread when it is its turn.
 
         Raises:
             TmsError: MANY_LOGINS, or what `work` raises.

@@ -1,8 +1,8 @@
 """The throttle on guessing passwords: by account and address together, and more gently by each of them alone.
 
-The pair stops somebody who guesses at one account. The limit of an address stops one who tries a few passwords on many
-accounts, that of an account one who has many addresses. A pair that has logged in before is free of these two, so that
-nobody behind the same router, and nobody elsewhere, can lock a person out of the place where he works.
+The limit of the pair stops an attacker who guesses at one account. The limit of an address stops one who tries a few
+passwords on many accounts, the limit of an account one who has many addresses. A pair that has logged in before is free
+of these two, so that no attacker, behind the same router or not, can lock a person out of the place where he works.
 """
 
 import hashlib
@@ -17,7 +17,7 @@ from tms_ur.callers import caller
 from tms_ur.reasons import Throttled
 
 FORGET = 900.0  # s after which wrong passwords count no more
-MAX_KEYS = 2000  # of each kind; the longest unused one goes
+MAX_KEYS = 2000  # keys of each kind; the one that was unused for longest is dropped
 
 
 @dataclass(frozen=True)
@@ -29,12 +29,12 @@ class Limit:
 
 
 PAIR = Limit(free=3, longest=60.0)
-ADDRESS = Limit(free=20, longest=30.0)  # many people may be behind one
-ACCOUNT = Limit(free=30, longest=5.0)  # short: a right password from a new address has to wait for it, too
+ADDRESS = Limit(free=20, longest=30.0)  # many people may share one address
+ACCOUNT = Limit(free=30, longest=5.0)  # short: a right password from a new address has to wait as well
 
 
 class Failures:
-    """Wrong passwords by key, of which there is a bounded number."""
+    """Counts wrong passwords by key; the number of keys is bounded."""
 
     def __init__(self, limit: Limit, clock: Callable[[], float]) -> None:
         self._limit, self._clock = limit, clock
@@ -58,7 +58,7 @@ class Failures:
         self._counts.pop(key, None)
 
     def take_back(self, key: str) -> None:
-        """The last one was none."""
+        """Take back the last count: the password was right."""
         count, last = self._counts.get(key, (0, 0.0))
         if count > 1:
             self._counts[key] = (count - 1, last)
@@ -67,7 +67,7 @@ class Failures:
 
 
 class LoginThrottle:
-    """Every try counts as wrong until it was right, so that tries at the same time are not free; thread safe."""
+    """Counts every try as wrong until it was right, so that tries at the same time count, too; thread safe."""
 
     def __init__(self, clock: Callable[[], float] = monotonic) -> None:
         self._pairs, self._addresses, self._accounts = (Failures(one, clock) for one in (PAIR, ADDRESS, ACCOUNT))
@@ -78,7 +78,7 @@ class LoginThrottle:
         """Count a try.
 
         Raises:
-            TmsError: THROTTLED: it comes too soon, and was not counted.
+            TmsError: THROTTLED: the try comes too soon and is not counted.
         """
         pair, address, account = _keys(account, address)
         with self._lock:
@@ -93,7 +93,7 @@ class LoginThrottle:
                 self._accounts.add(account)
 
     def right(self, account: str, address: str) -> None:
-        """The try was right; it clears nothing of what others have tried."""
+        """Note that the try was right; the wrong tries of other callers still count."""
         pair, address, account = _keys(account, address)
         with self._lock:
             self._pairs.clear(pair)
@@ -106,6 +106,6 @@ class LoginThrottle:
 
 
 def _keys(account: str, address: str) -> tuple[str, str, str]:
-    """Keys of the pair, the address and the account; of a fixed length, however long a name somebody sends."""
+    """Keys of the pair, the address and the account; of a fixed length, however long a sent name is."""
     name = hashlib.sha256(account.encode(errors="replace")).hexdigest()
     return f"{name} {caller(address)}", caller(address), name

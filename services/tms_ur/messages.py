@@ -20,7 +20,7 @@ from tms_ur.models import ActiveRun, Event, Joint, Machine, Process, Question, R
 from tms_ur.models import MachineState as Shown
 from tms_ur.reason_view import ReasonView, of_line, view
 
-NEVER = 1e8  # s, a larger age means that there was nothing yet
+NEVER = 1e8  # s, a larger age means that nothing was received yet
 TYPES = {
     ParameterType.PARAMETER_BOOL: "bool", ParameterType.PARAMETER_INTEGER: "int",
     ParameterType.PARAMETER_DOUBLE: "double", ParameterType.PARAMETER_STRING: "string",
@@ -30,7 +30,7 @@ TYPES = {
 
 
 def when(stamp: Time) -> datetime | None:
-    """As a date; None for zero, which means never."""
+    """A time as a date; None for zero, which means never."""
     if not stamp.sec and not stamp.nanosec:
         return None
     return datetime.fromtimestamp(stamp.sec + stamp.nanosec * 1e-9, timezone.utc)
@@ -111,7 +111,7 @@ def event(event: db.Event) -> Event:
 
 
 def _reason_in(text: str) -> ReasonView | None:
-    """The reason that a journal's text is; None for bare words, which are shown as they are."""
+    """The reason in a journal's text; None for plain text, which is shown as it is."""
     reason = wire.of(text)
     return None if reason is None or reason == Foreign(text) else view(reason)
 

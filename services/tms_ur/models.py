@@ -1,4 +1,4 @@
-"""What the API answers, with units; no ROS types go beyond the gateway."""
+"""Models of the API's answers, with units; ROS types are not part of the API."""
 
 from datetime import datetime
 from typing import Literal

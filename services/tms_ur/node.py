@@ -19,8 +19,8 @@ from tms_ur.site_client import SiteClient
 
 
 def start(app: App) -> None:
-    """Listen on the console's port of the site file."""
-    wire.load()  # the codes of all services, whose reasons it shows
+    """Serve the console on the port of the site file."""
+    wire.load()  # the API shows reasons of all services, so it needs their codes
     file = app.site.file
     tls = address.certificate(app.site)
     access = Access(address.users(app.site))
@@ -35,7 +35,7 @@ def start(app: App) -> None:
 
 
 def _who_may(file: SiteFile, access: Access) -> str:
-    """Who may do what, for the log."""
+    """Who may use the console, for the log."""
     if access.asks:
         return "users of console.users" + (
             "" if file.console.tls else ", passwords travel in the clear: set console.tls"
@@ -47,7 +47,7 @@ def _listen(site: Site) -> Listener:
     bind, port = site.file.bind, site.file.ports.console
     try:
         made = socket.create_server((bind, port), family=socket.AF_INET6 if ":" in bind else socket.AF_INET)
-        made.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SENT)  # of the connections that it accepts
+        made.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SENT)  # accepted connections inherit it
         return Listener(fileno=made.detach())
     except OSError as error:
         raise ConfigError(CannotListen(str(site.path), port, bind, str(error.strerror))) from error

@@ -1,4 +1,4 @@
-"""How the API tells what went wrong, and who may ask for what."""
+"""The API's answers for errors, and the roles that its endpoints need."""
 
 from collections.abc import Callable, Coroutine
 from http import HTTPStatus
@@ -22,19 +22,19 @@ TEXTS = {
 
 
 def problems(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    """The `responses` of an endpoint."""
+    """The error `responses` of an endpoint for OpenAPI."""
     return {status: {"model": ReasonView, "description": TEXTS[status]} for status in statuses}
 
 
 def problem(error: TmsError, status: int | None = None) -> JSONResponse:
-    """The answer that tells an error; `status` where it does not follow from the code."""
+    """The answer for an error; `status` where it does not follow from the code."""
     shown = of_error(error).model_dump(mode="json")
     found = STATUS.get(error.code, HTTPStatus.CONFLICT) if status is None else status
     return JSONResponse(shown, found, retry_after(error.reason))
 
 
 def _needs(role: RoleName) -> Any:
-    """The person who asks, who must have at least this role."""
+    """A dependency that gives the person of a request and refuses one without at least this role."""
 
     async def check(request: Request) -> Person:
         person: Person | None = request.state.person

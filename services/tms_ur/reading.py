@@ -1,4 +1,4 @@
-"""Endpoints that only show something; every role may ask them."""
+"""Endpoints that only show something; every role may call them."""
 
 import difflib
 from datetime import datetime, timedelta
@@ -43,9 +43,9 @@ if TYPE_CHECKING:
     from tms_ur.site_client import SiteClient
 
 UINT32 = 2**32 - 1
-PAGE = 1000  # events of one answer
-MAX_EVENTS = 200_000  # of an export
-BEGINNING = 50  # events among which the shape of the tree is
+PAGE = 1000  # events in one answer
+MAX_EVENTS = 200_000  # events in an export
+BEGINNING = 50  # first events of a run, which include the shape of the tree
 
 RunId = Annotated[str, Path(pattern=r"^[0-9A-Za-z_-]{1,64}$", description="id of a run")]
 TaskId = Annotated[int, Path(ge=1, le=INT32)]
@@ -53,7 +53,7 @@ ProcessName = Annotated[str, Path(pattern=r"^[0-9A-Za-z_]{1,64}:[0-9A-Za-z_]{1,6
 
 
 def add(app: FastAPI, client: "SiteClient", audit: "Audit", site: Site) -> None:
-    """Put them into the application."""
+    """Add these endpoints to the application."""
     _live(app, client, site)
     _stored(app, client)
     _audit(app, client, audit)
@@ -65,7 +65,7 @@ def _live(app: FastAPI, client: "SiteClient", site: Site) -> None:
     stream = Stream(client.board)
     shown = _site(site)
 
-    # `async` where nothing waits, so that these answer even when all workers wait for a module
+    # `async` where the endpoint waits for nothing, so that it answers even when all workers wait for a module
     @app.get("/api/state", summary="Machines, active runs, questions and processes as they are now")
     async def state() -> State:
         return client.board.snapshot()
@@ -192,7 +192,7 @@ def _all_events(client: "SiteClient", run_id: str) -> list[Event]:
 
 
 def _newest_of_audit(client: "SiteClient", last: int, since: datetime, limit: int) -> list[Event]:
-    """The end of the journal, looked for further and further back: old entries have gaps in their numbers."""
+    """The end of the journal, searched further and further back: the numbers of old entries have gaps."""
     back = limit
     while True:
         after = max(0, last - back)
@@ -204,13 +204,13 @@ def _newest_of_audit(client: "SiteClient", last: int, since: datetime, limit: in
 
 
 def _audit_after(client: "SiteClient", after: int) -> list[Event]:
-    """All entries behind a number, of which the last page and a half is kept."""
+    """The entries after a number; of many, the last pages."""
     found: list[Event] = []
     while True:
         try:
             page = client.events(AUDIT, after, PAGE)
         except TmsError as error:
-            if error.code != "RUN_MISSING":  # none, or none behind a full page
+            if error.code != "RUN_MISSING":  # there is no journal, or no entry after a full page
                 raise
             page = []
         found = [*found[-PAGE:], *page]
@@ -224,7 +224,7 @@ def _finding(reason: Reason) -> Finding:
 
 
 def _line(reason: Reason) -> int | None:
-    """Of the task's text, where the reason or one inside it tells."""
+    """The line of the task's text from the reason or a reason inside it; None if neither names one."""
     line = reason.args.get("line")
     inner = (one for one in reason.args.values() if isinstance(one, Reason))
     return line if isinstance(line, int) else next((found for one in inner if (found := _line(one)) is not None), None)
@@ -246,7 +246,7 @@ def _site(site: Site) -> SiteInfo:
 
 
 def _arm(site: Site, machine: str) -> list[Link]:
-    """The joints about y, from the body outwards: what moves in a side view."""
+    """The joints about y, from the body outwards: those that move in a side view."""
     geometry = site.model_of(machine).geometry
     return [
         Link(joint=name, x=origin.xyz[0], z=origin.xyz[2], pitch=origin.pitch)

@@ -10,7 +10,7 @@ from tms_reason import texts, wire
 from tms_reason.errors import TmsError
 from tms_reason.reason import Foreign, Reason
 
-KEPT = 1000  # views of lines; the same ones come with every state of a machine
+KEPT = 1000  # views; every state of a machine carries the same lines again
 
 
 class Shown(BaseModel):
@@ -64,7 +64,7 @@ def view(reason: Reason) -> ReasonView:
 
 
 def of_error(error: TmsError) -> ReasonView:
-    """The view of an error; one whose reason is no reason of ours yet has a code of its own."""
+    """The view of an error; where the reason is a foreign text, the view has the error's code."""
     shown = view(error.reason)
     return shown.model_copy(update={"code": error.code}) if isinstance(error.reason, Foreign) else shown
 
@@ -81,7 +81,7 @@ def _action(reason: Reason) -> Action | None:
 
 
 def _finite(value: Any) -> Any:
-    """JSON has no infinite numbers, and none that is not a number."""
+    """Replace numbers that JSON does not have: infinite ones and NaN."""
     if isinstance(value, dict):
         return {name: _finite(one) for name, one in value.items()}
     if isinstance(value, list):

@@ -1,4 +1,4 @@
-"""Why the console refuses a request, what it misses, and what is wrong with its settings."""
+"""Reasons why the console refuses a request or cannot work, and faults of its settings."""
 
 from tms_reason.quantities import Seconds
 from tms_reason.reason import Reason
@@ -6,8 +6,8 @@ from tms_reason.remedies import CHECK, EDIT_CONFIG, LOGS, PROCESSES, RETRY, RUNS
 
 
 # fmt: off
-# who asks
-class Login(Reason, text="{why}"): why: Reason  # what a person does next is always the same: log in
+# the person or program that asks
+class Login(Reason, text="{why}"): why: Reason  # the remedy is always the same: log in
 class NobodyLoggedIn(Reason, text="log in first",
     details="POST /api/login, or `Authorization: Bearer NAME:TOKEN`"): pass
 class WrongPassword(Reason, text="the name or the password is wrong"): pass
@@ -20,7 +20,7 @@ class NoAccessControl(Reason, text="others can connect to {bind}, and the consol
     details="console.users names a file of users (`tms user add`); `bind: 127.0.0.1` keeps others out"):
     bind: str
 
-# what a request looks like
+# the form of a request
 class Crowded(Reason, text="too many requests are being answered; a stop is answered always", action=RETRY): pass
 class ForeignHost(Reason, text="this console does not answer to the name '{host}'",
     action=EDIT_CONFIG,
@@ -58,7 +58,7 @@ class StartRefused(Reason, text="the scheduler did not take the task", action=LO
 class MachineUnheard(Reason, text="{process} has not been heard yet", action=PROCESSES): process: str
 class MachineSilent(Reason, text="{process} has said nothing for {age}", action=PROCESSES): process: str; age: Seconds
 
-# its own life
+# the console itself
 class ServerEnded(Reason, text="the web server has ended", action=LOGS): process: str
 class ServerStarting(Reason, text="the web server is not up yet", action=RETRY): pass
 class CannotListen(Reason, text="{file}: ports.console: cannot listen on port {port} of {bind} ({problem})",

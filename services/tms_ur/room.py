@@ -1,4 +1,4 @@
-"""How many requests are answered at a time. Stops are not counted: there is always room for one."""
+"""Bounds the requests that are answered at a time. Stops are not counted: there is always room for one."""
 
 import re
 from collections import Counter
@@ -6,7 +6,7 @@ from collections import Counter
 from starlette.types import Scope
 
 MAX_REQUESTS = 250  # requests that are answered at a time, streams among them
-MAX_OF_ONE = 100  # of them from one address; more than it may have that hang (connections.py)
+MAX_OF_ONE = 100  # of them from one address; more than the hanging ones that connections.py allows it
 STOPS = re.compile(r"/api/(stop|runs/[^/]+/cancel)")
 
 
@@ -16,13 +16,13 @@ def is_stop(scope: Scope) -> bool:
 
 
 class Room:
-    """Counts by caller; used on the event loop only."""
+    """Counts requests by caller; used on the event loop only."""
 
     def __init__(self) -> None:
         self._open: Counter[str] = Counter()
 
     def enter(self, who: str) -> bool:
-        """Whether one more may be answered; then it must be said when it has left."""
+        """Count a request; returns whether it may be answered. If so, `leave` must follow its end."""
         if self._open.total() >= MAX_REQUESTS or self._open[who] >= MAX_OF_ONE:
             return False
         self._open[who] += 1

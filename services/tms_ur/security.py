@@ -1,8 +1,8 @@
-"""What stands before every request: whom we answer, who asks, what a command must look like, security headers.
+"""Checks of every request: host name, person, form of a command; and the security headers of every answer.
 
-The browser must not become a way in for foreign pages: only our own names are answered (a foreign name that resolves
+The browser must not let foreign pages in: only requests to our own names are answered (a foreign name that resolves
 to this PC is DNS rebinding), and commands are JSON (which a foreign page cannot send without asking first) from our
-own pages or from no page at all. Without users, commands are taken only where nobody but this PC can connect.
+own pages or from no page at all. Without users, commands are accepted only where only this PC can connect.
 """
 
 import ipaddress
@@ -41,10 +41,10 @@ if TYPE_CHECKING:
 LOCAL_NAMES = frozenset({"localhost", "127.0.0.1", "::1"})
 MAX_BODY = 16 * 1024  # bytes of a command ...
 MAX_TASK = 6 * 2**20  # ... and of one that carries a tree
-OPEN = frozenset({"/api/session", "/api/login"})  # what is answered before a login
+OPEN = frozenset({"/api/session", "/api/login"})  # paths that need no login
 COOKIE = "tms_session"
-LOCAL = Person("local", "admin")  # without users: whoever sits at this PC
-GUEST = Person("guest", "viewer")  # without users, and others can connect
+LOCAL = Person("local", "admin")  # without users: any person at this PC
+GUEST = Person("guest", "viewer")  # without users, where other PCs can connect
 
 SECURITY = {
     "Content-Security-Policy": "default-src 'self'; object-src 'none'; base-uri 'none'; form-action 'none'; "
@@ -67,7 +67,7 @@ class Refusal:
 
 BUSY = Refusal(
     503, Crowded(),
-    {"Connection": "close", "Retry-After": "2"},  # what waits behind it on the same connection goes, too
+    {"Connection": "close", "Retry-After": "2"},  # further requests on the same connection are dropped, too
 )  # fmt: skip
 NOBODY = Refusal(401, Login(NobodyLoggedIn()))
 
@@ -111,7 +111,7 @@ class SecurityMiddleware:
         if refusal is None:
             await self._app(scope, receive, send)
             return
-        if refusal is not NOBODY or scope["method"] == "POST":  # a page whose session is over asks on
+        if refusal is not NOBODY or scope["method"] == "POST":  # a page goes on asking when its session is over
             self._audit.refused("-", source(scope), "refused", refusal.reason.code)
         await _refuse(refusal, scope, receive, send)
 
@@ -120,12 +120,12 @@ class SecurityMiddleware:
         host = headers.get("host", "")
         if not self._ours(host):
             return Refusal(400, ForeignHost(host, self._bind))
-        if scope["method"] != "POST":  # nothing is changed by any other one; the router refuses what it does not know
+        if scope["method"] != "POST":  # only POST changes anything; the router refuses other methods
             return None
         return self._command_refusal(headers, host, MAX_TASK if scope["path"].startswith("/api/tasks") else MAX_BODY)
 
     async def _stranger(self, scope: Scope) -> Refusal | None:
-        """Find out who asks, for the endpoints; everything of the API but the login needs somebody."""
+        """Find the person of the request for the endpoints; the whole API except the login needs one."""
         try:
             person = await self._person(scope)
         except TmsError as error:
@@ -155,7 +155,7 @@ class SecurityMiddleware:
         if headers.get("content-type", "").partition(";")[0].strip().lower() != "application/json":
             return Refusal(415, NotJson())
         length = headers.get("content-length", "0")
-        if "transfer-encoding" in headers or not length.isdigit():  # chunks count, whatever length stands beside them
+        if "transfer-encoding" in headers or not length.isdigit():  # chunks are valid, whatever length the headers give
             return Refusal(411, NoLength())
         if int(length) > most:
             return Refusal(413, RequestTooLarge(most))
@@ -165,7 +165,7 @@ class SecurityMiddleware:
         name = _name(host)
         if name in self._names:
             return True
-        # Bound to all addresses: by number, which no foreign name server can make up.
+        # Bound to all addresses: accept numeric addresses, which a foreign name server cannot forge.
         return self._bind in ("0.0.0.0", "::") and name is not None and _is_address(name)
 
 
@@ -175,7 +175,7 @@ async def _refuse(refusal: Refusal, scope: Scope, receive: Receive, send: Send) 
 
 
 def source(scope: Scope) -> str:
-    """Address of whoever asks."""
+    """Address of the client."""
     client = scope.get("client")
     return str(client[0]) if client else "-"
 

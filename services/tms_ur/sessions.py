@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def add(app: FastAPI, access: Access, hashing: Hashing, audit: "Audit", secure: bool) -> None:
-    """Put them into the application; `secure`: cookies travel over TLS only."""
+    """Add these endpoints to the application; `secure`: browsers send cookies over TLS only."""
 
     @app.get("/api/session", summary="Who you are to the console")
     async def session(request: Request) -> Session:

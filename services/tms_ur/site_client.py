@@ -1,4 +1,4 @@
-"""What the API asks of ROS: blocking calls for worker threads, and topics that feed the board."""
+"""The API's side of ROS: blocking calls for worker threads, and topics that update the board."""
 
 from typing import Any
 
@@ -44,10 +44,10 @@ from tms_ur.reasons import RunNotBegun, StartRefused, UnknownProcess
 
 SCHEDULER = "tms:ts"
 CALL_LIMIT = 4.0  # s for an answer of a module
-START_LIMIT = 30.0  # s for a run to begin: the scheduler may start its subtasks first
+START_LIMIT = 30.0  # s for a run to begin; the scheduler may have to start its subtasks first
 PROCESS_LIMIT = 15.0  # s for a process to end and to be started
-FRAMES_PERIOD = 0.2  # s between looks at /tf: to be woken by each of its messages costs most of an idle console
-FRAMES_DEPTH = 200  # messages of all machines in that time
+FRAMES_PERIOD = 0.2  # s between reads of /tf: a wake-up for each message would be most of an idle console's load
+FRAMES_DEPTH = 200  # messages of all machines within FRAMES_PERIOD
 
 
 class SiteClient:
@@ -57,7 +57,7 @@ class SiteClient:
         names = list(site.file.machines)
         self._ros = ros
         self.board = Board(names)
-        self._inputs: tuple[list[InputState], float] | None = None  # read and replaced as one
+        self._inputs: tuple[list[InputState], float] | None = None  # read and replaced in one step
         self._scheduler = ros.peer(ExecuteTask, "/tms/execute_task")
         self._machines = {site.border(name).base_frame: name for name in names}
         self._frames = Frames(self._machines)
@@ -114,12 +114,12 @@ class SiteClient:
         return TaskText(**messages.task(task), xml=task.task_sequence)
 
     def add_task(self, xml: str, description: str) -> tuple[int, bool]:
-        """Store a task; returns its number and whether the same text was there already."""
+        """Store a task; returns its number and whether the same text was stored already."""
         answer = self._ask(AddTask, "/tms/db/add_task", task_sequence=xml, description=description)
         return answer.task_id, answer.already_stored
 
     def remove_task(self, task_id: int) -> None:
-        """Take a task out; its number becomes free."""
+        """Remove a task; its number becomes free."""
         self._ask(RemoveTask, "/tms/db/remove_task", task_id=task_id)
 
     def runs(self, limit: int) -> list[Run]:
@@ -127,12 +127,12 @@ class SiteClient:
         return [messages.run(run) for run in self._ask(ListRuns, "/tms/db/list_runs", limit=limit).runs]
 
     def events(self, run_id: str, after: int, limit: int) -> list[Event]:
-        """The journal of a run behind number `after`."""
+        """The events of a run with a number above `after`."""
         answer = self._ask(ListEvents, "/tms/db/list_events", run_id=run_id, after=after, limit=limit)
         return [messages.event(event) for event in answer.events]
 
     def parameters(self, model_name: str) -> list[Record]:
-        """Records of one machine, of all with an empty name."""
+        """Records of one machine; with an empty name, of all."""
         answer = self._ask(ListParameters, "/tms/db/list_parameters", model_name=model_name)
         return [messages.record(record) for record in answer.records]
 
@@ -169,19 +169,19 @@ class SiteClient:
         self._scheduler.wait_ready(CALL_LIMIT)
         call = self._scheduler.send(ExecuteTask.Goal(task_id=task_id, ignore_warnings=ignore_warnings))
         call.wait_for(lambda: _begun(call) or call.outcome is not None, START_LIMIT)
-        if call.outcome is None and call.feedback is not None:  # it runs, or goes on preparing for long
+        if call.outcome is None and call.feedback is not None:  # it runs, or takes long to prepare
             return str(call.feedback.run_id)
-        if call.outcome is None:  # whoever is reported "no" must not see it start later
+        if call.outcome is None:  # the caller gets an error, so the run must not start later
             self._scheduler.cancel(call)
             raise RosError(RunNotBegun(START_LIMIT, SCHEDULER))
         if call.result is None:
             raise TmsError(StartRefused(SCHEDULER))
         if call.result.outcome == "refused":
             raise _error(call.result)
-        return str(call.result.run_id)  # it was over before anything was reported of it
+        return str(call.result.run_id)  # it ended before its first feedback
 
     def cancel_run(self, run_id: str) -> None:
-        """Ask a run to stop; its state tells when it has.
+        """Cancel a run; its state shows when it has ended.
 
         Raises:
             TmsError: NO_RUN, or the scheduler is away.
@@ -199,7 +199,7 @@ class SiteClient:
     # machines
 
     def stop(self, machine: str, cause: Reason) -> Receipt:
-        """Stop one machine by the shortest way, straight to its gateway; no answer is a receipt, too."""
+        """Stop one machine by a call of its gateway; where no answer comes, the receipt says that."""
         try:
             request = StopMachine.Request(cause=wire.to_line(cause))
             answer = self._ros.call(StopMachine, f"/{machine}/rc/stop", request, RECEIPT_LIMIT)
@@ -225,7 +225,7 @@ class SiteClient:
         """Restart one process.
 
         Raises:
-            TmsError: no host agent knows it, or it cannot be started.
+            TmsError: no host agent has it, or it cannot be started.
         """
         host = self._host_of(process)
         request = ControlProcess.Request(name=process, command="restart")
@@ -257,10 +257,10 @@ def _checked(answer: Reply) -> Reply:
 
 
 def _error(answer: Coded) -> TmsError:
-    """The refusal in an answer."""
+    """The error in an answer."""
     return TmsError(wire.of(answer.error_msg) or Foreign(answer.error_code), answer.error_code)
 
 
 def _begun(call: Call[ExecuteTask.Result, ExecuteTask.Feedback]) -> bool:
-    """Whether the run was not refused: until then it only prepares."""
+    """Whether the run has begun; before that it only prepares and may be refused."""
     return call.feedback is not None and call.feedback.state != "preparing"

@@ -5,7 +5,7 @@ from http import HTTPStatus
 from tms_reason.reason import Reason
 from tms_ur.reasons import Throttled
 
-# What is not here is a refusal (409): asked well, but not possible now.
+# A code that is not in this table is a refusal (409): the request is valid, but not possible now.
 STATUS = {
     **dict.fromkeys(("TASK_MISSING", "RUN_MISSING", "RECORD_MISSING", "NO_RUN", "NO_TREE"), HTTPStatus.NOT_FOUND),
     **dict.fromkeys(("NO_QUESTION", "NO_PROCESS", "UNKNOWN_PROCESS", "NO_MACHINE"), HTTPStatus.NOT_FOUND),
@@ -18,5 +18,5 @@ STATUS = {
 
 
 def retry_after(reason: Reason) -> dict[str, str] | None:
-    """The header that says when to try again."""
+    """The header with the time until the next try; None where the reason names none."""
     return {"Retry-After": str(round(reason.seconds) + 1)} if isinstance(reason, Throttled) else None

@@ -1,4 +1,4 @@
-"""Sums up the refusals of strangers: at most one entry a minute for each address and kind. Pure logic."""
+"""Sums up refused requests: at most one entry a minute for each address and kind. Pure logic."""
 
 import threading
 from collections.abc import Callable
@@ -8,13 +8,13 @@ from tms_config.clock import monotonic
 from tms_ur.callers import caller
 
 COUNTING_PERIOD = 60.0  # s
-MAX_KINDS = 200  # addresses with kinds; those beyond are counted together
+MAX_KINDS = 200  # pairs of address and kind; further ones are counted together
 MANY = "many addresses"
 
 
 @dataclass
 class Refused:
-    """Refusals that are reported together."""
+    """Refusals that become one entry."""
 
     who: str  # the last name that was given
     source: str
@@ -33,7 +33,7 @@ class Strangers:
         self._lock = threading.Lock()
 
     def add(self, who: str, source: str, what: str, why: str) -> bool:
-        """Count one; True if it is the first of its kind, to be told at once."""
+        """Count a refusal; True if it is the first of its kind, which is recorded at once."""
         with self._lock:
             key = (caller(source), what, why)
             if key not in self._open and len(self._open) >= MAX_KINDS:
@@ -46,7 +46,7 @@ class Strangers:
             return False
 
     def due(self, everything: bool = False) -> list[Refused]:
-        """What was counted since the last entry of its kind, if that is a minute ago."""
+        """The counts since the last entry of each kind, where that is a minute ago."""
         with self._lock:
             now = self._clock()
             over = {key: one for key, one in self._open.items() if everything or now - one.since >= COUNTING_PERIOD}

@@ -1,6 +1,6 @@
-"""Server-sent events: one snapshot made for all clients, a bounded number of them, each with one slot.
+"""Server-sent events: one snapshot is made for all clients; their number is bounded, and each has one slot.
 
-A snapshot holds everything, so a client needs only the newest: its queue is a single slot that a newer snapshot
+A snapshot holds the whole state, so a client needs only the newest: its queue is a single slot that a newer snapshot
 overwrites, and memory stays bounded however slowly it reads. A client that does not take one for SLOW_LIMIT is dropped.
 """
 
@@ -19,8 +19,8 @@ from tms_ur.reasons import TooManyConsoles
 
 MAX_CLIENTS = 50
 SHORTEST = 0.1  # s between snapshots
-LONGEST = 0.7  # s without a change; the console calls the connection lost after 1.7
-SLOW_LIMIT = 5.0  # s to take one snapshot
+LONGEST = 0.7  # s between snapshots without a change; the console shows the connection as lost after 1.7 s
+SLOW_LIMIT = 5.0  # s that a client has to take one snapshot
 
 CLIENTS = Gauge("tms_ur_stream_clients", "Connected consoles")
 DROPPED = Counter("tms_ur_stream_dropped_total", "Consoles dropped because they read too slowly")
@@ -45,14 +45,14 @@ class Client:
         self._pending.set()
 
     async def next(self) -> bytes | None:
-        """The newest snapshot once there is one that was not sent yet; None at the end."""
+        """Wait for a snapshot that was not sent yet and return the newest; None at the end."""
         await self._pending.wait()
         self._pending.clear()
         return None if self._ended else self._text
 
 
 class Stream:
-    """Makes snapshots while somebody looks."""
+    """Makes snapshots while there are clients."""
 
     def __init__(self, board: Board) -> None:
         self._board = board
@@ -64,10 +64,10 @@ class Stream:
         board.on_change(self._wake)
 
     def join(self) -> Client:
-        """A new client, which gets a snapshot at once.
+        """Add a client, which gets a snapshot at once.
 
         Raises:
-            TmsError: there are too many.
+            TmsError: there are too many clients.
         """
         if len(self._clients) >= MAX_CLIENTS:
             raise TmsError(TooManyConsoles(MAX_CLIENTS))
@@ -85,7 +85,7 @@ class Stream:
         CLIENTS.set(len(self._clients))
 
     def _wake(self) -> None:
-        """Called on any thread."""
+        """Wake the event loop; may be called on any thread."""
         loop = self._loop
         if loop is not None and not loop.is_closed():
             loop.call_soon_threadsafe(self._changed.set)
@@ -107,7 +107,7 @@ class Stream:
 
 
 class StreamResponse(Response):
-    """Sends what a client's slot holds until either side goes away."""
+    """Sends the snapshots of a client's slot until one side closes."""
 
     media_type = "text/event-stream"
 
@@ -124,7 +124,7 @@ class StreamResponse(Response):
                 if not await _sent(send, text):
                     DROPPED.inc()
                     log.warning("console_dropped", source=scope.get("client"), reason="reads too slowly")
-                    return  # without the end of the answer: the server cuts the connection
+                    return  # the answer has no end, so the server closes the connection
             await send({"type": "http.response.body", "body": b"", "more_body": False})
         finally:
             watcher.cancel()
@@ -139,7 +139,7 @@ async def _sent(send: Send, text: bytes) -> bool:
 
 
 async def _end_when_gone(receive: Receive, client: Client) -> None:
-    """The server's send says nothing of a client that has gone, its receive does."""
+    """Wait for the client to disconnect: the server's `send` does not report that, its `receive` does."""
     while (await receive())["type"] != "http.disconnect":
         pass
     client.end()

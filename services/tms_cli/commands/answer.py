@@ -1,4 +1,4 @@
-"""`tms answer`: what runs ask the operator (WaitForClick), and the answer."""
+"""`tms answer`: show the questions of runs to the operator (WaitForClick), or answer one."""
 
 import getpass
 import socket
@@ -54,7 +54,7 @@ def open_questions(node: "Ros") -> "list[Question]":
     """Questions as the scheduler lists them.
 
     Raises:
-        RosError: it says nothing.
+        RosError: the scheduler does not publish them.
     """
     from tms_msg_ts.msg import RunStates
 

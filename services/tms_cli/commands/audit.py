@@ -1,4 +1,4 @@
-"""`tms audit`: who did what, and whether anybody has touched the record of it."""
+"""`tms audit`: show who gave which command, and check that these entries were not changed."""
 
 import sqlite3
 from collections.abc import Iterator
@@ -79,7 +79,7 @@ def verify(as_json: bool) -> None:
 
 
 def _remembered() -> "Place | None":
-    """What the console of this PC knows to be stored. Asked before the entries, which may become more meanwhile."""
+    """The last stored entry by the ledger of this PC. Read before the entries, since more may come meanwhile."""
     from tms_ur.audit_ledger import reported
 
     file = session.site().state / "audit.db"
@@ -118,7 +118,7 @@ def _page(node: "Ros", after: int, limit: int) -> "list[Event]":
         asked: dict[str, Any] = {"run_id": "audit", "after": after, "limit": limit}
         return list(session.call(node, ListEvents, "/tms/db/list_events", **asked).events)
     except TmsError as error:
-        if error.code != "RUN_MISSING":  # there is none
+        if error.code != "RUN_MISSING":  # there are no entries
             raise
         return []
 
@@ -133,7 +133,7 @@ def _entries(node: "Ros", after: int) -> Iterator["Event"]:
 
 
 def _newest(node: "Ros", limit: int) -> "list[Event]":
-    """The last ones; entries from before there was a chain have gaps in their numbers, so it looks further back."""
+    """The last entries. The numbers of entries older than the chain have gaps, so the search goes further back."""
     from tms_ur.audit_chain import highest
 
     last, back = highest(lambda after: bool(_page(node, after, 1))), limit

@@ -1,4 +1,4 @@
-"""`tms cancel`: end a run; it has ended when its machines were seen to stand still."""
+"""`tms cancel`: end a run and wait until its machines were measured to stand still."""
 
 from typing import TYPE_CHECKING
 
@@ -21,7 +21,7 @@ CHECK_PERIOD = 0.2  # s
 
 
 def _which(node: "Ros", word: str) -> str:
-    """The id that is meant; without the database, whatever was given: a cancel must not depend on it."""
+    """The id of the run; without the database the given word itself, since a cancel must not depend on the database."""
     try:
         runs = history(node, MAX_RUNS)
     except TmsError:

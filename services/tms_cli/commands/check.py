@@ -1,4 +1,4 @@
-"""`tms check`: is the site's configuration right?"""
+"""`tms check`: check the site's configuration."""
 
 import click
 
@@ -23,7 +23,7 @@ def command(chosen: str | None, as_json: bool) -> None:
     """
     site = load_site(chosen) if chosen else session.site()
     rows = table(site)
-    if any(row.name == "ur" and row.pc in ("", site.pc) for row in rows):  # other PCs do not have its files
+    if any(row.name == "ur" and row.pc in ("", site.pc) for row in rows):  # other PCs do not have the console's files
         certificate(site)
         users(site)
     inputs = load_sensing(site).inputs

@@ -1,4 +1,4 @@
-"""`tms db`: backup and restore of the database, and what it holds."""
+"""`tms db`: backup, restore and content of the database."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -14,7 +14,7 @@ from tms_config.clock import monotonic
 if TYPE_CHECKING:
     from tms_db.backup import Report
 
-SPEAK = 1.0  # s between words about long work
+SPEAK = 1.0  # s between progress messages of long work
 FILE = click.Path(path_type=Path)
 
 
@@ -117,7 +117,7 @@ def _as_dict(report: "Report") -> dict[str, Any]:
 
 
 def _progress() -> Callable[[str], None]:
-    """Says on stderr how far long work is; short work stays silent."""
+    """Make a function that prints the progress of long work on stderr, and nothing for short work."""
     last = monotonic()
 
     def speak(text: str) -> None:

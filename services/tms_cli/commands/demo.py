@@ -1,4 +1,4 @@
-"""`tms demo`: from nothing to a simulated excavator that has done one loading cycle."""
+"""`tms demo`: start a mesh in which a simulated excavator does one loading cycle."""
 
 import shutil
 from typing import TYPE_CHECKING
@@ -49,7 +49,7 @@ def command(ctx: click.Context, as_json: bool) -> None:
 
 
 def _arm(node: "Ros", site: Site) -> None:
-    """A stand-in of a new clone was never armed; nobody can be in its way. A machine that was stopped stays so."""
+    """Arm a stand-in of a new clone: no person can be near it. A machine that was stopped stays stopped."""
     from tms_msg_rc.msg import MachineState
 
     for machine in site.file.machines if site.file.backend == "sim" else ():

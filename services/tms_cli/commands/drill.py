@@ -28,17 +28,17 @@ QUICK_LIMIT, LIMIT = 330.0, 900.0  # s, the latter a round
 
 
 def check(site: Site) -> None:
-    """Whether the site may be drilled.
+    """Check that the site may be drilled.
 
     Raises:
-        ConfigError: it is no simulation on one PC, or has no machine.
+        ConfigError: the site is no simulation on one PC, or has no machine.
     """
     if site.file.backend != "sim" or site.file.pcs or not site.file.machines:
         raise ConfigError(NotForDrill(str(site.path)))
 
 
 def own_state(site: Site) -> None:
-    """A new state folder for all that the drill starts: its machines were never armed, its history is empty.
+    """Choose a new state folder for the drill's processes: their machines were never armed, the history is empty.
 
     Raises:
         TmsError: another drill of this site uses it.
@@ -51,13 +51,13 @@ def own_state(site: Site) -> None:
 
 
 def planned(site: Site, seed: int, rounds: int, quick: bool, only: str | None = None) -> list[list[Trial]]:
-    """What is tried on this site."""
+    """The trials for this site, in waves."""
     planners = {name: site.model_of(name).planner is not None for name in site.file.machines}
     return plan(seed, planners, rounds, quick) if only is None else plan_only(seed, planners, only, rounds)
 
 
 def drill(site: Site, waves: list[list[Trial]], seconds: float) -> list[Row]:
-    """Start everything, make the trials, and leave nothing behind."""
+    """Start the mesh, make the trials, and end all processes."""
     from tms_cli.drill.waves import Waves
 
     signal.signal(signal.SIGTERM, lambda _number, _frame: sys.exit(128 + signal.SIGTERM))
@@ -103,7 +103,7 @@ def command(
       tms --site drill drill --rounds 4 --seed 7
       tms --site drill drill --only "kill rc+tms:ts+rp+subtask" --rounds 9
     """
-    if report is not None and not os.access(report.absolute().parent, os.W_OK):  # and not after an hour of work
+    if report is not None and not os.access(report.absolute().parent, os.W_OK):  # before an hour of work
         raise TmsError(NotWritable(str(report), os.strerror(errno.EACCES)), "NO_FILE")
     if quick and only:
         raise click.UsageError("--quick and --only exclude each other: --quick tries every kind of stop")

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from tms_ros.node import Ros
 
 PAGE = 1000
-CHECK_PERIOD = 0.5  # s between looks with --follow
+CHECK_PERIOD = 0.5  # s between reads with --follow
 COLOURS = {"run": "cyan", "goal": "yellow", "stop": "red"}
 
 
@@ -35,7 +35,7 @@ def _follow(node: "Ros", run_id: str) -> None:
     """Show events as they come until the run has ended."""
     after = 0
     while True:
-        # Asked before the events: the end of a run is stored after its last event.
+        # Read before the events, since the end of a run is stored after its last event.
         run = recent(node, run_id)
         ended = run is None or has_ended(run)
         for event in journal(node, run_id, after):

@@ -1,4 +1,4 @@
-"""`tms give-back`: the end of driving by hand; the machine is seen to stand again."""
+"""`tms give-back`: end driving by hand; the gateway proves that the machine stands."""
 
 import getpass
 
@@ -8,7 +8,7 @@ from tms_cli import session, words
 from tms_cli.commands import stop
 from tms_cli.words import say
 
-PROOF_LIMIT = 20.0  # s for the gateway to have seen that it stands
+PROOF_LIMIT = 20.0  # s for the gateway to prove that it stands
 
 
 @click.command()

@@ -1,4 +1,4 @@
-"""`tms palette`: the nodes that Groot may draw with."""
+"""`tms palette`: print the nodes of trees for Groot."""
 
 from pathlib import Path
 
@@ -36,7 +36,7 @@ def command(output: Path | None, as_json: bool) -> None:
 
 
 def write(file: Path, text: str) -> None:
-    """Write the palette, or say why the file cannot be written."""
+    """Write the palette; an error names why the file cannot be written."""
     try:
         file.write_text(text, encoding="utf-8")
     except OSError as error:

@@ -1,4 +1,4 @@
-"""`tms panel`: a start and a stop button for one task, over the whole screen of a panel PC."""
+"""`tms panel`: show a start and a stop button for one task on the whole screen of a panel PC."""
 
 import shutil
 import subprocess

@@ -98,7 +98,7 @@ def set_(
     if not (fields or remove or type_ or description or max_age is not None):
         raise click.UsageError("nothing to change: give field=value, --remove, --type, --max-age or --description")
     expected = parse_fields(f"record {'/'.join(key)}", expect)
-    limit = 0.0 if max_age is None else max_age or -1.0  # on the wire 0 is: as it was
+    limit = 0.0 if max_age is None else max_age or -1.0  # in the message 0 means: unchanged
     values = parse_fields(f"record {'/'.join(key)}", fields)
     with session.ros() as node:
         created = write(

@@ -1,4 +1,4 @@
-"""`tms prometheus`: the folder that Prometheus reads."""
+"""`tms prometheus`: write the folder that Prometheus reads."""
 
 from pathlib import Path
 

@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 
     from tms_ros.node import Ros
 
-ARMED = "NOT_STOPPED"  # code of a gateway whose machine is armed already
+ARMED = "NOT_STOPPED"  # error code of a gateway whose machine is armed already
 
 
 def ask(node: "Ros", machine: str, token: str = "") -> "Rearm.Response":
-    """One step of re-arming.
+    """Do one step of re-arming.
 
     Raises:
         TmsError: refused, with the reason.
@@ -31,7 +31,7 @@ def ask(node: "Ros", machine: str, token: str = "") -> "Rearm.Response":
 
 
 def never_armed(state: "MachineState | None") -> bool:
-    """Whether a machine is stopped only because no note of this PC says how it was left."""
+    """Whether a machine is stopped only because this PC has no note of its last state."""
     return state is not None and isinstance(wire.of(state.latch), NoNote)
 
 
@@ -59,7 +59,7 @@ def command(machines: tuple[str, ...], every: bool, yes: bool, as_json: bool) ->
 
 
 def _rearm(node: "Ros", machine: str, yes: bool, optional: bool) -> dict[str, Any] | None:
-    """None for a machine that is armed already, where that is no mistake."""
+    """Re-arm a machine; None if it is armed already and `optional` allows that."""
     try:
         first = ask(node, machine)
     except TmsError as error:

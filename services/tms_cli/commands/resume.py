@@ -13,11 +13,11 @@ if TYPE_CHECKING:
 
     from tms_ros.node import Ros
 
-SHOWN = 3  # of the leaves that are not repeated
+SHOWN = 3  # leaves that are named among those that are not repeated
 
 
 def plan(node: "Ros", run_id: str) -> "ResumePlan.Response":
-    """What resuming would do.
+    """Get the plan of resuming a run.
 
     Raises:
         TmsError: NO_RUN.

@@ -1,4 +1,4 @@
-"""`tms run`: execute a stored task and show how it goes."""
+"""`tms run`: run a stored task and show its progress."""
 
 import queue
 from collections.abc import Callable
@@ -25,15 +25,15 @@ if TYPE_CHECKING:
 
 ACTION = "/tms/execute_task"
 SERVER_LIMIT = 5.0  # s
-CHECK_PERIOD = 0.1  # s between looks
-SILENT = 10.0  # s without a word of the scheduler, which lists its runs twice a second
-FORGOTTEN = 5.0  # s of lists without this run: it was another scheduler process that began it
+CHECK_PERIOD = 0.1  # s between checks
+SILENT = 10.0  # s without a message of the scheduler, which publishes its runs twice a second
+FORGOTTEN = 5.0  # s of lists without this run, after which another scheduler process must have begun it
 INTERRUPTED = 130
 
 
 @dataclass(frozen=True)
 class End:
-    """How a run ended, or how it stands when nobody waits for its end."""
+    """How a run ended, or its state when the command does not wait for the end."""
 
     run_id: str
     outcome: str
@@ -60,7 +60,7 @@ class Runner:
         self._feedback: queue.SimpleQueue[ExecuteTask.Feedback] = queue.SimpleQueue()
         self._received_at = self._listed_at = monotonic()
         self._asked_again = False
-        self._reported: Run | None = None  # the run as the history has it, should its result never come
+        self._reported: Run | None = None  # the run in the history, for the case that its result never comes
         self.view = _view(node, task_id)
         self._peer = node.peer(ExecuteTask, ACTION)
         self._peer.wait_ready(SERVER_LIMIT)
@@ -70,11 +70,11 @@ class Runner:
         node.subscribe(RunStates, "/tms/runs", self._list_received, latched=True)
 
     def begin(self) -> End:
-        """Return when the run has begun or was refused. Ctrl-C asks for its cancel."""
+        """Return when the run has begun or was refused. Ctrl-C cancels it."""
         return self._until(None, lambda: bool(self.view.run_id) and self.view.state != "preparing")
 
     def finish(self, display: live.Display) -> End:
-        """Show the run until it has ended. Ctrl-C asks for its cancel and goes on showing; a second one leaves."""
+        """Show the run until it has ended. Ctrl-C cancels it and goes on showing; a second one ends the command."""
         with display:
             end = self._until(display, lambda: False)
             display.show(self.view, self.view.close(end.outcome))
@@ -119,7 +119,7 @@ class Runner:
             self._peer.cancel(self._call)
 
     def _list_received(self, message: "RunStates") -> None:
-        """The scheduler's active runs; called on ROS's thread."""
+        """Take the list of the scheduler's active runs; called on ROS's thread."""
         now = monotonic()
         view = self.view
         if any(run.run_id == view.run_id if view.run_id else run.task_id == view.task_id for run in message.runs):
@@ -127,7 +127,7 @@ class Runner:
         self._received_at = now
 
     def _look_after_scheduler(self) -> None:
-        """A scheduler that was killed never sends a result."""
+        """Detect the loss of the scheduler: a killed one never sends a result."""
         if monotonic() - self._received_at > SILENT:
             lost: Reason = SchedulerQuiet(SILENT, self.view.run_id)
         elif self._received_at - self._listed_at > FORGOTTEN / 2 and not self._asked_again:
@@ -147,7 +147,7 @@ class Runner:
         return self._call.outcome is not None or self._reported is not None
 
     def _in_history(self) -> "Run | None":
-        """The run there, when it has ended."""
+        """The run in the history, if it has ended; else None."""
         try:
             run = recent(self._node, self.view.run_id)
         except TmsError:
@@ -171,7 +171,7 @@ class Runner:
 
 
 def _view(node: "Ros", task_id: int) -> live.View:
-    """The display, filled with what the task's text tells: machines to watch and goals of the leaves."""
+    """Make the view of a run from the task's text: machines to watch and goals of the leaves."""
     from tms_msg_db.srv import GetTask
     from tms_msg_rc.msg import MachineState
 
@@ -191,12 +191,12 @@ def _goals(text: str) -> list[tuple[str, str]]:
     try:
         nodes = load(text).nodes
     except TreeError:
-        return []  # the scheduler refuses it, with the reason
+        return []  # the scheduler refuses it and gives the reason
     return [(n.registration_name, " · ".join(n.goal_asked()) if isinstance(n, SendsGoal) else "") for n in nodes]
 
 
 def report(end: End, as_json: bool) -> None:
-    """Say how it ended and where to read more."""
+    """Print how the run ended and where to read more."""
     if as_json:
         shown = {key: value for key, value in asdict(end).items() if key != "interrupted"}
         session.show_json({**shown, "error_msg": words.english(end.error_msg)})
@@ -213,7 +213,7 @@ def report(end: End, as_json: bool) -> None:
     reason = wire.of(end.error_msg)
     if (
         end.outcome in ("success", "cancelled") and reason is not None and reason.find(NotStored) is not None
-    ):  # others show their reason
+    ):  # other outcomes print their reason below
         note = say("the end of {run} is not stored yet: the disk of the scheduler's PC is slow or full", run=end.run_id)
         click.echo(f"tms: {note}", err=True)
     if end.exit_code:

@@ -1,4 +1,4 @@
-"""`tms runs`: what ran, newest first."""
+"""`tms runs`: list runs, newest first."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -27,7 +27,7 @@ def history(node: "Ros", limit: int) -> "list[Run]":
 
 
 def recent(node: "Ros", run_id: str) -> "Run | None":
-    """A run among the newest ones as it stands now, None if it is not there."""
+    """The present state of a run among the newest ones, None if it is not among them."""
     return next((run for run in history(node, RECENT) if run.run_id == run_id), None)
 
 
@@ -37,7 +37,7 @@ def has_ended(run: "Run") -> bool:
 
 
 def find_run(runs: "list[Run]", word: str) -> "Run":
-    """The run meant by an id, the beginning of one, or `last`.
+    """Find a run by its id, the beginning of it, or `last`.
 
     Raises:
         TmsError: none or several fit.

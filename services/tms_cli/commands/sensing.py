@@ -1,4 +1,4 @@
-"""`tms sensing`: how the sensing inputs are; `tms sensing replay` plays a recording into them."""
+"""`tms sensing`: show the state of the sensing inputs; `tms sensing replay` plays a recording into them."""
 
 import math
 from typing import TYPE_CHECKING, Any
@@ -52,10 +52,10 @@ command.add_command(replay)
 
 
 def _inputs() -> "list[InputState]":
-    """The inputs as tms:sp tells of them.
+    """The inputs that tms:sp reports.
 
     Raises:
-        TmsError: it does not.
+        TmsError: tms:sp does not report them.
     """
     from tms_msg_sp.msg import InputStates
 

@@ -1,4 +1,4 @@
-"""`tms status`: does the mesh run, and what is not as it should be?"""
+"""`tms status`: show whether the mesh runs, and every fault."""
 
 import click
 

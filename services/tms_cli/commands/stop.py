@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
     from tms_ros.node import Ros
 
-ANSWER_LIMIT = 13.0  # s; a gateway gives itself 10 s to see the machine stand
+ANSWER_LIMIT = 13.0  # s; a gateway takes at most 10 s to see the machine stand
 CAUSE = to_line(SoftwareStop())
 
 
 def stop(node: "Ros", machine: str) -> "StopReceipt":
-    """The gateway's receipt, or one that says why there is none."""
+    """Stop a machine; returns the gateway's receipt, or one that says why there is none."""
     from tms_msg_rc.msg import StopReceipt
     from tms_msg_rc.srv import StopMachine
 
@@ -34,7 +34,7 @@ def stop(node: "Ros", machine: str) -> "StopReceipt":
 
 
 def stop_all(node: "Ros", machines: list[str]) -> "list[StopReceipt]":
-    """All machines at the same time, each by the shortest way: straight to its gateway."""
+    """Stop all machines at the same time, each by a call of its gateway."""
     with ThreadPoolExecutor(max(1, len(machines)), "stop") as pool:
         return list(pool.map(lambda machine: stop(node, machine), machines))
 

@@ -1,4 +1,4 @@
-"""`tms take`: a person drives a machine by hand; nothing of ours moves it, nor commands anything against it."""
+"""`tms take`: a person drives a machine by hand; no process moves it, and none commands anything against the person."""
 
 import getpass
 

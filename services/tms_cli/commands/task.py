@@ -56,14 +56,14 @@ def add(file: str, description: str, as_json: bool) -> None:
 
 
 def stored_line(answer: "AddTask.Response") -> str:
-    """What storing a task did."""
+    """The result of storing a task, in one line."""
     if answer.already_stored:
         return say("already stored as task {task}", task=answer.task_id)
     return say("stored as task {task}: run it with `tms run {task} --wait`", task=answer.task_id)
 
 
 def store(node: "Ros", file: str, description: str) -> "AddTask.Response":
-    """Store a file as a task; the answer of AddTask.
+    """Store a file as a task; returns the answer of AddTask.
 
     Raises:
         TmsError: the file is no task, or the database refused it.
@@ -126,7 +126,7 @@ def show(what: str, form: str | None, as_json: bool) -> None:
 
 
 def number(what: str) -> int | None:
-    """The number that an argument is; None for a file's name.
+    """The task number in an argument; None for a file's name.
 
     Raises:
         TaskError: no task can have that number.

@@ -1,4 +1,4 @@
-"""`tms up`: start the mesh of this PC and wait until its processes can work."""
+"""`tms up`: start the mesh of this PC and wait until its processes are ready."""
 
 import os
 
@@ -40,7 +40,7 @@ def command(role: str | None, foreground: bool, no_wait: bool) -> None:
 
 
 def mesh_line(site: Site, started: bool) -> str:
-    """Which mesh there is now."""
+    """A line about the mesh that runs now."""
     name = f"'{site.name}'" + (say(" on PC '{pc}'", pc=site.pc) if site.pc else "")
     if started:
         return say("mesh {name} started, state in {folder}", name=name, folder=site.state)

@@ -1,4 +1,4 @@
-"""`tms user`: who may use the console. Passwords and tokens are kept as argon2 hashes."""
+"""`tms user`: the users of the console. Passwords and tokens are kept as argon2 hashes."""
 
 import secrets
 from pathlib import Path
@@ -131,7 +131,7 @@ def _read(path: Path) -> dict[str, Any]:
 
 
 def _write(path: Path, users: dict[str, Any]) -> None:
-    """For this user's eyes only; never half written."""
+    """Write the file in one step, readable for this user only."""
     path.parent.mkdir(parents=True, exist_ok=True)
     new = path.with_suffix(".new")
     new.touch(mode=0o600)

@@ -1,6 +1,6 @@
-"""Whether this PC did not run a machine's processes for a moment: they write that into their logs.
+"""Finds in the logs whether this PC did not run a machine's processes for a moment.
 
-Only what the kernel counts as waiting for a processor is evidence: a long callback of ours is no fault of the PC.
+Evidence is only the time that the kernel counts as waiting for a processor: a long callback is no fault of the PC.
 """
 
 import re
@@ -11,12 +11,12 @@ from tms_config.config import Site
 from tms_config.processes import table
 from tms_host.supervisor import log_file
 
-BEFORE, AFTER = 1.5, 2.0  # s around the begin of a stop: a lease, and a line that is written late
+BEFORE, AFTER = 1.5, 2.0  # s around the begin of a stop: the length of a lease, and the delay of a line in the log
 LINE = re.compile(r"^(\S+) \w+ process=(\S+) .*event=stood_still seconds=(\S+) waited=(\S+)")
 
 
 def stood_still(site: Site, machine: str, stops: Iterable[float]) -> str:
-    """Which process stood still about when a stop began (s since 1970); empty if none did."""
+    """The process that did not run around the begin of a stop (s since 1970); empty if all ran."""
     names = [row.full for row in table(site) if row.group == machine or row.full == "tms:ts"]
     lines = [line for name in names for line in _lines(site, name)]
     return next((reported for at in stops for line in lines if (reported := _near(line, at))), "")

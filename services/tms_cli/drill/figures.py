@@ -11,7 +11,7 @@ BAD = ("false_receipts", "hung", "ran_on", "unlatched", "disturbed", "not_back",
 
 
 def percentile(values: Sequence[float], share: float) -> float | None:
-    """The value that `share` of all do not exceed, None without values."""
+    """The value that a `share` of all values does not exceed; None without values."""
     ordered = sorted(values)
     return ordered[max(0, math.ceil(share * len(ordered)) - 1)] if ordered else None
 
@@ -49,7 +49,7 @@ def summary(rows: Sequence[Row], seed: int) -> dict[str, Any]:
 
 
 def measured(row: Row) -> bool:
-    """Whether its time to stand-still is ours and the machine's, and not that of a fault."""
+    """Whether its time to stand-still depends on the system and the machine only, and not on a fault."""
     return row.in_order and row.covered
 
 

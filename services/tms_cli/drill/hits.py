@@ -1,4 +1,4 @@
-"""Kills, freezes and restarts what a stop names, and tells when it is back."""
+"""Kills, freezes and restarts the processes of a stop, and waits until they work again."""
 
 import os
 import signal
@@ -27,7 +27,7 @@ CHECK_PERIOD = 0.1  # s
 
 
 class Hits:
-    """One thread at a time uses one object: supervisord's client is not safe for more."""
+    """Used by one thread at a time: supervisord's client is not thread safe."""
 
     def __init__(self, site: Site) -> None:
         self._site = site
@@ -35,7 +35,7 @@ class Hits:
         self._thaw: subprocess.Popen[bytes] | None = None
 
     def names(self, stop: Stop, subtasks: Mapping[str, str]) -> list[str]:
-        """The processes that a stop hits. `subtasks`: the one behind the present leaf of each machine that is hit."""
+        """The processes that a stop hits. `subtasks`: for each hit machine, the one of its present leaf."""
         found = [process for process in stop.processes if process not in (RC, RP, SUBTASK)]
         for machine, subtask in subtasks.items():
             found += [f"{machine}:{name}" for name in (RC, RP) if name in stop.processes]
@@ -43,10 +43,10 @@ class Hits:
         return [name for name in found if name in self._there]
 
     def pids(self, names: Sequence[str]) -> dict[str, int]:
-        """Asked before the hit, so that the signals leave together.
+        """The pids of processes; read before the hit, so that all signals are sent together.
 
         Raises:
-            TmsError: one does not run.
+            TmsError: one of them does not run.
         """
         running = self._running()
         missing = [name for name in names if not running.get(name)]
@@ -55,12 +55,12 @@ class Hits:
         return {name: running[name] for name in names}
 
     def everything(self) -> list[int]:
-        """All that a power cut ends, supervisord first."""
+        """The pids of all processes that a power cut ends, supervisord first."""
         top = psutil.Process(Supervisor(self._site).pid())
         return [top.pid, *(child.pid for child in top.children(recursive=True))]
 
     def hit(self, how: How, pids: Sequence[int]) -> float:
-        """Send the signals; when the first one left (s since 1970)."""
+        """Send the signals; returns the time of the first one (s since 1970)."""
         at = unix_time()
         _signal(signal.SIGSTOP if how is How.FREEZE else signal.SIGKILL, pids)
         if how is How.FREEZE:
@@ -71,7 +71,7 @@ class Hits:
         return at
 
     def back(self, how: How, pids: Mapping[str, int], hit: float) -> float | None:
-        """Seconds from the hit until everything works again; None: not in time."""
+        """Wait until all processes work again; returns seconds from the hit, None after BACK_LIMIT."""
         waiting = dict(pids)
         if self._thaw is not None:
             self._thaw.wait()
@@ -88,7 +88,7 @@ class Hits:
         return None
 
     def power_on(self, pids: Sequence[int], hit: float) -> float | None:
-        """Start everything again after a power cut, once everything is gone."""
+        """Start the mesh again after a power cut, when all processes have ended; returns as `back`."""
         while any(map(psutil.pid_exists, pids)) and unix_time() - hit < BACK_LIMIT:
             sleep(CHECK_PERIOD)
         mesh.up(self._site, without=GROUP)
@@ -99,7 +99,7 @@ class Hits:
         return {row.name: row.pid for row in Supervisor(self._site).processes()}
 
     def _works(self, name: str) -> bool:
-        """A machine's process works when it says anything: not the process may be what keeps the machine from it."""
+        """Whether a process works. For a machine's process any answer is enough: the machine may make it unready."""
         row = find(self._site, name)
         reason = metrics.unready(row) if row.ours else None
         return reason is None or (row.machine is not None and reason not in (PortSilent(name), ProcessStarting()))

@@ -1,4 +1,4 @@
-"""What is tried: kinds of stop x faults of the machine, dealt to the machines by a seed. Pure logic."""
+"""The trials: kinds of stop x faults of the machine, dealt to the machines by a seed. Pure logic."""
 
 import random
 from collections import deque
@@ -9,16 +9,16 @@ from typing import Any
 
 RC, RP, SUBTASK = "rc", "rp", "subtask"  # of the machine that is hit
 TS = "tms:ts"
-BYSTANDERS = ("tms:db", "tms:sp", "tms:ur", "tms:host", "tms:store")  # stand behind no motion
+BYSTANDERS = ("tms:db", "tms:sp", "tms:ur", "tms:host", "tms:store")  # no motion depends on them
 WAVES, QUICK_WAVES = 16, 2  # of stops that concern one machine, a round
-DELAY = (0.05, 1.6)  # s after its goal began at which a machine is hit
+DELAY = (0.05, 1.6)  # s from the begin of a machine's goal to the hit
 AROUND = (-0.6, 0.5)  # s from the hit to the moment at which a fault is switched on
 
 
 class How(Enum):
-    """What is done."""
+    """The way of a hit."""
 
-    CANCEL = "cancel"  # its run
+    CANCEL = "cancel"  # cancels the machine's run
     SOFTWARE = "software stop"
     KILL = "kill"
     FREEZE = "freeze"
@@ -32,13 +32,13 @@ class Stop:
     how: How
     processes: tuple[str, ...] = ()
     shared: bool = False  # hits all machines at once
-    moves: bool = True  # what is hit stands behind the motion; else the run is cancelled a moment later
-    covered: bool = True  # a gateway or the host agent is left to stop the machine
-    latches: bool = False  # nothing may move afterwards until a person has re-armed
+    moves: bool = True  # the motion depends on the hit process; else the run is cancelled a moment later
+    covered: bool = True  # a gateway or the host agent is left and can stop the machine
+    latches: bool = False  # no machine may move afterwards until a person has re-armed it
 
     @property
     def name(self) -> str:
-        """For people."""
+        """The name of the stop for people."""
         return " ".join([self.how.value, *(["+".join(self.processes)] if self.processes else [])])
 
 
@@ -50,7 +50,7 @@ class Trial:
     stop: Stop
     fault: str
     fault_at: float  # s from the hit
-    delay: float  # s from the begin of a motion to the hit; where all are hit at once, the first trial's counts
+    delay: float  # s from the begin of a motion to the hit; a hit of all machines uses the first trial's
 
 
 BOTH = (How.KILL, How.FREEZE)
@@ -69,7 +69,7 @@ SHARED = (
 )
 STOPS = {stop.name: stop for stop in (*SINGLE, *(stop for stops in BESIDE for stop in stops), *SHARED)}
 NONE = "none"
-LIES: Mapping[str, Mapping[str, Any]] = {  # of what the machine tells; it moves as it should
+LIES: Mapping[str, Mapping[str, Any]] = {  # faults of the reports; the motion has no fault
     "zero_velocity": {"zero_velocity": True},
     "frozen_stamp": {"frozen_stamp": True},
     "replay": {"replay": True},
@@ -80,7 +80,7 @@ LIES: Mapping[str, Mapping[str, Any]] = {  # of what the machine tells; it moves
     "back_in_time": {"back_in_time": 5.0},  # s
 }
 COAST = 3.0  # s
-UNKIND: Mapping[str, Mapping[str, Any]] = {  # of how it moves
+UNKIND: Mapping[str, Mapping[str, Any]] = {  # faults of the motion
     "coast": {"coast": COAST},
     "dead_time": {"dead_time": 0.6},  # s
     "creep": {"creep": 0.05},  # rad/s, m/s
@@ -90,16 +90,16 @@ UNKIND: Mapping[str, Mapping[str, Any]] = {  # of how it moves
     "stall": {"stall": 1.0},  # s
     "late": {"late": 0.5},  # s
 }
-COASTING: Mapping[str, Mapping[str, Any]] = {  # they have fooled receipts
+COASTING: Mapping[str, Mapping[str, Any]] = {  # faults that have once caused false receipts
     f"coast+{name}": {"coast": COAST, **lie} for name, lie in LIES.items()
 }
 FAULTS: Mapping[str, Mapping[str, Any]] = {NONE: {}, **LIES, **UNKIND, **COASTING}
-IN_ORDER = (NONE, *LIES)  # the machine does what it is commanded
-OFTEN = 3  # times that each stop is tried without a fault for once with each
+IN_ORDER = (NONE, *LIES)  # the machine moves as commanded
+OFTEN = 3  # trials of each stop without a fault, for one trial with each fault
 
 
 def fault_of(name: str, joints: Sequence[str]) -> dict[str, Any]:
-    """What to tell a stand-in (tms_config.site_file.Fault)."""
+    """The fault for a stand-in (tms_config.site_file.Fault)."""
     fault = dict(FAULTS[name])
     return {**fault, "mute": [joints[0]]} if "mute" in fault else fault
 
@@ -110,7 +110,7 @@ def plan(seed: int, planners: Mapping[str, bool], rounds: int, quick: bool) -> l
     waves = []
     for _ in range(rounds):
         round_ = [dealer.mixed([stop] * len(planners)) for stop in SHARED]
-        # A bystander each; a machine that is left over is cancelled.
+        # One bystander for each machine; further machines are cancelled.
         round_ += [dealer.mixed([*stops, *[SINGLE[0]] * len(planners)]) for stops in BESIDE]
         round_ += [dealer.single() for _ in range(QUICK_WAVES if quick else WAVES)]
         dealer.dice.shuffle(round_)
@@ -126,7 +126,7 @@ def plan_only(seed: int, planners: Mapping[str, bool], name: str, waves: int) ->
 
 
 class _Dealer:
-    """Two decks, each gone through before it begins again."""
+    """Two decks of pairs; each is dealt completely before it begins again."""
 
     def __init__(self, seed: int, planners: Mapping[str, bool]) -> None:
         self.dice, self._planners = random.Random(seed), planners
@@ -139,11 +139,11 @@ class _Dealer:
         self._faults = deque(faults)
 
     def single(self) -> list[Trial]:
-        """For each machine the next pair that it can do."""
+        """For each machine, the next pair that is possible for it."""
         return [self._trial(name, *self._next(planner)) for name, planner in self._planners.items()]
 
     def mixed(self, stops: Sequence[Stop]) -> list[Trial]:
-        """Given stops; every second machine is in order, since figures are measured there."""
+        """Trials of given stops; every second machine has no fault, since figures are measured there."""
         first = self.dice.randrange(2)
         return [
             self._trial(machine, stops[number], NONE if number % 2 == first else self._fault())

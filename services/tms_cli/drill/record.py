@@ -1,4 +1,4 @@
-"""What was seen of one machine during one trial: the truth, and what we said of it. All times are s since 1970."""
+"""The record of one machine in one trial: its true motion and our messages about it. All times are s since 1970."""
 
 import math
 from bisect import bisect_left
@@ -18,14 +18,14 @@ class Sample:
     """The true motion at one moment."""
 
     at: float
-    share: float  # of the limit below which it counts as standing, of the part that is nearest to it or beyond
+    share: float  # velocity / limit of standing, the highest of all parts
     joints: Mapping[str, float]  # rad
     place: tuple[float, float]  # m
 
 
 @dataclass(frozen=True)
 class Receipt:
-    """tms_msg_rc/StopReceipt, and when it came."""
+    """A tms_msg_rc/StopReceipt, and the time of its arrival."""
 
     begun: float
     seconds: float
@@ -36,13 +36,13 @@ class Receipt:
 
     @property
     def at(self) -> float:
-        """When the machine was said to stand."""
+        """The time from which the receipt claims that the machine stands."""
         return self.begun + self.seconds
 
 
 @dataclass
 class Goal:
-    """At one of the machine's own action servers."""
+    """A goal at one of the machine's own action servers."""
 
     began: float
     ended: float | None = None
@@ -51,7 +51,7 @@ class Goal:
 
 @dataclass(frozen=True)
 class State:
-    """tms_msg_rc/MachineState, as much as counts."""
+    """The used fields of a tms_msg_rc/MachineState."""
 
     at: float
     latch: str
@@ -60,16 +60,16 @@ class State:
 
 @dataclass
 class Recording:
-    """Filled from the executor thread; the verdict looks at a copy."""
+    """The executor thread fills it; the verdict uses a copy."""
 
     truth: list[Sample] = field(default_factory=list)
     receipts: list[Receipt] = field(default_factory=list)
     goals: dict[bytes, Goal] = field(default_factory=dict)
     states: list[State] = field(default_factory=list)
-    commands: list[float] = field(default_factory=list)  # to stop, as they reach the machine
+    commands: list[float] = field(default_factory=list)  # times of orders to stop, when they reach the machine
 
     def since(self, at: float) -> "Recording":
-        """What came after a moment, the stops and goals that were under way then, and the last state before it."""
+        """The part after a moment, with the stops and goals that were under way then, and the last state before it."""
         return Recording(
             self.truth[bisect_left(self.truth, at, key=lambda one: one.at) :],
             [one for one in self.receipts if one.at >= at],
@@ -79,12 +79,12 @@ class Recording:
         )
 
     def goal_after(self, at: float) -> float:
-        """When the first goal after a moment began; infinite if none did."""
+        """The begin of the first goal after a moment; infinite if there is none."""
         return min((goal.began for goal in self.goals.values() if goal.began > at), default=math.inf)
 
 
 def sample_of(message: "JointState", still: Still) -> Sample:
-    """Of the stand-in's sensor_msgs/JointState: joints, then x, y and yaw of the tracks."""
+    """A sample from the stand-in's sensor_msgs/JointState: joints, then x, y and yaw of the tracks."""
     places = dict(zip(message.name, message.position, strict=True))
     speeds = dict(zip(message.name, message.velocity, strict=True))
     x, y, yaw = (places.pop(name, 0.0) for name in ("x", "y", "yaw"))
@@ -95,5 +95,5 @@ def sample_of(message: "JointState", still: Still) -> Sample:
 
 
 def time_of(stamp: "Time") -> float:
-    """S since 1970."""
+    """Seconds since 1970."""
     return float(stamp.sec + stamp.nanosec * 1e-9)

@@ -1,4 +1,4 @@
-"""What the drill prints, and its page in Markdown, Japanese and English."""
+"""The drill's output on a terminal, and its report in Markdown, Japanese and English."""
 
 from collections.abc import Sequence
 from datetime import datetime, timezone
@@ -31,7 +31,7 @@ STOPS = ("machine", "stop", "trials", "stood_p50_s", "stood_max_s", "joint", "tr
 
 
 def line(row: Row) -> str:
-    """One trial, for its progress."""
+    """One trial as a line of the progress."""
     verdicts = [name for name in ("unconfirmed", "unlatched", "ran_on", "disturbed") if getattr(row, name)]
     if row.false_receipt:
         verdicts.append(f"FALSE RECEIPT: {row.false_receipt}")
@@ -51,7 +51,7 @@ def line(row: Row) -> str:
 
 
 def text(figures: dict[str, Any]) -> str:
-    """For a terminal."""
+    """The figures for a terminal."""
     facts = [f"{figures_name(name)}: {_text(figures[name])}" for name, _, _ in FACTS]
     rows = [STOPS, *([_text(one[name]) for name in STOPS] for one in figures["stops"])]
     widths = [max(len(row[column]) for row in rows) for column in range(len(STOPS))]
@@ -60,12 +60,12 @@ def text(figures: dict[str, Any]) -> str:
 
 
 def figures_name(key: str) -> str:
-    """A figure in English."""
+    """The English name of a figure."""
     return next(english for name, english, _ in FACTS if name == key)
 
 
 def markdown(rows: Sequence[Row], figures: dict[str, Any], site: str) -> str:
-    """The page."""
+    """The report as Markdown."""
     facts = _table(["figure / 項目", "value / 値"], [[f"{e} / {j}", _text(figures[n])] for n, e, j in FACTS])
     stops = _table(list(STOPS), [[_text(one[name]) for name in STOPS] for one in figures["stops"]])
     head = ["machine", "stop", "fault", "told [s]", "stood [s]", "rad", "m", "back [s]", "outcome", "receipts", "wrong"]

@@ -1,4 +1,4 @@
-"""The machines' stand-ins as children of the drill: they stand for machines, which no power cut of our PC stops."""
+"""Runs the stand-ins as children of the drill: they represent machines, which a power cut of our PC does not stop."""
 
 import os
 import subprocess
@@ -10,13 +10,13 @@ from tms_runtime import state_folder
 from tms_runtime.environment import environment
 from tms_runtime.priority import come_first, session_first
 
-GROUP = "sim"  # of the process table
+GROUP = "sim"  # group of the stand-ins in the process table
 END_LIMIT = 5.0  # s
-NICE = -15  # before the gateways: a machine does not wait for them
+NICE = -15  # above the gateways, since a machine does not wait for them
 
 
 class StandIns:
-    """Started from the main thread: they end when it ends, whatever ends it."""
+    """Starts the stand-ins from the main thread; they end with it, whatever ends it."""
 
     def __init__(self, site: Site) -> None:
         self._children = [self._start(site, machine) for machine in site.file.machines]
@@ -33,7 +33,7 @@ class StandIns:
         return child
 
     def dead(self) -> list[str]:
-        """Stand-ins that have ended: the drill has no machine then."""
+        """Stand-ins that have ended, so that the drill has no machine in their place."""
         return [str(child.args[-1]) for child in self._children if child.poll() is not None]  # type: ignore[index]
 
     def __enter__(self) -> "StandIns":

@@ -1,4 +1,4 @@
-"""Watches one machine: its true motion, what reaches its own servers, and what its gateway says."""
+"""Records one machine: its true motion, orders and goals at its own servers, and the messages of its gateway."""
 
 import threading
 from collections.abc import Callable
@@ -18,20 +18,20 @@ from tms_runtime.pulse import Pulse
 
 CANCELING, SUCCEEDED, CANCELED, ABORTED = 3, 4, 5, 6  # action_msgs/GoalStatus
 KEPT = 120.0  # s, longer than any trial
-ROUND = 10.0  # s between looks at what is too old
+ROUND = 10.0  # s between deletions of old entries
 CHECK_PERIOD = 0.1  # s
 WAITING = 250  # samples of the truth, ten seconds
 
 
 class StopObserver:
-    """Callbacks run on the executor thread, looks in that of the pulse, everything else in those of the trials."""
+    """Callbacks run on the executor thread, samples in the thread of the pulse, all else in threads of the trials."""
 
     def __init__(self, node: Ros, site: Site, machine: str) -> None:
         border, self._still = site.border(machine), site.model_of(machine).still
         self._lock = threading.Lock()
         self._record = Recording()
         self._forgotten = unix_time()
-        # Not by callbacks: a hundred and fifty a second would take a busy PC a tenth of a processor.
+        # Sampled without callbacks: 150 callbacks a second would take a tenth of a busy PC's processor.
         self._truth = node.sample_arrivals(JointState, f"/{machine}/sim/truth", WAITING, best_effort=False)
         Pulse(node).add(self._take_truth)
         node.subscribe(StopReceipt, f"/{machine}/rc/receipts", self._on_receipt, depth=20, latched=True)
@@ -58,7 +58,7 @@ class StopObserver:
             time_of(message.stamp), message.seconds, message.confirmed, message.cause, message.detail, now
         )
         with self._lock:
-            same = any(one.begun == receipt.begun for one in self._record.receipts)  # told again after a restart
+            same = any(one.begun == receipt.begun for one in self._record.receipts)  # published again after a restart
             if not same and receipt.at > now - KEPT:
                 self._record.receipts.append(receipt)
 
@@ -92,12 +92,12 @@ class StopObserver:
                     goal.ended, goal.arrived = now, one.status == SUCCEEDED
 
     def since(self, at: float) -> Recording:
-        """A copy of what was seen since a moment (s since 1970)."""
+        """A copy of the record since a moment (s since 1970)."""
         with self._lock:
             return self._record.since(at)
 
     def wait(self, holds: Callable[[Recording], bool], since: float, seconds: float) -> bool:
-        """Until what was seen since a moment is enough; False when it is not in time."""
+        """Wait until the record since a moment satisfies `holds`; False after `seconds`."""
         deadline = monotonic() + seconds
         while not holds(self.since(since)):
             if monotonic() > deadline:
@@ -106,6 +106,6 @@ class StopObserver:
         return True
 
     def open_since(self) -> float | None:
-        """When the goal that is under way now began."""
+        """The begin of the open goal; None without one."""
         with self._lock:
             return max((one.began for one in self._record.goals.values() if one.ended is None), default=None)

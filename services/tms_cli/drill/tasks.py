@@ -10,7 +10,7 @@ from tms_config.models import MachineModel
 from tms_machine.geometry import about
 
 SWING = 1.2  # rad to each side
-TURN = 70.0  # deg, the same of a single joint
+TURN = 70.0  # deg to each side, for a single joint
 LIFT = 0.3  # rad
 WAY = 15.0  # m
 TIPPED = -0.9  # rad

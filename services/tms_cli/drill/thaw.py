@@ -1,6 +1,6 @@
-"""Lets frozen processes go on at a moment: `python -m tms_cli.drill.thaw SECONDS_SINCE_1970 PID [PID ...]`.
+"""Continues frozen processes at a moment: `python -m tms_cli.drill.thaw SECONDS_SINCE_1970 PID [PID ...]`.
 
-A program of its own: the threads of the drill came up to 3 s late on a busy PC.
+This is a separate program because the threads of the drill were up to 3 s late on a busy PC.
 """
 
 import os
@@ -11,7 +11,7 @@ from tms_config.clock import sleep, unix_time
 
 
 def main(until: float, pids: list[int]) -> None:
-    """Wait, and send the signals; a process that has ended needs none."""
+    """Wait, and send SIGCONT to the processes that have not ended."""
     sleep(max(0.0, until - unix_time()))
     for pid in pids:
         try:

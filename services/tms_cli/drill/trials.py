@@ -1,4 +1,4 @@
-"""One trial: a machine that moves is hit at its moment, with its fault, and watched until all is said."""
+"""One trial: a moving machine is hit at a moment, with a fault, and recorded until the outcome is certain."""
 
 import csv
 import math
@@ -27,29 +27,29 @@ from tms_reason.wire import to_line
 from tms_ros.node import Ros
 
 MOVES_LIMIT = 40.0  # s for a run to move its machine
-LEAD = 0.8  # s from the choice of the moment to the hit: a fault may come before it
-FRESH = 2.0  # s from the begin of a motion for which it surely lasts long enough to be hit
-BESIDE = 1.0  # s for which a motion must go on when a process beside it is lost
+LEAD = 0.8  # s from the choice of the moment to the hit, since a fault may begin before the hit
+FRESH = 2.0  # s after the begin of a motion in which it surely lasts long enough for a hit
+BESIDE = 1.0  # s for which a motion must go on after the loss of a bystander
 RECEIPT_LIMIT = 25.0  # s
 RUN_LIMIT = 40.0  # s from the hit for the run to go on, end, or be interrupted
-LATCH_LIMIT = 5.0  # s for a latch to be told after everything is back
+LATCH_LIMIT = 5.0  # s for a latch to be published after all processes work again
 CREEP_STARTS = 3.0  # s of stand-still after which the fault `creep` moves
 CHECK_PERIOD = 0.5  # s
 PRESSED = 1.0  # s for a stop by hand to begin
-LEAVE = ("creep", "drift")  # faults that move a machine which stood
+LEAVE = ("creep", "drift")  # faults that move a standing machine
 CAUSE = to_line(SoftwareStop())
 
 
 @dataclass
 class Struck:
-    """A hit that several machines may wait for."""
+    """A hit, for which the trials of several machines may wait."""
 
     hit: "Future[float]" = field(default_factory=Future)  # s since 1970
     back: "Future[float | None]" = field(default_factory=Future)  # s from the hit
 
 
 class Hand:
-    """All that one machine's trials need."""
+    """Runs the trials of one machine."""
 
     def __init__(self, node: Ros, site: Site, machine: str) -> None:
         self._site, self.machine = site, machine
@@ -63,7 +63,7 @@ class Hand:
         node.prepare(StopMachine, f"/{machine}/rc/stop")
 
     def begin(self) -> float:
-        """Have the machine moved; when its goal began.
+        """Have the machine moved; returns the begin of its goal.
 
         Raises:
             TmsError: it does not move, even after a stop and a re-arm by hand.
@@ -83,7 +83,7 @@ class Hand:
         raise TmsError(DoesNotMove(wire.of(self.work.reason()) or NobodySays()))
 
     def moment(self, trial: Trial) -> float:
-        """When to hit: at the trial's delay after the begin of a motion."""
+        """The moment of the hit: the trial's delay after the begin of a motion."""
         deadline = unix_time() + MOVES_LIMIT
         while unix_time() < deadline:
             began = self.eyes.open_since()
@@ -93,10 +93,10 @@ class Hand:
         return max(unix_time(), (began or 0.0) + trial.delay)
 
     def strike(self, stop: Stop, at: float, hands: "list[Hand]", struck: Struck) -> None:
-        """Hit these machines at a moment, and tell when what was lost is back. In a thread of its own."""
+        """Hit these machines at a moment, and set when the lost processes work again. Runs in a thread of its own."""
         try:
             self._strike(stop, at, hands, struck)
-        except (TmsError, OSError, psutil.Error) as error:  # whoever waits for it must hear of it
+        except (TmsError, OSError, psutil.Error) as error:  # the waiting trials must get the error
             for future in (struck.hit, struck.back):
                 if not future.done():
                     future.set_exception(error)
@@ -122,7 +122,7 @@ class Hand:
         self._node.call_unanswered(StopMachine, f"/{self.machine}/rc/stop", StopMachine.Request(cause=CAUSE))
 
     def watch(self, trial: Trial, at: float, struck: Struck) -> Row:
-        """The verdict of a trial that is hit at a moment."""
+        """Record a trial that is hit at a moment; returns the verdict."""
         stop, begun = trial.stop, at
         if trial.fault != NONE:
             until(at + trial.fault_at)
@@ -150,7 +150,7 @@ class Hand:
         return row
 
     def _keep(self, record: Recording, hit: float) -> None:
-        """The true motion of a trial that somebody will want to look at."""
+        """Keep the true motion of a conspicuous trial as a file."""
         path = self._folder / f"{self.machine}-{datetime.fromtimestamp(hit, timezone.utc):%H%M%S.%f}.csv"
         with path.open("w", newline="", encoding="utf-8") as file:
             table = csv.writer(file)
@@ -160,14 +160,14 @@ class Hand:
                 table.writerow([f"{number:.4f}" for number in numbers])
 
     def _over(self, record: Recording, stopped: float) -> bool:
-        """A receipt, or a motion that was over before anybody could stop it."""
+        """Whether there is a receipt, or the motion ended by itself before a stop was possible."""
         over = stopped + BY_ITSELF
         begun_by_then = [goal for goal in record.goals.values() if goal.began <= over]
         arrived = all(goal.arrived and (goal.ended or 0.0) < over for goal in begun_by_then)
         return bool(record.receipts) or (arrived and unix_time() > over)
 
     def _look_on(self, trial: Trial, begun: float) -> None:
-        """For as long as a receipt promises that the machine stands; for one that leaves it, until that is reported."""
+        """Record for as long as a receipt claims a stand-still; where a fault ends it, until that is reported."""
         creeps = trial.fault in LEAVE
         longer = CREEP_STARTS + UNPROVEN if creeps else 0.0
 
@@ -181,7 +181,7 @@ class Hand:
         self.eyes.wait(enough, begun, 2 * AFTER + longer)
 
     def _outcome(self, trial: Trial, begun: float, stopped: float) -> str:
-        """The run goes on, has ended, or waits to be resumed."""
+        """Wait for the run's outcome: it goes on, has ended, or waits to be resumed."""
         deadline = stopped + RUN_LIMIT
         while unix_time() < deadline:
             if (ended := self.work.outcome()) is not None:
@@ -194,7 +194,7 @@ class Hand:
         return HUNG
 
     def _last_words(self, trial: Trial, begun: float) -> Recording:
-        """A gateway that is back tells its latch a moment later."""
+        """The record at the end: a restarted gateway publishes its latch a moment later."""
 
         def reported(record: Recording) -> bool:
             wanted = trial.stop.latches or not all(one.confirmed for one in record.receipts)

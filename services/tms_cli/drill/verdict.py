@@ -1,4 +1,4 @@
-"""Compares what was reported of a stop with the true motion. Pure logic; all times are s since 1970."""
+"""Compares the receipts of a stop with the true motion. Pure logic; all times are s since 1970."""
 
 import math
 from bisect import bisect_right
@@ -10,39 +10,39 @@ from tms_cli.drill.plan import IN_ORDER, NONE, How, Trial
 from tms_cli.drill.record import Receipt, Recording, Sample
 from tms_cli.words import english
 
-TOLERANCE = 1.1  # of the limit of standing: the truth is sampled, and rounded by nobody
+TOLERANCE = 1.1  # times the limit of standing: the true motion is sampled and not rounded
 FRAME = 0.02  # s, half of the time between samples of the truth
 CLAIMED = 0.2  # s of standing that a receipt claims
-LATENCY = 0.1  # s before it in which a new motion is not told yet: two periods of the sources and a beat
-BLIND = 1.0  # s without the truth: from 0.5 s on a stand-in that does not run loses time (tms_sim/telemetry.py)
-AFTER = 1.0  # s after it for which nothing may move either
-ASSERTED = 3.0  # s in which a motion that comes later must be countered ...
-UNPROVEN = 12.0  # s ... and until the receipt of that, which waits for a stand-still
-EXTRA = 3.0  # s beyond dead time and braking that a machine in order may move
-BY_ITSELF = 1.5  # s after the hit within which a motion that arrives was not stopped by anybody
+LATENCY = 0.1  # s before a receipt in which a new motion is not reported yet: two periods of the sources and a beat
+BLIND = 1.0  # s without the true motion: after 0.5 s without running a stand-in loses time (tms_sim/telemetry.py)
+AFTER = 1.0  # s after a receipt in which the machine may not move either
+ASSERTED = 3.0  # s within which the gateway must stop a later motion ...
+UNPROVEN = 12.0  # s ... and for the receipt of that stop, which waits for a stand-still
+EXTRA = 3.0  # s beyond dead time and braking in which a machine without a fault may move
+BY_ITSELF = 1.5  # s after the hit within which a motion that reaches its goal counts as not stopped
 GOES_ON, INTERRUPTED, HUNG = "goes on", "interrupted", "hung"
 LEFT_OUT = "left out"
 
 
 @dataclass(frozen=True)
 class Seen:
-    """What a trial has to be judged by."""
+    """The facts of a trial for its verdict."""
 
     trial: Trial
     model: str
     record: Recording  # since `begun`
     begun: float  # the fault or the hit, whichever came first
-    hit: float  # the signal or the command
-    stop: float  # the same; of a bystander when the run was cancelled
-    ends: float  # s, dead time and braking of the machine
+    hit: float  # time of the signal or the command
+    stop: float  # the same; for a bystander, when the run was cancelled
+    ends: float  # s, dead time plus braking of the machine
     back_s: float | None
     outcome: str
-    busy: str = ""  # why this PC itself may have stopped the machine
+    busy: str = ""  # evidence that this PC itself may have stopped the machine
 
 
 @dataclass
 class Row:
-    """One trial as --json tells it; times in s from the hit."""
+    """One trial in --json; times are s from the hit."""
 
     machine: str
     model: str
@@ -53,9 +53,9 @@ class Row:
     in_order: bool = False
     covered: bool = True
     at: float = 0.0
-    void: str = ""  # why it proves nothing; it is tried again
-    reported_s: float | None = None  # until the first stop command was at the machine
-    stood_s: float | None = None  # until it truly stood
+    void: str = ""  # why the trial proves nothing; it is repeated
+    reported_s: float | None = None  # until the first stop command reached the machine
+    stood_s: float | None = None  # until the machine truly stood
     travel_joint: str = ""
     travel_rad: float = 0.0
     travel_m: float = 0.0
@@ -63,20 +63,20 @@ class Row:
     outcome: str = LEFT_OUT
     confirmed: bool = False
     latched: bool = False
-    disturbed: bool = False  # stopped, although nothing behind its motion was lost
+    disturbed: bool = False  # stopped, although its motion did not depend on the lost process
     unconfirmed: bool = False
     unlatched: bool = False
     ran_on: bool = False
-    false_receipt: str = ""  # why it is one
+    false_receipt: str = ""  # why a receipt is false
     receipts: list[str] = field(default_factory=list)
 
     def as_dict(self) -> dict[str, Any]:
-        """For --json."""
+        """The row for --json."""
         return {name: round(value, 3) if isinstance(value, float) else value for name, value in asdict(self).items()}
 
 
 def empty(trial: Trial, model: str) -> Row:
-    """A trial that was not made."""
+    """The row of a trial that was not made."""
     stop = trial.stop
     return Row(trial.machine, model, stop.name, stop.how.value, trial.fault, trial.fault_at,
                trial.fault in IN_ORDER, stop.covered)  # fmt: skip
@@ -107,7 +107,7 @@ def judge(seen: Seen) -> Row:
 
 
 def void(seen: Seen) -> str:
-    """Why nobody had to stop the machine then, or nobody could see it; empty for a good trial."""
+    """Why no stop was due, or the motion was not recorded; empty for a valid trial."""
     record = seen.record
     before = [state for state in record.states if state.at < seen.begun][-1:]
     if any(state.latch or state.hold for state in before):
@@ -149,7 +149,7 @@ def lie(receipt: Receipt, record: Recording) -> str:
     before = [one for one in moving if one.at <= receipt.at - LATENCY]
     if before:
         return f"moved {receipt.at - before[-1].at:.2f} s before it was said to stand: {before[-1].share:.1f} x limit"
-    overtaken = bool(moving) and fresh - moving[0].at < LATENCY  # by a goal, before it could be told
+    overtaken = bool(moving) and fresh - moving[0].at < LATENCY  # by a goal, before a report was possible
     if not moving or overtaken or _reports(moving[0].at, record):
         return ""
     late = moving[0].at - receipt.at
@@ -160,12 +160,12 @@ def lie(receipt: Receipt, record: Recording) -> str:
 
 
 def _reports(moved: float, record: Recording) -> bool:
-    """Whether a stop that was under way then, or began in time, ended unconfirmed."""
+    """Whether a stop that was under way at `moved`, or began in time after it, ended unconfirmed."""
     return any(not one.confirmed and one.begun < moved + ASSERTED and one.at > moved for one in record.receipts)
 
 
 def reported(seen: Seen) -> float | None:
-    """From a signal to the first stop command; None where nobody had to give one, or it was there before."""
+    """Seconds from a signal to the first stop command; None where none was due, or one came before."""
     stop, commands = seen.trial.stop, seen.record.commands
     if stop.how not in (How.KILL, How.FREEZE) or not (stop.moves and stop.covered):
         return None
@@ -173,9 +173,9 @@ def reported(seen: Seen) -> float | None:
 
 
 def _measure(row: Row, seen: Seen) -> None:
-    """Time and travel to the true stand-still."""
+    """Fill in time and travel to the true stand-still."""
     proven = min((one.at for one in seen.record.receipts), default=math.inf)
-    fresh = seen.record.goal_after(proven)  # one that came before was stopped, too
+    fresh = seen.record.goal_after(proven)  # a goal before that was stopped, too
     truth = [one for one in seen.record.truth if seen.stop <= one.at < fresh]
     if not truth:
         return
@@ -192,6 +192,6 @@ def _measure(row: Row, seen: Seen) -> None:
 
 
 def text_of(receipt: Receipt, hit: float) -> str:
-    """One receipt in words."""
+    """One receipt as text."""
     what = "confirmed" if receipt.confirmed else f"UNCONFIRMED: {english(receipt.detail)}"
     return f"{receipt.begun - hit:+.2f} s, after {receipt.seconds:.2f} s {what} ({english(receipt.cause)})"

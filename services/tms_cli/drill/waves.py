@@ -1,4 +1,4 @@
-"""Waves of trials: all machines are set to work, each is hit, and all are brought to rest again."""
+"""Waves of trials: all machines move, each is hit, and all stop again."""
 
 import os
 from collections.abc import Callable, Sequence
@@ -24,34 +24,34 @@ T = TypeVar("T")
 
 
 class Waves:
-    """Goes through a plan; keeps what was seen."""
+    """Makes the trials of a plan and keeps their rows."""
 
     def __init__(self, node: Ros, site: Site, stand_ins: StandIns) -> None:
         self._site, self._stand_ins = site, stand_ins
         self._hands = {machine: Hand(node, site, machine) for machine in site.file.machines}
-        # ROS's threads, but not those that start processes: what is received late may be lost, and is not the truth.
+        # Raise ROS's threads, but not those that start processes: late samples of the true motion may be lost.
         come_first(NICE, others())
         session_first(os.getpid(), NICE)
-        # Twice: a strike waits beside the trial that it is for.
+        # Twice as many threads as machines, since each trial has a second thread for its strike.
         self._pool = ThreadPoolExecutor(2 * len(self._hands) + 1, "drill")
         self._total = self._made = 0
         self.rows: list[Row] = []
 
     def warm_up(self) -> None:
-        """Each machine moves once, one after another: all their subtasks starting at once is no site's day.
+        """Move each machine once, one after another, so that not all subtasks start at the same time.
 
         Raises:
-            TmsError: one does not move.
+            TmsError: a machine does not move.
         """
         for hand in self._hands.values():
             hand.begin()
         list(self._pool.map(lambda hand: hand.work.end(), self._hands.values()))
 
     def go(self, plan: Sequence[list[Trial]], seconds: float) -> list[Row]:
-        """As much of the plan as the time allows; the rest is left out. What proved nothing is tried again at the end.
+        """Make trials while the time lasts; the rest is left out. Trials that prove nothing are repeated last.
 
         Raises:
-            TmsError: a stand-in has ended: there is no machine any more.
+            TmsError: a stand-in has ended, so that there is no machine any more.
         """
         todo, deadline, again = list(plan), monotonic() + seconds, len(plan)
         self._total = sum(map(len, plan))
@@ -76,7 +76,7 @@ class Waves:
         return [*self.rows, *(self._empty(trial) for trial in untried)]
 
     def _wave(self, wave: list[Trial]) -> list[Trial]:
-        """Returns trials that have to be made again: they proved nothing, or failed."""
+        """Make one wave; returns the trials to repeat, which proved nothing or failed."""
         began = self._each(wave, lambda trial: self._hands[trial.machine].begin())
         ready = [trial for trial, at in zip(wave, began, strict=True) if at is not None]
         shared = any(trial.stop.shared for trial in ready)
@@ -103,28 +103,28 @@ class Waves:
         return self._watch(trial, at, struck)
 
     def _shared(self, wave: list[Trial]) -> list[Row | None]:
-        """One hit for all, at the moment of the first trial."""
+        """Make one hit of all machines, at the moment of the first trial."""
         hands, struck = [self._hands[trial.machine] for trial in wave], Struck()
         at = unix_time() + LEAD + wave[0].delay
         self._pool.submit(hands[0].strike, wave[0].stop, at, hands, struck)
         return self._each(wave, lambda trial: self._watch(trial, at, struck))
 
     def _watch(self, trial: Trial, at: float, struck: Struck) -> Row:
-        """Each machine is brought to rest as soon as its own trial is over: the slowest ones make a wave long."""
+        """Watch one trial and end its run as soon as it is over, since the slowest trials determine a wave's length."""
         try:
             return self._hands[trial.machine].watch(trial, at, struck)
         finally:
             self._end(trial)
 
     def _end(self, trial: Trial) -> None:
-        """That a run does not end is reported, and the next wave will see it."""
+        """End the run of a trial; a failure is printed, and the next wave will find the run."""
         try:
             self._hands[trial.machine].work.end()
         except TmsError as error:
             click.echo(f"{trial.machine}, {trial.stop.name}: {error}", err=True)
 
     def _each(self, wave: Sequence[Trial], step: Callable[[Trial], T]) -> list[T | None]:
-        """The same for all at the same time; None where it failed, which is reported."""
+        """Do a step for all trials at the same time; None where it failed, which is printed."""
 
         def tried(trial: Trial) -> T | None:
             try:

@@ -1,4 +1,4 @@
-"""The run that moves one machine: begun and ended for each trial, and the machine re-armed as a person does it."""
+"""The run that moves one machine: it begins and ends for each trial; the machine is re-armed as by a person."""
 
 import json
 
@@ -21,14 +21,14 @@ from tms_ros.client import Call
 from tms_ros.node import Ros
 
 ARM_LIMIT = 30.0  # s for the machine to be armed again
-SERVER_LIMIT = 20.0  # s for the scheduler to be there
+SERVER_LIMIT = 20.0  # s for the scheduler to be up
 END_LIMIT = 20.0  # s for a cancelled run to end
 ANSWER_LIMIT = 12.0  # s for the gateway to re-arm
 CHECK_PERIOD = 0.2  # s
 
 
 class Work:
-    """Of one machine."""
+    """The run of one machine."""
 
     def __init__(self, node: Ros, site: Site, machine: str) -> None:
         from tms_ts import bt
@@ -44,11 +44,11 @@ class Work:
         self._fault = node.publisher(String, f"/{machine}/sim/fault")
         self._call: Call[ExecuteTask.Result, ExecuteTask.Feedback] | None = None
         self._run = ""
-        self.lost = False  # its scheduler was lost: only the history tells how it ended
+        self.lost = False  # its scheduler was lost, so that only the history has its end
         self.subtask = next(iter(self._subtasks.values()))  # the process behind the present leaf
 
     def be(self, fault: str) -> None:
-        """Switch a fault of the stand-in on; `none` is a machine in order."""
+        """Set the fault of the stand-in; `none` removes it."""
         joints = list(self._site.model_of(self.machine).joints)
         self._fault.publish(String(data=json.dumps(fault_of(fault, joints))))
 
@@ -65,12 +65,12 @@ class Work:
         self._call = self._peer.send(goal, on_feedback=self._received)
 
     def cancel(self) -> None:
-        """Ask for the end of the run; returns at once."""
+        """Cancel the run; returns at once."""
         if self._call is not None:
             self._peer.cancel(self._call)
 
     def scheduler_lost(self) -> None:
-        """The client's side of it: nothing more will be heard of this goal."""
+        """Note the loss of the scheduler: this goal gets no more messages."""
         self.lost = True
         self._peer.mark_lost()
 
@@ -84,7 +84,7 @@ class Work:
         return str(getattr(result, "outcome", "refused"))
 
     def ended(self) -> bool:
-        """Whether its client was sent the end of the run."""
+        """Whether the action client has received the end of the run."""
         return self._call is not None and self._call.outcome is not None
 
     def reason(self) -> str:
@@ -92,10 +92,10 @@ class Work:
         return str(getattr(self._call.result, "error_msg", "")) if self._call is not None else ""
 
     def end(self) -> None:
-        """Leave no run behind, whatever became of it.
+        """End the run, whatever its state is.
 
         Raises:
-            TmsError: it does not end.
+            TmsError: the run does not end.
         """
         self.be("none")
         deadline = monotonic() + END_LIMIT
@@ -109,13 +109,13 @@ class Work:
         self._call = None
 
     def _recorded(self) -> str:
-        """How the run ended by the history, maybe before its scheduler was lost; empty: it has not, or nobody knows."""
+        """The end of the run in the history, maybe before the loss of its scheduler; empty: not ended, or unknown."""
         if not self._run:
             return INTERRUPTED if self.lost else ""
         try:
             run = recent(self._node, self._run)
         except TmsError:
-            return ""  # the database may be what was hit
+            return ""  # the database may have been hit
         return run.state if run is not None and has_ended(run) else ""
 
     def _received(self, feedback: ExecuteTask.Feedback) -> None:
@@ -123,7 +123,7 @@ class Work:
         self.subtask = self._subtasks.get(feedback.running_leaf, self.subtask)
 
     def arm(self) -> None:
-        """Both steps of a person, again until the machine stands.
+        """Do both steps of re-arming, again and again until the machine stands.
 
         Raises:
             TmsError: it cannot be armed.

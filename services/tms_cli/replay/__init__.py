@@ -1,1 +1,1 @@
-"""`tms sensing replay`: a recorded bag into the sensing inputs."""
+"""`tms sensing replay`: plays a recorded bag into the sensing inputs."""

@@ -1,4 +1,4 @@
-"""Which topics of a recording go into sensing inputs, and why the others do not."""
+"""Finds the topics of a recording that go into sensing inputs, and why the others do not."""
 
 import importlib
 import json
@@ -19,7 +19,7 @@ from tms_sp.node import message_class
 
 @dataclass
 class Matches:
-    """What is played, and by topic why something is not, or is with a doubt."""
+    """The topics to play, and for others why they are not played, or are played with a warning."""
 
     played: dict[Track, Input] = field(default_factory=dict)
     skipped: dict[str, str] = field(default_factory=dict)
@@ -27,7 +27,7 @@ class Matches:
 
 
 def match(tracks: Sequence[Track], inputs: Mapping[str, Input], site: Site, wanted: Sequence[str]) -> Matches:
-    """Find the inputs of the tracks; `wanted` are topics, all of the recording if there are none.
+    """Find the inputs of the tracks; `wanted` are topics, and empty means all of the recording.
 
     Raises:
         TmsError: BAD_TOPIC, a wanted topic is not in the recording; NOTHING_TO_PLAY.
@@ -92,7 +92,7 @@ def _topics(border: Border) -> list[str]:
 
 
 def built_hash(name: str) -> str:
-    """Hash of a type as installed here; "" where the installation does not tell."""
+    """Hash of the type that is installed here; "" where the installation has none."""
     package, kind, word = name.split("/")
     home = importlib.import_module(package).__file__  # PREFIX/lib/pythonX.Y/site-packages/PACKAGE/__init__.py
     assert home is not None, f"{package} is no package with a file"

@@ -16,16 +16,16 @@ from tms_sp.node import message_class
 if TYPE_CHECKING:
     from tms_ros.node import Ros
 
-READER_LIMIT = 10.0  # s for tms:sp to hear the topics
+READER_LIMIT = 10.0  # s for tms:sp to subscribe to the topics
 LAST_LIMIT = 5.0  # s for the last messages to arrive
 DEPTH = 1000  # messages that may wait for a reader
-SLICE = 0.2  # s between looks at the clock, so that the progress moves in a silence, too
-LOOP_GAP = 0.5  # s between the end and the next beginning, more than stamps differ from their moments
+SLICE = 0.2  # s between updates of the progress while no message is due
+LOOP_GAP = 0.5  # s between the end and the next beginning; longer than stamps differ from their moments
 
 
 @dataclass
 class Played:
-    """What has happened so far."""
+    """Counts of the replay so far."""
 
     sent: dict[str, int] = field(default_factory=dict)  # topic -> messages
     damaged: dict[str, int] = field(default_factory=dict)
@@ -37,10 +37,10 @@ class Played:
 
 class Player:
     def __init__(self, ros: "Ros", found: Matches, keep_stamps: bool) -> None:
-        """Announces the topics.
+        """Make the publishers and wait for the readers.
 
         Raises:
-            TmsError: NO_READER, tms:sp does not hear one of them; TWO_SOURCES, somebody else speaks there.
+            TmsError: NO_READER, tms:sp does not subscribe to a topic; TWO_SOURCES, another node publishes on one.
         """
         self.reported = Played(dict.fromkeys((track.topic for track in found.played), 0))
         self._ros, self._keep = ros, keep_stamps
@@ -58,7 +58,7 @@ class Player:
     def play(
         self, recording: Recording, tracks: list[Track], span: tuple[int, int], pace: Pace, tick: Callable[[int], None]
     ) -> None:
-        """Play it once; `tick` hears the moment (ns of the recording) that is reached.
+        """Play it once; `tick` is called with the reached moment (ns of the recording).
 
         Raises:
             TmsError: BAD_BAG, BAD_STAMP.
@@ -86,6 +86,6 @@ class Player:
         self.reported.sent[topic] += 1
 
     def finish(self) -> None:
-        """Wait until the readers have everything."""
+        """Wait until the readers have received all messages."""
         for publisher in self._publishers.values():
             self._ros.delivered(publisher, LAST_LIMIT)

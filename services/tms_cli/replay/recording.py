@@ -1,4 +1,4 @@
-"""A recording of ROS 2 (rosbag2) as it lies on disk: its topics, and their messages as they were on the wire."""
+"""A recording of ROS 2 (rosbag2) on disk: its topics, and their messages as serialized bytes."""
 
 import struct
 from collections.abc import Iterator, Sequence
@@ -16,7 +16,7 @@ from rosbags.typesys.base import TypesysError
 from tms_cli.reasons import BadBag
 from tms_reason.errors import TmsError
 
-# What the reader raises for files that are damaged: it believes the lengths and texts that it finds.
+# Errors of the reader for damaged files, since it does not check the lengths and texts in them.
 DAMAGED = (
     ReaderError, OSError, apsw.Error, struct.error, OverflowError, MemoryError, ValueError, LookupError, TypeError,
     RuntimeError,
@@ -30,8 +30,8 @@ class Track:
     topic: str
     type: str  # package/msg/Name
     messages: int
-    hash: str  # RIHS01_..., "" where the recording does not tell how the type was laid out
-    source: Any = field(compare=False)  # the reader's name for it
+    hash: str  # RIHS01_..., "" where the recording has no layout of the type
+    source: Any = field(compare=False)  # the reader's object for the topic
 
 
 class Recording:
@@ -41,7 +41,7 @@ class Recording:
         """`path`: the folder with metadata.yaml, or one .db3 or .mcap file.
 
         Raises:
-            TmsError: BAD_BAG; it is not there, is none, is damaged, or is of a kind that cannot be read.
+            TmsError: BAD_BAG; it does not exist, is no recording, is damaged, or is of a kind that cannot be read.
         """
         self.path = path
         if not path.exists():
@@ -108,7 +108,7 @@ def _track(source: Any) -> Track:
 
 
 def _hash(source: Any) -> str:
-    """Of the definition that the recording carries; "" where it carries none that can be read."""
+    """Hash of the type's definition in the recording; "" where there is none that can be read."""
     definition: MessageDefinition = source.msgdef
     readers = {MessageDefinitionFormat.MSG: get_types_from_msg, MessageDefinitionFormat.IDL: _from_idl}
     if definition.format not in readers or not definition.data.strip():

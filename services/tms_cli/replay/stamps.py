@@ -1,4 +1,4 @@
-"""Stamps inside messages: read, and replaced in the bytes where their place is known."""
+"""Reads and replaces stamps inside messages; in the bytes, where their place is known."""
 
 import struct
 from typing import Any
@@ -10,15 +10,15 @@ from tms_ros.packing import pack, unpack
 from tms_sp.mapping import Getter, field_getter, stamp_path
 
 SECOND = 1_000_000_000  # ns
-BODY = 4  # bytes of the CDR head; the second one tells the byte order
+BODY = 4  # bytes of the CDR head; the second one is the byte order
 TIME = 8  # bytes
 
 
 class Stamps:
-    """Of messages of one topic."""
+    """Stamps in the messages of one topic."""
 
     def __init__(self, given: Input, message_class: Any) -> None:
-        """Finds the stamp that the input reads.
+        """Find the stamp that the input reads.
 
         Raises:
             Wrong: the message has no such field.
@@ -30,7 +30,7 @@ class Stamps:
         self._leads = self.path == "header.stamp" and next(iter(fields)) == "header"
 
     def check(self, data: bytes) -> Any:
-        """The message; who hears bytes that are none would end.
+        """Decode a message, since a subscriber would end at invalid bytes.
 
         Raises:
             RuntimeError: these are not the bytes of such a message.
@@ -38,7 +38,7 @@ class Stamps:
         return unpack(data, self._class)
 
     def read(self, message: Any) -> int | None:
-        """ns; None where the message has no stamp."""
+        """The stamp [ns]; None where the message has none."""
         if self._value is None:
             return None
         found = self._value(message)
@@ -50,7 +50,7 @@ class Stamps:
         Raises:
             TmsError: BAD_STAMP; a number in an array is no stamp that can be replaced.
         """
-        if self._leads:  # the usual case: nothing is packed again
+        if self._leads:  # the usual case: the message need not be packed again
             order = "<" if data[1] & 1 else ">"
             return data[:BODY] + struct.pack(f"{order}iI", *divmod(stamp, SECOND)) + data[BODY + TIME :]
         assert self._value is not None and self.path is not None

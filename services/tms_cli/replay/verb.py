@@ -74,7 +74,7 @@ def replay(
 
 
 def _span(recording: "Recording", start: float, duration: float | None) -> tuple[int, int]:
-    """What is played: its first moment, and the one before which it ends (ns).
+    """The span to play: its first moment, and the moment before which it ends (ns).
 
     Raises:
         TmsError: BAD_START; the recording is shorter.
@@ -95,7 +95,7 @@ def _warn(found: "Matches") -> None:
 
 @contextmanager
 def _progress(span: tuple[int, int], loop: int) -> Iterator[Tick]:
-    """A bar on a terminal, nothing on a pipe."""
+    """Show the progress as a bar on a terminal, and not at all on a pipe."""
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 

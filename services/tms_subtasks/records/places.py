@@ -14,7 +14,7 @@ TURN = {"quaternion": ("qx", "qy", "qz", "qw"), "degrees": ("yaw",)}
 
 
 class Place(Params):
-    """One pose in `map`; z counts for nothing, the ground does."""
+    """One pose in `map`; z is ignored, since the machine stands on the ground."""
 
     angles: Angles = "quaternion"  # an input of the variant
     x: float  # m
@@ -35,7 +35,7 @@ class Place(Params):
         return self
 
     def pose(self) -> Pose:
-        """As ROS writes it."""
+        """The pose as a ROS message."""
         numbers = [getattr(self, name) for name in TURN[self.angles]]
         return Pose(position=Point(x=self.x, y=self.y), orientation=turn(*numbers))
 
@@ -65,7 +65,7 @@ class Path(Params):
         return self
 
     def poses(self) -> list[Pose]:
-        """As ROS writes them."""
+        """The poses as ROS messages."""
         places = zip(self.x, self.y, self.z, strict=True)
         turns = zip(*(self._list(name) for name in TURN[self.angles]), strict=True)
         return [
@@ -84,7 +84,7 @@ def turn(*numbers: float) -> Quaternion:
     """Orientation from qx, qy, qz, qw, or from one yaw [deg].
 
     Raises:
-        ValueError: four numbers that are no quaternion.
+        ValueError: the four numbers are no quaternion.
     """
     if len(numbers) == 1:
         x, y, z, w = geometry.about("z", math.radians(numbers[0]))

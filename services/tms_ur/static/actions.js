@@ -1,16 +1,16 @@
-// What the console itself can do about a reason: by the name of the reason's action.
+// The console's remedies for reasons, by the name of the reason's action.
 import { confirmed } from "./dom.js";
 import { ask } from "./server.js";
 import { said, t } from "./strings.js";
 
-/** Commands by action, from its arguments; each resolves to what to say. */
+/** Commands by action, from its arguments; each resolves to the text to show. */
 export const COMMANDS = {
   rearm: ({ machine }) => rearmMachine(machine),
   cancel: ({ run }) => cancelRun(run),
   restart: ({ process }) => restartProcess(process),
 };
 
-/** Pages by action, where a person sees or corrects what it is about. */
+/** Pages by action, where a person sees or corrects the cause. */
 export const LINKS = { processes: "system", restart: "system", logs: "system", status: "system", tasks: "tasks", edit_task: "tasks",
   records: "data", runs: "history" };
 

@@ -6,7 +6,7 @@ const SCALE = 26; // px a metre
 const WIDTH = 360;
 const HEIGHT = 300;
 
-/** Points of the arm, m: a joint's angle turns everything beyond it about y, positive is down and in. */
+/** Points of the arm, m: a joint's angle turns all links beyond it about y; positive is down and in. */
 export function chain(arm, angles) {
   let turned = 0;
   let x = 0;

@@ -1,4 +1,4 @@
-// The console's frame: login, pages, connection, questions, and the software stop that is always in reach.
+// The console's frame: login, pages, connection, questions, and the software stop, which is on every page.
 import { at, duration, keep, make, relabelAll, say, setText } from "./dom.js";
 import { buildQuestion, fillQuestion } from "./questions.js";
 import { sayError } from "./reasons.js";
@@ -7,7 +7,7 @@ import { reportOpen, stop } from "./stop.js";
 import { onLanguage, said, switchLanguage, t, translatePage } from "./strings.js";
 import { PAGE_NAMES } from "./words.js";
 
-// Each page has build(root), update(state), and where it asks for lists: load()
+// Each page has build(root), update(state), and load() where it needs lists
 const load = async (name) => [name, await import(`./pages/${name}.js`)];
 const PAGES = Object.fromEntries(await Promise.all(PAGE_NAMES.map(load)));
 let shown = null; // name of the page on the screen
@@ -21,7 +21,7 @@ function open() {
     at("page").replaceChildren();
     at("page").dataset.page = next;
     PAGES[next].build(at("page"));
-    say(""); // it was of another page
+    say(""); // the message belongs to another page
     translatePage();
   }
   for (const link of at("pages").children) {
@@ -47,10 +47,10 @@ function heard(now) {
   }
 }
 
-const LOOKS = 20; // for the end of a run: the history is written beside the news that it is over
-const LOOK = 250; // ms
+const LOOKS = 20; // tries for the end of a run, which may leave the list of runs before the history has its end
+const LOOK = 250; // ms between tries
 
-/** How a run has ended, on whichever page one is. */
+/** Shows how a run has ended, on any page. */
 async function tellEnd(id) {
   let run;
   for (let i = 0; i < LOOKS && !run?.ended_at; i += 1) {
@@ -59,7 +59,7 @@ async function tellEnd(id) {
     }
     run = (await ask("/api/runs?limit=50").catch(() => [])).find((one) => one.run_id === id);
   }
-  if (run?.ended_at && run.state !== "refused") { // whoever asked for that one was told why
+  if (run?.ended_at && run.state !== "refused") { // the operator who started it has got the reason
     const seconds = (new Date(run.ended_at) - new Date(run.started_at)) / 1000;
     say(t("run_ended", { task: run.task_id, state: t(run.state), duration: duration(seconds), reason: said(run.reason) }), run.state !== "success");
     at("message").append(" ", make("a", { className: "button", href: `#history/${encodeURIComponent(id)}` }, t("p_history")));
@@ -106,7 +106,7 @@ at("login").addEventListener("submit", async (event) => {
   event.preventDefault();
   try {
     await ask("/api/login", { name: at("login_name").value, password: at("login_password").value });
-    const panel = Number(new URLSearchParams(location.search).get("panel")); // who was sent here by one goes back
+    const panel = Number(new URLSearchParams(location.search).get("panel")); // a panel sent the browser here
     if (panel) {
       location.href = `/panel.html?task=${panel}`;
     } else {
@@ -120,9 +120,10 @@ at("login").addEventListener("submit", async (event) => {
 at("logout").addEventListener("click", () => ask("/api/logout", {}).then(() => location.reload()));
 at("language").addEventListener("click", switchLanguage);
 at("stop").addEventListener("click", () => stop());
-at("dialog").addEventListener("close", () => at("dialog").returnValue === "stop" && stop()); // it covers the other one
+// The dialog has a stop button of its own, since it covers the button of the page.
+at("dialog").addEventListener("close", () => at("dialog").returnValue === "stop" && stop());
 at("skip").addEventListener("click", (event) => {
-  event.preventDefault(); // the hash is the page's name
+  event.preventDefault(); // the hash holds the page's name
   at("main").focus();
 });
 onLanguage(() => {

@@ -10,7 +10,7 @@ const SVG = "http://www.w3.org/2000/svg";
 
 export const at = (id) => document.getElementById(id);
 
-/** A new element; text goes in as text only, so nothing that a site stores can become markup. */
+/** A new element; text is inserted as text only, so stored values cannot become markup. */
 export function make(tag, options = {}, ...children) {
   const { data, label, ...properties } = options;
   const element = Object.assign(document.createElement(tag), properties);
@@ -38,7 +38,7 @@ export function change(element, attributes) {
   }
 }
 
-/** Keeps one child per item, in order, and reuses it: buttons keep their focus while the state streams in. */
+/** Keeps one child per item, in order, and reuses it, so that buttons keep their focus at each new state. */
 export function keep(parent, items, key, build, fill) {
   const old = new Map([...parent.children].map((child) => [child.dataset.key, child]));
   items.forEach((item, index) => {
@@ -54,7 +54,7 @@ export function keep(parent, items, key, build, fill) {
   old.forEach((child) => child.remove());
 }
 
-/** An answer may come when its page has gone; then there is no element to fill. */
+/** Sets a text; `element` is null when an answer comes after its page was left. */
 export function setText(element, text) {
   if (element !== null && element.textContent !== text) {
     element.textContent = text;
@@ -92,7 +92,7 @@ export function relabelAll() {
   document.querySelectorAll("[data-relabel]").forEach((element) => element.relabel());
 }
 
-/** A table that scrolls in a region of its own; `label` tells it from the other tables of the page. */
+/** A table that scrolls in a region of its own; `label` distinguishes it from other tables of the page. */
 export function table(id, label, heads) {
   const cells = heads.map((head) => make("th", { scope: "col", data: { t: head } }));
   const body = make("tbody", { id });
@@ -123,7 +123,7 @@ export function say(text, bad = false) {
   setText(at("message"), text);
 }
 
-/** Asks before something that cannot be taken back; resolves to true or false. */
+/** Asks for confirmation of a step that cannot be undone; resolves to true or false. */
 export function confirmed(text) {
   const dialog = at("dialog");
   if (dialog.open) {

@@ -1,4 +1,4 @@
-// The panel of one task: a green start, a red software stop, and what the run asks.
+// The panel of one task: a green start, a red software stop, and the questions of the run.
 import { at, keep, setText } from "./dom.js";
 import { buildQuestion, fillQuestion } from "./questions.js";
 import { ask, watch } from "./server.js";

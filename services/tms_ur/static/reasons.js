@@ -1,16 +1,16 @@
-// Reasons on the page: the text, what helps as a button, a link or a command, and details for who asks for them.
+// Reasons on the page: the text, the remedy as a button, a link or a command, and details on request.
 import { COMMANDS, LINKS } from "./actions.js";
 import { at, make, say, setText } from "./dom.js";
 import { said, sayAgain, t } from "./strings.js";
 
-/** Shows a reason in `box`; `text` may stand around its own, and `done` is an action that has a button beside it. */
+/** Shows a reason in `box`; `text` may embed its own text, and `done` is an action that has a button already. */
 export function fillReason(box, reason, { text = said(reason), done = "" } = {}) {
   if (box === null) {
-    return; // its page has gone
+    return; // the page was left
   }
   const action = reason?.action && reason.action.name !== done ? reason.action : null;
   const shape = JSON.stringify([text === "", action, reason?.details]);
-  if (box.dataset.shape !== shape) { // else its button keeps the focus while the state streams in
+  if (box.dataset.shape !== shape) { // else the button keeps its focus at each new state
     box.dataset.shape = shape;
     box.replaceChildren(...(text === "" ? [] : [make("span"), ...help(action), ...details(reason)]));
     sayAgain(box);
@@ -43,7 +43,7 @@ function details(reason) {
   return [" ", make("details", {}, make("summary"), make("span", { data: texts(reason.details) }))];
 }
 
-/** Shows why something failed, or nothing for null; a page's own errors have words only. */
+/** Shows why an action failed, or nothing for null; a page's own errors have no reason, only a text. */
 export function showError(box, error) {
   if (box !== null) {
     fillReason(box, error?.reason ?? null, { text: error === null ? "" : error.message });
@@ -57,7 +57,7 @@ export function sayError(error) {
   at("message").replaceChildren(box);
 }
 
-/** Runs a command once: the button is dead until the answer is there. `work` returns what to say. */
+/** Runs a command once: the button is disabled until the answer comes. `work` returns the text to show. */
 export async function once(element, work) {
   if (element.disabled) {
     return;
@@ -74,7 +74,7 @@ export async function once(element, work) {
   } finally {
     element.disabled = false;
     if (document.activeElement === document.body) {
-      element.focus(); // a disabled button has lost it
+      element.focus(); // the disabled button has lost the focus
     }
   }
 }

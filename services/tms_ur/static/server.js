@@ -4,11 +4,11 @@ import { said, t } from "./strings.js";
 const SILENCE = 1700; // ms without a state: the server sends one every 0.7 s at least
 const LIMIT = 60_000; // ms for an answer
 const RETRY = 1000; // ms between attempts to connect
-const PROLONG = 60_000; // ms; an open console is in use, so its session must not end
+const PROLONG = 60_000; // ms between requests that prolong the session of an open console
 const MAX_TREES = 100;
 let ahead = 0; // ms by which the site's clock is ahead of this device's
 
-/** The site's time in ms: ages are told by it, since a tablet's clock may be wrong. */
+/** The site's time in ms: ages are computed from it, since a tablet's clock may be wrong. */
 export const siteNow = () => Date.now() + ahead;
 
 /** An answer of the API within `limit` ms; throws an Error whose message people can read, with the reason that the server gave. */
@@ -33,14 +33,14 @@ export async function ask(path, body, limit = LIMIT) {
 }
 
 /**
- * Calls onState with every state and onLink(true or false) when the connection comes and goes; onLink(null) when the
- * page is looked at again and it is not known yet.
+ * Calls onState with every state, and onLink(true or false) when the connection comes and goes; onLink(null) when the
+ * page is visible again and the connection is not known yet.
  */
 export function watch(onState, onLink) {
   let source = null;
   let connected = null;
   let heard = performance.now();
-  let awaited = heard; // since when silence counts: not while nobody listens
+  let awaited = heard; // begin of the present silence, which does not count while the page is hidden
   let tried = -RETRY;
   let prolonged = performance.now();
   let last = null;
@@ -67,23 +67,23 @@ export function watch(onState, onLink) {
     source.addEventListener("error", () => link(false));
   }
 
-  // A session that is over shows the login now, and not when somebody presses the stop.
+  // Shows the login as soon as the session is over, not only when the operator presses the stop.
   function prolong() {
     prolonged = performance.now();
     ask("/api/session").then(
       (session) => session.name === null && location.reload(),
-      () => {}, // a lost server is told at the top of the page
+      () => {}, // the top of the page reports a lost server
     );
   }
 
-  // Without the server nobody here knows what a machine does, and the age of its data grows.
+  // Without the server the state of the machines is unknown, and the age of their data grows.
   function grow() {
     const age = (machine) => (machine.joint_age === null ? null : machine.joint_age + (performance.now() - heard) / 1000);
     onState({ ...last, machines: last.machines.map((machine) => ({ ...machine, state: "silent", joint_age: age(machine) })) });
   }
 
-  // A browser has six connections to us, whatever the number of its pages. One that nobody looks at keeps none of
-  // them, so that a stop in another one finds its own; and what it shows is old until the first state comes again.
+  // A browser has six connections to a server for all its pages. A hidden page keeps none of them, so that a stop in
+  // another page gets one. When it is visible again, its content is old until the first state comes.
   function shown() {
     if (document.hidden) {
       source?.close();
@@ -125,7 +125,7 @@ export function watch(onState, onLink) {
 
 const trees = new Map();
 
-/** The shape of a run's tree; asked once, and again a second later as long as the history has none. */
+/** The shape of a run's tree; requested once, and again after a second as long as the history has none. */
 export function treeOf(runId) {
   const known = trees.get(runId);
   if (known !== undefined && (known.tree !== null || performance.now() - known.asked < 1000)) {
@@ -133,7 +133,7 @@ export function treeOf(runId) {
   }
   trees.set(runId, { tree: null, asked: performance.now() });
   if (trees.size > MAX_TREES) {
-    trees.delete(trees.keys().next().value); // the oldest
+    trees.delete(trees.keys().next().value); // removes the oldest
   }
   ask(`/api/runs/${encodeURIComponent(runId)}/tree`).then(
     (tree) => trees.set(runId, { tree }),

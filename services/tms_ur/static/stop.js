@@ -1,13 +1,13 @@
-// The software stop: asks every gateway at once and says what was seen.
+// The software stop: calls every gateway at the same time and shows the receipts.
 import { at, setText } from "./dom.js";
 import { ask } from "./server.js";
 import { said, t } from "./strings.js";
 
 const AGAIN = 1000; // ms between attempts while the server cannot be reached
-const LONGEST = 60_000; // ms of attempts: nobody expects a stop later than that
-const ANSWER = 18_000; // ms; the server says after 13 s at the latest what the gateways saw
-const SLOW = 5000; // ms; most machines were seen to stand by then
-const OPEN = "tms.stop"; // kept until machines have answered: a session that ends meanwhile loads the page anew
+const LONGEST = 60_000; // ms of attempts: the operator does not expect a stop later than that
+const ANSWER = 18_000; // ms; the server answers after 13 s at the latest
+const SLOW = 5000; // ms; most receipts have come by then
+const OPEN = "tms.stop"; // kept until the receipts come, since the page is loaded anew when the session ends meanwhile
 
 export async function stop(machine = "") {
   const begun = performance.now();
@@ -26,7 +26,7 @@ export async function stop(machine = "") {
   }
 }
 
-/** One request; tells what was seen, or returns why nothing was. */
+/** Makes one request; shows the receipts, or returns the error. */
 async function attempt(machine) {
   try {
     const receipts = await ask("/api/stop", { machine }, ANSWER);
@@ -39,12 +39,12 @@ async function attempt(machine) {
   }
 }
 
-/** Says on a page that was loaded anew that the stop which was asked for before was not done. */
+/** Shows on a page that was loaded anew that the earlier stop was not done. */
 export function reportOpen(session) {
   if (isOpen()) {
     const loggedIn = session.name !== null;
     report(t("not_stopped", { reason: t(loggedIn ? "press_again" : "log_in_and_press") }), true);
-    keepOpen(!loggedIn); // after the login once more, beside the button
+    keepOpen(!loggedIn); // without a login keep it: it is shown again after the login, beside the button
   }
 }
 

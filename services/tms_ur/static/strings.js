@@ -1,4 +1,4 @@
-// The language of the page: texts, dates, and who wants to know when it changes.
+// The language of the page: texts, dates, and the callbacks at its change.
 import { WORDS } from "./words.js";
 
 const KEPT = "tms.language";
@@ -14,22 +14,22 @@ function remembered() {
   }
 }
 
-/** A text in the present language with {name} filled in; a key that nobody knows is shown as it is. */
+/** A text in the present language with {name} filled in; an unknown key is shown as it is. */
 export function t(key, values = {}) {
   const text = WORDS[language][key] ?? key;
   return text.replace(/\{(\w+)\}/g, (_, name) => String(values[name] ?? ""));
 }
 
-/** The name of a field of a run: its text f_<name>, or the name itself where nobody has translated it. */
+/** The name of a field of a run: its text f_<name>, or the name itself where it has no translation. */
 export const fieldName = (name) => WORDS[language][`f_${name}`] ?? name;
 
-/** One of the texts that the server sends in every language. */
+/** The present language's text among those that the server sends. */
 export const inLanguage = (texts) => texts[language];
 
 /** The text of a reason; empty for none. */
 export const said = (reason) => (reason ? inLanguage(reason.text) : "");
 
-/** Date and time as the language writes them. */
+/** Date and time in the format of the language. */
 export function when(iso) {
   return iso ? new Date(iso).toLocaleString(language === "ja" ? "ja-JP" : "en-GB") : "-";
 }
@@ -41,14 +41,14 @@ export function clock(iso) {
   return iso ? new Date(iso).toLocaleTimeString(language === "ja" ? "ja-JP" : "en-GB", PARTS) : "-";
 }
 
-/** Texts that the server has sent in every language: elements with data-said, in a part of the page. */
+/** Writes anew the texts that the server has sent in every language: elements with data-said in a part of the page. */
 export function sayAgain(part) {
   for (const element of part.querySelectorAll("[data-said]")) {
     element.textContent = inLanguage(JSON.parse(element.dataset.said));
   }
 }
 
-/** Texts that stand in the page itself: elements with data-t; and those that the server has sent. */
+/** Writes anew the texts of the page itself (elements with data-t) and those that the server has sent. */
 export function translatePage() {
   document.documentElement.lang = language;
   document.title = `${t("title")} - ROS2-TMS`;

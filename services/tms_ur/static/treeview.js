@@ -33,7 +33,7 @@ export class TreeView {
     this.states = "";
   }
 
-  /** Another tree: its shape as /api/runs/ID/tree tells it. */
+  /** Shows another tree; its shape is the answer of /api/runs/ID/tree. */
   show(tree) {
     if (this.tree === tree) {
       return;
@@ -67,7 +67,7 @@ export class TreeView {
     this.rescale();
   }
 
-  /** Puts a node and what is below it from `x` on; returns the width that it takes. */
+  /** Places a node and its children from `x` on; returns their width. */
   place(node, x, depth) {
     const children = this.closed.has(node.path) ? [] : node.children;
     let width = 0;
@@ -119,7 +119,7 @@ export class TreeView {
     this.rebuild();
   }
 
-  /** `states` holds a digit a node; `current` is the path of the leaf that works or waits. */
+  /** `states` holds a digit a node; `current` is the path of the leaf that runs or waits. */
   paint(states, current = "") {
     this.states = states;
     this.current = current;

@@ -1,4 +1,4 @@
-// Every text of the console in both languages; a test holds the two sets of keys equal, so the table stays JSON.
+// Every text of the console in both languages. A test compares the two sets of keys, so the table must stay JSON.
 export const WORDS = {
   "ja": {
     "title": "施工タスク管理",
@@ -498,5 +498,5 @@ export const WORDS = {
   }
 };
 
-// A page is a file of pages/ and its title p_<name> here; the links to them stand in this order.
+// A page is a file of pages/ and its title p_<name> here; the links to the pages have this order.
 export const PAGE_NAMES = Object.keys(WORDS.en).filter((key) => key.startsWith("p_")).map((key) => key.slice(2));

@@ -93,7 +93,7 @@ function exact(value, type) {
   return Array.isArray(value) ? `[${value.map(one).join(", ")}]` : one(value);
 }
 
-/** A value to look at: six digits tell everything that a machine can do. */
+/** A value for display: six digits are more precise than any machine. */
 function written(value, type) {
   const one = (number) => (type?.startsWith("double") && typeof number === "number" ? Number(number.toPrecision(6)) : number);
   return exact(Array.isArray(value) ? value.map(one) : one(value), type);
@@ -116,14 +116,14 @@ async function showValues(record) {
   at("values").scrollIntoView();
 }
 
-const SENSING_STATES = { silent: "no_messages" }; // of machines, `silent` means something else
+const SENSING_STATES = { silent: "no_messages" }; // for machines `silent` has another text
 
 async function showSensing() {
   let inputs = [];
   try {
     ({ inputs } = await ask("/api/sensing"));
   } catch {
-    return; // a lost server is told at the top of the page
+    return; // the top of the page reports a lost server
   }
   if (at("list_sensing") === null) {
     return;
@@ -178,7 +178,7 @@ function showEditor(title, inner, save) {
   at("editor").querySelector("input")?.focus();
 }
 
-/** What is wrong is said where the person looks. */
+/** Saves, and shows an error in the editor. */
 async function saved(save) {
   showError(at("editor_problem"), null);
   let name;
@@ -210,7 +210,7 @@ async function saveNew() {
   return nameOf(record);
 }
 
-/** What a person typed, as the field's type wants it; the server looks at it again. */
+/** The typed text as a value of the field's type; the server checks it again. */
 function typed(name, type, text) {
   if (name === "") {
     throw new Error(t("field_nameless"));

@@ -12,7 +12,7 @@ const CODES = { IDLE: 0, RUNNING: 1, SUCCESS: 2, FAILURE: 3 };
 let view = null;
 let runs = [];
 let journal = [];
-let cut = false; // the journal is longer
+let cut = false; // the journal has more events
 let chosen = null;
 
 export function build(root) {
@@ -53,10 +53,10 @@ function showRuns() {
 
 export function update() {}
 
-/** What a journal says: a reason, or words. */
+/** The text of a journal's entry: a reason, or plain text. */
 const textOf = (event) => (event.reason ? said(event.reason) : event.text);
 
-/** A run by its own address, so that a link or a reload finds it again. */
+/** Shows the run of an address, so that a link or a reload finds it again. */
 export function open([run]) {
   if (run !== undefined && (run !== chosen || at("past").hidden)) {
     showRun(run);
@@ -87,7 +87,7 @@ function show(id) {
   }
 }
 
-/** What the scheduler tells of the chosen run beside what it tells of every run. */
+/** The further facts of the chosen run that the scheduler has recorded. */
 function showValues() {
   const values = Object.entries(runs.find((run) => run.run_id === chosen)?.values ?? {});
   at("past_values").hidden = values.length === 0;
@@ -119,7 +119,7 @@ async function showRun(id) {
   setText(at("journal_cut"), cut ? t("journal_cut", { number: journal.length }) : "");
   at("past_tree").hidden = tree === undefined; // a refused run has none
   if (tree === undefined) {
-    view.tree = null; // that of another run
+    view.tree = null; // it belongs to another run
   } else {
     view.show(tree.values);
   }
@@ -141,7 +141,7 @@ async function readJournal(id) {
   cut = found.length > MAX_EVENTS;
 }
 
-/** The old and the new state of a node; journals of releases without reasons have them in their text. */
+/** The old and the new state of a node; journals of releases without reasons have both in their text. */
 function changeOf(event) {
   const states = event.reason?.args ?? {};
   return states.old in CODES ? states : / (?<old>[A-Z]+) -> (?<new>[A-Z]+)/.exec(` ${event.text}`)?.groups;

@@ -82,7 +82,7 @@ async function checkTask(id) {
   showFindings(at("checked"), found);
 }
 
-/** What a check found, with its lines. */
+/** Shows the findings of a check with their lines. */
 export function showFindings(box, found) {
   box.replaceChildren();
   if (found.errors.length + found.warnings.length === 0) {
@@ -98,7 +98,7 @@ export function showFindings(box, found) {
 
 function buildFinding({ line, reason }) {
   const row = make("li", { data: { line: line ?? "" } });
-  fillReason(row, reason, { done: "edit_task" }); // the text is on the screen
+  fillReason(row, reason, { done: "edit_task" }); // the text of the task is on the screen
   return row;
 }
 
@@ -123,7 +123,7 @@ function fillMachine(card, machine) {
   part(card, "armed").hidden = machine.state === "silent";
   setText(part(card, "by_hand"), machine.by_hand ? t("who_drives", { name: machine.by_hand }) : "");
   const latch = machine.latch ? t("why_latched", { cause: said(machine.latch) }) : "";
-  fillReason(part(card, "latch"), machine.latch, { text: latch, done: "rearm" }); // the card has its button
+  fillReason(part(card, "latch"), machine.latch, { text: latch, done: "rearm" }); // the card has this button
   fillReason(part(card, "hold"), machine.hold);
   fillReason(part(card, "reason"), machine.reason, { done: "rearm" });
   setText(part(card, "goal"), machine.goal ? `${t("goal")}: ${machine.owner}` : "");

@@ -23,7 +23,7 @@ export async function load() {
     shapes ??= Object.fromEntries((await ask("/api/site")).machines.map((machine) => [machine.name, machine]));
     goals = (await ask("/api/parameters")).flatMap(poses);
   } catch {
-    // the map goes on without them; the next load asks again
+    // the map works without records; the next load asks again
   }
 }
 
@@ -62,7 +62,7 @@ function fillFigure(figure, machine) {
   setText(part(figure, "joints"), machine.joints.map((joint) => `${joint.name} ${number((joint.position * 180) / Math.PI, 1)}°`).join(", "));
 }
 
-/** Record of the leaf that works now, as its port says. */
+/** Record of the running leaf, from its port. */
 function currentRecord(run) {
   const tree = treeOf(run.run_id);
   const index = tree?.paths.indexOf(run.leaf) ?? -1;
@@ -103,7 +103,7 @@ function machineMark(machine) {
   const { x, y, yaw } = machine.place;
   const boxes = shapes[machine.name].footprint.map((box) => draw("rect", {
     x: box.min[0], y: -box.max[1], width: box.max[0] - box.min[0], height: box.max[1] - box.min[1] }));
-  const known = isOld(machine) ? "silent" : machine.state; // where it was, and not where it is
+  const known = isOld(machine) ? "silent" : machine.state; // the place is the last known one
   const swing = machine.joints.find((joint) => joint.name === "swing_joint")?.position ?? 0;
   return [
     draw("g", { class: `machine ${known}`, "data-machine": machine.name,

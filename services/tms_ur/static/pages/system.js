@@ -1,11 +1,11 @@
-// System: processes of every PC, their logs, restart; and who gave which command.
+// System: processes of every PC, their logs, restart; and the audit of commands.
 import { at, button, duration, heading, keep, make, part, parts, setBadge, setText, table } from "../dom.js";
 import { restartProcess } from "../actions.js";
 import { once } from "../reasons.js";
 import { ask } from "../server.js";
 import { t, when } from "../strings.js";
 
-let running = 0; // runs
+let running = 0; // number of active runs
 
 export function build(root) {
   root.append(
@@ -23,7 +23,7 @@ export async function load() {
   try {
     audit = (await ask("/api/audit")).reverse();
   } catch {
-    return; // the database is away; the processes are shown all the same
+    return; // the database is away; the processes are shown nevertheless
   }
   if (at("list_audit") === null) {
     return;

@@ -5,8 +5,8 @@ import { ask } from "../server.js";
 import { t, when } from "../strings.js";
 import { showFindings } from "./run.js";
 
-const MAX_BYTES = 5_000_000; // as the server has it
-const MAX_LINES = 2000; // that are shown
+const MAX_BYTES = 5_000_000; // same limit as in the server
+const MAX_LINES = 2000; // lines that are shown
 const MAX_WIDE = 500; // characters of a line
 let given = null; // { name, xml } of the chosen file
 let found = null; // its check
@@ -81,7 +81,7 @@ async function checkAgain() {
   }
   const bad = new Set(found?.errors.map((one) => one.line) ?? []);
   const warned = new Set(found?.warnings.map((one) => one.line) ?? []);
-  at("store").disabled = found === null; // it cannot be read at all
+  at("store").disabled = found === null; // the file cannot be read
   at("source").replaceChildren(...given.xml.split("\n", MAX_LINES).map((line, index) => (
     make("li", { className: bad.has(index + 1) ? "errors" : warned.has(index + 1) ? "warnings" : "" }, line.slice(0, MAX_WIDE) || " "))));
   return showDifference();

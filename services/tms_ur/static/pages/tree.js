@@ -1,4 +1,4 @@
-// Tree: the live tree of a run, and one sentence that says why it is where it is.
+// Tree: the live tree of a run, and one sentence with the reason of its present state.
 import { at, button, heading, keep, make, setBadge, setText } from "../dom.js";
 import { fillReason } from "../reasons.js";
 import { treeOf } from "../server.js";
@@ -52,7 +52,7 @@ export function update(state) {
     fillReason(at("tree_reason"), alive ? run.reason : null, { text });
   }
   if (tree === null) {
-    return; // the last one stays on the screen
+    return; // the last tree stays on the screen
   }
   view.show(tree);
   if (states !== run.nodes || view.current !== run.leaf) {
