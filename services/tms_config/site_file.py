@@ -16,6 +16,8 @@ ROLES: tuple[Role, ...] = ("cps", "machine", "sensing", "sim")
 
 
 class Service(Settings):
+    """A service of the site, and the role of the PC that runs it."""
+
     role: Role = "cps"
 
 
@@ -115,6 +117,8 @@ class Fault(Settings):
 
 
 class Simulator(Settings):
+    """How the stand-ins of the site move."""
+
     speed: float = Field(gt=0, le=100, default=1.0)  # times real time
     seed: int = 0
     response: Literal["machine", "ideal"] = "machine"  # ideal: no dead time, no lag; for sites that try no stops

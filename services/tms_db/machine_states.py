@@ -14,6 +14,8 @@ COLLECTIONS = ("machine_pose", "machine_joints")
 
 
 class MachineStates:
+    """The collections of machine states, as the C++ system keeps them."""
+
     def __init__(self, db: Db) -> None:
         self._db = db
 

@@ -37,6 +37,8 @@ class Task:
 
 @dataclass(frozen=True)
 class Added:
+    """What came of storing a task."""
+
     task_id: int
     model_name: str
     already_stored: bool

@@ -1,5 +1,6 @@
-"""Terrain in the database: heightmaps, their colour images, point clouds and meshes as GridFS files, as the C++ system
-keeps them (`fs.files`, `fs.chunks`; type, id, time and sizes beside the file name).
+"""Terrain in the database: heightmaps, their colour images, point clouds and meshes as GridFS files.
+
+The C++ system keeps them so (`fs.files`, `fs.chunks`; type, id, time and sizes beside the file name).
 
 gridfs is imported when it is first used: most sites never store terrain.
 """

@@ -210,8 +210,9 @@ class Supervisor:
             self._call("startProcess", name, False)
 
     def _settled(self, name: str) -> str:
-        """State of a process once it is not being stopped any more: until then, supervisord accepts a start without
-        starting it.
+        """State of a process once it is not being stopped any more.
+
+        Until then, supervisord accepts a start without starting it.
 
         Raises:
             TmsError: there is no such process, or it does not end.

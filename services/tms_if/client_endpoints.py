@@ -39,9 +39,10 @@ class Asked:
 
 
 class ClientEndpoints:
-    """`send` takes a frame and whether it may be dropped; `say` takes a text for client and log. Subscriptions and
-    services are keyed by the name as the client writes it, publishers by the full name.
+    """What one client of the bridge subscribes, publishes, calls and serves.
 
+    `send` takes a frame and whether it may be dropped; `say` takes a text for client and log. Subscriptions and
+    services are keyed by the name as the client writes it, publishers by the full name.
     `speakers` maps a topic to the client that publishes it; all clients share it. Each operation on it is atomic.
     """
 

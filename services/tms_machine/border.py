@@ -51,8 +51,9 @@ class Controls:
     """Direct access to a machine; only for the gateway and for the stand-ins of a lost one."""
 
     def __init__(self, ros: Ros, machine: str, border: Border, keeps_emergency: bool = True) -> None:
-        """`keeps_emergency`: a machine that is switched on later still receives the last `emg_stop`. Only for the
-        gateway, which also releases it: an old `true` of another publisher would hold the machine.
+        """`keeps_emergency`: a machine that is switched on later still receives the last `emg_stop`.
+
+        Only for the gateway, which also releases it: an old `true` of another publisher would hold the machine.
         """
         self._ros = ros
         self._cancels = [f"/{machine}/{getattr(border, m.field)}/_action/cancel_goal" for m in motions(border)]

@@ -21,7 +21,6 @@ def subscribe(
 
     A publisher that was killed counts as not asserted until discovery has dropped it.
     """
-
     count = _Count(alive)
 
     def received_first(message: M) -> None:

@@ -26,9 +26,7 @@ class Turner:
     """Turns goals into motion of single joints; a new goal for a joint preempts the old one."""
 
     def __init__(self, arm: Arm, returns: bool = False) -> None:
-        """`returns`: a goal tips, waits and returns to 0, and cannot be cancelled, as in OPERA's helper for the
-        simulator.
-        """
+        """`returns`: a goal tips, waits, returns to 0 and cannot be cancelled, as OPERA's helper for the simulator."""
         self.arm, self._returns = arm, returns
         self._turns: dict[str, Turn] = {}
         self._lock = arm.lock

@@ -8,6 +8,8 @@ WINDOW = 10.0  # s
 
 
 class SourceClock:
+    """Judges the stamps of one source against the clock of this PC."""
+
     def __init__(self, limit: float) -> None:
         """`limit`: s that the source may be off."""
         self._limit = limit

@@ -4,6 +4,8 @@ from tms_machine.subtask import Machine, Params, Progress, subtask
 
 
 class Place(Params):
+    """Where to dig."""
+
     plan_only: bool = False  # an input of the variant: check whether the point can be dug, without a motion
     position_with_angle: float  # must be present, as in the C++ system
     x: float  # m, base_link

@@ -6,6 +6,8 @@ from tms_machine.subtask import Machine, Params, Progress, subtask
 
 
 class Opening(Params):
+    """How far to open the bucket."""
+
     target_angle: float  # rad, bucket joint when open
 
     def joint_angles(self) -> Mapping[str, float]:

@@ -7,6 +7,8 @@ from tms_machine.subtask import Machine, Params, Progress, subtask
 
 
 class Vessel(Params):
+    """How far to raise the vessel."""
+
     target_angle: float  # rad, 0 lowered, negative raises
 
     def joint_angles(self) -> Mapping[str, float]:

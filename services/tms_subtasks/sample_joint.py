@@ -10,6 +10,8 @@ from tms_machine.subtask import Machine, Params, Progress, subtask
 
 
 class Angle(Params):
+    """Which joint to bring to which angle."""
+
     joint: str  # an input of the variant
     field: str  # an input of the variant: the field of the record that holds the angle
     angle: float  # deg, from that field

@@ -7,6 +7,8 @@ from tms_machine.subtask import Machine, Params, Progress, subtask
 
 
 class Heading(Params):
+    """Where to turn the upper body."""
+
     target_angle: float  # rad, upper body against the tracks
 
     def joint_angles(self) -> Mapping[str, float]:

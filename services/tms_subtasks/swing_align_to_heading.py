@@ -6,6 +6,8 @@ from tms_machine.subtask import Machine, Params, Progress, subtask
 
 
 class Body(Params):
+    """Which joint to turn."""
+
     joint: str  # an input of the variant: the joint that turns the upper body
 
 

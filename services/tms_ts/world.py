@@ -15,6 +15,8 @@ T_co = TypeVar("T_co", covariant=True)
 
 
 class GoalState(Enum):
+    """How far a leaf's goal is."""
+
     SENDING = "sending"
     RUNNING = "running"
     SUCCEEDED = "succeeded"
@@ -42,6 +44,8 @@ class Goal(Protocol):
 
 
 class Machines(Protocol):
+    """What a tree asks of machines."""
+
     def send(self, machine: str, subtask: str, record: str, node: str) -> Goal:
         """Send a goal; `node` is the node's path, for the journal."""
         ...
@@ -82,6 +86,8 @@ class Clicks(Protocol):
 
 @dataclass(slots=True)
 class World:
+    """Everything outside the tree that its nodes use."""
+
     machines: Machines
     flags: SharedFlags
     clicks: Clicks

@@ -13,28 +13,40 @@ class Command(Model):
 
 
 class Login(Command):
+    """Who wants a session."""
+
     name: Text = Field(max_length=64)
     password: str = Field(max_length=200)
 
 
 class TaskGiven(Command):
+    """A tree to store."""
+
     xml: str = Field(max_length=5 * 2**20)
     description: Text = Field(default="", max_length=1000)
 
 
 class Xml(Command):
+    """A tree to check or to compare."""
+
     xml: str = Field(max_length=5 * 2**20)
 
 
 class StopAsked(Command):
+    """Which machines to stop."""
+
     machine: str = Field(default="", pattern=r"^[a-z0-9_]{0,64}$", description="empty: all machines")
 
 
 class RearmAsked(Command):
+    """A step of a re-arm."""
+
     token: str = Field(default="", max_length=100, description="of the first step, empty in the first step")
 
 
 class AnswerGiven(Command):
+    """The answer to a question of a run."""
+
     yes: bool
 
 

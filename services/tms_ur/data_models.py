@@ -49,6 +49,8 @@ class SensingInput(Model):
 
 
 class Sensing(Model):
+    """The inputs of sensing, and how old this report is."""
+
     age: float | None = Field(description="s since `tms:sp` was heard, null: never; it tells every second")
     inputs: list[SensingInput]
 

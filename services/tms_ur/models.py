@@ -19,6 +19,8 @@ class Model(BaseModel):
 
 
 class Joint(Model):
+    """A joint of a machine as it is now."""
+
     name: str
     position: float = Field(description="rad")
     velocity: float = Field(description="rad/s")
@@ -87,6 +89,8 @@ class Scheduler(Model):
 
 
 class Process(Model):
+    """A process of the site."""
+
     name: str = Field(description="group:name")
     state: str = Field(description="as supervisord names it: RUNNING, STOPPED, FATAL, ...; UNKNOWN: its PC is silent")
     pid: int = 0
@@ -126,6 +130,8 @@ class Task(Model):
 
 
 class TaskText(Task):
+    """A stored task with its tree."""
+
     xml: str = Field(description="the tree as Groot draws it")
 
 
@@ -197,6 +203,8 @@ class Link(Model):
 
 
 class SiteMachine(Model):
+    """A machine of the site and its body."""
+
     name: str
     model: str
     kind: str
@@ -235,15 +243,21 @@ class Checked(Model):
 
 
 class Added(Model):
+    """What came of storing a task."""
+
     id: int
     already_stored: bool = Field(description="the same text was there under this number")
 
 
 class Diff(Model):
+    """How two trees differ."""
+
     text: str = Field(description="unified diff from the stored tree to the given one, empty if they are equal")
 
 
 class Log(Model):
+    """The end of a log."""
+
     text: str = Field(description="the last lines")
 
 

@@ -36,6 +36,8 @@ class Played:
 
 
 class Player:
+    """Publishes what a recording holds, at the pace at which it was recorded."""
+
     def __init__(self, ros: "Ros", found: Matches, keep_stamps: bool) -> None:
         """Make the publishers and wait for the readers.
 

@@ -26,6 +26,8 @@ class Entry:
 
 
 class Blackboard:
+    """Entries by key, and the keys that are ports to the blackboard of the calling tree."""
+
     __slots__ = ("_auto", "_entries", "_keep_private", "_parent", "_remaps")
 
     def __init__(self, parent: Blackboard | None = None) -> None:

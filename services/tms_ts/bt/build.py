@@ -20,6 +20,8 @@ MAX_NODES = 20_000
 
 
 class Builder:
+    """Makes the nodes of one tree from its document."""
+
     def __init__(self, document: Document, rules: Rules, context: Context[Node]) -> None:
         self.document = document
         self.rules = rules

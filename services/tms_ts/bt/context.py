@@ -19,12 +19,16 @@ TICK_SECONDS = 0.02  # a loop that finds the tick older than this yields
 
 
 class Timer(Protocol):
+    """A node that waits until a time."""
+
     deadline: float | None
 
     def expire(self) -> None: ...
 
 
 class Context(Generic[N]):
+    """What the nodes of one tree share: its clock, its timers, its budget of a tick, and its observers."""
+
     __slots__ = (
         "_reported",
         "_rounds_left",

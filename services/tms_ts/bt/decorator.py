@@ -64,6 +64,8 @@ class Inverter(Decorator):
 
 
 class Force(Decorator):
+    """Returns one result, whatever its child returns."""
+
     __slots__ = ()
     result: ClassVar[Status] = SUCCESS
 

@@ -45,6 +45,8 @@ class TreeElement:
 
 @dataclass(slots=True)
 class Document:
+    """What the files of one task hold, as elements with their places."""
+
     sources: list[Source] = field(default_factory=list)
     trees: list[TreeElement] = field(default_factory=list)  # all trees, in order of registration
     models: dict[str, frozenset[str]] = field(default_factory=dict)  # ID -> ports, by TreeNodesModel

@@ -15,6 +15,8 @@ from tms_ts.bt.status import FAILURE, IDLE, RUNNING, SUCCESS, Kind, Status
 
 
 class Leaf(Node):
+    """A node without children."""
+
     __slots__ = ()
     kind: ClassVar[Kind] = Kind.ACTION
 

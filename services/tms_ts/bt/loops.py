@@ -18,6 +18,8 @@ from tms_ts.bt.status import FAILURE, IDLE, RUNNING, SUCCESS, Status
 
 
 class Loop(Decorator):
+    """Runs its child again and again."""
+
     __slots__ = ("asks", "count")
     goes_on: ClassVar[Status] = SUCCESS
     limit_port: ClassVar[str] = ""

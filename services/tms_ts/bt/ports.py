@@ -13,6 +13,8 @@ T = TypeVar("T")
 
 
 class Direction(IntEnum):
+    """Whether a node reads a port, writes it, or both."""
+
     INPUT = 0
     OUTPUT = 1
     INOUT = 2
@@ -27,6 +29,8 @@ RESERVED = frozenset({"ID", "name", "_description"})
 
 @dataclass(frozen=True, slots=True)
 class Port:
+    """A port as a class of nodes declares it."""
+
     name: str
     direction: Direction
     kind: Any  # a Python type, or Any for an untyped port

@@ -8,6 +8,8 @@ from py_trees.common import Status as PyTreesStatus
 
 
 class Status(IntEnum):
+    """What a tick returns, with the numbers of Groot."""
+
     IDLE = 0
     RUNNING = 1
     SUCCESS = 2
@@ -19,6 +21,8 @@ class Status(IntEnum):
 
 
 class Kind(IntEnum):
+    """What a node is in Groot, with its numbers."""
+
     UNDEFINED = 0
     ACTION = 1
     CONDITION = 2

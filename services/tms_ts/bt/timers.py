@@ -12,6 +12,8 @@ from tms_ts.bt.status import FAILURE, IDLE, RUNNING, Status
 
 
 class Timed(Decorator):
+    """A decorator with a deadline."""
+
     __slots__ = ("deadline",)
 
     def prepare(self) -> None:

@@ -63,6 +63,8 @@ class SharedValue:
 
 
 class Tree:
+    """A tree that is ready to be ticked."""
+
     def __init__(
         self,
         root: Node,

@@ -16,6 +16,8 @@ from tms_ts.world import Pending, World
 
 
 class Asking(PlainAction):
+    """An action that asks another process and returns once the answer is there."""
+
     __slots__ = ("pending",)
     asking: ClassVar[bool] = True
 

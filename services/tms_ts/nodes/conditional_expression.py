@@ -16,6 +16,8 @@ from tms_ts.nodes.expression import TRUTH, Invalid, Scalar, evaluate, names
 
 
 class Deciding(SyncAction):
+    """A node that evaluates a condition."""
+
     __slots__ = ()
     text_port: ClassVar[str] = ""
 
