@@ -29,6 +29,7 @@ from tms_reason.errors import RosError
 from tms_reason.reason import Reason
 from tms_ros.privates import TimedExecutor
 
+LONGEST_WAIT = 1.0  # s that the executor waits at most
 POLL = 0.02  # s between checks of the ROS graph, which has no cheap event in rclpy
 
 
@@ -58,6 +59,8 @@ class Loop:
         self.failed = threading.Event()  # a thread of this node died of an exception: the whole process must end
         self.closing = False  # no message can be sent any more
         self._ends: list[Callable[[], None]] = []
+        # Fast DDS has lost a wake-up: once in an hour of a full PC, an executor without a timer waited for ever.
+        self.every(LONGEST_WAIT, lambda: None)
         self._thread = self.begin(self._spin, "ros")
 
     def busy_since(self) -> float | None:

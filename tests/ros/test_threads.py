@@ -8,6 +8,7 @@ from functools import partial
 import pytest
 
 from conftest import wait_until
+from tms_config.clock import monotonic
 from tms_ros.node import Ros
 from tms_runtime.priority import undisturbed
 from tms_runtime.pulse import Pulse
@@ -34,6 +35,14 @@ def test_a_thread_that_dies_of_a_bug_ends_the_process(two_nodes: tuple[Ros, Ros]
     give(server)
     wait_until(server.failed.is_set, LIMIT, "the node has failed")
     assert not other.failed.is_set()
+
+
+def test_an_executor_without_work_looks_all_the_same(two_nodes: tuple[Ros, Ros]) -> None:
+    """A wake-up that DDS loses costs a moment, not the process."""
+    executor = two_nodes[0].loop._executor
+    waits, wait = list[float](), executor.wait_for_ready_callbacks
+    executor.wait_for_ready_callbacks = lambda *args, **more: (waits.append(monotonic()), wait(*args, **more))[1]
+    wait_until(lambda: len(waits) > 2, LIMIT, "it waits anew, though nothing happens")
 
 
 def test_a_node_that_is_closed_has_not_failed(own_domain: int, monkeypatch: pytest.MonkeyPatch) -> None:
