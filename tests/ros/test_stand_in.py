@@ -144,6 +144,7 @@ def test_a_frozen_gateway_is_stood_in_for_and_replaced(small: Small, capsys: pyt
     wait_until(lambda: small.reported("gateway_back", begin), 60, "its successor is there")
 
 
+@pytest.mark.alone
 def test_a_freeze_of_less_than_half_a_second_stops_nothing(small: Small) -> None:
     with small.moving(10.0) as (call, statuses):
         begin, pid = len(small.log()), small.pid()
