@@ -12,9 +12,10 @@ def words(what: Reason | str | None) -> str:
     return "" if reason is None else texts.text(reason, "en")
 
 
+COMMAND = re.compile("`[^`]*`")
 SENTENCE = re.compile(r"[A-Za-z]{2,}(?:,? [A-Za-z]{2,}){2,}")
 
 
 def english(text: str) -> list[str]:
-    """What reads like an English sentence: three words in a row, names and units alone are none."""
-    return SENTENCE.findall(text)
+    """What reads like an English sentence: three words in a row. Names, units and `commands` are none."""
+    return SENTENCE.findall(COMMAND.sub("", text))
