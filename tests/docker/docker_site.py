@@ -13,7 +13,8 @@ import yaml
 from conftest import PROJECT, wait_until
 from prometheus_server import get
 from tms_config.config import load_site
-from tms_config.processes import table
+from tms_config.processes import Process, table
+from tms_reason.reason import Reason
 from tms_runtime import metrics
 
 DOCKER = os.environ.get("DOCKER") or "docker"
@@ -111,12 +112,14 @@ class Yard:
 
     def wait_ready(self, pc: str) -> None:
         """Until every process of a PC that starts by itself can work."""
-        waiting = {row: "not asked" for row in self.rows if row.pc == pc and row.autostart and row.ours}
+        waiting: dict[Process, Reason | None] = {
+            row: None for row in self.rows if row.pc == pc and row.autostart and row.ours
+        }
 
         def ready() -> bool:
             for row in list(waiting):
-                waiting[row] = metrics.unready(row.address, row.port) or ""
-                if not waiting[row]:
+                waiting[row] = metrics.unready(row)
+                if waiting[row] is None:
                     del waiting[row]
             return not waiting
 
