@@ -23,6 +23,7 @@ from tms_rp.clearance import Clearance, Obstacle, placed
 from tms_rp.kinds.backhoe.goals import TipGoal
 from tms_rp.kinds.backhoe.linkage import Pose
 from tms_rp.kinds.backhoe.planner import Backhoe
+from tms_rp.reasons import PartOf
 from tms_rp.trajectory import trajectory
 
 GOALS = 500
@@ -53,7 +54,7 @@ def plan_all() -> tuple[list[float], list[float]]:
     truck = parse(CONFIGS / "machines" / "ic120.yaml", MachineModel)
     backhoe, clearance, rng = Backhoe(model), Clearance(model), random.Random(1)
     obstacles = [
-        Obstacle(f"{part} {i}", box, placed(x, y, math.pi / 2))
+        Obstacle(PartOf(part, f"ic120_{i}"), box, placed(x, y, math.pi / 2))
         for i, (x, y) in enumerate(((8.0, 3.0), (-7.0, -2.0)))
         for part, box in truck.footprint.items()
     ]

@@ -17,10 +17,10 @@ import psutil
 
 from bench.rig.mesh import Rig, at, rig, until
 from bench.runner import Figure
-from tms_cli.mesh import unready
 from tms_config.processes import Process, table
 from tms_host.supervisor import Supervisor
 from tms_ros.node import Ros
+from tms_runtime.metrics import unready
 
 MACHINES = {"zx200": {"model": "zx200"}, "ic120_1": {"model": "ic120"}, "ic120_2": {"model": "ic120"}}
 SETTLE, WATCH = 5.0, 15.0  # s; the second is also the time between Prometheus' scrapes
