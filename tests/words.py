@@ -12,6 +12,7 @@ def words(what: Reason | str | None) -> str:
     return "" if reason is None else texts.text(reason, "en")
 
 
+ROS = re.compile(r"/zx200/|ABORTED|_action/|follow_joint_trajectory")  # what only ROS knows
 COMMAND = re.compile("`[^`]*`")
 SENTENCE = re.compile(r"[A-Za-z]{2,}(?:,? [A-Za-z]{2,}){2,}")
 

@@ -18,6 +18,7 @@ from tms_reason.errors import DbError, RosError
 from tms_reason.reason import Foreign, Reason
 from tms_reason.wire import refusal
 from tms_ros.node import Ros
+from tms_ros.packing import pack
 from tms_runtime.log import Logger
 from tms_ts.group_commit import GroupCommit
 from tms_ts.journal_entry import of_line, to_line
@@ -28,7 +29,7 @@ BATCH = 200
 RETRY = 0.5  # s
 GATHER = 0.1  # s from the first entry to its writing: ten calls during a hand-over make it half as long again
 VITAL = {"run", "tree", "stop", "alarm", "warning"}  # kinds of events that a flood of other events must not push out
-LARGEST = 16 * 2**20 * 4 // 3  # bytes of a line, 16 MB in base64: more is too large for the store and too slow over ROS
+LARGEST = 16 * 2**20  # bytes of an entry: more is too large for the store and too slow over ROS
 # Errors of the store, not of an entry: they pass, or a person repairs the store.
 MAY_PASS = {"STORE_DOWN", "STORE_FULL", "STORE_REFUSED", "STORE_NEWER", "STORE_CONFLICT", "DB_FAILED", "BUSY"}
 
@@ -53,16 +54,16 @@ class Journal:
 
     def put(self, entry: Run | Event) -> None:
         """Take an entry, without waiting."""
-        line = to_line(entry)
-        if len(line) > LARGEST:
-            self._lost(entry, EntryTooLarge(len(line), LARGEST))
+        data = pack(entry)
+        if len(data) > LARGEST:
+            self._lost(entry, EntryTooLarge(len(data), LARGEST))
             return
         event = "" if isinstance(entry, Run) else entry.kind
         urgent = isinstance(entry, Run) or event == "tree"  # operators watch runs that begin or end
         vital = urgent or event in VITAL
         if self._spool.full():
             self._lost(entry, JournalFull(self._spool.waiting()))
-        elif not self._disk.put(self._spool, line, vital=vital, urgent=urgent):
+        elif not self._disk.put(self._spool, to_line(type(entry), data), vital=vital, urgent=urgent):
             trouble = self._disk.trouble()
             self._lost(entry, Foreign(trouble) if trouble else DiskFull())
         elif urgent:

@@ -4,16 +4,17 @@ import base64
 
 from tms_msg_db.msg import Event, Run
 
-from tms_ros.packing import pack, unpack
+from tms_ros.packing import unpack
 
 KINDS: dict[bytes, type[Run] | type[Event]] = {b"V": Run, b"E": Event}
+LETTERS = {kind: letter for letter, kind in KINDS.items()}
 EARLIER = b"R"  # a run of earlier releases, without its last field `values`: the message ends before their number
 NO_VALUES = bytes(4)  # how many values there are, as CDR has it
 
 
-def to_line(entry: Run | Event) -> bytes:
+def to_line(kind: type[Run] | type[Event], packed: bytes) -> bytes:
     """The line, without a line break."""
-    return (b"V" if isinstance(entry, Run) else b"E") + base64.b64encode(pack(entry))
+    return LETTERS[kind] + base64.b64encode(packed)
 
 
 def of_line(line: bytes) -> Run | Event:

@@ -1,17 +1,14 @@
 """A run in the Japanese console: no English sentence, and no name of ROS outside `details`."""
 
-import re
-
 import pytest
 from playwright.sync_api import Page, expect
 from test_console import PAGES, SWINGS, open_page
 
 from browsers import ask
 from conftest import Mesh, wait_until
-from words import english
+from words import ROS, english
 
 pytestmark = [pytest.mark.system, pytest.mark.browser]
-ROS = re.compile(r"/zx200/|ABORTED|_action/|follow_joint_trajectory")
 # Texts that a person sees now; a tree shows names that its author has given.
 VISIBLE = """() => {
     const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT), found = [];

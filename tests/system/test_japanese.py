@@ -1,17 +1,15 @@
 """The command line in Japanese: runs, stops and refusals show no English sentence, and no name of ROS."""
 
 import json
-import re
 
 import pytest
 from test_mesh import swinging
 
 from conftest import Mesh
 from tms_ros.node import Ros
-from words import english
+from words import ROS, english
 
 pytestmark = pytest.mark.system
-ROS = re.compile(r"/zx200/|ABORTED|_action/|follow_joint_trajectory")
 
 
 def foreign(mesh: Mesh, *words: str, expect: int = 0) -> list[str]:

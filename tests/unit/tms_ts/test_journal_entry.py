@@ -7,6 +7,7 @@ from builtin_interfaces.msg import Time
 from tms_msg_db.msg import Event, Run
 
 from tms_machine.values import from_parameters, to_parameters
+from tms_ros.packing import pack
 from tms_ts.journal_entry import of_line, to_line
 
 RUN = Run(run_id="20260131-060000-abcd", task_id=4, description="dig", state="interrupted", machines=["zx200", "ic120"],
@@ -20,10 +21,10 @@ EARLIER = (
 
 def test_a_line_becomes_its_entry() -> None:
     event = Event(run_id="r", number=7, kind="node", values=to_parameters({"nodes": 3}))
-    assert of_line(to_line(event)) == event
-    assert of_line(to_line(RUN)) == RUN
+    assert of_line(to_line(type(event), pack(event))) == event
+    assert of_line(to_line(type(RUN), pack(RUN))) == RUN
     told = Run(run_id="r", values=to_parameters({"nodes": 3}))
-    assert from_parameters(of_line(to_line(told)).values) == {"nodes": 3}
+    assert from_parameters(of_line(to_line(type(told), pack(told))).values) == {"nodes": 3}
 
 
 def test_a_run_of_an_earlier_release_has_no_values() -> None:
