@@ -14,7 +14,7 @@ from tms_cli.drill.hits import BACK_LIMIT, Hits
 from tms_cli.drill.plan import NONE, TS, How, Stop, Trial
 from tms_cli.drill.record import Recording
 from tms_cli.drill.stop_observer import StopObserver
-from tms_cli.drill.verdict import AFTER, BY_ITSELF, GOES_ON, HUNG, UNPROVEN, Row, Seen, judge
+from tms_cli.drill.verdict import AFTER, BY_ITSELF, GOES_ON, HUNG, UNPROVEN, Row, Seen, judge, takes_gateway
 from tms_cli.drill.work import Work
 from tms_cli.reasons import DoesNotMove, NobodySays
 from tms_config.clock import sleep, unix_time
@@ -139,8 +139,9 @@ class Hand:
         self.eyes.wait(lambda record: self._over(record, stopped), begun, RECEIPT_LIMIT)
         self._look_on(trial, begun)
         outcome = self._outcome(trial, begun, stopped)
-        self._look_on(trial, begun)  # another stop may have ended meanwhile
         back = struck.back.result(2 * BACK_LIMIT)
+        watched = hit + back if takes_gateway(trial) and back is not None else 0.0
+        self._look_on(trial, begun, watched)  # another stop may have ended meanwhile
         record = self._last_words(trial, begun)
         stops = [one.begun for one in record.receipts]
         busy = "" if stop.moves else stood_still(self._site, self.machine, stops)
@@ -166,8 +167,11 @@ class Hand:
         arrived = all(goal.arrived and (goal.ended or 0.0) < over for goal in begun_by_then)
         return bool(record.receipts) or (arrived and unix_time() > over)
 
-    def _look_on(self, trial: Trial, begun: float) -> None:
-        """Record for as long as a receipt claims a stand-still; where a fault ends it, until that is reported."""
+    def _look_on(self, trial: Trial, begun: float, watched: float = 0.0) -> None:
+        """Record for as long as a receipt claims a stand-still; where a fault ends it, until that is reported.
+
+        `watched`: when a gateway is there to report it, s since 1970.
+        """
         creeps = trial.fault in LEAVE
         longer = CREEP_STARTS + UNPROVEN if creeps else 0.0
 
@@ -175,6 +179,7 @@ class Hand:
             if creeps and not all(one.confirmed for one in record.receipts):
                 return True
             at = max((one.at for one in record.receipts if one.confirmed), default=0.0)
+            at = max(at, watched) if creeps else at
             end = record.truth[-1].at if record.truth else 0.0
             return record.goal_after(at) < at + AFTER + longer or end > at + AFTER + longer
 

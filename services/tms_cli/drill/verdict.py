@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass, field
 from itertools import pairwise
 from typing import Any
 
-from tms_cli.drill.plan import IN_ORDER, NONE, How, Trial
+from tms_cli.drill.plan import IN_ORDER, NONE, RC, How, Trial
 from tms_cli.drill.record import Receipt, Recording, Sample
 from tms_cli.words import english
 
@@ -38,6 +38,13 @@ class Seen:
     back_s: float | None
     outcome: str
     busy: str = ""  # evidence that this PC itself may have stopped the machine
+
+    @property
+    def watched(self) -> float:
+        """When a gateway watches the machine again; before that, the host agent holds it by `emg_stop`, unwatched."""
+        if not takes_gateway(self.trial):
+            return -math.inf
+        return math.inf if self.back_s is None else self.hit + self.back_s
 
 
 @dataclass
@@ -75,6 +82,11 @@ class Row:
         return {name: round(value, 3) if isinstance(value, float) else value for name, value in asdict(self).items()}
 
 
+def takes_gateway(trial: Trial) -> bool:
+    """Whether the hit leaves the machine without its gateway for a while."""
+    return trial.stop.how is How.POWER or RC in trial.stop.processes
+
+
 def empty(trial: Trial, model: str) -> Row:
     """The row of a trial that was not made."""
     stop = trial.stop
@@ -87,7 +99,7 @@ def judge(seen: Seen) -> Row:
     row, record, stop = empty(seen.trial, seen.model), seen.record, seen.trial.stop
     row.at, row.back_s, row.outcome = seen.hit, seen.back_s, seen.outcome
     row.receipts = [text_of(one, seen.hit) for one in record.receipts]
-    row.false_receipt = next(filter(None, (lie(one, record) for one in record.receipts)), "")
+    row.false_receipt = next(filter(None, (lie(one, record, seen.watched) for one in record.receipts)), "")
     row.void = "" if row.false_receipt else void(seen)
     row.latched = bool(record.states and record.states[-1].latch)
     if row.void:
@@ -140,8 +152,8 @@ def moves(sample: Sample) -> bool:
     return sample.share > TOLERANCE
 
 
-def lie(receipt: Receipt, record: Recording) -> str:
-    """Why a receipt is false; empty for an honest one."""
+def lie(receipt: Receipt, record: Recording, watched: float) -> str:
+    """Why a receipt is false; empty for an honest one. Without a gateway, nobody tells of a later motion until then."""
     if not receipt.confirmed:
         return ""
     fresh = record.goal_after(receipt.at - FRAME)
@@ -150,18 +162,19 @@ def lie(receipt: Receipt, record: Recording) -> str:
     if before:
         return f"moved {receipt.at - before[-1].at:.2f} s before it was said to stand: {before[-1].share:.1f} x limit"
     overtaken = bool(moving) and fresh - moving[0].at < LATENCY  # by a goal, before a report was possible
-    if not moving or overtaken or _reports(moving[0].at, record):
+    noticed = max(moving[0].at, watched) if moving else math.inf
+    if not moving or overtaken or _reports(moving[0].at, noticed, record):
         return ""
     late = moving[0].at - receipt.at
     if late <= AFTER:
         return f"moved {late:+.2f} s after it was said to stand: {moving[0].share:.1f} x limit"
-    over = min(fresh, record.truth[-1].at) - moving[0].at > UNPROVEN
+    over = min(fresh, record.truth[-1].at) - noticed > UNPROVEN
     return f"left stand-still {late:.2f} s after the receipt, and nobody told it" if over else ""
 
 
-def _reports(moved: float, record: Recording) -> bool:
+def _reports(moved: float, noticed: float, record: Recording) -> bool:
     """Whether a stop that was under way at `moved`, or began in time after it, ended unconfirmed."""
-    return any(not one.confirmed and one.begun < moved + ASSERTED and one.at > moved for one in record.receipts)
+    return any(not one.confirmed and one.begun < noticed + ASSERTED and one.at > moved for one in record.receipts)
 
 
 def reported(seen: Seen) -> float | None:

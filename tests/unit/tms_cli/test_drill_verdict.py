@@ -68,6 +68,29 @@ def test_a_confirmed_receipt_of_a_moving_machine_is_false(motion: list[tuple[flo
     assert text in row.false_receipt
 
 
+@pytest.mark.parametrize(
+    ("back", "later", "told"),
+    [
+        (15.0, [], "left stand-still 2.50 s after the receipt"),
+        (15.0, [receipt(16.0, 10.0, confirmed=False)], ""),
+        (15.0, [receipt(19.0, 10.0, confirmed=False)], "left stand-still 2.50 s after the receipt"),
+        (29.0, [], ""),  # the gateway has not had the time to tell
+        (None, [], ""),  # counted as a process that did not come back
+    ],
+)
+def test_a_motion_while_the_gateway_is_gone_is_told_by_the_next_one(
+    back: float | None, later: list[Receipt], told: str
+) -> None:
+    row = judge(seen(truth((0.0, 2.0), (5.0, 40.0), until=40.0), receipt(), *later, back_s=back))
+    assert row.false_receipt.startswith(told) if told else not row.false_receipt
+
+
+def test_a_motion_is_told_at_once_while_the_gateway_is_there() -> None:
+    motion, bystander = truth((0.0, 2.0), (5.0, 40.0), until=40.0), Stop(How.KILL, (TS,))
+    late = receipt(16.0, 10.0, confirmed=False)
+    assert "left stand-still" in judge(seen(motion, receipt(), late, back_s=15.0, stop_kind=bystander)).false_receipt
+
+
 @pytest.mark.parametrize("motion", [[(0.0, 2.29)], [(0.0, 2.0), (9.5, 20.0)]])
 def test_a_motion_outside_of_what_a_receipt_claims_is_not_its_lie(motion: list[tuple[float, float]]) -> None:
     assert judge(seen(truth(*motion), receipt())).false_receipt == ""
