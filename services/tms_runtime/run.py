@@ -7,6 +7,8 @@ import platform
 import signal
 import sys
 import threading
+from contextlib import ExitStack
+from typing import TYPE_CHECKING
 
 from tms_config.clock import monotonic
 from tms_config.config import Site, load_site, version
@@ -18,6 +20,9 @@ from tms_runtime.log import Logger
 from tms_runtime.metrics import Health
 from tms_runtime.priority import come_first, threads, undisturbed
 from tms_runtime.reasons import LongCallback, ParentGone, PcBusy, ProcessStarting
+
+if TYPE_CHECKING:
+    from tms_ros.node import Ros
 
 END_CHECK_PERIOD = 0.5  # s
 FORGOTTEN = 3.0  # s; lease of discovery (5 s) less the time since the last announcement (1.5 s at most), 0.5 s to spare
@@ -31,23 +36,24 @@ OF_A_MACHINE = -5  # planner and subtasks; the processes above, too, while they 
 
 def main(name: str) -> int:
     """Run one process of the table until SIGTERM or SIGINT; 0 on a clean end."""
-    try:
-        _die_with_parent()
-        os.umask(state_folder.UMASK)
-        site = load_site()
-        row = find(site, name)
-        if not row.ours:
-            importlib.import_module(row.module).exec_program(site)
-        environment.enter(site)
-        return _serve(site, row)
-    except ConfigError as error:
-        print(f"{name}: {error}", file=sys.stderr)
-        return 1
-    finally:
-        log.close()
+    with ExitStack() as leaving:
+        try:
+            _die_with_parent()
+            os.umask(state_folder.UMASK)
+            site = load_site()
+            row = find(site, name)
+            if not row.ours:
+                importlib.import_module(row.module).exec_program(site)
+            environment.enter(site)
+            return _serve(site, row, leaving)
+        except ConfigError as error:
+            print(f"{name}: {error}", file=sys.stderr)
+            return 1
+        finally:
+            log.close()
 
 
-def _serve(site: Site, row: Process) -> int:
+def _serve(site: Site, row: Process, leaving: ExitStack) -> int:
     metrics.BUILD.info({"version": version(), "python": platform.python_version()})
     from tms_ros.node import Ros
     from tms_runtime.app import App  # rclpy reads the environment when it is imported first
@@ -67,9 +73,11 @@ def _serve(site: Site, row: Process) -> int:
     if row.module in FIRST:
         come_first(OF_A_MACHINE, threads())
     ros = Ros(row.full.replace(":", "_"), process=row.full, creating=undisturbed())
+    leaving.callback(_leave_unstarted, ros)
     app = App(site, row, ros, logger)
     app.pulse.stood_still = lambda silent, waited: _stood_still(logger, silent, waited)
     importlib.import_module(row.module).start(app)
+    leaving.pop_all()
     app_box.append(app)
     Graph(ros, logger)
     if row.module in FIRST or row.group == row.machine:
@@ -86,6 +94,13 @@ def _serve(site: Site, row: Process) -> int:
     end_after(LEAVE_LIMIT, code)
     ros.leave()
     return code
+
+
+def _leave_unstarted(ros: "Ros") -> None:
+    """Leave the graph before Python ends: it aborts when a thread is in rclpy then."""
+    end_after(EXIT_LIMIT, 1)
+    ros.stop()
+    ros.leave()
 
 
 def _stood_still(logger: Logger, silent: float, waited: float) -> None:
