@@ -2,9 +2,9 @@
 
 import fcntl
 import os
+import re
 import shutil
 import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Callable, Generator, Iterator
@@ -18,12 +18,15 @@ import structlog
 import yaml
 from hypothesis import settings
 
+import command_line
+
 if TYPE_CHECKING:
     from tms_ros.node import Ros
 
 PROJECT = Path(__file__).resolve().parents[1]
 SPOILED = pytest.StashKey[bool]()
 DOMAINS = range(43, 101)  # 42 is the demo's
+WARNINGS = 40  # lines shown of a failed test's mesh
 
 # Found by `--hypothesis-profile=thorough`. No deadline: a busy machine would flip the test.
 settings.register_profile("quick", max_examples=50, deadline=None)
@@ -136,10 +139,7 @@ class Mesh:
 
     def tms(self, *words: str, expect: int | None = 0, limit: float = 90) -> subprocess.CompletedProcess[str]:
         """Run the command line; the exit code must be `expect`."""
-        command = [sys.executable, "-m", "tms_cli.main", *words]
-        done = subprocess.run(
-            command, env=self.env, capture_output=True, text=True, timeout=limit, check=False, cwd=PROJECT
-        )
+        done = command_line.call(words, self.env, limit)
         if expect is not None:
             assert done.returncode == expect, f"tms {' '.join(words)}: {done.returncode}\n{done.stdout}\n{done.stderr}"
         return done
@@ -204,11 +204,21 @@ def mesh(domain: int, first_port: int, tmp_path_factory: pytest.TempPathFactory)
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestReport, pytest.TestReport]:
-    """Remember that the mesh of the test run may be in disorder."""
+    """Remember that the mesh of the test run may be in disorder, and show what its processes warned of."""
     report = yield
     if report.failed and "mesh" in getattr(item, "fixturenames", ()):
         item.session.stash[SPOILED] = True
+    if report.failed:
+        for mesh in (value for value in getattr(item, "funcargs", {}).values() if isinstance(value, Mesh)):
+            report.sections.append((f"last warnings of {mesh.state}", warnings_of(mesh)))
     return report
+
+
+def warnings_of(mesh: Mesh) -> str:
+    """The last warnings and errors of all processes of a mesh, in the order of their times."""
+    texts = (path.read_text(errors="replace") for path in (mesh.state / "log").glob("*.log"))
+    lines = (line for text in texts for line in text.splitlines() if re.search(" (WARNING|ERROR) ", line[:50]))
+    return "\n".join(sorted(lines)[-WARNINGS:])
 
 
 @pytest.fixture(autouse=True)

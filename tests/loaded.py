@@ -1,0 +1,11 @@
+"""Imported by the process that tests fork `tms` from, see command_line.py: the libraries and the verbs of `tms`."""
+
+import importlib
+import pkgutil
+
+from tms_cli import commands
+from tms_host import prefork
+
+prefork.load()
+for verb in pkgutil.iter_modules(commands.__path__):
+    importlib.import_module(f"tms_cli.commands.{verb.name}")
