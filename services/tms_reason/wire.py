@@ -8,7 +8,6 @@ import json
 import re
 import typing
 from collections.abc import Mapping
-from dataclasses import fields
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -67,7 +66,7 @@ def of_data(data: Mapping[str, Any]) -> Reason:
 
 @cache
 def load() -> None:
-    """Import all `reasons` modules, so that all codes are known; for processes that show reasons of others."""
+    """Import all `reasons` modules, so that all codes are known."""
     services = Path(__file__).resolve().parent.parent
     for path in sorted(services.glob("tms_*/**/reasons.py")):
         importlib.import_module(".".join(path.relative_to(services).with_suffix("").parts))
@@ -113,7 +112,7 @@ WRONG = object()  # mark for a value of another type than declared
 def _hints(code: str) -> dict[str, Any]:
     """The declared types of a code's arguments, in their order."""
     found = typing.get_type_hints(REGISTRY[code])
-    return {one.name: found[one.name] for one in fields(REGISTRY[code])}  # type: ignore[arg-type]
+    return {name: found[name] for name in REGISTRY[code].parameters}
 
 
 def _value(wanted: Any, value: Any, depth: int) -> Any:

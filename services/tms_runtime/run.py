@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from tms_config.clock import monotonic
 from tms_config.config import Site, load_site, version
 from tms_config.processes import Process, find
+from tms_reason import wire
 from tms_reason.errors import ConfigError
 from tms_runtime import environment, log, metrics, state_folder
 from tms_runtime.last_resort import LEAVE_LIMIT, end_after
@@ -23,6 +24,7 @@ from tms_runtime.reasons import LongCallback, ParentGone, PcBusy, ProcessStartin
 
 if TYPE_CHECKING:
     from tms_ros.node import Ros
+    from tms_runtime.app import App
 
 END_CHECK_PERIOD = 0.5  # s
 FORGOTTEN = 3.0  # s; lease of discovery (5 s) less the time since the last announcement (1.5 s at most), 0.5 s to spare
@@ -72,6 +74,7 @@ def _serve(site: Site, row: Process, leaving: ExitStack) -> int:
         signal.signal(number, lambda _number, _frame: stop.set())
     if row.module in FIRST:
         come_first(OF_A_MACHINE, threads())
+    wire.load()  # now: the executor would stand still when it receives the first reason of another service
     ros = Ros(row.full.replace(":", "_"), process=row.full, creating=undisturbed())
     leaving.callback(_leave_unstarted, ros)
     app = App(site, row, ros, logger)
@@ -84,15 +87,19 @@ def _serve(site: Site, row: Process, leaving: ExitStack) -> int:
         come_first(FIRST.get(row.module, OF_A_MACHINE), threads())
     logger.info("started", pid=os.getpid())
     _wait_for_end(stop, ros.failed, logger)
+    return _end(app, health, logger)
+
+
+def _end(app: "App", health: Health, logger: Logger) -> int:
     end_after(EXIT_LIMIT, 1)
     app.stop()
-    ros.stop()
+    app.ros.stop()
     health.close()
     logger.info("stopped")
     log.close()
-    code = 1 if ros.failed.is_set() else 0
+    code = 1 if app.ros.failed.is_set() else 0
     end_after(LEAVE_LIMIT, code)
-    ros.leave()
+    app.ros.leave()
     return code
 
 

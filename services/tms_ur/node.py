@@ -4,7 +4,6 @@ import socket
 
 from tms_config.config import Site
 from tms_config.site_file import SiteFile
-from tms_reason import wire
 from tms_reason.errors import ConfigError
 from tms_runtime.app import App
 from tms_ur import address
@@ -20,7 +19,6 @@ from tms_ur.site_client import SiteClient
 
 def start(app: App) -> None:
     """Serve the console on the port of the site file."""
-    wire.load()  # the API shows reasons of all services, so it needs their codes
     file = app.site.file
     tls = address.certificate(app.site)
     access = Access(address.users(app.site))

@@ -33,7 +33,7 @@ def names(template: str) -> set[str]:
 
 
 def arguments(kind: type[Reason]) -> set[str]:
-    return set(getattr(kind, "__dataclass_fields__"))  # noqa: B009
+    return set(kind.parameters)
 
 
 @pytest.mark.parametrize("kind", declared(), ids=lambda kind: kind.code)

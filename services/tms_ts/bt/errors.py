@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable
-from dataclasses import replace
 from typing import Any, TypeVar
 
 from tms_reason.errors import TaskError
@@ -62,7 +61,7 @@ def short(text: str, length: int = 400) -> str:
 
 def shortened(reason: R) -> R:
     """A reason whose texts have lengths that a person reads."""
-    return replace(reason, **{name: _short(value) for name, value in reason.args.items()})  # type: ignore[type-var]
+    return type(reason)(**{name: _short(value) for name, value in reason.args.items()})
 
 
 def _short(value: Any) -> Any:

@@ -1,6 +1,7 @@
 """Reasons: declared once, carried as a line, shown in two languages."""
 
 import json
+from dataclasses import FrozenInstanceError
 
 import pytest
 from hypothesis import given
@@ -21,7 +22,7 @@ class ShownLatched(Reason, text="{machine} is latched: {cause}", action=REARM):
 class ShownSilent(Reason, text="{what} {age} old", details="of {topic}"):
     what: str
     age: Seconds
-    topic: str = "/x"
+    topic: str
 
 
 class ShownMissing(Reason, text="missing: {names}"):
@@ -80,6 +81,23 @@ def test_reasons_inside_each_other_without_end_are_refused() -> None:
     line = f'SHOWN_LATCHED machine="m" cause={json.dumps(data)}'
     assert isinstance(wire.known(line), Reason)
     assert isinstance(wire.known("SHOWN_LATCHED machine=" + "[" * 100_000), Foreign)
+
+
+def test_it_is_equal_by_kind_and_arguments_and_frozen() -> None:
+    twin = ShownSilent(what="joint states", topic="/zx200/joint_states", age=1.25)
+    assert twin == SILENT and hash(twin) == hash(SILENT)
+    assert twin != ShownSilent("joint states", 1.5, "/zx200/joint_states") and Foreign("a") != Several(())
+    with pytest.raises(FrozenInstanceError):
+        twin.what = "odom"  # type: ignore[misc]
+
+
+@pytest.mark.parametrize(
+    ("values", "named"), [((), {}), (("a",), {}), (("a", 1.0, "/x", 2), {}), (("a", 1.0), {"what": "b"}),
+                          (("a", 1.0), {"topic": "/x", "other": 1})]
+)  # fmt: skip
+def test_it_takes_exactly_its_arguments(values: tuple[object, ...], named: dict[str, object]) -> None:
+    with pytest.raises(TypeError, match="ShownSilent takes what, age, topic"):
+        ShownSilent(*values, **named)  # type: ignore[arg-type]
 
 
 def test_a_code_is_declared_once() -> None:

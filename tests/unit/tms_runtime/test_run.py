@@ -2,10 +2,14 @@
 
 import threading
 import time
+from contextlib import ExitStack
 
 import pytest
 import structlog
 
+from tms_config.config import load_site
+from tms_config.processes import find
+from tms_reason import wire
 from tms_runtime import run
 
 
@@ -50,3 +54,25 @@ def test_one_that_has_failed_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     failed.set()
     run._wait_for_end(stop, failed, structlog.stdlib.get_logger("test"))
     assert len(stop.takes) == 2
+
+
+def test_all_reasons_are_known_before_the_executor_can_receive_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """To import them takes long enough for others to take a process for lost."""
+    order: list[str] = []
+
+    class Refused(Exception):
+        pass
+
+    def node(*_: object, **__: object) -> None:
+        order.append("node")
+        raise Refused
+
+    monkeypatch.setattr(wire, "load", lambda: order.append("reasons"))
+    monkeypatch.setattr("tms_ros.node.Ros", node)
+    monkeypatch.setattr(run, "Health", lambda *_, **__: None)
+    monkeypatch.setattr(run.log, "setup", lambda *_, **__: None)
+    monkeypatch.setattr(run.signal, "signal", lambda *_: None)
+    site = load_site("yard")
+    with pytest.raises(Refused), ExitStack() as leaving:
+        run._serve(site, find(site, "tms:sp"), leaving)
+    assert order == ["reasons", "node"]
