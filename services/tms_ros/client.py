@@ -19,7 +19,7 @@ from tms_config.clock import monotonic
 from tms_config.naming import process_of
 from tms_ros.goals import Outcome
 from tms_ros.interface_types import ActionType, F, G, R
-from tms_ros.loop import Loop
+from tms_ros.loop import EventLoop
 from tms_ros.privates import SureActionClient
 from tms_ros.quality import SERVICE
 from tms_ros.reasons import NoServer
@@ -117,7 +117,7 @@ AnyCall = Call[Any, Any]  # of any action
 class Peer(Generic[G, R, F]):
     """An action server elsewhere, and the client for it."""
 
-    def __init__(self, loop: Loop, action_type: ActionType[G, R, F], name: str) -> None:
+    def __init__(self, loop: EventLoop, action_type: ActionType[G, R, F], name: str) -> None:
         self._loop, self.name = loop, name
         self._open: list[Call[R, F]] = []  # used on the executor thread only
         self._taken_by: frozenset[bytes] = frozenset()  # servers that could have taken the last goal

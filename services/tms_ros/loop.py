@@ -33,7 +33,7 @@ LONGEST_WAIT = 1.0  # s that the executor waits at most
 POLL = 0.02  # s between checks of the ROS graph, which has no cheap event in rclpy
 
 
-class Loop:
+class EventLoop:
     """A node, the thread that runs its callbacks, and the steps and coroutines that run there, too."""
 
     def __init__(

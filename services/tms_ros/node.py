@@ -6,8 +6,8 @@ from contextlib import AbstractContextManager
 from tms_config.clock import sleep
 from tms_ros.client import AnyPeer, Peer
 from tms_ros.interface_types import ActionType, F, G, R
-from tms_ros.loop import Loop
-from tms_ros.server import Served
+from tms_ros.loop import EventLoop
+from tms_ros.server import ActionServers
 from tms_ros.services import Services
 from tms_ros.topics import Topics
 
@@ -21,11 +21,11 @@ class Ros:
     def __init__(
         self, name: str, namespace: str = "/", process: str = "", creating: AbstractContextManager[None] | None = None
     ) -> None:
-        """See `Loop`."""
-        self.loop = loop = Loop(name, namespace, process, creating)
+        """See `EventLoop`."""
+        self.loop = loop = EventLoop(name, namespace, process, creating)
         self.topics = topics = Topics(loop)
         self.services = services = Services(loop)
-        self._served = Served(loop, topics)
+        self._served = ActionServers(loop, topics)
         self._peers: dict[str, AnyPeer] = {}
         self._making = threading.Lock()
 

@@ -18,7 +18,7 @@ from tms_reason.reason import Reason
 from tms_reason.wire import to_line
 from tms_ros.goals import Accept, Ended, Outcome
 from tms_ros.interface_types import ActionType, F, G, R
-from tms_ros.loop import Loop
+from tms_ros.loop import EventLoop
 from tms_ros.privates import NamingActionServer
 from tms_ros.quality import SERVICE
 from tms_ros.reasons import BeingStopped, ProcessLost, StoppedMeanwhile
@@ -68,10 +68,10 @@ class Goal(Generic[G, F]):
 AnyGoal = Goal[Any, Any]  # of any action
 
 
-class Served:
+class ActionServers:
     """The actions that one node serves, and their open goals."""
 
-    def __init__(self, loop: Loop, topics: Topics) -> None:
+    def __init__(self, loop: EventLoop, topics: Topics) -> None:
         self._loop, self._topics = loop, topics
         # By action and id; a goal as an attribute of its handle would be a cycle, which is freed late.
         self._goals: dict[tuple[str, bytes], AnyGoal] = {}

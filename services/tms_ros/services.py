@@ -13,7 +13,7 @@ from tms_reason.errors import RosError
 from tms_reason.wire import to_line
 from tms_ros import quality
 from tms_ros.interface_types import Req, Res, ServiceType
-from tms_ros.loop import POLL, Loop
+from tms_ros.loop import POLL, EventLoop
 from tms_ros.privates import send_surely
 from tms_ros.reasons import BadServiceName, Internal, LostMeanwhile, NoAnswer, NoServer, ProcessLost
 
@@ -23,7 +23,7 @@ SERVER_CHECK_PERIOD = 0.1  # s between checks whether a server that must still a
 class Services:
     """The services that a node serves and calls."""
 
-    def __init__(self, loop: Loop) -> None:
+    def __init__(self, loop: EventLoop) -> None:
         self._loop = loop
         self._clients: dict[tuple[Any, str], Any] = {}  # by type and name
         self._making = threading.Lock()

@@ -16,7 +16,7 @@ from rclpy.qos import QoSProfile
 
 from tms_ros import quality
 from tms_ros.interface_types import M, Message, Publisher
-from tms_ros.loop import Loop
+from tms_ros.loop import EventLoop
 from tms_ros.privates import Asleep, take
 
 
@@ -32,7 +32,7 @@ class Arrival(Generic[M]):
 class Topics:
     """The topics of a node."""
 
-    def __init__(self, loop: Loop) -> None:
+    def __init__(self, loop: EventLoop) -> None:
         self._loop = loop
 
     def publisher(self, message_type: type[M], topic: str, depth: int = 10, latched: bool = False) -> Publisher[M]:
