@@ -100,7 +100,7 @@ class MachineState(Settings):
     hz: float = Field(ge=0, le=10, default=1.0)  # 0: none
 
 
-class Sensing(Settings):
+class SensingFile(Settings):
     """The content of sensing.yaml."""
 
     clock_limit: float = Field(
@@ -115,10 +115,10 @@ def sensing_path(site: Site) -> Path:
     return site.path.parent / site.file.sensing if site.file.sensing else CONFIGS / "sensing.yaml"
 
 
-def load_sensing(site: Site) -> Sensing:
+def load_sensing(site: Site) -> SensingFile:
     """The inputs of a site.
 
     Raises:
         ConfigError: names the file and the key.
     """
-    return parse(sensing_path(site), Sensing)
+    return parse(sensing_path(site), SensingFile)

@@ -154,7 +154,7 @@ class OnLoss(Settings):
     frozen: float = Field(ge=0, default=20.0)  # s without an answer after which tms:host restarts a process; 0: never
 
 
-class Log(Settings):
+class LogSettings(Settings):
     """Logs of the processes; supervisord keeps and rotates the files."""
 
     level: Literal["DEBUG", "INFO", "WARNING", "ERROR"] = "INFO"
@@ -196,7 +196,7 @@ class SiteFile(Settings):
     on_loss: OnLoss = OnLoss()
     groot: Groot = Groot()
     console: Console = Console()
-    log: Log = Log()
+    log: LogSettings = LogSettings()
     pcs: dict[str, Pc] = Field(default_factory=dict)  # none: everything on this one
     network: Network = Network()
     sensing: str | None = None  # file of the sensing inputs, beside this one; default: configs/sensing.yaml
