@@ -29,7 +29,7 @@ FIRST = ("process", "machine", "run", "goal", "event")  # keys in this order; th
 WAITING = 10_000  # lines at most that wait for a reader of stdout
 LOST = Counter("tms_log_lines_lost_total", "Log lines that nobody read in time")
 
-_listeners: list["Listener"] = []
+_listeners: list["LogListener"] = []
 
 
 class Queue(QueueHandler):
@@ -43,7 +43,7 @@ class Queue(QueueHandler):
             LOST.inc()
 
 
-class Listener(QueueListener):
+class LogListener(QueueListener):
     """Writes waiting lines to stdout."""
 
     def enqueue_sentinel(self) -> None:
@@ -66,7 +66,7 @@ def setup(process: str, machine: str | None = None, *, level: str = "INFO", as_j
         wrapper_class=Logger,
         cache_logger_on_first_use=True,
     )
-    listener = Listener(lines, logging.StreamHandler(sys.stdout))
+    listener = LogListener(lines, logging.StreamHandler(sys.stdout))
     listener.start()
     _listeners.append(listener)
     logger: Logger = structlog.stdlib.get_logger(process)
