@@ -39,7 +39,7 @@ Progress = Callable[[Reason | str], None]  # a subtask's own texts are shown as 
 ENDED = {Outcome.ABORTED: Aborted, Outcome.CANCELED: Canceled, Outcome.REJECTED: Rejected}
 
 
-class Cancelled(Exception):
+class SubtaskCancelled(Exception):
     """The goal was cancelled while it waited; raised by every waiting call of a Machine."""
 
 
@@ -76,7 +76,7 @@ class Acting:
         return self.model.joints[name]
 
     def cancel(self) -> None:
-        """End the call that waits, with Cancelled. Called by the runtime."""
+        """End the call that waits, with SubtaskCancelled. Called by the runtime."""
         self._cancelled.set()
         for _, call in self._calls:
             call.changed()
@@ -85,11 +85,11 @@ class Acting:
         """Raise when the goal was cancelled or has run out of time; for subtasks that compute for long.
 
         Raises:
-            Cancelled: a cancel came.
+            SubtaskCancelled: a cancel came.
             SubtaskFailed: GoalTimeout.
         """
         if self._cancelled.is_set():
-            raise Cancelled
+            raise SubtaskCancelled
         if monotonic() > self._deadline:
             raise SubtaskFailed(GoalTimeout(self.name, self._timeout))
 
@@ -99,7 +99,7 @@ class Acting:
         """Send a goal to an action of this machine and wait for its result.
 
         Raises:
-            Cancelled, SubtaskFailed: it was cancelled, did not fit, or ran out of time.
+            SubtaskCancelled, SubtaskFailed: it was cancelled, did not fit, or ran out of time.
         """
         peer = self._ros.peer(action_type, f"/{self.name}/{action}")
         peer.wait_ready(SERVER_LIMIT)
@@ -121,7 +121,7 @@ class Acting:
         """`act` on one of the machine's own motions, by its key under borders:, through the gateway.
 
         Raises:
-            Cancelled, SubtaskFailed: as `act`, and NoCapability.
+            SubtaskCancelled, SubtaskFailed: as `act`, and NoCapability.
         """
         if not any(getattr(border, field) for border in self.model.borders.values()):
             raise SubtaskFailed(NoCapability(self.name, field, self._model_name))

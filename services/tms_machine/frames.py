@@ -12,7 +12,7 @@ from tms_machine.geometry import yaw_of
 MAP = "map"
 
 
-class Seen(NamedTuple):
+class FramePose(NamedTuple):
     """Where a frame is in another one, and when that was received last."""
 
     x: float  # m
@@ -26,7 +26,7 @@ class Frames:
 
     def __init__(self, frames: Iterable[str], clock: Callable[[], float] = monotonic) -> None:
         self._wanted, self._clock = set(frames), clock
-        self._seen: dict[str, tuple[str, Seen]] = {}  # frame -> its parent, and its place in the parent
+        self._seen: dict[str, tuple[str, FramePose]] = {}  # frame -> its parent, and its place in the parent
 
     def receive(self, message: TFMessage) -> set[str]:
         """Take a tf2_msgs/TFMessage of /tf; returns the frames of interest in it."""
@@ -45,12 +45,12 @@ class Frames:
                 continue  # a localisation without a fix
             # A fixed frame is published only once, maybe before it is wanted.
             if one.child_frame_id in self._wanted or received == math.inf:
-                self._seen[one.child_frame_id] = one.header.frame_id, Seen(at.x, at.y, yaw_of(turn), received)
+                self._seen[one.child_frame_id] = one.header.frame_id, FramePose(at.x, at.y, yaw_of(turn), received)
                 self._wanted.add(one.header.frame_id)
                 reported.add(one.child_frame_id)
         return reported
 
-    def place(self, frame: str) -> Seen | None:
+    def place(self, frame: str) -> FramePose | None:
         """Its place in the map, as old as the oldest transform used; None if the frames do not lead to the map."""
         x, y, yaw, received = 0.0, 0.0, 0.0, math.inf
         passed = set[str]()
@@ -62,4 +62,4 @@ class Frames:
             cos, sin = math.cos(step.yaw), math.sin(step.yaw)
             x, y, yaw = step.x + x * cos - y * sin, step.y + x * sin + y * cos, yaw + step.yaw
             received = min(received, step.received)
-        return Seen(x, y, math.remainder(yaw, math.tau), received)
+        return FramePose(x, y, math.remainder(yaw, math.tau), received)

@@ -1,12 +1,12 @@
 """A machine as a subtask sees it: all capabilities; one that the model lacks is refused with NO_CAPABILITY."""
 
-from tms_machine.acting import Cancelled, Progress
+from tms_machine.acting import Progress, SubtaskCancelled
 from tms_machine.digging import Digging
-from tms_machine.driving import Driving
+from tms_machine.navigating import Navigating
 from tms_machine.tipping import Tipping
 
-__all__ = ["Cancelled", "Machine", "Progress"]
+__all__ = ["Machine", "Progress", "SubtaskCancelled"]
 
 
-class Machine(Digging, Driving, Tipping):
+class Machine(Digging, Navigating, Tipping):
     """One machine during one goal."""

@@ -7,12 +7,12 @@ from typing import Any, TypeVar, get_type_hints
 
 from pydantic import BaseModel, ConfigDict
 
-from tms_machine.machine import Cancelled, Machine, Progress
+from tms_machine.machine import Machine, Progress, SubtaskCancelled
 from tms_machine.reasons import OneSubtask
 from tms_machine.values import Value
 from tms_reason.errors import ConfigError, SubtaskFailed
 
-__all__ = ["Cancelled", "Machine", "Params", "Progress", "Subtask", "SubtaskFailed", "load", "subtask"]
+__all__ = ["Machine", "Params", "Progress", "Subtask", "SubtaskCancelled", "SubtaskFailed", "load", "subtask"]
 
 
 class Params(BaseModel):

@@ -9,7 +9,7 @@ from tms_msg_db.srv import GetParameter
 from tms_msg_ts.action import LeafNodeBase
 
 from tms_config.clock import monotonic
-from tms_machine.machine import Cancelled, Machine
+from tms_machine.machine import Machine, SubtaskCancelled
 from tms_machine.permit import Permit, watch_server
 from tms_machine.reasons import BadRecord, Busy, MotionNotEnded, NoDatabase, WaitingFor
 from tms_machine.record_lock import FLAG, RecordLock
@@ -134,7 +134,7 @@ class _Server:
                 subtask.want = self._checked(request, self._read(request.model_name, request.record_name, 0.0))
             subtask.execute(request.model_name, request.record_name, say)
             finished = True
-        except Cancelled:
+        except SubtaskCancelled:
             pass
         except RosError as error:
             failure = SubtaskFailed(error.reason)

@@ -12,7 +12,7 @@ from tms_machine.reasons import DrivingThrough, DrivingTo, MissedWaypoints, Wayp
 from tms_reason.errors import SubtaskFailed
 
 
-class Driving(Acting):
+class Navigating(Acting):
     """Tracks and a navigation."""
 
     def navigate_to(self, progress: Progress, pose: Pose) -> None:
