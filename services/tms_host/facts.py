@@ -53,7 +53,7 @@ def clock() -> Clock | None:
     return Clock(not facts.status & UNSYNCHRONISED, facts.maxerror * 1e-6, facts.offset * unit)
 
 
-class Facts(Collector):
+class HostCollector(Collector):
     """Collects at every scrape; `update` sets supervisord's last answer."""
 
     def __init__(self, state: Path, read_clock: Callable[[], Clock | None] = clock) -> None:

@@ -13,10 +13,10 @@ from tms_msg_host.srv import ControlProcess, ReadLog
 
 from tms_config.clock import monotonic
 from tms_host.diagnostics import Diagnostics
-from tms_host.facts import Facts
+from tms_host.facts import HostCollector
 from tms_host.frozen import Watchdog
 from tms_host.reasons import BadCommand, SupervisordSilent
-from tms_host.stand_in import StandIn
+from tms_host.standby import Standby
 from tms_host.supervisor import Running, Supervisor, SupervisorDown
 from tms_host.usage import Usage
 from tms_reason.errors import TmsError
@@ -31,12 +31,12 @@ CHANGING = ("STARTING", "STOPPING", "BACKOFF")  # states that end without a new 
 
 def start(app: App) -> None:
     """Publish /tms/host/processes and serve /tms/host/<host name>/control and /log."""
-    stand_in = StandIn(app)
-    host = Host(app, stand_in.silent)
+    standby = Standby(app)
+    host = HostAgent(app, standby.silent)
     app.ros.offer_slow(ControlProcess, f"/tms/host/{host.name}/control", host.control)
     app.ros.offer_slow(ReadLog, f"/tms/host/{host.name}/log", host.log)
     app.on_stop(host.close)
-    Watchdog(app, lambda: host.rows, stand_in.silent)
+    Watchdog(app, lambda: host.rows, standby.silent)
     app.ready_when(lambda: None if host.seen else SupervisordSilent())
 
 
@@ -63,7 +63,7 @@ class Children:
         return changed
 
 
-class Host:
+class HostAgent:
     """Asks supervisord in a thread of its own and publishes changes."""
 
     def __init__(self, app: App, silent: Callable[[], Mapping[str, float]]) -> None:
@@ -78,7 +78,7 @@ class Host:
         self._pids: dict[str, int] = {}
         self._calls = threading.Lock()  # one RPC connection for control calls
         self._control = Supervisor(app.site)
-        self._facts = Facts(app.site.state)
+        self._facts = HostCollector(app.site.state)
         REGISTRY.register(self._facts)
         self._diagnostics = Diagnostics(app, silent)
         self._closing = threading.Event()

@@ -19,7 +19,7 @@ RECEIPT_LIMIT = STOP_PROVEN + 3.0  # s without a receipt of a stop after which a
 
 
 @dataclass(frozen=True)
-class Motion:
+class MotionAction:
     """One kind of motion action that a machine may have."""
 
     field: str  # of the border's configuration
@@ -28,16 +28,16 @@ class Motion:
 
 
 MOTIONS = (
-    Motion("trajectory", "follow_joint_trajectory", FollowJointTrajectory),
-    Motion("navigate_to_pose", "navigate_to_pose", NavigateToPose),
-    Motion("navigate_through_poses", "navigate_through_poses", NavigateThroughPoses),
-    Motion("follow_waypoints", "follow_waypoints", FollowWaypoints),
-    Motion("set_dump_angle", "set_dump_angle", SetDumpAngle),
-    Motion("set_swing_angle", "set_swing_angle", SetSwingAngle),
+    MotionAction("trajectory", "follow_joint_trajectory", FollowJointTrajectory),
+    MotionAction("navigate_to_pose", "navigate_to_pose", NavigateToPose),
+    MotionAction("navigate_through_poses", "navigate_through_poses", NavigateThroughPoses),
+    MotionAction("follow_waypoints", "follow_waypoints", FollowWaypoints),
+    MotionAction("set_dump_angle", "set_dump_angle", SetDumpAngle),
+    MotionAction("set_swing_angle", "set_swing_angle", SetSwingAngle),
 )
 
 
-def motions(border: Border) -> list[Motion]:
+def motions(border: Border) -> list[MotionAction]:
     """The motion actions that a machine has."""
     return [motion for motion in MOTIONS if getattr(border, motion.field)]
 
@@ -48,7 +48,7 @@ def stood_in(machine: str) -> str:
 
 
 class Controls:
-    """Direct access to a machine; only for the gateway and for the stand-ins of a lost one."""
+    """Direct access to a machine; only for the gateway and for the standby of a lost one."""
 
     def __init__(self, ros: Ros, machine: str, border: Border, keeps_emergency: bool = True) -> None:
         """`keeps_emergency`: a machine that is switched on later still receives the last `emg_stop`.

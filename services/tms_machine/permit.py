@@ -53,10 +53,12 @@ class Permit:
             self._publisher.assert_liveliness()
 
 
-class Link:
+class RemotePermit:
     """The permit of another process: its goal, and whether it is alive. Readable from any thread."""
 
-    def __init__(self, ros: Ros, pulse: Pulse, machine: str, process: str, changed: Callable[["Link"], None]) -> None:
+    def __init__(
+        self, ros: Ros, pulse: Pulse, machine: str, process: str, changed: Callable[["RemotePermit"], None]
+    ) -> None:
         self.process, self.goal, self.holder = process, NOBODY, ""
         self._ros, self._pulse, self._changed = ros, pulse, changed
         self.stale_writers = (
@@ -103,16 +105,16 @@ def watch_server(ros: Ros, pulse: Pulse, machine: str, process: str) -> Callable
     """
     peers: list[AnyPeer] = []
 
-    def changed(link: Link) -> None:
+    def changed(permit: RemotePermit) -> None:
         for peer in peers:
-            if link.alive and not link.stale_writers:  # with a stale writer, this is the first sign of a successor
+            if permit.alive and not permit.stale_writers:  # with a stale writer, this is the first sign of a successor
                 peer.mark_alive()
-            elif not link.alive and link.goal != NOBODY:
+            elif not permit.alive and permit.goal != NOBODY:
                 peer.mark_lost()
 
     def add(peer: AnyPeer) -> None:
         if peer not in peers:
             peers.append(peer)
 
-    Link(ros, pulse, machine, process, changed)
+    RemotePermit(ros, pulse, machine, process, changed)
     return add

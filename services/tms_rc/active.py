@@ -13,7 +13,7 @@ from tms_ros.server import AnyGoal
 from tms_runtime.fence import Owner
 
 
-class Kind(Enum):
+class StopKind(Enum):
     """What a stop means for the next motion."""
 
     LATCH = "latched until re-armed"

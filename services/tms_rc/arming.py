@@ -6,7 +6,7 @@ from tms_msg_rc.srv import Rearm, TakeMachine
 
 from tms_config.clock import monotonic
 from tms_machine.reasons import ManualMode
-from tms_rc.active import Kind
+from tms_rc.active import StopKind
 from tms_rc.guard import PRESSED, Guard
 from tms_rc.reasons import (
     BadToken,
@@ -112,7 +112,7 @@ class Arming:
 
     def _give_back(self, who: str) -> StopReceipt:
         self._guard.by_hand = ""
-        stop = self._guard.stop(GivenBack(who), Kind.PLAIN)
+        stop = self._guard.stop(GivenBack(who), StopKind.PLAIN)
         return stop.wait(self._app.machine)
 
     def _keeps_from_taking(self, who: str) -> Reason | None:
@@ -136,11 +136,11 @@ class Arming:
         """The machine's own signal that a person drives it by its levers. On the executor thread."""
         guard, on = self._guard, bool(message.data)
         if on and not guard.by_hand:
-            guard.stop_now(ManualOn(), Kind.PLAIN)
+            guard.stop_now(ManualOn(), StopKind.PLAIN)
             guard.by_hand = MANUAL
         elif not on and guard.by_hand == MANUAL:
             guard.by_hand = ""
-            guard.stop_now(ManualOff(), Kind.PLAIN)
+            guard.stop_now(ManualOff(), StopKind.PLAIN)
         guard.reported()
 
 

@@ -31,7 +31,7 @@ class Limits:
 
 
 @dataclass(frozen=True)
-class Seen:
+class ChannelSample:
     """One sample; times are seconds of the receiver's monotonic clock."""
 
     received: float
@@ -46,14 +46,15 @@ class Channel:
 
     def __init__(self, limits: Limits) -> None:
         self._limits = limits
-        self._seen: tuple[Seen, ...] = ()  # replaced at each sample, not changed: other threads read it without a lock
+        # Replaced at each sample, not changed: other threads read it without a lock.
+        self._samples: tuple[ChannelSample, ...] = ()
         self.surprised = float("-inf")  # when it last was at a place that no motion leads to, as in a replayed record
 
     @property
-    def last(self) -> Seen | None:
+    def last(self) -> ChannelSample | None:
         """The newest sample."""
-        seen = self._seen
-        return seen[-1] if seen else None
+        samples = self._samples
+        return samples[-1] if samples else None
 
     def add(self, received: float, stamped: float, place: Place, speed: float | None) -> None:
         """Take one sample."""
@@ -63,12 +64,12 @@ class Channel:
                                                            received, stamped, place))  # fmt: skip
         if before is not None and before.place and self._leaps(before, stamped - before.stamped, place, speed):
             self.surprised = received
-        kept = [one for one in self._seen if received - one.received <= KEPT]
-        self._seen = (*kept, Seen(received, stamped, place, speed, fast))
+        kept = [one for one in self._samples if received - one.received <= KEPT]
+        self._samples = (*kept, ChannelSample(received, stamped, place, speed, fast))
 
     def clear(self) -> None:
         """Forget everything: what was received belongs to another clock."""
-        self._seen = ()
+        self._samples = ()
 
     def moving(self) -> bool:
         """Whether any of the last samples showed a motion; unknown counts as moving."""
@@ -84,7 +85,7 @@ class Channel:
         """Whether samples received and measured after `start` span `seconds` of standing, up to the newest."""
         if self.moving():
             return False
-        after = [one for one in self._seen if one.received > start and one.stamped > start]
+        after = [one for one in self._samples if one.received > start and one.stamped > start]
         fast = max((i for i, one in enumerate(after) if one.fast), default=-1)
         still = after[fast + 1 :]
         if len(still) < 2:
@@ -112,21 +113,21 @@ class Channel:
             return VelocitiesMove()
         return None
 
-    def _hidden(self, samples: list[Seen]) -> bool:
+    def _hidden(self, samples: list[ChannelSample]) -> bool:
         """Whether messages are missing between samples, or a stand-in is too fast for its period."""
         gaps = (after.stamped - before.stamped for before, after in pairwise(samples))
         return any(gap * self._limits.scale > HIDES for gap in gaps)
 
-    def _recent(self) -> list[Seen]:
-        seen = self._seen
-        return [one for one in seen if seen[-1].received - one.received <= WORST + 1e-9]
+    def _recent(self) -> list[ChannelSample]:
+        samples = self._samples
+        return [one for one in samples if samples[-1].received - one.received <= WORST + 1e-9]
 
     def _moved(self, received: float, stamped: float, place: Place, then: float, measured: float, now: Place) -> bool:
         """Whether the way between two samples is longer than a standing machine may have gone."""
         seconds = max(0.0, min(then - received, measured - stamped)) * self._limits.scale
         return self._distance(place, now) > self._limits.speed * seconds + self._limits.resolution + 1e-9
 
-    def _leaps(self, before: Seen, seconds: float, place: Place, speed: float | None) -> bool:
+    def _leaps(self, before: ChannelSample, seconds: float, place: Place, speed: float | None) -> bool:
         """Whether no motion leads from one sample to the next."""
         limits, way = self._limits, self._distance(before.place, place)
         seconds, spare = seconds * limits.scale, limits.resolution + BETWEEN

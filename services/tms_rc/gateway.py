@@ -4,11 +4,11 @@ from collections.abc import Callable
 from typing import Any
 
 from tms_config.clock import monotonic, sleep
-from tms_machine.border import Motion
+from tms_machine.border import MotionAction
 from tms_machine.reasons import StopUnconfirmed
 from tms_machine.receipts import stood_after
 from tms_rc import limits
-from tms_rc.active import Active, Kind
+from tms_rc.active import Active, StopKind
 from tms_rc.following import Follower, ways
 from tms_rc.guard import Guard
 from tms_rc.motion_goals import aborted, duration, numbers, point_of, poses_of, reason_of, seconds, with_reason
@@ -55,12 +55,12 @@ class Gateway:
         self._model = app.site.model_of(app.machine)
         self._speed = speed_of(app)
 
-    def serve(self, motion: Motion, peer: AnyPeer) -> None:
+    def serve(self, motion: MotionAction, peer: AnyPeer) -> None:
         """Offer /<machine>/rc/<action> in front of the machine's own action."""
         name = f"/{self._app.machine}/rc/{motion.served}"
         self._app.ros.serve(motion.type, name, lambda goal: self._run(motion, peer, goal))
 
-    def _run(self, motion: Motion, peer: AnyPeer, goal: AnyGoal) -> Ended[Any]:
+    def _run(self, motion: MotionAction, peer: AnyPeer, goal: AnyGoal) -> Ended[Any]:
         active = Active(goal, parse(goal.uuid), peer, {}, self._watch.positions)
         wrong = self._limits(motion, goal.request) or self._guard.take(active)
         if wrong is not None:
@@ -73,7 +73,7 @@ class Gateway:
         finally:
             self._guard.release()
 
-    def _limits(self, motion: Motion, request: Any) -> Reason | None:
+    def _limits(self, motion: MotionAction, request: Any) -> Reason | None:
         if hasattr(request, "trajectory"):
             wanted = request.trajectory
             points = [point.positions for point in wanted.points]
@@ -85,7 +85,7 @@ class Gateway:
             return limits.angle_problem(self._model, motion.field, request.target_angle, self._watch.positions)
         return limits.pose_problem([numbers(stamped.pose) for stamped in poses_of(request)])
 
-    def _pass_on(self, motion: Motion, active: Active) -> Ended[Any]:
+    def _pass_on(self, motion: MotionAction, active: Active) -> Ended[Any]:
         if not self._reachable(active):
             return aborted(motion, ControllerAway(self._app.machine, active.peer.name))
         unseen = self._unseen(active.goal)
@@ -98,7 +98,7 @@ class Gateway:
         self._app.ros.on_executor(lambda: self._send(active))
         self._wait(active, lambda call: call.accepted, ACCEPT_LIMIT)
         if active.stop is None and not (active.call is not None and (active.call.accepted or active.ended())):
-            self._guard.stop(ProcessLost(NoGoalAnswer(self._app.machine, active.peer.name)), Kind.PLAIN)
+            self._guard.stop(ProcessLost(NoGoalAnswer(self._app.machine, active.peer.name)), StopKind.PLAIN)
             if active.call is not None:
                 active.peer.resolve_unanswered(active.call)
         self._watch_motion(motion, active)
@@ -107,7 +107,7 @@ class Gateway:
             return self._stopped(motion, active)
         if call.outcome is Outcome.SUCCEEDED:
             return Outcome.SUCCEEDED, call.result
-        if call.outcome is Outcome.CANCELED:  # not by our client: a stand-in for a gateway that seems lost did it
+        if call.outcome is Outcome.CANCELED:  # not by our client: the standby of a gateway that seems lost did it
             return aborted(motion, ProcessLost(CancelledElsewhere()))
         if reason_of(call.result):
             return Outcome.ABORTED, call.result
@@ -148,9 +148,9 @@ class Gateway:
 
     def _cancel(self, active: Active) -> None:
         if active.stop is None and self._guard.active is active:
-            self._guard.stop_now(Cancelled(), Kind.PLAIN)
+            self._guard.stop_now(Cancelled(), StopKind.PLAIN)
 
-    def _watch_motion(self, motion: Motion, active: Active) -> None:
+    def _watch_motion(self, motion: MotionAction, active: Active) -> None:
         """Watch the motion until the goal has ended or a stop has begun."""
         deadline = monotonic() + duration(active.goal.request) + OVERRUN
         while active.stop is None and not (active.call is not None and active.ended()):
@@ -158,28 +158,28 @@ class Gateway:
             self._wait(active, lambda call: call.outcome is not None, LIMIT_CHECK_PERIOD)
             frozen = monotonic() - before
             if frozen > FROZEN and active.stop is None:  # the gateway has read no message, the machine is not silent
-                self._guard.stop(ProcessLost(GatewayStood(frozen)), Kind.HOLD)
+                self._guard.stop(ProcessLost(GatewayStood(frozen)), StopKind.HOLD)
                 break
             if active.stop is None and active.call is not None and active.call.accepted and active.peer.left():
-                self._guard.stop(ProcessLost(ControllerLeft(self._app.machine, active.peer.name)), Kind.PLAIN)
+                self._guard.stop(ProcessLost(ControllerLeft(self._app.machine, active.peer.name)), StopKind.PLAIN)
                 active.peer.mark_lost()  # ends the goal, as no server is left to end it
                 break
             wrong = self._wrong(motion, active)
             if wrong is not None and active.stop is None:
                 self._guard.stop(*wrong)
             elif monotonic() > deadline and active.stop is None:
-                self._guard.stop(TooLong(), Kind.PLAIN)
+                self._guard.stop(TooLong(), StopKind.PLAIN)
 
-    def _wrong(self, motion: Motion, active: Active) -> tuple[Reason, Kind] | None:
+    def _wrong(self, motion: MotionAction, active: Active) -> tuple[Reason, StopKind] | None:
         """Why the machine must stop, and what that means for the next motion."""
         now, watch = monotonic(), self._watch
         escaped = limits.escaped(self._model, watch.positions, active.start)
         if escaped is not None:
-            return escaped, Kind.LATCH
+            return escaped, StopKind.LATCH
         if (silent := self._guard.silent()) is not None:
-            return WhileMoving(silent), Kind.LATCH
+            return WhileMoving(silent), StopKind.LATCH
         if (trouble := watch.trouble(now)) is not None:
-            return WhileMoving(trouble.reason), Kind.HOLD if trouble.passes and active.owner else Kind.LATCH
+            return WhileMoving(trouble.reason), StopKind.HOLD if trouble.passes and active.owner else StopKind.LATCH
         if active.call is None or not active.call.accepted:
             return None
         if not active.begun:
@@ -187,11 +187,11 @@ class Gateway:
         if active.follower is None:
             return None
         if (frozen := self._frozen(active, active.follower, now)) is not None:
-            return frozen, Kind.LATCH
+            return frozen, StopKind.LATCH
         wrong = active.follower.check(now, watch.positions)
-        return None if wrong is None else (wrong, Kind.LATCH if isinstance(wrong, OffPath) else Kind.PLAIN)
+        return None if wrong is None else (wrong, StopKind.LATCH if isinstance(wrong, OffPath) else StopKind.PLAIN)
 
-    def _begin(self, motion: Motion, active: Active, now: float) -> None:
+    def _begin(self, motion: MotionAction, active: Active, now: float) -> None:
         """The goal was accepted: from now on the machine should follow."""
         wanted = getattr(active.goal.request, "trajectory", None)
         if wanted is not None:
@@ -202,7 +202,7 @@ class Gateway:
             active.follower = self._turn(motion, active, now)
         active.begun = now
 
-    def _turn(self, motion: Motion, active: Active, now: float) -> Follower | None:
+    def _turn(self, motion: MotionAction, active: Active, now: float) -> Follower | None:
         """Follow one joint to an angle at the slowest pace of its server: only the end of its motion is known."""
         joint = self._model.turned(motion.field)
         if joint is None or joint not in active.start:
@@ -230,7 +230,7 @@ class Gateway:
         with active.changed:
             active.changed.wait_for(over, seconds)
 
-    def _stopped(self, motion: Motion, active: Active) -> Ended[Any]:
+    def _stopped(self, motion: MotionAction, active: Active) -> Ended[Any]:
         stop = active.stop
         if stop is None:
             return aborted(motion, NoEnd())

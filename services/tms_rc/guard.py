@@ -13,9 +13,9 @@ from tms_msg_rc.srv import StopMachine
 
 from tms_config.clock import monotonic
 from tms_machine.border import STOP_PROVEN, Controls
-from tms_machine.permit import NOBODY, Link
+from tms_machine.permit import NOBODY, RemotePermit
 from tms_machine.reasons import DrivenByHand, NoPermit, SoftwareStop, SoftwareStopSaying
-from tms_rc.active import Active, Kind
+from tms_rc.active import Active, StopKind
 from tms_rc.chain import SCHEDULER, gap, members
 from tms_rc.latch import Latch
 from tms_rc.notes import Notes
@@ -111,10 +111,12 @@ class Guard:
             return
         refusal, missing = self.latch.refusal(active.owner), gap(active.owner, self.permits.held())
         if refusal is not None:
-            self.stop_now(refusal, Kind.PLAIN)
+            self.stop_now(refusal, StopKind.PLAIN)
         elif missing is not None:
             lost = active.owner is not None and not missing.late
-            self.stop_now(ProcessLost(missing.reason) if lost else missing.reason, Kind.HOLD if lost else Kind.PLAIN)
+            self.stop_now(
+                ProcessLost(missing.reason) if lost else missing.reason, StopKind.HOLD if lost else StopKind.PLAIN
+            )
 
     def release(self) -> None:
         """Note that the goal has ended."""
@@ -135,19 +137,19 @@ class Guard:
                     return NoPermit(found.reason)
                 self._changed.wait(min(left, 0.1))
 
-    def _permit_changed(self, link: Link) -> None:
-        if link.process == SCHEDULER:
-            self._scheduler_changed(link)
+    def _permit_changed(self, permit: RemotePermit) -> None:
+        if permit.process == SCHEDULER:
+            self._scheduler_changed(permit)
         self.check_chain()
         with self._changed:
             self._changed.notify_all()
 
-    def _scheduler_changed(self, link: Link) -> None:
+    def _scheduler_changed(self, permit: RemotePermit) -> None:
         run = self.permits.held().get(SCHEDULER)
-        if run is None and self.run is not None and link.goal != NOBODY:
+        if run is None and self.run is not None and permit.goal != NOBODY:
             lost, self.run = self.run, None
             self.latch.run_lost()
-            self.stop_now(SchedulerLost(), Kind.LATCH, run=lost)
+            self.stop_now(SchedulerLost(), StopKind.LATCH, run=lost)
             return
         before, self.run = self.run, None if run is None else run.run
         self.latch.run_is(self.run)
@@ -165,25 +167,25 @@ class Guard:
         gone = [name for name, what in active.chain.items() if held.get(name) != what]
         if gone:
             names = tuple(f"{'tms' if name == SCHEDULER else self._app.machine}:{name}" for name in gone)
-            self.stop_now(ProcessLost(ProcessesLost(names)), Kind.HOLD)
+            self.stop_now(ProcessLost(ProcessesLost(names)), StopKind.HOLD)
 
     # stop
 
     def stop_now(
-        self, cause: Reason, kind: Kind, run: int = 0, expected: Expected = NOTHING, broken: Reason | None = None
+        self, cause: Reason, kind: StopKind, run: int = 0, expected: Expected = NOTHING, broken: Reason | None = None
     ) -> Stop:
         """Stop the machine, whichever client moves it. On the executor thread only; returns at once.
 
         `expected`, `broken`: see `Stopper.begin`; with a goal under way, `expected` is worked out from that goal.
         """
         active, now, stamp = self.active, monotonic(), self._app.ros.now()
-        if kind is Kind.LATCH:
+        if kind is StopKind.LATCH:
             self.latch.close(cause)
-        elif kind is Kind.HOLD and active is not None and active.owner is not None:
+        elif kind is StopKind.HOLD and active is not None and active.owner is not None:
             self.latch.keep(cause, active.owner)
         ended = active.ended if active is not None else lambda: True
         run = run or (active.owner.run if active is not None and active.owner is not None else self.run or 0)
-        latched = kind is Kind.LATCH
+        latched = kind is StopKind.LATCH
         self.stopper.command(latched)  # before all steps that take time
         if active is not None and active.call is not None:
             active.peer.cancel(active.call)  # also a goal that the machine has not answered yet
@@ -213,9 +215,9 @@ class Guard:
     def _left_stand_still(self) -> None:
         if self.active is None and not self.stopper.busy:
             left = LeftStandStill()
-            self.stop_now(left, Kind.LATCH, broken=left)
+            self.stop_now(left, StopKind.LATCH, broken=left)
 
-    def stop(self, cause: Reason, kind: Kind) -> Stop:
+    def stop(self, cause: Reason, kind: StopKind) -> Stop:
         """`stop_now` from any other thread; waits for the commands to have left, not for the machine."""
         begun: list[Stop] = []
         there = threading.Event()
@@ -238,14 +240,14 @@ class Guard:
         fresh = now - self.pressed > PRESSED
         self.pressed = now
         if fresh or not self.latch.cause:
-            self.stop_now(SoftwareStop(), Kind.LATCH)
+            self.stop_now(SoftwareStop(), StopKind.LATCH)
 
     def stop_service(self, request: StopMachine.Request, response: StopMachine.Response) -> StopMachine.Response:
         """Stop the machine, also a motion of a foreign client; answers with the receipt."""
         cause = wire.of(request.cause) or SoftwareStop()
         if not request.orderly and cause.find(SoftwareStop) is None:
             cause = SoftwareStopSaying(cause)
-        stop = self.stop(cause, Kind.PLAIN if request.orderly else Kind.LATCH)
+        stop = self.stop(cause, StopKind.PLAIN if request.orderly else StopKind.LATCH)
         response.receipt = stop.wait(self._app.machine)
         return response
 

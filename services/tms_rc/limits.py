@@ -61,7 +61,7 @@ def problem(
 
 
 @dataclass(frozen=True)
-class Point:
+class TrajectoryPoint:
     """One point of a trajectory."""
 
     time: float  # s from the start
@@ -72,7 +72,7 @@ class Point:
 def pace_problem(
     model: MachineModel,
     joints: Sequence[str],
-    points: Sequence[Point],
+    points: Sequence[TrajectoryPoint],
     present: Mapping[str, float],
     speed: float = 1.0,
 ) -> Reason | None:
@@ -81,7 +81,7 @@ def pace_problem(
     Between two points a joint may go at most a little faster than its limit of speed: planners round their figures.
     `speed` is that of a simulated machine: since its last message, it may have gone `speed` times further.
     """
-    before, unreceived = Point(0.0, [present.get(name, math.nan) for name in joints], []), UNHEARD * speed
+    before, unreceived = TrajectoryPoint(0.0, [present.get(name, math.nan) for name in joints], []), UNHEARD * speed
     for number, point in enumerate(points):
         if not all(map(math.isfinite, point.rest)):
             return _at(number, len(points), RestNoNumber())

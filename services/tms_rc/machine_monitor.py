@@ -12,7 +12,7 @@ from tms_config.clock import monotonic
 from tms_config.models import Border
 from tms_rc.channel import Place
 from tms_rc.reasons import StrangeType
-from tms_rc.source import LABELS, Sample
+from tms_rc.source import LABELS, SourceSample
 from tms_rc.standstill import HEADING, IMU, JOINTS, ODOM, PLACE, POSE, TURNING, StandStill, yaw_of
 from tms_reason.reason import Reason
 from tms_ros.node import Ros
@@ -108,9 +108,9 @@ def _full_name(kind: Any) -> str:
     return f"{kind.__module__.split('.')[0]}/msg/{kind.__name__}"
 
 
-def _sample(arrival: Arrival[Any], places: Mapping[str, Place], speeds: Mapping[str, float]) -> Sample:
+def _sample(arrival: Arrival[Any], places: Mapping[str, Place], speeds: Mapping[str, float]) -> SourceSample:
     stamp = arrival.message.header.stamp
-    return Sample(arrival.received, stamp.sec + stamp.nanosec * 1e-9, arrival.number, places, speeds)
+    return SourceSample(arrival.received, stamp.sec + stamp.nanosec * 1e-9, arrival.number, places, speeds)
 
 
 def _numbers(known: list[tuple[int, str]], values: Sequence[float]) -> dict[str, float]:

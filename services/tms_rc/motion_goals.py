@@ -7,8 +7,8 @@ from builtin_interfaces.msg import Duration
 from geometry_msgs.msg import Pose, PoseStamped
 from trajectory_msgs.msg import JointTrajectoryPoint
 
-from tms_machine.border import Motion
-from tms_rc.limits import Point
+from tms_machine.border import MotionAction
+from tms_rc.limits import TrajectoryPoint
 from tms_reason.reason import Reason
 from tms_reason.wire import to_line
 from tms_ros.goals import Ended, Outcome
@@ -33,10 +33,10 @@ def seconds(duration: Duration) -> float:
     return float(duration.sec + duration.nanosec * 1e-9)
 
 
-def point_of(point: JointTrajectoryPoint) -> Point:
+def point_of(point: JointTrajectoryPoint) -> TrajectoryPoint:
     """The part of a trajectory's point that the limits check."""
     rest = [*point.velocities, *point.accelerations, *point.effort]
-    return Point(seconds(point.time_from_start), point.positions, rest)
+    return TrajectoryPoint(seconds(point.time_from_start), point.positions, rest)
 
 
 def duration(request: Any) -> float:
@@ -51,7 +51,7 @@ def reason_of(result: Any) -> str:
     return str(getattr(result, "error_string", "") or getattr(result, "error_msg", ""))
 
 
-def with_reason(motion: Motion, reason: Reason, code: int | None = None) -> Any:
+def with_reason(motion: MotionAction, reason: Reason, code: int | None = None) -> Any:
     """A result of the motion's type, with as much of the reason as the type has room for."""
     result, line = motion.type.Result(), to_line(reason)
     if hasattr(result, "error_string"):
@@ -61,6 +61,6 @@ def with_reason(motion: Motion, reason: Reason, code: int | None = None) -> Any:
     return result
 
 
-def aborted(motion: Motion, reason: Reason) -> Ended[Any]:
+def aborted(motion: MotionAction, reason: Reason) -> Ended[Any]:
     """The end of a goal that must not go on."""
     return Outcome.ABORTED, with_reason(motion, reason)

@@ -9,7 +9,7 @@ from std_msgs.msg import Bool
 
 from tms_config.clock import monotonic
 from tms_machine.border import stood_in
-from tms_rc.active import Kind
+from tms_rc.active import StopKind
 from tms_rc.guard import Guard
 from tms_rc.reasons import PressedByOthers
 from tms_runtime.app import App
@@ -47,6 +47,6 @@ class Presses:
     def _judge(self, since: float) -> None:
         self._doubted -= 1
         if self._reported_at < since and not self._guard.latch.cause:
-            self._guard.stop_now(PressedByOthers(), Kind.LATCH)
+            self._guard.stop_now(PressedByOthers(), StopKind.LATCH)
         if not self._doubted:
             self._guard.press_known.set()

@@ -1,7 +1,7 @@
 """The start of a gateway: the last one may have left the machine moving, so it is stopped and held or latched."""
 
 from tms_config.clock import monotonic
-from tms_rc.active import Kind
+from tms_rc.active import StopKind
 from tms_rc.guard import Guard
 from tms_rc.latch import ANY_LEAF, UNKNOWN_RUN
 from tms_rc.latch_file import Left
@@ -77,7 +77,7 @@ class Recovery:
             return
         self._open = False
         if self._left.run and run != self._left.run:
-            self._guard.stop_now(TakenByAnother(self._cause), Kind.LATCH)
+            self._guard.stop_now(TakenByAnother(self._cause), StopKind.LATCH)
             return
         self._guard.latch.keep(self._cause, Owner(run, ANY_LEAF))
         if self._stop is None or self._stop.run != run:
@@ -91,11 +91,11 @@ class Recovery:
 
     def _begin(self, run: int) -> None:
         number = 0 if run == UNKNOWN_RUN else run
-        self._stop = self._guard.stop_now(self._cause, Kind.PLAIN, run=number, expected=UNKNOWN)
+        self._stop = self._guard.stop_now(self._cause, StopKind.PLAIN, run=number, expected=UNKNOWN)
 
     def _close(self) -> None:
         """End the wait for a run; latch if a motion was stopped and no run has reported itself."""
         known = self._guard.latch.cause or self._guard.active is not None
         if self._open and self._stop is not None and not known:
-            self._guard.stop_now(NoRunTold(self._cause), Kind.LATCH, expected=UNKNOWN)
+            self._guard.stop_now(NoRunTold(self._cause), StopKind.LATCH, expected=UNKNOWN)
         self._open = False

@@ -20,7 +20,7 @@ from tms_rc.reasons import (
     Unheard,
     UnheardOf,
 )
-from tms_rc.stamps import StampClock, Verdict
+from tms_rc.stamps import StampClock, StampVerdict
 from tms_reason.reason import Reason
 
 LABELS: dict[str, Reason] = {"joint_states": JointStates(), "odom": Odometry(), "pose": Pose(), "imu": Imu()}
@@ -31,7 +31,7 @@ MIXED = 2.0  # s; publication numbers that go back twice in this time mean two p
 
 
 @dataclass(frozen=True)
-class Sample:
+class SourceSample:
     """One message of a source."""
 
     received: float  # s, monotonic
@@ -72,16 +72,16 @@ class SourceWatch:
         """Seconds without a new stamp after which the source no longer counts as proof."""
         return max(PERIODS * self.source.period, SHORTEST)
 
-    def take(self, sample: Sample) -> None:
+    def take(self, sample: SourceSample) -> None:
         """Take one message."""
         if sample.number < self._number or (sample.number == self._number and sample.number > 0):
             self._back = (*self._back, sample.received)[-2:]
         self._number = sample.number
         judged = self._clock.judge(sample.received, sample.stamp)
-        if judged.verdict is Verdict.REPEATED:
+        if judged.verdict is StampVerdict.REPEATED:
             self._repeats = (*self._repeats, sample.received)[-PERIODS:]
             return
-        if judged.verdict is Verdict.NEW_CLOCK:
+        if judged.verdict is StampVerdict.NEW_CLOCK:
             assert judged.why is not None, "a new clock has a reason"
             self.new_clock = sample.received, judged.why
             for channel in self.channels.values():

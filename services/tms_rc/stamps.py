@@ -13,7 +13,7 @@ REMEMBERED = 30.0  # s for which the smallest delay is remembered: clocks drift
 CLOCKS: dict[str, Reason] = {"utc": UtcClock(), "since_start": SimulatorClock()}
 
 
-class Verdict(Enum):
+class StampVerdict(Enum):
     """What a stamp shows about its message."""
 
     NEW = "measured after the one before"
@@ -25,7 +25,7 @@ class Verdict(Enum):
 class Judged:
     """`measured` is on this PC's monotonic clock [s]; `why` is set for a new clock."""
 
-    verdict: Verdict
+    verdict: StampVerdict
     measured: float
     why: Reason | None = None
 
@@ -43,22 +43,22 @@ class StampClock:
     def judge(self, received: float, stamp: float) -> Judged:
         """Take one stamp [s of its own clock]; `received` is monotonic [s]."""
         if self.kind == "none":
-            return Judged(Verdict.NEW, received)
+            return Judged(StampVerdict.NEW, received)
         delay, known = received - stamp, self._offset()
         if known is not None and known - delay > AHEAD:
             return self._begin(received, stamp, ClockAhead(known - delay, CLOCKS[self.kind]))
         if self._last is not None and stamp < self._last - BACK:
             return self._begin(received, stamp, ClockBack(CLOCKS[self.kind], self._last - stamp))
         if self._last is not None and stamp <= self._last:
-            return Judged(Verdict.REPEATED, self._last + (known or 0.0))
+            return Judged(StampVerdict.REPEATED, self._last + (known or 0.0))
         self._last = stamp
         self._learn(received, delay)
-        return Judged(Verdict.NEW, stamp + self._known())
+        return Judged(StampVerdict.NEW, stamp + self._known())
 
     def _begin(self, received: float, stamp: float, why: Reason) -> Judged:
         """Begin anew: all estimates of the old clock are void."""
         self._last, self._delay, self._delay_before, self._begun = stamp, received - stamp, None, received
-        return Judged(Verdict.NEW_CLOCK, received, why)
+        return Judged(StampVerdict.NEW_CLOCK, received, why)
 
     def _learn(self, received: float, delay: float) -> None:
         if self._delay is None:

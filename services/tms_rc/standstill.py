@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from tms_config.models import DRIVE, Border, MachineModel
 from tms_rc.channel import WORST, Limits, Place
 from tms_rc.reasons import Beyond, Moving, NoSource, NotLongEnough
-from tms_rc.source import LABELS, Sample, SourceWatch, Trouble
+from tms_rc.source import LABELS, SourceSample, SourceWatch, Trouble
 from tms_reason.reason import Reason
 
 JOINTS, ODOM, POSE, IMU = "joint_states", "odom", "pose", "imu"
@@ -124,7 +124,7 @@ class StandStill:
         """Sources whose messages are not stamped: for them only the arrival counts."""
         return [one.label for one in self.sources.values() if one.source.stamps == "none"]
 
-    def take(self, name: str, sample: Sample) -> None:
+    def take(self, name: str, sample: SourceSample) -> None:
         """Take one message of a source."""
         source = self.sources[name]
         source.take(sample)

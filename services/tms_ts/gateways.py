@@ -9,7 +9,7 @@ from tms_msg_rc.srv import StopMachine
 
 from tms_config.clock import monotonic, sleep
 from tms_machine.border import Controls
-from tms_machine.permit import NOBODY, Link, Permit
+from tms_machine.permit import NOBODY, Permit, RemotePermit
 from tms_machine.reasons import DrivenByHand, MachineLatched, NoReason, SoftwareStop
 from tms_reason import wire
 from tms_reason.reason import Reason
@@ -45,7 +45,7 @@ class Gateways:
         """`late_receipt` is called with stops that belong to no present run; those that gateways keep come at once."""
         self._app, self._late_receipt = app, late_receipt
         self._states: dict[str, MachineState] = {}
-        self._links: dict[str, Link] = {}
+        self._gateways: dict[str, RemotePermit] = {}
         self._controls: dict[str, Controls] = {}
         self._permits: dict[str, Permit] = {}
         self._holders: dict[str, Holder] = {}
@@ -58,8 +58,8 @@ class Gateways:
         ros.prepare(StopMachine, f"/{machine}/rc/stop")
         self._controls[machine] = Controls(ros, machine, self._app.site.border(machine))
         self._permits[machine] = Permit(ros, pulse, machine, "ts", lambda: self._alive(machine))
-        self._links[machine] = Link(
-            ros, self._app.pulse, machine, "rc", lambda link: self._gateway_changed(machine, link)
+        self._gateways[machine] = RemotePermit(
+            ros, self._app.pulse, machine, "rc", lambda gateway: self._gateway_changed(machine, gateway)
         )
         ros.subscribe(MachineState, f"/{machine}/rc/state", lambda state: self._state(machine, state), latched=True)
         ros.subscribe(StopReceipt, f"/{machine}/rc/receipts", self._receipt, depth=20, latched=True)
@@ -87,10 +87,10 @@ class Gateways:
 
     def obstacle(self, machine: str) -> Reason | None:
         """Why a goal would not move the machine now; None if it would, or if nothing is known of it."""
-        link, state = self._links.get(machine), self._states.get(machine)
-        if link is None or state is None:
+        gateway, state = self._gateways.get(machine), self._states.get(machine)
+        if gateway is None or state is None:
             return None
-        if not link.alive:
+        if not gateway.alive:
             return ProcessAway(f"{machine}:rc")
         found = self.held_back(machine)
         if found is not None or state.ready:
@@ -107,12 +107,12 @@ class Gateways:
 
     def wait_alive(self, machine: str, seconds: float) -> None:
         """Wait for a gateway that is being restarted, so that a request to it does not get lost."""
-        link, deadline = self._links.get(machine), monotonic() + seconds
-        if link is None or link.alive:
+        gateway, deadline = self._gateways.get(machine), monotonic() + seconds
+        if gateway is None or gateway.alive:
             return
         while monotonic() < deadline:
             sleep(0.02)
-            if self._links[machine].alive:
+            if self._gateways[machine].alive:
                 sleep(SETTLE)
                 return
 
@@ -121,11 +121,11 @@ class Gateways:
 
         It must if the gateway is lost after this call, or if it is lost now and its successor comes later.
         """
-        link = self._links.get(machine)
-        if link is None:
+        gateway = self._gateways.get(machine)
+        if gateway is None:
             return lambda: False
-        alive = link.alive
-        return lambda: link.alive != alive
+        alive = gateway.alive
+        return lambda: gateway.alive != alive
 
     def latch(self, machine: str) -> Reason | None:
         """Why the machine is latched until it is re-armed; None if it is not."""
@@ -150,9 +150,9 @@ class Gateways:
             for machine, holder in list(self._holders.items()):
                 holder.stopped(machine, SoftwareStop())
 
-    def _gateway_changed(self, machine: str, link: Link) -> None:
+    def _gateway_changed(self, machine: str, gateway: RemotePermit) -> None:
         """Stop the machine of a lost gateway at once, as the gateway would; its successor does the same, but later."""
-        if link.alive or link.goal == NOBODY:
+        if gateway.alive or gateway.goal == NOBODY:
             return
         self._controls[machine].zero()
         self._controls[machine].cancel_everything()

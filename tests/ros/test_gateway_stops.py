@@ -14,7 +14,7 @@ from std_msgs.msg import Bool
 from tms_msg_rc.msg import MachineState, StopReceipt
 
 from conftest import GATEWAYS_ONLY, Mesh, mesh_apart, rearm, wait_until
-from tms_machine.border import MOTIONS, Motion
+from tms_machine.border import MOTIONS, MotionAction
 from tms_machine.reasons import SoftwareStop
 from tms_reason.wire import to_line
 from tms_ros.goals import Outcome
@@ -74,7 +74,7 @@ def watch(small: tuple[Mesh, Ros]) -> Watch:
     return Watch(small[1])
 
 
-def far_away(motion: Motion, number: int) -> Any:
+def far_away(motion: MotionAction, number: int) -> Any:
     """A goal that lasts for some seconds."""
     there = PoseStamped()
     there.header.frame_id = "map"
@@ -98,7 +98,7 @@ def armed(small: tuple[Mesh, Ros], watch: Watch) -> None:
 
 
 @pytest.mark.parametrize("motion", [m for m in MOTIONS if m.field != "trajectory"], ids=lambda motion: motion.field)
-def test_a_software_stop_ends_every_kind_of_motion(small: tuple[Mesh, Ros], watch: Watch, motion: Motion) -> None:
+def test_a_software_stop_ends_every_kind_of_motion(small: tuple[Mesh, Ros], watch: Watch, motion: MotionAction) -> None:
     ros = small[1]
     button = ros.publisher(Bool, "/emergency_signal")
     peer = ros.peer(motion.type, f"/{MACHINE}/rc/{motion.served}")

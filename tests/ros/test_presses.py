@@ -11,7 +11,7 @@ from std_msgs.msg import Bool
 from conftest import wait_until
 from tms_machine.border import stood_in
 from tms_rc import presses
-from tms_rc.active import Kind
+from tms_rc.active import StopKind
 from tms_rc.presses import Presses
 from tms_ros.node import Ros
 
@@ -23,7 +23,7 @@ class Gateway:
     """What `Presses` needs of a gateway; a stop that it does not want latches, as the real one does."""
 
     def __init__(self, ros: Ros) -> None:
-        self.stops: list[Kind] = []
+        self.stops: list[StopKind] = []
         self.stood_in = False
         self.press_known = threading.Event()
         self.latch = SimpleNamespace(cause="")
@@ -41,14 +41,14 @@ class Gateway:
     def _reported(self) -> None:
         self.judged += 1
 
-    def stop_now(self, cause: str, kind: Kind) -> None:
+    def stop_now(self, cause: str, kind: StopKind) -> None:
         self.stops.append(kind)
         self.latch.cause = cause
 
 
-@pytest.mark.parametrize(("age", "expected"), [(1, []), (60, [Kind.LATCH])], ids=["its word", "an old word"])
+@pytest.mark.parametrize(("age", "expected"), [(1, []), (60, [StopKind.LATCH])], ids=["its word", "an old word"])
 def test_the_host_agents_word_before_a_gateway_was_there_counts(
-    two_nodes: tuple[Ros, Ros], age: int, expected: list[Kind]
+    two_nodes: tuple[Ros, Ros], age: int, expected: list[StopKind]
 ) -> None:
     host, ros = two_nodes
     word, press = host.publisher(Time, stood_in("zx200"), 1, latched=True), host.publisher(Bool, TOPIC)
@@ -78,5 +78,5 @@ def test_a_press_without_a_word_latches_and_a_release_does_not(two_nodes: tuple[
     assert not gateway.stops
     press.publish(Bool(data=False))
     wait_until(lambda: bool(gateway.stops), 30, "the press is judged")
-    assert gateway.stops == [Kind.LATCH]
+    assert gateway.stops == [StopKind.LATCH]
     assert gateway.press_known.is_set()

@@ -8,7 +8,7 @@ from prometheus_client import CollectorRegistry
 from tms_config.processes import Process
 from tms_host import facts
 from tms_host.diagnostics import ERROR, OK, STALE, WARN, judge
-from tms_host.facts import Clock, Facts
+from tms_host.facts import Clock, HostCollector
 from tms_host.supervisor import Running
 from tms_machine.reasons import WaitingFor
 
@@ -17,7 +17,7 @@ NEVER = 2**22 + 1  # above pid_max
 
 def collected(tmp_path: Path, rows: list[Running], clock: Clock | None = None) -> CollectorRegistry:
     registry = CollectorRegistry()
-    found = Facts(tmp_path, lambda: clock)
+    found = HostCollector(tmp_path, lambda: clock)
     found.update(rows, {"tms:ts": 2})
     registry.register(found)
     return registry
@@ -42,7 +42,7 @@ def test_a_process_that_has_just_ended_is_left_out_and_harms_nobody(tmp_path: Pa
 
 def test_a_state_that_is_over_leaves_no_series(tmp_path: Path) -> None:
     registry = CollectorRegistry()
-    found = Facts(tmp_path, lambda: None)
+    found = HostCollector(tmp_path, lambda: None)
     registry.register(found)
     for state in ("BACKOFF", "RUNNING"):
         found.update([Running("tms:ts", state, 0, 0.0, "")], {})

@@ -7,13 +7,13 @@ import pytest
 from tms_msg_rc.msg import Permit as Message
 
 from tms_machine import leases
-from tms_machine.permit import GRACE, Link, watch_server
+from tms_machine.permit import GRACE, RemotePermit, watch_server
 
 GOAL = [7] * 16
 
 
 class Dds:
-    """What a Link needs of Ros: keeps the callbacks, and decides whether this process was late."""
+    """What a RemotePermit needs of Ros: keeps the callbacks, and decides whether this process was late."""
 
     def __init__(self) -> None:
         self.pulse = self
@@ -38,46 +38,50 @@ def dds(monkeypatch: pytest.MonkeyPatch) -> Dds:
 
 
 @pytest.fixture
-def link(dds: Dds) -> tuple[Link, list[bool]]:
+def permit(dds: Dds) -> tuple[RemotePermit, list[bool]]:
     seen: list[bool] = []
-    made = Link(dds, dds, "zx200", "rc", lambda link: seen.append(link.alive))  # type: ignore[arg-type]
+    made = RemotePermit(dds, dds, "zx200", "rc", lambda permit: seen.append(permit.alive))  # type: ignore[arg-type]
     dds.received(Message(process="rc", goal=GOAL))
     dds.alive(1, 0)
     return made, seen
 
 
-def test_a_lapsed_lease_is_a_loss_at_once(dds: Dds, link: tuple[Link, list[bool]]) -> None:
+def test_a_lapsed_lease_is_a_loss_at_once(dds: Dds, permit: tuple[RemotePermit, list[bool]]) -> None:
     dds.alive(0, 1)
-    assert link[1][-1] is False and not link[0].alive and not dds.later
+    assert permit[1][-1] is False and not permit[0].alive and not dds.later
 
 
-def test_a_watcher_that_was_late_itself_waits_for_a_sign_of_life(dds: Dds, link: tuple[Link, list[bool]]) -> None:
+def test_a_watcher_that_was_late_itself_waits_for_a_sign_of_life(
+    dds: Dds, permit: tuple[RemotePermit, list[bool]]
+) -> None:
     dds.was_late = True
     dds.alive(0, 1)
-    assert link[0].alive and dds.later[0][0] == GRACE
+    assert permit[0].alive and dds.later[0][0] == GRACE
     dds.alive(1, 0)
     dds.later[0][1]()
-    assert link[0].alive and all(link[1])
+    assert permit[0].alive and all(permit[1])
 
 
-def test_it_does_not_wait_for_ever(dds: Dds, link: tuple[Link, list[bool]]) -> None:
+def test_it_does_not_wait_for_ever(dds: Dds, permit: tuple[RemotePermit, list[bool]]) -> None:
     dds.was_late = True
     dds.alive(0, 1)
     dds.later[0][1]()
-    assert not link[0].alive and link[1][-1] is False
+    assert not permit[0].alive and permit[1][-1] is False
 
 
 @pytest.mark.parametrize("stale_writers", [0, 1])  # of predecessors
-def test_who_takes_leave_leaves_no_stale_writer(dds: Dds, link: tuple[Link, list[bool]], stale_writers: int) -> None:
+def test_who_takes_leave_leaves_no_stale_writer(
+    dds: Dds, permit: tuple[RemotePermit, list[bool]], stale_writers: int
+) -> None:
     dds.alive(1, stale_writers)
     dds.alive(0, stale_writers)
-    assert not link[0].alive and link[0].left
+    assert not permit[0].alive and permit[0].left
     dds.alive(1, stale_writers)
-    assert not link[0].left
+    assert not permit[0].left
     dds.alive(0, stale_writers + 1)
-    assert not link[0].alive and not link[0].left
+    assert not permit[0].alive and not permit[0].left
     dds.alive(0, 0)  # discovery drops the stale writer
-    assert not link[0].left
+    assert not permit[0].left
 
 
 class Server:

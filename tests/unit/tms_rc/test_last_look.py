@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from tms_machine.reasons import MachineLatched, SoftwareStop
-from tms_rc.active import Active, Kind
+from tms_rc.active import Active, StopKind
 from tms_rc.gateway import Gateway
 from tms_rc.guard import Guard
 from tms_rc.latch import Latch
@@ -15,7 +15,7 @@ from tms_reason.reason import Reason
 from tms_ros.reasons import ProcessLost
 from tms_runtime.fence import Owner
 
-Stops = list[tuple[Reason, Kind]]
+Stops = list[tuple[Reason, StopKind]]
 RUN = Owner(7)
 GOAL = Owner(7, 1, 1)  # of the subtask; the scheduler and the subtask stand behind it
 HELD = {"ts": RUN, "subtask": Owner(7, 1, 0)}
@@ -37,19 +37,19 @@ def test_a_goal_with_everybody_behind_it_leaves() -> None:
 
 def test_a_stop_that_came_meanwhile_keeps_it() -> None:
     ((cause, kind),) = stops(HELD, SoftwareStop())
-    assert cause == MachineLatched("zx200", SoftwareStop()) and kind is Kind.PLAIN
+    assert cause == MachineLatched("zx200", SoftwareStop()) and kind is StopKind.PLAIN
 
 
 @pytest.mark.parametrize("gone", ["ts", "subtask"])
 def test_a_process_that_was_lost_meanwhile_keeps_it(gone: str) -> None:
     ((cause, kind),) = stops({name: what for name, what in HELD.items() if name != gone})
     assert cause == ProcessLost(NoScheduler() if gone == "ts" else NoSubtask())
-    assert kind is Kind.HOLD
+    assert kind is StopKind.HOLD
 
 
 def test_a_run_that_took_the_machine_meanwhile_keeps_a_foreign_goal() -> None:
     ((cause, kind),) = stops(HELD, owner=None)
-    assert cause == HeldByAnother() and kind is Kind.PLAIN
+    assert cause == HeldByAnother() and kind is StopKind.PLAIN
 
 
 @pytest.mark.parametrize(("answered", "sent"), [(False, 1), (True, 0)])

@@ -6,7 +6,7 @@ from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.reasons import BelowLimit
 from tms_config.yaml_file import parse
-from tms_rc.limits import Point, angle_problem, escaped, pace_problem, pose_problem, problem
+from tms_rc.limits import TrajectoryPoint, angle_problem, escaped, pace_problem, pose_problem, problem
 from tms_rc.reasons import AtJoint
 from tms_reason.reason import Reason
 from tms_reason.texts import text
@@ -43,24 +43,37 @@ SWING = MODEL.joints["swing_joint"].velocity
 @pytest.mark.parametrize(
     ("points", "said"),
     [
-        ([Point(1.0, [0.0], [float("nan")])], "a velocity, acceleration or effort is not a number"),
-        ([Point(5.0, [0.0], []), Point(1.0, [0.1], [])], "point 1: its time 1.00 s is not after the one before"),
-        ([Point(1.0, [0.0], []), Point(1.0, [0.0], [])], "point 1: its time 1.00 s is not after the one before"),
-        ([Point(-1.0, [0.0], [])], "its time -1.00 s is not after"),
-        ([Point(0.001, [3.0], [])], "swing_joint: it would go 3.000 rad in 0.00 s, its limit is"),
-        ([Point(0.0, [0.3 * SWING], [])], "rad in 0.00 s"),
-        ([Point(1.0, [0.0], []), Point(2.0, [1.2 * SWING], [])], "point 1: swing_joint: it would go"),
+        ([TrajectoryPoint(1.0, [0.0], [float("nan")])], "a velocity, acceleration or effort is not a number"),
+        (
+            [TrajectoryPoint(5.0, [0.0], []), TrajectoryPoint(1.0, [0.1], [])],
+            "point 1: its time 1.00 s is not after the one before",
+        ),
+        (
+            [TrajectoryPoint(1.0, [0.0], []), TrajectoryPoint(1.0, [0.0], [])],
+            "point 1: its time 1.00 s is not after the one before",
+        ),
+        ([TrajectoryPoint(-1.0, [0.0], [])], "its time -1.00 s is not after"),
+        ([TrajectoryPoint(0.001, [3.0], [])], "swing_joint: it would go 3.000 rad in 0.00 s, its limit is"),
+        ([TrajectoryPoint(0.0, [0.3 * SWING], [])], "rad in 0.00 s"),
+        (
+            [TrajectoryPoint(1.0, [0.0], []), TrajectoryPoint(2.0, [1.2 * SWING], [])],
+            "point 1: swing_joint: it would go",
+        ),
     ],
 )
-def test_a_trajectory_that_cannot_be_followed_is_refused(points: list[Point], said: str) -> None:
+def test_a_trajectory_that_cannot_be_followed_is_refused(points: list[TrajectoryPoint], said: str) -> None:
     assert said in words(pace_problem(MODEL, ["swing_joint"], points, {"swing_joint": 0.0}))
 
 
 def test_a_trajectory_at_the_limit_of_speed_is_let_through() -> None:
-    points = [Point(0.0, [0.05], [0.0]), Point(1.0, [0.05 + SWING], [SWING, 0.0]), Point(3.0, [0.05 - SWING], [0.0])]
+    points = [
+        TrajectoryPoint(0.0, [0.05], [0.0]),
+        TrajectoryPoint(1.0, [0.05 + SWING], [SWING, 0.0]),
+        TrajectoryPoint(3.0, [0.05 - SWING], [0.0]),
+    ]
     assert pace_problem(MODEL, ["swing_joint"], points, {"swing_joint": 0.0}) is None
     assert pace_problem(MODEL, ["swing_joint"], points[1:], {}) is None  # nobody knows where the joint is
-    begins = [Point(0.0, [6.0 * SWING], [])]  # a simulated machine that stands since a moment
+    begins = [TrajectoryPoint(0.0, [6.0 * SWING], [])]  # a simulated machine that stands since a moment
     assert pace_problem(MODEL, ["swing_joint"], begins, {"swing_joint": 0.0}, speed=40.0) is None
 
 

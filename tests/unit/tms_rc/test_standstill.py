@@ -21,7 +21,7 @@ from tms_rc.reasons import (
     UtcClock,
     VelocitiesMove,
 )
-from tms_rc.source import Sample
+from tms_rc.source import SourceSample
 from tms_rc.standstill import HEADING, JOINTS, NOTHING, ODOM, PLACE, UNKNOWN, Expected, StandStill, Travel
 from tms_reason.texts import text
 
@@ -63,7 +63,7 @@ class Reporter:
     def publish_now(self, angle: float, speed: float | None, stamp: float | None = None, arm: bool = True) -> None:
         self.number += 1
         names = ["boom", "arm"] if arm else ["boom"]
-        self.watch.take(JOINTS, Sample(
+        self.watch.take(JOINTS, SourceSample(
             self.now, (self.now if stamp is None else stamp) + 1e9, self.number,
             {name: (angle,) for name in names}, {} if speed is None else dict.fromkeys(names, speed),
         ))  # fmt: skip
@@ -170,7 +170,9 @@ def test_old_messages_that_come_late_do_not_count() -> None:
         reporter.now += PERIOD
         reporter.publish_now(0.0, 0.0, stamp=reporter.now - 1.5)
 
-    reporter.watch.take(JOINTS, Sample(reporter.now, 1e9 + reporter.now - 1.5, 999, {"boom": (0.0,)}, {"boom": 0.0}))
+    reporter.watch.take(
+        JOINTS, SourceSample(reporter.now, 1e9 + reporter.now - 1.5, 999, {"boom": (0.0,)}, {"boom": 0.0})
+    )
     assert stood_after(reporter, late, begun, limit=1.4) == float("inf")
 
 
@@ -211,7 +213,7 @@ def test_numbers_of_two_publishers_go_back_and_forth() -> None:
     reporter = Reporter(watch())
     for number in (100, 5, 101, 6, 102):
         reporter.now += 0.01
-        reporter.watch.take(JOINTS, Sample(reporter.now, 1e9 + reporter.now, number, {"boom": (0.0,)}, {}))
+        reporter.watch.take(JOINTS, SourceSample(reporter.now, 1e9 + reporter.now, number, {"boom": (0.0,)}, {}))
     trouble = reporter.watch.trouble(reporter.now)
     assert trouble is not None and trouble.reason == TwoPublishers(JointStates())
 
@@ -399,7 +401,7 @@ def test_a_machine_that_drives_does_not_stand() -> None:
             nonlocal x
             reporter.run(PERIOD, 0.0)
             x += speed * PERIOD
-            reporter.watch.take(ODOM, Sample(
+            reporter.watch.take(ODOM, SourceSample(
                 reporter.now, reporter.now, reporter.number, {PLACE: (x, 0.0), HEADING: (0.0,)},
                 {PLACE: speed, HEADING: 0.0},
             ))  # fmt: skip

@@ -7,7 +7,7 @@ from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
 from tms_machine.border import MOTIONS
-from tms_rc.active import Active, Kind
+from tms_rc.active import Active, StopKind
 from tms_rc.gateway import Gateway
 from tms_rc.reasons import ControllerLeft
 from tms_reason.reason import Reason
@@ -33,7 +33,7 @@ class Peer:
 
 
 def test_a_server_that_leaves_during_a_drive_stops_the_machine() -> None:
-    stops: list[tuple[Reason, Kind]] = []
+    stops: list[tuple[Reason, StopKind]] = []
     gateway: Any = Gateway.__new__(Gateway)
     gateway._app = SimpleNamespace(machine="ic120")
     gateway._model, gateway._watch = MODEL, SimpleNamespace(positions={}, trouble=lambda now: None)
@@ -43,5 +43,5 @@ def test_a_server_that_leaves_during_a_drive_stops_the_machine() -> None:
     goal: Any = SimpleNamespace(request=SimpleNamespace())
     active = Active(goal, None, peer, {}, {}, call=SimpleNamespace(accepted=True, outcome=None))  # type: ignore[arg-type]
     gateway._watch_motion(MOTIONS[1], active)
-    assert stops == [(ProcessLost(ControllerLeft("ic120", "/ic120/navigate_to_pose")), Kind.PLAIN)]
+    assert stops == [(ProcessLost(ControllerLeft("ic120", "/ic120/navigate_to_pose")), StopKind.PLAIN)]
     assert peer.given_up == 1

@@ -155,13 +155,13 @@ def test_a_goal_that_is_cancelled_while_it_waits_to_be_sent_again_is_never_sent(
 
 
 def test_a_request_is_made_again_when_the_gateway_is_lost_or_comes_back() -> None:
-    gateways, link = Gateways.__new__(Gateways), SimpleNamespace(alive=True)
-    gateways._links = {"zx200": link}  # type: ignore[dict-item]
+    gateways, gateway = Gateways.__new__(Gateways), SimpleNamespace(alive=True)
+    gateways._gateways = {"zx200": gateway}  # type: ignore[dict-item]
     for before in (True, False):  # lost meanwhile; asked of a dead one, whose successor never saw it
-        link.alive = before
+        gateway.alive = before
         lost = gateways.loss("zx200")
         assert not lost()
-        link.alive = not before
+        gateway.alive = not before
         assert lost()
     assert not gateways.loss("zx9")()
 

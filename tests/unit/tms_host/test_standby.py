@@ -1,14 +1,14 @@
 """When the host agent stops a machine in place of its gateway, and how."""
 
-from tms_host.stand_in import AGAIN, ESCALATE, LEASE_MARGIN, Act, Duty, Seen
+from tms_host.standby import AGAIN, ESCALATE, LEASE_MARGIN, Act, Duty, GatewayStatus
 
-THERE = Seen(alive=True)
-SILENT = Seen(alive=False)
-BUSY = Seen(alive=False, busy=True)
+THERE = GatewayStatus(alive=True)
+SILENT = GatewayStatus(alive=False)
+BUSY = GatewayStatus(alive=False, busy=True)
 BEAT = 0.05  # s
 
 
-def acts(duty: Duty, begin: float, seconds: float, seen: Seen) -> list[tuple[float, Act]]:
+def acts(duty: Duty, begin: float, seconds: float, seen: GatewayStatus) -> list[tuple[float, Act]]:
     """What is commanded meanwhile, and how long after `begin`."""
     found = []
     for i in range(round(seconds / BEAT)):
@@ -18,7 +18,7 @@ def acts(duty: Duty, begin: float, seconds: float, seen: Seen) -> list[tuple[flo
     return found
 
 
-def lost(seen: Seen, seconds: float = 2.0) -> list[tuple[float, Act]]:
+def lost(seen: GatewayStatus, seconds: float = 2.0) -> list[tuple[float, Act]]:
     duty = Duty()
     assert acts(duty, 0.0, 1.0, THERE) == []
     return acts(duty, 1.0, seconds, seen)
@@ -48,14 +48,14 @@ def test_a_machine_with_a_goal_gets_emg_stop_after_a_second() -> None:
 
 
 def test_a_run_that_is_lost_too_gets_emg_stop_at_once() -> None:
-    assert lost(Seen(alive=False, run_lost=True), 0.5) == [(0.1, Act.EMERGENCY)]
+    assert lost(GatewayStatus(alive=False, run_lost=True), 0.5) == [(0.1, Act.EMERGENCY)]
 
 
 def test_the_loss_of_the_run_does_not_wait_for_the_next_repetition() -> None:
     duty = Duty()
     duty.check(0.0, THERE)
     assert acts(duty, 1.0, 0.2, BUSY) == [(0.1, Act.STOP)]
-    assert acts(duty, 1.2, 0.2, Seen(alive=False, run_lost=True)) == [(0.0, Act.EMERGENCY)]
+    assert acts(duty, 1.2, 0.2, GatewayStatus(alive=False, run_lost=True)) == [(0.0, Act.EMERGENCY)]
     again = acts(duty, 1.4, AGAIN, SILENT)  # an emergency stays one
     assert again == [(0.3, Act.EMERGENCY)]
 
@@ -65,7 +65,7 @@ def test_it_goes_on_until_a_gateway_gives_its_pulse_and_has_told_its_state() -> 
     duty.check(0.0, THERE)
     assert acts(duty, 1.0, 0.2, SILENT)
     assert acts(duty, 2.0, 0.6, THERE) == [(0.0, Act.STOP), (0.5, Act.STOP)]
-    assert acts(duty, 3.0, 1.0, Seen(alive=True, reported=True)) == []
+    assert acts(duty, 3.0, 1.0, GatewayStatus(alive=True, reported=True)) == []
     assert duty.lost_since is None
     assert acts(duty, 5.0, 0.2, SILENT) == [(0.1, Act.STOP)]  # and watches that one
 
@@ -74,7 +74,7 @@ def test_what_it_has_told_before_its_pulse_is_remembered() -> None:
     duty = Duty()
     duty.check(0.0, THERE)
     acts(duty, 1.0, 0.2, SILENT)
-    duty.check(1.2, Seen(alive=False, reported=True))
+    duty.check(1.2, GatewayStatus(alive=False, reported=True))
     duty.check(1.3, THERE)
     assert duty.lost_since is None
 
@@ -82,7 +82,7 @@ def test_what_it_has_told_before_its_pulse_is_remembered() -> None:
 def test_a_gateway_that_takes_leave_is_no_loss() -> None:
     duty = Duty()
     duty.check(0.0, THERE)
-    assert acts(duty, 1.0, 3.0, Seen(alive=False, left=True, busy=True)) == [(0.0, Act.STOP)]
+    assert acts(duty, 1.0, 3.0, GatewayStatus(alive=False, left=True, busy=True)) == [(0.0, Act.STOP)]
     assert duty.lost_since is None
 
 
@@ -90,5 +90,5 @@ def test_a_stale_writer_that_discovery_drops_later_is_no_leave() -> None:
     duty = Duty()
     duty.check(0.0, THERE)
     acts(duty, 1.0, 0.2, SILENT)
-    assert acts(duty, 6.0, 0.4, Seen(alive=False, left=True)) == [(0.0, Act.STOP)]
+    assert acts(duty, 6.0, 0.4, GatewayStatus(alive=False, left=True)) == [(0.0, Act.STOP)]
     assert duty.lost_since is not None

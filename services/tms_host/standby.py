@@ -22,7 +22,7 @@ from tms_msg_rc.msg import MachineState
 from tms_config.clock import monotonic
 from tms_config.processes import here
 from tms_machine.border import Controls, stood_in
-from tms_machine.permit import NOBODY, Link
+from tms_machine.permit import NOBODY, RemotePermit
 from tms_runtime.app import App
 
 LEASE_MARGIN = 0.09  # s more than the lease: a process frozen for 0.4 s may have asserted itself 0.1 s before
@@ -43,7 +43,7 @@ class Act(Enum):
 
 
 @dataclass(frozen=True)
-class Seen:
+class GatewayStatus:
     """The state of a gateway at one beat."""
 
     alive: bool  # it has its pulse
@@ -54,7 +54,7 @@ class Seen:
 
 
 class Duty:
-    """When to stand in for one gateway, and how. Pure logic; times are monotonic [s]."""
+    """When to act in place of one gateway, and how. Pure logic; times are monotonic [s]."""
 
     def __init__(self) -> None:
         self.lost_since: float | None = None
@@ -63,18 +63,18 @@ class Duty:
         self._reported = self._emergency = False
         self._again = 0.0
 
-    def check(self, now: float, seen: Seen) -> Act | None:
+    def check(self, now: float, status: GatewayStatus) -> Act | None:
         """The command that is due now."""
         if self.lost_since is not None:
-            return self._stand_in(now, self.lost_since, seen)
-        if seen.alive:
+            return self._act(now, self.lost_since, status)
+        if status.alive:
             self._watched, self._silent_since = True, None
         elif self._watched:
-            return self._doubt(now, seen)
+            return self._doubt(now, status)
         return None
 
-    def _doubt(self, now: float, seen: Seen) -> Act | None:
-        if seen.left:
+    def _doubt(self, now: float, status: GatewayStatus) -> Act | None:
+        if status.left:
             self._watched, self._silent_since = False, None
             return Act.STOP
         if self._silent_since is None:
@@ -83,14 +83,14 @@ class Duty:
             return None
         self.lost_since, self._silent_since, self._again = now, None, now
         self._reported = self._emergency = False
-        return self._stand_in(now, now, seen)
+        return self._act(now, now, status)
 
-    def _stand_in(self, now: float, since: float, seen: Seen) -> Act | None:
-        self._reported = self._reported or seen.reported
-        if seen.alive and self._reported:
+    def _act(self, now: float, since: float, status: GatewayStatus) -> Act | None:
+        self._reported = self._reported or status.reported
+        if status.alive and self._reported:
             self.lost_since = None
             return None
-        if not self._emergency and (seen.run_lost or (seen.busy and now - since >= ESCALATE)):
+        if not self._emergency and (status.run_lost or (status.busy and now - since >= ESCALATE)):
             self._emergency, self._again = True, now
         if now < self._again:
             return None
@@ -98,8 +98,8 @@ class Duty:
         return Act.EMERGENCY if self._emergency else Act.STOP
 
 
-class Post:
-    """The stand-in for one machine's gateway; all that a stop needs is prepared."""
+class StandbyGateway:
+    """The standby of one machine's gateway; all that a stop needs is prepared."""
 
     def __init__(self, app: App, machine: str) -> None:
         ros = app.ros
@@ -108,8 +108,8 @@ class Post:
         self._done: Act | None = None  # the command since the gateway was lost, as it was logged
         self._controls = Controls(ros, machine, app.site.border(machine), keeps_emergency=False)
         self._now, self._stood_in = ros.now, ros.publisher(Time, stood_in(machine), 1, latched=True)
-        self._gateway = Link(ros, app.pulse, machine, "rc", _looked_at)
-        self._scheduler = Link(ros, app.pulse, machine, "ts", _looked_at)
+        self._gateway = RemotePermit(ros, app.pulse, machine, "rc", _looked_at)
+        self._scheduler = RemotePermit(ros, app.pulse, machine, "ts", _looked_at)
         self._samples = ros.sample(MachineState, f"/{machine}/rc/state")
         self._state: MachineState | None = None  # the last one of a lost gateway
         self._held_at = float("-inf")  # when a run last held the machine
@@ -118,24 +118,24 @@ class Post:
 
     def check(self, now: float) -> None:
         """Command what is due, at every beat of the pulse."""
-        act = self.duty.check(now, self._seen(now))
+        act = self.duty.check(now, self._status(now))
         if act is not None:
             self._command(act)
         self._publish(act)
 
-    def _seen(self, now: float) -> Seen:
+    def _status(self, now: float) -> GatewayStatus:
         gateway, scheduler, is_lost = self._gateway, self._scheduler, self.duty.lost_since is not None
         if scheduler.alive:
             self._held_at = now
         if gateway.alive and not is_lost:
-            return Seen(alive=True)
+            return GatewayStatus(alive=True)
         reported = self._samples()
         if reported and not is_lost:  # not of a successor, which has no samples yet and reports a motion
             self._state = reported[-1]
         state = self._state
         run_lost = scheduler.goal != NOBODY and not scheduler.alive and now - self._held_at < TOGETHER
         busy = state is None or state.moving or bool(state.goal or state.owner)
-        return Seen(gateway.alive, gateway.left, bool(reported), busy, run_lost)
+        return GatewayStatus(gateway.alive, gateway.left, bool(reported), busy, run_lost)
 
     def _command(self, act: Act) -> None:
         self._controls.zero()  # messages leave sooner than requests
@@ -160,26 +160,26 @@ class Post:
             self._log.info("gateway_left", machine=self.machine)
 
 
-class StandIn:
-    """Stands in for the gateways that run on this PC."""
+class Standby:
+    """The standbys of the gateways that run on this PC."""
 
     def __init__(self, app: App) -> None:
         rows = [row for row in here(app.site) if row.module == GATEWAY]
-        self._posts = {row.full: Post(app, str(row.machine)) for row in rows}
-        if self._posts:
+        self._standbys = {row.full: StandbyGateway(app, str(row.machine)) for row in rows}
+        if self._standbys:
             app.pulse.add(self._check)
 
     def silent(self) -> dict[str, float]:
         """Gateways that are lost, and for how long [s]; from any thread."""
         now = monotonic()
-        since = {name: post.duty.lost_since for name, post in self._posts.items()}
+        since = {name: one.duty.lost_since for name, one in self._standbys.items()}
         return {name: now - at for name, at in since.items() if at is not None}
 
     def _check(self) -> None:
         now = monotonic()
-        for post in self._posts.values():
-            post.check(now)
+        for one in self._standbys.values():
+            one.check(now)
 
 
-def _looked_at(link: Link) -> None:
-    """No callback is needed: `Post` reads its links at every beat."""
+def _looked_at(permit: RemotePermit) -> None:
+    """No callback is needed: `StandbyGateway` reads its permits at every beat."""
