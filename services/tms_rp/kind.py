@@ -19,7 +19,7 @@ class Moves:
 
 
 @dataclass(frozen=True)
-class Action:
+class PlanningAction:
     """One served action: how its goal becomes moves, and whether they are executed.
 
     `plan` gets the planner, the present angles and the goal; it raises SubtaskFailed with a reason.
@@ -32,9 +32,9 @@ class Action:
 
 
 @dataclass(frozen=True)
-class Kind:
+class MachineKind:
     """A kind of machine whose motions are planned."""
 
     joints: tuple[str, ...]  # joints that goals move
     planner: Callable[[MachineModel], Any]  # raises ConfigError: the model is not of this kind
-    actions: tuple[Action, ...]
+    actions: tuple[PlanningAction, ...]

@@ -27,7 +27,7 @@ MOTION_END_LIMIT = STOP_PROVEN + 2.0  # s for a cancelled motion to have ended
 GATEWAY_CHECK_PERIOD = 0.5  # s between checks whether the gateway is still there
 
 Gateway = Peer[FollowJointTrajectory.Goal, FollowJointTrajectory.Result, FollowJointTrajectory.Feedback]
-Motion = Call[FollowJointTrajectory.Result, FollowJointTrajectory.Feedback]
+TrajectoryCall = Call[FollowJointTrajectory.Result, FollowJointTrajectory.Feedback]
 
 
 class Mover:
@@ -60,7 +60,7 @@ class Mover:
             raise SubtaskFailed(lost)
         return _verdict(goal, call, self._peer.name)
 
-    def _watch(self, goal: AnyGoal, call: Motion, deadline: float) -> Reason | None:
+    def _watch(self, goal: AnyGoal, call: TrajectoryCall, deadline: float) -> Reason | None:
         """Wait for the end of the motion or for a cancel; the reason when neither came."""
         while not _over(goal, call):
             if monotonic() > deadline:
@@ -70,7 +70,7 @@ class Mover:
             call.wait_for(lambda: _over(goal, call), min(GATEWAY_CHECK_PERIOD, deadline - monotonic()))
         return None
 
-    def _stop(self, call: Motion) -> None:
+    def _stop(self, call: TrajectoryCall) -> None:
         """Cancel the motion and wait until it has ended."""
         self._peer.cancel(call)
         if not call.wait_for(lambda: call.outcome is not None, MOTION_END_LIMIT):
@@ -96,11 +96,11 @@ class _Progress:
             self._say(progress)
 
 
-def _over(goal: AnyGoal, call: Motion) -> bool:
+def _over(goal: AnyGoal, call: TrajectoryCall) -> bool:
     return call.outcome is not None or goal.cancelled.is_set()
 
 
-def _verdict(goal: AnyGoal, call: Motion, name: str) -> Outcome:
+def _verdict(goal: AnyGoal, call: TrajectoryCall, name: str) -> Outcome:
     if call.outcome is Outcome.SUCCEEDED and not goal.cancelled.is_set():
         return Outcome.SUCCEEDED
     if goal.cancelled.is_set() and call.outcome not in (Outcome.ABORTED, Outcome.LOST):

@@ -19,7 +19,7 @@ from tms_reason.texts import text
 from tms_ros.goals import Ended, Outcome
 from tms_ros.server import AnyGoal
 from tms_rp.clearance import Clearance
-from tms_rp.kind import Action, Angles, Moves
+from tms_rp.kind import Angles, Moves, PlanningAction
 from tms_rp.kinds import load
 from tms_rp.mover import Mover
 from tms_rp.neighbours import Neighbours
@@ -107,7 +107,7 @@ class Planner:
             raise SubtaskFailed(JointsOld(self._app.machine, age, topic))
         return last[1]
 
-    def serve(self, action: Action, name: str) -> None:
+    def serve(self, action: PlanningAction, name: str) -> None:
         """Serve one action under its full name."""
 
         def accept(_request: Any) -> Reason | None:
@@ -120,7 +120,7 @@ class Planner:
 
         self._app.ros.serve(action.type, name, lambda goal: self._run(action, goal), accept)
 
-    def _run(self, action: Action, goal: AnyGoal) -> Ended[Any]:
+    def _run(self, action: PlanningAction, goal: AnyGoal) -> Ended[Any]:
         outcome = Outcome.ABORTED
         if action.moves:
             self._permit.hold(goal.uuid)
@@ -133,7 +133,7 @@ class Planner:
         code = TmsRpErrorCodes.SUCCESS if outcome is Outcome.SUCCEEDED else TmsRpErrorCodes.FAILURE
         return outcome, action.type.Result(error_code=TmsRpErrorCodes(val=code))
 
-    def _execute(self, action: Action, goal: AnyGoal) -> Outcome:
+    def _execute(self, action: PlanningAction, goal: AnyGoal) -> Outcome:
         def say(state: Reason, notes: tuple[Reason, ...] = ()) -> None:
             goal.publish(action.type.Feedback(state=wire.to_line(Adapted(state, notes) if notes else state)))
 
@@ -152,7 +152,7 @@ class Planner:
         say(Succeeded() if outcome is Outcome.SUCCEEDED else MotionCancelled())
         return outcome
 
-    def _plan(self, action: Action, goal: AnyGoal) -> tuple[Trajectory, tuple[Reason, ...]]:
+    def _plan(self, action: PlanningAction, goal: AnyGoal) -> tuple[Trajectory, tuple[Reason, ...]]:
         """The trajectory, and the changes to the goal that it needed."""
         begun = monotonic()
         now = self.joints()

@@ -22,7 +22,7 @@ Joints = tuple[float, ...]
 
 
 @dataclass(frozen=True)
-class Sample:
+class TrajectorySample:
     """State of all joints at one time [s] from the start; rad, rad/s, rad/s^2."""
 
     time: float
@@ -36,7 +36,7 @@ class Trajectory:
     """Samples of one or more moves, each of which ends at rest."""
 
     names: tuple[str, ...]
-    samples: tuple[Sample, ...]
+    samples: tuple[TrajectorySample, ...]
     stops: tuple[float, ...]  # s, when each move ends
 
     @property
@@ -78,12 +78,12 @@ def trajectory(
     return Trajectory(tuple(joints), tuple(samples), tuple(stops))
 
 
-def _rest(time: float, positions: Joints) -> Sample:
+def _rest(time: float, positions: Joints) -> TrajectorySample:
     still = (0.0,) * len(positions)
-    return Sample(time, positions, still, still)
+    return TrajectorySample(time, positions, still, still)
 
 
-def _move(limits: Sequence[Joint], begin: Sample, target: Joints, step: float) -> list[Sample]:
+def _move(limits: Sequence[Joint], begin: TrajectorySample, target: Joints, step: float) -> list[TrajectorySample]:
     """Samples after `begin` up to the rest in `target`."""
     if all(abs(a - b) < 1e-9 for a, b in zip(begin.positions, target, strict=True)):
         return []
@@ -93,7 +93,7 @@ def _move(limits: Sequence[Joint], begin: Sample, target: Joints, step: float) -
     for i in range(1, count):
         seconds = profile.duration * i / count
         p, v, a = profile.at_time(seconds)
-        samples.append(Sample(begin.time + seconds, tuple(p), tuple(v), tuple(a)))
+        samples.append(TrajectorySample(begin.time + seconds, tuple(p), tuple(v), tuple(a)))
     return [*samples, _rest(begin.time + profile.duration, target)]
 
 
@@ -115,7 +115,7 @@ def _profile(limits: Sequence[Joint], start: Joints, target: Joints) -> Profile:
     return profile
 
 
-def _check(joints: dict[str, Joint], samples: Sequence[Sample], targets: Sequence[Sequence[float]]) -> None:
+def _check(joints: dict[str, Joint], samples: Sequence[TrajectorySample], targets: Sequence[Sequence[float]]) -> None:
     """Refuse samples outside the limits, also if ruckig made them."""
     for i, (name, joint) in enumerate(joints.items()):
         reached = [samples[0].positions[i], *(target[i] for target in targets)]

@@ -21,13 +21,13 @@ from tms_config.yaml_file import parse
 from tms_reason.errors import SubtaskFailed
 from tms_rp.clearance import Clearance, Obstacle, placed
 from tms_rp.kinds.backhoe.goals import TipGoal
-from tms_rp.kinds.backhoe.linkage import Pose
+from tms_rp.kinds.backhoe.linkage import ArmAngles
 from tms_rp.kinds.backhoe.planner import Backhoe
 from tms_rp.reasons import PartOf
 from tms_rp.trajectory import trajectory
 
 GOALS = 500
-NOW = Pose(0.0, -0.8029, 1.9897, 0.8029)
+NOW = ArmAngles(0.0, -0.8029, 1.9897, 0.8029)
 MEMORY = """
 import re, pathlib, sys
 sys.path[:0] = ["services", "tests"]

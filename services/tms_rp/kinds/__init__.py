@@ -2,10 +2,10 @@
 
 from importlib import import_module
 
-from tms_rp.kind import Kind
+from tms_rp.kind import MachineKind
 
 
-def load(name: str) -> Kind:
+def load(name: str) -> MachineKind:
     """The kind of this name; the process table has checked that it is there."""
-    found: Kind = import_module(f"{__name__}.{name}").KIND
+    found: MachineKind = import_module(f"{__name__}.{name}").KIND
     return found

@@ -13,13 +13,13 @@ from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
 from tms_reason.errors import ConfigError, SubtaskFailed
 from tms_rp.kinds.backhoe.goals import ChangePose, LinkGoal, TipGoal, joint_goal
-from tms_rp.kinds.backhoe.linkage import Pose
+from tms_rp.kinds.backhoe.linkage import ArmAngles
 from tms_rp.kinds.backhoe.planner import Backhoe
 from tms_rp.reasons import ClearanceCut
 from words import words
 
 BACKHOE = Backhoe(parse(CONFIGS / "machines" / "zx200.yaml", MachineModel))
-NOW = Pose(0.0, -0.6, 1.9, 0.3)
+NOW = ArmAngles(0.0, -0.6, 1.9, 0.3)
 SOIL = TipGoal(0.0798115209, -4.7382431030, 0.1016051769, 0.0)
 
 
@@ -68,7 +68,7 @@ def test_a_full_turn_of_theta_w_is_the_same_bucket() -> None:
     assert turned.targets[0] == pytest.approx(BACKHOE.change_pose(NOW, tips(TipGoal(6, 0, 0, 1.2))).targets[0])
 
 
-def pose_of(joint_angles: Pose, roll: float = 0.0, yaw: float = 0.0) -> LinkGoal:
+def pose_of(joint_angles: ArmAngles, roll: float = 0.0, yaw: float = 0.0) -> LinkGoal:
     """Pose of bucket_end_link by the rotations of the URDF, independent of the planner's formulas."""
     x, y, z, _ = BACKHOE.linkage.tip(joint_angles)
     fixed = math.radians(32.0357 + 16.9707 - 9.20083)
@@ -82,7 +82,7 @@ def pose_of(joint_angles: Pose, roll: float = 0.0, yaw: float = 0.0) -> LinkGoal
 
 @given(st.floats(-3, 3), st.floats(-1.13, -0.11), st.floats(0.6, 2.6), st.floats(-0.6, 2.3), st.floats(-1, 1))
 def test_a_link_pose_leads_back_to_its_joints(a: float, b: float, c: float, d: float, roll: float) -> None:
-    goal = ChangePose(links=(pose_of(Pose(a, b, c, d), roll),))
+    goal = ChangePose(links=(pose_of(ArmAngles(a, b, c, d), roll),))
     (target,) = BACKHOE.change_pose(NOW._replace(swing=a), goal).targets
     assert target == pytest.approx((a, b, c, d), abs=1e-6)
 
@@ -118,7 +118,7 @@ def test_offset_is_along_the_line_from_base_link() -> None:
 
 
 def test_excavate_cuts_the_clearance_at_the_limit() -> None:
-    pose = Pose(0.0, -0.2, 2.65, -0.3)
+    pose = ArmAngles(0.0, -0.2, 2.65, -0.3)
     x, y, z, theta_w = BACKHOE.linkage.tip(pose)
     moves = BACKHOE.excavate(NOW, TipGoal(x, y, z + 1.0, theta_w))
     assert moves.targets[2].arm == 2.687
@@ -126,7 +126,7 @@ def test_excavate_cuts_the_clearance_at_the_limit() -> None:
 
 
 def test_release_ends_at_the_asked_angle() -> None:
-    now = Pose(-0.0028, -0.837315, 1.646905, 2.190410)
+    now = ArmAngles(-0.0028, -0.837315, 1.646905, 2.190410)
     half, end = BACKHOE.release(now, -0.34).targets
     assert BACKHOE.linkage.tip(half)[:3] == pytest.approx((5.854, -0.103, 2.520), abs=1e-3)
     assert BACKHOE.linkage.tip(end)[:3] == pytest.approx((6.969, -0.106, 4.045), abs=1e-3)
@@ -135,7 +135,7 @@ def test_release_ends_at_the_asked_angle() -> None:
 
 
 def test_release_cuts_the_clearance_at_the_limits() -> None:
-    moves = BACKHOE.release(Pose(0.0, -1.1, 2.6, 1.7), -0.34)
+    moves = BACKHOE.release(ArmAngles(0.0, -1.1, 2.6, 1.7), -0.34)
     assert moves.targets[1][1:3] == (-1.137, 2.687)
     assert moves.notes == (ClearanceCut("arm_joint", 2.687), ClearanceCut("boom_joint", -1.137))
 

@@ -7,7 +7,7 @@ from tms_msg_rp.msg import TmsRpZx200PositionWithAngle
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from tms_config.models import MachineModel
-from tms_rp.kind import Action
+from tms_rp.kind import PlanningAction
 from tms_rp.kinds import load
 
 NOW = (0.3, -0.5, 1.5, 0.4)  # rad
@@ -24,7 +24,7 @@ REQUESTS = {
 
 
 @pytest.mark.parametrize("action", load("backhoe").actions, ids=lambda action: action.name)
-def test_an_action_plans_from_plain_angles(model: MachineModel, action: Action) -> None:
+def test_an_action_plans_from_plain_angles(model: MachineModel, action: PlanningAction) -> None:
     kind = load("backhoe")
     moves = action.plan(kind.planner(model), NOW, REQUESTS[action.type])
     assert moves.targets and all(len(target) == len(kind.joints) for target in moves.targets)

@@ -11,7 +11,7 @@ from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
-from tms_rp.kinds.backhoe.linkage import Linkage, Pose, Tip, wrap
+from tms_rp.kinds.backhoe.linkage import ArmAngles, Linkage, Tip, wrap
 from tms_rp.reasons import TooFar, TooNear, TooNearAxis
 
 LINKAGE = Linkage.of(parse(CONFIGS / "machines" / "zx200.yaml", MachineModel).geometry)
@@ -42,7 +42,7 @@ angle = st.floats(-math.pi, math.pi)
 
 @pytest.mark.parametrize(("joints", "tip"), FORWARD)
 def test_forward(joints: tuple[float, ...], tip: tuple[float, ...]) -> None:
-    assert LINKAGE.tip(Pose(*joints)) == pytest.approx(tip, abs=1.5e-6)
+    assert LINKAGE.tip(ArmAngles(*joints)) == pytest.approx(tip, abs=1.5e-6)
 
 
 @pytest.mark.parametrize(("tip", "joints"), INVERSE)
@@ -52,7 +52,7 @@ def test_inverse(tip: tuple[float, ...], joints: tuple[float, ...]) -> None:
 
 @given(angle, st.floats(-1.137, -0.1), st.floats(0.594, 2.687), st.floats(-0.622, 2.372))
 def test_inverse_of_forward_is_the_same_pose(swing: float, boom: float, arm: float, bucket: float) -> None:
-    pose = Pose(swing, boom, arm, bucket)
+    pose = ArmAngles(swing, boom, arm, bucket)
     found = LINKAGE.joints(LINKAGE.tip(pose))
     assert wrap(found.swing - swing) == pytest.approx(0, abs=1e-9)
     assert found[1:] == pytest.approx(pose[1:], abs=1e-9)

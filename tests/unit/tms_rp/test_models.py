@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
-from tms_rp.kinds.backhoe.linkage import Linkage, Pose, wrap
+from tms_rp.kinds.backhoe.linkage import ArmAngles, Linkage, wrap
 
 EXCAVATORS = {
     path.stem: model
@@ -29,7 +29,7 @@ def test_there_and_back(name: str, swing: float, boom: float, arm: float, bucket
         limits = model.joints[joint]
         assert limits.min is not None and limits.max is not None
         angles.append(limits.min + part * (limits.max - limits.min))
-    tip = linkage.tip(Pose(swing, *angles))
+    tip = linkage.tip(ArmAngles(swing, *angles))
     out = (tip.x - linkage.axis[0]) * math.cos(swing) + (tip.y - linkage.axis[1]) * math.sin(swing)
     if out < 0.5:  # the tip is behind the swing axis: the other way round reaches it, too
         return
@@ -41,5 +41,5 @@ def test_the_zx120_stretched_out() -> None:
     linkage = Linkage.of(EXCAVATORS["zx120"].geometry)
     assert linkage.lengths == pytest.approx((4.6, 2.519, 1.23))
     assert linkage.offsets == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
-    tip = linkage.tip(Pose(0.0, 0.0, 0.0, 0.0))
+    tip = linkage.tip(ArmAngles(0.0, 0.0, 0.0, 0.0))
     assert tip == pytest.approx((0.14 + 4.6 + 2.519 + 1.23, -0.16443, 1.424, 0.0), abs=1e-9)

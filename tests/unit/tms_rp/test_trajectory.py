@@ -12,7 +12,7 @@ from tms_config.models import Joint, MachineModel
 from tms_config.yaml_file import parse
 from tms_reason.errors import SubtaskFailed
 from tms_rp import trajectory as module
-from tms_rp.trajectory import Sample, trajectory
+from tms_rp.trajectory import TrajectorySample, trajectory
 
 JOINTS = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel).joints
 
@@ -21,7 +21,7 @@ pose = st.tuples(
 )
 
 
-def outside(name: str, joint: Joint, index: int, samples: tuple[Sample, ...]) -> list[str]:
+def outside(name: str, joint: Joint, index: int, samples: tuple[TrajectorySample, ...]) -> list[str]:
     found = []
     for before, now in pairwise(samples):
         jerk = (now.accelerations[index] - before.accelerations[index]) / (now.time - before.time)

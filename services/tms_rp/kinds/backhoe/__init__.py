@@ -2,32 +2,32 @@
 
 from tms_msg_rp.action import TmsRpZx200ChangePose, TmsRpZx200ExcavateSimple, TmsRpZx200ReleaseSimple
 
-from tms_rp.kind import Action, Angles, Kind, Moves
+from tms_rp.kind import Angles, MachineKind, Moves, PlanningAction
 from tms_rp.kinds.backhoe import messages
-from tms_rp.kinds.backhoe.linkage import Pose
+from tms_rp.kinds.backhoe.linkage import ArmAngles
 from tms_rp.kinds.backhoe.planner import NAMES, Backhoe
 
 
 def _change_pose(planner: Backhoe, now: Angles, request: TmsRpZx200ChangePose.Goal) -> Moves:
-    return planner.change_pose(Pose(*now), messages.change_pose(request))
+    return planner.change_pose(ArmAngles(*now), messages.change_pose(request))
 
 
 def _excavate(planner: Backhoe, now: Angles, request: TmsRpZx200ExcavateSimple.Goal) -> Moves:
-    return planner.excavate(Pose(*now), messages.tip(request.position_with_angle))
+    return planner.excavate(ArmAngles(*now), messages.tip(request.position_with_angle))
 
 
 def _release(planner: Backhoe, now: Angles, request: TmsRpZx200ReleaseSimple.Goal) -> Moves:
-    return planner.release(Pose(*now), request.target_angle)
+    return planner.release(ArmAngles(*now), request.target_angle)
 
 
-KIND = Kind(
+KIND = MachineKind(
     NAMES,
     Backhoe,
     (
-        Action("change_pose", TmsRpZx200ChangePose, _change_pose, True),
-        Action("change_pose_plan", TmsRpZx200ChangePose, _change_pose, False),
-        Action("excavate_simple", TmsRpZx200ExcavateSimple, _excavate, True),
-        Action("excavate_simple_plan", TmsRpZx200ExcavateSimple, _excavate, False),
-        Action("release_simple", TmsRpZx200ReleaseSimple, _release, True),
+        PlanningAction("change_pose", TmsRpZx200ChangePose, _change_pose, True),
+        PlanningAction("change_pose_plan", TmsRpZx200ChangePose, _change_pose, False),
+        PlanningAction("excavate_simple", TmsRpZx200ExcavateSimple, _excavate, True),
+        PlanningAction("excavate_simple_plan", TmsRpZx200ExcavateSimple, _excavate, False),
+        PlanningAction("release_simple", TmsRpZx200ReleaseSimple, _release, True),
     ),
 )

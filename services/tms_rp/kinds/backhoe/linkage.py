@@ -18,7 +18,7 @@ from tms_rp.reasons import Point, TooFar, TooNear, TooNearAxis
 Vector = tuple[float, float, float]
 
 
-class Pose(NamedTuple):
+class ArmAngles(NamedTuple):
     """Joint angles of the arm [rad], in the order of the controller."""
 
     swing: float
@@ -70,7 +70,7 @@ class Linkage:
             level=_slope(e) + e.pitch,
         )
 
-    def tip(self, pose: Pose) -> Tip:
+    def tip(self, pose: ArmAngles) -> Tip:
         """Forward kinematics: where the bucket tip is, in base_link."""
         g1 = pose.boom - self.offsets[0]
         g2 = g1 + pose.arm - self.offsets[1]
@@ -95,7 +95,7 @@ class Linkage:
             raise SubtaskFailed(TooNearAxis(x, y, missing))
         return wrap(math.atan2(py, px) - math.atan2(self.lateral, out))
 
-    def joints(self, tip: Tip) -> Pose:
+    def joints(self, tip: Tip) -> ArmAngles:
         """Inverse kinematics, elbow up, without joint limits; `tip` is in base_link.
 
         Raises:
@@ -113,7 +113,7 @@ class Linkage:
         g2 = math.pi - _corner(l1, l2, far)
         g3 = tip.theta_w - g1 - g2
         o1, o2, o3 = self.offsets
-        return Pose(swing, g1 + o1, g2 + o2, g3 + o3)
+        return ArmAngles(swing, g1 + o1, g2 + o2, g3 + o3)
 
 
 def _within_reach(tip: Tip, far: float, least: float, most: float) -> None:

@@ -10,7 +10,7 @@ from tms_reason.errors import ConfigError, SubtaskFailed
 from tms_reason.reason import Reason
 from tms_rp.kind import Moves
 from tms_rp.kinds.backhoe.goals import ChangePose, LinkGoal, TipGoal, finite
-from tms_rp.kinds.backhoe.linkage import Linkage, Pose, Tip, wrap
+from tms_rp.kinds.backhoe.linkage import ArmAngles, Linkage, Tip, wrap
 from tms_rp.reasons import (
     ClearanceCut,
     JointBroken,
@@ -52,19 +52,19 @@ class Backhoe:
         self.limits = {name: model.joints[name] for name in NAMES}
         self.linkage = Linkage.of(model.geometry)
 
-    def change_pose(self, now: Pose, goal: ChangePose) -> Moves:
+    def change_pose(self, now: ArmAngles, goal: ChangePose) -> Moves:
         """Go through joint targets, link poses or bucket tips, whichever the goal gives."""
         given = [part for part in (goal.joints, goal.links, goal.tips) if part]
         if len(given) != 1:
             raise SubtaskFailed(OneTarget(len(given)))
-        targets: list[Pose] = []
+        targets: list[ArmAngles] = []
         for values in goal.joints:
             targets.append(self._joints(now, targets, values))
         for tip in (*(self._link_tip(link) for link in goal.links), *(_tip(tip) for tip in goal.tips)):
             targets.append(_short_way(targets[-1] if targets else now, self.reach(tip)))
         return Moves(tuple(targets))
 
-    def excavate(self, now: Pose, goal: TipGoal) -> Moves:
+    def excavate(self, now: ArmAngles, goal: TipGoal) -> Moves:
         """Swing over the point, reach it with the nearest possible bucket angle, then curl the bucket in.
 
         The bucket digs DEPTH below the goal's z, `offset` further out on the line from the machine's origin.
@@ -82,16 +82,16 @@ class Backhoe:
         curl = self._allowed(reach, reach._replace(arm=arm, bucket=CURLED))
         return Moves((now._replace(swing=reach.swing), reach, curl), tuple(notes))
 
-    def release(self, now: Pose, angle: float) -> Moves:
+    def release(self, now: ArmAngles, angle: float) -> Moves:
         """Open the bucket to `angle` [rad] in two moves; the second also brings arm and boom up for clearance."""
         finite("target_angle", angle)
         notes: list[Reason] = []
         arm = self._clip("arm_joint", now.arm + CLEAR_ARM, notes)
         boom = self._clip("boom_joint", now.boom + CLEAR_BOOM, notes)
-        end = self._allowed(now, Pose(now.swing, boom, arm, angle))
+        end = self._allowed(now, ArmAngles(now.swing, boom, arm, angle))
         return Moves((now._replace(bucket=(now.bucket + angle) / 2), end), tuple(notes))
 
-    def reach(self, tip: Tip) -> Pose:
+    def reach(self, tip: Tip) -> ArmAngles:
         """Joints inside their limits that bring the bucket tip there; swing in (-pi, pi]."""
         pose = self.linkage.joints(tip)
         bucket = self.limits["bucket_joint"]
@@ -103,7 +103,7 @@ class Backhoe:
             raise SubtaskFailed(PointOutOfRange(Point(*tip), broken))
         return pose
 
-    def _search(self, tip: Tip) -> tuple[Pose, float]:
+    def _search(self, tip: Tip) -> tuple[ArmAngles, float]:
         """Joints for the point with the possible theta_w nearest to the asked one, and that theta_w [rad]."""
         refused: list[SubtaskFailed] = []
         for theta_w in _outward(tip.theta_w):
@@ -113,13 +113,13 @@ class Backhoe:
                 refused.append(error)
         raise SubtaskFailed(NoAngleDigs(refused[0].reason))
 
-    def _joints(self, now: Pose, before: list[Pose], values: Mapping[str, float]) -> Pose:
+    def _joints(self, now: ArmAngles, before: list[ArmAngles], values: Mapping[str, float]) -> ArmAngles:
         unknown = [name for name in values if name not in (*NAMES, TOOL)]
         if unknown:
             raise SubtaskFailed(NoSuchJoint(unknown[0], NAMES))
         finite("trajectory", *values.values())
         kept = {name: angle for name, angle in values.items() if name in NAMES and abs(angle) <= math.tau}
-        target = Pose(*(kept.get(name, angle) for name, angle in zip(NAMES, now, strict=True)))
+        target = ArmAngles(*(kept.get(name, angle) for name, angle in zip(NAMES, now, strict=True)))
         return self._allowed(now, _short_way(before[-1] if before else now, target))
 
     def _link_tip(self, link: LinkGoal) -> Tip:
@@ -135,7 +135,7 @@ class Backhoe:
             raise SubtaskFailed(OutOfPlane(math.asin(max(-1.0, min(1.0, aside))), swing))
         return Tip(link.x, link.y, link.z, wrap(math.atan2(-z, out) - self.linkage.level))
 
-    def _allowed(self, now: Pose, target: Pose) -> Pose:
+    def _allowed(self, now: ArmAngles, target: ArmAngles) -> ArmAngles:
         """The target, if every joint that it moves stays inside its limits."""
         moved = ((n, b) for n, a, b in zip(NAMES, now, target, strict=True) if a != b)
         broken = self._broken(moved)
@@ -162,7 +162,7 @@ def _tip(goal: TipGoal) -> Tip:
     return Tip(goal.x, goal.y, goal.z, goal.theta_w)
 
 
-def _short_way(before: Pose, target: Pose) -> Pose:
+def _short_way(before: ArmAngles, target: ArmAngles) -> ArmAngles:
     """The target with its swing on the turn nearest to the present angle of the upper body."""
     return target._replace(swing=before.swing + wrap(target.swing - before.swing))
 
