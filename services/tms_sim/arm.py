@@ -5,7 +5,7 @@ import threading
 from collections.abc import Mapping, Sequence
 
 from tms_config.models import Joint, Response
-from tms_sim.path import Path, Point
+from tms_sim.reference_trajectory import Knot, ReferenceTrajectory
 from tms_sim.servo import Servo
 
 SUBSTEP = 0.01  # s: the same motion at any time scale
@@ -29,7 +29,7 @@ class Arm:
         self.speeds: dict[str, float] = {}  # rad/s, of joints that turn until they are commanded something else
         self.lock = threading.RLock()  # shared by the servers of goals and the steps of time
         self._longest = max((servo.ahead for servo in self.servos.values()), default=0.0)
-        self._path: Path | None = None
+        self._reference: ReferenceTrajectory | None = None
         self._stuck = False
         self._owed, self._count = 0.0, 0  # s that are not stepped yet; substeps so far
 
@@ -70,22 +70,22 @@ class Arm:
                 servo.rest()
         self._stuck = stuck
 
-    def follow(self, names: Sequence[str], points: Sequence[Point]) -> Path:
+    def follow(self, names: Sequence[str], points: Sequence[Knot]) -> ReferenceTrajectory:
         """Begin a trajectory from the present state of the arm, moving or not."""
         servos = self.servos.values()
-        start = Point(0.0, tuple(s.setpoint if s.led else s.position for s in servos), tuple(s.rate for s in servos))
-        self._path, self.elapsed = Path(self.joints, start, names, points), -self._longest
+        start = Knot(0.0, tuple(s.setpoint if s.led else s.position for s in servos), tuple(s.rate for s in servos))
+        self._reference, self.elapsed = ReferenceTrajectory(self.joints, start, names, points), -self._longest
         self.targets.clear()  # earlier commands must not go on afterwards
         self.speeds.clear()
-        return self._path
+        return self._reference
 
     def finish(self) -> None:
         """End the path and stay at its end."""
-        self._path = None
+        self._reference = None
 
     def hold(self) -> None:
         """Give up the path and brake, each joint as soon as its dead time and its acceleration limit let it."""
-        self._path = None
+        self._reference = None
         for servo in self.servos.values():
             servo.brake(self.now)
 
@@ -96,7 +96,7 @@ class Arm:
 
     def halt(self, immediately: bool) -> None:
         """Do the emergency stop, with or without the dead time."""
-        self._path = None
+        self._reference = None
         self.targets.clear()
         self.speeds.clear()
         for servo in self.servos.values():
@@ -131,16 +131,16 @@ class Arm:
     def _wanted(self, i: int, name: str, servo: Servo, h: float) -> float | None:
         """Velocity [rad/s] of a joint's reference; None: the joint has none."""
         acceleration = servo.joint.acceleration
-        if self._path is not None:
+        if self._reference is not None:
             since = self.elapsed + servo.ahead
-            before, after = self._path.joint(i, since), self._path.joint(i, since + h)
+            before, after = self._reference.joint(i, since), self._reference.joint(i, since + h)
             return (after - before) / h + _catch_up(before - servo.setpoint, acceleration, h)
         if name in self.targets:
             return _catch_up(self.targets[name] - servo.setpoint, acceleration, h)
         return self.speeds.get(name)
 
     def _idle(self) -> bool:
-        return self._path is None and not self.targets and not self.speeds
+        return self._reference is None and not self.targets and not self.speeds
 
 
 def _catch_up(behind: float, acceleration: float, h: float) -> float:

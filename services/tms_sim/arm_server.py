@@ -4,26 +4,26 @@ from builtin_interfaces.msg import Duration
 from control_msgs.action import FollowJointTrajectory
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from tms_sim.controller import Controller, PathMotion
-from tms_sim.motion import Verdict
-from tms_sim.path import Point
-from tms_sim.servers import Served
+from tms_sim.controller import Controller, TrajectoryMotion
+from tms_sim.motion import MotionVerdict
+from tms_sim.reference_trajectory import Knot
+from tms_sim.servers import ActionHandler
 
 
-def trajectory_server(controller: Controller) -> Served:
+def trajectory_server(controller: Controller) -> ActionHandler:
     """FollowJointTrajectory on a controller."""
 
-    def begin(request: FollowJointTrajectory.Goal) -> PathMotion:
+    def begin(request: FollowJointTrajectory.Goal) -> TrajectoryMotion:
         wanted, late = request.trajectory, request.goal_time_tolerance
         return controller.begin(list(wanted.joint_names), _points(wanted), late.sec + late.nanosec * 1e-9)
 
     def refusal(request: FollowJointTrajectory.Goal) -> tuple[int, str] | None:
         return controller.refusal(list(request.trajectory.joint_names), _points(request.trajectory))
 
-    def feedback(motion: PathMotion) -> FollowJointTrajectory.Feedback:
+    def feedback(motion: TrajectoryMotion) -> FollowJointTrajectory.Feedback:
         arm = controller.arm
         since = max(0.0, arm.elapsed)  # s, it begins a dead time after the goal was accepted
-        desired, actual = list(motion.path.at(since)), arm.positions
+        desired, actual = list(motion.reference.at(since)), arm.positions
         return FollowJointTrajectory.Feedback(
             joint_names=list(arm.joints),
             desired=JointTrajectoryPoint(positions=desired, time_from_start=_duration(since)),
@@ -31,15 +31,15 @@ def trajectory_server(controller: Controller) -> Served:
             error=JointTrajectoryPoint(positions=[d - a for d, a in zip(desired, actual, strict=True)]),
         )
 
-    def result(_motion: PathMotion, verdict: Verdict) -> FollowJointTrajectory.Result:
+    def result(_motion: TrajectoryMotion, verdict: MotionVerdict) -> FollowJointTrajectory.Result:
         return FollowJointTrajectory.Result(error_code=verdict.code, error_string=verdict.text)
 
-    return Served("trajectory", FollowJointTrajectory, refusal, begin, controller.cancel, feedback, result)
+    return ActionHandler("trajectory", FollowJointTrajectory, refusal, begin, controller.cancel, feedback, result)
 
 
-def _points(trajectory: JointTrajectory) -> list[Point]:
+def _points(trajectory: JointTrajectory) -> list[Knot]:
     return [
-        Point(p.time_from_start.sec + p.time_from_start.nanosec * 1e-9, tuple(p.positions), tuple(p.velocities))
+        Knot(p.time_from_start.sec + p.time_from_start.nanosec * 1e-9, tuple(p.positions), tuple(p.velocities))
         for p in trajectory.points
     ]
 

@@ -14,7 +14,7 @@ TORQUE = 2.0  # times the acceleration limit of planned motions
 STICKS = 5e-4  # rad/s, slower than this a joint stands when no command is under way
 
 
-class Drive:
+class JointDrive:
     """One joint: true position [rad] and velocity [rad/s]."""
 
     def __init__(self, joint: Joint, response: Response, position: float) -> None:

@@ -9,7 +9,7 @@ from tms_machine.frames import MAP
 from tms_machine.geometry import Quaternion, about, product
 
 
-class Frame(NamedTuple):
+class LinkTransform(NamedTuple):
     """One link in the frame of its parent: position [m] and orientation."""
 
     parent: str
@@ -25,12 +25,12 @@ class Chain:
     model: MachineModel
     border: Border  # its names hold the machine's name already
 
-    def frames(self, place: tuple[float, float, float], positions: Mapping[str, float]) -> list[Frame]:
+    def frames(self, place: tuple[float, float, float], positions: Mapping[str, float]) -> list[LinkTransform]:
         """Frames for a place (x m, y m, yaw rad) and joint positions [rad]; joints left out are at 0."""
         x, y, yaw = place
         prefix = self.border.frame_prefix
-        found = [Frame(MAP, self.border.base_frame, (x, y, 0.0), about("z", yaw))]
+        found = [LinkTransform(MAP, self.border.base_frame, (x, y, 0.0), about("z", yaw))]
         for name, origin in self.model.geometry.items():
             turn = product(about("y", origin.pitch), about(origin.axis, positions.get(name, 0.0)))
-            found.append(Frame(prefix + origin.parent, prefix + origin.child, origin.xyz, turn))
+            found.append(LinkTransform(prefix + origin.parent, prefix + origin.child, origin.xyz, turn))
         return found

@@ -5,7 +5,7 @@ from typing import Any
 
 from tms_config.clock import unix_ns
 from tms_ros.node import Ros
-from tms_sim.report import Reading
+from tms_sim.sensor_model import Reading
 from tms_sim.sources import Topic
 
 PUBLISH_PERIOD = 1 / 60  # s

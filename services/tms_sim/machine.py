@@ -9,8 +9,8 @@ from tms_sim.arm import Arm
 from tms_sim.base import Base
 from tms_sim.controller import Controller
 from tms_sim.joint_commands import JointCommands
+from tms_sim.navigator import Navigator
 from tms_sim.tracks import ZERO
-from tms_sim.travel import Travel
 from tms_sim.turner import Turner
 
 MAX_STEP = 0.04  # s a step, so that goals end and faults begin equally exactly at any time scale
@@ -37,7 +37,7 @@ class StandIn:
         self.turner = Turner(self.arm, self._border.dump_returns)
         self.commands = JointCommands(self.arm, self._border.joints)
         self.base = Base(model.drive, start, response.get(DRIVE)) if model.drive else None
-        self.travel = Travel(self.base) if self.base else None
+        self.navigator = Navigator(self.base) if self.base else None
         self.fault = fault
         self.time = 0.0  # s
         self._die = die
@@ -64,7 +64,7 @@ class StandIn:
     @property
     def busy(self) -> bool:
         """Whether a goal is open."""
-        return self.controller.busy or self.turner.busy or (self.travel is not None and self.travel.busy)
+        return self.controller.busy or self.turner.busy or (self.navigator is not None and self.navigator.busy)
 
     def stop(self, on: bool) -> None:
         """Set the level of the emergency stop."""
@@ -75,7 +75,7 @@ class StandIn:
             self._order_stop(lambda: self._stop(True) if releases == self._releases else None)
 
     def _stop(self, on: bool) -> None:
-        for part in (self.controller, self.turner, self.commands, self.travel):
+        for part in (self.controller, self.turner, self.commands, self.navigator):
             if part is not None:
                 part.stop(on)
         if on and not self._pressed:  # the position when it was pressed is held
@@ -92,8 +92,8 @@ class StandIn:
 
     def drive(self, v: float, w: float) -> None:
         """Take a velocity command [m/s, rad/s]; zero is an order to stop."""
-        base, travel = self.base, self.travel
-        if base is not None and travel is not None and not travel.emergency:
+        base, navigator = self.base, self.navigator
+        if base is not None and navigator is not None and not navigator.emergency:
             order = self._order_stop if max(abs(v), abs(w)) < ZERO else self.later
             order(lambda: base.command(v, w))
 
@@ -150,8 +150,8 @@ class StandIn:
         self.turner.step(seconds)
         if not busy:
             self.commands.step()
-        if self.travel is not None:
-            self.travel.step(seconds)
+        if self.navigator is not None:
+            self.navigator.step(seconds)
 
     def _due(self) -> list[Callable[[], object]]:
         with self._lock:

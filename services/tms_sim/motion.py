@@ -7,7 +7,7 @@ SUCCEEDED, CANCELED, ABORTED = "SUCCEEDED", "CANCELED", "ABORTED"
 
 
 @dataclass(frozen=True)
-class Verdict:
+class MotionVerdict:
     """How a motion ended."""
 
     outcome: str  # SUCCEEDED, CANCELED or ABORTED
@@ -19,10 +19,10 @@ class Verdict:
 class Motion:
     """`verdict` is set before `over`."""
 
-    verdict: Verdict | None = None
+    verdict: MotionVerdict | None = None
     over: threading.Event = field(default_factory=threading.Event)
 
-    def end(self, verdict: Verdict) -> None:
+    def end(self, verdict: MotionVerdict) -> None:
         """Set the verdict; the first one counts."""
         if not self.over.is_set():
             self.verdict = verdict

@@ -11,30 +11,34 @@ from tms_machine.frames import MAP
 from tms_machine.geometry import about, yaw_of
 from tms_sim.base import Leg
 from tms_sim.machine import StandIn
-from tms_sim.motion import Verdict
-from tms_sim.servers import Served
-from tms_sim.travel import MISSED, Travel, Trip
+from tms_sim.motion import MotionVerdict
+from tms_sim.navigator import MISSED, Navigator, Trip
+from tms_sim.servers import ActionHandler
 
 
-def nav_servers(machine: StandIn, travel: Travel) -> list[Served]:
+def nav_servers(machine: StandIn, navigator: Navigator) -> list[ActionHandler]:
     """The three actions of the navigation."""
 
-    def served(field: str, action: Any, poses: Callable[[Any], Sequence[PoseStamped]], through: bool = False) -> Served:
+    def handler(
+        field: str, action: Any, poses: Callable[[Any], Sequence[PoseStamped]], through: bool = False
+    ) -> ActionHandler:
         def begin(request: Any) -> Trip:
             waypoints = field == "follow_waypoints"
             miss = machine.fault.miss if waypoints else ()
-            return travel.begin(_legs(poses(request), through), waypoints=waypoints, miss=miss)
+            return navigator.begin(_legs(poses(request), through), waypoints=waypoints, miss=miss)
 
         def refusal(request: Any) -> str | None:
-            return _strange_frame(poses(request)) or travel.refusal(_legs(poses(request), through))
+            return _strange_frame(poses(request)) or navigator.refusal(_legs(poses(request), through))
 
-        return Served(field, action, refusal, begin, travel.cancel, lambda trip: _feedback(action, travel, trip),
-                      lambda trip, verdict: _result(action, trip, verdict))  # fmt: skip
+        return ActionHandler(
+            field, action, refusal, begin, navigator.cancel, lambda trip: _feedback(action, navigator, trip),
+            lambda trip, verdict: _result(action, trip, verdict),
+        )  # fmt: skip
 
     return [
-        served("navigate_to_pose", NavigateToPose, lambda request: [request.pose]),
-        served("navigate_through_poses", NavigateThroughPoses, lambda request: request.poses, through=True),
-        served("follow_waypoints", FollowWaypoints, lambda request: request.poses),
+        handler("navigate_to_pose", NavigateToPose, lambda request: [request.pose]),
+        handler("navigate_through_poses", NavigateThroughPoses, lambda request: request.poses, through=True),
+        handler("follow_waypoints", FollowWaypoints, lambda request: request.poses),
     ]
 
 
@@ -54,10 +58,10 @@ def _leg(pose: Pose, stands: bool) -> Leg:
     return Leg(pose.position.x, pose.position.y, yaw_of((q.x, q.y, q.z, q.w)) if stands else None)
 
 
-def _feedback(action: Any, travel: Travel, trip: Trip) -> Any:
+def _feedback(action: Any, navigator: Navigator, trip: Trip) -> Any:
     if action is FollowWaypoints:
-        return FollowWaypoints.Feedback(current_waypoint=travel.current(trip))
-    base, away = travel.base, travel.base.left()
+        return FollowWaypoints.Feedback(current_waypoint=navigator.current(trip))
+    base, away = navigator.base, navigator.base.left()
     now = PoseStamped()
     now.header.frame_id = MAP
     now.pose.position.x, now.pose.position.y = base.x, base.y
@@ -71,7 +75,7 @@ def _feedback(action: Any, travel: Travel, trip: Trip) -> Any:
     return reported
 
 
-def _result(action: Any, trip: Trip, verdict: Verdict) -> Any:
+def _result(action: Any, trip: Trip, verdict: MotionVerdict) -> Any:
     reported = action.Result()
     if hasattr(reported, "error_code"):  # Humble's results have no reason
         reported.error_code, reported.error_msg = verdict.code, verdict.text

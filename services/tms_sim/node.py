@@ -16,7 +16,7 @@ from tms_sim.arm_server import trajectory_server
 from tms_sim.joint_commands import POSITION
 from tms_sim.machine import StandIn
 from tms_sim.nav_servers import nav_servers
-from tms_sim.servers import Served, Server
+from tms_sim.servers import ActionHandler, ActionServer
 from tms_sim.telemetry import STEP_PERIOD, Telemetry
 from tms_sim.turn_server import TYPES, turn_server
 
@@ -28,9 +28,9 @@ def start(app: App) -> None:
     fault = settings.faults.get(name, Fault())
     machine = StandIn(model, site.start_of(name), fault, lambda: os._exit(1), border,
                       ideal=settings.response == "ideal")  # fmt: skip
-    for served in _served(machine, border):
-        server = Server(app, machine, served)
-        app.ros.serve(served.type, f"/{name}/{getattr(border, served.field)}", server.run, server.accept)
+    for handler in _handlers(machine, border):
+        server = ActionServer(app, machine, handler)
+        app.ros.serve(handler.type, f"/{name}/{getattr(border, handler.field)}", server.run, server.accept)
     if border.emg_stop:
         app.ros.subscribe(Bool, f"/{name}/{border.emg_stop}", lambda m: machine.stop(m.data), depth=10)
     if border.cmd_vel:
@@ -52,13 +52,13 @@ def _angle_of(machine: StandIn, joint: str) -> Callable[[Float64], None]:
     return lambda message: machine.turn([joint], POSITION, [message.data], [])
 
 
-def _served(machine: StandIn, border: Border) -> list[Served]:
+def _handlers(machine: StandIn, border: Border) -> list[ActionHandler]:
     """The actions that this border has."""
     found = [trajectory_server(machine.controller)]
     found += [turn_server(field, machine.turner) for field in TYPES if getattr(border, field)]
-    if machine.travel is not None:
-        found += nav_servers(machine, machine.travel)
-    return [served for served in found if getattr(border, served.field)]
+    if machine.navigator is not None:
+        found += nav_servers(machine, machine.navigator)
+    return [handler for handler in found if getattr(border, handler.field)]
 
 
 def _break(app: App, machine: StandIn, text: str) -> None:

@@ -4,7 +4,7 @@ import math
 
 from tms_config.models import Joint, Response
 from tms_sim.control_law import ControlLaw
-from tms_sim.drive import Drive
+from tms_sim.drive import JointDrive
 
 SETTLED = 1e-3  # rad and rad/s, within which the controller ends its commands
 STANDS = 5e-3  # rad/s, slower than this it counts as standing for a goal that is being cancelled
@@ -20,7 +20,7 @@ class Servo:
         self._leak = 0.0  # rad/s, motion without a command
         self._stood = math.inf  # s since the setpoint came to stand
         self._braking = self._halted = False
-        self._drive = Drive(joint, response, position) if response else None
+        self._drive = JointDrive(joint, response, position) if response else None
         self._law = ControlLaw(response.dead_time, response.lag, joint.velocity) if response else None
 
     @property

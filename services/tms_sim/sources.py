@@ -16,7 +16,7 @@ from tms_config.models import Border, Source
 from tms_machine.frames import MAP
 from tms_machine.geometry import about
 from tms_ros.node import Ros
-from tms_sim.report import SECOND, Reading
+from tms_sim.sensor_model import SECOND, Reading
 
 Fill = Callable[[Any, Reading], None]  # fills a message from a reading
 

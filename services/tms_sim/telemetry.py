@@ -11,10 +11,10 @@ from tf2_msgs.msg import TFMessage
 
 from tms_config.clock import monotonic, unix_ns
 from tms_runtime.app import App
-from tms_sim.frames import Chain, Frame
+from tms_sim.frames import Chain, LinkTransform
 from tms_sim.impostor import Impostor
 from tms_sim.machine import StandIn
-from tms_sim.report import Reading, Report
+from tms_sim.sensor_model import Reading, SensorModel
 from tms_sim.sources import Topic, time_of, topics
 from tms_sim.truth import Truth
 
@@ -40,7 +40,7 @@ class Telemetry:
 
         begun = unix_ns()
         self._topics = made()
-        self._report = Report(round(REPLAYED / (STEP_PERIOD * self._speed)))
+        self._sensors = SensorModel(round(REPLAYED / (STEP_PERIOD * self._speed)))
         self._impostor = Impostor(ros, made)
         self._truth = Truth(ros, name, machine)
         self._tf = ros.publisher(TFMessage, "/tf")
@@ -56,7 +56,7 @@ class Telemetry:
         self._truth.publish()
         self._ticks += 1
         reading = self._read()
-        reported = self._report.apply(reading, self._machine.fault)
+        reported = self._sensors.apply(reading, self._machine.fault)
         for topic in self._topics:
             if topic.due(self._ticks, STEP_PERIOD):
                 topic.publish(reported)
@@ -84,7 +84,7 @@ class Telemetry:
         self._tf.publish(self._frames)
 
 
-def _transform(frame: Frame) -> TransformStamped:
+def _transform(frame: LinkTransform) -> TransformStamped:
     x, y, z = frame.xyz
     qx, qy, qz, qw = frame.turn
     found = TransformStamped(child_frame_id=frame.child)

@@ -3,8 +3,8 @@
 from com3_msgs.action import SetDumpAngle, SetSwingAngle
 
 from tms_config.models import TURNED
-from tms_sim.motion import SUCCEEDED, Verdict
-from tms_sim.servers import Served
+from tms_sim.motion import SUCCEEDED, MotionVerdict
+from tms_sim.servers import ActionHandler
 from tms_sim.turner import Turn, Turner
 
 TYPES: dict[str, type[SetDumpAngle | SetSwingAngle]] = {
@@ -13,7 +13,7 @@ TYPES: dict[str, type[SetDumpAngle | SetSwingAngle]] = {
 }
 
 
-def turn_server(field: str, turner: Turner) -> Served:
+def turn_server(field: str, turner: Turner) -> ActionHandler:
     """SetDumpAngle or SetSwingAngle on one joint."""
     joint = next(name for name in TURNED[field] if name in turner.arm.joints)
     action = TYPES[field]
@@ -21,10 +21,10 @@ def turn_server(field: str, turner: Turner) -> Served:
     def feedback(turn: Turn) -> SetDumpAngle.Feedback | SetSwingAngle.Feedback:
         return action.Feedback(current_error=turn.target - turner.angle(joint))
 
-    def result(_turn: Turn, verdict: Verdict) -> SetDumpAngle.Result | SetSwingAngle.Result:
+    def result(_turn: Turn, verdict: MotionVerdict) -> SetDumpAngle.Result | SetSwingAngle.Result:
         return action.Result(success=verdict.outcome == SUCCEEDED)
 
-    return Served(
+    return ActionHandler(
         field, action, lambda request: turner.refusal(joint, request.target_angle),
         lambda request: turner.begin(joint, request.target_angle), turner.cancel, feedback, result,
     )  # fmt: skip

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from tms_reason.texts import text
 from tms_sim.arm import Arm
-from tms_sim.motion import ABORTED, CANCELED, SUCCEEDED, Motion, Verdict
+from tms_sim.motion import ABORTED, CANCELED, SUCCEEDED, Motion, MotionVerdict
 
 TOLERANCE = 0.005  # rad
 STOPPED = 0.01  # rad/s
@@ -18,7 +18,7 @@ class Turn(Motion):
 
     joint: str
     target: float  # rad
-    braking: Verdict | None = None  # verdict when the joint stands
+    braking: MotionVerdict | None = None  # verdict when the joint stands
     held: float = 0.0  # s at the target, for a joint that then returns to 0
 
 
@@ -55,19 +55,19 @@ class Turner:
         with self._lock:
             before = self._turns.pop(joint, None)
             if before is not None:
-                before.end(Verdict(ABORTED, text="preempted by a newer goal"))
+                before.end(MotionVerdict(ABORTED, text="preempted by a newer goal"))
             turn = self._turns[joint] = Turn(joint, angle)
             self.arm.targets[joint] = angle
             self.arm.speeds.pop(joint, None)
             if self.emergency:  # pressed between the check and now
-                self._brake(turn, Verdict(ABORTED, text="emergency stop"))
+                self._brake(turn, MotionVerdict(ABORTED, text="emergency stop"))
             return turn
 
     def cancel(self, turn: Turn) -> None:
         """Brake; the goal ends CANCELED once the joint stands."""
         with self._lock:
             if self._turns.get(turn.joint) is turn and not self._returns:
-                self._brake(turn, Verdict(CANCELED, text="stopped on request"))
+                self._brake(turn, MotionVerdict(CANCELED, text="stopped on request"))
 
     def stop(self, on: bool) -> None:
         """Set the level of the emergency stop."""
@@ -75,13 +75,13 @@ class Turner:
             self.emergency = on
             for turn in self._turns.values():
                 if on and turn.braking is None:
-                    self._brake(turn, Verdict(ABORTED, text="emergency stop"))
+                    self._brake(turn, MotionVerdict(ABORTED, text="emergency stop"))
 
     def angle(self, joint: str) -> float:
         """Position of a joint [rad]."""
         return self.arm.servos[joint].position
 
-    def _brake(self, turn: Turn, verdict: Verdict) -> None:
+    def _brake(self, turn: Turn, verdict: MotionVerdict) -> None:
         self.arm.release(turn.joint)
         turn.braking = verdict
 
@@ -95,14 +95,14 @@ class Turner:
                     del self._turns[turn.joint]
                     turn.end(verdict)
 
-    def _ended(self, turn: Turn, seconds: float) -> Verdict | None:
+    def _ended(self, turn: Turn, seconds: float) -> MotionVerdict | None:
         servo = self.arm.servos[turn.joint]
         if turn.braking is not None:
             return turn.braking if servo.stands else None
         there = abs(servo.position - turn.target) <= TOLERANCE and abs(servo.velocity) <= STOPPED
         if there and self._returns and turn.target != 0.0:
             there = self._return(turn, seconds)
-        return Verdict(SUCCEEDED) if there else None
+        return MotionVerdict(SUCCEEDED) if there else None
 
     def _return(self, turn: Turn, seconds: float) -> bool:
         """Wait at the target, then return to 0; False, since the goal is not over yet."""

@@ -11,8 +11,8 @@ from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
 from tms_sim.arm import SUBSTEP, Arm
-from tms_sim.drive import Drive
-from tms_sim.path import Point
+from tms_sim.drive import JointDrive
+from tms_sim.reference_trajectory import Knot
 
 MODEL = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel)
 NAMES = tuple(MODEL.joints)
@@ -24,9 +24,9 @@ def arm() -> Arm:
     return Arm(MODEL.joints, MODEL.initial, {})
 
 
-def swing(angle: float, seconds: float) -> list[Point]:
+def swing(angle: float, seconds: float) -> list[Knot]:
     start = [MODEL.initial[name] for name in NAMES]
-    return [Point(seconds, (angle, *start[1:]))]
+    return [Knot(seconds, (angle, *start[1:]))]
 
 
 def run(made: Arm, seconds: float, step: float = STEP) -> list[tuple[list[float], list[float]]]:
@@ -56,7 +56,7 @@ wild = st.tuples(*(st.floats(-6, 6) for _ in range(4)), st.just(0.0))
 @given(st.lists(wild, min_size=1, max_size=3), st.floats(0.05, 3.0), st.integers(1, 80))
 def test_it_keeps_its_limits_with_wild_goals(targets: list[tuple[float, ...]], gap: float, stop: int) -> None:
     made = arm()
-    made.follow(NAMES, [Point(gap * (i + 1), target) for i, target in enumerate(targets)])
+    made.follow(NAMES, [Knot(gap * (i + 1), target) for i, target in enumerate(targets)])
     before = list(made.velocities)
     for tick in range(200):
         if tick == stop:
@@ -126,12 +126,12 @@ def followed(
     known = {"dead_time": max(0.0, real.dead_time + dead_time), "lag": real.lag * lag}
     i = names.index(joint)
     made = Arm(model.joints, model.initial, {**model.response, joint: real.model_copy(update=known)})
-    made.servos[joint]._drive = Drive(model.joints[joint], real, start[i])
+    made.servos[joint]._drive = JointDrive(model.joints[joint], real, start[i])
     points = []
     for t, gone, rate in ramped(*move):
         positions, velocities = list(start), [0.0] * len(names)
         positions[i], velocities[i] = start[i] + gone, rate
-        points.append(Point(t, tuple(positions), tuple(velocities)))
+        points.append(Knot(t, tuple(positions), tuple(velocities)))
     path = made.follow(names, points)
     worst = settled = 0.0
     while made.elapsed < path.duration + 5:
@@ -164,7 +164,7 @@ def test_it_follows_a_machine_that_is_not_quite_as_known(
 
 def test_a_motion_begins_after_the_longest_dead_time() -> None:
     made = Arm(MODEL.joints, MODEL.initial, MODEL.response)
-    made.follow(NAMES, [Point(2.0, (0.5, *(MODEL.initial[name] - 0.1 for name in NAMES[1:4]), 0.0))])
+    made.follow(NAMES, [Knot(2.0, (0.5, *(MODEL.initial[name] - 0.1 for name in NAMES[1:4]), 0.0))])
     run(made, 0.9)
     assert made.positions == [MODEL.initial[name] for name in NAMES]
     run(made, 0.2)
@@ -205,6 +205,6 @@ def test_the_emergency_stop_holds_what_was_measured_when_it_took_effect(immediat
 
 def test_a_passive_joint_is_never_moved() -> None:
     made = arm()
-    made.follow(NAMES, [Point(2.0, (*(MODEL.initial[name] for name in NAMES[:4]), 1.0))])
+    made.follow(NAMES, [Knot(2.0, (*(MODEL.initial[name] for name in NAMES[:4]), 1.0))])
     run(made, 4.0)
     assert made.positions[4] == 0.0

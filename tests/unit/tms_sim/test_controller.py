@@ -7,15 +7,15 @@ from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
 from tms_sim.arm import Arm
 from tms_sim.controller import GOAL_VIOLATED, Controller, Motion
-from tms_sim.path import Point
+from tms_sim.reference_trajectory import Knot
 
 MODEL = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel)
 NAMES = tuple(MODEL.joints)
 HERE = tuple(MODEL.initial[name] for name in NAMES)
 
 
-def goal(swing: float, seconds: float = 4.0, boom: float = HERE[1]) -> list[Point]:
-    return [Point(seconds, (swing, boom, *HERE[2:]))]
+def goal(swing: float, seconds: float = 4.0, boom: float = HERE[1]) -> list[Knot]:
+    return [Knot(seconds, (swing, boom, *HERE[2:]))]
 
 
 def run(controller: Controller, seconds: float) -> None:

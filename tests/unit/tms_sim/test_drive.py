@@ -8,17 +8,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tms_config.models import Joint, Response
-from tms_sim.drive import TORQUE, Drive
+from tms_sim.drive import TORQUE, JointDrive
 
 JOINT = Joint(min=-1.0, max=1.0, velocity=1.0, acceleration=2.0, jerk=4.0)
 H = 0.01
 
 
-def drive(dead_time: float = 0.3, lag: float = 1.0, position: float = 0.0) -> Drive:
-    return Drive(JOINT, Response(dead_time=dead_time, lag=lag, origin="test"), position)
+def drive(dead_time: float = 0.3, lag: float = 1.0, position: float = 0.0) -> JointDrive:
+    return JointDrive(JOINT, Response(dead_time=dead_time, lag=lag, origin="test"), position)
 
 
-def run(made: Drive, seconds: float, now: float = 0.0) -> list[float]:
+def run(made: JointDrive, seconds: float, now: float = 0.0) -> list[float]:
     seen = []
     for tick in range(1, round(seconds / H) + 1):
         made.step(now + tick * H, H)

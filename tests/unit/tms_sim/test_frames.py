@@ -8,7 +8,7 @@ from tms_config.config import CONFIGS
 from tms_config.models import Border, MachineModel
 from tms_config.yaml_file import parse
 from tms_machine.geometry import Quaternion, product
-from tms_sim.frames import Chain, Frame
+from tms_sim.frames import Chain, LinkTransform
 
 MODEL = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel)
 NAMES = tuple(MODEL.joints)
@@ -20,7 +20,7 @@ def rotate(turn: Quaternion, point: tuple[float, float, float]) -> tuple[float, 
     return rx, ry, rz
 
 
-def tip(frames: list[Frame]) -> tuple[float, ...]:
+def tip(frames: list[LinkTransform]) -> tuple[float, ...]:
     """Origin of the last frame in base_link; each parent is the child before it."""
     place, turn = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
     before = frames[1].parent

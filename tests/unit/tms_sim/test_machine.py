@@ -11,8 +11,8 @@ from tms_config.yaml_file import parse
 from tms_sim.base import Leg
 from tms_sim.machine import StandIn
 from tms_sim.motion import Motion
-from tms_sim.path import Point
-from tms_sim.travel import PATIENCE, Travel
+from tms_sim.navigator import PATIENCE, Navigator
+from tms_sim.reference_trajectory import Knot
 
 CARRIER = parse(CONFIGS / "machines" / "mst110cr.yaml", MachineModel)
 DIGGER = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel)
@@ -29,9 +29,9 @@ def machine(model: MachineModel = CARRIER, ideal: bool = True, **fault: object) 
     return StandIn(model, (0.0, 0.0, 0.0), Fault.model_validate(fault), die, model.borders["sim"], ideal)
 
 
-def travel(made: StandIn) -> Travel:
-    assert made.travel is not None
-    return made.travel
+def navigator(made: StandIn) -> Navigator:
+    assert made.navigator is not None
+    return made.navigator
 
 
 def run(made: StandIn, seconds: float) -> None:
@@ -78,8 +78,8 @@ def test_a_newer_goal_preempts_and_a_cancel_brakes() -> None:
 
 def test_waypoints_that_cannot_be_reached_are_told_and_the_rest_is_driven() -> None:
     made = machine()
-    trip = travel(made).begin([Leg(2, 0, 0), Leg(4, 0, 0), Leg(6, 0, 0)], waypoints=True, miss=(1, 7))
-    assert travel(made).current(trip) == 0
+    trip = navigator(made).begin([Leg(2, 0, 0), Leg(4, 0, 0), Leg(6, 0, 0)], waypoints=True, miss=(1, 7))
+    assert navigator(made).current(trip) == 0
     run(made, 30)
     assert (ended(trip), trip.missed) == ("SUCCEEDED", [1])
     assert made.base is not None and made.base.x == pytest.approx(6, abs=0.1)
@@ -87,7 +87,7 @@ def test_waypoints_that_cannot_be_reached_are_told_and_the_rest_is_driven() -> N
 
 def test_an_empty_path_is_aborted() -> None:
     made = machine()
-    trip = travel(made).begin([])
+    trip = navigator(made).begin([])
     run(made, 1)
     assert ended(trip) == "ABORTED"
 
@@ -95,14 +95,14 @@ def test_an_empty_path_is_aborted() -> None:
 @pytest.mark.parametrize("model", [CARRIER, DIGGER], ids=["carrier", "digger"])
 def test_the_emergency_stop_ends_everything_until_it_is_released(model: MachineModel) -> None:
     made = machine(model)
-    trip = travel(made).begin([Leg(20, 0, 0)])
+    trip = navigator(made).begin([Leg(20, 0, 0)])
     run(made, 3)
     made.stop(True)
     run(made, 4)
     assert ended(trip) == "ABORTED" and made.base is not None and made.base.still
     made.drive(1.0, 0.0)
     run(made, 1)
-    assert made.base.still and travel(made).refusal([]) is not None
+    assert made.base.still and navigator(made).refusal([]) is not None
     made.stop(False)
     made.drive(1.0, 0.0)
     run(made, 1)
@@ -111,7 +111,7 @@ def test_the_emergency_stop_ends_everything_until_it_is_released(model: MachineM
 
 def test_a_machine_that_stalls_is_given_up_by_the_navigation() -> None:
     made = machine(stall=2.0)
-    trip = travel(made).begin([Leg(20, 0, 0)])
+    trip = navigator(made).begin([Leg(20, 0, 0)])
     run(made, 2 + PATIENCE - 1)
     assert ended(trip) == "open" and made.base is not None and made.base.still and made.base.x < 2
     run(made, 3)
@@ -122,7 +122,7 @@ def test_an_arm_that_stalls_misses_its_goal() -> None:
     made = machine(DIGGER, stall=0.5)
     names = list(DIGGER.joints)
     start = [DIGGER.initial[name] for name in names]
-    motion = made.controller.begin(names, [Point(3.0, (1.0, *start[1:]))], goal_time=5.0)
+    motion = made.controller.begin(names, [Knot(3.0, (1.0, *start[1:]))], goal_time=5.0)
     run(made, 7)
     assert ended(motion) == "open" and not any(made.arm.velocities)
     run(made, 2)
@@ -148,7 +148,7 @@ def test_a_machine_that_creeps_says_so_and_moves() -> None:
 def test_it_dies_only_in_motion() -> None:
     made = machine(die=1.0)
     run(made, 5)
-    travel(made).begin([Leg(20, 0, 0)])
+    navigator(made).begin([Leg(20, 0, 0)])
     with pytest.raises(Died):
         run(made, 2)
 

@@ -10,8 +10,8 @@ from tms_config.site_file import Fault
 from tms_config.yaml_file import parse
 from tms_sim.base import Base, Leg
 from tms_sim.machine import CREEPS, StandIn
-from tms_sim.path import Point
-from tms_sim.travel import Trip
+from tms_sim.navigator import Trip
+from tms_sim.reference_trajectory import Knot
 
 DIGGER = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel)
 NAMES = list(DIGGER.joints)
@@ -37,17 +37,17 @@ def run(made: StandIn, seconds: float) -> None:
 
 
 def driving(made: StandIn) -> Trip:
-    assert made.travel is not None
-    trip = made.travel.begin([Leg(80, 0, 0)])
+    assert made.navigator is not None
+    trip = made.navigator.begin([Leg(80, 0, 0)])
     run(made, 4)
     assert base(made).v == pytest.approx(1.0, abs=0.01)
     return trip
 
 
 def cancel(made: StandIn, trip: Trip) -> None:
-    travel = made.travel
-    assert travel is not None
-    made.cancel(lambda: travel.cancel(trip))
+    navigator = made.navigator
+    assert navigator is not None
+    made.cancel(lambda: navigator.cancel(trip))
 
 
 def press(made: StandIn, _trip: Trip) -> None:
@@ -82,7 +82,7 @@ def test_a_stop_that_was_released_while_it_coasted_does_not_come_back() -> None:
     made.stop(False)
     run(made, 5)
     assert base(made).v == pytest.approx(1.0, abs=0.01)
-    assert made.travel is not None and made.travel.refusal([]) is None
+    assert made.navigator is not None and made.navigator.refusal([]) is None
 
 
 def test_coast_after_a_zero() -> None:
@@ -98,7 +98,7 @@ def test_coast_after_a_zero() -> None:
 
 def test_a_trajectory_coasts_too() -> None:
     made = machine(coast=3.0)
-    motion = made.controller.begin(NAMES, [Point(6.0, (2.5, *HERE[1:]))])
+    motion = made.controller.begin(NAMES, [Knot(6.0, (2.5, *HERE[1:]))])
     run(made, 3)
     made.cancel(lambda: made.controller.cancel(motion))
     speed = made.arm.velocities[0]
@@ -126,7 +126,7 @@ def test_one_order_is_ignored_and_the_other_is_not(fault: dict[str, bool], deaf:
 
 def test_dead_time_lets_it_move_after_its_controller_thinks_it_stands() -> None:
     made = machine(dead_time=1.5)
-    motion = made.controller.begin(NAMES, [Point(2.0, (1.0, *HERE[1:]))])
+    motion = made.controller.begin(NAMES, [Knot(2.0, (1.0, *HERE[1:]))])
     run(made, 1.0)
     made.cancel(lambda: made.controller.cancel(motion))
     ended = None
@@ -180,7 +180,7 @@ def test_a_leak_ends_at_the_end_stop() -> None:
 
 def test_stall_loses_what_is_under_way() -> None:
     made = machine(stall=2.0)
-    motion = made.controller.begin(NAMES, [Point(3.0, (1.0, *HERE[1:]))], goal_time=3.0)
+    motion = made.controller.begin(NAMES, [Knot(3.0, (1.0, *HERE[1:]))], goal_time=3.0)
     run(made, 2.1)
     there = made.arm.positions
     assert there[0] > 0.01 and not any(made.arm.velocities)
@@ -193,8 +193,8 @@ def test_stall_loses_what_is_under_way() -> None:
 def test_stall_is_counted_anew_for_each_goal() -> None:
     made = machine(stall=2.0)
     for _ in range(2):
-        assert made.travel is not None
-        trip = made.travel.begin([Leg(80, 0, 0)])
+        assert made.navigator is not None
+        trip = made.navigator.begin([Leg(80, 0, 0)])
         run(made, 1.9)
         assert base(made).v > 0.5
         run(made, 0.3)
@@ -206,7 +206,7 @@ def test_stall_is_counted_anew_for_each_goal() -> None:
 def test_a_stop_that_is_repeated_holds_where_the_first_one_found_it() -> None:
     once, again = machine(), machine()
     for made in (once, again):
-        made.controller.begin(NAMES, [Point(4.0, (2.0, *HERE[1:]))])
+        made.controller.begin(NAMES, [Knot(4.0, (2.0, *HERE[1:]))])
         run(made, 3)
         made.stop(True)
     for _ in range(10):
@@ -218,7 +218,7 @@ def test_a_stop_that_is_repeated_holds_where_the_first_one_found_it() -> None:
 
 def test_everything_is_ideal_where_the_site_says_so() -> None:
     made = StandIn(DIGGER, (0.0, 0.0, 0.0), Fault(), lambda: None, DIGGER.borders["sim"], ideal=True)
-    motion = made.controller.begin(NAMES, [Point(2.0, (0.2, *HERE[1:]))])
+    motion = made.controller.begin(NAMES, [Knot(2.0, (0.2, *HERE[1:]))])
     run(made, 0.2)
     assert made.arm.velocities[0] > 0.05
     run(made, 4)

@@ -5,18 +5,18 @@ import math
 import pytest
 
 from tms_config.models import Joint
-from tms_sim.path import INVALID_GOAL, INVALID_JOINTS, Path, Point, refusal
+from tms_sim.reference_trajectory import INVALID_GOAL, INVALID_JOINTS, Knot, ReferenceTrajectory, refusal
 
 JOINTS = {
     "swing": Joint(velocity=1, acceleration=1, jerk=1),
     "boom": Joint(min=-1, max=1, velocity=1, acceleration=1, jerk=1),
 }
 NAMES = ("swing", "boom")
-START = Point(0.0, (0.0, 0.0), (0.0, 0.0))
+START = Knot(0.0, (0.0, 0.0), (0.0, 0.0))
 
 
-def line(*times: float) -> list[Point]:
-    return [Point(t, (t, t)) for t in times]
+def line(*times: float) -> list[Knot]:
+    return [Knot(t, (t, t)) for t in times]
 
 
 @pytest.mark.parametrize(
@@ -29,12 +29,12 @@ def line(*times: float) -> list[Point]:
         (NAMES, line(1, 1), INVALID_GOAL, "point 1 is at 1.000 s, not after"),
         (NAMES, line(2, 1), INVALID_GOAL, "point 1"),
         (NAMES, line(-1), INVALID_GOAL, "point 0"),
-        (NAMES, [Point(1, (0.0,))], INVALID_GOAL, "does not have one position"),
-        (NAMES, [Point(1, (0.0, 0.0), (1.0,))], INVALID_GOAL, "does not have one position"),
-        (NAMES, [Point(1, (0.0, math.nan))], INVALID_GOAL, "not a number"),
+        (NAMES, [Knot(1, (0.0,))], INVALID_GOAL, "does not have one position"),
+        (NAMES, [Knot(1, (0.0, 0.0), (1.0,))], INVALID_GOAL, "does not have one position"),
+        (NAMES, [Knot(1, (0.0, math.nan))], INVALID_GOAL, "not a number"),
     ],
 )
-def test_refused(names: tuple[str, ...], points: list[Point], code: int, text: str) -> None:
+def test_refused(names: tuple[str, ...], points: list[Knot], code: int, text: str) -> None:
     refused = refusal(JOINTS, names, points)
     assert refused is not None
     assert refused[0] == code
@@ -46,14 +46,16 @@ def test_accepted_in_any_order_of_joints() -> None:
 
 
 def test_straight_from_where_the_arm_is() -> None:
-    path = Path(JOINTS, START, ("boom", "swing"), [Point(2.0, (0.5, 2.0))])
+    path = ReferenceTrajectory(JOINTS, START, ("boom", "swing"), [Knot(2.0, (0.5, 2.0))])
     assert path.at(0.0) == (0, 0)
     assert path.at(1.0) == (1.0, 0.25)
     assert path.at(9.0) == path.end == (2.0, 0.5)
 
 
 def test_cubic_keeps_positions_and_velocities() -> None:
-    path = Path(JOINTS, START, NAMES, [Point(0, (0, 0), (0, 0)), Point(2, (1, 1), (0.5, 0)), Point(4, (2, 1), (0, 0))])
+    path = ReferenceTrajectory(
+        JOINTS, START, NAMES, [Knot(0, (0, 0), (0, 0)), Knot(2, (1, 1), (0.5, 0)), Knot(4, (2, 1), (0, 0))]
+    )
     h = 1e-6
     assert path.at(2.0) == pytest.approx((1, 1))
     for side in (-h, h):
@@ -62,6 +64,6 @@ def test_cubic_keeps_positions_and_velocities() -> None:
 
 
 def test_a_joint_that_turns_for_ever_is_not_unwound() -> None:
-    now = Point(0.0, (6.2, 0.0), (0.0, 0.0))
-    path = Path(JOINTS, now, NAMES, [Point(1.0, (0.0, 0.0)), Point(2.0, (0.1, 0.0))])
+    now = Knot(0.0, (6.2, 0.0), (0.0, 0.0))
+    path = ReferenceTrajectory(JOINTS, now, NAMES, [Knot(1.0, (0.0, 0.0)), Knot(2.0, (0.1, 0.0))])
     assert path.end[0] == pytest.approx(math.tau + 0.1)

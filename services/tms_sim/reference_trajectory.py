@@ -11,7 +11,7 @@ INVALID_GOAL, INVALID_JOINTS = -1, -2  # control_msgs/FollowJointTrajectory resu
 
 
 @dataclass(frozen=True)
-class Point:
+class Knot:
     """One point of a trajectory: time [s] from its start, rad, rad/s (empty: not given)."""
 
     time: float
@@ -19,7 +19,7 @@ class Point:
     velocities: tuple[float, ...] = ()
 
 
-def refusal(joints: Mapping[str, Joint], names: Sequence[str], points: Sequence[Point]) -> tuple[int, str] | None:
+def refusal(joints: Mapping[str, Joint], names: Sequence[str], points: Sequence[Knot]) -> tuple[int, str] | None:
     """Result code and reason why a trajectory cannot be followed, or None; as strict as ros2_control's."""
     if sorted(names) != sorted(joints):
         return INVALID_JOINTS, f"joints {', '.join(names) or '(none)'} given, {', '.join(joints)} expected"
@@ -37,17 +37,15 @@ def refusal(joints: Mapping[str, Joint], names: Sequence[str], points: Sequence[
     return None
 
 
-class Path:
+class ReferenceTrajectory:
     """Positions over time: cubic between points with velocities, straight between others."""
 
-    def __init__(
-        self, joints: Mapping[str, Joint], start: Point, names: Sequence[str], points: Sequence[Point]
-    ) -> None:
+    def __init__(self, joints: Mapping[str, Joint], start: Knot, names: Sequence[str], points: Sequence[Knot]) -> None:
         """`start` is the arm now, in the order of `joints`; `points` are in the order of `names`."""
         order = [names.index(name) for name in joints]
         turns = self._turns(joints, start, points[0], order)
         sorted_points = [
-            Point(
+            Knot(
                 p.time,
                 tuple(p.positions[i] + turn for i, turn in zip(order, turns, strict=True)),
                 tuple(p.velocities[i] for i in order) if p.velocities else (),
@@ -58,7 +56,7 @@ class Path:
         self._times = [p.time for p in self._points]
 
     @staticmethod
-    def _turns(joints: Mapping[str, Joint], start: Point, first: Point, order: Sequence[int]) -> list[float]:
+    def _turns(joints: Mapping[str, Joint], start: Knot, first: Knot, order: Sequence[int]) -> list[float]:
         """Whole turns [rad] to add for joints without limits, so that none turns back by whole turns."""
         offsets = []
         for joint, now, i in zip(joints.values(), start.positions, order, strict=True):

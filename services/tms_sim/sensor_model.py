@@ -37,7 +37,7 @@ class Reading(NamedTuple):
         return self._replace(positions=tuple(q + way for q in self.positions), place=(x + way, y + way, yaw))
 
 
-class Report:
+class SensorModel:
     """Turns true readings into reported ones."""
 
     def __init__(self, kept: int) -> None:

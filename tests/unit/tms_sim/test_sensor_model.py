@@ -5,7 +5,7 @@ import math
 import pytest
 
 from tms_config.site_file import Fault
-from tms_sim.report import SECOND, Reading, Report
+from tms_sim.sensor_model import SECOND, Reading, SensorModel
 
 KEPT = 50
 
@@ -18,7 +18,7 @@ def reading(tick: int) -> Reading:
 
 def reported(**fault: object) -> list[tuple[Reading, Reading]]:
     """What is true and what is told, for 100 looks; the fault begins after 60."""
-    report, later = Report(KEPT), Fault.model_validate(fault)
+    report, later = SensorModel(KEPT), Fault.model_validate(fault)
     return [(reading(i), report.apply(reading(i), later if i >= 60 else Fault())) for i in range(100)]
 
 
@@ -38,7 +38,7 @@ def test_frozen_stamp_tells_the_last_message_again() -> None:
 
 
 def test_a_fault_that_is_over_leaves_no_trace() -> None:
-    report = Report(KEPT)
+    report = SensorModel(KEPT)
     report.apply(reading(0), Fault(frozen_stamp=True))
     assert report.apply(reading(1), Fault()) == reading(1)
     assert report.apply(reading(2), Fault(frozen_stamp=True)) == reading(1)
@@ -48,7 +48,7 @@ def test_replay_loops_the_last_two_seconds_with_new_stamps() -> None:
     seen = reported(replay=True)[60:]
     assert [said.stamp for _, said in seen] == [true.stamp for true, _ in seen]
     assert [said.positions for _, said in seen] == [reading(10 + i % KEPT).positions for i in range(40)]
-    report = Report(2)
+    report = SensorModel(2)
     for i in range(4):
         report.apply(reading(i), Fault())
     again = [report.apply(reading(4 + i), Fault(replay=True)).positions for i in range(4)]

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from tms_sim.base import Base, Leg
-from tms_sim.motion import ABORTED, CANCELED, SUCCEEDED, Motion, Verdict
+from tms_sim.motion import ABORTED, CANCELED, SUCCEEDED, Motion, MotionVerdict
 
 PROGRESS, PATIENCE = 0.5, 10.0  # m within s: figures of the machines' progress checker
 TURNED = 0.3  # rad, a turn that counts as progress, too
@@ -22,11 +22,11 @@ class Trip(Motion):
     waypoints: bool = False
     seconds: float = 0.0  # on the way so far
     missed: list[int] = field(default_factory=list)
-    braking: Verdict | None = None  # verdict when the machine stands
+    braking: MotionVerdict | None = None  # verdict when the machine stands
     mark: tuple[float, float, float, float] = (math.inf, 0.0, 0.0, 0.0)  # x, y, yaw and time of the last progress
 
 
-class Travel:
+class Navigator:
     """Turns trips into motion of the base."""
 
     def __init__(self, base: Base) -> None:
@@ -52,14 +52,14 @@ class Travel:
         """Begin a trip; the waypoints in `miss` cannot be reached."""
         with self._lock:
             if self._trip is not None:
-                self._trip.end(Verdict(ABORTED, FAILED, "preempted by a newer goal"))
+                self._trip.end(MotionVerdict(ABORTED, FAILED, "preempted by a newer goal"))
             trip = Trip(legs, waypoints)
             trip.missed = [i for i in miss if i < len(legs)]
             self._trip = trip
             if not legs:
-                trip.braking = Verdict(ABORTED, FAILED, "there is no pose in the goal")
+                trip.braking = MotionVerdict(ABORTED, FAILED, "there is no pose in the goal")
             elif self.emergency:
-                trip.braking = Verdict(ABORTED, FAILED, "emergency stop")
+                trip.braking = MotionVerdict(ABORTED, FAILED, "emergency stop")
             else:
                 self.base.go([leg for i, leg in enumerate(legs) if i not in trip.missed])
             return trip
@@ -68,14 +68,14 @@ class Travel:
         """Brake; the goal ends CANCELED once the machine stands."""
         with self._lock:
             if trip is self._trip:
-                self._brake(Verdict(CANCELED, text="stopped on request"))
+                self._brake(MotionVerdict(CANCELED, text="stopped on request"))
 
     def stop(self, on: bool) -> None:
         """Set the level of the emergency stop."""
         with self._lock:
             self.emergency = on
             if on:
-                self._brake(Verdict(ABORTED, FAILED, "emergency stop"))
+                self._brake(MotionVerdict(ABORTED, FAILED, "emergency stop"))
 
     def current(self, trip: Trip) -> int:
         """Number of the waypoint that is driven to."""
@@ -83,7 +83,7 @@ class Travel:
         left = len(self.base.legs)
         return reachable[-left] if 0 < left <= len(reachable) else max(0, len(trip.legs) - 1)
 
-    def _brake(self, verdict: Verdict) -> None:
+    def _brake(self, verdict: MotionVerdict) -> None:
         self.base.hold()
         if self._trip is not None and self._trip.braking is None:
             self._trip.braking = verdict
@@ -97,7 +97,7 @@ class Travel:
                 return
             trip.seconds += seconds
             if trip.braking is None and not self._progress(trip):
-                self._brake(Verdict(ABORTED, FAILED, f"no progress for {PATIENCE:.0f} s"))
+                self._brake(MotionVerdict(ABORTED, FAILED, f"no progress for {PATIENCE:.0f} s"))
             if self.base.still and (trip.braking is not None or not self.base.legs):
                 self._trip = None
                 trip.end(trip.braking or _arrived(trip))
@@ -111,6 +111,6 @@ class Travel:
         return trip.seconds - since < PATIENCE
 
 
-def _arrived(trip: Trip) -> Verdict:
+def _arrived(trip: Trip) -> MotionVerdict:
     """The verdict at the end: like Nav2 by default, a path with missed waypoints is a success."""
-    return Verdict(SUCCEEDED)
+    return MotionVerdict(SUCCEEDED)
