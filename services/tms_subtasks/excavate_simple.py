@@ -3,7 +3,7 @@
 from tms_machine.subtask import Machine, Params, Progress, subtask
 
 
-class Place(Params):
+class DigPoint(Params):
     """Where to dig."""
 
     plan_only: bool = False  # an input of the variant: check whether the point can be dug, without a motion
@@ -16,5 +16,5 @@ class Place(Params):
 
 
 @subtask(timeout=180)
-def excavate_simple(machine: Machine, want: Place, progress: Progress) -> None:
+def excavate_simple(machine: Machine, want: DigPoint, progress: Progress) -> None:
     machine.excavate(progress, (want.x, want.y, want.z), want.theta_w, want.offset, want.plan_only)

@@ -1,9 +1,9 @@
 """Drive to the place of a record and stand there."""
 
 from tms_machine.subtask import Machine, Progress, subtask
-from tms_subtasks.records.places import Place
+from tms_subtasks.records.places import PoseRecord
 
 
 @subtask(timeout=900)
-def navigate_anywhere(machine: Machine, want: Place, progress: Progress) -> None:
+def navigate_anywhere(machine: Machine, want: PoseRecord, progress: Progress) -> None:
     machine.navigate_to(progress, want.pose())

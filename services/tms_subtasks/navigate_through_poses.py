@@ -1,9 +1,9 @@
 """Drive through the poses of a record without a stop."""
 
 from tms_machine.subtask import Machine, Progress, subtask
-from tms_subtasks.records.places import Path
+from tms_subtasks.records.places import PathRecord
 
 
 @subtask(timeout=1800)
-def navigate_through_poses(machine: Machine, want: Path, progress: Progress) -> None:
+def navigate_through_poses(machine: Machine, want: PathRecord, progress: Progress) -> None:
     machine.navigate_through(progress, want.poses())

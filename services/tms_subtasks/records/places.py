@@ -13,7 +13,7 @@ Angles = Literal["quaternion", "degrees"]
 TURN = {"quaternion": ("qx", "qy", "qz", "qw"), "degrees": ("yaw",)}
 
 
-class Place(Params):
+class PoseRecord(Params):
     """One pose in `map`; z is ignored, since the machine stands on the ground."""
 
     angles: Angles = "quaternion"  # an input of the variant
@@ -26,7 +26,7 @@ class Place(Params):
     yaw: float | None = None  # deg
 
     @model_validator(mode="after")
-    def _complete(self) -> "Place":
+    def _complete(self) -> "PoseRecord":
         names = TURN[self.angles]
         for name in names:
             if getattr(self, name) is None:
@@ -40,7 +40,7 @@ class Place(Params):
         return Pose(position=Point(x=self.x, y=self.y), orientation=turn(*numbers))
 
 
-class Path(Params):
+class PathRecord(Params):
     """Poses in `map`, one list a coordinate, all of one length."""
 
     angles: Angles = "quaternion"  # an input of the variant
@@ -54,7 +54,7 @@ class Path(Params):
     yaw: list[float] | None = None  # deg
 
     @model_validator(mode="after")
-    def _fits(self) -> "Path":
+    def _fits(self) -> "PathRecord":
         lengths = {name: len(self._list(name)) for name in ("x", "y", "z", *TURN[self.angles])}
         if len(set(lengths.values())) != 1:
             reported = ", ".join(f"{name} {length}" for name, length in lengths.items())

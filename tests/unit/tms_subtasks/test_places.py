@@ -6,21 +6,21 @@ import pytest
 from pydantic import ValidationError
 
 from tms_reason.validation import explain
-from tms_subtasks.records.places import Path, Place
+from tms_subtasks.records.places import PathRecord, PoseRecord
 
 QUATERNION = {"qx": 0.0, "qy": 0.0, "qz": 0.70711, "qw": 0.70711}
 LISTS = {"x": [1.0, 2.0], "y": [0.0, 0.0], "z": [0.0, 0.0]}
 
 
-def said(model: type[Place] | type[Path], **fields: object) -> str:
+def said(model: type[PoseRecord] | type[PathRecord], **fields: object) -> str:
     with pytest.raises(ValidationError) as caught:
         model.model_validate(fields)
     return explain(caught.value)
 
 
 def test_degrees_go_where_the_quaternion_goes() -> None:
-    turned = Place.model_validate({"x": 1, "y": 2.0, **QUATERNION}).pose()
-    degrees = Place.model_validate({"x": 1, "y": 2.0, "yaw": 90, "angles": "degrees"}).pose()
+    turned = PoseRecord.model_validate({"x": 1, "y": 2.0, **QUATERNION}).pose()
+    degrees = PoseRecord.model_validate({"x": 1, "y": 2.0, "yaw": 90, "angles": "degrees"}).pose()
     for pose in (turned, degrees):
         assert (pose.position.x, pose.position.y) == (1.0, 2.0)
         assert 2 * math.atan2(pose.orientation.z, pose.orientation.w) == pytest.approx(math.pi / 2, abs=1e-5)
@@ -30,25 +30,25 @@ def test_degrees_go_where_the_quaternion_goes() -> None:
 def test_a_missing_field_is_named(name: str) -> None:
     fields = {"x": 1.0, "y": 2.0, **QUATERNION}
     del fields[name]
-    assert name in said(Place, **fields)
+    assert name in said(PoseRecord, **fields)
 
 
 def test_a_record_in_the_other_notation_is_refused() -> None:
-    assert said(Place, x=1.0, y=2.0, yaw=90.0) == "field 'qx' is missing"
-    assert said(Place, x=1.0, y=2.0, angles="degrees", **QUATERNION) == "field 'yaw' is missing"
-    assert said(Path, **LISTS, angles="degrees") == "field 'yaw' is missing"
+    assert said(PoseRecord, x=1.0, y=2.0, yaw=90.0) == "field 'qx' is missing"
+    assert said(PoseRecord, x=1.0, y=2.0, angles="degrees", **QUATERNION) == "field 'yaw' is missing"
+    assert said(PathRecord, **LISTS, angles="degrees") == "field 'yaw' is missing"
 
 
 def test_no_quaternion() -> None:
-    assert "length 0.000" in said(Place, x=1.0, y=2.0, qx=0.0, qy=0.0, qz=0.0, qw=0.0)
+    assert "length 0.000" in said(PoseRecord, x=1.0, y=2.0, qx=0.0, qy=0.0, qz=0.0, qw=0.0)
 
 
 def test_lists_of_unequal_length_are_refused_with_their_lengths() -> None:
-    assert said(Path, **LISTS, angles="degrees", yaw=[0.0]) == "the lists differ in length: x 2, y 2, z 2, yaw 1"
-    assert said(Path, x=[], y=[], z=[], yaw=[], angles="degrees") == "the path is empty"
-    assert "x" in said(Path, **{**LISTS, "x": 1.0}, angles="degrees", yaw=[0.0, 0.0])
+    assert said(PathRecord, **LISTS, angles="degrees", yaw=[0.0]) == "the lists differ in length: x 2, y 2, z 2, yaw 1"
+    assert said(PathRecord, x=[], y=[], z=[], yaw=[], angles="degrees") == "the path is empty"
+    assert "x" in said(PathRecord, **{**LISTS, "x": 1.0}, angles="degrees", yaw=[0.0, 0.0])
 
 
 def test_further_fields_do_not_matter() -> None:
     fields = {**LISTS, "yaw": [0, 90], "angles": "degrees", "description": "x", "timestamps": 3}
-    assert len(Path.model_validate(fields).poses()) == 2
+    assert len(PathRecord.model_validate(fields).poses()) == 2
