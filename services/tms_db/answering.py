@@ -5,7 +5,7 @@ from collections.abc import Awaitable, Callable
 from prometheus_client import Counter, Histogram
 
 from tms_config.clock import monotonic
-from tms_db.connection import Connection
+from tms_db.connection import StoreConnection
 from tms_reason.errors import TmsError
 from tms_reason.wire import to_line
 from tms_ros.interface_types import Coded, Reply, Req, ServiceType
@@ -21,7 +21,7 @@ LaterHandler = Callable[[Req, Reply], Awaitable[None]]
 class Answering:
     """Serves handlers as services below /tms/db/."""
 
-    def __init__(self, app: App, connection: Connection) -> None:
+    def __init__(self, app: App, connection: StoreConnection) -> None:
         self._app, self._connection = app, connection
 
     def quick(self, service_type: ServiceType[Req, Reply], name: str, handler: Handler[Req, Reply]) -> None:

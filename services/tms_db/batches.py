@@ -15,7 +15,7 @@ from prometheus_client import Counter, Gauge, Histogram
 from pymongo import UpdateOne
 from pymongo.errors import BulkWriteError
 
-from tms_db.connection import Connection
+from tms_db.connection import StoreConnection
 from tms_db.reasons import ManyRecordsWait, StoreDown, StoreRefusedUpdate, StoreSlow
 from tms_db.record_cache import Key
 from tms_db.records import Document, Value
@@ -60,7 +60,7 @@ class Update:
 class Batches:
     """Updates that are not stored yet, and the thread that stores them."""
 
-    def __init__(self, db: Db, connection: Connection, log: Logger) -> None:
+    def __init__(self, db: Db, connection: StoreConnection, log: Logger) -> None:
         self._records, self._connection, self._log = db["parameter"], connection, log
         self._changed = threading.Condition()
         self._waiting: dict[Key, Update] = {}

@@ -18,7 +18,7 @@ UP = Gauge("tms_db_store_up", "1 while the store answers")
 IDLE_CHECK_PERIOD = 2.0  # s between checks of a store that is not in use
 
 
-class Connection:
+class StoreConnection:
     """One store. While it is away every use fails at once instead of waiting for a time-out each."""
 
     def __init__(self, db: store.Db, address: str, log: Logger) -> None:

@@ -6,7 +6,7 @@ from tms_msg_db.msg import Tmsdb
 from tms_msg_db.srv import TmsdbGetData, TmsdbGetTask
 
 from tms_db import store
-from tms_db.connection import Connection
+from tms_db.connection import StoreConnection
 from tms_db.parameters import Parameters
 from tms_db.records import Document
 from tms_db.tasks import Tasks
@@ -20,7 +20,7 @@ NOT_FLAGS = {"_id", "type", "record_name", "updated_at", "source"}
 class CppServices:
     """Answers as the C++ readers do, except that no document makes them crash."""
 
-    def __init__(self, app: App, db: store.Db, connection: Connection) -> None:
+    def __init__(self, app: App, db: store.Db, connection: StoreConnection) -> None:
         self._app, self._connection = app, connection
         self._tasks, self._parameters = Tasks(db), Parameters(db)
 

@@ -13,7 +13,7 @@ from tms_msg_db.srv import (
 
 from tms_db import messages, store, store_address
 from tms_db.answering import Answering
-from tms_db.connection import Connection
+from tms_db.connection import StoreConnection
 from tms_db.cpp_services import CppServices
 from tms_db.history import History
 from tms_db.machine_states import MachineStates
@@ -25,7 +25,7 @@ from tms_db.terrain_services import TerrainServices
 from tms_runtime.app import App
 
 
-class Services:
+class TaskServices:
     """Tasks and history."""
 
     def __init__(self, app: App, db: store.Db) -> None:
@@ -83,11 +83,11 @@ def start(app: App) -> None:
         ConfigError: the store's address is wrong.
     """
     db = store.connect(store_address.uri(app.site), app.site.file.store.database)
-    connection = Connection(db, store.redact(store_address.uri(app.site)), app.log)
+    connection = StoreConnection(db, store.redact(store_address.uri(app.site)), app.log)
     app.ready_when(connection.unready)
     app.on_stop(connection.stop)
     answering = Answering(app, connection)
-    Services(app, db).offer(answering)
+    TaskServices(app, db).offer(answering)
     ParameterServices(app, db, connection).offer(answering)
     CppServices(app, db, connection).offer()
     TerrainServices(app, db, connection).offer()

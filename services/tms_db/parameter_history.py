@@ -11,7 +11,7 @@ from typing import Any
 import bson
 from pymongo import UpdateOne
 
-from tms_db.connection import Connection
+from tms_db.connection import StoreConnection
 from tms_db.record_cache import Key
 from tms_db.records import Value
 from tms_db.store import Db, errors
@@ -30,7 +30,7 @@ Change = dict[str, Any]  # stamp, source, values
 class ParameterHistory:
     """The `parameter_history` collection: one document a record."""
 
-    def __init__(self, db: Db, connection: Connection, log: Logger) -> None:
+    def __init__(self, db: Db, connection: StoreConnection, log: Logger) -> None:
         self._stored, self._connection, self._log = db["parameter_history"], connection, log
         self._lock = threading.Lock()
         self._storing = threading.Lock()  # while changes are on their way from memory to the store

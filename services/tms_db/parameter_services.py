@@ -21,9 +21,9 @@ from tms_config.clock import unix_time, utc_now
 from tms_db import freshness, messages
 from tms_db.answering import Answering
 from tms_db.batches import Batches, Update
-from tms_db.connection import Connection
+from tms_db.connection import StoreConnection
 from tms_db.parameter_history import ParameterHistory
-from tms_db.parameters import Change, Parameters
+from tms_db.parameters import Parameters, RecordEdit
 from tms_db.reasons import RecordLocked
 from tms_db.record_cache import Key, RecordCache
 from tms_db.records import Document, check_values, title
@@ -42,7 +42,7 @@ OLDEST = 10 * 365 * 86400.0  # s; a larger age, or one that is no number, counts
 class ParameterServices:
     """The services below /tms/db/ for parameter records."""
 
-    def __init__(self, app: App, db: Db, connection: Connection) -> None:
+    def __init__(self, app: App, db: Db, connection: StoreConnection) -> None:
         self._app, self._ros = app, app.ros
         self._parameters = Parameters(db)
         self._batches = Batches(db, connection, app.log)
@@ -80,7 +80,7 @@ class ParameterServices:
     async def set(self, request: SetParameter.Request, response: SetParameter.Response) -> None:
         key = (request.model_name, request.record_name)
         where = title(*key)
-        change = Change(
+        change = RecordEdit(
             from_parameters(where, request.values), request.type, request.description, request.source,
             tuple(request.remove), request.max_age, from_parameters(where, request.expected),
         )  # fmt: skip
@@ -140,7 +140,7 @@ class ParameterServices:
         stamp = _now() - timedelta(seconds=max(0.0, wanted.age if wanted.age < OLDEST else OLDEST))
         if wanted.expected:  # only the store can compare and write in one step
             self._batches.settle(key)
-            change = Change(fields, source=wanted.source, expected=from_parameters(where, wanted.expected))
+            change = RecordEdit(fields, source=wanted.source, expected=from_parameters(where, wanted.expected))
             self._parameters.set(*key, change)
             self._heads.forget()
             self._past.note(key, stamp, wanted.source, fields, often=True)

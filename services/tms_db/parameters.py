@@ -29,7 +29,7 @@ ATTEMPTS = 20  # other processes may create and remove the record between our st
 
 
 @dataclass(frozen=True)
-class Change:
+class RecordEdit:
     """A change of one record. An empty `type` or `description` and a `max_age` of 0 keep the stored ones."""
 
     values: Mapping[str, Value]
@@ -112,7 +112,7 @@ class Parameters:
         with errors():
             return list(self._records.find({"record_name": record_name}).sort("_id", 1))
 
-    def set(self, model_name: str, record_name: str, change: Change, create: bool = False) -> bool:
+    def set(self, model_name: str, record_name: str, change: RecordEdit, create: bool = False) -> bool:
         """Change the given fields in one atomic step, or make the record; returns whether it was made.
 
         Raises:
@@ -157,7 +157,7 @@ class Parameters:
         """
         done = Loaded([], [], [])
         for record in records:
-            change = Change(record.values, record.type, record.description, source, max_age=record.max_age)
+            change = RecordEdit(record.values, record.type, record.description, source, max_age=record.max_age)
             if self._says(record):
                 done.unchanged.append(record.name)
             elif self.set(record.model_name, record.record_name, change, create=True):

@@ -12,7 +12,7 @@ from prometheus_client import Counter
 from tms_config.clock import utc_now
 from tms_config.site_file import Store
 from tms_db import store
-from tms_db.connection import Connection
+from tms_db.connection import StoreConnection
 from tms_db.machine_states import COLLECTIONS
 from tms_db.reasons import NoStateTime
 from tms_db.store import Db, errors
@@ -93,7 +93,7 @@ def _date(text: str) -> datetime:
 class Retention:
     """Deletes when the store is up for the first time, and then once a day."""
 
-    def __init__(self, db: Db, connection: Connection, settings: Store, log: Logger) -> None:
+    def __init__(self, db: Db, connection: StoreConnection, settings: Store, log: Logger) -> None:
         self._db, self._connection, self._settings, self._log = db, connection, settings, log
         self._worker = Worker("retention", self._run, first=FIRST)
 

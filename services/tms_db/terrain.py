@@ -27,7 +27,7 @@ SIZES = ("width", "height", "elevation", "offset_x", "offset_y")
 
 
 @dataclass(frozen=True)
-class Stored:
+class TerrainFile:
     """A terrain file in the database."""
 
     key: Any  # _id in GridFS
@@ -50,7 +50,7 @@ class Terrain:
     def __init__(self, db: Db) -> None:
         self._db = db
 
-    def add(self, path: Path, type_: str, size: Size | None = None) -> Stored:
+    def add(self, path: Path, type_: str, size: Size | None = None) -> TerrainFile:
         """Store a file under its own name.
 
         Raises:
@@ -65,7 +65,7 @@ class Terrain:
             raise DbError(TerrainExists(type_, path.name))
         return self.put(path.name, type_, data, vars(size) if size is not None else {})
 
-    def put(self, filename: str, type_: str, data: bytes, more: Mapping[str, Any]) -> Stored:
+    def put(self, filename: str, type_: str, data: bytes, more: Mapping[str, Any]) -> TerrainFile:
         """Store checked data.
 
         Raises:
@@ -76,9 +76,9 @@ class Terrain:
         id_, time = IDS[type_], utc_now().isoformat()
         with long_work(self._db):
             key = self._grid().put(data, filename=filename, type=type_, id=id_, time=time, **more)
-        return Stored(key, filename, type_, id_, time, len(data), more)
+        return TerrainFile(key, filename, type_, id_, time, len(data), more)
 
-    def put_dynamic(self, filename: str, data: bytes, more: Mapping[str, Any]) -> Stored:
+    def put_dynamic(self, filename: str, data: bytes, more: Mapping[str, Any]) -> TerrainFile:
         """Store a cloud and delete all but the newest few of its name.
 
         Raises:
@@ -89,18 +89,18 @@ class Terrain:
             self._delete(old)
         return stored
 
-    def all(self, type_: str = "", filename: str = "") -> list[Stored]:
+    def all(self, type_: str = "", filename: str = "") -> list[TerrainFile]:
         """Files of a type and a name (each "" = any), newest first."""
         with errors():
             found = self._db["fs.files"].find({"filename": filename} if filename else {}).sort("uploadDate", -1)
             files = [_stored(document) for document in found.limit(LISTED)]
         return [file for file in files if file.type in ((type_,) if type_ else IDS)]
 
-    def find(self, type_: str, filename: str = "") -> Stored | None:
+    def find(self, type_: str, filename: str = "") -> TerrainFile | None:
         """The newest file of a type and a name."""
         return next(iter(self.all(type_, filename)), None)
 
-    def read(self, stored: Stored) -> bytes:
+    def read(self, stored: TerrainFile) -> bytes:
         """The content of a file.
 
         Raises:
@@ -128,7 +128,7 @@ class Terrain:
             self._delete(file)
         return len(found)
 
-    def _delete(self, file: Stored) -> None:
+    def _delete(self, file: TerrainFile) -> None:
         with errors():
             self._grid().delete(file.key)
 
@@ -143,11 +143,11 @@ def missing(filename: str) -> DbError:
     return DbError(TerrainMissing(filename))
 
 
-def _stored(document: Mapping[str, Any]) -> Stored:
+def _stored(document: Mapping[str, Any]) -> TerrainFile:
     # Drivers other than Python's put the fields of a file below `metadata`.
     more = {**(document.get("metadata") or {}), **document}
     id_ = more.get("id")
-    return Stored(
+    return TerrainFile(
         document["_id"], str(document.get("filename") or ""), str(more.get("type") or ""),
         int(id_) if isinstance(id_, (int, float)) else 0, str(more.get("time") or ""), int(document["length"]), more,
     )  # fmt: skip

@@ -11,9 +11,9 @@ from tms_msg_db.msg import TmsdbGridFS
 from tms_msg_db.srv import TerrainStaticSrv, TmsdbTerrainImageSrv
 
 from tms_db import store, terrain_messages
-from tms_db.connection import Connection
+from tms_db.connection import StoreConnection
 from tms_db.reasons import NoImageType, TerrainOverRos
-from tms_db.terrain import Stored, Terrain, missing
+from tms_db.terrain import Terrain, TerrainFile, missing
 from tms_db.terrain_files import IMAGES, bad
 from tms_db.worker import Worker
 from tms_reason.errors import TmsError
@@ -27,7 +27,7 @@ NAMES = 20  # names whose clouds may wait for the store
 class TerrainServices:
     """Each call reads in a thread of its own; one thread writes the newest cloud of each name."""
 
-    def __init__(self, app: App, db: store.Db, connection: Connection) -> None:
+    def __init__(self, app: App, db: store.Db, connection: StoreConnection) -> None:
         self._app, self._connection = app, connection
         self._terrain = Terrain(db)
         self._waiting: dict[str, TmsdbGridFS] = {}
@@ -105,7 +105,7 @@ class TerrainServices:
         head = terrain_messages.cloud_head(message.pointcloud2)
         self._terrain.put_dynamic(name, bytes(message.pointcloud2.data), head)
 
-    def _find(self, type_: str, filename: str, id_: int) -> Stored:
+    def _find(self, type_: str, filename: str, id_: int) -> TerrainFile:
         found = self._terrain.find(type_, filename)
         if found is None or (id_ and id_ != found.id):
             raise missing(f"{type_} {filename}".strip())

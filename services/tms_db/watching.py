@@ -10,7 +10,7 @@ from typing import Any
 from pymongo.errors import OperationFailure, PyMongoError
 
 from tms_config.clock import monotonic
-from tms_db.connection import Connection
+from tms_db.connection import StoreConnection
 from tms_db.store import Db
 from tms_db.worker import Worker
 from tms_runtime.log import Logger
@@ -25,7 +25,7 @@ WANTED = [{"$project": {"documentKey": 1, "operationType": 1}}]
 class Watching:
     """A thread with the change stream of the records."""
 
-    def __init__(self, db: Db, connection: Connection, log: Logger, changed: Callable[[Any], None]) -> None:
+    def __init__(self, db: Db, connection: StoreConnection, log: Logger, changed: Callable[[Any], None]) -> None:
         """`changed` is called in that thread with the _id of a record; None: any record may have changed."""
         self._records, self._connection, self._log, self._changed = db["parameter"], connection, log, changed
         self._received = float("-inf")  # s, monotonic; other threads read it

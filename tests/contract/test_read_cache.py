@@ -10,8 +10,8 @@ import structlog
 from conftest import wait_until
 from stores import Server
 from tms_db import store
-from tms_db.connection import Connection
-from tms_db.parameters import Change, Parameters
+from tms_db.connection import StoreConnection
+from tms_db.parameters import Parameters, RecordEdit
 from tms_db.record_cache import RecordCache
 from tms_db.watching import Watching
 from tms_reason.errors import DbError
@@ -34,7 +34,7 @@ class Rig:
     def __init__(self, db: store.Db) -> None:
         self.records = db["parameter"]
         self.parameters = Parameters(db)
-        self.parameters.set(*KEY, Change({"x": 1.0}, "static"), create=True)
+        self.parameters.set(*KEY, RecordEdit({"x": 1.0}, "static"), create=True)
         self.watched = True
         self.heads = RecordCache(self.parameters, lambda _: {}, cast(Ros, Executor()), lambda: self.watched)
 
@@ -94,7 +94,7 @@ def test_a_record_that_was_removed_is_missing(rig: Rig) -> None:
 def test_the_store_tells_of_changes_by_anybody(server: Server, shared_db: store.Db) -> None:
     reported: queue.Queue[Any] = queue.Queue()
     own = store.connect(server.uri, shared_db.name)
-    connection = Connection(own, "the store", LOG)
+    connection = StoreConnection(own, "the store", LOG)
     watching = Watching(own, connection, LOG, reported.put)
     records = shared_db["parameter"]
     connection.start()

@@ -25,7 +25,7 @@ from tms_config.clock import utc_now
 from tms_db import archive, backup, schema, store
 from tms_db.archive import signed
 from tms_db.history import Event, History, Run
-from tms_db.parameters import Change, Parameters
+from tms_db.parameters import Parameters, RecordEdit
 from tms_db.tasks import Tasks
 from tms_db.terrain import Terrain
 from tms_reason.errors import DbError, TmsError
@@ -401,7 +401,7 @@ def test_a_run_that_was_active_at_the_backup_is_abandoned_by_the_restore(
     active = Run("r2", 4, "text", "running", "", ("zx200",), BEGIN, None, ("zx200/initial_pose",))
     History(shared_db).write([ended, active], [Event("r2", 1, BEGIN, "node")])
     with pytest.raises(DbError, match="run r2 uses it"):
-        Parameters(shared_db).set("zx200", "initial_pose", Change({"trajectory": 2}))
+        Parameters(shared_db).set("zx200", "initial_pose", RecordEdit({"trajectory": 2}))
     file = tmp_path / "b.archive"
     backup.backup(shared_db, file, silent)
     backup.restore(other_db, file, silent)
@@ -412,7 +412,7 @@ def test_a_run_that_was_active_at_the_backup_is_abandoned_by_the_restore(
     assert closed.ended_at is not None
     assert abs(utc_now() - closed.ended_at) < timedelta(minutes=1)
     assert replace(closed, state="running", reason="", ended_at=None) == active
-    Parameters(other_db).set("zx200", "initial_pose", Change({"trajectory": 2}))  # static, and locked by no run
+    Parameters(other_db).set("zx200", "initial_pose", RecordEdit({"trajectory": 2}))  # static, and locked by no run
     backup.restore(other_db, file, silent, drop=True)
 
 

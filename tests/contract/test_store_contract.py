@@ -20,10 +20,10 @@ from stores import Server
 from tms_config.clock import utc_now
 from tms_db import freshness, store
 from tms_db.batches import Batches, Update
-from tms_db.connection import Connection
+from tms_db.connection import StoreConnection
 from tms_db.history import Event, History, Run
 from tms_db.parameter_history import ParameterHistory
-from tms_db.parameters import Change, Parameters
+from tms_db.parameters import Parameters, RecordEdit
 from tms_db.record_cache import Head
 from tms_db.records import Record, Value
 from tms_db.tasks import Tasks
@@ -188,7 +188,7 @@ def test_types_come_back_as_they_went_in(db: store.Db) -> None:
         "bb": [True, False],
     }
     parameters = Parameters(db)
-    assert parameters.set("zx200", "p", Change(values, "static", "text", "test"), create=True)
+    assert parameters.set("zx200", "p", RecordEdit(values, "static", "text", "test"), create=True)
     document = parameters.get("zx200", "p")
     kinds = {name: (type(document[name]).__name__, document[name]) for name in values}
     expected = {name: (type(value).__name__, value) for name, value in values.items()}
@@ -200,12 +200,12 @@ def test_types_come_back_as_they_went_in(db: store.Db) -> None:
 
 def test_only_the_given_fields_change(db: store.Db) -> None:
     parameters = Parameters(db)
-    parameters.set("zx200", "p", Change({"x": 1.0, "y": 2.0}, "dynamic", "d"), create=True)
-    assert not parameters.set("zx200", "p", Change({"x": 3.0}, source="camera", remove=["gone"]), create=True)
+    parameters.set("zx200", "p", RecordEdit({"x": 1.0, "y": 2.0}, "dynamic", "d"), create=True)
+    assert not parameters.set("zx200", "p", RecordEdit({"x": 3.0}, source="camera", remove=["gone"]), create=True)
     document = parameters.get("zx200", "p")
     assert (document["x"], document["y"], document["type"], document["description"]) == (3.0, 2.0, "dynamic", "d")
     assert document["source"] == "camera"
-    parameters.set("zx200", "p", Change({}, remove=["y"]))
+    parameters.set("zx200", "p", RecordEdit({}, remove=["y"]))
     assert "y" not in parameters.get("zx200", "p")
 
 
@@ -215,7 +215,7 @@ def test_writers_of_different_fields_lose_nothing(shared_db: store.Db) -> None:
     def write(worker: int) -> None:
         gate.wait(10)
         for i in range(20):
-            parameters.set("zx200", "p", Change({f"f{worker}": i, f"only{worker}_{i}": True}), create=True)
+            parameters.set("zx200", "p", RecordEdit({f"f{worker}": i, f"only{worker}_{i}": True}), create=True)
 
     with ThreadPoolExecutor(8) as pool:
         list(pool.map(write, range(8)))
@@ -228,7 +228,7 @@ def test_writers_of_different_fields_lose_nothing(shared_db: store.Db) -> None:
 def test_missing_record(db: store.Db) -> None:
     parameters = Parameters(db)
     assert code_of(lambda: parameters.get("zx200", "p")) == "RECORD_MISSING"
-    assert code_of(lambda: parameters.set("zx200", "p", Change({"x": 1}))) == "RECORD_MISSING"
+    assert code_of(lambda: parameters.set("zx200", "p", RecordEdit({"x": 1}))) == "RECORD_MISSING"
     assert code_of(lambda: parameters.remove("zx200", "p")) == "RECORD_MISSING"
     assert parameters.all() == []
 
@@ -236,9 +236,9 @@ def test_missing_record(db: store.Db) -> None:
 def test_shared_record_has_no_model_and_is_one(db: store.Db) -> None:
     parameters = Parameters(db)
     db["parameter"].insert_one({"record_name": "BOARD", "FLG": False})  # as the C++ system stores it
-    assert not parameters.set("", "BOARD", Change({"FLG": True}), create=True)
-    assert parameters.set("", "OTHER", Change({"N": 1}), create=True)
-    assert parameters.set("zx200", "BOARD", Change({"FLG": 3}), create=True)
+    assert not parameters.set("", "BOARD", RecordEdit({"FLG": True}), create=True)
+    assert parameters.set("", "OTHER", RecordEdit({"N": 1}), create=True)
+    assert parameters.set("zx200", "BOARD", RecordEdit({"FLG": 3}), create=True)
     assert parameters.get("", "BOARD")["FLG"] is True
     assert "model_name" not in parameters.get("", "OTHER")
     assert [d["record_name"] for d in parameters.all("zx200")] == ["BOARD"]
@@ -249,17 +249,17 @@ def test_shared_record_has_no_model_and_is_one(db: store.Db) -> None:
 
 def test_bad_changes_are_refused_and_nothing_is_written(db: store.Db) -> None:
     parameters = Parameters(db)
-    parameters.set("zx200", "p", Change({"x": 1}), create=True)
+    parameters.set("zx200", "p", RecordEdit({"x": 1}), create=True)
     bad = [
-        Change({"x": 2, "y": float("nan")}),
-        Change({"x": 2, "type": "static"}),
-        Change({"x": 2}, remove=["x"]),
-        Change({"x": 2}, remove=["model_name"]),
-        Change({"x": 2}, type="fixed"),
+        RecordEdit({"x": 2, "y": float("nan")}),
+        RecordEdit({"x": 2, "type": "static"}),
+        RecordEdit({"x": 2}, remove=["x"]),
+        RecordEdit({"x": 2}, remove=["model_name"]),
+        RecordEdit({"x": 2}, type="fixed"),
     ]
     for change in bad:
         assert code_of(partial(parameters.set, "zx200", "p", change)) == "BAD_RECORD"
-    assert code_of(lambda: parameters.set("zx200", "", Change({"x": 1}), create=True)) == "BAD_RECORD"
+    assert code_of(lambda: parameters.set("zx200", "", RecordEdit({"x": 1}), create=True)) == "BAD_RECORD"
     assert parameters.get("zx200", "p")["x"] == 1
 
 
@@ -269,43 +269,42 @@ def test_static_records_rest_while_a_run_names_them(db: store.Db) -> None:
         ("zx200", "p", "static"), ("zx200", "q", "static"), ("zx200", "sensed", "dynamic"), ("ic120", "p", "static"),
         ("", "shared", "static"),
     ):  # fmt: skip
-        parameters.set(model, record, Change({"x": 1}, type_), create=True)
+        parameters.set(model, record, RecordEdit({"x": 1}, type_), create=True)
     active = replace(run("r1"), records=("zx200/p", "zx200/sensed", "/shared", "ic120/*"))
     history.write([active], [])
     for model, record in (("zx200", "p"), ("", "shared"), ("ic120", "p")):
-        assert code_of(lambda: parameters.set(model, record, Change({"x": 2}))) == "STATIC_RECORD"  # noqa: B023
-    assert code_of(lambda: parameters.set("zx200", "p", Change({"x": 2}, "dynamic"))) == "STATIC_RECORD"
+        assert code_of(lambda: parameters.set(model, record, RecordEdit({"x": 2}))) == "STATIC_RECORD"  # noqa: B023
+    assert code_of(lambda: parameters.set("zx200", "p", RecordEdit({"x": 2}, "dynamic"))) == "STATIC_RECORD"
     assert code_of(lambda: parameters.remove("zx200", "p")) == "STATIC_RECORD"
-    parameters.set("zx200", "sensed", Change({"x": 2}))
-    parameters.set("zx200", "q", Change({"x": 2}))
+    parameters.set("zx200", "sensed", RecordEdit({"x": 2}))
+    parameters.set("zx200", "q", RecordEdit({"x": 2}))
     history.write([replace(active, ended_at=active.started_at)], [])
-    parameters.set("zx200", "p", Change({"x": 2}))
+    parameters.set("zx200", "p", RecordEdit({"x": 2}))
     parameters.remove("zx200", "p")
 
 
 def test_a_change_may_expect_what_is_there(db: store.Db) -> None:
     parameters = Parameters(db)
-    parameters.set("", "ROAD", Change({"TAKEN": False, "BY": ""}, "dynamic"), create=True)
-    parameters.set("", "ROAD", Change({"TAKEN": True, "BY": "ic120_1"}, expected={"TAKEN": False}))
+    parameters.set("", "ROAD", RecordEdit({"TAKEN": False, "BY": ""}, "dynamic"), create=True)
+    parameters.set("", "ROAD", RecordEdit({"TAKEN": True, "BY": "ic120_1"}, expected={"TAKEN": False}))
     with pytest.raises(DbError, match="record /ROAD was not changed: TAKEN is True, not False") as caught:
-        parameters.set("", "ROAD", Change({"BY": "ic120_2"}, expected={"TAKEN": False}))
+        parameters.set("", "ROAD", RecordEdit({"BY": "ic120_2"}, expected={"TAKEN": False}))
     assert caught.value.code == "CONFLICT"
     assert parameters.get("", "ROAD")["BY"] == "ic120_1"
-    assert (
-        code_of(lambda: parameters.set("", "X", Change({"a": 1}, expected={"a": 0}), create=True)) == "RECORD_MISSING"
-    )
+    edit = RecordEdit({"a": 1}, expected={"a": 0})
+    assert code_of(lambda: parameters.set("", "X", edit, create=True)) == "RECORD_MISSING"
 
 
 def test_eight_writers_that_swap_lose_no_update(shared_db: store.Db) -> None:
     parameters = Parameters(shared_db)
-    parameters.set("", "COUNT", Change({"n": 0}, "dynamic"), create=True)
+    parameters.set("", "COUNT", RecordEdit({"n": 0}, "dynamic"), create=True)
 
     def count() -> None:
         done = 0
         while done < 20:
             seen = parameters.get("", "COUNT")["n"]
             try:
-                parameters.set("", "COUNT", Change({"n": seen + 1}, expected={"n": seen}))
+                parameters.set("", "COUNT", RecordEdit({"n": seen + 1}, expected={"n": seen}))
             except DbError as error:
                 assert error.code == "CONFLICT"
             else:
@@ -319,12 +318,12 @@ def test_eight_writers_that_swap_lose_no_update(shared_db: store.Db) -> None:
 
 def test_an_age_limit_is_stored_kept_and_taken_away(db: store.Db) -> None:
     parameters = Parameters(db)
-    parameters.set("zx200", "p", Change({"x": 1}, "dynamic", max_age=2.0), create=True)
-    parameters.set("zx200", "p", Change({"x": 2}))
+    parameters.set("zx200", "p", RecordEdit({"x": 1}, "dynamic", max_age=2.0), create=True)
+    parameters.set("zx200", "p", RecordEdit({"x": 2}))
     assert parameters.get("zx200", "p")["max_age"] == 2.0
-    parameters.set("zx200", "p", Change({}, max_age=-1.0))
+    parameters.set("zx200", "p", RecordEdit({}, max_age=-1.0))
     assert parameters.get("zx200", "p")["max_age"] == 0.0
-    assert code_of(lambda: parameters.set("zx200", "p", Change({}, "static", max_age=1.0))) == "BAD_RECORD"
+    assert code_of(lambda: parameters.set("zx200", "p", RecordEdit({}, "static", max_age=1.0))) == "BAD_RECORD"
 
 
 def test_load_makes_changes_and_leaves_alone(db: store.Db) -> None:
@@ -333,7 +332,7 @@ def test_load_makes_changes_and_leaves_alone(db: store.Db) -> None:
     second = Record("zx200", "b", "dynamic", "", {"x": 1.0})
     assert parameters.load([first, second], "file").created == ["zx200/a", "zx200/b"]
     before = parameters.get("zx200", "a")["updated_at"]
-    parameters.set("zx200", "b", Change({"sensed": 5}))
+    parameters.set("zx200", "b", RecordEdit({"sensed": 5}))
     as_double = Record("zx200", "b", "dynamic", "", {"x": 1})  # another type is another value
     done = parameters.load([first, as_double], "file")
     assert (done.unchanged, done.changed) == (["zx200/a"], ["zx200/b"])
@@ -356,7 +355,7 @@ class Batched:
 
     def __init__(self, db: store.Db) -> None:
         log = structlog.stdlib.get_logger("test")
-        self.connection = Connection(db, "test", log)
+        self.connection = StoreConnection(db, "test", log)
         self.connection.start()
         deadline = time.monotonic() + 20
         while self.connection.unready() and time.monotonic() < deadline:
@@ -373,7 +372,7 @@ class Batched:
 def batched(shared_db: store.Db) -> Iterator[Batched]:
     found = Batched(shared_db)
     for name in ("a", "b"):
-        found.parameters.set("zx200", name, Change({"x": 0, "y": 0}, "dynamic"), create=True)
+        found.parameters.set("zx200", name, RecordEdit({"x": 0, "y": 0}, "dynamic"), create=True)
     yield found
     found.batches.stop()
     found.connection.stop()
@@ -407,7 +406,7 @@ def test_updates_of_a_record_that_is_gone_are_noticed(batched: Batched) -> None:
 
 def test_callers_are_told_when_the_store_is_away(own_server: Server) -> None:
     batched = Batched(own_server.open("away"))
-    batched.parameters.set("zx200", "a", Change({"x": 0}, "dynamic"), create=True)
+    batched.parameters.set("zx200", "a", RecordEdit({"x": 0}, "dynamic"), create=True)
     batched.put("a", hurry=True, x=1)
     own_server.end(kill=True)
     batched.batches.start()
@@ -580,7 +579,7 @@ def test_two_writers_of_one_journal_lose_nothing(shared_db: store.Db) -> None:
 def test_everything_survives_a_restart(own_server: Server) -> None:
     db = own_server.open()
     Tasks(db).add(tree())
-    Parameters(db).set("zx200", "p", Change({"x": 1.5}), create=True)
+    Parameters(db).set("zx200", "p", RecordEdit({"x": 1.5}), create=True)
     History(db).write([run("r1")], [event("r1", 1)])
     own_server.end()
     assert code_of(lambda: Tasks(db).get(1)) == "STORE_DOWN"

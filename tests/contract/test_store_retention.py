@@ -10,7 +10,7 @@ import structlog
 from tms_config.clock import utc_now
 from tms_config.site_file import SiteFile, Store
 from tms_db import retention, store
-from tms_db.connection import Connection
+from tms_db.connection import StoreConnection
 from tms_db.history import Event, History, Run
 from tms_db.retention import Retention, delete_runs, delete_states
 from tms_reason.errors import DbError
@@ -105,7 +105,7 @@ def test_it_looks_by_itself_once_the_store_is_there(shared_db: store.Db, monkeyp
     ]
     History(shared_db).write(runs, [])
     log = structlog.stdlib.get_logger("test")
-    connection = Connection(shared_db, "test", log)
+    connection = StoreConnection(shared_db, "test", log)
     watch = Retention(shared_db, connection, Store(history_days=7), log)
     watch.start()  # before there is a connection
     connection.start()

@@ -12,7 +12,7 @@ from tms_cli.words import Group
 from tms_reason.errors import TmsError
 
 if TYPE_CHECKING:
-    from tms_db.terrain import Stored
+    from tms_db.terrain import TerrainFile
 
 FILE = click.Path(path_type=Path)
 TYPES = click.Choice(["heightmap", "texture", "static", "mesh", "dem"])
@@ -146,7 +146,7 @@ def rm(name: str, as_json: bool) -> None:
         click.echo(f"{name}: {removed} removed")
 
 
-def _as_dict(stored: "Stored") -> dict[str, Any]:
+def _as_dict(stored: "TerrainFile") -> dict[str, Any]:
     from tms_db.terrain import SIZES
 
     sizes = {name: stored.more[name] for name in SIZES if name in stored.more}

@@ -9,7 +9,7 @@ import structlog
 from pymongo.errors import AutoReconnect
 
 from tms_db import connection, schema, store
-from tms_db.connection import Connection
+from tms_db.connection import StoreConnection
 from tms_db.reasons import NoStore, StoreDown
 from tms_reason.errors import DbError
 from tms_reason.reason import Foreign
@@ -51,14 +51,14 @@ def fake(monkeypatch: pytest.MonkeyPatch) -> Away:
 
 
 @pytest.fixture
-def link(fake: Any) -> Iterator[Connection]:
-    link = Connection(fake, "mongodb://here", structlog.stdlib.get_logger("test"))
+def link(fake: Any) -> Iterator[StoreConnection]:
+    link = StoreConnection(fake, "mongodb://here", structlog.stdlib.get_logger("test"))
     link.start()
     yield link
     link.stop()
 
 
-def wait_ready(link: Connection, ready: bool) -> None:
+def wait_ready(link: StoreConnection, ready: bool) -> None:
     tick = threading.Event()
     for _ in range(2000):
         if (link.unready() is None) == ready:
@@ -67,7 +67,7 @@ def wait_ready(link: Connection, ready: bool) -> None:
     pytest.fail(f"did not become {'ready' if ready else 'unready'}")
 
 
-def use(link: Connection, error: DbError | None = None) -> str:
+def use(link: StoreConnection, error: DbError | None = None) -> str:
     try:
         with link.use():
             if error:
@@ -77,7 +77,7 @@ def use(link: Connection, error: DbError | None = None) -> str:
     return "OK"
 
 
-def test_away_at_the_start_then_there(fake: Away, link: Connection) -> None:
+def test_away_at_the_start_then_there(fake: Away, link: StoreConnection) -> None:
     assert link.unready() == StoreDown(NoStore())
     assert use(link) == "STORE_DOWN"
     assert fake.asked.acquire(timeout=5)
@@ -86,7 +86,7 @@ def test_away_at_the_start_then_there(fake: Away, link: Connection) -> None:
     assert use(link) == "OK"
 
 
-def test_a_lost_store_is_noticed_by_the_first_who_asks(fake: Away, link: Connection) -> None:
+def test_a_lost_store_is_noticed_by_the_first_who_asks(fake: Away, link: StoreConnection) -> None:
     fake.up.set()
     wait_ready(link, True)
     fake.up.clear()
@@ -96,7 +96,7 @@ def test_a_lost_store_is_noticed_by_the_first_who_asks(fake: Away, link: Connect
     wait_ready(link, True)
 
 
-def test_a_refusal_is_no_loss(fake: Away, link: Connection) -> None:
+def test_a_refusal_is_no_loss(fake: Away, link: StoreConnection) -> None:
     fake.up.set()
     wait_ready(link, True)
     assert use(link, DbError(Foreign("no"), "TASK_MISSING")) == "TASK_MISSING"
@@ -104,7 +104,7 @@ def test_a_refusal_is_no_loss(fake: Away, link: Connection) -> None:
 
 
 def test_trouble_is_told_once(fake: Away, caplog: pytest.LogCaptureFixture) -> None:
-    link = Connection(fake, "mongodb://here", structlog.stdlib.get_logger("test"))  # type: ignore[arg-type]
+    link = StoreConnection(fake, "mongodb://here", structlog.stdlib.get_logger("test"))  # type: ignore[arg-type]
     link.start()
     for _ in range(5):
         assert fake.asked.acquire(timeout=5)

@@ -7,7 +7,7 @@ import pytest
 
 from tms_config.config import CONFIGS
 from tms_db import records
-from tms_db.parameters import Change
+from tms_db.parameters import RecordEdit
 from tms_reason.errors import ConfigError, DbError
 
 LOADING = {
@@ -78,7 +78,7 @@ def test_a_line_about_a_record_holds_no_control_characters(key: str) -> None:
     with pytest.raises(
         DbError, match=rf"^zx200/p: {key} holds the control character U\+000A: remove it; Write a plain name$"
     ):
-        Change({"a": 1}, **{key: "two\nlines"}).check("zx200/p")
+        RecordEdit({"a": 1}, **{key: "two\nlines"}).check("zx200/p")
 
 
 @pytest.mark.parametrize(
