@@ -13,8 +13,8 @@ from tms_reason.reason import Reason
 from tms_reason.wire import to_line
 from tms_ros.interface_types import Message
 from tms_sp.clock import SourceClock
-from tms_sp.mapping import Key, Mapping, Reading, Refused
-from tms_sp.outbox import Counts, Post
+from tms_sp.mapping import Key, MappedValues, Mapping, MessageRefused
+from tms_sp.outbox import Counts, InputUpdate
 from tms_sp.reasons import ManyRecords, ManyWait, MeasuredEarlier, StampInFuture
 
 MESSAGES = Counter("tms_sp_messages_total", "Messages by what became of them", ["input", "result"])
@@ -31,7 +31,9 @@ RECORDS_KNOWN = 5000  # records whose last stamps are kept
 class SensingInput:
     """Used on the executor thread."""
 
-    def __init__(self, name: str, given: Input, mapping: Mapping, clock_limit: float, put: Callable[[Post], bool]):
+    def __init__(
+        self, name: str, given: Input, mapping: Mapping, clock_limit: float, put: Callable[[InputUpdate], bool]
+    ):
         self.name, self.given, self.counts = name, given, Counts()
         self.loose, self.only_if = mapping.loose, given.only_if
         self._mapping, self._put, self._clock = mapping, put, SourceClock(clock_limit)
@@ -52,7 +54,7 @@ class SensingInput:
         """Take one message."""
         try:
             result = self._take(message)
-        except Refused as refusal:
+        except MessageRefused as refusal:
             self.refuse(refusal.code, refusal.reason)
             return
         MESSAGES.labels(self.name, result).inc()
@@ -70,30 +72,30 @@ class SensingInput:
         if self.given.max_hz and now - self._taken.get(reading.key, -math.inf) < 1.0 / self.given.max_hz:
             return "thinned"
         if len(self._stamps) > RECORDS_KNOWN and reading.key not in self._stamps:
-            raise Refused(ManyRecords(RECORDS_KNOWN, self.given.record))
-        if not self._put(Post(self.name, reading.key, reading.values, now - age, reading.keep)):
-            raise Refused(ManyWait())
+            raise MessageRefused(ManyRecords(RECORDS_KNOWN, self.given.record))
+        if not self._put(InputUpdate(self.name, reading.key, reading.values, now - age, reading.keep)):
+            raise MessageRefused(ManyWait())
         self._taken[reading.key] = now
         self._stamps[reading.key] = reading.stamp if reading.stamp is not None else wall
         self._arrivals.append(now)
         self.accepted += 1
         return "accepted"
 
-    def _age(self, reading: Reading, wall: float) -> float:
+    def _age(self, reading: MappedValues, wall: float) -> float:
         """Seconds since the measurement.
 
         Raises:
-            Refused: StampInFuture, MeasuredEarlier.
+            MessageRefused: StampInFuture, MeasuredEarlier.
         """
         if reading.stamp is None:
             return 0.0
         ahead = self._clock.ahead(reading.stamp, wall)
         if ahead > 0:
-            raise Refused(StampInFuture(ahead + self._clock_limit))
+            raise MessageRefused(StampInFuture(ahead + self._clock_limit))
         before = self._stamps.get(reading.key)
         set_back = before is not None and self._clock.ahead(before, wall) > 0  # our clock was, after the stamp came
         if before is not None and reading.stamp < before and not set_back:
-            raise Refused(MeasuredEarlier(before - reading.stamp))
+            raise MessageRefused(MeasuredEarlier(before - reading.stamp))
         return self._clock.age(reading.stamp, wall)
 
     def judge(self) -> str:

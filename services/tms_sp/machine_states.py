@@ -13,7 +13,7 @@ from tms_ros.interface_types import Message
 from tms_runtime.app import App
 
 
-class MachineStates:
+class MachineStateSampler:
     """Samples the topics of all machines; messages between two samples cost nothing."""
 
     def __init__(self, app: App, hz: float) -> None:

@@ -33,12 +33,12 @@ Getter = Callable[[Any], Any]
 LARGEST = 2**63 - 1  # whole number that messages and the store can hold
 
 
-class Refused(TmsError):
+class MessageRefused(TmsError):
     """A message that must not change a record; refusals are counted by their code."""
 
 
 @dataclass(frozen=True)
-class Reading:
+class MappedValues:
     """The values of one message, and the record that they belong to."""
 
     key: Key
@@ -80,19 +80,19 @@ class Mapping:
         for _, rule, _ in self._rules:
             types.check(rule.path, VALUES, AValue())
 
-    def read(self, message: Any) -> Reading:
+    def read(self, message: Any) -> MappedValues:
         """The values of a message.
 
         Raises:
-            Refused: with the reason.
+            MessageRefused: with the reason.
         """
         key = self._model(message), self._record(message)
         if not key[1].strip():
-            raise Refused(NamesNoRecord())
+            raise MessageRefused(NamesNoRecord())
         values = {name: self._value(name, rule, getter, message) for name, rule, getter in self._rules}
         self._check_sizes(values)
         keep = tuple(map(str, self._keep(message))) if self._keep else ()
-        return Reading(key, values, keep, _seconds(self._stamp(message)) if self._stamp else None)
+        return MappedValues(key, values, keep, _seconds(self._stamp(message)) if self._stamp else None)
 
     def _value(self, name: str, rule: FieldRule, getter: Getter, message: Any) -> Any:
         value = getter(message)
@@ -100,28 +100,28 @@ class Mapping:
             return self._checked(name, _scaled(value, rule.factor))
         parts = value.tolist() if hasattr(value, "tolist") else value
         if not isinstance(parts, (list, tuple)) or not all(isinstance(one, (bool, int, float, str)) for one in parts):
-            raise Refused(NoValueOf(rule.path, type(value).__name__))
+            raise MessageRefused(NoValueOf(rule.path, type(value).__name__))
         if rule.size is not None and len(parts) != rule.size:
-            raise Refused(WrongSize(name, len(parts), rule.size))
+            raise MessageRefused(WrongSize(name, len(parts), rule.size))
         return [self._checked(name, _scaled(part, rule.factor)) for part in parts]
 
     def _checked(self, name: str, value: Any) -> Any:
         if isinstance(value, float) and not math.isfinite(value):
-            raise Refused(ValueNotFinite(name, str(value)))
+            raise MessageRefused(ValueNotFinite(name, str(value)))
         if isinstance(value, int) and value > LARGEST:  # possible in a uint64
-            raise Refused(ValueTooLarge(name, value, LARGEST))
+            raise MessageRefused(ValueTooLarge(name, value, LARGEST))
         limits = self._input.range.get(name.lower() if self.loose else name)
         if limits is not None and not isinstance(value, str) and not limits[0] <= value <= limits[1]:
-            raise Refused(ValueOutOfRange(name, float(value), *map(float, limits)))
+            raise MessageRefused(ValueOutOfRange(name, float(value), *map(float, limits)))
         return value
 
     def _check_sizes(self, values: dict[str, Any]) -> None:
         """Refuse arrays of different sizes: the n-th elements of x, y and z are one point."""
         sizes = {name: len(value) for name, value in values.items() if isinstance(value, list)}
         if len(set(sizes.values())) > 1:
-            raise Refused(SizesDiffer(tuple(f"{name} {size}" for name, size in sizes.items())))
+            raise MessageRefused(SizesDiffer(tuple(f"{name} {size}" for name, size in sizes.items())))
         if 0 in sizes.values():
-            raise Refused(NoValues(tuple(sizes)))
+            raise MessageRefused(NoValues(tuple(sizes)))
 
 
 def stamp_path(given: Input, fields: dict[str, str]) -> str | None:
@@ -150,7 +150,7 @@ def field_getter(path: str, fields: dict[str, str]) -> Getter:
         found = message
         for name, index in steps:
             if not hasattr(found, name):
-                raise Refused(NothingAt(path, name))
+                raise MessageRefused(NothingAt(path, name))
             parent, found = found, getattr(found, name)
             if index is not None:
                 found = _element(path, parent, found, index)
@@ -163,7 +163,7 @@ def _element(path: str, parent: Any, array: Any, index: str) -> Any:
     names = getattr(parent, "name", ())
     number = int(index) if index.isdecimal() else list(names).index(index) if index in names else -1
     if not 0 <= number < len(array):
-        raise Refused(NoElement(path, len(array)))
+        raise MessageRefused(NoElement(path, len(array)))
     value = array[number]
     return value.item() if hasattr(value, "item") else value
 
@@ -175,5 +175,5 @@ def _scaled(value: Any, factor: float) -> Any:
 def _seconds(stamp: Any) -> float:
     seconds = float(stamp) if isinstance(stamp, (int, float)) else float(stamp.sec + stamp.nanosec * 1e-9)
     if not math.isfinite(seconds):
-        raise Refused(StampNotFinite(str(seconds)))
+        raise MessageRefused(StampNotFinite(str(seconds)))
     return seconds

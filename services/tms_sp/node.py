@@ -20,9 +20,9 @@ from tms_ros.interface_types import Message
 from tms_runtime.app import App
 from tms_sp.field_types import Fields
 from tms_sp.inputs import SensingInput
-from tms_sp.machine_states import MachineStates
+from tms_sp.machine_states import MachineStateSampler
 from tms_sp.mapping import Mapping
-from tms_sp.outbox import Outbox, Post
+from tms_sp.outbox import InputUpdate, Outbox
 from tms_sp.reasons import DatabaseAway, DatabaseSilent, NoMessageType
 
 GAP = 0.015  # s between batches; the values that arrive in between are sent together
@@ -46,9 +46,9 @@ def start(app: App) -> None:
     for one in inputs:
         by_topic.setdefault(one.given.topic, []).append(one)
     for topic, sharing in by_topic.items():
-        Listener(app, topic, sharing)
+        TopicSubscription(app, topic, sharing)
     if sensing.machine_state.hz:
-        MachineStates(app, sensing.machine_state.hz)
+        MachineStateSampler(app, sensing.machine_state.hz)
     publisher = app.ros.publisher(InputStates, "/tms/sp/inputs", depth=1, latched=True)
     app.ros.every(STATE_PERIOD, lambda: publisher.publish(InputStates(inputs=[_state(app, one) for one in inputs])))
     app.ready_when(sender.unready)
@@ -89,7 +89,7 @@ def _state(app: App, one: SensingInput) -> InputState:
     return state
 
 
-class Listener:
+class TopicSubscription:
     """The subscription of one topic. Of inputs that share it, the one whose type is published is received."""
 
     def __init__(self, app: App, topic: str, inputs: list[SensingInput]) -> None:
@@ -143,9 +143,9 @@ class Sender:
         there = self._ros.has_service(UpdateParameters, "/tms/db/update_parameters")
         return None if there else DatabaseAway()
 
-    def put(self, post: Post) -> bool:
+    def put(self, update: InputUpdate) -> bool:
         """Take values to write; returns False when too many wait."""
-        taken = self._outbox.put(post)
+        taken = self._outbox.put(update)
         if self._clock.is_canceled() and monotonic() >= self._not_before:
             self._clock.reset()
         if self._retry.is_canceled():
@@ -157,8 +157,8 @@ class Sender:
         if not self._outbox.ready or now < self._not_before:
             self._clock.cancel()
             return
-        number, posts = self._outbox.take()
-        request = UpdateParameters.Request(updates=[self._update(post, now) for post in posts])
+        number, updates = self._outbox.take()
+        request = UpdateParameters.Request(updates=[self._update(update, now) for update in updates])
         self._flights[number] = now + ANSWER_LIMIT
         forget = self._ros.call_then(
             UpdateParameters, "/tms/db/update_parameters", request, lambda answer: self._answered(number, answer)
@@ -168,11 +168,11 @@ class Sender:
         else:
             self._forget[number] = forget
 
-    def _update(self, post: Post, now: float) -> RecordUpdate:
-        one = self.inputs[post.source]
+    def _update(self, update: InputUpdate, now: float) -> RecordUpdate:
+        one = self.inputs[update.source]
         return RecordUpdate(
-            model_name=post.key[0], record_name=post.key[1], source=f"sp {post.source}", age=now - post.measured,
-            loose=one.loose, keep=list(post.keep), values=to_parameters(post.values),
+            model_name=update.key[0], record_name=update.key[1], source=f"sp {update.source}",
+            age=now - update.measured, loose=one.loose, keep=list(update.keep), values=to_parameters(update.values),
             expected=to_parameters(one.only_if),
         )  # fmt: skip
 

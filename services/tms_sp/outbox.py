@@ -13,7 +13,7 @@ FLIGHTS = 90  # requests without an answer, fewer than a service keeps: a slow s
 
 
 @dataclass(frozen=True)
-class Post:
+class InputUpdate:
     """New values for a record from one input."""
 
     source: str  # name of the input
@@ -40,19 +40,19 @@ class Outbox:
 
     def __init__(self, counts: Callable[[str], Counts]) -> None:
         self._counts = counts
-        self._waiting: dict[Place, Post] = {}
-        self._flights: dict[int, list[Post]] = {}
+        self._waiting: dict[Place, InputUpdate] = {}
+        self._flights: dict[int, list[InputUpdate]] = {}
         self._last: dict[Place, int] = {}  # number of the batch with the newest sent values
         self._numbers = itertools.count()
 
-    def put(self, post: Post) -> bool:
+    def put(self, update: InputUpdate) -> bool:
         """Take values; they replace older waiting ones of the same record. Returns False when too many records wait."""
-        place = _place(post)
+        place = _place(update)
         if place in self._waiting:
-            self._counts(post.source).superseded += 1
+            self._counts(update.source).superseded += 1
         elif len(self._waiting) >= RECORDS:
             return False
-        self._waiting[place] = post
+        self._waiting[place] = update
         return True
 
     @property
@@ -60,7 +60,7 @@ class Outbox:
         """Whether a batch can be sent now."""
         return bool(self._waiting) and len(self._flights) < FLIGHTS
 
-    def take(self) -> tuple[int, list[Post]]:
+    def take(self) -> tuple[int, list[InputUpdate]]:
         """A batch to send, oldest first, and its number."""
         places = list(itertools.islice(self._waiting, BATCH))
         number = next(self._numbers)
@@ -70,25 +70,25 @@ class Outbox:
 
     def stored(self, number: int, refused: Iterable[tuple[int, str, Reason]]) -> None:
         """Note that a batch is stored, except for the refused updates: index, code and reason of each."""
-        posts = self._flights.pop(number, [])
+        updates = self._flights.pop(number, [])
         unwanted = {index: (code, why) for index, code, why in refused}
-        for index, post in enumerate(posts):
+        for index, update in enumerate(updates):
             if index in unwanted:
-                self._counts(post.source).unwanted.append(unwanted[index])
+                self._counts(update.source).unwanted.append(unwanted[index])
             else:
-                self._counts(post.source).written += 1
+                self._counts(update.source).written += 1
 
     def failed(self, number: int) -> None:
         """Queue a batch again, except for values that newer ones replace: it is not known whether it was stored."""
-        again: dict[Place, Post] = {}
-        for post in self._flights.pop(number, []):
-            place = _place(post)
+        again: dict[Place, InputUpdate] = {}
+        for update in self._flights.pop(number, []):
+            place = _place(update)
             if place in self._waiting or self._last[place] > number:
-                self._counts(post.source).superseded += 1
+                self._counts(update.source).superseded += 1
             else:
-                again[place] = post
+                again[place] = update
         self._waiting = {**again, **self._waiting}
 
 
-def _place(post: Post) -> Place:
-    return post.source, *post.key
+def _place(update: InputUpdate) -> Place:
+    return update.source, *update.key

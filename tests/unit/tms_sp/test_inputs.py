@@ -13,7 +13,7 @@ from tms_reason.reason import Foreign
 from tms_reason.wire import to_line
 from tms_sp.inputs import SensingInput
 from tms_sp.mapping import Mapping
-from tms_sp.outbox import Post
+from tms_sp.outbox import InputUpdate
 from tms_sp.reasons import MeasuredEarlier
 
 FIELDS = {"header": "std_msgs/Header", "x": "double"}
@@ -22,13 +22,13 @@ FIELDS = {"header": "std_msgs/Header", "x": "double"}
 class Heard:
     def __init__(self, **given: Any) -> None:
         wanted = {"topic": "/t", "type": "a/msg/B", "model": "m", "record": "r", "fields": {"x": "x"}, **given}
-        self.posts: list[Post] = []
+        self.updates: list[InputUpdate] = []
         self.full = False
         parsed = Input.model_validate(wanted)
         self.input = SensingInput("one", parsed, Mapping(parsed, FIELDS, {}.__getitem__), 0.5, self.put)
 
-    def put(self, post: Post) -> bool:
-        self.posts.append(post)
+    def put(self, update: InputUpdate) -> bool:
+        self.updates.append(update)
         return not self.full
 
     def say(self, x: float, stamp: float) -> str:
@@ -47,7 +47,7 @@ def test_stamps_from_the_future_and_older_ones_are_refused() -> None:
     assert received.say(2.0, now + 60) == "STAMP_IN_FUTURE"
     assert received.say(3.0, now - 1) == "MEASURED_EARLIER"
     assert received.say(4.0, now + 0.1) == "accepted"
-    assert [post.values["x"] for post in received.posts] == [1.0, 4.0]
+    assert [update.values["x"] for update in received.updates] == [1.0, 4.0]
     state = received.input.state()
     assert (state.accepted, state.refused, state.state, list(state.records)) == (2, 2, "alive", ["m/r"])
     found = wire.known(state.last_refusal).find(MeasuredEarlier)
@@ -60,14 +60,14 @@ def test_a_source_whose_clock_is_behind_is_told_and_its_delay_counts_as_age() ->
     received.say(2.0, now - 5 - 0.0)
     assert received.input.state().state == "clock"
     assert received.input.state().clock_offset == pytest.approx(5.0, abs=0.5)
-    assert time.monotonic() - received.posts[0].measured < 2.0
+    assert time.monotonic() - received.updates[0].measured < 2.0
 
 
 def test_what_comes_faster_than_wanted_is_left_out() -> None:
     received, now = Heard(max_hz=1.0), time.time()
     for step in range(5):
         received.say(float(step), now + step * 0.01)
-    assert [post.values["x"] for post in received.posts] == [0.0]
+    assert [update.values["x"] for update in received.updates] == [0.0]
     assert received.input.refused == 0
 
 
@@ -100,4 +100,4 @@ def test_after_our_clock_was_set_back_stamps_are_taken_again(monkeypatch: pytest
     assert received.say(2.0, now) == "STAMP_IN_FUTURE"  # the source's clock was not
     assert received.say(3.0, now - 3599.9) == "accepted"
     assert received.say(4.0, now - 3600.5) == "MEASURED_EARLIER"
-    assert [post.values["x"] for post in received.posts] == [1.0, 3.0]
+    assert [update.values["x"] for update in received.updates] == [1.0, 3.0]

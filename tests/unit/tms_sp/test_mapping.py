@@ -10,7 +10,7 @@ from pydantic import ValidationError
 
 from tms_config.sensing import Input
 from tms_reason.validation import Wrong
-from tms_sp.mapping import Mapping, Refused
+from tms_sp.mapping import Mapping, MessageRefused
 
 EXCAVATE = {"model_name": "string", "record_name": "string", "x": "double", "y": "double"}
 WAYPOINTS = {"model_name": "string", "record_name": "string", "x": "sequence<double>", "y": "sequence<double>"}
@@ -46,7 +46,7 @@ def test_arrays_become_lists_and_belong_together() -> None:
     given = mapping(WAYPOINTS)
     assert given.read(Message(**HEAD, x=array("d", [1, 2]), y=array("d", [3, 4]))).values == {"x": [1, 2], "y": [3, 4]}
     for x, y in (([1.0], [1.0, 2.0]), ([], [])):
-        with pytest.raises(Refused) as refused:
+        with pytest.raises(MessageRefused) as refused:
             given.read(Message(**HEAD, x=array("d", x), y=array("d", y)))
         assert refused.value.code == ("SIZES_DIFFER" if x else "NO_VALUES")
 
@@ -58,7 +58,7 @@ def test_fields_of_its_own_with_units_elements_and_names() -> None:
     assert reading.key == ("zx200", "seen")
     assert reading.values == {"angle": pytest.approx(math.pi), "second": 0.25}
     assert reading.stamp == 10.5
-    with pytest.raises(Refused, match="no such element among 1"):
+    with pytest.raises(MessageRefused, match="no such element among 1"):
         given.read(joints(1.0))
 
 
@@ -81,7 +81,7 @@ def test_fields_of_its_own_with_units_elements_and_names() -> None:
     ],
 )
 def test_what_is_refused(message: dict[str, Any], code: str, said: str) -> None:
-    with pytest.raises(Refused, match=said) as refused:
+    with pytest.raises(MessageRefused, match=said) as refused:
         mapping(EXCAVATE, range={"x": [-5, 5]}).read(Message(**{**HEAD, **message}))
     assert refused.value.code == code
 
@@ -89,7 +89,7 @@ def test_what_is_refused(message: dict[str, Any], code: str, said: str) -> None:
 def test_a_size_that_is_declared() -> None:
     given = mapping(JOINTS, model="m", record="r", fields={"all": {"path": "position", "size": 2}})
     assert given.read(joints(1.0, 2.0)).values == {"all": [1.0, 2.0]}
-    with pytest.raises(Refused, match="all has 3 values, not 2"):
+    with pytest.raises(MessageRefused, match="all has 3 values, not 2"):
         given.read(joints(1.0, 2.0, 3.0))
 
 
@@ -163,6 +163,6 @@ def test_what_sensing_yaml_must_not_hold(given: dict[str, Any], said: str) -> No
 @pytest.mark.parametrize("stamp", [math.nan, math.inf, -math.inf])
 def test_a_stamp_that_is_no_time_is_refused(stamp: float) -> None:
     given = mapping({**EXCAVATE, "measured": "double"}, fields={"x": "x"}, stamp="measured")
-    with pytest.raises(Refused, match=f"its stamp is {stamp}") as refused:
+    with pytest.raises(MessageRefused, match=f"its stamp is {stamp}") as refused:
         given.read(Message(**HEAD, x=1.0, measured=stamp))
     assert refused.value.code == "STAMP_NOT_FINITE"

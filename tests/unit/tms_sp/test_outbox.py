@@ -3,7 +3,7 @@
 from collections import defaultdict
 
 from tms_reason.reason import Foreign
-from tms_sp.outbox import RECORDS, Counts, Outbox, Post
+from tms_sp.outbox import RECORDS, Counts, InputUpdate, Outbox
 
 
 def outbox() -> tuple[Outbox, Counts]:
@@ -11,20 +11,20 @@ def outbox() -> tuple[Outbox, Counts]:
     return Outbox(lambda name: counts[name]), counts["input"]
 
 
-def post(record: str, value: float) -> Post:
-    return Post("input", ("zx200", record), {"x": value}, 0.0)
+def update(record: str, value: float) -> InputUpdate:
+    return InputUpdate("input", ("zx200", record), {"x": value}, 0.0)
 
 
-def values(posts: list[Post]) -> dict[str, float]:
-    return {one.key[1]: one.values["x"] for one in posts}
+def values(updates: list[InputUpdate]) -> dict[str, float]:
+    return {one.key[1]: one.values["x"] for one in updates}
 
 
 def test_the_newest_of_each_record_is_sent() -> None:
     box, counts = outbox()
-    for one in (post("a", 1.0), post("b", 1.0), post("a", 2.0)):
+    for one in (update("a", 1.0), update("b", 1.0), update("a", 2.0)):
         assert box.put(one)
-    number, posts = box.take()
-    assert values(posts) == {"a": 2.0, "b": 1.0}
+    number, updates = box.take()
+    assert values(updates) == {"a": 2.0, "b": 1.0}
     assert not box.ready
     box.stored(number, [(1, "RECORD_MISSING", Foreign("there is no record"))])
     assert (counts.written, counts.superseded) == (1, 1)
@@ -33,10 +33,10 @@ def test_the_newest_of_each_record_is_sent() -> None:
 
 def test_what_failed_is_sent_again_unless_something_newer_is_there() -> None:
     box, counts = outbox()
-    box.put(post("a", 1.0))
-    box.put(post("b", 1.0))
+    box.put(update("a", 1.0))
+    box.put(update("b", 1.0))
     number, _ = box.take()
-    box.put(post("a", 2.0))
+    box.put(update("a", 2.0))
     box.failed(number)
     assert values(box.take()[1]) == {"a": 2.0, "b": 1.0}
     assert counts.superseded == 1
@@ -44,9 +44,9 @@ def test_what_failed_is_sent_again_unless_something_newer_is_there() -> None:
 
 def test_an_old_value_never_follows_a_newer_one_that_was_stored() -> None:
     box, counts = outbox()
-    box.put(post("a", 1.0))
+    box.put(update("a", 1.0))
     first, _ = box.take()
-    box.put(post("a", 2.0))
+    box.put(update("a", 2.0))
     second, _ = box.take()
     box.stored(second, [])
     box.failed(first)
@@ -56,6 +56,6 @@ def test_an_old_value_never_follows_a_newer_one_that_was_stored() -> None:
 
 def test_it_is_bounded() -> None:
     box, _ = outbox()
-    assert all(box.put(post(str(number), 0.0)) for number in range(RECORDS))
-    assert not box.put(post("more", 0.0))
-    assert box.put(post("1", 1.0))
+    assert all(box.put(update(str(number), 0.0)) for number in range(RECORDS))
+    assert not box.put(update("more", 0.0))
+    assert box.put(update("1", 1.0))

@@ -22,7 +22,7 @@ SITES = [CONFIGS / "site.yaml", *sorted((CONFIGS / "sites").glob("*.yaml"))]
 
 def made(name: str, given: Input, site: Any = None) -> SensingInput:
     app: Any = SimpleNamespace(site=site or load_site(str(SITES[0])))
-    sender: Any = SimpleNamespace(put=lambda post: True)
+    sender: Any = SimpleNamespace(put=lambda update: True)
     return _input(app, name, given, 0.5, sender)
 
 
