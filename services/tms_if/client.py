@@ -9,7 +9,7 @@ from prometheus_client import Counter, Gauge
 from tms_if.client_endpoints import ClientEndpoints
 from tms_if.commands import CommandError, Registration, Removal, ServiceId, command, handshake, parse
 from tms_if.framing import Frame, FrameError, Splitter
-from tms_if.outbox import Outbox
+from tms_if.send_queue import SendQueue
 from tms_runtime.log import Logger
 
 SILENCE = 10.0  # s; the simulator sends a keep-alive every second
@@ -47,7 +47,7 @@ class Client:
         ends: Callable[[Callable[[bytes, bool], None], Callable[[str], None]], ClientEndpoints],
     ) -> None:
         self._socket, self._name, self._log = connection, name, log
-        self._splitter, self._outbox = Splitter(message_limit), Outbox()
+        self._splitter, self._queue = Splitter(message_limit), SendQueue()
         self._ends = ends(self._send, self._trouble)
         self._expected: tuple[str, int] | None = None  # kind of the next frame, __request or __response, and its number
         self._reported: set[str] = set()
@@ -60,7 +60,7 @@ class Client:
         self._socket.settimeout(SILENCE)
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         sender = threading.Thread(target=self._send_all, name="sender", daemon=True)
-        self._outbox.put(handshake())
+        self._queue.put(handshake())
         sender.start()
         reason = "ended by an error of the bridge"
         try:
@@ -69,13 +69,13 @@ class Client:
             self.close("")
             self._ends.close()
             CLIENTS.dec()
-            DROPPED.inc(self._outbox.dropped)
-            self._log.info("client_gone", client=self._name, dropped=self._outbox.dropped, reason=self._why or reason)
+            DROPPED.inc(self._queue.dropped)
+            self._log.info("client_gone", client=self._name, dropped=self._queue.dropped, reason=self._why or reason)
 
     def close(self, why: str) -> None:
         """End the connection from any thread; `why` is for the log."""
         self._why = self._why or why
-        self._outbox.close()
+        self._queue.close()
         try:
             self._socket.shutdown(socket.SHUT_RDWR)
         except OSError:
@@ -143,15 +143,15 @@ class Client:
 
     def _send(self, frame: bytes, droppable: bool) -> None:
         """Queue a frame; may be called from any thread and never waits."""
-        before = self._outbox.dropped
-        if not self._outbox.put(frame, droppable):
+        before = self._queue.dropped
+        if not self._queue.put(frame, droppable):
             self.close("it does not read: even answers find no room any more")
-        elif before == 0 and self._outbox.dropped:
+        elif before == 0 and self._queue.dropped:
             self._log.warning("client_slow", client=self._name, reason="it reads too slowly: messages get lost")
 
     def _send_all(self) -> None:
         try:
-            while (frame := self._outbox.take()) is not None:
+            while (frame := self._queue.take()) is not None:
                 self._socket.sendall(frame)
                 FRAMES.labels("out").inc()
         except TimeoutError:

@@ -29,7 +29,7 @@ T = TypeVar("T")
 
 
 @dataclass
-class Asked:
+class PendingRequest:
     """A request to a service of the client, which waits for its response."""
 
     topic: str
@@ -64,7 +64,7 @@ class ClientEndpoints:
         self._received: dict[str, Any] = {}
         self._called: dict[str, Any] = {}  # type
         self._offered: dict[str, tuple[Any, Any]] = {}  # service, type
-        self._asked: dict[int, Asked] = {}
+        self._asked: dict[int, PendingRequest] = {}
         self._numbers = itertools.count(1001)
         self._calls = 0
         self._closed = False
@@ -119,7 +119,7 @@ class ClientEndpoints:
         self.remove_unity_service(wanted.topic)
 
         def answer(request: Any, _response: Any) -> Any:
-            return self._ask_client(Asked(wanted.topic, kind), request)
+            return self._ask_client(PendingRequest(wanted.topic, kind), request)
 
         made = self._on_ros(lambda: self._ros.offer_slow(kind, full_name(wanted.topic), answer), wanted)
         self._offered[wanted.topic] = made, kind
@@ -211,7 +211,7 @@ class ClientEndpoints:
         known = sorted(self._ros.node.get_topic_names_and_types())
         return [name for name, _ in known], [short_name(types[0]) for _, types in known]
 
-    def _ask_client(self, asked: Asked, request: Any) -> Any:
+    def _ask_client(self, asked: PendingRequest, request: Any) -> Any:
         """Send a request to the client and wait; None when it does not answer. Runs in the thread of this call."""
         if self._closed or len(self._asked) >= OPEN_CALLS:
             return None

@@ -57,7 +57,7 @@ def read(data: bytes, layout: Layout) -> JointCmd:
     Raises:
         LayoutError: the bytes do not fit.
     """
-    reader = _Reader(data)
+    reader = _CdrReader(data)
     names = reader.strings()
     control = reader.byte() if layout == "control_type" else None
     found = JointCmd(names, control, reader.doubles(), reader.doubles(), reader.doubles())
@@ -91,7 +91,7 @@ def _pad(out: bytearray, size: int) -> None:
     out += bytes(-len(out) % size)
 
 
-class _Reader:
+class _CdrReader:
     """CDR without its header; alignment counts from the first byte after it."""
 
     def __init__(self, data: bytes) -> None:

@@ -1,10 +1,10 @@
 """What waits for a slow client is bounded, and only messages of topics give way."""
 
-from tms_if.outbox import Outbox
+from tms_if.send_queue import SendQueue
 
 
 def test_order_and_end() -> None:
-    box = Outbox()
+    box = SendQueue()
     assert box.put(b"1") and box.put(b"2", droppable=True)
     assert [box.take(), box.take()] == [b"1", b"2"]
     box.close()
@@ -14,7 +14,7 @@ def test_order_and_end() -> None:
 
 
 def test_the_oldest_message_gives_way_but_no_answer() -> None:
-    box = Outbox(frames=3)
+    box = SendQueue(frames=3)
     box.put(b"answer")
     for word in (b"a", b"b", b"c"):
         assert box.put(word, droppable=True)
@@ -23,7 +23,7 @@ def test_the_oldest_message_gives_way_but_no_answer() -> None:
 
 
 def test_answers_alone_fill_it() -> None:
-    box = Outbox(frames=2)
+    box = SendQueue(frames=2)
     assert box.put(b"1") and box.put(b"2")
     assert not box.put(b"3")
     assert box.put(b"lost", droppable=True)
@@ -31,7 +31,7 @@ def test_answers_alone_fill_it() -> None:
 
 
 def test_its_size_is_bounded_too() -> None:
-    box = Outbox(size=100)
+    box = SendQueue(size=100)
     for _ in range(10):
         assert box.put(bytes(40), droppable=True)
     assert box.dropped == 8

@@ -7,7 +7,7 @@ FRAMES = 2000
 BYTES = 32 * 1024 * 1024
 
 
-class Outbox:
+class SendQueue:
     """Frames in the order of sending. Safe to call from several threads; `put` never waits."""
 
     def __init__(self, frames: int = FRAMES, size: int = BYTES) -> None:
@@ -44,7 +44,7 @@ class Outbox:
         return False
 
     def take(self) -> bytes | None:
-        """Wait for the next frame; None when the outbox was closed."""
+        """Wait for the next frame; None when the queue was closed."""
         with self._changed:
             self._changed.wait_for(lambda: self._waiting or self._closed)
             if self._closed:
