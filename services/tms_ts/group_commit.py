@@ -47,7 +47,7 @@ Step = Callable[[], None]
 
 
 @dataclass(frozen=True)
-class Entry:
+class QueueEntry:
     """Data for a sink, or a step to be done when all entries before it are stored."""
 
     sink: Sink | None
@@ -62,7 +62,7 @@ class GroupCommit:
     def __init__(self, log: Logger, most: int = MAX_WAITING) -> None:
         self._log, self._most = log, most
         self._changed = threading.Condition()  # guards the next four; held for moments only
-        self._waiting: deque[Entry] = deque()
+        self._waiting: deque[QueueEntry] = deque()
         self._bytes = 0
         self._put = self._stored = 0  # entries, since the start
         self._some, self._urgent, self._closed = threading.Event(), threading.Event(), threading.Event()
@@ -79,11 +79,11 @@ class GroupCommit:
             vital: it may use the room that is reserved for entries that must not be lost.
             urgent: write it at once, without waiting for other entries to share the sync.
         """
-        return self._take(Entry(sink, data), self._most if vital else self._most - SPARE, urgent)
+        return self._take(QueueEntry(sink, data), self._most if vital else self._most - SPARE, urgent)
 
     def after(self, step: Step) -> None:
         """Do a step (it may raise OSError) in the writing thread once all entries before it are stored."""
-        self._take(Entry(None, step=step), 2 * self._most, False)
+        self._take(QueueEntry(None, step=step), 2 * self._most, False)
 
     def wait(self, seconds: float) -> bool:
         """Wait until all entries so far are stored; False when they are not within the time."""
@@ -112,7 +112,7 @@ class GroupCommit:
         self._urgent.set()
         self._thread.join(seconds)
 
-    def _take(self, entry: Entry, room: int, urgent: bool) -> bool:
+    def _take(self, entry: QueueEntry, room: int, urgent: bool) -> bool:
         with self._changed:
             if self._closed.is_set() or self._bytes + len(entry.data) > room:
                 return False
@@ -135,7 +135,7 @@ class GroupCommit:
                     self._some.clear()
             self._store(group)
 
-    def _store(self, group: list[Entry]) -> None:
+    def _store(self, group: list[QueueEntry]) -> None:
         while group and not self._closed.is_set():
             WAITING.set(self._bytes)
             try:
@@ -152,7 +152,7 @@ class GroupCommit:
             self._log.error("disk_fails", reason=problem, action="entries wait in memory")
         self._problem = problem
 
-    def _kept(self, group: list[Entry]) -> None:
+    def _kept(self, group: list[QueueEntry]) -> None:
         if self._problem:
             self._log.warning("disk_works_again", waiting=self._bytes)
         self._problem = ""
@@ -173,7 +173,7 @@ class GroupCommit:
             self._log.error("disk_fails", reason=str(error))
 
 
-def _write(group: Iterable[Entry]) -> None:
+def _write(group: Iterable[QueueEntry]) -> None:
     parts: dict[Sink, list[bytes]] = {}
     for entry in group:
         if entry.sink is not None:

@@ -61,7 +61,7 @@ Values = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
-class Stored:
+class StoredRecord:
     """A record as the database has it."""
 
     values: Values
@@ -73,7 +73,7 @@ class Stored:
 class Surroundings(Protocol):
     """What preflight asks about the system around a tree."""
 
-    def record(self, machine: str, record: str) -> Stored | None: ...
+    def record(self, machine: str, record: str) -> StoredRecord | None: ...
 
     def names(self, machine: str) -> list[str]: ...  # of its records
 

@@ -17,7 +17,7 @@ LogEvent = Callable[[str, str, Reason], None]  # kind, node, what
 
 
 @dataclass(slots=True)
-class Asked:
+class OpenQuestion:
     """An open question and the node that waits for its answer."""
 
     message: Question
@@ -32,7 +32,7 @@ class Questions:
         self._ros, self._changed = ros, changed
         # Ids begin at the present second: none is used again after a restart, and none is the beginning of another one.
         self._numbers = itertools.count(ros.now().sec)
-        self._open: dict[str, Asked] = {}
+        self._open: dict[str, OpenQuestion] = {}
         self._lock = threading.Lock()
 
     def messages(self) -> list[Question]:
@@ -49,7 +49,7 @@ class Questions:
         )  # fmt: skip
         answer: Answer[bool] = Answer()
         with self._lock:
-            self._open[name] = Asked(message, answer, clicks)
+            self._open[name] = OpenQuestion(message, answer, clicks)
         clicks.log_event("question", node, Foreign(text or title))
         self._changed()
         return answer

@@ -17,7 +17,7 @@ from tms_reason.reason import Foreign, Reason
 from tms_reason.validation import explain
 from tms_reason.wire import refusal
 from tms_runtime.app import App
-from tms_ts.preflight import Stored
+from tms_ts.preflight import StoredRecord
 from tms_ts.reasons import JointUnfit
 
 DB_LIMIT = 5.0  # s
@@ -26,7 +26,7 @@ CHECK_PERIOD = 0.05  # s
 DEAF = ("silent", "waiting")  # states of an input that does not write
 
 
-class Sensing:
+class SensingInputs:
     """The sensing inputs as tms:sp publishes them."""
 
     def __init__(self, app: App) -> None:
@@ -53,7 +53,11 @@ class PreflightContext:
     """
 
     def __init__(
-        self, app: App, sensing: Sensing, problem: Callable[[str], Reason | None], writers: Callable[[str, str], bool]
+        self,
+        app: App,
+        sensing: SensingInputs,
+        problem: Callable[[str], Reason | None],
+        writers: Callable[[str, str], bool],
     ) -> None:
         self._app, self._sensing, self.problem, self._writers = app, sensing, problem, writers
         answer = app.ros.call(ListParameters, "/tms/db/list_parameters", ListParameters.Request(), DB_LIMIT)
@@ -63,7 +67,7 @@ class PreflightContext:
         self._found_by = monotonic() + DISCOVERY_LIMIT
         self._records = {(record.model_name, record.record_name): _stored(record, now) for record in answer.records}
 
-    def record(self, machine: str, record: str) -> Stored | None:
+    def record(self, machine: str, record: str) -> StoredRecord | None:
         return self._records.get((machine, record))
 
     def names(self, machine: str) -> list[str]:
@@ -103,7 +107,7 @@ def unfit(model: MachineModel, subtask: str, values: Mapping[str, Any]) -> Reaso
     return next((JointUnfit(name, why) for name, why in broken if why is not None), None)
 
 
-def _stored(record: Record, now: float) -> Stored:
+def _stored(record: Record, now: float) -> StoredRecord:
     stamp = record.updated_at
     age = now - stamp.sec - stamp.nanosec * 1e-9 if stamp.sec else None
-    return Stored(from_parameters(record.values), record.type, age, record.max_age)
+    return StoredRecord(from_parameters(record.values), record.type, age, record.max_age)

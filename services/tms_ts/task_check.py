@@ -14,7 +14,7 @@ from tms_ts.active_runs import ActiveRuns
 from tms_ts.gateways import Gateways
 from tms_ts.preflight import Findings, at, preflight
 from tms_ts.reasons import MachineBusy
-from tms_ts.surroundings import PreflightContext, Sensing
+from tms_ts.surroundings import PreflightContext, SensingInputs
 
 DB_LIMIT = 5.0  # s
 
@@ -24,7 +24,7 @@ class TaskCheck:
 
     def __init__(self, app: App, runs: ActiveRuns, gateways: Gateways) -> None:
         self._app, self._runs, self._gateways = app, runs, gateways
-        self._sensing = Sensing(app)
+        self._sensing = SensingInputs(app)
 
     def check(self, request: CheckTask.Request, response: CheckTask.Response) -> CheckTask.Response:
         """Preflight of a stored task or of XML, without running."""

@@ -8,13 +8,13 @@ from tms_ts.bt.convert import MISSING, UInt
 from tms_ts.bt.decorator import Decorator
 from tms_ts.bt.errors import TickError, TreeError
 from tms_ts.bt.leaf import Condition, CoroAction, PlainAction, StatefulAction, SyncAction
-from tms_ts.bt.load import Report, check, load
+from tms_ts.bt.load import CheckReport, check, load
 from tms_ts.bt.node import Node
 from tms_ts.bt.palette import palette
 from tms_ts.bt.ports import Direction, In, InOut, Out, Port
 from tms_ts.bt.py_trees_leaf import PyTreesLeaf
 from tms_ts.bt.registry import Registry, node, registry
-from tms_ts.bt.status import FAILURE, IDLE, RUNNING, SUCCESS, Kind, Status
+from tms_ts.bt.status import FAILURE, IDLE, RUNNING, SUCCESS, NodeType, Status
 from tms_ts.bt.tree import LeafGoal, Tree
 
 __all__ = [
@@ -23,6 +23,7 @@ __all__ = [
     "MISSING",
     "RUNNING",
     "SUCCESS",
+    "CheckReport",
     "Condition",
     "Control",
     "CoroAction",
@@ -30,15 +31,14 @@ __all__ = [
     "Direction",
     "In",
     "InOut",
-    "Kind",
     "LeafGoal",
     "Node",
+    "NodeType",
     "Out",
     "PlainAction",
     "Port",
     "PyTreesLeaf",
     "Registry",
-    "Report",
     "StatefulAction",
     "Status",
     "SyncAction",

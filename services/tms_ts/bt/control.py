@@ -8,14 +8,14 @@ from tms_ts.bt.errors import TickError
 from tms_ts.bt.node import AtOnce, Node
 from tms_ts.bt.reasons import ChildIdle
 from tms_ts.bt.registry import node
-from tms_ts.bt.status import FAILURE, IDLE, RUNNING, SUCCESS, Kind, Status
+from tms_ts.bt.status import FAILURE, IDLE, RUNNING, SUCCESS, NodeType, Status
 
 
 class Control(Node):
     """A node over any number of children."""
 
     __slots__ = ()
-    kind: ClassVar[Kind] = Kind.CONTROL
+    kind: ClassVar[NodeType] = NodeType.CONTROL
 
     def reset_children(self) -> None:
         for child in self.children:

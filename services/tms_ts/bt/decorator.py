@@ -8,14 +8,14 @@ from tms_ts.bt.errors import TickError
 from tms_ts.bt.node import AtOnce, Node
 from tms_ts.bt.reasons import ChildIdle
 from tms_ts.bt.registry import node
-from tms_ts.bt.status import FAILURE, IDLE, RUNNING, SUCCESS, Kind, Status
+from tms_ts.bt.status import FAILURE, IDLE, RUNNING, SUCCESS, NodeType, Status
 
 
 class Decorator(Node):
     """A node over exactly one child."""
 
     __slots__ = ()
-    kind: ClassVar[Kind] = Kind.DECORATOR
+    kind: ClassVar[NodeType] = NodeType.DECORATOR
 
     @property
     def child(self) -> Node:

@@ -24,13 +24,13 @@ from tms_ts.bt.errors import short
 from tms_ts.bt.node import Node
 from tms_ts.bt.parallel import Parallel
 from tms_ts.bt.reactive import Reactive
-from tms_ts.bt.status import PY_TREES, SUCCESS, Kind
+from tms_ts.bt.status import PY_TREES, SUCCESS, NodeType
 from tms_ts.bt.tree import Tree
 
 LONGEST = 80  # letters of a port's text
 
 
-class Shown(Behaviour):
+class Twin(Behaviour):
     """The twin of a leaf, and of a control node to which no class of py_trees corresponds."""
 
     def update(self) -> PyTreesStatus:
@@ -83,9 +83,9 @@ def _bare(node: Node, name: str, children: list[Behaviour]) -> Behaviour:
         return kind(name, memory=isinstance(node, InOrder), children=children)
     if isinstance(node, Parallel):
         return PyTreesParallel(name, Thresholds(), children)
-    if node.kind in (Kind.DECORATOR, Kind.SUBTREE):
+    if node.kind in (NodeType.DECORATOR, NodeType.SUBTREE):
         return ShownDecorator(name, children[0])
-    made = Shown(name)
+    made = Twin(name)
     for child in children:
         child.parent = made
     made.children = children

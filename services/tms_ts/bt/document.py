@@ -28,7 +28,7 @@ from tms_ts.bt.reasons import (
     TwoTrees,
     UsePath,
 )
-from tms_ts.bt.source import Source, line_of, parse, read_file
+from tms_ts.bt.source import ParsedXml, line_of, parse, read_file
 
 MAX_FILES = 50
 
@@ -39,7 +39,7 @@ class TreeElement:
 
     id: str
     element: etree._Element
-    source: Source
+    source: ParsedXml
     v4: bool
 
 
@@ -47,7 +47,7 @@ class TreeElement:
 class Document:
     """What the files of one task hold, as elements with their places."""
 
-    sources: list[Source] = field(default_factory=list)
+    sources: list[ParsedXml] = field(default_factory=list)
     trees: list[TreeElement] = field(default_factory=list)  # all trees, in order of registration
     models: dict[str, frozenset[str]] = field(default_factory=dict)  # ID -> ports, by TreeNodesModel
     warnings: list[tuple[int, Reason]] = field(default_factory=list)
@@ -92,11 +92,11 @@ def children(element: etree._Element) -> Iterator[etree._Element]:
 def read(data: bytes | str, *, folder: Path | None = None, file: str = "", limit: int = MAX_BYTES) -> Document:
     """Read a document and its includes, which must stay inside `folder`."""
     document = Document()
-    _Reader(document, folder.resolve() if folder else None, limit).read(data, folder, file)
+    _DocumentReader(document, folder.resolve() if folder else None, limit).read(data, folder, file)
     return document
 
 
-class _Reader:
+class _DocumentReader:
     def __init__(self, document: Document, folder: Path | None, limit: int) -> None:
         self.document = document
         self.folder = folder
@@ -117,7 +117,7 @@ class _Reader:
         self.trees(source, v4=v4)
         self.palette(source)
 
-    def trees(self, source: Source, *, v4: bool) -> None:
+    def trees(self, source: ParsedXml, *, v4: bool) -> None:
         known = {tree.id for tree in self.document.trees}
         for child in children(source.root):
             if child.tag != "BehaviorTree":
@@ -130,7 +130,7 @@ class _Reader:
             known.add(name)
             self.document.trees.append(TreeElement(name, child, source, v4))
 
-    def palette(self, source: Source) -> None:
+    def palette(self, source: ParsedXml) -> None:
         models = [child for child in children(source.root) if child.tag == "TreeNodesModel"]
         if len(models) > 1:
             raise TreeError(TwoPalettes(), line=line_of(models[1]), file=source.file)
@@ -139,7 +139,7 @@ class _Reader:
                 ports = [port.get("name") for port in children(element) if str(port.tag).endswith("_port")]
                 self.document.models.setdefault(name, frozenset(str(port).strip() for port in ports if port))
 
-    def include(self, element: etree._Element, source: Source, here: Path | None) -> None:
+    def include(self, element: etree._Element, source: ParsedXml, here: Path | None) -> None:
         given = source.attributes(element)
         line, name = line_of(element), given.get("path", "")
         if "ros_pkg" in given:
@@ -164,7 +164,7 @@ class _Reader:
         self.open_files.pop()
 
 
-def check_depth(source: Source) -> None:
+def check_depth(source: ParsedXml) -> None:
     """Refuse deep nesting before anything recurses over it."""
     depth = 0
     for event, element in etree.iterwalk(source.root, events=("start", "end")):

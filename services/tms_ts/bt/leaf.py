@@ -11,14 +11,14 @@ from tms_ts.bt.errors import TickError
 from tms_ts.bt.node import AtOnce, Node
 from tms_ts.bt.ports import Pointer
 from tms_ts.bt.reasons import ActionIdle, SyncRunning
-from tms_ts.bt.status import FAILURE, IDLE, RUNNING, SUCCESS, Kind, Status
+from tms_ts.bt.status import FAILURE, IDLE, RUNNING, SUCCESS, NodeType, Status
 
 
 class Leaf(Node):
     """A node without children."""
 
     __slots__ = ()
-    kind: ClassVar[Kind] = Kind.ACTION
+    kind: ClassVar[NodeType] = NodeType.ACTION
 
 
 class PlainAction(Leaf):
@@ -62,7 +62,7 @@ class Condition(Leaf):
     """A question answered at once: `check` says yes or no."""
 
     __slots__ = ()
-    kind: ClassVar[Kind] = Kind.CONDITION
+    kind: ClassVar[NodeType] = NodeType.CONDITION
 
     def synchronous_outcomes(self, children: list[AtOnce]) -> AtOnce:
         return True, True

@@ -70,7 +70,7 @@ def _build(document: Document, rules: Rules, context: Context[Node], values: Map
 
 
 @dataclass(slots=True)
-class Report:
+class CheckReport:
     """What `check` found, without a run."""
 
     goals: list[LeafGoal] = field(default_factory=list)
@@ -85,9 +85,9 @@ class Report:
 
 def check(
     tree: str | bytes | Path, *, registry: Registry | None = None, folder: Path | None = None, limit: int = MAX_BYTES
-) -> Report:
+) -> CheckReport:
     """Load without running: leaf goals, warnings and all errors with their lines."""
-    report = Report()
+    report = CheckReport()
     try:
         document = _read(tree, folder, limit)
         rules = Rules(document, registry or all_nodes())

@@ -18,7 +18,7 @@ from tms_ts.bt.convert import FROM_TEXT, MISSING, convert
 from tms_ts.bt.errors import TickError
 from tms_ts.bt.ports import Direction, Pointer, Port
 from tms_ts.bt.reasons import AddPort, DoesNotFit, KeyChangesType, KeyHasNoValue, MissingParameter, OutputNotConnected
-from tms_ts.bt.status import IDLE, RUNNING, Kind, Status
+from tms_ts.bt.status import IDLE, RUNNING, NodeType, Status
 
 
 @dataclass(slots=True)
@@ -55,7 +55,7 @@ class Node:
         "state",
         "uid",
     )
-    kind: ClassVar[Kind] = Kind.UNDEFINED
+    kind: ClassVar[NodeType] = NodeType.UNDEFINED
     builtin: ClassVar[bool] = False  # part of the engine; Groot knows it
     ports: ClassVar[Mapping[str, Port]] = {}
     required: ClassVar[frozenset[str]] = frozenset()  # ports without which loading fails

@@ -26,7 +26,7 @@ _PRIVATE = range(0xE000, 0xF8FF)
 
 
 @dataclass(frozen=True, slots=True)
-class Source:
+class ParsedXml:
     """One parsed document."""
 
     root: etree._Element
@@ -95,7 +95,7 @@ def _set_lines(root: etree._Element, text: str) -> None:
         setattr(element, "sourceline", min(line, LAST_LINE))  # noqa: B010 - the stubs call it read-only
 
 
-def parse(data: bytes | str, *, file: str = "", limit: int = MAX_BYTES) -> Source:
+def parse(data: bytes | str, *, file: str = "", limit: int = MAX_BYTES) -> ParsedXml:
     """Parse XML from outside.
 
     Raises:
@@ -112,4 +112,4 @@ def parse(data: bytes | str, *, file: str = "", limit: int = MAX_BYTES) -> Sourc
     except xml_text.XmlRefused as refused:
         raise TreeError(refused.what, line=refused.line, hint=refused.hint, file=file) from refused
     _set_lines(root, text)
-    return Source(root, text, marks, file)
+    return ParsedXml(root, text, marks, file)

@@ -20,7 +20,7 @@ class Status(IntEnum):
         return self >= 2
 
 
-class Kind(IntEnum):
+class NodeType(IntEnum):
     """What a node is in Groot, with its numbers."""
 
     UNDEFINED = 0

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from tms_ts.bt.decorator import Decorator
 from tms_ts.bt.registry import node
-from tms_ts.bt.status import IDLE, RUNNING, Kind, Status
+from tms_ts.bt.status import IDLE, RUNNING, NodeType, Status
 
 
 @node
@@ -14,7 +14,7 @@ class SubTree(Decorator):
     """Run another tree on its own blackboard; attributes map its keys to keys of this tree."""
 
     __slots__ = ()
-    kind: ClassVar[Kind] = Kind.SUBTREE
+    kind: ClassVar[NodeType] = NodeType.SUBTREE
 
     def tick(self) -> Status:
         if self.state is IDLE:

@@ -42,7 +42,7 @@ from tms_ts.bt.reasons import (
 )
 from tms_ts.bt.registry import Registry
 from tms_ts.bt.source import line_of
-from tms_ts.bt.status import Kind
+from tms_ts.bt.status import NodeType
 
 CATEGORIES = frozenset({"Action", "Condition", "Control", "Decorator"})
 SUBTREES = frozenset({"SubTree", "SubTreePlus"})
@@ -96,7 +96,7 @@ class Rules:
             if name not in self.adopted:
                 self.adopted[name] = self.registry.stand_in_for(name, self.document.models[name])
             cls = self.adopted[name]
-        return None if cls is not None and cls.kind is Kind.SUBTREE else cls
+        return None if cls is not None and cls.kind is NodeType.SUBTREE else cls
 
     # --- checks
 
@@ -198,9 +198,9 @@ class Rules:
 
     @staticmethod
     def children_problem(use: Use, cls: type[Node], count: int) -> Problem | None:
-        if (use.tag == "Decorator" or cls.kind is Kind.DECORATOR) and count != 1:
+        if (use.tag == "Decorator" or cls.kind is NodeType.DECORATOR) and count != 1:
             return OneChildInDecorator(use.id, count), None
-        leaf = cls.kind in (Kind.ACTION, Kind.CONDITION)
+        leaf = cls.kind in (NodeType.ACTION, NodeType.CONDITION)
         if count and (leaf or use.tag in ("Action", "Condition")):
             return LeafWithChildren(use.id), None
         if not count and (use.tag == "Control" or use.tag in NEED_CHILDREN):

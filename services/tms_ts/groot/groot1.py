@@ -15,14 +15,14 @@ from tms_ts.bt.node import Node
 from tms_ts.bt.ports import Port
 from tms_ts.bt.status import Status
 from tms_ts.bt.tree import Tree
-from tms_ts.groot.shape import Model, assignments, is_input, is_output, models, type_name
+from tms_ts.groot.shape import NodeModel, assignments, is_input, is_output, models, type_name
 
-Change = tuple[float, int, int, int]  # s since 1970, uid, old status, new status
+Transition = tuple[float, int, int, int]  # s since 1970, uid, old status, new status
 ENTRY = struct.Struct("<HB")
 TRANSITION = struct.Struct("<IIHBB")
 
 
-def message(states: Mapping[int, int], changes: Sequence[Change]) -> bytes:
+def message(states: Mapping[int, int], changes: Sequence[Transition]) -> bytes:
     """States by uid as they were at the last message, then every change since, in order."""
     parts = [struct.pack("<I", len(states) * ENTRY.size)]
     parts += [ENTRY.pack(uid, state) for uid, state in states.items()]
@@ -97,7 +97,7 @@ class _Writer:
         self._out.PrependUOffsetTRelativeSlot(1, right, 0)
         return int(self._out.EndObject())
 
-    def _model(self, model: Model) -> int:
+    def _model(self, model: NodeModel) -> int:
         out = self._out
         ports = self._vector([self._port(port) for port in model.ports])
         name = self._text(model.name)

@@ -18,7 +18,7 @@ from tms_ts.bt.convert import MISSING
 from tms_ts.bt.node import Node
 from tms_ts.bt.palette import PORT_TAGS
 from tms_ts.bt.ports import Port
-from tms_ts.bt.status import IDLE, Kind
+from tms_ts.bt.status import IDLE, NodeType
 from tms_ts.bt.tree import Tree
 from tms_ts.groot.shape import assignments, default_text, models, type_name
 
@@ -84,7 +84,7 @@ def _instances(tree: Tree) -> Iterator[tuple[str, Node, str]]:
     yield tree.name, tree.root, tree.name
     paths: dict[int, str] = {}
     for node in tree.nodes:
-        if node.kind is Kind.SUBTREE:
+        if node.kind is NodeType.SUBTREE:
             outer = next((paths[above.uid] for above in _above(node) if above.uid in paths), "")
             paths[node.uid] = (f"{outer}/" if outer else "") + f"{node.name}::{node.uid}"
             yield paths[node.uid], node.children[0], node.name
@@ -112,7 +112,7 @@ def _document(tree: Tree) -> bytes:
 
 
 def _element(parent: etree._Element, node: Node, paths: Mapping[int, str]) -> None:
-    subtree = node.kind is Kind.SUBTREE
+    subtree = node.kind is NodeType.SUBTREE
     kind = node.registration_name
     element = etree.SubElement(parent, "SubTree") if subtree else _named(parent, node, V4_NAMES.get(kind, kind))
     element.set("_uid", str(node.uid))

@@ -14,7 +14,7 @@ from tms_runtime.log import Logger
 from tms_ts.bt.node import Node
 from tms_ts.bt.status import IDLE, Status
 from tms_ts.bt.tree import Tree
-from tms_ts.groot.groot1 import Change, message, tree_reply
+from tms_ts.groot.groot1 import Transition, message, tree_reply
 from tms_ts.groot.groot2 import Groot2
 
 STEP = 10  # ports from one run to the next
@@ -63,7 +63,7 @@ class Monitor:
 
     def __init__(self, tree: Tree, bind: str, port: int) -> None:
         self._tree = tree
-        self._changes: deque[Change] = deque(maxlen=MAX_CHANGES)
+        self._changes: deque[Transition] = deque(maxlen=MAX_CHANGES)
         self._flooded = False
         self._states = {node.uid: int(node.state) for node in tree.nodes}  # at the last message
         self._before: dict[int, int] = {}  # last state that was not idle
@@ -134,7 +134,7 @@ class Monitor:
             self._context.destroy(linger=100)
 
     def _publish(self, publisher: zmq.Socket[bytes]) -> None:
-        changes: list[Change] = []
+        changes: list[Transition] = []
         while self._changes and len(changes) < MAX_CHANGES:
             changes.append(self._changes.popleft())
         if not changes:

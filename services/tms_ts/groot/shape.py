@@ -9,25 +9,25 @@ from tms_ts.bt.convert import CPP_NAMES, MISSING
 from tms_ts.bt.node import Node
 from tms_ts.bt.ports import Direction, Pointer, Port
 from tms_ts.bt.registry import registry
-from tms_ts.bt.status import Kind
+from tms_ts.bt.status import NodeType
 from tms_ts.bt.tree import Tree
 
 
 @dataclass(frozen=True, slots=True)
-class Model:
+class NodeModel:
     """A node type."""
 
     name: str
-    kind: Kind
+    kind: NodeType
     ports: tuple[Port, ...]
 
 
-def models(tree: Tree) -> list[Model]:
+def models(tree: Tree) -> list[NodeModel]:
     """All known types, and those that only this tree's document describes."""
-    found = {name: Model(name, cls.kind, tuple(cls.ports.values())) for name, cls in registry().items()}
+    found = {name: NodeModel(name, cls.kind, tuple(cls.ports.values())) for name, cls in registry().items()}
     for node in tree.nodes:
         name = node.registration_name
-        found.setdefault(name, Model(name, node.kind, tuple(node.ports.values())))
+        found.setdefault(name, NodeModel(name, node.kind, tuple(node.ports.values())))
     return list(found.values())
 
 

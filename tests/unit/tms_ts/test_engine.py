@@ -17,7 +17,7 @@ from tms_ts.bt import (
     CoroAction,
     In,
     InOut,
-    Kind,
+    NodeType,
     Out,
     Status,
     SyncAction,
@@ -181,7 +181,7 @@ class TestTree:
         uids = [n.uid for n in one.nodes]
         assert uids == list(range(uids[0], uids[0] + 5)) or 65_535 in uids
         assert set(uids).isdisjoint(n.uid for n in tree("<AlwaysSuccess/>").nodes)
-        assert [n.kind for n in one.nodes][3] is Kind.SUBTREE
+        assert [n.kind for n in one.nodes][3] is NodeType.SUBTREE
         assert one.xml.startswith("<root")
 
     def test_assigned_ports_as_written(self) -> None:

@@ -13,7 +13,7 @@ from tms_config.yaml_file import parse
 from tms_machine.reasons import MachineLatched, SoftwareStop
 from tms_reason.reason import Foreign, Reason
 from tms_ts import bt
-from tms_ts.preflight import Stored, Values, at, machines_of, preflight, processes_of, records_of
+from tms_ts.preflight import StoredRecord, Values, at, machines_of, preflight, processes_of, records_of
 from tms_ts.reasons import NobodyWrites, RecordUnfit
 from tms_ts.surroundings import unfit
 from words import words
@@ -42,13 +42,15 @@ POSE = {"swing_joint": 0.0, "boom_joint": 0.0, "arm_joint": 0.0, "bucket_joint":
 class Context:
     """The surroundings in memory."""
 
-    records: dict[tuple[str, str], Stored] = field(default_factory=lambda: {("zx200", "pose"): Stored(POSE)})
+    records: dict[tuple[str, str], StoredRecord] = field(
+        default_factory=lambda: {("zx200", "pose"): StoredRecord(POSE)}
+    )
     writers: set[tuple[str, str]] = field(default_factory=set)
     problems: dict[str, Reason] = field(default_factory=dict)
     silent_input: str = ""
     misfit: Reason | None = None
 
-    def record(self, machine: str, record: str) -> Stored | None:
+    def record(self, machine: str, record: str) -> StoredRecord | None:
         return self.records.get((machine, record))
 
     def names(self, machine: str) -> list[str]:
@@ -117,8 +119,9 @@ def test_what_only_the_run_decides_is_a_warning(site: Site) -> None:
 @pytest.mark.parametrize(
     ("around", "said"),
     [
-        (Context({GOOD[:2]: Stored(POSE, "dynamic", 12.0, 5.0)}), "line 2: record zx200/pose is 12.0 s old, allowed"),
-        (Context({GOOD[:2]: Stored(POSE, "dynamic", None, 5.0)}), "line 2: record zx200/pose is of unknown age"),
+        (Context({GOOD[:2]: StoredRecord(POSE, "dynamic", 12.0, 5.0)}),
+         "line 2: record zx200/pose is 12.0 s old, allowed"),
+        (Context({GOOD[:2]: StoredRecord(POSE, "dynamic", None, 5.0)}), "line 2: record zx200/pose is of unknown age"),
         (Context(silent_input="digger"), "line 2: sensing input digger should write record zx200/pose and is silent"),
         (Context(problems={"zx200": MachineLatched("zx200", SoftwareStop())}), "zx200 is stopped: software stop"),
     ],
@@ -145,7 +148,7 @@ def flags(inner: str, before: str = "<Repeat num_cycles='-1'>", after: str = "</
 
 
 WAITED = NobodyWrites("FREE", "ROAD")
-ROAD = {("", "ROAD"): Stored({"FREE": False}, "dynamic")}
+ROAD = {("", "ROAD"): StoredRecord({"FREE": False}, "dynamic")}
 
 
 @pytest.mark.parametrize(
@@ -186,7 +189,7 @@ def test_a_flag_that_is_waited_for_and_that_nobody_writes_is_a_warning(site: Sit
 
 def test_shared_records_and_fields_should_be_there_and_not_static(site: Site) -> None:
     """Warnings, since trees of the field name records that a branch which is never taken would need."""
-    static = Context({("", "ROAD"): Stored({"FREE": False}, "static")})
+    static = Context({("", "ROAD"): StoredRecord({"FREE": False}, "static")})
     for inner, around, said in (
         (READ.format("FREE"), Context({}), "no shared record ROAD"),
         (READ.format("TAKEN"), Context(ROAD), "has no field 'TAKEN'"),
