@@ -24,7 +24,7 @@ from tms_reason import wire
 from tms_reason.errors import TmsError
 from tms_ros.interface_types import Reply, Req, ServiceType
 from tms_ros.node import Ros
-from tms_ur.audit_chain import RUN, Entry, Note, Place, entry, highest, tied
+from tms_ur.audit_chain import RUN, AuditEntry, ChainHead, Note, entry, highest, tied
 from tms_ur.audit_ledger import Ledger, LedgerFull, opened
 from tms_ur.strangers import Strangers
 
@@ -169,7 +169,7 @@ class Audit:
         number = highest(lambda after: bool(self._stored(after, 1)))
         last = self._stored(number - 1, 1) if number else []
         self._number = number
-        ledger.move(Place(number, last[0].hash if last else ""))
+        ledger.move(ChainHead(number, last[0].hash if last else ""))
 
     def _sent(self, ledger: Ledger) -> bool:
         """Send the oldest notes; returns whether there were any."""
@@ -181,10 +181,10 @@ class Audit:
         entries = tied(place, notes)
         self._ask(WriteJournal, "/tms/db/write_journal", events=list(map(_event, entries)))
         self._number = entries[-1].number
-        ledger.move(Place(self._number, entries[-1].hash), ids[-1])
+        ledger.move(ChainHead(self._number, entries[-1].hash), ids[-1])
         return True
 
-    def _stored(self, after: int, limit: int) -> list[Entry]:
+    def _stored(self, after: int, limit: int) -> list[AuditEntry]:
         try:
             found = self._ask(ListEvents, "/tms/db/list_events", run_id=RUN, after=after, limit=limit)
         except TmsError as error:
@@ -202,14 +202,14 @@ class Audit:
         return answer
 
 
-def _event(one: Entry) -> Event:
+def _event(one: AuditEntry) -> Event:
     seconds, rest = divmod(one.note.at, 1000)
     stamp = Time(sec=seconds, nanosec=rest * 1_000_000)
     return Event(run_id=RUN, number=one.number, stamp=stamp, kind=one.note.kind, node=one.note.node,
                  text=one.note.text, values=to_parameters(one.values()))  # fmt: skip
 
 
-def of_event(event: Event) -> Entry:
+def of_event(event: Event) -> AuditEntry:
     """An entry from its message."""
     at = event.stamp.sec * 1000 + event.stamp.nanosec // 1_000_000
     return entry(event.number, Note(at, event.kind, event.node, event.text), from_parameters(event.values))

@@ -29,7 +29,7 @@ class Note:
 
 
 @dataclass(frozen=True)
-class Place:
+class ChainHead:
     """Number and hash of the last entry, to which the next one is tied."""
 
     number: int
@@ -37,7 +37,7 @@ class Place:
 
 
 @dataclass(frozen=True)
-class Entry:
+class AuditEntry:
     """A note with its place."""
 
     number: int
@@ -56,22 +56,22 @@ class Entry:
         return {"times": self.note.times, "previous": self.previous, "hash": self.hash}
 
 
-def entry(number: int, note: Note, values: dict[str, Value]) -> Entry:
+def entry(number: int, note: Note, values: dict[str, Value]) -> AuditEntry:
     """An entry from its stored number, note and values."""
     times = values.get("times", 1)
-    return Entry(
+    return AuditEntry(
         number, Note(note.at, note.kind, note.node, note.text, times if isinstance(times, int) else 0),
         str(values.get("previous", "")), str(values.get("hash", "")),
     )  # fmt: skip
 
 
-def tied(last: Place, notes: Iterable[Note]) -> list[Entry]:
+def tied(last: ChainHead, notes: Iterable[Note]) -> list[AuditEntry]:
     """The entries for notes after `last`; the same arguments give the same entries."""
-    made: list[Entry] = []
+    made: list[AuditEntry] = []
     for note in notes:
-        bare = Entry(last.number + 1, note, last.hash, "")
-        made.append(Entry(bare.number, note, bare.previous, bare.right_hash()))
-        last = Place(made[-1].number, made[-1].hash)
+        bare = AuditEntry(last.number + 1, note, last.hash, "")
+        made.append(AuditEntry(bare.number, note, bare.previous, bare.right_hash()))
+        last = ChainHead(made[-1].number, made[-1].hash)
     return made
 
 
@@ -88,7 +88,7 @@ def highest(is_any_after: Callable[[int], bool]) -> int:
 
 
 @dataclass(frozen=True)
-class Fault:
+class ChainFault:
     """A fault at an entry."""
 
     number: int
@@ -97,22 +97,22 @@ class Fault:
 
 
 @dataclass
-class Verdict:
+class ChainCheck:
     """Checks the entries in the order of their numbers."""
 
     older: int = 0  # entries that are older than the chain
     chained: int = 0
     first: int = 0  # number of the chain's first entry
     cut: bool = False  # whether entries before the first one have been deleted
-    faults: list[Fault] = field(default_factory=list)
+    faults: list[ChainFault] = field(default_factory=list)
     found: int = 0  # number of faults; `faults` holds the first ones
-    last: Place = field(default_factory=lambda: Place(0, ""))
+    last: ChainHead = field(default_factory=lambda: ChainHead(0, ""))
 
     @property
     def intact(self) -> bool:
         return self.found == 0
 
-    def add(self, one: Entry) -> None:
+    def add(self, one: AuditEntry) -> None:
         """Check the next entry."""
         if not one.hash and not self.chained:
             self.older += 1
@@ -125,16 +125,16 @@ class Verdict:
             elif one.hash and one.previous != self.last.hash:
                 self._fault(one.number, "out_of_order")
             self._compare(one)
-        self.last = Place(one.number, one.hash)
+        self.last = ChainHead(one.number, one.hash)
 
-    def end(self, reported: Place) -> None:
+    def end(self, reported: ChainHead) -> None:
         """Compare the end of the chain with the last stored entry that the console's PC remembers."""
         if reported.number > self.last.number:
             self._fault(self.last.number + 1, "missing", reported.number)
         elif reported.number == self.last.number and reported.hash != self.last.hash:
             self._fault(reported.number, "changed")
 
-    def _compare(self, one: Entry) -> None:
+    def _compare(self, one: AuditEntry) -> None:
         self.chained += 1
         if not one.hash:
             self._fault(one.number, "no_hash")
@@ -146,4 +146,4 @@ class Verdict:
     ) -> None:
         self.found += 1
         if len(self.faults) < MAX_FAULTS:
-            self.faults.append(Fault(number, what, until or number))
+            self.faults.append(ChainFault(number, what, until or number))

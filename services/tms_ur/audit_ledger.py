@@ -11,7 +11,7 @@ import threading
 from collections.abc import Sequence
 from pathlib import Path
 
-from tms_ur.audit_chain import Note, Place
+from tms_ur.audit_chain import ChainHead, Note
 
 MAX_WAITING = 100_000  # notes; weeks of a database that is away
 TABLES = """
@@ -58,13 +58,13 @@ class Ledger:
             rows = self._db.execute("select id, note from waiting order by id limit ?", (most,)).fetchall()
         return [row[0] for row in rows], [Note(**json.loads(row[1])) for row in rows]
 
-    def place(self) -> Place | None:
+    def place(self) -> ChainHead | None:
         """The last entry that is stored; None if this ledger has never been given one."""
         with self._lock:
             row = self._db.execute("select number, hash from place").fetchone()
-        return None if row is None else Place(*row)
+        return None if row is None else ChainHead(*row)
 
-    def move(self, place: Place, done: int = 0) -> None:
+    def move(self, place: ChainHead, done: int = 0) -> None:
         """Note that the chain goes on after `place`, and delete the notes up to `done`, which are stored."""
         with self._lock, self._db:
             self._db.execute("insert or replace into place values (1, ?, ?)", (place.number, place.hash))
@@ -87,7 +87,7 @@ def opened(file: Path) -> tuple[Ledger, bool]:
         return Ledger(file), True
 
 
-def reported(file: Path) -> Place | None:
+def reported(file: Path) -> ChainHead | None:
     """The last stored entry by the ledger of this PC; None if the console has run on another PC."""
     if not file.exists():
         return None
@@ -96,4 +96,4 @@ def reported(file: Path) -> Place | None:
         row = ledger.execute("select number, hash from place").fetchone()
     finally:
         ledger.close()
-    return None if row is None else Place(*row)
+    return None if row is None else ChainHead(*row)

@@ -30,7 +30,7 @@ BODY = 60.0  # s for a whole request: a tree of 6 MB by a slow line
 CUT = Metric("tms_ur_connections_cut_total", "Connections that were closed by the console", ["reason"])
 
 
-class Served(Protocol):
+class ServedConnection(Protocol):
     """A connection of the web server (server.py) as the gate uses it."""
 
     def hanging(self) -> bool:
@@ -48,7 +48,7 @@ class Connection:
 
     def __init__(self, sock: socket.socket, address: str, now: float) -> None:
         self.sock, self.descriptor, self.caller, self.since = sock, sock.fileno(), caller(address), now
-        self.served: Served | None = None
+        self.served: ServedConnection | None = None
 
     def hanging(self) -> bool:
         return self.served is None or self.served.hanging()
@@ -95,7 +95,7 @@ class Gate:
         self._there[sock.fileno()] = Connection(sock, address, self._clock())
         return True
 
-    def serve(self, descriptor: int, served: Served) -> Connection | None:
+    def serve(self, descriptor: int, served: ServedConnection) -> Connection | None:
         """Note that the web server serves a connection from now on; None if it was closed meanwhile."""
         found = self._there.get(descriptor)
         if found is not None:

@@ -13,20 +13,20 @@ from tms_reason.reason import Foreign, Reason
 KEPT = 1000  # views; every state of a machine carries the same lines again
 
 
-class Shown(BaseModel):
+class ViewPart(BaseModel):
     """Base of the parts of a view."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
 
-class Texts(Shown):
+class Texts(ViewPart):
     """The same in both languages."""
 
     en: str
     ja: str
 
 
-class Action(Shown):
+class Action(ViewPart):
     """What an operator can do about a reason."""
 
     name: str = Field(description="for programs, for example rearm")
@@ -35,7 +35,7 @@ class Action(Shown):
     text: Texts
 
 
-class ReasonView(Shown):
+class ReasonView(ViewPart):
     """Why something is as it is."""
 
     code: str = Field(description="for programs, for example TASK_MISSING")

@@ -13,7 +13,7 @@ MANY = "many addresses"
 
 
 @dataclass
-class Refused:
+class RefusalGroup:
     """Refusals that become one entry."""
 
     who: str  # the last name that was given
@@ -29,7 +29,7 @@ class Strangers:
 
     def __init__(self, clock: Callable[[], float] = monotonic) -> None:
         self._clock = clock
-        self._open: dict[tuple[str, str, str], Refused] = {}
+        self._open: dict[tuple[str, str, str], RefusalGroup] = {}
         self._lock = threading.Lock()
 
     def add(self, who: str, source: str, what: str, why: str) -> bool:
@@ -40,19 +40,19 @@ class Strangers:
                 source, key = MANY, (MANY, what, why)
             found = self._open.get(key)
             if found is None:
-                self._open[key] = Refused(who, source, what, why, self._clock())
+                self._open[key] = RefusalGroup(who, source, what, why, self._clock())
                 return True
             found.who, found.times = who, found.times + 1
             return False
 
-    def due(self, everything: bool = False) -> list[Refused]:
+    def due(self, everything: bool = False) -> list[RefusalGroup]:
         """The counts since the last entry of each kind, where that is a minute ago."""
         with self._lock:
             now = self._clock()
             over = {key: one for key, one in self._open.items() if everything or now - one.since >= COUNTING_PERIOD}
             for key, one in over.items():
                 if one.times:
-                    self._open[key] = Refused(one.who, one.source, one.what, one.why, now)
+                    self._open[key] = RefusalGroup(one.who, one.source, one.what, one.why, now)
                 else:
                     del self._open[key]
         return [one for one in over.values() if one.times]

@@ -28,7 +28,7 @@ HEADERS = [(b"content-type", b"text/event-stream; charset=utf-8"), (b"x-accel-bu
 log = structlog.stdlib.get_logger(__name__)
 
 
-class Client:
+class StreamClient:
     """The slot of one client; used on the event loop only."""
 
     def __init__(self) -> None:
@@ -56,14 +56,14 @@ class Stream:
 
     def __init__(self, board: Board) -> None:
         self._board = board
-        self._clients: set[Client] = set()
+        self._clients: set[StreamClient] = set()
         self._changed = asyncio.Event()
         self._loop: asyncio.AbstractEventLoop | None = None
         self._pump: asyncio.Task[None] | None = None
         self._last = b""
         board.on_change(self._wake)
 
-    def join(self) -> Client:
+    def join(self) -> StreamClient:
         """Add a client, which gets a snapshot at once.
 
         Raises:
@@ -71,7 +71,7 @@ class Stream:
         """
         if len(self._clients) >= MAX_CLIENTS:
             raise TmsError(TooManyConsoles(MAX_CLIENTS))
-        client = Client()
+        client = StreamClient()
         self._clients.add(client)
         CLIENTS.set(len(self._clients))
         client.put(self._text())
@@ -80,7 +80,7 @@ class Stream:
             self._pump = self._loop.create_task(self._run())
         return client
 
-    def leave(self, client: Client) -> None:
+    def leave(self, client: StreamClient) -> None:
         self._clients.discard(client)
         CLIENTS.set(len(self._clients))
 
@@ -138,7 +138,7 @@ async def _sent(send: Send, text: bytes) -> bool:
     return False
 
 
-async def _end_when_gone(receive: Receive, client: Client) -> None:
+async def _end_when_gone(receive: Receive, client: StreamClient) -> None:
     """Wait for the client to disconnect: the server's `send` does not report that, its `receive` does."""
     while (await receive())["type"] != "http.disconnect":
         pass

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from tms_msg_db.msg import Event
 
     from tms_ros.node import Ros
-    from tms_ur.audit_chain import Entry, Fault, Place, Verdict
+    from tms_ur.audit_chain import AuditEntry, ChainCheck, ChainFault, ChainHead
 
 PAGE = 1000
 MAX_ENTRIES = 10_000
@@ -69,16 +69,16 @@ def verify(as_json: bool) -> None:
     """
     remembered = _remembered()
     with session.ros() as node:
-        verdict = _verdict(node, remembered)
+        chain = _checked(node, remembered)
     if as_json:
-        session.show_json(_report(verdict, remembered is not None))
+        session.show_json(_report(chain, remembered is not None))
     else:
-        _show(verdict, remembered is not None)
-    if not verdict.intact:
+        _show(chain, remembered is not None)
+    if not chain.intact:
         click.get_current_context().exit(1)
 
 
-def _remembered() -> "Place | None":
+def _remembered() -> "ChainHead | None":
     """The last stored entry by the ledger of this PC. Read before the entries, since more may come meanwhile."""
     from tms_ur.audit_ledger import reported
 
@@ -89,21 +89,21 @@ def _remembered() -> "Place | None":
         raise TmsError(Unreadable(str(file), str(error))) from error
 
 
-def _verdict(node: "Ros", remembered: "Place | None") -> "Verdict":
-    from tms_ur.audit_chain import Verdict
+def _checked(node: "Ros", remembered: "ChainHead | None") -> "ChainCheck":
+    from tms_ur.audit_chain import ChainCheck
 
-    verdict, waiting = Verdict(), remembered
+    chain, waiting = ChainCheck(), remembered
     for event in _entries(node, 0):
-        verdict.add(_entry(event))
+        chain.add(_entry(event))
         if waiting is not None and event.number >= waiting.number:
-            verdict.end(waiting)
+            chain.end(waiting)
             waiting = None
     if waiting is not None:
-        verdict.end(waiting)
-    return verdict
+        chain.end(waiting)
+    return chain
 
 
-def _entry(event: "Event") -> "Entry":
+def _entry(event: "Event") -> "AuditEntry":
     from tms_machine.values import from_parameters
     from tms_ur.audit_chain import Note, entry
 
@@ -159,34 +159,34 @@ def _line(event: "Event") -> str:
     return f"{event.number:>10}  {live.clock_time(event.stamp)}  {event.kind:<14}  {event.node}  {event.text}{often}"
 
 
-def _report(verdict: "Verdict", compared: bool) -> dict[str, Any]:
+def _report(chain: "ChainCheck", compared: bool) -> dict[str, Any]:
     return {
-        "intact": verdict.intact, "entries": verdict.chained, "first": verdict.first, "last": verdict.last.number,
-        "earlier_deleted": verdict.cut, "without_chain": verdict.older, "end_compared": compared,
-        "faults": [vars(one) for one in verdict.faults], "faults_found": verdict.found,
+        "intact": chain.intact, "entries": chain.chained, "first": chain.first, "last": chain.last.number,
+        "earlier_deleted": chain.cut, "without_chain": chain.older, "end_compared": compared,
+        "faults": [vars(one) for one in chain.faults], "faults_found": chain.found,
     }  # fmt: skip
 
 
-def _show(verdict: "Verdict", compared: bool) -> None:
-    if verdict.older:
-        click.echo(say("{count} entries are from before there was a chain: not checked", count=verdict.older))
-    if verdict.cut:
-        click.echo(say("the chain begins at entry {first}: earlier ones were deleted", first=verdict.first))
+def _show(chain: "ChainCheck", compared: bool) -> None:
+    if chain.older:
+        click.echo(say("{count} entries are from before there was a chain: not checked", count=chain.older))
+    if chain.cut:
+        click.echo(say("the chain begins at entry {first}: earlier ones were deleted", first=chain.first))
     if not compared:
         click.echo(say("the console does not run on this PC: whether the last entries are missing is not seen here"))
-    for fault in verdict.faults:
+    for fault in chain.faults:
         click.echo(_fault(fault), err=True)
-    if verdict.found > len(verdict.faults):
-        click.echo(say("and {count} more", count=verdict.found - len(verdict.faults)), err=True)
-    count, last = verdict.chained, verdict.last.number
-    if verdict.intact:
+    if chain.found > len(chain.faults):
+        click.echo(say("and {count} more", count=chain.found - len(chain.faults)), err=True)
+    count, last = chain.chained, chain.last.number
+    if chain.intact:
         click.echo(say("intact: {count} entries, the last one is {last}", count=count, last=last))
     else:
-        text = say("NOT intact: {count} faults among {entries} entries", count=verdict.found, entries=count)
+        text = say("NOT intact: {count} faults among {entries} entries", count=chain.found, entries=count)
         click.echo(text, err=True)
 
 
-def _fault(fault: "Fault") -> str:
+def _fault(fault: "ChainFault") -> str:
     if fault.what == "missing":
         return say("entries {first} to {last} are missing", first=fault.number, last=fault.until)
     reported = {

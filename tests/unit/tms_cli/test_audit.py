@@ -15,11 +15,11 @@ from tms_cli.commands import audit
 from tms_machine.values import to_parameters
 from tms_reason.errors import TmsError
 from tms_reason.reason import Foreign
-from tms_ur.audit_chain import Note, Place, tied
+from tms_ur.audit_chain import ChainHead, Note, tied
 from tms_ur.audit_ledger import Ledger
 
 NOTES = [Note(1_790_000_000_000 + number, "stop", f"target {number}", "mina from 192.0.2.1", 1) for number in range(5)]
-CHAIN = tied(Place(0, ""), [*NOTES[:4], Note(NOTES[4].at, "refused", "LOGIN", "- from 192.0.2.9", 12)])
+CHAIN = tied(ChainHead(0, ""), [*NOTES[:4], Note(NOTES[4].at, "refused", "LOGIN", "- from 192.0.2.9", 12)])
 
 
 def events() -> list[Event]:
@@ -82,7 +82,7 @@ def test_a_damaged_chain(mesh, tms, site, damage, reported) -> None:
 
 def test_an_end_that_the_console_remembers(mesh, tms, site) -> None:
     ledger = Ledger(site / "audit.db")
-    ledger.move(Place(4, CHAIN[3].hash))
+    ledger.move(ChainHead(4, CHAIN[3].hash))
     ledger.close()
     mesh.answers["/tms/db/list_events"] = database(events())  # one more was stored since
     assert json.loads(tms(audit.verify, "--json").stdout)["end_compared"]

@@ -13,7 +13,7 @@ from tms_msg_db.srv import ListEvents, WriteJournal
 from tms_reason.errors import RosError
 from tms_reason.reason import Foreign
 from tms_ur import audit
-from tms_ur.audit_chain import Note, Place, Verdict, tied
+from tms_ur.audit_chain import ChainCheck, ChainHead, Note, tied
 from tms_ur.audit_ledger import Ledger, reported
 
 
@@ -43,8 +43,8 @@ class FakeRos:
     def targets(self) -> list[str]:
         return [self.stored[number].node for number in sorted(self.stored)]
 
-    def verdict(self) -> Verdict:
-        verdict = Verdict()
+    def verdict(self) -> ChainCheck:
+        verdict = ChainCheck()
         for number in sorted(self.stored):
             verdict.add(audit.of_event(self.stored[number]))
         return verdict
@@ -209,8 +209,8 @@ def test_the_disk_remembers_the_last_entry(tmp_path: Path) -> None:
     assert ledger.place() is None
     ledger.append([Note(1, "stop", "a", "mina"), Note(2, "stop", "b", "mina")])
     ids, notes = ledger.waiting(10)
-    ledger.move(Place(7, tied(Place(6, ""), notes[:1])[0].hash), ids[0])
+    ledger.move(ChainHead(7, tied(ChainHead(6, ""), notes[:1])[0].hash), ids[0])
     ledger.close()
-    assert reported(file) == Place(7, tied(Place(6, ""), notes[:1])[0].hash)
+    assert reported(file) == ChainHead(7, tied(ChainHead(6, ""), notes[:1])[0].hash)
     assert Ledger(file).waiting(10)[1] == notes[1:]
     assert file.stat().st_mode & 0o777 == 0o600

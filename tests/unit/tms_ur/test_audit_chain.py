@@ -4,14 +4,14 @@ from dataclasses import replace
 
 import pytest
 
-from tms_ur.audit_chain import LARGEST, Entry, Note, Place, Verdict, highest, tied
+from tms_ur.audit_chain import LARGEST, AuditEntry, ChainCheck, ChainHead, Note, highest, tied
 from tms_ur.strangers import MANY, MAX_KINDS, Strangers
 
-CHAIN = tied(Place(0, ""), [Note(1000 * number, "stop", "zx200", f"mina {number}") for number in range(6)])
+CHAIN = tied(ChainHead(0, ""), [Note(1000 * number, "stop", "zx200", f"mina {number}") for number in range(6)])
 
 
-def verdict(entries: list[Entry], end: Place | None = None) -> Verdict:
-    made = Verdict()
+def verdict(entries: list[AuditEntry], end: ChainHead | None = None) -> ChainCheck:
+    made = ChainCheck()
     for one in entries:
         made.add(one)
     if end is not None:
@@ -19,12 +19,12 @@ def verdict(entries: list[Entry], end: Place | None = None) -> Verdict:
     return made
 
 
-def faults(entries: list[Entry], end: Place | None = None) -> list[tuple[int, int, str]]:
+def faults(entries: list[AuditEntry], end: ChainHead | None = None) -> list[tuple[int, int, str]]:
     return [(one.number, one.until, one.what) for one in verdict(entries, end).faults]
 
 
 def test_an_intact_chain() -> None:
-    found = verdict(CHAIN, Place(6, CHAIN[-1].hash))
+    found = verdict(CHAIN, ChainHead(6, CHAIN[-1].hash))
     assert (found.intact, found.chained, found.first, found.cut, found.older) == (True, 6, 1, False, 0)
 
 
@@ -38,7 +38,7 @@ def test_a_changed_entry(change: dict[str, object]) -> None:
 
 
 def test_one_that_was_changed_with_its_hash() -> None:
-    made = tied(Place(2, CHAIN[1].hash), [replace(CHAIN[2].note, text="ken")])
+    made = tied(ChainHead(2, CHAIN[1].hash), [replace(CHAIN[2].note, text="ken")])
     assert faults([*CHAIN[:2], *made, *CHAIN[3:]]) == [(4, 4, "out_of_order")]
 
 
@@ -52,9 +52,9 @@ def test_exchanged_entries() -> None:
 
 
 def test_an_end_that_was_cut_off() -> None:
-    assert faults(CHAIN[:4], Place(6, CHAIN[-1].hash)) == [(5, 6, "missing")]
-    assert faults([], Place(6, CHAIN[-1].hash)) == [(1, 6, "missing")]
-    assert faults(CHAIN, Place(6, "another")) == [(6, 6, "changed")]
+    assert faults(CHAIN[:4], ChainHead(6, CHAIN[-1].hash)) == [(5, 6, "missing")]
+    assert faults([], ChainHead(6, CHAIN[-1].hash)) == [(1, 6, "missing")]
+    assert faults(CHAIN, ChainHead(6, "another")) == [(6, 6, "changed")]
 
 
 def test_a_beginning_that_was_deleted_for_its_age() -> None:
@@ -63,16 +63,16 @@ def test_a_beginning_that_was_deleted_for_its_age() -> None:
 
 
 def test_entries_without_a_hash() -> None:
-    old = [Entry(number, Note(0, "stop", "", ""), "", "") for number in (3, 90)]
-    ours = tied(Place(90, ""), [Note(1, "stop", "a", ""), Note(2, "stop", "b", "")])
+    old = [AuditEntry(number, Note(0, "stop", "", ""), "", "") for number in (3, 90)]
+    ours = tied(ChainHead(90, ""), [Note(1, "stop", "a", ""), Note(2, "stop", "b", "")])
     found = verdict([*old, *ours])
     assert (found.intact, found.older, found.first, found.cut) == (True, 2, 91, False)
-    put_in = Entry(93, Note(3, "stop", "c", ""), "", "")
+    put_in = AuditEntry(93, Note(3, "stop", "c", ""), "", "")
     assert faults([*ours, put_in]) == [(93, 93, "no_hash")]
 
 
 def test_many_faults_are_counted_and_some_named() -> None:
-    wrong = [replace(one, hash="0") for one in tied(Place(0, ""), [Note(0, "stop", "", "")] * 50)]
+    wrong = [replace(one, hash="0") for one in tied(ChainHead(0, ""), [Note(0, "stop", "", "")] * 50)]
     found = verdict(wrong)
     assert found.found >= 50
     assert len(found.faults) == 20

@@ -134,7 +134,7 @@ def test_a_client_that_does_not_read_is_dropped(monkeypatch: pytest.MonkeyPatch)
 
 def test_a_slow_client_gets_the_newest_state_only() -> None:
     async def scenario(site_client: FakeSiteClient, app: Any) -> None:
-        client = stream.Client()
+        client = stream.StreamClient()
         for text in (b"1", b"2", b"3"):
             client.put(text)
         assert await client.next() == b"3"
