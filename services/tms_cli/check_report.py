@@ -5,11 +5,11 @@ from collections.abc import Iterable
 import click
 
 from tms_cli import session
-from tms_cli.check_task import Checked
+from tms_cli.check_task import CheckedTask
 from tms_cli.words import say
 
 
-def show_one(found: Checked, *, as_json: bool) -> bool:
+def show_one(found: CheckedTask, *, as_json: bool) -> bool:
     """Show the findings about one task; returns whether it has no errors."""
     if as_json:
         session.show_json(found.as_dict())
@@ -26,7 +26,7 @@ def show_one(found: Checked, *, as_json: bool) -> bool:
     return not found.errors
 
 
-def goal_table(found: Checked) -> list[str]:
+def goal_table(found: CheckedTask) -> list[str]:
     """The goals of a task as a table, in document order."""
     rows = [(str(goal.line), goal.machine, goal.subtask, goal.record, goal.path) for goal in found.goals]
     rows = [("LINE", "MACHINE", "SUBTASK", "RECORD", "NODE"), *rows] if rows else []
@@ -34,7 +34,7 @@ def goal_table(found: Checked) -> list[str]:
     return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
 
 
-def show_folder(files: Iterable[Checked], *, as_json: bool) -> bool:
+def show_folder(files: Iterable[CheckedTask], *, as_json: bool) -> bool:
     """Show the files of a folder, each as soon as it is checked; returns whether none has errors."""
     done = []
     for found in files:
@@ -54,7 +54,7 @@ def show_folder(files: Iterable[Checked], *, as_json: bool) -> bool:
     return not wrong
 
 
-def report_unchecked(done: list[Checked]) -> None:
+def report_unchecked(done: list[CheckedTask]) -> None:
     """Print on stderr that no scheduler has checked these files."""
     if any(found.by != "scheduler" and not found.errors and not found.no_task for found in done):
         click.echo(say("no scheduler answers: records and subtasks are unchecked"), err=True)

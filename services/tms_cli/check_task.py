@@ -27,7 +27,7 @@ PROGRESS = 2.0  # s between two lines about the progress of a folder
 
 
 @dataclass
-class Checked:
+class CheckedTask:
     """One file or stored task; errors and warnings are lines that begin with their place."""
 
     what: str
@@ -63,7 +63,7 @@ class Checked:
         return (", ".join(counts) or say("ok")) + first
 
 
-class Scheduler(AbstractContextManager["Scheduler"]):
+class SchedulerClient(AbstractContextManager["SchedulerClient"]):
     """The scheduler of the mesh; when it does not answer, it is not called a second time."""
 
     def __init__(self) -> None:
@@ -79,7 +79,7 @@ class Scheduler(AbstractContextManager["Scheduler"]):
             self._node = self._open.enter_context(session.ros())
         return self._node
 
-    def ask_scheduler(self, found: Checked, **task: Any) -> None:
+    def ask_scheduler(self, found: CheckedTask, **task: Any) -> None:
         """Have the scheduler check a task whose structure has no errors."""
         if self._absent or found.errors:
             return
@@ -98,16 +98,16 @@ class Scheduler(AbstractContextManager["Scheduler"]):
         found.by = "scheduler"
 
 
-def structure(what: str, text: str, folder: Path | None = None) -> Checked:
+def structure(what: str, text: str, folder: Path | None = None) -> CheckedTask:
     """Check the structure of a tree, without a site."""
     report = bt.check(text, folder=folder)
     warnings = [sentence(Placed(Line(line), warning)) for line, warning in report.warnings]
     if report.ok and "<include" in text:
         warnings += [f"it cannot be stored as a task: {sentence(error.reason)}" for error in bt.check(text).errors]
-    return Checked(what, report.nodes, report.goals, [sentence(error.reason) for error in report.errors], warnings)
+    return CheckedTask(what, report.nodes, report.goals, [sentence(error.reason) for error in report.errors], warnings)
 
 
-def stored(scheduler: Scheduler, task_id: int) -> Checked:
+def stored(scheduler: SchedulerClient, task_id: int) -> CheckedTask:
     """Have the scheduler check a stored task, and find its lines."""
     task = session.call(scheduler.node(), GetTask, "/tms/db/get_task", task_id=task_id).task
     found = structure(str(task_id), task.task_sequence)
@@ -115,7 +115,7 @@ def stored(scheduler: Scheduler, task_id: int) -> Checked:
     return found
 
 
-def file(scheduler: Scheduler, path: Path) -> Checked:
+def file(scheduler: SchedulerClient, path: Path) -> CheckedTask:
     """Check one file.
 
     Raises:
@@ -123,7 +123,7 @@ def file(scheduler: Scheduler, path: Path) -> Checked:
     """
     text = read(str(path))
     why = no_task(text)
-    found = Checked(str(path), errors=[f"this is no task: {why}"], no_task=why) if why else None
+    found = CheckedTask(str(path), errors=[f"this is no task: {why}"], no_task=why) if why else None
     found = found or structure(str(path), text, path.parent)
     scheduler.ask_scheduler(found, xml=text)
     return found
@@ -143,7 +143,7 @@ def no_task(text: str) -> str:
     return "it has a TreeNodesModel only (a palette for Groot)" if palette else "there is no <BehaviorTree> in it"
 
 
-def folder(scheduler: Scheduler, path: Path, *, recursive: bool) -> Iterator[Checked]:
+def folder(scheduler: SchedulerClient, path: Path, *, recursive: bool) -> Iterator[CheckedTask]:
     """Check the XML files of a folder, in the order of their names.
 
     Raises:
@@ -161,7 +161,7 @@ def folder(scheduler: Scheduler, path: Path, *, recursive: bool) -> Iterator[Che
         try:
             found = file(scheduler, name)
         except TaskError as error:
-            found = Checked(str(name), errors=[str(error).removeprefix(f"{name}: ")])
+            found = CheckedTask(str(name), errors=[str(error).removeprefix(f"{name}: ")])
         found.what = str(name.relative_to(path))
         if found.no_task:
             found.errors = []

@@ -32,7 +32,7 @@ MAX_ROWS = 40  # rows of a tree on the screen; of a longer one the running part 
 
 
 @dataclass
-class Node:
+class NodeView:
     """One node of the tree with its last received state."""
 
     uid: int
@@ -70,7 +70,7 @@ class View:
     state: str = "preparing"
     leaf: str = ""
     reason: str = ""
-    nodes: dict[int, Node] = field(default_factory=dict)
+    nodes: dict[int, NodeView] = field(default_factory=dict)
     machines: dict[str, "MachineState"] = field(default_factory=dict)  # by name
     over: bool = False
     begun: float = 0.0
@@ -82,7 +82,7 @@ class View:
     def elapsed(self) -> float:
         return self.clock() - self.begun
 
-    def received(self, feedback: "ExecuteTask.Feedback") -> list[Node]:
+    def received(self, feedback: "ExecuteTask.Feedback") -> list[NodeView]:
         """Take a feedback; returns the changes of nodes in order."""
         self.run_id, self.state = feedback.run_id or self.run_id, feedback.state or self.state
         self.leaf, self.reason = feedback.running_leaf, words.reason(feedback.reason)
@@ -90,14 +90,14 @@ class View:
             self._first(feedback.nodes)
         changed = []
         for status in feedback.nodes:
-            node = self.nodes.setdefault(status.uid, Node(status.uid, status.parent, status.name, status.type))
+            node = self.nodes.setdefault(status.uid, NodeView(status.uid, status.parent, status.name, status.type))
             before = node.status
             node.take(status.status, words.reason(status.reason))
             if node.status != before:
                 changed.append(replace(node))
         return changed
 
-    def close(self, outcome: str) -> list[Node]:
+    def close(self, outcome: str) -> list[NodeView]:
         """End the view. Returns nodes that went idle before their success was received, where that is certain."""
         self.state, self.leaf, self.reason, self.over = outcome, "", "", True
         found, sure = [], {0}  # parents whose success means that their children succeeded
@@ -115,15 +115,15 @@ class View:
         same = [status.type for status in statuses] == [kind for kind, _ in self.goals]
         goals = [goal for _, goal in self.goals] if same else [""] * len(statuses)
         for status, goal in zip(statuses, goals, strict=True):
-            self.nodes[status.uid] = Node(status.uid, status.parent, status.name, status.type, goal=goal)
+            self.nodes[status.uid] = NodeView(status.uid, status.parent, status.name, status.type, goal=goal)
 
     def machine_received(self, state: "MachineState") -> None:
         """Take a tms_msg_rc/MachineState; called on ROS's thread."""
         self.machines[state.machine] = state
 
-    def rows(self) -> Iterator[tuple[int, Node]]:
+    def rows(self) -> Iterator[tuple[int, NodeView]]:
         """Nodes with their depth, parents before children, in the order in which they came."""
-        children: dict[int, list[Node]] = {}
+        children: dict[int, list[NodeView]] = {}
         for node in self.nodes.values():
             children.setdefault(node.parent if node.parent in self.nodes else 0, []).append(node)
         waiting = [(0, node) for node in reversed(children.get(0, []))]
@@ -143,16 +143,16 @@ def tree_rows(view: View, most: int = MAX_ROWS) -> list[tuple[int, str]]:
     return [(_colour(view, node), f"{'  ' * depth}{_mark(node)} {node.title}{_why(node)}") for depth, node in rows]
 
 
-def _colour(view: View, node: Node) -> int:
+def _colour(view: View, node: NodeView) -> int:
     """The colour as in Groot while the run goes on; after its end, when all nodes are idle, the result of the node."""
     return node.result if view.over else node.status
 
 
-def _mark(node: Node) -> str:
+def _mark(node: NodeView) -> str:
     return MARKS[node.status or node.result]
 
 
-def _why(node: Node) -> str:
+def _why(node: NodeView) -> str:
     return f"  — {node.reason}" if node.reason and node.status in (RUNNING, FAILURE) else ""
 
 
@@ -172,7 +172,7 @@ def _posture(machine: "MachineState") -> str:
     return say("standing") if machine.ready else say("not ready: {reason}", reason=words.reason(machine.reason))
 
 
-def change_line(view: View, node: Node) -> str:
+def change_line(view: View, node: NodeView) -> str:
     """One line for a pipe or a log."""
     return f"{view.elapsed:7.1f} s  {padded(state(WORDS[node.status]), 8)} {node.title}{_why(node)}"
 
@@ -186,7 +186,7 @@ class Display(Protocol):
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None: ...
 
-    def show(self, view: View, changed: Sequence[Node]) -> None:
+    def show(self, view: View, changed: Sequence[NodeView]) -> None:
         """Called after every feedback and several times a second."""
 
 
@@ -205,7 +205,7 @@ class Lines:
     ) -> None:
         return
 
-    def show(self, view: View, changed: Sequence[Node]) -> None:
+    def show(self, view: View, changed: Sequence[NodeView]) -> None:
         if view.run_id and view.state != self._state and not view.over:
             self._state = view.state
             line = say("run {run}: {state}{reason}", run=view.run_id, state=state(view.state), reason="")
@@ -238,7 +238,7 @@ class Screen:
     ) -> None:
         self._live.stop()
 
-    def show(self, view: View, changed: Sequence[Node]) -> None:
+    def show(self, view: View, changed: Sequence[NodeView]) -> None:
         from rich.text import Text
 
         joints = joint_lines(view.machines)

@@ -49,7 +49,7 @@ NICE = -10  # of all processes together, against other sessions of this PC, wher
 
 
 @dataclass(frozen=True)
-class Owner:
+class DomainOwner:
     """The mesh that uses a ROS domain on this PC."""
 
     pid: int
@@ -119,13 +119,13 @@ def _up(site: Site, rows: tuple[Process, ...], foreground: bool) -> bool:
         conf = site.state / "supervisord.conf"
         conf.write_text(render(site, rows), encoding="utf-8")
         if foreground:
-            _write(lock, Owner(os.getpid(), psutil.Process().create_time(), str(site.state)))
+            _write(lock, DomainOwner(os.getpid(), psutil.Process().create_time(), str(site.state)))
             _exec_entry(site, conf)
         _start(site, conf)
         _wait(supervisor.alive, START_LIMIT, SupervisordNotUp(f"{site.state}/log/supervisord.log"))
         pid = supervisor.pid()
         session_first(pid, NICE)
-        _write(lock, Owner(pid, psutil.Process(pid).create_time(), str(site.state)))
+        _write(lock, DomainOwner(pid, psutil.Process(pid).create_time(), str(site.state)))
     return True
 
 
@@ -209,14 +209,14 @@ def _domain(domain: int) -> Iterator[Path]:
         yield path
 
 
-def _read(path: Path) -> Owner | None:
+def _read(path: Path) -> DomainOwner | None:
     try:
-        return Owner(**json.loads(path.read_text()))
+        return DomainOwner(**json.loads(path.read_text()))
     except (FileNotFoundError, ValueError, TypeError):
         return None  # no note, or one cut short by a crash: the domain has no owner
 
 
-def _write(path: Path, owner: Owner) -> None:
+def _write(path: Path, owner: DomainOwner) -> None:
     path.write_text(json.dumps(owner.__dict__))
 
 

@@ -48,7 +48,7 @@ Say = Callable[[str], None]
 
 
 @dataclass(frozen=True)
-class Report:
+class Contents:
     """What an archive holds, or a database."""
 
     database: str
@@ -61,7 +61,7 @@ class Report:
         return ", ".join(filled) or "nothing"
 
 
-def describe(db: Db) -> Report:
+def describe(db: Db) -> Contents:
     """Report what the database holds.
 
     Raises:
@@ -70,10 +70,10 @@ def describe(db: Db) -> Report:
     with errors():
         counts = {name: db[name].count_documents({}) for name in _collections(db)}
     counts.pop(schema.COLLECTION, None)
-    return Report(db.name, counts, schema.stored(db))
+    return Contents(db.name, counts, schema.stored(db))
 
 
-def backup(db: Db, path: Path, say: Say, *, overwrite: bool = False) -> Report:
+def backup(db: Db, path: Path, say: Say, *, overwrite: bool = False) -> Contents:
     """Write everything into a file that appears only when it is complete.
 
     Raises:
@@ -95,7 +95,7 @@ def backup(db: Db, path: Path, say: Say, *, overwrite: bool = False) -> Report:
                 new.unlink(missing_ok=True)
     except OSError as error:
         raise TmsError(FileNotWritten(str(path), str(error.strerror)), "NO_FILE") from error
-    return Report(db.name, counts, before.schema)
+    return Contents(db.name, counts, before.schema)
 
 
 def _dump(db: Db, file: BinaryIO, say: Say) -> dict[str, int]:
@@ -118,7 +118,7 @@ def _dump(db: Db, file: BinaryIO, say: Say) -> dict[str, int]:
     return {name: counts[name] for name in names if name != schema.COLLECTION}
 
 
-def check(path: Path, wanted: str, say: Say) -> Report:
+def check(path: Path, wanted: str, say: Say) -> Contents:
     """Read a whole archive without writing anything.
 
     `wanted` is the name of our database; a single database of another name is taken, too.
@@ -141,10 +141,10 @@ def check(path: Path, wanted: str, say: Say) -> Report:
                 number = schema.number_of(bson.decode(document))
         schema.refuse_newer(str(path), number)
         names = [name for of, name in reader.names if of == database and _ours(name)]
-        return Report(database, {name: counts[name] for name in names if name != schema.COLLECTION}, number)
+        return Contents(database, {name: counts[name] for name in names if name != schema.COLLECTION}, number)
 
 
-def restore(db: Db, path: Path, say: Say, *, drop: bool = False) -> Report:
+def restore(db: Db, path: Path, say: Say, *, drop: bool = False) -> Contents:
     """Put an archive's documents into the database, unchanged but for runs that were active at the time of the backup.
 
     The archive is read and checked first, then written into collections of other names; at the end these replace the
@@ -155,7 +155,7 @@ def restore(db: Db, path: Path, say: Say, *, drop: bool = False) -> Report:
             store is away. The database is then as it was, unless the message says that it was replaced in part: the
             store was lost between two collections.
     """
-    report = check(path, db.name, say)
+    contents = check(path, db.name, say)
     there = describe(db)
     schema.refuse_newer(f"database {db.name}", there.schema)
     if any(there.documents.values()) and not drop:
@@ -164,10 +164,10 @@ def restore(db: Db, path: Path, say: Say, *, drop: bool = False) -> Report:
         active = db["run"].find_one({"ended_at": None}, {"run_id": 1}) if "run" in there.documents else None
     if active is not None:
         raise DbError(RunActive(str(active["run_id"]), db.name))
-    names = [*report.documents, *([schema.COLLECTION] if report.schema else [])]
+    names = [*contents.documents, *([schema.COLLECTION] if contents.schema else [])]
     try:
         _clear(db)
-        _stage(db, path, report.database, names, say)
+        _stage(db, path, contents.database, names, say)
         _abandon(db, names)
     except DbError:
         _clear(db)
@@ -178,7 +178,7 @@ def restore(db: Db, path: Path, say: Say, *, drop: bool = False) -> Report:
     except DbError as error:
         raise DbError(ReplacedInPart(error.reason, db.name), error.code) from error
     schema.bring_up(db)
-    return report
+    return contents
 
 
 def _stage(db: Db, path: Path, database: str, names: list[str], say: Say) -> None:

@@ -12,7 +12,7 @@ from tms_cli.words import Group, say
 from tms_config.clock import monotonic
 
 if TYPE_CHECKING:
-    from tms_db.backup import Report
+    from tms_db.backup import Contents
 
 SPEAK = 1.0  # s between progress messages of long work
 FILE = click.Path(path_type=Path)
@@ -45,14 +45,14 @@ def info(as_json: bool) -> None:
     from tms_db import backup, schema, store, store_address
 
     with opened() as db:
-        report = backup.describe(db)
+        contents = backup.describe(db)
     address = store.redact(store_address.uri(session.site()))
     if as_json:
-        session.show_json({**_as_dict(report), "address": address, "newest_schema": schema.NEWEST})
+        session.show_json({**_as_dict(contents), "address": address, "newest_schema": schema.NEWEST})
         return
     text = "{name} on {address}, schema {schema} (this program knows {newest})"
-    click.echo(say(text, name=report.database, address=address, schema=report.schema, newest=schema.NEWEST))
-    for name, number in sorted(report.documents.items()):
+    click.echo(say(text, name=contents.database, address=address, schema=contents.schema, newest=schema.NEWEST))
+    for name, number in sorted(contents.documents.items()):
         click.echo(f"  {name:<22} {number:>9}")
 
 
@@ -71,11 +71,11 @@ def backup(file: Path, overwrite: bool, as_json: bool) -> None:
     from tms_db import backup
 
     with opened() as db:
-        report = backup.backup(db, file, _progress(), overwrite=overwrite)
+        contents = backup.backup(db, file, _progress(), overwrite=overwrite)
     if as_json:
-        session.show_json({**_as_dict(report), "file": str(file), "bytes": file.stat().st_size})
+        session.show_json({**_as_dict(contents), "file": str(file), "bytes": file.stat().st_size})
     else:
-        click.echo(f"{file}: {file.stat().st_size / 2**20:.1f} MB, {report.text}")
+        click.echo(f"{file}: {file.stat().st_size / 2**20:.1f} MB, {contents.text}")
 
 
 @command.command()
@@ -104,16 +104,16 @@ def restore(file: Path, drop: bool, yes: bool, as_json: bool) -> None:
         if drop and not yes and any(there.documents.values()):
             question = say("Replace all of database {name} ({there})?", name=db.name, there=there.text)
             click.confirm(question, abort=True, err=True)
-        report = backup.restore(db, file, _progress(), drop=drop)
+        contents = backup.restore(db, file, _progress(), drop=drop)
         into = db.name
     if as_json:
-        session.show_json({**_as_dict(report), "file": str(file), "into": into})
+        session.show_json({**_as_dict(contents), "file": str(file), "into": into})
     else:
-        click.echo(say("restored into {name}: {report}", name=into, report=report.text))
+        click.echo(say("restored into {name}: {report}", name=into, report=contents.text))
 
 
-def _as_dict(report: "Report") -> dict[str, Any]:
-    return {"database": report.database, "schema": report.schema, "documents": report.documents}
+def _as_dict(contents: "Contents") -> dict[str, Any]:
+    return {"database": contents.database, "schema": contents.schema, "documents": contents.documents}
 
 
 def _progress() -> Callable[[str], None]:

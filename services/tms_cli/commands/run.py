@@ -96,7 +96,7 @@ class Runner:
                 feedback = self._feedback.get(timeout=CHECK_PERIOD)
             except queue.Empty:
                 self._look_after_scheduler()
-                changed: list[live.Node] = []
+                changed: list[live.NodeView] = []
             else:
                 self._received_at = self._listed_at = monotonic()
                 changed = self.view.received(feedback)

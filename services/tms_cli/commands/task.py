@@ -208,7 +208,7 @@ def check(ctx: click.Context, what: str, recursive: bool, as_json: bool) -> None
     folder = Path(what).is_dir()
     if recursive and not folder:
         raise click.UsageError(f"--recursive is for folders, and {what} is none")
-    with check_task.Scheduler() as scheduler:
+    with check_task.SchedulerClient() as scheduler:
         if folder:
             right = check_report.show_folder(
                 check_task.folder(scheduler, Path(what), recursive=recursive), as_json=as_json

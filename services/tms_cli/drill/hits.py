@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 import psutil
 
 from tms_cli import mesh
-from tms_cli.drill.plan import RC, RP, SUBTASK, How, Stop
+from tms_cli.drill.plan import RC, RP, SUBTASK, How, StopScenario
 from tms_cli.drill.stand_ins import GROUP, NICE
 from tms_cli.reasons import NotRunning
 from tms_config.clock import sleep, unix_time
@@ -34,7 +34,7 @@ class Hits:
         self._there = {row.full for row in table(site)}
         self._thaw: subprocess.Popen[bytes] | None = None
 
-    def names(self, stop: Stop, subtasks: Mapping[str, str]) -> list[str]:
+    def names(self, stop: StopScenario, subtasks: Mapping[str, str]) -> list[str]:
         """The processes that a stop hits. `subtasks`: for each hit machine, the one of its present leaf."""
         found = [process for process in stop.processes if process not in (RC, RP, SUBTASK)]
         for machine, subtask in subtasks.items():

@@ -26,7 +26,7 @@ class How(Enum):
 
 
 @dataclass(frozen=True)
-class Stop:
+class StopScenario:
     """One kind of stop."""
 
     how: How
@@ -47,7 +47,7 @@ class Trial:
     """One stop of one machine."""
 
     machine: str
-    stop: Stop
+    stop: StopScenario
     fault: str
     fault_at: float  # s from the hit
     delay: float  # s from the begin of a motion to the hit; a hit of all machines uses the first trial's
@@ -55,17 +55,17 @@ class Trial:
 
 BOTH = (How.KILL, How.FREEZE)
 SINGLE = (
-    Stop(How.CANCEL),
-    Stop(How.SOFTWARE, latches=True),
-    *(Stop(how, (process,)) for how in BOTH for process in (SUBTASK, RP, RC)),
+    StopScenario(How.CANCEL),
+    StopScenario(How.SOFTWARE, latches=True),
+    *(StopScenario(how, (process,)) for how in BOTH for process in (SUBTASK, RP, RC)),
 )
-BESIDE = tuple(tuple(Stop(how, (process,), moves=False) for process in BYSTANDERS) for how in BOTH)
+BESIDE = tuple(tuple(StopScenario(how, (process,), moves=False) for process in BYSTANDERS) for how in BOTH)
 SHARED = (
-    *(Stop(how, (TS,), shared=True, latches=True) for how in BOTH),
-    *(Stop(how, (RC, TS), shared=True, latches=how is How.KILL) for how in BOTH),
-    *(Stop(how, (RC, TS, RP, SUBTASK), shared=True, latches=how is How.KILL) for how in BOTH),
-    Stop(How.KILL, (RC, "tms:host"), shared=True, covered=False),
-    Stop(How.POWER, shared=True, covered=False, latches=True),
+    *(StopScenario(how, (TS,), shared=True, latches=True) for how in BOTH),
+    *(StopScenario(how, (RC, TS), shared=True, latches=how is How.KILL) for how in BOTH),
+    *(StopScenario(how, (RC, TS, RP, SUBTASK), shared=True, latches=how is How.KILL) for how in BOTH),
+    StopScenario(How.KILL, (RC, "tms:host"), shared=True, covered=False),
+    StopScenario(How.POWER, shared=True, covered=False, latches=True),
 )
 STOPS = {stop.name: stop for stop in (*SINGLE, *(stop for stops in BESIDE for stop in stops), *SHARED)}
 NONE = "none"
@@ -142,7 +142,7 @@ class _Dealer:
         """For each machine, the next pair that is possible for it."""
         return [self._trial(name, *self._next(planner)) for name, planner in self._planners.items()]
 
-    def mixed(self, stops: Sequence[Stop]) -> list[Trial]:
+    def mixed(self, stops: Sequence[StopScenario]) -> list[Trial]:
         """Trials of given stops; every second machine has no fault, since figures are measured there."""
         first = self.dice.randrange(2)
         return [
@@ -150,7 +150,7 @@ class _Dealer:
             for number, machine in enumerate(self._planners)
         ]
 
-    def _next(self, planner: bool) -> tuple[Stop, str]:
+    def _next(self, planner: bool) -> tuple[StopScenario, str]:
         pair = next(pair for pair in self._pairs if planner or RP not in pair[0].processes)
         self._pairs.remove(pair)
         self._pairs.append(pair)
@@ -160,5 +160,5 @@ class _Dealer:
         self._faults.rotate(-1)
         return self._faults[-1]
 
-    def _trial(self, machine: str, stop: Stop, fault: str) -> Trial:
+    def _trial(self, machine: str, stop: StopScenario, fault: str) -> Trial:
         return Trial(machine, stop, fault, self.dice.uniform(*AROUND), self.dice.uniform(*DELAY))

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Sample:
+class MotionSample:
     """The true motion at one moment."""
 
     at: float
@@ -50,7 +50,7 @@ class Goal:
 
 
 @dataclass(frozen=True)
-class State:
+class ReportedState:
     """The used fields of a tms_msg_rc/MachineState."""
 
     at: float
@@ -59,18 +59,18 @@ class State:
 
 
 @dataclass
-class Recording:
+class TrialRecording:
     """The executor thread fills it; the verdict uses a copy."""
 
-    truth: list[Sample] = field(default_factory=list)
+    truth: list[MotionSample] = field(default_factory=list)
     receipts: list[Receipt] = field(default_factory=list)
     goals: dict[bytes, Goal] = field(default_factory=dict)
-    states: list[State] = field(default_factory=list)
+    states: list[ReportedState] = field(default_factory=list)
     commands: list[float] = field(default_factory=list)  # times of orders to stop, when they reach the machine
 
-    def since(self, at: float) -> "Recording":
+    def since(self, at: float) -> "TrialRecording":
         """The part after a moment, with the stops and goals that were under way then, and the last state before it."""
-        return Recording(
+        return TrialRecording(
             self.truth[bisect_left(self.truth, at, key=lambda one: one.at) :],
             [one for one in self.receipts if one.at >= at],
             {key: one for key, one in self.goals.items() if one.ended is None or one.ended >= at},
@@ -83,7 +83,7 @@ class Recording:
         return min((goal.began for goal in self.goals.values() if goal.began > at), default=math.inf)
 
 
-def sample_of(message: "JointState", still: Still) -> Sample:
+def sample_of(message: "JointState", still: Still) -> MotionSample:
     """A sample from the stand-in's sensor_msgs/JointState: joints, then x, y and yaw of the tracks."""
     places = dict(zip(message.name, message.position, strict=True))
     speeds = dict(zip(message.name, message.velocity, strict=True))
@@ -91,7 +91,7 @@ def sample_of(message: "JointState", still: Still) -> Sample:
     way = math.hypot(speeds.pop("x", 0.0), speeds.pop("y", 0.0)) / still.linear
     turn = abs(speeds.pop("yaw", 0.0)) / still.angular
     joints = max((abs(speed) for speed in speeds.values()), default=0.0) / still.velocity
-    return Sample(time_of(message.header.stamp), max(joints, way, turn), {**places, "heading": yaw}, (x, y))
+    return MotionSample(time_of(message.header.stamp), max(joints, way, turn), {**places, "heading": yaw}, (x, y))
 
 
 def time_of(stamp: "Time") -> float:

@@ -9,7 +9,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool
 from tms_msg_rc.msg import MachineState, StopReceipt
 
-from tms_cli.drill.record import Goal, Receipt, Recording, State, sample_of, time_of
+from tms_cli.drill.record import Goal, Receipt, ReportedState, TrialRecording, sample_of, time_of
 from tms_config.clock import monotonic, sleep, unix_time
 from tms_config.config import Site
 from tms_machine.border import motions
@@ -29,7 +29,7 @@ class StopObserver:
     def __init__(self, node: Ros, site: Site, machine: str) -> None:
         border, self._still = site.border(machine), site.model_of(machine).still
         self._lock = threading.Lock()
-        self._record = Recording()
+        self._record = TrialRecording()
         self._forgotten = unix_time()
         # Sampled without callbacks: 150 callbacks a second would take a tenth of a busy PC's processor.
         self._truth = node.sample_arrivals(JointState, f"/{machine}/sim/truth", WAITING, best_effort=False)
@@ -64,7 +64,7 @@ class StopObserver:
 
     def _on_state(self, message: MachineState) -> None:
         with self._lock:
-            self._record.states.append(State(unix_time(), message.latch, message.hold))
+            self._record.states.append(ReportedState(unix_time(), message.latch, message.hold))
 
     def _on_velocity(self, message: Twist) -> None:
         if message.linear.x == 0.0 and message.angular.z == 0.0:
@@ -91,12 +91,12 @@ class StopObserver:
                 if goal.ended is None and one.status in (SUCCEEDED, CANCELED, ABORTED):
                     goal.ended, goal.arrived = now, one.status == SUCCEEDED
 
-    def since(self, at: float) -> Recording:
+    def since(self, at: float) -> TrialRecording:
         """A copy of the record since a moment (s since 1970)."""
         with self._lock:
             return self._record.since(at)
 
-    def wait(self, holds: Callable[[Recording], bool], since: float, seconds: float) -> bool:
+    def wait(self, holds: Callable[[TrialRecording], bool], since: float, seconds: float) -> bool:
         """Wait until the record since a moment satisfies `holds`; False after `seconds`."""
         deadline = monotonic() + seconds
         while not holds(self.since(since)):

@@ -11,10 +11,10 @@ from tms_msg_rc.srv import StopMachine
 
 from tms_cli.drill.busy import stood_still
 from tms_cli.drill.hits import BACK_LIMIT, Hits
-from tms_cli.drill.plan import NONE, TS, How, Stop, Trial
-from tms_cli.drill.record import Recording
+from tms_cli.drill.plan import NONE, TS, How, StopScenario, Trial
+from tms_cli.drill.record import TrialRecording
 from tms_cli.drill.stop_observer import StopObserver
-from tms_cli.drill.verdict import AFTER, BY_ITSELF, GOES_ON, HUNG, UNPROVEN, Row, Seen, judge, takes_gateway
+from tms_cli.drill.verdict import AFTER, BY_ITSELF, GOES_ON, HUNG, UNPROVEN, Row, TrialFacts, judge, takes_gateway
 from tms_cli.drill.work import Work
 from tms_cli.reasons import DoesNotMove, NobodySays
 from tms_config.clock import sleep, unix_time
@@ -92,7 +92,7 @@ class Hand:
             sleep(CHECK_PERIOD / 10)
         return max(unix_time(), (began or 0.0) + trial.delay)
 
-    def strike(self, stop: Stop, at: float, hands: "list[Hand]", struck: Struck) -> None:
+    def strike(self, stop: StopScenario, at: float, hands: "list[Hand]", struck: Struck) -> None:
         """Hit these machines at a moment, and set when the lost processes work again. Runs in a thread of its own."""
         try:
             self._strike(stop, at, hands, struck)
@@ -101,7 +101,7 @@ class Hand:
                 if not future.done():
                     future.set_exception(error)
 
-    def _strike(self, stop: Stop, at: float, hands: "list[Hand]", struck: Struck) -> None:
+    def _strike(self, stop: StopScenario, at: float, hands: "list[Hand]", struck: Struck) -> None:
         if stop.how in (How.CANCEL, How.SOFTWARE):
             until(at)
             struck.hit.set_result(unix_time())
@@ -145,12 +145,12 @@ class Hand:
         record = self._last_words(trial, begun)
         stops = [one.begun for one in record.receipts]
         busy = "" if stop.moves else stood_still(self._site, self.machine, stops)
-        row = judge(Seen(trial, self.model, record, begun, hit, stopped, self._ends, back, outcome, busy))
+        row = judge(TrialFacts(trial, self.model, record, begun, hit, stopped, self._ends, back, outcome, busy))
         if row.false_receipt or (row.unconfirmed and row.in_order) or row.ran_on:
             self._keep(record, hit)
         return row
 
-    def _keep(self, record: Recording, hit: float) -> None:
+    def _keep(self, record: TrialRecording, hit: float) -> None:
         """Keep the true motion of a conspicuous trial as a file."""
         path = self._folder / f"{self.machine}-{datetime.fromtimestamp(hit, timezone.utc):%H%M%S.%f}.csv"
         with path.open("w", newline="", encoding="utf-8") as file:
@@ -160,7 +160,7 @@ class Hand:
                 numbers = [one.at - hit, one.share, *one.joints.values(), *one.place]
                 table.writerow([f"{number:.4f}" for number in numbers])
 
-    def _over(self, record: Recording, stopped: float) -> bool:
+    def _over(self, record: TrialRecording, stopped: float) -> bool:
         """Whether there is a receipt, or the motion ended by itself before a stop was possible."""
         over = stopped + BY_ITSELF
         begun_by_then = [goal for goal in record.goals.values() if goal.began <= over]
@@ -175,7 +175,7 @@ class Hand:
         creeps = trial.fault in LEAVE
         longer = CREEP_STARTS + UNPROVEN if creeps else 0.0
 
-        def enough(record: Recording) -> bool:
+        def enough(record: TrialRecording) -> bool:
             if creeps and not all(one.confirmed for one in record.receipts):
                 return True
             at = max((one.at for one in record.receipts if one.confirmed), default=0.0)
@@ -198,10 +198,10 @@ class Hand:
             sleep(CHECK_PERIOD)
         return HUNG
 
-    def _last_words(self, trial: Trial, begun: float) -> Recording:
+    def _last_words(self, trial: Trial, begun: float) -> TrialRecording:
         """The record at the end: a restarted gateway publishes its latch a moment later."""
 
-        def reported(record: Recording) -> bool:
+        def reported(record: TrialRecording) -> bool:
             wanted = trial.stop.latches or not all(one.confirmed for one in record.receipts)
             return not wanted or (bool(record.states) and bool(record.states[-1].latch))
 

@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import Any
 
 from tms_cli.drill.plan import IN_ORDER, NONE, RC, How, Trial
-from tms_cli.drill.record import Receipt, Recording, Sample
+from tms_cli.drill.record import MotionSample, Receipt, TrialRecording
 from tms_cli.words import english
 
 TOLERANCE = 1.1  # times the limit of standing: the true motion is sampled and not rounded
@@ -25,12 +25,12 @@ LEFT_OUT = "left out"
 
 
 @dataclass(frozen=True)
-class Seen:
+class TrialFacts:
     """The facts of a trial for its verdict."""
 
     trial: Trial
     model: str
-    record: Recording  # since `begun`
+    record: TrialRecording  # since `begun`
     begun: float  # the fault or the hit, whichever came first
     hit: float  # time of the signal or the command
     stop: float  # the same; for a bystander, when the run was cancelled
@@ -94,65 +94,65 @@ def empty(trial: Trial, model: str) -> Row:
                trial.fault in IN_ORDER, stop.covered)  # fmt: skip
 
 
-def judge(seen: Seen) -> Row:
+def judge(facts: TrialFacts) -> Row:
     """The whole verdict."""
-    row, record, stop = empty(seen.trial, seen.model), seen.record, seen.trial.stop
-    row.at, row.back_s, row.outcome = seen.hit, seen.back_s, seen.outcome
-    row.receipts = [text_of(one, seen.hit) for one in record.receipts]
-    row.false_receipt = next(filter(None, (lie(one, record, seen.watched) for one in record.receipts)), "")
-    row.void = "" if row.false_receipt else void(seen)
+    row, record, stop = empty(facts.trial, facts.model), facts.record, facts.trial.stop
+    row.at, row.back_s, row.outcome = facts.hit, facts.back_s, facts.outcome
+    row.receipts = [text_of(one, facts.hit) for one in record.receipts]
+    row.false_receipt = next(filter(None, (lie(one, record, facts.watched) for one in record.receipts)), "")
+    row.void = "" if row.false_receipt else void(facts)
     row.latched = bool(record.states and record.states[-1].latch)
     if row.void:
         return row
     row.confirmed = bool(record.receipts) and all(one.confirmed for one in record.receipts)
     row.unconfirmed = not row.confirmed
     row.unlatched = (row.unconfirmed or stop.latches) and not row.latched
-    row.disturbed = not stop.moves and seen.trial.fault == NONE and any(r.begun < seen.stop for r in record.receipts)
-    if row.disturbed and seen.busy:
-        row.void, row.disturbed = seen.busy, False
+    row.disturbed = not stop.moves and facts.trial.fault == NONE and any(r.begun < facts.stop for r in record.receipts)
+    if row.disturbed and facts.busy:
+        row.void, row.disturbed = facts.busy, False
         return row
-    row.reported_s = reported(seen)
-    _measure(row, seen)
-    late = row.stood_s is None or row.stood_s > seen.ends + EXTRA
+    row.reported_s = reported(facts)
+    _measure(row, facts)
+    late = row.stood_s is None or row.stood_s > facts.ends + EXTRA
     row.ran_on = late and row.in_order and stop.covered
     return row
 
 
-def void(seen: Seen) -> str:
+def void(facts: TrialFacts) -> str:
     """Why no stop was due, or the motion was not recorded; empty for a valid trial."""
-    record = seen.record
-    before = [state for state in record.states if state.at < seen.begun][-1:]
+    record = facts.record
+    before = [state for state in record.states if state.at < facts.begun][-1:]
     if any(state.latch or state.hold for state in before):
         return f"it was stopped before: {before[0].latch or before[0].hold}"
-    if any(one.begun < seen.begun for one in record.receipts):
+    if any(one.begun < facts.begun for one in record.receipts):
         return "it was being stopped before"
     reported = [one.at for one in record.truth]
-    moments = [seen.begun, *reported[: 1 + bisect_right(reported, seen.stop + seen.ends + EXTRA)]]
+    moments = [facts.begun, *reported[: 1 + bisect_right(reported, facts.stop + facts.ends + EXTRA)]]
     gap = max((late - early for early, late in pairwise(moments)), default=math.inf)
     if gap > BLIND:
         return f"its true motion was not heard for {gap:.1f} s"
-    if _stood(seen) and (seen.trial.fault == NONE or not record.receipts):  # the fault itself may have stopped it
+    if _stood(facts) and (facts.trial.fault == NONE or not record.receipts):  # the fault itself may have stopped it
         return "it was stopped before the hit"
     due = any(
-        goal.began <= seen.begun and not (goal.arrived and (goal.ended or 0.0) < seen.stop + BY_ITSELF)
+        goal.began <= facts.begun and not (goal.arrived and (goal.ended or 0.0) < facts.stop + BY_ITSELF)
         for goal in record.goals.values()
     )
     return "" if due or record.receipts else "its motion ended by itself"
 
 
-def _stood(seen: Seen) -> bool:
+def _stood(facts: TrialFacts) -> bool:
     """Whether every goal had ended before the hit, and the machine stood from then on."""
-    record, fresh = seen.record, seen.record.goal_after(seen.hit)
-    at_work = any(one.began <= seen.hit and (one.ended or math.inf) > seen.hit for one in record.goals.values())
-    return not at_work and not any(seen.hit <= one.at < fresh and moves(one) for one in record.truth)
+    record, fresh = facts.record, facts.record.goal_after(facts.hit)
+    at_work = any(one.began <= facts.hit and (one.ended or math.inf) > facts.hit for one in record.goals.values())
+    return not at_work and not any(facts.hit <= one.at < fresh and moves(one) for one in record.truth)
 
 
-def moves(sample: Sample) -> bool:
+def moves(sample: MotionSample) -> bool:
     """Whether the machine truly moved."""
     return sample.share > TOLERANCE
 
 
-def lie(receipt: Receipt, record: Recording, watched: float) -> str:
+def lie(receipt: Receipt, record: TrialRecording, watched: float) -> str:
     """Why a receipt is false; empty for an honest one. Without a gateway, nobody tells of a later motion until then."""
     if not receipt.confirmed:
         return ""
@@ -172,31 +172,31 @@ def lie(receipt: Receipt, record: Recording, watched: float) -> str:
     return f"left stand-still {late:.2f} s after the receipt, and nobody told it" if over else ""
 
 
-def _reports(moved: float, noticed: float, record: Recording) -> bool:
+def _reports(moved: float, noticed: float, record: TrialRecording) -> bool:
     """Whether a stop that was under way at `moved`, or began in time after it, ended unconfirmed."""
     return any(not one.confirmed and one.begun < noticed + ASSERTED and one.at > moved for one in record.receipts)
 
 
-def reported(seen: Seen) -> float | None:
+def reported(facts: TrialFacts) -> float | None:
     """Seconds from a signal to the first stop command; None where none was due, or one came before."""
-    stop, commands = seen.trial.stop, seen.record.commands
+    stop, commands = facts.trial.stop, facts.record.commands
     if stop.how not in (How.KILL, How.FREEZE) or not (stop.moves and stop.covered):
         return None
-    return commands[0] - seen.hit if commands and commands[0] >= seen.hit else None
+    return commands[0] - facts.hit if commands and commands[0] >= facts.hit else None
 
 
-def _measure(row: Row, seen: Seen) -> None:
+def _measure(row: Row, facts: TrialFacts) -> None:
     """Fill in time and travel to the true stand-still."""
-    proven = min((one.at for one in seen.record.receipts), default=math.inf)
-    fresh = seen.record.goal_after(proven)  # a goal before that was stopped, too
-    truth = [one for one in seen.record.truth if seen.stop <= one.at < fresh]
+    proven = min((one.at for one in facts.record.receipts), default=math.inf)
+    fresh = facts.record.goal_after(proven)  # a goal before that was stopped, too
+    truth = [one for one in facts.record.truth if facts.stop <= one.at < fresh]
     if not truth:
         return
     last = next((number for number in reversed(range(len(truth))) if moves(truth[number])), None)
     if last == len(truth) - 1:
         return  # it never stood
     end = truth[0] if last is None else truth[last + 1]
-    row.stood_s = 0.0 if last is None else end.at - seen.stop
+    row.stood_s = 0.0 if last is None else end.at - facts.stop
     ways = {name: abs(angle - truth[0].joints[name]) for name, angle in end.joints.items()}
     row.travel_joint = max(ways, key=lambda name: ways[name], default="")
     row.travel_rad = ways.get(row.travel_joint, 0.0)

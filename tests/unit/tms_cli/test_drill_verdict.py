@@ -6,24 +6,25 @@ from typing import Any
 
 import pytest
 
-from tms_cli.drill.plan import NONE, RC, TS, How, Stop, Trial
-from tms_cli.drill.record import Goal, Receipt, Recording, Sample, State, sample_of
-from tms_cli.drill.verdict import GOES_ON, Row, Seen, judge
+from tms_cli.drill.plan import NONE, RC, TS, How, StopScenario, Trial
+from tms_cli.drill.record import Goal, MotionSample, Receipt, ReportedState, TrialRecording, sample_of
+from tms_cli.drill.verdict import GOES_ON, Row, TrialFacts, judge
 from tms_config.models import Still
 
 HIT = 1000.0  # s since 1970
-KILL = Stop(How.KILL, (RC,))
+KILL = StopScenario(How.KILL, (RC,))
 STILL = Still(velocity=0.01, linear=0.02, angular=0.01, seconds=0.2, origin="test")
 
 
-def truth(*moving: tuple[float, float], until: float = 20.0) -> list[Sample]:
+def truth(*moving: tuple[float, float], until: float = 20.0) -> list[MotionSample]:
     """60 Hz from the hit on; moving between these moments, at ten times the limit and 0.1 rad/s."""
     found, angle = [], 0.0
     for number in range(int(until * 60)):
         at = number / 60
         moves = any(begin <= at < end for begin, end in moving)
         angle += 0.1 / 60 * moves
-        found.append(Sample(HIT + at, 10.0 if moves else 0.0, {"swing_joint": angle, "boom_joint": 0.0}, (angle, 0.0)))
+        joints = {"swing_joint": angle, "boom_joint": 0.0}
+        found.append(MotionSample(HIT + at, 10.0 if moves else 0.0, joints, (angle, 0.0)))
     return found
 
 
@@ -32,10 +33,12 @@ def receipt(begun: float = 0.5, seconds: float = 2.0, confirmed: bool = True) ->
     return Receipt(HIT + begun, seconds, confirmed, "test", detail, HIT + begun + seconds)
 
 
-def seen(motion: list[Sample], *receipts: Receipt, latch: str = "", **changes: Any) -> Seen:
-    record = Recording(motion, list(receipts), {b"1": Goal(HIT - 1.0)}, [State(HIT + 3.0, latch, "")], [HIT + 0.6])
+def facts(motion: list[MotionSample], *receipts: Receipt, latch: str = "", **changes: Any) -> TrialFacts:
+    record = TrialRecording(
+        motion, list(receipts), {b"1": Goal(HIT - 1.0)}, [ReportedState(HIT + 3.0, latch, "")], [HIT + 0.6]
+    )
     trial = Trial("zx200", changes.pop("stop_kind", KILL), changes.pop("fault", NONE), 0.1, 0.5)
-    found = Seen(trial, "zx200", record, HIT, HIT, HIT, 4.0, 3.0, GOES_ON)
+    found = TrialFacts(trial, "zx200", record, HIT, HIT, HIT, 4.0, 3.0, GOES_ON)
     return replace(found, **changes)
 
 
@@ -45,7 +48,7 @@ def wrong(row: Row) -> set[str]:
 
 
 def test_an_honest_stop_is_measured() -> None:
-    row = judge(seen(truth((0.0, 2.0)), receipt()))
+    row = judge(facts(truth((0.0, 2.0)), receipt()))
     assert wrong(row) == set() and row.confirmed and not row.void
     assert row.reported_s == pytest.approx(0.6)
     assert row.stood_s == pytest.approx(2.0, abs=0.03)
@@ -64,7 +67,7 @@ def test_an_honest_stop_is_measured() -> None:
     ],
 )
 def test_a_confirmed_receipt_of_a_moving_machine_is_false(motion: list[tuple[float, float]], text: str) -> None:
-    row = judge(seen(truth(*motion), receipt()))
+    row = judge(facts(truth(*motion), receipt()))
     assert text in row.false_receipt
 
 
@@ -81,23 +84,23 @@ def test_a_confirmed_receipt_of_a_moving_machine_is_false(motion: list[tuple[flo
 def test_a_motion_while_the_gateway_is_gone_is_told_by_the_next_one(
     back: float | None, later: list[Receipt], told: str
 ) -> None:
-    row = judge(seen(truth((0.0, 2.0), (5.0, 40.0), until=40.0), receipt(), *later, back_s=back))
+    row = judge(facts(truth((0.0, 2.0), (5.0, 40.0), until=40.0), receipt(), *later, back_s=back))
     assert row.false_receipt.startswith(told) if told else not row.false_receipt
 
 
 def test_a_motion_is_told_at_once_while_the_gateway_is_there() -> None:
-    motion, bystander = truth((0.0, 2.0), (5.0, 40.0), until=40.0), Stop(How.KILL, (TS,))
+    motion, bystander = truth((0.0, 2.0), (5.0, 40.0), until=40.0), StopScenario(How.KILL, (TS,))
     late = receipt(16.0, 10.0, confirmed=False)
-    assert "left stand-still" in judge(seen(motion, receipt(), late, back_s=15.0, stop_kind=bystander)).false_receipt
+    assert "left stand-still" in judge(facts(motion, receipt(), late, back_s=15.0, stop_kind=bystander)).false_receipt
 
 
 @pytest.mark.parametrize("motion", [[(0.0, 2.29)], [(0.0, 2.0), (9.5, 20.0)]])
 def test_a_motion_outside_of_what_a_receipt_claims_is_not_its_lie(motion: list[tuple[float, float]]) -> None:
-    assert judge(seen(truth(*motion), receipt())).false_receipt == ""
+    assert judge(facts(truth(*motion), receipt())).false_receipt == ""
 
 
 def test_a_new_goal_may_move_it_again() -> None:
-    found = seen(truth((0.0, 2.0), (2.6, 20.0)), receipt())
+    found = facts(truth((0.0, 2.0), (2.6, 20.0)), receipt())
     assert judge(found).false_receipt
     found.record.goals[b"2"] = Goal(HIT + 2.55)
     row = judge(found)
@@ -105,29 +108,29 @@ def test_a_new_goal_may_move_it_again() -> None:
 
 
 def test_a_goal_does_not_excuse_what_moved_before_it() -> None:
-    found = seen(truth((0.0, 3.0)), receipt())
+    found = facts(truth((0.0, 3.0)), receipt())
     found.record.goals[b"2"] = Goal(HIT + 2.6)
     assert "before" in judge(found).false_receipt
 
 
 def test_a_motion_that_is_told_by_a_second_receipt_is_no_lie() -> None:
     creeps = truth((0.0, 2.0), (5.0, 20.0))
-    reported = judge(seen(creeps, receipt(), receipt(5.5, 10.0, confirmed=False), latch="left stand-still"))
+    reported = judge(facts(creeps, receipt(), receipt(5.5, 10.0, confirmed=False), latch="left stand-still"))
     assert wrong(reported) == {"unconfirmed", "ran_on"}  # `ran_on` only where the machine should obey
     under_way = receipt(0.2, 10.0, confirmed=False)
-    assert judge(seen(creeps, receipt(), under_way, latch="x")).false_receipt == ""
+    assert judge(facts(creeps, receipt(), under_way, latch="x")).false_receipt == ""
     over = receipt(0.2, 1.0, confirmed=False)
-    assert judge(seen(creeps, receipt(), over, latch="x")).false_receipt
-    assert judge(seen(creeps, receipt(), receipt(8.5, 10.0, confirmed=False), latch="x")).false_receipt  # too late
+    assert judge(facts(creeps, receipt(), over, latch="x")).false_receipt
+    assert judge(facts(creeps, receipt(), receipt(8.5, 10.0, confirmed=False), latch="x")).false_receipt  # too late
 
 
 def test_a_motion_that_begins_with_the_receipt_must_be_told() -> None:
     drifts = truth((0.0, 2.0), (2.45, 20.0))
-    assert judge(seen(drifts, receipt(), receipt(2.8, 10.0, confirmed=False), latch="x")).false_receipt == ""
+    assert judge(facts(drifts, receipt(), receipt(2.8, 10.0, confirmed=False), latch="x")).false_receipt == ""
 
 
 def test_a_motion_that_a_new_goal_overtakes_at_once_cannot_be_told() -> None:
-    found = seen(truth((0.0, 1.5), (2.49, 5.0)), receipt())
+    found = facts(truth((0.0, 1.5), (2.49, 5.0)), receipt())
     for later, lies in ((0.05, False), (0.2, True)):
         found.record.goals[b"2"] = Goal(HIT + 2.5 + later)
         assert bool(judge(found).false_receipt) is lies
@@ -135,24 +138,24 @@ def test_a_motion_that_a_new_goal_overtakes_at_once_cannot_be_told() -> None:
 
 def test_a_machine_that_moves_on_is_not_in_order_where_it_coasts() -> None:
     motion, no = truth((0.0, 9.0)), receipt(seconds=10.0, confirmed=False)
-    assert wrong(judge(seen(motion, no, latch="x"))) == {"unconfirmed", "ran_on"}
-    assert wrong(judge(seen(motion, no, latch="x", fault="nan"))) == {"unconfirmed", "ran_on"}  # a mere lie
-    assert wrong(judge(seen(motion, no, latch="x", fault="coast"))) == {"unconfirmed"}
-    uncovered = Stop(How.POWER, covered=False, latches=True)
-    assert wrong(judge(seen(motion, no, latch="x", stop_kind=uncovered))) == {"unconfirmed"}
+    assert wrong(judge(facts(motion, no, latch="x"))) == {"unconfirmed", "ran_on"}
+    assert wrong(judge(facts(motion, no, latch="x", fault="nan"))) == {"unconfirmed", "ran_on"}  # a mere lie
+    assert wrong(judge(facts(motion, no, latch="x", fault="coast"))) == {"unconfirmed"}
+    uncovered = StopScenario(How.POWER, covered=False, latches=True)
+    assert wrong(judge(facts(motion, no, latch="x", stop_kind=uncovered))) == {"unconfirmed"}
 
 
 def test_what_is_not_confirmed_must_be_latched() -> None:
     motion = truth((0.0, 2.0))
-    assert wrong(judge(seen(motion, receipt(confirmed=False)))) == {"unconfirmed", "unlatched"}
-    assert wrong(judge(seen(motion))) == {"unconfirmed", "unlatched"}  # no receipt at all
-    latching = Stop(How.KILL, (TS,), shared=True, latches=True)
-    assert wrong(judge(seen(motion, receipt(), stop_kind=latching))) == {"unlatched"}
-    assert wrong(judge(seen(motion, receipt(), stop_kind=latching, latch="tms:ts was lost"))) == set()
+    assert wrong(judge(facts(motion, receipt(confirmed=False)))) == {"unconfirmed", "unlatched"}
+    assert wrong(judge(facts(motion))) == {"unconfirmed", "unlatched"}  # no receipt at all
+    latching = StopScenario(How.KILL, (TS,), shared=True, latches=True)
+    assert wrong(judge(facts(motion, receipt(), stop_kind=latching))) == {"unlatched"}
+    assert wrong(judge(facts(motion, receipt(), stop_kind=latching, latch="tms:ts was lost"))) == set()
 
 
 def test_a_motion_that_had_ended_by_itself_proves_nothing() -> None:
-    found = seen(truth((0.0, 0.4)))
+    found = facts(truth((0.0, 0.4)))
     found.record.goals[b"1"] = Goal(HIT - 5.0, HIT + 0.5, arrived=True)
     assert judge(found).void == "its motion ended by itself" and wrong(judge(found)) == set()
     found.record.goals[b"1"] = Goal(HIT - 5.0, HIT + 4.0, arrived=True)  # nobody stopped it
@@ -160,29 +163,29 @@ def test_a_motion_that_had_ended_by_itself_proves_nothing() -> None:
 
 
 def test_a_machine_that_was_stopped_before_proves_nothing() -> None:
-    found = seen(truth((0.0, 0.4)), receipt())
-    found.record.states.insert(0, State(HIT - 0.1, "joint states are silent", ""))
+    found = facts(truth((0.0, 0.4)), receipt())
+    found.record.states.insert(0, ReportedState(HIT - 0.1, "joint states are silent", ""))
     assert judge(found).void == "it was stopped before: joint states are silent"
-    found.record.states[0] = State(HIT - 0.1, "", "")
+    found.record.states[0] = ReportedState(HIT - 0.1, "", "")
     assert judge(found).void == ""
 
 
 def test_a_machine_that_stood_at_the_hit_proves_nothing() -> None:
     """On a busy PC a run may lose a process that nobody hit, and the hit may come late."""
     for fault, receipts in ((NONE, [receipt()]), ("nan", [])):
-        found = seen(truth(), *receipts, fault=fault)
+        found = facts(truth(), *receipts, fault=fault)
         found.record.goals[b"1"] = Goal(HIT - 6.0, HIT - 4.0)
         assert judge(found).void == "it was stopped before the hit"
         found.record.truth[:] = truth((0.5, 0.6))
         assert judge(found).void == ""  # it moved without a goal
-    found = seen(truth(), receipt(-0.4), fault="nan", begun=HIT - 0.5)  # which has stopped it
+    found = facts(truth(), receipt(-0.4), fault="nan", begun=HIT - 0.5)  # which has stopped it
     found.record.goals[b"1"] = Goal(HIT - 6.0, HIT - 0.1)
     assert judge(found).void == ""
 
 
 def test_a_stop_that_was_under_way_at_the_hit_proves_nothing() -> None:
     """Of a process that a busy PC has lost: it still moved when it was hit, and its only receipt is of that stop."""
-    found = seen(truth((0.0, 0.4)), receipt(-0.3, 0.9))
+    found = facts(truth((0.0, 0.4)), receipt(-0.3, 0.9))
     found.record.goals[b"1"] = Goal(HIT - 5.0, HIT + 0.2)
     assert judge(found).void == "it was being stopped before"
     found.record.truth[:] = truth((0.0, 0.9))
@@ -190,7 +193,7 @@ def test_a_stop_that_was_under_way_at_the_hit_proves_nothing() -> None:
 
 
 def test_a_truth_with_a_gap_proves_nothing_but_a_lie() -> None:
-    found = seen([one for one in truth((0.0, 9.0)) if not 3.0 < one.at - HIT < 5.0])
+    found = facts([one for one in truth((0.0, 9.0)) if not 3.0 < one.at - HIT < 5.0])
     assert judge(found).void == "its true motion was not heard for 2.0 s" and not judge(found).ran_on
     found.record.truth[:] = [one for one in truth((0.0, 3.0)) if not 3.0 < one.at - HIT < 9.0]  # to beyond what it may
     assert judge(found).void == "its true motion was not heard for 6.0 s" and not judge(found).ran_on
@@ -200,18 +203,18 @@ def test_a_truth_with_a_gap_proves_nothing_but_a_lie() -> None:
 
 
 def test_a_goal_that_began_after_the_hit_was_stopped_too() -> None:
-    found = seen(truth((0.3, 2.0)), receipt())
+    found = facts(truth((0.3, 2.0)), receipt())
     found.record.goals[b"2"] = Goal(HIT + 0.2)
     assert judge(found).stood_s == pytest.approx(2.0, abs=0.03)
 
 
 def test_a_lost_process_beside_the_motion_stops_nothing() -> None:
-    beside = Stop(How.KILL, ("tms:db",), moves=False)
-    found = seen(truth((0.0, 3.0)), receipt(1.2), stop_kind=beside, stop=HIT + 1.0)
+    beside = StopScenario(How.KILL, ("tms:db",), moves=False)
+    found = facts(truth((0.0, 3.0)), receipt(1.2), stop_kind=beside, stop=HIT + 1.0)
     row = judge(found)
     assert wrong(row) == set() and row.reported_s is None and row.stood_s == pytest.approx(2.0, abs=0.03)
-    assert wrong(judge(replace(found, record=seen(truth((0.0, 2.0)), receipt(0.7)).record))) == {"disturbed"}
-    excused = judge(replace(found, record=seen(truth((0.0, 2.0)), receipt(0.7)).record, busy="this PC did not run it"))
+    assert wrong(judge(replace(found, record=facts(truth((0.0, 2.0)), receipt(0.7)).record))) == {"disturbed"}
+    excused = judge(replace(found, record=facts(truth((0.0, 2.0)), receipt(0.7)).record, busy="this PC did not run it"))
     assert wrong(excused) == set() and excused.void == "this PC did not run it"
     assert judge(replace(found, busy="this PC did not run it")).void == ""
 
@@ -228,10 +231,11 @@ def test_the_truth_is_measured_against_the_limits_of_standing() -> None:
 
 
 def test_a_record_keeps_what_was_open() -> None:
-    record = Recording(
+    record = TrialRecording(
         truth((0.0, 1.0)), [receipt(-5.0), receipt(-1.0), receipt()],
         {b"old": Goal(HIT - 9.0, HIT - 5.0), b"open": Goal(HIT - 9.0), b"new": Goal(HIT + 1.0)},
-        [State(HIT - 9.0, "a", ""), State(HIT - 5.0, "b", ""), State(HIT + 1.0, "c", "")], [HIT - 1.0, HIT + 1.0],
+        [ReportedState(HIT - 9.0, "a", ""), ReportedState(HIT - 5.0, "b", ""), ReportedState(HIT + 1.0, "c", "")],
+        [HIT - 1.0, HIT + 1.0],
     )  # fmt: skip
     found = record.since(HIT)
     assert [one.begun for one in found.receipts] == [HIT - 1.0, HIT + 0.5]  # the first was under way
