@@ -21,14 +21,20 @@ from tms_config.site_file import Role, roles
 from tms_config.yaml_file import located
 from tms_reason.errors import ConfigError
 
-# package of a service -> its purpose, shown by `tms ps`
-SERVICES = {
+SERVICES = ("db", "sp", "ts", "ur", "if", "host")  # their packages, without `tms_`
+PURPOSES = {  # what they and the other processes are for; `tms ps` shows it in the language of the user
     "db": "tasks, parameters and history in MongoDB",
     "sp": "sensing topics into dynamic parameters",
     "ts": "runs tasks: the behaviour-tree scheduler",
     "ur": "HTTP API and console",
     "if": "TCP bridge that OperaSim-PhysX connects to",
     "host": "processes of this PC",
+    "store": "embedded store of the demo",
+    "discovery": "lets the PCs' processes find each other",
+    "sim": "stand-in for {machine}",
+    "rc": "gateway: every motion passes it",
+    "rp": "plans motions",
+    "subtask": "subtask {file}",
 }
 
 
@@ -41,7 +47,7 @@ class Process:
     role: Role
     module: str  # has start(app)
     port: int  # of its metrics and health
-    purpose: str
+    purpose: str  # one of PURPOSES
     machine: str | None = None
     action: str | None = None  # a subtask's action name
     autostart: bool = True
@@ -128,33 +134,27 @@ def _place(site: Site, row: Process) -> str:
 def _services(site: Site) -> list[Process]:
     rows = []
     if site.embedded_store:
-        rows.append(Process("tms", "store", "cps", "tms_host.store", 0, "embedded store of the demo", ours=False))
+        rows.append(Process("tms", "store", "cps", "tms_host.store", 0, PURPOSES["store"], ours=False))
     if pcs.discovery_server(site) is not None:
-        purpose = "lets the PCs' processes find each other"
-        rows.append(Process("tms", "discovery", "cps", "tms_host.discovery", 0, purpose, ours=False))
+        rows.append(Process("tms", "discovery", "cps", "tms_host.discovery", 0, PURPOSES["discovery"], ours=False))
     for name, service in site.file.services.items():
         if name not in SERVICES:
-            raise ConfigError(located(site.path, NoService(name, tuple(SERVICES)), "services", name))
-        if name == "host" and site.file.pcs:
-            rows += [_host(pc, roles(pc, facts)[0]) for pc, facts in site.file.pcs.items()]
-        else:
-            rows.append(Process("tms", name, service.role, f"tms_{name}.node", 0, SERVICES[name]))
+            raise ConfigError(located(site.path, NoService(name, SERVICES), "services", name))
+        row = Process("tms", name, service.role, f"tms_{name}.node", 0, PURPOSES[name])
+        several = site.file.pcs.items() if name == "host" else ()
+        rows += [replace(row, name=f"host_{pc}", role=roles(pc, facts)[0], pc=pc) for pc, facts in several] or [row]
     return rows
-
-
-def _host(pc: str, role: Role) -> Process:
-    return Process("tms", f"host_{pc}", role, "tms_host.node", 0, SERVICES["host"], pc=pc)
 
 
 def _machine(site: Site, machine: str) -> list[Process]:
     use, model = site.file.machines[machine], site.model_of(machine)
     rows = []
     if site.file.backend == "sim":
-        rows.append(Process("sim", machine, "sim", "tms_sim.node", 0, f"stand-in for {machine}", machine))
-    rows.append(Process(machine, "rc", use.role, "tms_rc.node", 0, "gateway: every motion passes it", machine))
+        rows.append(Process("sim", machine, "sim", "tms_sim.node", 0, PURPOSES["sim"], machine))
+    rows.append(Process(machine, "rc", use.role, "tms_rc.node", 0, PURPOSES["rc"], machine))
     if model.planner is not None:
         _require(site, machine, f"tms_rp/kinds/{model.planner}/__init__.py", "planner")
-        rows.append(Process(machine, "rp", use.role, "tms_rp.node", 0, "plans motions", machine))
+        rows.append(Process(machine, "rp", use.role, "tms_rp.node", 0, PURPOSES["rp"], machine))
     rows += [_subtask(site, machine, model, action) for action in model.subtasks]
     return rows
 
@@ -164,7 +164,7 @@ def _subtask(site: Site, machine: str, model: MachineModel, action: str) -> Proc
     _require(site, machine, f"tms_subtasks/{file}.py", "subtasks", action)
     return Process(
         machine, action, site.file.machines[machine].role, "tms_machine.subtask_server", 0,
-        f"subtask {file}", machine, action, autostart=False,
+        PURPOSES["subtask"], machine, action, autostart=False,
     )  # fmt: skip
 
 

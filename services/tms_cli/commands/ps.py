@@ -6,7 +6,8 @@ import click
 
 from tms_cli import session
 from tms_cli.words import say
-from tms_config.processes import table
+from tms_config.config import Site
+from tms_config.processes import Process, table
 from tms_host.supervisor import Running, Supervisor
 
 COLOURS = {"RUNNING": "green", "STARTING": "yellow", "BACKOFF": "red", "FATAL": "red", "EXITED": "red"}
@@ -35,8 +36,13 @@ def command(as_json: bool) -> None:
     for process in found:
         row = rows.get(process.name)
         state = click.style(f"{process.state:9}", fg=COLOURS.get(process.state))
-        port, purpose = (str(row.port), row.purpose) if row else ("", say("not in the site file any more"))
+        port, purpose = (str(row.port), _purpose(site, row)) if row else ("", say("not in the site file any more"))
         click.echo(f"{process.name:42} {state} {process.pid or '':>7} {_up(process):>8} {port:>6}  {purpose}")
+
+
+def _purpose(site: Site, row: Process) -> str:
+    file = site.model_of(row.machine).subtask(row.action).run if row.machine and row.action else ""
+    return say(row.purpose, machine=row.machine, file=file)
 
 
 def _up(process: Running) -> str:

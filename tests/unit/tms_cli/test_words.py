@@ -16,6 +16,7 @@ from click.testing import CliRunner
 from catalogues import catalogue
 from tms_cli import words
 from tms_cli.main import tms as group
+from tms_config.processes import PURPOSES
 from tms_reason import texts
 from tms_ts.run_states import STATES
 
@@ -46,8 +47,8 @@ def name_of(call: ast.Call) -> str:
 
 
 def said() -> set[str]:
-    """The English of every `say`, also where it is first given a name."""
-    found = set()
+    """The English of every `say`, also where it is first given a name or comes from the table of processes."""
+    found = set(PURPOSES.values())
     for _, tree in sources():
         named = {
             target.id: node.value.value
@@ -59,7 +60,8 @@ def said() -> set[str]:
         for node in ast.walk(tree):
             if isinstance(node, ast.Call) and name_of(node) == "say":
                 first = node.args[0]
-                found.add(first.value if isinstance(first, ast.Constant) else named[ast.unparse(first)])
+                if ast.unparse(first) != "row.purpose":  # one of PURPOSES
+                    found.add(first.value if isinstance(first, ast.Constant) else named[ast.unparse(first)])
     return {text for text in found if isinstance(text, str)}
 
 
