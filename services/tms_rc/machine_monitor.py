@@ -15,7 +15,7 @@ from tms_rc.reasons import StrangeType
 from tms_rc.source import LABELS, SourceSample
 from tms_rc.standstill import HEADING, IMU, JOINTS, ODOM, PLACE, POSE, TURNING, StandStill, yaw_of
 from tms_reason.reason import Reason
-from tms_ros.node import Ros
+from tms_ros.node import Ros, node_of
 from tms_ros.topics import Arrival
 from tms_runtime.app import App
 
@@ -92,8 +92,7 @@ class MachineMonitor:
 
 def _publishers(ros: Ros, topic: str) -> list[tuple[str, str]]:
     """Node and type of each publisher of a topic in the whole graph."""
-    found = ros.node.get_publishers_info_by_topic(topic)
-    return [(f"{end.node_namespace.rstrip('/')}/{end.node_name}", end.topic_type) for end in found]
+    return [(node_of(end), end.topic_type) for end in ros.node.get_publishers_info_by_topic(topic)]
 
 
 def _type(name: str, border: Border) -> Any:

@@ -2,6 +2,7 @@
 
 import threading
 from contextlib import AbstractContextManager
+from typing import Any
 
 from tms_config.clock import sleep
 from tms_ros.client import AnyPeer, Peer
@@ -35,10 +36,8 @@ class Ros:
         self.begin, self.on_stop, self.leave = loop.begin, loop.on_stop, loop.leave
         self.busy_since, self.thread_number, self.wait_for = loop.busy_since, loop.thread_number, loop.wait_for
 
-        self.publisher, self.delivered, self.subscribe = topics.publisher, topics.delivered, topics.subscribe
-        self.sample, self.sample_arrivals, self.subscribe_raw = (
-            topics.sample, topics.sample_arrivals, topics.subscribe_raw,
-        )  # fmt: skip
+        self.publisher, self.subscribe, self.subscribe_raw = topics.publisher, topics.subscribe, topics.subscribe_raw
+        self.delivered, self.sample, self.sample_arrivals = topics.delivered, topics.sample, topics.sample_arrivals
         self.lease_publisher, self.lease_subscribe = topics.lease_publisher, topics.lease_subscribe
 
         self.offer, self.offer_slow, self.prepare = services.offer, services.offer_slow, services.prepare
@@ -70,3 +69,8 @@ class Ros:
             if name not in self._peers:
                 self._peers[name] = Peer(self.loop, action_type, name)
             return self._peers[name]
+
+
+def node_of(endpoint: Any) -> str:
+    """Full name of the node that an endpoint of rclpy's graph belongs to."""
+    return f"{endpoint.node_namespace.rstrip('/')}/{endpoint.node_name}"

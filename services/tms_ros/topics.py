@@ -39,11 +39,9 @@ class Topics:
         """A reliable publisher; `latched`: subscribers that come later get the last message."""
         return self._published(message_type, topic, quality.topic(depth, latched))
 
-    def _published(self, message_type: type[M], topic: str, quality_of_service: QoSProfile) -> Publisher[M]:
+    def _published(self, message_type: type[M], topic: str, qos: QoSProfile) -> Publisher[M]:
         quiet = PublisherEventCallbacks(use_default_callbacks=False)
-        made: Publisher[M] = self._loop.node.create_publisher(
-            message_type, topic, quality_of_service, event_callbacks=quiet
-        )
+        made: Publisher[M] = self._loop.node.create_publisher(message_type, topic, qos, event_callbacks=quiet)
         return made
 
     def _subscribed(
@@ -51,14 +49,14 @@ class Topics:
         message_type: type[Message],
         topic: str,
         on_message: Callable[[Any], None],
-        quality_of_service: QoSProfile,
+        qos: QoSProfile,
         group: CallbackGroup | None = None,
         liveliness: Callable[[Any], None] | None = None,
         raw: bool = False,
     ) -> Any:
         events = SubscriptionEventCallbacks(liveliness=liveliness, use_default_callbacks=False)
         return self._loop.node.create_subscription(
-            message_type, topic, on_message, quality_of_service, callback_group=group or self._loop.group,
+            message_type, topic, on_message, qos, callback_group=group or self._loop.group,
             event_callbacks=events, raw=raw,
         )  # fmt: skip
 
@@ -110,13 +108,11 @@ class Topics:
         self, message_type: type[M], topic: str, depth: int = 1, best_effort: bool = True
     ) -> Callable[[], list[Arrival[M]]]:
         """As `sample`, with each message's reception time and number; `best_effort`: lost ones are not sent again."""
-        subscription = self._subscribed(
-            message_type, topic, _unheard, quality.topic(depth, False, best_effort=best_effort), Asleep()
-        )
+        reader = self._subscribed(message_type, topic, _unheard, quality.topic(depth, False, best_effort), Asleep())
 
         def take_new() -> list[Arrival[M]]:
             found: list[Arrival[M]] = []
-            while len(found) < depth and (arrival := _arrival(subscription)) is not None:
+            while len(found) < depth and (arrival := _arrival(reader)) is not None:
                 found.append(arrival)
             return found
 

@@ -3,7 +3,7 @@
 from itertools import product
 from typing import Any
 
-from tms_ros.node import Ros
+from tms_ros.node import Ros, node_of
 from tms_ros.quality import misfit
 from tms_runtime import metrics
 from tms_runtime.log import Logger
@@ -72,9 +72,9 @@ def mismatches(ros: Ros, topic: str) -> set[NotConnected] | None:
         return None
     own, found = ros.node.get_fully_qualified_name(), set[NotConnected]()
     for writer, reader in product(writers, readers):
-        names = [f"{end.node_namespace.rstrip('/')}/{end.node_name}" for end in (writer, reader)]
-        if own in names and names[0] != names[1] and (reason := _mismatch(writer, reader)):
-            found.add(NotConnected(topic, names[1], names[0], reason))
+        sender, receiver = node_of(writer), node_of(reader)
+        if own in (sender, receiver) and sender != receiver and (reason := _mismatch(writer, reader)):
+            found.add(NotConnected(topic, receiver, sender, reason))
     return found
 
 
