@@ -7,8 +7,7 @@ from nav2_msgs.action import FollowWaypoints, NavigateThroughPoses, NavigateToPo
 
 from tms_machine.acting import Acting, Progress, missed
 from tms_machine.frames import MAP
-from tms_machine.reasons import Driving as DrivingNow
-from tms_machine.reasons import DrivingThrough, DrivingTo, MissedWaypoints, Waypoint
+from tms_machine.reasons import Driving, DrivingThrough, DrivingTo, MissedWaypoints, Waypoint
 from tms_reason.errors import SubtaskFailed
 
 
@@ -18,7 +17,7 @@ class Navigating(Acting):
     def navigate_to(self, progress: Progress, pose: Pose) -> None:
         """Drive to a pose and stand there."""
         goal = NavigateToPose.Goal(pose=self._stamped(pose))
-        self.guarded("navigate_to_pose", NavigateToPose, goal, lambda f: progress(DrivingNow(f.distance_remaining)))
+        self.guarded("navigate_to_pose", NavigateToPose, goal, lambda f: progress(Driving(f.distance_remaining)))
 
     def navigate_through(self, progress: Progress, poses: Sequence[Pose]) -> None:
         """Drive through poses without a stop, and stand at the last."""
