@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from conftest import PROJECT, Mesh, claimed_domain, ports_of, running, site_data
+from conftest import PROJECT, Mesh, ports_of, running, site_data
 from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse, read_yaml
@@ -15,7 +15,6 @@ from tms_config.yaml_file import parse, read_yaml
 pytestmark = [pytest.mark.system, pytest.mark.timeout(300)]
 MODELS = sorted(path.stem for path in (CONFIGS / "machines").glob("*.yaml"))
 SPEED = 25.0  # times real time
-FAR = 40.0  # m
 AT_ONCE = 5  # subtasks a tree: each is a process, and all of a tree are started at once
 
 
@@ -41,26 +40,25 @@ def trees(model: str, machine: str) -> list[str]:
     ]
 
 
-@pytest.fixture(scope="module")
-def yard(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Mesh]:
-    """A mesh with one machine of every model, and their records."""
-    folder = tmp_path_factory.mktemp("every")
-    machines: dict[str, dict[str, object]] = {instance(model): {"model": model} for model in MODELS}
-    for number, excavator in enumerate(("zx200", "zx120")):
-        machines[excavator]["start"] = [0.0, FAR * (number + 1), 0.0]  # out of reach of all others
-    with claimed_domain() as domain:
-        data = site_data(domain, ports_of(domain), name="every", machines=machines, sim={"speed": SPEED})
-        (folder / "site.yaml").write_text(yaml.safe_dump(data))
-        with running(Mesh(folder / "site.yaml", folder / "state")) as mesh:
-            for model in MODELS:
-                mesh.tms("param", "load", str(PROJECT / "configs" / "parameters" / f"{model}.yaml"))
-            yield mesh
+@pytest.fixture(params=MODELS)
+def model(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
 
 
-@pytest.mark.parametrize("model", MODELS)
-def test_every_subtask_runs_once(model: str, yard: Mesh, tmp_path: Path) -> None:
-    for tree in trees(model, instance(model)):
+@pytest.fixture
+def machine_mesh(model: str, own_domain: int, tmp_path: Path) -> Iterator[Mesh]:
+    """A mesh with one machine of the model."""
+    machines = {instance(model): {"model": model}}
+    data = site_data(own_domain, ports_of(own_domain), name="every", machines=machines, sim={"speed": SPEED})
+    (tmp_path / "site.yaml").write_text(yaml.safe_dump(data))
+    with running(Mesh(tmp_path / "site.yaml", tmp_path / "state")) as mesh:
+        yield mesh
+
+
+def test_every_subtask_runs_once(model: str, machine_mesh: Mesh, tmp_path: Path) -> None:
+    machine_mesh.tms("param", "load", str(PROJECT / "configs" / "parameters" / f"{model}.yaml"))
+    for number, tree in enumerate(trees(model, instance(model)), 1):
         (tmp_path / "tree.xml").write_text(tree)
-        added = json.loads(yard.tms("task", "add", str(tmp_path / "tree.xml"), "--json").stdout)
-        done = yard.tms("run", str(added["task_id"]), "--wait", "--json", expect=None, limit=240)
+        machine_mesh.tms("task", "add", str(tmp_path / "tree.xml"))
+        done = machine_mesh.tms("run", str(number), "--wait", "--json", expect=None, limit=240)
         assert json.loads(done.stdout)["outcome"] == "success", done.stdout
