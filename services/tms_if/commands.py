@@ -6,6 +6,7 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from tms_if.framing import encode
+from tms_reason.texts import text
 from tms_reason.validation import explain
 
 VERSION = "v0.7.0"  # version of the protocol, not of this project; the simulator wants v0.7
@@ -58,7 +59,7 @@ def parse(kind: type[T], command: str, payload: bytes) -> T:
     try:
         return kind.model_validate_json(payload.rstrip(b"\0"))
     except ValidationError as error:
-        raise CommandError(f"{command}: {explain(error)}") from error
+        raise CommandError(f"{command}: {text(explain(error), 'en')}") from error
 
 
 def command(name: str, **fields: Any) -> bytes:

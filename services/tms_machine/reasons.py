@@ -22,8 +22,13 @@ class Busy(Reason, text="{process} is still at its last goal"): process: str
 class NoDatabase(Reason, text="{process} did not answer", action=PROCESSES): process: str
 class OneSubtask(Reason, text="{file}: {count} subtasks in it, there must be one"): file: str; count: int
 class FieldMissing(Reason, text="field '{field}' is missing", action=RECORDS): field: str
+class ListsDiffer(Reason, text="the lists differ in length: {lengths}", action=RECORDS): lengths: str
+class PathEmpty(Reason, text="the path is empty", action=RECORDS): pass
+class NoUnitLength(Reason, text="qx, qy, qz, qw have length {length}, an orientation has 1", action=RECORDS):
+    length: str
+class MoreThanOneTurn(Reason, text="{degrees} deg is more than one turn", action=RECORDS): degrees: str
 class NoFlag(Reason, text="one of {flags} must be 1", action=RECORDS): flags: tuple[str, ...]
-class BadRecord(Reason, text="record {record}: {problem}", action=RECORDS): record: str; problem: str
+class BadRecord(Reason, text="record {record}: {problem}", action=RECORDS): record: str; problem: Reason
 class NoSuchJoint(Reason, text="there is no joint '{joint}' (there are {joints})"): joint: str; joints: tuple[str, ...]
 class NoCapability(Reason, text="{machine} has no {what}", action=EDIT_CONFIG,
     details="see borders: in configs/machines/{model}.yaml"): machine: str; what: str; model: str

@@ -12,6 +12,21 @@ class UnknownKey(Reason, text="unknown key", action=EDIT_CONFIG): pass
 class MissingKey(Reason, text="is missing", action=EDIT_CONFIG): pass
 class BadSetting(Reason, text="{problem}", action=EDIT_CONFIG): problem: Reason
 class BadValueOf(Reason, text="{problem}, but it is {value}", action=EDIT_CONFIG): problem: Reason; value: str
+class KeyProblem(Reason, text="{key}: {problem}"): key: str; problem: Reason
+class MoreProblems(Reason, text="{problem} (and {more} more)"): problem: Reason; more: int
+class MustBeNumber(Reason, text="must be a number"): pass
+class MustBeFinite(Reason, text="must be a finite number"): pass
+class MustBeWhole(Reason, text="must be a whole number"): pass
+class MustBeTrueOrFalse(Reason, text="must be true or false"): pass
+class MustBeText(Reason, text="must be a text"): pass
+class MustBeList(Reason, text="must be a list"): pass
+class MustBeKeys(Reason, text="must be an object: keys with values"): pass
+class MustBeAbove(Reason, text="must be greater than {limit}"): limit: str
+class MustBeAtLeast(Reason, text="must be at least {limit}"): limit: str
+class MustBeBelow(Reason, text="must be less than {limit}"): limit: str
+class MustBeAtMost(Reason, text="must be at most {limit}"): limit: str
+class MustBeOneOf(Reason, text="must be one of {choices}"): choices: str
+class MustFitPattern(Reason, text="does not fit the pattern {pattern}"): pattern: str
 
 # names and texts
 class BadText(Reason, text="{field} {value} {problem}"): field: str; value: str; problem: Reason

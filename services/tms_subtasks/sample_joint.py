@@ -6,7 +6,9 @@ from typing import Any
 
 from pydantic import field_validator, model_validator
 
+from tms_machine.reasons import FieldMissing, MoreThanOneTurn
 from tms_machine.subtask import Machine, Params, Progress, subtask
+from tms_reason.validation import Wrong
 
 
 class Angle(Params):
@@ -20,14 +22,14 @@ class Angle(Params):
     @classmethod
     def _pick(cls, fields: dict[str, Any]) -> dict[str, Any]:
         if fields.get("field") not in fields:
-            raise ValueError(f"field '{fields.get('field')}' is missing")
+            raise Wrong(FieldMissing(str(fields.get("field"))))
         return {**fields, "angle": fields[fields["field"]]}
 
     @field_validator("angle")
     @classmethod
     def _within_a_turn(cls, angle: float) -> float:
         if abs(angle) > 360.0:  # which means "keep the present angle" to the planner
-            raise ValueError(f"{angle:g} deg is more than one turn")
+            raise Wrong(MoreThanOneTurn(f"{angle:g}"))
         return angle
 
     def joint_angles(self) -> Mapping[str, float]:

@@ -13,7 +13,7 @@ from tms_config.models import MachineModel
 from tms_machine.subtask import load
 from tms_machine.values import from_parameters
 from tms_reason.errors import RosError
-from tms_reason.reason import Foreign, Reason
+from tms_reason.reason import Reason
 from tms_reason.validation import explain
 from tms_reason.wire import refusal
 from tms_runtime.app import App
@@ -102,7 +102,7 @@ def unfit(model: MachineModel, subtask: str, values: Mapping[str, Any]) -> Reaso
     try:
         angles = params.model_validate({**values, **use.inputs}).joint_angles()
     except ValidationError as error:
-        return Foreign(explain(error))
+        return explain(error)
     broken = ((name, model.joints[name].violation(angle)) for name, angle in angles.items() if name in model.joints)
     return next((JointUnfit(name, why) for name, why in broken if why is not None), None)
 

@@ -7,7 +7,9 @@ from geometry_msgs.msg import Point, Pose, Quaternion
 from pydantic import model_validator
 
 from tms_machine import geometry
+from tms_machine.reasons import FieldMissing, ListsDiffer, NoUnitLength, PathEmpty
 from tms_machine.subtask import Params
+from tms_reason.validation import Wrong
 
 Angles = Literal["quaternion", "degrees"]
 TURN = {"quaternion": ("qx", "qy", "qz", "qw"), "degrees": ("yaw",)}
@@ -30,7 +32,7 @@ class PoseRecord(Params):
         names = TURN[self.angles]
         for name in names:
             if getattr(self, name) is None:
-                raise ValueError(f"field '{name}' is missing")
+                raise Wrong(FieldMissing(name))
         turn(*(getattr(self, name) for name in names))
         return self
 
@@ -58,9 +60,9 @@ class PathRecord(Params):
         lengths = {name: len(self._list(name)) for name in ("x", "y", "z", *TURN[self.angles])}
         if len(set(lengths.values())) != 1:
             reported = ", ".join(f"{name} {length}" for name, length in lengths.items())
-            raise ValueError(f"the lists differ in length: {reported}")
+            raise Wrong(ListsDiffer(reported))
         if not self.x:
-            raise ValueError("the path is empty")
+            raise Wrong(PathEmpty())
         self.poses()
         return self
 
@@ -76,7 +78,7 @@ class PathRecord(Params):
     def _list(self, name: str) -> list[float]:
         found: list[float] | None = getattr(self, name)
         if found is None:
-            raise ValueError(f"field '{name}' is missing")
+            raise Wrong(FieldMissing(name))
         return found
 
 
@@ -84,13 +86,13 @@ def turn(*numbers: float) -> Quaternion:
     """Orientation from qx, qy, qz, qw, or from one yaw [deg].
 
     Raises:
-        ValueError: the four numbers are no quaternion.
+        Wrong: the four numbers are no quaternion.
     """
     if len(numbers) == 1:
         x, y, z, w = geometry.about("z", math.radians(numbers[0]))
         return Quaternion(x=x, y=y, z=z, w=w)
     x, y, z, w = numbers
     if not geometry.is_orientation((x, y, z, w)):
-        raise ValueError(f"qx, qy, qz, qw have length {geometry.length((x, y, z, w)):.3f}, an orientation has 1")
+        raise Wrong(NoUnitLength(f"{geometry.length((x, y, z, w)):.3f}"))
     x, y, z, w = geometry.unit((x, y, z, w))
     return Quaternion(x=x, y=y, z=z, w=w)

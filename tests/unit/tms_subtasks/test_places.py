@@ -7,6 +7,7 @@ from pydantic import ValidationError
 
 from tms_reason.validation import explain
 from tms_subtasks.records.places import PathRecord, PoseRecord
+from words import words
 
 QUATERNION = {"qx": 0.0, "qy": 0.0, "qz": 0.70711, "qw": 0.70711}
 LISTS = {"x": [1.0, 2.0], "y": [0.0, 0.0], "z": [0.0, 0.0]}
@@ -15,7 +16,7 @@ LISTS = {"x": [1.0, 2.0], "y": [0.0, 0.0], "z": [0.0, 0.0]}
 def said(model: type[PoseRecord] | type[PathRecord], **fields: object) -> str:
     with pytest.raises(ValidationError) as caught:
         model.model_validate(fields)
-    return explain(caught.value)
+    return words(explain(caught.value))
 
 
 def test_degrees_go_where_the_quaternion_goes() -> None:
