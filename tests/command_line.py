@@ -11,6 +11,8 @@ import tempfile
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 
+import pytest
+
 PROJECT = Path(__file__).resolve().parents[1]
 FORKS = multiprocessing.get_context("forkserver")
 FORKS.set_forkserver_preload(["loaded"])
@@ -26,23 +28,16 @@ def call(words: tuple[str, ...], env: dict[str, str], limit: float) -> "subproce
             process.kill()
             process.join()
             raise subprocess.TimeoutExpired(["tms", *words], limit, out.read_bytes(), err.read_bytes())
-        assert process.exitcode is not None
         return subprocess.CompletedProcess(["tms", *words], process.exitcode, out.read_text(), err.read_text())
 
 
 def _started(words: tuple[str, ...], env: dict[str, str], out: Path, err: Path) -> BaseProcess:
     for path in (out, err):
         path.touch()
-    before = os.environ.get("PYTHONPATH")
-    os.environ["PYTHONPATH"] = os.pathsep.join((str(PROJECT / "services"), str(PROJECT / "tests")))
-    try:
+    with pytest.MonkeyPatch.context() as patch:  # the first call starts the process that is forked
+        patch.setenv("PYTHONPATH", os.pathsep.join((str(PROJECT / "services"), str(PROJECT / "tests"))))
         process = FORKS.Process(target=_become, args=(words, env, out, err))
         process.start()
-    finally:
-        if before is None:
-            del os.environ["PYTHONPATH"]
-        else:
-            os.environ["PYTHONPATH"] = before
     return process
 
 
