@@ -17,6 +17,10 @@ LIMIT = 60.0  # s for whatever must happen at all
 FLAGS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking"]
 
 
+class Refused(Exception):
+    """The API refuses a call: which and why."""
+
+
 @contextmanager
 def chromium() -> Iterator[Browser]:
     """One that is closed in the end."""
@@ -37,5 +41,6 @@ def ask(address: str, path: str, body: Any = None) -> Any:
     except urllib.error.HTTPError as error:
         with error:
             found = json.load(error)
-        assert found["code"] == "NO_RUN", found
+        if found["code"] != "NO_RUN":
+            raise Refused(f"{path}: {found['text']['en']}") from error
         return None

@@ -11,14 +11,15 @@ from collections.abc import Callable, Generator, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 import structlog
 import yaml
 from hypothesis import settings
 
-import command_line
+import programs
+import sharing
 
 if TYPE_CHECKING:
     from tms_ros.node import Ros
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 PROJECT = Path(__file__).resolve().parents[1]
 SPOILED = pytest.StashKey[bool]()
 DOMAINS = range(43, 101)  # 42 is the demo's
+CLI = 0.2  # s between two calls of `tms` that wait for something: each costs 0.05 s of a processor
 WARNINGS = 40  # lines shown of a failed test's mesh
 
 # Found by `--hypothesis-profile=thorough`. No deadline: a busy machine would flip the test.
@@ -41,6 +43,17 @@ def pytest_configure() -> None:
         logger_factory=structlog.stdlib.LoggerFactory(),
         wrapper_class=structlog.stdlib.BoundLogger,
     )
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> sharing.OneMesh | None:
+    """Who does which tests in `--dist loadfile`."""
+    return sharing.OneMesh(config, log) if config.getvalue("dist") == "loadfile" else None
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """What lasts longest comes first; otherwise the order is random."""
+    items.sort(key=sharing.turn)
 
 
 @contextmanager
@@ -139,7 +152,7 @@ class Mesh:
 
     def tms(self, *words: str, expect: int | None = 0, limit: float = 90) -> subprocess.CompletedProcess[str]:
         """Run the command line; the exit code must be `expect`."""
-        done = command_line.call(words, self.env, limit)
+        done = programs.tms(words, self.env, limit)
         if expect is not None:
             assert done.returncode == expect, f"tms {' '.join(words)}: {done.returncode}\n{done.stdout}\n{done.stderr}"
         return done
@@ -151,7 +164,7 @@ class Mesh:
 
     def wait_ready(self) -> None:
         """Until `tms status` says that everything works."""
-        wait_until(lambda: self.tms("status", expect=None).returncode == 0, 60, "the mesh is ready again")
+        wait_until(lambda: self.tms("status", expect=None).returncode == 0, 60, "the mesh is ready again", every=CLI)
 
 
 @contextmanager

@@ -2,7 +2,6 @@
 
 import os
 import subprocess
-import sys
 import time
 import urllib.error
 import urllib.request
@@ -13,6 +12,7 @@ from typing import Any, TypeVar
 import pytest
 from tms_msg_db.srv import ListTasks
 
+import programs
 from conftest import ports_of
 from tms_config.config import PROJECT, Site, load_site
 from tms_config.processes import find
@@ -42,14 +42,12 @@ class Mesh:
         file.write_text(text)
         self.site: Site = load_site(str(file))
         self.environment = {**os.environ, **environment.environment(self.site)}
-        self._running: dict[str, subprocess.Popen[bytes]] = {}
+        self._running: dict[str, programs.Program] = {}
         self.log = folder / "log.txt"
         self.ros: Ros = Ros("client")
 
     def start(self, name: str) -> None:
-        with self.log.open("ab") as log:
-            words = [sys.executable, "-m", "tms_runtime.run", name]
-            self._running[name] = subprocess.Popen(words, env=self.environment, stdout=log, stderr=log)
+        self._running[name] = programs.process(name, self.environment, self.log)
 
     def kill(self, name: str) -> None:
         self._running[name].kill()

@@ -1,4 +1,4 @@
-"""Imported by the process that tests fork `tms` from, see command_line.py: the libraries and the verbs of `tms`."""
+"""Imported by the process that tests fork `tms` from, see programs.py: the libraries and the verbs of `tms`."""
 
 import importlib
 import pkgutil

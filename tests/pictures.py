@@ -6,10 +6,7 @@ on now. It is left to end by itself.
 
 from __future__ import annotations
 
-import json
 import sys
-import urllib.error
-import urllib.request
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from PIL import Image
 from playwright.sync_api import TimeoutError, ViewportSize
 
-from browsers import chromium
+from browsers import Refused, ask, chromium
 from tms_config.config import PROJECT, load_site
 from tms_reason.errors import TmsError
 from tms_ur import address
@@ -48,19 +45,11 @@ class NoPictures(Exception):
     """Why there are none, in one line."""
 
 
-def ask(url: str, path: str, body: Any = None) -> Any:
-    """An answer of the console's API."""
-    data = None if body is None else json.dumps(body).encode()
-    request = urllib.request.Request(url + path, data, {"Content-Type": "application/json"})
-    with urllib.request.urlopen(request, timeout=LIMIT) as answer:
-        return json.load(answer)
-
-
 def finished_run(url: str) -> Any:
     """The newest run that succeeded, on a console that may be pictured."""
     try:
         session = ask(url, "/api/session")
-    except (urllib.error.URLError, OSError, ValueError) as error:  # nobody is there, or something else
+    except (OSError, ValueError) as error:  # nobody is there, or something else
         raise NoPictures(f"no console answers at {url}: `make demo` first") from error
     if session["login"]:
         raise NoPictures(f"{url} has users; only a console without them, as the demo's, is pictured")
@@ -77,10 +66,8 @@ def start(url: str, task: int) -> None:
     """Run a task; returns when it has begun."""
     try:
         ask(url, "/api/runs", {"task_id": task})
-    except urllib.error.HTTPError as error:
-        with error:
-            reason = json.load(error)["text"]["en"]
-        raise NoPictures(f"task {task} does not run: {reason}") from error
+    except Refused as error:
+        raise NoPictures(f"task {task} does not run: {error}") from error
 
 
 def open_page(page: Page, url: str, place: str) -> None:

@@ -74,7 +74,7 @@ def main() -> None:
     except click.exceptions.Abort as error:
         if isinstance(error.__context__, EOFError):  # not Ctrl-C, and not the answer "no"
             text = (
-                "nothing was done, since nobody can answer here: use a terminal (`docker exec -it`), "
+                "nothing was done, since the question cannot be answered here: use a terminal (`docker exec -it`), "
                 "or --yes where the command has it"
             )
             print(f"\ntms: {words.say(text)}", file=sys.stderr)

@@ -38,8 +38,8 @@ KEEP_STAMPS = Remedy("stamps", "", "Play with --keep-stamps")
 # fmt: off
 # runs and questions
 class SchedulerSilent(Reason, text="the scheduler says nothing", action=STATUS): pass
-class NobodyAsks(Reason, text="nobody asks anything", action=QUESTIONS): pass
-class NobodyAsksThis(Reason, text="nobody asks '{question}'", action=QUESTIONS): question: str
+class NobodyAsks(Reason, text="there are no open questions", action=QUESTIONS): pass
+class NobodyAsksThis(Reason, text="there is no question '{question}'", action=QUESTIONS): question: str
 class ManyQuestions(Reason, text="{count} questions are open: {questions}", action=CHOOSE):
     count: int; questions: tuple[str, ...]
 class NoRunActive(Reason, text="no run is active", action=RUNS): pass
@@ -106,7 +106,7 @@ class NoSuchTopic(Reason, text="no {topics} in the recording (there: {others})")
     topics: tuple[str, ...]; others: tuple[str, ...]
 class NobodyListens(Reason, text="the sensing module does not listen to {topics}", action=SAME_SENSING):
     topics: tuple[str, ...]
-class TwoSources(Reason, text="somebody publishes {topics} now", action=OTHER_TOPICS): topics: tuple[str, ...]
+class TwoSources(Reason, text="others publish {topics} now", action=OTHER_TOPICS): topics: tuple[str, ...]
 class StampFixed(Reason, text="the stamp {path} cannot be replaced", action=KEEP_STAMPS): path: str
 class BeginsLate(Reason, text="{file} is {length} long, so nothing begins at {start}"):
     file: str; length: Seconds; start: Seconds
@@ -117,6 +117,6 @@ class NotForDrill(Reason, text="{file}: the drill kills processes on purpose", a
 class DrillRuns(Reason, text="{site}: a drill runs already", action=DRILL_END): site: str
 class NotRunning(Reason, text="{processes} does not run", action=PROCESSES): processes: tuple[str, ...]
 class DoesNotMove(Reason, text="its run does not move it: {why}"): why: Reason
-class NobodySays(Reason, text="nobody says why"): pass
+class NobodySays(Reason, text="no reason was given"): pass
 class StandInsEnded(Reason, text="{processes} has ended", action=SUPERVISORD_LOG): processes: tuple[str, ...]; log: str
 class RunDoesNotEnd(Reason, text="run {run} does not end", action=RETRY): run: str

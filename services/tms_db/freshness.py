@@ -29,7 +29,7 @@ def check(document: Document, max_age: float, now: datetime | None = None) -> No
     if limit <= 0 or document.get("type") == "static":
         return
     where = title(str(document.get("model_name") or ""), str(document.get("record_name")))
-    source = document.get("source") or "nobody known"
+    source = document.get("source") or "?"
     updated_at = document.get("updated_at")
     if not isinstance(updated_at, datetime):
         raise DbError(AgeUnknown(where, limit), "STALE_RECORD")

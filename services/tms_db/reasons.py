@@ -18,7 +18,7 @@ class StaticInUse(Reason, text="record {record} is static and run {run} uses it:
     code="STATIC_RECORD"): record: str; run: str
 class StaticFromSensing(Reason,
     text="record {record} is static, so sensing does not write it: `tms param set --type dynamic`"): record: str
-class AgeUnknown(Reason, text="record {record} may be {limit} old, but nobody knows its age: let sensing write it"):
+class AgeUnknown(Reason, text="record {record} may be {limit} old, but its age is not known: let sensing write it"):
     record: str; limit: Seconds
 class FromFuture(Reason,
     text="record {record}: its time lies in the future (last from {source}): let sensing write it"):
@@ -85,7 +85,7 @@ class NoStateTime(Reason, text="the newest state of a machine has the time '{tim
 class RunMissing(Reason, text="there is no run '{run}'", action=RUNS): run: str
 class NoEventNumber(Reason, text="event {number} of run {run}: needs a number from 1"): number: int; run: str
 class BadRunId(Reason, text="run_id '{run}' {why}"): run: str; why: Reason
-class RivalScheduler(Reason, text="somebody else writes the same journal: only one scheduler may run",
+class RivalScheduler(Reason, text="another process writes the same journal: only one scheduler may run",
     action=PROCESSES): pass
 
 # tasks

@@ -200,7 +200,7 @@ class ClientEndpoints:
         """Take the client's answer to a request."""
         asked = self._asked.get(number)
         if asked is None:
-            raise CommandError(f"a response to request {number}, which nobody waits for (any more)")
+            raise CommandError(f"a response to request {number}, which is not awaited (any more)")
         try:
             asked.response = _read(payload, asked.type.Response, asked.topic)
         finally:

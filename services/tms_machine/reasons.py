@@ -17,7 +17,7 @@ class NoPermit(Reason, text="no motion permit: {why}"): why: Reason
 # a goal that is refused
 class DrivenByHand(Reason, text="{driver} drives {machine} by hand", action=GIVE_BACK, code="TAKEN"):
     driver: Reason; machine: str
-class ManualMode(Reason, text="somebody at the machine's own levers"): pass
+class ManualMode(Reason, text="a person at the machine's own levers"): pass
 class Busy(Reason, text="{process} is still at its last goal"): process: str
 class NoDatabase(Reason, text="{process} did not answer", action=PROCESSES): process: str
 class OneSubtask(Reason, text="{file}: {count} subtasks in it, there must be one"): file: str; count: int
@@ -46,7 +46,7 @@ class MissedWaypoints(Reason, text="{machine} did not reach waypoint {waypoints}
 class Waypoint(Reason, text="{number} ({x}, {y})"): number: int; x: Metres; y: Metres
 class NotReached(Reason, text="{machine} says that it did not reach {angle}", details="{what}"):
     machine: str; angle: Radians; what: str
-class NoJointState(Reason, text="nothing was heard of {joint} of {machine} within {limit}", action=PROCESSES,
+class NoJointState(Reason, text="no state of {joint} of {machine} was received within {limit}", action=PROCESSES,
     details="{topic}"): joint: str; machine: str; limit: Seconds; topic: str
 class MotionNotEnded(Reason, text="{machine} did not end its motion", action=INSPECT): machine: str
 class WaitingFor(Reason, text="waiting for {process}", action=PROCESSES): process: str

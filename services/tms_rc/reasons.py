@@ -114,7 +114,8 @@ class StillActive(Reason, text="{machine} still has an open goal", action=STATUS
 class CausePersists(Reason, text="{why}"): why: Reason
 class StillPressed(Reason, text="the software stop is still pressed", action=RELEASE_STOP,
     details="false on /emergency_signal"): pass
-class NotSeen(Reason, text="nobody sees whether {machine} stands: {why}", action=INSPECT): machine: str; why: Reason
+class NotSeen(Reason, text="it cannot be seen whether {machine} stands: {why}", action=INSPECT):
+    machine: str; why: Reason
 class NotBelieved(Reason, text="what {machine} tells cannot be believed: {why}", action=INSPECT):
     machine: str; why: Reason
 class StillProven(Reason, text="a stop of {machine} is still being proven", action=RETRY): machine: str
@@ -131,7 +132,7 @@ class DriverNotKept(Reason, text="the note of who drives cannot be written: make
 class NoteUnreadable(Reason, text="the note of how the machine was left cannot be read", action=INSPECT): pass
 class Nameless(Reason, text="say who drives"): pass
 class HeldByRun(Reason, text="run {run} holds {machine}", action=CANCEL): run: str; machine: str
-class NotTaken(Reason, text="nobody has taken {machine}", action=STATUS): machine: str
+class NotTaken(Reason, text="{machine} is not taken", action=STATUS): machine: str
 
 # its own life
 class Rival(Reason, text="another gateway for {machine} runs ({where})", action=PROCESSES): machine: str; where: str

@@ -33,7 +33,7 @@ class BadText(Reason, text="{field} {value} {problem}"): field: str; value: str;
 class BadName(Reason, text="{value} {problem}", action=RETYPE): value: str; problem: Reason
 class EmptyName(Reason, text="is empty", action=RETYPE): pass
 class ControlLetter(Reason, text="holds the control character {letter}", action=RETYPE): letter: str
-class HiddenLetter(Reason, text="holds a character that nobody sees", action=RETYPE): pass
+class HiddenLetter(Reason, text="holds an invisible character", action=RETYPE): pass
 class OuterBlank(Reason, text="begins or ends with a blank", action=RETYPE): pass
 class LongName(Reason, text="has more than {limit} letters", action=RETYPE): limit: int
 # fmt: on

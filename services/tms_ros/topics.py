@@ -146,4 +146,4 @@ def _arrival(subscription: Any) -> Arrival[Any] | None:
 
 
 def _unheard(message: Message) -> None:
-    raise AssertionError("messages of a sampled topic are taken, not heard")
+    raise AssertionError("messages of a sampled topic are taken, not received by a callback")

@@ -56,9 +56,9 @@ class NoTrajectory(Reason, text="there is no trajectory inside the limits", deta
 class LimitsLeft(Reason, text="{joint} would leave its limits after {seconds}"): joint: str; seconds: Moments
 
 # the machine
-class JointsUnheard(Reason, text="the joints of {machine} were not heard yet: is the machine on?", action=INSPECT,
+class JointsUnheard(Reason, text="the joints of {machine} were not received yet: is the machine on?", action=INSPECT,
     details="{topic} with {joints}"): machine: str; topic: str; joints: tuple[str, ...]
-class JointsOld(Reason, text="the joints of {machine} were heard {age} ago: is the machine on?", action=INSPECT,
+class JointsOld(Reason, text="the joints of {machine} were received {age} ago: is the machine on?", action=INSPECT,
     details="{topic}"): machine: str; age: Seconds; topic: str
 class GatewayAway(Reason, text="{process} is not there", details="{name}", action=PROCESSES): process: str; name: str
 class MotionLate(Reason, text="{machine} was not done {seconds} after the end of its trajectory"):

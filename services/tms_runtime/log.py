@@ -27,7 +27,7 @@ GOAL_ID = re.compile("[0-9a-f]{32}")
 BREAKS = str.maketrans({"\n": "\\n", "\r": "\\r"})  # an event is one line, also if its text has line breaks
 FIRST = ("process", "machine", "run", "goal", "event")  # keys in this order; the others follow in the caller's order
 WAITING = 10_000  # lines at most that wait for a reader of stdout
-LOST = Counter("tms_log_lines_lost_total", "Log lines that nobody read in time")
+LOST = Counter("tms_log_lines_lost_total", "Log lines that were not read in time")
 
 _listeners: list["LogListener"] = []
 

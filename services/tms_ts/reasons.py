@@ -34,7 +34,7 @@ class NodeFailed(Reason, text="{node}: {why}", details="node {path}"): node: str
 class NoRun(Reason, text="no run '{run}' is active (active: {active})", action=RUNS): run: str; active: tuple[str, ...]
 class NotInterrupted(Reason, text="no run '{run}' is interrupted (interrupted: {runs})", code="NO_INTERRUPTED_RUN",
     action=RUNS): run: str; runs: tuple[str, ...]
-class NoQuestion(Reason, text="nobody asks '{question}' any more: it was answered, timed out or its run has ended"):
+class NoQuestion(Reason, text="the question '{question}' is closed: it was answered, timed out or its run has ended"):
     question: str
 class Preflight(Reason, text="{why}"): why: Reason
 class PreflightMore(Preflight, text="{why} (and {more} more)", action=TASKS): more: int

@@ -51,7 +51,7 @@ class SensingInput(Model):
 class Sensing(Model):
     """The inputs of sensing, and how old this report is."""
 
-    age: float | None = Field(description="s since `tms:sp` was heard, null: never; it tells every second")
+    age: float | None = Field(description="s since `tms:sp` last reported, null: never; it reports every second")
     inputs: list[SensingInput]
 
 

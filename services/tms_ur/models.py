@@ -52,7 +52,7 @@ class Machine(Model):
     place_age: float | None = Field(default=None, description="s since /tf told the place, null: never")
     joints: list[Joint] = []
     joint_age: float | None = Field(default=None, description="s since the last joint states, null: never")
-    age: float | None = Field(default=None, description="s since the gateway was heard, null: never")
+    age: float | None = Field(default=None, description="s since the gateway last reported, null: never")
 
 
 class ActiveRun(Model):
@@ -85,7 +85,7 @@ class Scheduler(Model):
     """How fresh the list of active runs is."""
 
     alive: bool = False
-    age: float | None = Field(default=None, description="s since the scheduler was heard, null: never")
+    age: float | None = Field(default=None, description="s since the scheduler last reported, null: never")
 
 
 class Process(Model):
@@ -105,7 +105,7 @@ class Host(Model):
     """One PC of the site; its agent speaks every 2 s, and at once when something changes."""
 
     name: str
-    age: float = Field(default=0.0, description="s since its agent was heard")
+    age: float = Field(default=0.0, description="s since its agent last reported")
     processes: list[Process] = []
 
 

@@ -38,7 +38,7 @@ def _who_may(file: SiteFile, access: Access) -> str:
         return "users of console.users" + (
             "" if file.console.tls else ", passwords travel in the clear: set console.tls"
         )
-    return "everybody at this PC" if is_loopback(file.bind) else "everybody may look, nobody may command: no users"
+    return "all at this PC" if is_loopback(file.bind) else "all may look, none may command: no users"
 
 
 def _listen(site: Site) -> Listener:

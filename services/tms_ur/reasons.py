@@ -13,7 +13,7 @@ class NobodyLoggedIn(Reason, text="log in first",
 class WrongPassword(Reason, text="the name or the password is wrong"): pass
 class Throttled(Reason, text="too many wrong passwords: try again in {seconds}"): seconds: Seconds
 class ManyLogins(Reason, text="too many passwords are being checked", action=RETRY): pass
-class NoUsers(Reason, text="this site has no users: nobody needs to log in"): pass
+class NoUsers(Reason, text="this site has no users: no login is needed"): pass
 class Role(Reason, text="this needs the role {role}, {person} is {has}"): role: str; person: str; has: str
 class NoAccessControl(Reason, text="others can connect to {bind}, and the console has no users: commands are refused",
     action=EDIT_CONFIG,
@@ -55,7 +55,7 @@ class TooManyConsoles(Reason, text="{most} consoles are connected already: close
 class Starting(Reason, text="task {task} is being started already"): task: int
 class RunNotBegun(Reason, text="the run did not begin within {limit}", action=LOGS): limit: Seconds; process: str
 class StartRefused(Reason, text="the scheduler did not take the task", action=LOGS): process: str
-class MachineUnheard(Reason, text="{process} has not been heard yet", action=PROCESSES): process: str
+class MachineUnheard(Reason, text="{process} has not reported yet", action=PROCESSES): process: str
 class MachineSilent(Reason, text="{process} has said nothing for {age}", action=PROCESSES): process: str; age: Seconds
 
 # the console itself
@@ -73,5 +73,5 @@ class NoUsersFile(Reason, text="{file}: the users file of console.users is not t
     action=CHECK): file: str
 class UnreadableUsers(Reason, text="{file}: the users file of console.users cannot be read ({problem})",
     action=CHECK): file: str; problem: str
-class UsersForAll(Reason, text="{file}: everybody on this PC may read it: `chmod 600 {file}`", action=CHECK): file: str
+class UsersForAll(Reason, text="{file}: all users of this PC may read it: `chmod 600 {file}`", action=CHECK): file: str
 # fmt: on

@@ -2,7 +2,6 @@
 
 import os
 import subprocess
-import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +10,7 @@ import pytest
 import yaml
 from playwright.sync_api import Browser, Page, expect
 
+import programs
 from conftest import ports_of, site_data, tool, wait_until
 from tms_config.config import load_site
 from tms_runtime import environment
@@ -28,12 +28,11 @@ class Server:
     url: str
     env: dict[str, str]
     log: Path
-    process: subprocess.Popen[bytes] | None = None
+    process: programs.Program | None = None
 
     def start(self) -> None:
-        with self.log.open("wb") as out:
-            words = [sys.executable, "-m", "tms_runtime.run", "tms:ur"]
-            process = self.process = subprocess.Popen(words, env=self.env, stdout=out, stderr=out)
+        self.log.unlink(missing_ok=True)  # of the one before it
+        process = self.process = programs.process("tms:ur", self.env, self.log)
         ended = lambda: process.poll() is not None  # noqa: E731
         wait_until(lambda: ended() or "event=started" in self.log.read_text(), LIMIT, "tms:ur is up")
         assert not ended(), self.log.read_text()

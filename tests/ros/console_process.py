@@ -2,8 +2,6 @@
 
 import json
 import os
-import subprocess
-import sys
 import time
 import urllib.error
 import urllib.request
@@ -15,6 +13,7 @@ from typing import Any
 
 import pytest
 
+import programs
 from conftest import ports_of
 from tms_config.config import Site, load_site
 from tms_config.processes import find
@@ -42,7 +41,7 @@ class Console:
     """The process and its address."""
 
     site: Site
-    process: subprocess.Popen[bytes]
+    process: programs.Program
     log: Path
 
     def ask(self, path: str, body: Any = None, **headers: str) -> tuple[int, Any]:
@@ -70,10 +69,8 @@ class Console:
             return False
 
 
-def spawn(site: Site, log: Path) -> subprocess.Popen[bytes]:
-    words = [sys.executable, "-m", "tms_runtime.run", "tms:ur"]
-    with log.open("ab") as file:
-        return subprocess.Popen(words, env={**os.environ, **environment.environment(site)}, stdout=file, stderr=file)
+def spawn(site: Site, log: Path) -> programs.Program:
+    return programs.process("tms:ur", {**os.environ, **environment.environment(site)}, log)
 
 
 @contextmanager

@@ -3,8 +3,6 @@
 import json
 import math
 import os
-import subprocess
-import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -19,6 +17,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
+import programs
 from tms_config.config import load_site
 from tms_ros.client import Call
 from tms_ros.goals import Outcome
@@ -40,7 +39,7 @@ class Rig:
     """One stand-in and a client."""
 
     def __init__(self, ros: Ros, folder: Path, machine: str, site: str, processes: Sequence[str] = ("sim:{}",)) -> None:
-        file = folder / f"{machine}.yaml"
+        file, self._log = folder / f"{machine}.yaml", folder / f"{machine}.log"
         file.write_text(site)
         self.ros, self.machine, self.border = ros, machine, load_site(str(file)).border(machine)
         self.states: list[Any] = []
@@ -55,19 +54,18 @@ class Rig:
         self.velocity = ros.publisher(Twist, f"/{machine}/{self.border.cmd_vel}")
         self.fault = ros.publisher(String, f"/{machine}/sim/fault")
         self._environment = {**os.environ, **environment.environment(load_site(str(file)))}
-        self.running: dict[str, subprocess.Popen[bytes]] = {}
+        self.running: dict[str, programs.Program] = {}
         for name in processes:
             self.start(name.format(machine))
         self.until(lambda: bool(self.states and self.odom and self.frames), "telemetry")
 
     @property
-    def process(self) -> "subprocess.Popen[bytes]":
+    def process(self) -> programs.Program:
         """The stand-in itself."""
         return self.running[f"sim:{self.machine}"]
 
     def start(self, name: str) -> None:
-        words = [sys.executable, "-m", "tms_runtime.run", name]
-        self.running[name] = subprocess.Popen(words, env=self._environment)
+        self.running[name] = programs.process(name, self._environment, self._log)
 
     def _framed(self, message: Any) -> None:
         self.frames.update(

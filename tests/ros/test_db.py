@@ -32,6 +32,7 @@ from tms_msg_db.srv import (
     WriteJournal,
 )
 
+import programs
 from few_processes import LIMIT, Mesh, bare
 from tms_config.config import CONFIGS
 from tms_db import store, store_address
@@ -90,8 +91,7 @@ def backup(mesh: Mesh) -> None:
     """While tms:db runs: it goes on with the restored documents."""
 
     def tms(*words: object) -> dict[str, object]:
-        command = [sys.executable, "-m", "tms_cli.main", "--site", mesh.site.path, "db", *words, "--json"]
-        done = subprocess.run(command, env=mesh.environment, capture_output=True, text=True, timeout=60, check=False)
+        done = programs.tms(("--site", mesh.site.path, "db", *map(str, words), "--json"), mesh.environment, 60)
         assert done.returncode == 0, done.stderr
         return json.loads(done.stdout)
 

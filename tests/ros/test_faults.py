@@ -196,7 +196,7 @@ def test_a_dead_machine_is_not_seen_to_stand(machine: Guarded) -> None:
 
 def test_a_machine_that_nobody_sees_is_not_moved_and_not_latched(machine: Guarded) -> None:
     machine.process.kill()
-    machine.process.wait()
+    machine.process.wait(10)
     machine.until(lambda: not machine.reported[-1].ready, "a gateway that is not ready")
     call = machine.go()
     assert machine.end(call) is Outcome.ABORTED

@@ -5,8 +5,6 @@ import os
 import re
 import socket
 import struct
-import subprocess
-import sys
 import time
 from array import array
 from collections.abc import Callable, Iterator
@@ -22,6 +20,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, Float64, Float64MultiArray
 from std_srvs.srv import SetBool, Trigger
 
+import programs
 from conftest import wait_until
 from tms_config.config import load_site
 from tms_reason.errors import RosError
@@ -57,10 +56,8 @@ class Bridge:
 
     def __init__(self, file: Path, port: int) -> None:
         self.port, self._log = port, file.with_suffix(".log")
-        with self._log.open("w") as log:
-            words = [sys.executable, "-m", "tms_runtime.run", "tms:if"]
-            env = {**os.environ, **environment.environment(load_site(str(file)))}
-            self.process = subprocess.Popen(words, env=env, stdout=log, stderr=log)
+        env = {**os.environ, **environment.environment(load_site(str(file)))}
+        self.process = programs.process("tms:if", env, self._log)
         self.ros = Ros("if_test")
         self.clients: list[Unity] = []
         wait_until(lambda: "event=listening" in self.log, LIMIT, "the bridge listens")
@@ -267,7 +264,7 @@ def test_what_cannot_be_done_is_said_once_and_the_rest_goes_on(bridge: Bridge, u
         "no gazebo_msgs/Nothing here", "__subscribe: topic: ", "a client may not listen there", "is no sensor topic",
         "is geometry_msgs/PoseStamped on this site", "is not among services.if.calls", "there is no command __dance",
         "__subscribe: Invalid JSON", "Not registered to publish topic 'nobody/registered'",
-        "odom: what came is no Odometry", "request 5, which nobody",
+        "odom: what came is no Odometry", "request 5, which is not awaited",
     )  # fmt: skip
     unity.until(lambda: len(unity.errors()) >= len(parts), "all errors")
     said = "\n".join(unity.errors())
@@ -363,12 +360,12 @@ def test_it_listens_on_loopback_and_says_when_it_cannot(bridge: Bridge, tmp_path
     (tmp_path / "site.yaml").write_text(
         SITE.format(domain=domain, port=bridge.port + 1, tcp=bridge.port, machine=MACHINE)
     )
-    words = [sys.executable, "-m", "tms_runtime.run", "tms:if"]
     env = {**os.environ, **environment.environment(load_site(str(tmp_path / "site.yaml")))}
-    done = subprocess.run(words, env=env, capture_output=True, text=True, timeout=60, check=False)
-    assert done.returncode == 1
-    assert f"127.0.0.1:{bridge.port} cannot be listened on" in done.stderr
-    assert "services.if" in done.stderr
+    second = programs.process("tms:if", env, tmp_path / "log.txt")
+    said = second.output(60)
+    assert second.returncode == 1
+    assert f"127.0.0.1:{bridge.port} cannot be listened on" in said
+    assert "services.if" in said
     held = Path("/proc/net/tcp").read_text()
     assert f"0100007F:{bridge.port:04X} 00000000:0000 0A" in held  # and on no other address
     assert f"00000000:{bridge.port:04X}" not in held

@@ -19,6 +19,7 @@ from tms_msg_rc.msg import MachineState, StopReceipt
 from tms_msg_rc.srv import Rearm, StopMachine
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
+import programs
 from conftest import GATEWAYS_ONLY, Mesh, mesh_apart, wait_until
 from tms_config.config import load_site
 from tms_machine.reasons import DrivenByHand
@@ -295,9 +296,6 @@ def test_a_stall_is_told_at_once(machine: Machine) -> None:
 
 
 def test_a_second_gateway_does_not_serve(machine: Machine, tmp_path_factory: pytest.TempPathFactory) -> None:
-    import subprocess
-    import sys
-
     folder = tmp_path_factory.mktemp("second")
     data = yaml.safe_load(machine.mesh.site.read_text())
     data["ports"]["metrics"] += 30
@@ -306,7 +304,7 @@ def test_a_second_gateway_does_not_serve(machine: Machine, tmp_path_factory: pyt
     from tms_config.processes import find
     from tms_runtime import metrics
 
-    second = subprocess.Popen([sys.executable, "-m", "tms_runtime.run", "zx200:rc"], env=env)
+    second = programs.process("zx200:rc", env, folder / "log.txt")
     try:
         machine.until(lambda: isinstance(wire.of(machine.state.reason), Rival), "the first one says so")
         row = find(load_site(str(folder / "site.yaml")), "zx200:rc")

@@ -1,9 +1,8 @@
 """Planner, gateway and stand-in machine as real processes: motion, cancel, refusal, emergency stop."""
 
 import os
-import subprocess
-import sys
 import time
+from collections import deque
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -14,10 +13,12 @@ from geometry_msgs.msg import Point
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool
 from tf2_msgs.msg import TFMessage
+from tms_msg_rc.msg import MachineState
 from tms_msg_rp.action import TmsRpZx200ChangePose, TmsRpZx200ExcavateSimple, TmsRpZx200ReleaseSimple
 from tms_msg_rp.msg import TmsRpErrorCodes, TmsRpZx200PositionWithAngle
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
+import programs
 from conftest import rearm
 from tms_config.config import load_site
 from tms_config.reasons import AboveLimit
@@ -57,7 +58,7 @@ class Rig:
 
     def __init__(self, folder: Path, file: Path) -> None:
         self.environment = {**os.environ, **environment.environment(load_site(str(file)))}
-        self.running: dict[str, subprocess.Popen[bytes]] = {}
+        self.running: dict[str, programs.Program] = {}
         self.log = folder / "log.txt"
         self.ros = Ros("client")
         self.states: list[JointState] = []
@@ -71,10 +72,8 @@ class Rig:
         self.frames |= {(one.header.frame_id, one.child_frame_id) for one in message.transforms}
 
     def start(self, *names: str) -> None:
-        with self.log.open("ab") as log:
-            for name in names:
-                words = [sys.executable, "-m", "tms_runtime.run", name]
-                self.running[name] = subprocess.Popen(words, env=self.environment, stdout=log, stderr=log)
+        for name in names:
+            self.running[name] = programs.process(name, self.environment, self.log)
 
     def end_process(self, name: str, codes: tuple[int, ...] = (0,)) -> None:
         process = self.running.pop(name)
@@ -177,8 +176,11 @@ def test_change_pose_arrives_and_says_how_far_it_is(machine: Rig) -> None:
 
 
 def test_a_machine_that_fell_silent_is_not_moved(machine: Rig) -> None:
+    told = deque[MachineState](maxlen=1)
+    machine.ros.subscribe(MachineState, f"/{MACHINE}/rc/state", told.append, latched=True)
     machine.end_process(f"sim:{MACHINE}")
     received = len(machine.states)
+    machine.until(lambda: bool(told) and not told[0].ready, "a gateway that knows that its machine is gone")
     machine.until(
         lambda: machine.end(machine.change_pose(*START)) is Outcome.ABORTED and machine.reason(JointsOld),
         "refusal for old joint states",

@@ -1,8 +1,6 @@
 """tms:sp and tms:db with a real store: what sensing PCs publish, what is refused, and a database that goes away."""
 
 import json
-import subprocess
-import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -21,6 +19,7 @@ from tms_msg_db.msg import RecordChanges
 from tms_msg_db.srv import GetParameter, ListParameterHistory, SetParameter
 from tms_msg_sp.msg import InputStates
 
+import programs
 from conftest import PROJECT
 from few_processes import Mesh, bare
 from tms_db.reasons import TooOld
@@ -242,11 +241,8 @@ def a_recording_is_played(sensing: Sensing, folder: Path) -> None:
             message.header.stamp = Time(sec=1_700_000_000 + number // 50, nanosec=number % 50 * 20_000_000)
             message.pose.pose.position.x = float(number)
             bag.write(track, 1_700_000_000_000_000_000 + number * 20_000_000, pack(message))
-    words = ["--site", str(sensing.site.path), "sensing", "replay", str(folder / "bag"), "--speed", "20", "--json"]
-    done = subprocess.run(
-        [sys.executable, "-m", "tms_cli.main", *words],
-        env=sensing.environment, capture_output=True, text=True, timeout=60, check=False,
-    )  # fmt: skip
+    words = ("--site", str(sensing.site.path), "sensing", "replay", str(folder / "bag"), "--speed", "20", "--json")
+    done = programs.tms(words, sensing.environment, 60)
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout)["sent"] == {"/track": 500}
     sensing.until(lambda: sensing.values("zx200/track")["x"] == 499.0, "the last position")

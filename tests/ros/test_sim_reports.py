@@ -3,8 +3,6 @@
 import json
 import math
 import os
-import subprocess
-import sys
 import time
 from collections.abc import Callable, Iterator
 from itertools import pairwise
@@ -16,6 +14,7 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64, String
 
+import programs
 from stand_in_rig import client_in
 from tms_config.config import load_site
 from tms_ros.node import Ros
@@ -94,7 +93,7 @@ def stand_in(tmp_path_factory: pytest.TempPathFactory, domain: int, first_port: 
         file.write_text(SITE.format(domain=domain, port=first_port + 76, name=NAME))
         said = Said(ros)
         env = {**os.environ, **environment.environment(load_site(str(file)))}
-        process = subprocess.Popen([sys.executable, "-m", "tms_runtime.run", f"sim:{NAME}"], env=env)
+        process = programs.process(f"sim:{NAME}", env, folder / "log.txt")
         try:
             said.until(lambda: all(said.received.values()), "telemetry")
             yield said

@@ -7,7 +7,7 @@ import threading
 import time
 from array import array
 from collections.abc import Iterator
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from typing import Any
 
 import psutil
@@ -30,6 +30,7 @@ JOINTS = ["swing_joint", "boom_joint", "arm_joint", "bucket_joint", "bucket_end_
 START = [0.0, -0.8029, 1.9897, 0.8029, 0.0]  # rad
 STOPPED = (GoalStatus.STATUS_CANCELING, GoalStatus.STATUS_CANCELED)
 SHORT, MOST = 0.4, 0.45  # s; a test that does not run itself freezes for longer than it wants
+ATTEMPTS = 5
 
 
 class Small:
@@ -144,27 +145,42 @@ def test_a_frozen_gateway_is_stood_in_for_and_replaced(small: Small, capsys: pyt
     wait_until(lambda: small.reported("gateway_back", begin), 60, "its successor is there")
 
 
-@pytest.mark.alone
 def test_a_freeze_of_less_than_half_a_second_stops_nothing(small: Small) -> None:
-    with small.moving(10.0) as (call, statuses):
-        begin, pid = len(small.log()), small.pid()
-        for i in range(6):
-            took = frozen_for_a_moment(pid)
-            if took > MOST:
-                pytest.skip(f"this PC is too busy: a freeze of {took:.2f} s instead of {SHORT} s")
-            threading.Event().wait(0.6 + 0.017 * i)  # at different times between two beats
-        assert call.wait_for(lambda: call.outcome is not None, 60) and call.outcome is Outcome.SUCCEEDED, call.result
-    assert statuses[-1] == GoalStatus.STATUS_SUCCEEDED
-    assert not small.reported("gateway_lost", begin)
+    for _ in range(ATTEMPTS):
+        with small.moving(10.0) as (call, statuses):
+            begin, pid = len(small.log()), small.pid()
+            longest = max(frozen_for_a_moment(pid, 0.6 + 0.017 * i) for i in range(6))
+            assert call.wait_for(lambda: call.outcome is not None, 60)
+        if longest <= MOST:
+            assert call.outcome is Outcome.SUCCEEDED, call.result
+            assert statuses[-1] == GoalStatus.STATUS_SUCCEEDED
+            assert not small.reported("gateway_lost", begin)
+            return
+    pytest.fail(f"this PC is too busy: {ATTEMPTS} times a freeze of more than {MOST} s")
 
 
-def frozen_for_a_moment(pid: int) -> float:
-    """Freeze a process; how long it was [s]."""
-    os.kill(pid, signal.SIGSTOP)
-    begun = time.monotonic()
-    threading.Event().wait(SHORT)
-    os.kill(pid, signal.SIGCONT)
-    return time.monotonic() - begun
+def frozen_for_a_moment(pid: int, then: float) -> float:
+    """Freeze a process; how long it was [s]. Afterwards wait, so that the next one meets another time between beats."""
+    with at_once():
+        os.kill(pid, signal.SIGSTOP)
+        begun = time.monotonic()
+        time.sleep(SHORT)
+        os.kill(pid, signal.SIGCONT)
+        took = time.monotonic() - begun
+    time.sleep(then)
+    return took
+
+
+@contextmanager
+def at_once() -> Iterator[None]:
+    """Inside, this thread runs whenever it wants to, also on a busy PC, if the user may ask for that."""
+    usual = os.sched_getscheduler(0), os.sched_getparam(0)
+    with suppress(PermissionError):
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))
+    try:
+        yield
+    finally:
+        os.sched_setscheduler(0, *usual)
 
 
 def test_an_idle_machine_whose_gateway_is_frozen_gets_no_emg_stop(small: Small) -> None:

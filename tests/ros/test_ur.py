@@ -1,7 +1,6 @@
 """The console process with real ROS peers: what is published is shown, commands arrive, and it ends when told."""
 
 import json
-import signal
 import socket
 import ssl
 import subprocess
@@ -169,7 +168,7 @@ def test_sigterm_ends_it_while_consoles_look(console: Console) -> None:
         text = b""
         while b"event: state" not in text:
             text += reader.recv(65536)
-        console.process.send_signal(signal.SIGTERM)
+        console.process.terminate()
         assert console.process.wait(LIMIT) == 0, console.log.read_text()
     assert "Traceback" not in console.log.read_text()
 

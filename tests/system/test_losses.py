@@ -11,12 +11,12 @@ import pytest
 from test_mesh import CHANGE_POSE, FEW_SWINGS, ONE_MOVE, events, newest, processes, run, stops, swinging
 from test_stop import rearm, state_of
 
-from conftest import PROJECT, Mesh, wait_until
+from conftest import CLI, PROJECT, Mesh, wait_until
 from tms_config.config import Site, load_site
 from tms_host.supervisor import Supervisor
 from tms_ros.node import Ros
 
-pytestmark = [pytest.mark.system, pytest.mark.alone, pytest.mark.timeout(300)]
+pytestmark = [pytest.mark.system, pytest.mark.timeout(300)]
 
 
 @pytest.mark.parametrize("name", ["zx200:rp", "zx200:rc"])
@@ -25,7 +25,7 @@ def test_a_run_goes_on_after_the_loss_of_planner_or_gateway(mesh: Mesh, node: Ro
     old = processes(mesh)[name]["pid"]
     with swinging(mesh, node, FEW_SWINGS) as client:
         os.kill(old, signal.SIGKILL)
-        out, _ = client.communicate(timeout=150)
+        out = client.output(150)
     answer = json.loads(out)
     assert answer["outcome"] == "success", answer
     seen = stops(mesh, answer["run_id"])
@@ -42,7 +42,7 @@ def test_a_run_does_not_need_the_store_and_its_history_comes_later(mesh: Mesh, n
         spool = mesh.state / "ts" / "journal"
         wait_until(lambda: spool.stat().st_size > 0, 60, "events wait on disk")
         mesh.tms("start", "tms:store")
-        out, _ = client.communicate(timeout=150)
+        out = client.output(150)
     assert json.loads(out)["outcome"] == "success"
     wait_until(lambda: spool.stat().st_size == 0, 60, "the events are delivered")
     rows = events(mesh, run_id)
@@ -55,7 +55,7 @@ def test_a_process_that_ends_again_and_again_fails_its_leaf_and_nothing_else(mes
     others = {name: row["pid"] for name, row in processes(mesh).items() if name != CHANGE_POSE}
     with swinging(mesh, node) as client:
         crash_until_fatal(mesh, CHANGE_POSE)
-        out, _ = client.communicate(timeout=150)
+        out = client.output(150)
     answer = json.loads(out)
     assert answer["outcome"] == "failure"
     assert f"process {CHANGE_POSE} is FATAL" in answer["error_msg"]
@@ -93,7 +93,7 @@ def test_a_stop_gets_through_to_a_tree_that_spins(mesh: Mesh, node: Ros) -> None
     run(mesh, ONE_MOVE)
     with swinging(mesh, node, task) as client:
         mesh.tms("stop")
-        out, _ = client.communicate(timeout=60)
+        out = client.output(60)
     answer = json.loads(out)
     assert answer["outcome"] == "cancelled" and "software stop" in answer["error_msg"]
     rearm(mesh)
@@ -108,7 +108,7 @@ def test_without_supervisord_everything_ends_and_the_run_can_be_given_up(mesh: M
         wait_until(lambda: not any(map(psutil.pid_exists, pids)), 30, "the processes have ended")
     mesh.tms("up")
     mesh.wait_ready()
-    wait_until(lambda: state_of(mesh, run_id) == "interrupted", 60, "the run is closed as interrupted")
+    wait_until(lambda: state_of(mesh, run_id) == "interrupted", 60, "the run is closed as interrupted", every=CLI)
     mesh.tms("abandon", run_id)
     if not Path(mesh.state, "rc", "zx200.armed").exists():
         rearm(mesh)

@@ -3,8 +3,6 @@
 import json
 import os
 import signal
-import subprocess
-import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -15,11 +13,12 @@ import psutil
 import pytest
 from tms_msg_rc.msg import MachineState
 
-from conftest import PROJECT, Mesh, wait_until
+from conftest import CLI, Mesh, wait_until
 from lateness import Lateness
+from programs import Program, running_tms
 from tms_ros.node import Ros
 
-pytestmark = [pytest.mark.system, pytest.mark.alone]
+pytestmark = pytest.mark.system
 CHANGE_POSE = "zx200:subtask_zx200_change_pose"
 FEW_SWINGS, ONE_MOVE = "4", "5"  # tasks of the mesh
 
@@ -78,28 +77,23 @@ def test_a_killed_subtask_comes_back_and_the_next_run_works(mesh: Mesh) -> None:
     run(mesh, ONE_MOVE)
     old = processes(mesh)[CHANGE_POSE]["pid"]
     os.kill(old, signal.SIGKILL)
-    wait_until(lambda: processes(mesh)[CHANGE_POSE]["pid"] not in (0, old), 60, "change_pose is back")
+    wait_until(lambda: processes(mesh)[CHANGE_POSE]["pid"] not in (0, old), 60, "change_pose is back", every=CLI)
     assert run(mesh, ONE_MOVE)["outcome"] == "success"
 
 
 @contextmanager
-def swinging(mesh: Mesh, node: Ros, task: str = "3") -> Iterator["subprocess.Popen[str]"]:
+def swinging(mesh: Mesh, node: Ros, task: str = "3") -> Iterator[Program]:
     """A client that runs the swings, or another task; inside, the machine is moving."""
     moving = threading.Event()
     received = node.subscribe(
         MachineState, "/zx200/rc/state", lambda state: state.moving and state.goal and moving.set(), latched=True
     )
-    command = [sys.executable, "-m", "tms_cli.main", "run", task, "--wait", "--json"]
-    with subprocess.Popen(
-        command, env=mesh.env, cwd=PROJECT, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
-    ) as client:
+    with running_tms("run", task, "--wait", "--json", env=mesh.env) as client:
         try:
             if not moving.wait(60):
-                client.kill()
-                pytest.fail(f"the machine does not move: {client.communicate()[0] or 'no answer from the run'}")
+                pytest.fail(f"the machine does not move: {client.written()[0] or 'no answer from the run'}")
             yield client
         finally:
-            client.kill()
             node.node.destroy_subscription(received)
 
 
@@ -116,7 +110,7 @@ def test_cancel_ends_with_the_machine_standing(mesh: Mesh, node: Ros) -> None:
     with swinging(mesh, node) as client:
         run_id = newest(mesh)
         mesh.tms("cancel", run_id)
-        out, _ = client.communicate(timeout=30)
+        out = client.output(30)
     assert json.loads(out)["outcome"] == "cancelled"
     assert client.returncode == 1
     seen = stops(mesh, run_id)
@@ -129,7 +123,7 @@ def test_a_subtask_killed_during_its_goal_comes_back_and_the_run_goes_on(mesh: M
     pid = processes(mesh)[CHANGE_POSE]["pid"]
     with swinging(mesh, node, FEW_SWINGS) as client:
         os.kill(pid, signal.SIGKILL)
-        out, _ = client.communicate(timeout=150)
+        out = client.output(150)
     answer = json.loads(out)
     assert answer["outcome"] == "success"
     seen = stops(mesh, answer["run_id"])

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from diagnostic_msgs.msg import DiagnosticArray
 
-from conftest import PROJECT, Mesh, ports_of, wait_until
+from conftest import CLI, PROJECT, Mesh, ports_of, wait_until
 from prometheus_server import get, processes_up, prometheus, query
 from tms_config.clock import utc_now
 from tms_config.config import load_site
@@ -89,7 +89,7 @@ def test_health_and_readiness_are_two_things(mesh: Mesh) -> None:
         assert get(f"http://{address}/healthz") == "ok\n"
     finally:
         mesh.tms("start", "tms:db")
-        wait_until(lambda: mesh.tms("status", expect=None).returncode == 0, 30, "all is well again")
+        wait_until(lambda: mesh.tms("status", expect=None).returncode == 0, 30, "all is well again", every=CLI)
 
 
 def test_the_log_of_a_goal_names_process_machine_run_and_goal(mesh: Mesh) -> None:

@@ -5,8 +5,6 @@ A mesh on a disk of its own; needs root. `make nightly` cuts the power 30 times 
 
 import json
 import os
-import subprocess
-import sys
 import threading
 import time
 from collections import deque
@@ -22,12 +20,13 @@ from test_stop import rearm, state_of
 from tms_msg_rc.msg import MachineState
 from tms_msg_ts.srv import CancelRun
 
-from conftest import PROJECT, Mesh, claimed_domain, node_in, ports_of, running, site_data, wait_until
+from conftest import CLI, PROJECT, Mesh, claimed_domain, node_in, ports_of, running, site_data, wait_until
 from power_cut import Disk, family, own_disk
+from programs import Program, running_tms
 from tms_ros.node import Ros
 from words import words
 
-pytestmark = [pytest.mark.system, pytest.mark.alone]
+pytestmark = pytest.mark.system
 CUTS = int(os.environ.get("TMS_POWER_CUTS", "3"))
 STALL = 2.0  # s
 STANDING = 1.5  # s; between two swings it stands for a moment only
@@ -52,7 +51,7 @@ def mesh(disk: Disk) -> Iterator[Mesh]:
         os.sync()
         with running(Mesh(site, state)) as made:
             made.tms("param", "load", "configs/parameters/zx200.yaml")
-            made.tms("task", "add", "configs/tasks/one_loading_cycle.xml")
+            made.tms("task", "add", str(PROJECT / "tests" / "data" / "one_move.xml"))
             made.tms("param", "load", str(PROJECT / "tests" / "data" / "swings.yaml"))
             swings = (PROJECT / "tests" / "data" / "swings.xml").read_text()
             endless = disk.folder.parent / "endless.xml"  # also on a busy PC, where every look takes a second
@@ -69,20 +68,14 @@ def node(mesh: Mesh) -> Iterator[Ros]:
 
 
 @contextmanager
-def swinging(mesh: Mesh, leaves: int = 2) -> Iterator["subprocess.Popen[str]"]:
+def swinging(mesh: Mesh, leaves: int = 2) -> Iterator[Program]:
     """A client that runs the swings; inside, so many of them have begun."""
     before = newest(mesh)
-    words = [sys.executable, "-m", "tms_cli.main", "run", "2", "--wait", "--json"]
-    with subprocess.Popen(
-        words, env=mesh.env, cwd=PROJECT, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
-    ) as client:
-        try:
-            wait_until(lambda: newest(mesh) != before, 60, "the run has begun")
-            run_id = newest(mesh)
-            wait_until(lambda: goals(mesh, run_id) >= leaves, 60, "the machine moves")
-            yield client
-        finally:
-            client.kill()
+    with running_tms("run", "2", "--wait", "--json", env=mesh.env) as client:
+        wait_until(lambda: newest(mesh) != before, 60, "the run has begun", every=CLI)
+        run_id = newest(mesh)
+        wait_until(lambda: goals(mesh, run_id) >= leaves, 60, "the machine moves", every=CLI)
+        yield client
 
 
 def goals(mesh: Mesh, run_id: str) -> int:
@@ -145,7 +138,7 @@ def cut(mesh: Mesh, disk: Disk, leaves: int) -> tuple[History, list[dict[str, An
 
 
 def closed_as_told(mesh: Mesh, before: History, reported: list[dict[str, Any]], run_id: str) -> None:
-    wait_until(lambda: state_of(mesh, run_id) == "interrupted", 60, "the run is closed as interrupted")
+    wait_until(lambda: state_of(mesh, run_id) == "interrupted", 60, "the run is closed as interrupted", every=CLI)
     after = history(mesh)
     for known, (row, rows) in before.items():
         assert after[known][1][: len(rows)] == rows
@@ -184,9 +177,9 @@ def test_a_disk_that_stalls_stops_nothing_and_loses_nothing(mesh: Mesh, disk: Di
             with disk.stalled():
                 time.sleep(STALL)  # the fault itself
         known = goals(mesh, run_id)
-        wait_until(lambda: goals(mesh, run_id) > known, 60, "the run goes on")
+        wait_until(lambda: goals(mesh, run_id) > known, 60, "the run goes on", every=CLI)
         mesh.tms("cancel", run_id)
-        out, _ = client.communicate(timeout=60)
+        out = client.output(60)
     assert json.loads(out)["outcome"] == "cancelled"
     rows = events(mesh, run_id)
     assert [row["number"] for row in rows] == list(range(1, len(rows) + 1))
@@ -215,7 +208,7 @@ def test_a_run_is_stopped_while_the_disk_stalls(mesh: Mesh, disk: Disk, node: Ro
                 wait_until(stands, 20, "the machine stands")
         finally:
             node.node.destroy_subscription(listening)
-        out, _ = client.communicate(timeout=60)
+        out = client.output(60)
     assert json.loads(out)["outcome"] == "cancelled"
     stops = [row["text"] for row in events(mesh, run_id) if row["kind"] == "stop"]
     assert stops and all(text.startswith("zx200 stood after") for text in stops)

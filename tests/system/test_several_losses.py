@@ -13,10 +13,10 @@ from action_msgs.msg import GoalStatus, GoalStatusArray
 from std_msgs.msg import Bool
 from test_mesh import processes, swinging
 
-from conftest import PROJECT, Mesh, mesh_apart, running, wait_until
+from conftest import CLI, PROJECT, Mesh, mesh_apart, running, wait_until
 from tms_ros.node import Ros
 
-pytestmark = [pytest.mark.system, pytest.mark.alone, pytest.mark.timeout(300)]
+pytestmark = [pytest.mark.system, pytest.mark.timeout(300)]
 STATUS = "/zx200/upper_arm_controller/follow_joint_trajectory/_action/status"
 OPEN = (GoalStatus.STATUS_ACCEPTED, GoalStatus.STATUS_EXECUTING)
 STOPPED = (GoalStatus.STATUS_CANCELING, GoalStatus.STATUS_CANCELED)
@@ -140,7 +140,9 @@ def test_a_machine_whose_processes_are_frozen_is_stopped(
         stopped_after(controller, goal, capsys)
         assert psutil.Process(gateway).status() == psutil.STATUS_STOPPED  # so it was not the gateway itself
         wait_until(lambda: controller.emergency, 30, "emg_stop")
-        wait_until(lambda: processes(slow[0])["zx200:rc"]["pid"] not in (0, gateway), 60, "the gateway is replaced")
+        wait_until(
+            lambda: processes(slow[0])["zx200:rc"]["pid"] not in (0, gateway), 60, "the gateway is replaced", every=CLI
+        )
 
 
 @pytest.mark.parametrize("names", [["supervisord"], ["supervisord", "tms:ts"]], ids=lambda names: "+".join(names))

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from conftest import Mesh, wait_until
+from conftest import CLI, Mesh, wait_until
 
 pytestmark = pytest.mark.system
 FIELD = Path(__file__).resolve().parents[1] / "data" / "field_tasks"
@@ -44,7 +44,7 @@ def test_writer_and_reader_of_the_field_as_two_runs(mesh: Mesh) -> None:
         for run in runs:
             mesh.tms("cancel", run, expect=None)
     for run in runs:
-        wait_until(lambda: state_of(mesh, run) == "cancelled", 60, f"the end of {run}")  # noqa: B023
+        wait_until(lambda: state_of(mesh, run) == "cancelled", 60, f"the end of {run}", every=CLI)  # noqa: B023
 
 
 def test_a_lock_is_taken_once(mesh: Mesh, tmp_path: Path) -> None:

@@ -17,7 +17,7 @@ from tms_msg_rc.msg import MachineState
 from tms_msg_ts.msg import RunStates
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from conftest import Mesh, wait_until
+from conftest import CLI, Mesh, wait_until
 from tms_machine.reasons import MachineLatched, NoPermit
 from tms_rc.reasons import HeldByAnother, OldRun
 from tms_reason import wire
@@ -25,7 +25,7 @@ from tms_ros.goals import Outcome
 from tms_ros.node import Ros
 from tms_runtime.fence import Owner
 
-pytestmark = [pytest.mark.system, pytest.mark.alone]
+pytestmark = pytest.mark.system
 JOINTS = ["swing_joint", "boom_joint", "arm_joint", "bucket_joint", "bucket_end_joint"]
 
 
@@ -43,13 +43,15 @@ def ask_to_move(node: Ros, goal_id: bytes | None = None) -> Any:
 
 
 def rearm(mesh: Mesh) -> None:
-    wait_until(lambda: mesh.tms("rearm", "zx200", "--yes", expect=None).returncode == 0, 30, "zx200 can be re-armed")
+    wait_until(
+        lambda: mesh.tms("rearm", "zx200", "--yes", expect=None).returncode == 0, 30, "zx200 can be re-armed", every=CLI
+    )
 
 
 def test_after_a_software_stop_nothing_moves_until_somebody_rearms(mesh: Mesh, node: Ros) -> None:
     with swinging(mesh, node) as client:
         receipts = json.loads(mesh.tms("stop", "--json").stdout)
-        out, _ = client.communicate(timeout=60)
+        out = client.output(60)
     assert [(row["machine"], row["confirmed"], row["latched"]) for row in receipts] == [("zx200", True, True)]
     answer = json.loads(out)
     assert answer["outcome"] == "cancelled"
@@ -127,7 +129,7 @@ def test_a_killed_scheduler_leaves_a_run_that_can_be_resumed(mesh: Mesh, node: R
     with swinging(mesh, node, FEW_SWINGS):
         run_id = newest(mesh)
         os.kill(pid, signal.SIGKILL)
-        wait_until(lambda: state_of(mesh, run_id) == "interrupted", 40, "the run is closed as interrupted")
+        wait_until(lambda: state_of(mesh, run_id) == "interrupted", 40, "the run is closed as interrupted", every=CLI)
     seen = stops(mesh, run_id)
     assert seen and all(text.startswith("zx200 stood after") for text in seen)
     rearm(mesh)

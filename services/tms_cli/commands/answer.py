@@ -47,7 +47,7 @@ def command(reply: str | None, question: str | None, as_json: bool) -> None:
             until = say(", until {time}", time=live.clock_time(one.until)) if one.until.sec else ""
             click.echo(f"{one.id}  {one.title}: {one.text}{until}")
         if not asked:
-            click.echo(say("nobody asks anything"), err=True)
+            click.echo(say("there are no open questions"), err=True)
 
 
 def open_questions(node: "Ros") -> "list[Question]":

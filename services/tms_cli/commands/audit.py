@@ -23,7 +23,7 @@ MAX_ENTRIES = 10_000
 
 @click.group(cls=Group)
 def command() -> None:
-    """Show who commanded what from the console and its API, and check that nobody has changed it since.
+    """Show who commanded what from the console and its API, and check that it was not changed since.
 
     \b
     Examples:
@@ -60,7 +60,7 @@ def verify(as_json: bool) -> None:
     """Check the chain of the entries in the database; exit code 1 if one is missing, changed or out of order.
 
     Each entry carries the hash of the one before. On the PC of the console the end is compared, too, with what the
-    console remembers; elsewhere nobody would see that the last entries are missing.
+    console remembers; elsewhere it cannot be seen that the last entries are missing.
 
     \b
     Examples:

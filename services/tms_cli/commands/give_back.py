@@ -17,7 +17,7 @@ PROOF_LIMIT = 20.0  # s for the gateway to prove that it stands
 @session.json_option
 @click.pass_context
 def command(ctx: click.Context, machine: str, who: str, as_json: bool) -> None:
-    """Give a machine back that somebody has taken with `tms take`. Exit code 0 only when it was seen to stand.
+    """Give a machine back that was taken with `tms take`. Exit code 0 only when it was seen to stand.
 
     \b
     Example:

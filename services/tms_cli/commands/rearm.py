@@ -41,9 +41,9 @@ def never_armed(state: "MachineState | None") -> bool:
 @click.option("--yes", is_flag=True, help="Do not ask; for scripts that have made sure that nobody is in danger.")
 @session.json_option
 def command(machines: tuple[str, ...], every: bool, yes: bool, as_json: bool) -> None:
-    """Arm machines again after a stop, or after the first start: nobody knows then how a machine was left.
+    """Arm machines again after a stop, or after the first start, when it is not known how a machine was left.
 
-    Shows why each was stopped and asks. Refused while it has an open goal, still moves, is not heard, or while the
+    Shows why each was stopped and asks. Refused while it has an open goal, still moves, does not report, or while the
     software stop is pressed.
 
     \b

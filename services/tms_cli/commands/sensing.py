@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 @session.json_option
 @click.pass_context
 def command(ctx: click.Context, as_json: bool) -> None:
-    """Show the sensing inputs: what is heard, at which rate, and what was refused and why.
+    """Show the sensing inputs: what is received, at which rate, and what was refused and why.
 
     An input is waiting (nothing came yet), alive, silent (10 periods of its declared rate without a message) or
     clock (the clock of its PC is off). configs/sensing.yaml declares the inputs.

@@ -15,8 +15,8 @@ from tms_cli.words import say
 def command(machine: str, who: str, as_json: bool) -> None:
     """Take a machine to drive it by hand, with its levers or a remote control.
 
-    A stopped machine that moves without a goal is stopped again and again, by all means there are; while somebody has
-    taken it, it is only watched. Goals are refused meanwhile. `tms give-back` ends it.
+    A stopped machine that moves without a goal is stopped again and again, by all means there are; while it is taken,
+    it is only watched. Goals are refused meanwhile. `tms give-back` ends it.
 
     \b
     Example:

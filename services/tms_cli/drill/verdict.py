@@ -130,7 +130,7 @@ def void(facts: TrialFacts) -> str:
     moments = [facts.begun, *reported[: 1 + bisect_right(reported, facts.stop + facts.ends + EXTRA)]]
     gap = max((late - early for early, late in pairwise(moments)), default=math.inf)
     if gap > BLIND:
-        return f"its true motion was not heard for {gap:.1f} s"
+        return f"its true motion was not received for {gap:.1f} s"
     if _stood(facts) and (facts.trial.fault == NONE or not record.receipts):  # the fault itself may have stopped it
         return "it was stopped before the hit"
     due = any(
@@ -169,7 +169,7 @@ def lie(receipt: Receipt, record: TrialRecording, watched: float) -> str:
     if late <= AFTER:
         return f"moved {late:+.2f} s after it was said to stand: {moving[0].share:.1f} x limit"
     over = min(fresh, record.truth[-1].at) - noticed > UNPROVEN
-    return f"left stand-still {late:.2f} s after the receipt, and nobody told it" if over else ""
+    return f"left stand-still {late:.2f} s after the receipt, and it was not reported" if over else ""
 
 
 def _reports(moved: float, noticed: float, record: TrialRecording) -> bool:

@@ -17,7 +17,7 @@ BUILTIN_MODULES = (
     "control", "reactive", "parallel", "branch", "decorator", "loops", "timers", "blackboard_nodes", "subtree",
 )  # fmt: skip
 _recorded: dict[str, type[Node]] = {}
-_stand_ins: list[type[Node]] = []
+_generic: list[type[Node]] = []
 
 
 def _prepare(cls: type[Node]) -> None:
@@ -37,19 +37,19 @@ def node(cls: NodeClass) -> NodeClass:
     return cls
 
 
-def stand_in(cls: NodeClass) -> NodeClass:
-    """Let a class stand in for an unknown ID whose entry in TreeNodesModel has the same ports."""
+def generic(cls: NodeClass) -> NodeClass:
+    """Let a class run an unknown ID whose entry in TreeNodesModel has the same ports."""
     _prepare(cls)
-    _stand_ins.append(cls)
+    _generic.append(cls)
     return cls
 
 
 class Registry(Mapping[str, type[Node]]):
     """Node classes by XML ID."""
 
-    def __init__(self, classes: Mapping[str, type[Node]], stand_ins: tuple[type[Node], ...] = ()) -> None:
+    def __init__(self, classes: Mapping[str, type[Node]], generic: tuple[type[Node], ...] = ()) -> None:
         self._classes = dict(classes)
-        self._stand_ins = stand_ins
+        self._generic = generic
 
     def __getitem__(self, name: str) -> type[Node]:
         return self._classes[name]
@@ -64,11 +64,11 @@ class Registry(Mapping[str, type[Node]]):
         """A copy with further classes; this registry stays as it is."""
         for cls in classes:
             _prepare(cls)
-        return Registry({**self._classes, **{cls.__name__: cls for cls in classes}}, self._stand_ins)
+        return Registry({**self._classes, **{cls.__name__: cls for cls in classes}}, self._generic)
 
-    def stand_in_for(self, name: str, ports: frozenset[str]) -> type[Node] | None:
-        """A class for an ID that only the document's TreeNodesModel has, if its ports fit a class that may stand in."""
-        for base in self._stand_ins:
+    def generic_for(self, name: str, ports: frozenset[str]) -> type[Node] | None:
+        """A class for an ID that only the document's TreeNodesModel has, if its ports fit a generic class."""
+        for base in self._generic:
             if set(base.ports) <= ports:
                 cls: type[Node] = type(name, (base,), {"__slots__": (), "__doc__": base.__doc__})
                 more = {port: Port(port, Direction.INPUT, str) for port in ports - set(base.ports)}
@@ -84,4 +84,4 @@ def registry() -> Registry:
     package = importlib.import_module("tms_ts.nodes")
     for module in pkgutil.iter_modules(package.__path__):
         importlib.import_module(f"tms_ts.nodes.{module.name}")
-    return Registry(_recorded, tuple(_stand_ins))
+    return Registry(_recorded, tuple(_generic))

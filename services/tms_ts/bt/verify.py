@@ -94,7 +94,7 @@ class Rules:
         cls = self.registry.get(name)
         if cls is None and name in self.document.models:
             if name not in self.adopted:
-                self.adopted[name] = self.registry.stand_in_for(name, self.document.models[name])
+                self.adopted[name] = self.registry.generic_for(name, self.document.models[name])
             cls = self.adopted[name]
         return None if cls is not None and cls.kind is NodeType.SUBTREE else cls
 

@@ -15,7 +15,7 @@ from tms_ts.bt.leaf import PlainAction
 from tms_ts.bt.node import AtOnce
 from tms_ts.bt.ports import In
 from tms_ts.bt.reasons import NoMachines, NoRosName, Sending, Working
-from tms_ts.bt.registry import stand_in
+from tms_ts.bt.registry import generic
 from tms_ts.bt.status import FAILURE, RUNNING, SUCCESS, Status
 from tms_ts.world import Goal, GoalState
 
@@ -23,7 +23,7 @@ from tms_ts.world import Goal, GoalState
 ROS_NAME = re.compile(r"(?!.{201})[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*", re.ASCII)
 
 
-@stand_in
+@generic
 class LeafNode(PlainAction):
     """Let a machine do a subtask with the parameters of a record.
 

@@ -194,9 +194,9 @@ def test_a_stop_that_was_under_way_at_the_hit_proves_nothing() -> None:
 
 def test_a_truth_with_a_gap_proves_nothing_but_a_lie() -> None:
     found = facts([one for one in truth((0.0, 9.0)) if not 3.0 < one.at - HIT < 5.0])
-    assert judge(found).void == "its true motion was not heard for 2.0 s" and not judge(found).ran_on
+    assert judge(found).void == "its true motion was not received for 2.0 s" and not judge(found).ran_on
     found.record.truth[:] = [one for one in truth((0.0, 3.0)) if not 3.0 < one.at - HIT < 9.0]  # to beyond what it may
-    assert judge(found).void == "its true motion was not heard for 6.0 s" and not judge(found).ran_on
+    assert judge(found).void == "its true motion was not received for 6.0 s" and not judge(found).ran_on
     found.record.truth[:] = [one for one in truth((0.0, 9.0)) if not 3.0 < one.at - HIT < 5.0]
     found.record.receipts.append(receipt())
     assert judge(found).false_receipt and not judge(found).void

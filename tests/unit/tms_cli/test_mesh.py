@@ -91,7 +91,7 @@ def test_a_console_without_its_certificate_is_told_before_anything_starts(tmp_pa
 
 @pytest.mark.parametrize(
     ("text", "reported"),
-    [(None, "is not there: `tms user add"), ("users: {}\n", "everybody on this PC may read it"), ("user: 1\n", "user")],
+    [(None, "is not there: `tms user add"), ("users: {}\n", "all users of this PC may read it"), ("user: 1\n", "user")],
 )
 def test_users_that_the_console_cannot_take_are_told_before_anything_starts(
     tmp_path: Path, tms: Any, text: str | None, reported: str

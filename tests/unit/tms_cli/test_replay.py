@@ -266,7 +266,7 @@ def test_wishes_that_cannot_be_met(replay: Callable[..., Result], ros: FakeRos, 
     assert "no /other in the recording (there: /odometry)" in str(replay(bag, "--topics", "other").exception)
     assert "is 0.9 s long, so nothing begins at 60.0 s" in str(replay(bag, "--start", "60").exception)
     ros.others = 2
-    assert "somebody publishes /odometry now" in str(replay(bag).exception)
+    assert "others publish /odometry now" in str(replay(bag).exception)
     for words in (("--speed", "0"), ("--loop", "0"), ("--duration", "-1"), ("--start", "-1")):
         assert replay(bag, *words).exit_code == 2
 

@@ -27,7 +27,7 @@ KEPT = {  # what is stored, what is found in a task (also in JSON), and parts of
     "software stop by an operator", "One loading cycle of the zx200",
     "it cannot be stored as a task: ", "this is no task: ", "its outermost element is <",
     "it has a TreeNodesModel only (a palette for Groot)", "there is no <BehaviorTree> in it",
-    "in it or its folders", "in it (--recursive looks into its folders, too)", "nobody asks '",
+    "in it or its folders", "in it (--recursive looks into its folders, too)", "there is no question '",
     "has said nothing for ", "was restarted and does not know the run any more",
     "tms:sp says nothing: is `sp` under services: of the site file, and does `tms ps` show it running?",
     "metrics of ", "embedded store", "another program",
