@@ -9,9 +9,11 @@ from pathlib import Path
 
 import pytest
 from xdist.scheduler import LoadFileScheduling
+from xdist.workermanage import WorkerController
 
 TESTS = Path(__file__).resolve().parent
-PROCESSES = ("browser", "docker", "ros", "system")  # folders of tests that start processes of the mesh
+MESH = "the mesh of the test run"
+PROCESSES = ("tests/browser/", "tests/docker/", "tests/ros/", "tests/system/")
 LONGEST = ("test_several_losses", "test_power_cut", "test_receipts", "test_official_tasks", "test_every_subtask",
            "test_sensing")  # fmt: skip
 USES_MESH = re.compile(r"^def test_\w+\([^)]*\b(mesh|idle): Mesh", re.MULTILINE)
@@ -19,11 +21,26 @@ OWN_MESH = re.compile(r"^def mesh\(", re.MULTILINE)
 
 
 class OneMesh(LoadFileScheduling):
-    """Hands out file by file, but all files that use the mesh of the test run at once."""
+    """Hands out file by file, but all files that use the mesh of the test run at once.
+
+    The last worker begins with tests of pure logic: they use the processors while the others wait for their processes.
+    """
 
     def _split_scope(self, nodeid: str) -> str:
         file: str = super()._split_scope(nodeid)
-        return "mesh" if uses_mesh(TESTS.parent / file) else file
+        return MESH if uses_mesh(TESTS.parent / file) else file
+
+    def _assign_work_unit(self, node: WorkerController) -> None:
+        pure = node is self.nodes[-1] and len(self.nodes) > 1
+        fitting = (unit for unit in self.workqueue if starts_processes(unit) != pure)
+        if (unit := next(fitting, None)) is not None:
+            self.workqueue.move_to_end(unit, last=False)
+        super()._assign_work_unit(node)
+
+
+def starts_processes(unit: str) -> bool:
+    """Whether tests of a file, named from the project's folder, start processes of a mesh."""
+    return unit == MESH or unit.startswith(PROCESSES)
 
 
 @cache
@@ -34,9 +51,9 @@ def uses_mesh(file: Path) -> bool:
 
 
 def turn(item: pytest.Item) -> int:
-    """When a test comes: what lasts longest first. Tests of pure logic fill the processors while others wait."""
+    """When a test comes: what lasts longest first, tests of pure logic last."""
     if uses_mesh(item.path):
         return 0
     if item.path.stem in LONGEST:
         return 1 + LONGEST.index(item.path.stem)
-    return 10 if item.path.relative_to(TESTS).parts[0] in PROCESSES else 11
+    return 10 if starts_processes(item.nodeid) else 11
