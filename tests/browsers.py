@@ -18,7 +18,7 @@ FLAGS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking"]
 
 
 class Refused(Exception):
-    """The API refuses a call: which and why."""
+    """Why the API refuses a call."""
 
 
 @contextmanager
@@ -41,6 +41,6 @@ def ask(address: str, path: str, body: Any = None) -> Any:
     except urllib.error.HTTPError as error:
         with error:
             found = json.load(error)
-        if found["code"] != "NO_RUN":
-            raise Refused(f"{path}: {found['text']['en']}") from error
+        if found.get("code") != "NO_RUN":  # a program that is no console has no code
+            raise Refused(found.get("text", {}).get("en", found)) from error
         return None

@@ -49,7 +49,7 @@ def finished_run(url: str) -> Any:
     """The newest run that succeeded, on a console that may be pictured."""
     try:
         session = ask(url, "/api/session")
-    except (OSError, ValueError) as error:  # nobody is there, or something else
+    except (Refused, OSError, ValueError) as error:  # nobody is there, or something else
         raise NoPictures(f"no console answers at {url}: `make demo` first") from error
     if session["login"]:
         raise NoPictures(f"{url} has users; only a console without them, as the demo's, is pictured")

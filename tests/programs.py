@@ -21,7 +21,7 @@ FORKS.set_forkserver_preload(["loaded", "forked"])
 
 
 class Program:
-    """A running program of ours, used as one of `subprocess`; what it writes is appended to files."""
+    """A running program of ours; what it writes is appended to files."""
 
     def __init__(
         self, become: Callable[..., None], words: tuple[str, ...], env: dict[str, str], out: Path, err: Path
@@ -45,9 +45,7 @@ class Program:
 
     @property
     def returncode(self) -> int | None:
-        return self._process.exitcode
-
-    def poll(self) -> int | None:
+        """Its exit code by now, None while it runs."""
         return self._process.exitcode
 
     def wait(self, limit: float) -> int:

@@ -33,7 +33,7 @@ class Server:
     def start(self) -> None:
         self.log.unlink(missing_ok=True)  # of the one before it
         process = self.process = programs.process("tms:ur", self.env, self.log)
-        ended = lambda: process.poll() is not None  # noqa: E731
+        ended = lambda: process.returncode is not None  # noqa: E731
         wait_until(lambda: ended() or "event=started" in self.log.read_text(), LIMIT, "tms:ur is up")
         assert not ended(), self.log.read_text()
         assert "users of console.users" in self.log.read_text()

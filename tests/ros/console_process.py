@@ -61,7 +61,7 @@ class Console:
         return answer
 
     def ready(self) -> bool:
-        assert self.process.poll() is None, self.log.read_text()
+        assert self.process.returncode is None, self.log.read_text()
         try:
             with urllib.request.urlopen(f"http://127.0.0.1:{find(self.site, 'tms:ur').port}/readyz", timeout=5):
                 return True

@@ -75,7 +75,7 @@ class Rig:
     def until(self, there: Callable[[], bool], what: str) -> None:
         deadline = time.monotonic() + LIMIT
         while not there():
-            assert time.monotonic() < deadline, f"no {what} within {LIMIT} s"
+            assert time.monotonic() < deadline, f"no {what} within {LIMIT} s\n{self._log.read_text()}"
             time.sleep(0.02)
 
     def send(self, action: Any, field: str, **goal: Any) -> Call:

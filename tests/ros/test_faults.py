@@ -182,7 +182,7 @@ def test_missed_waypoints_reach_whoever_asked(machine: Guarded) -> None:
 def test_a_dead_machine_is_not_seen_to_stand(machine: Guarded) -> None:
     call = machine.driving()
     machine.be(die=0.1)
-    machine.until(lambda: machine.process.poll() == 1, "death")
+    machine.until(lambda: machine.process.returncode == 1, "death")
     assert machine.end(call) is Outcome.ABORTED
     machine.until(lambda: machine.receipts and not machine.receipts[-1].confirmed, "an unconfirmed stop")
     machine.until(machine.latched, "a latch")

@@ -157,6 +157,6 @@ def test_it_dies_on_request(client: Ros, tmp_path: Path, domain: int, first_port
         rig.until(lambda: rig.ros.node.count_subscribers("/ic120_9/sim/fault") > 0, "subscription")
         rig.be(die=1.0)
         rig.send(SetDumpAngle, "set_dump_angle", target_angle=-1.0)
-        rig.until(lambda: rig.process.poll() == 1, "death")
+        rig.until(lambda: rig.process.returncode == 1, "death")
     finally:
         rig.close()
