@@ -8,8 +8,8 @@ from pathlib import Path
 from lxml import etree
 
 from tms_db.reasons import FileNotUtf8, NoTreeInRoot, OuterElement, TaskFileLarge, UnreadableFile
+from tms_reason import xml_text
 from tms_reason.errors import TaskError
-from tms_runtime import xml_text
 
 NO_DESCRIPTION = "No Commented."  # the paper's word; the C++ system's readers show it
 

@@ -1,1 +1,1 @@
-"""Machines: border, leases, permit, geometry, and the interface for authors of subtasks."""
+"""Machines: border, permit, geometry, and the interface for authors of subtasks."""

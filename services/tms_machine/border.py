@@ -1,6 +1,8 @@
 """The machine's own border: its motion actions, and the commands that stop it. No call here waits."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from action_msgs.srv import CancelGoal
@@ -10,11 +12,13 @@ from geometry_msgs.msg import Twist
 from nav2_msgs.action import FollowWaypoints, NavigateThroughPoses, NavigateToPose
 from std_msgs.msg import Bool
 
+from tms_config.clock import monotonic
 from tms_config.models import Border
 from tms_ros.interface_types import ActionType
 from tms_ros.node import Ros
 
 STOP_PROVEN = 10.0  # s within which a gateway sees that a machine stands, or reports that it does not
+CANCEL_LIMIT = 3.0  # s after which a server without an answer has lost a cancel
 RECEIPT_LIMIT = STOP_PROVEN + 3.0  # s without a receipt of a stop after which a gateway counts as silent
 
 
@@ -59,15 +63,31 @@ class Controls:
         self._cancels = [f"/{machine}/{getattr(border, m.field)}/_action/cancel_goal" for m in motions(border)]
         for service in self._cancels:
             ros.prepare(CancelGoal, service)
+        # By service: when the last cancel was sent, and how to forget it. Changed on the executor thread only.
+        self._unanswered: dict[str, tuple[float, Callable[[], None]]] = {}
         self._cmd_vel = ros.publisher(Twist, f"/{machine}/{border.cmd_vel}", 1) if border.cmd_vel else None
         emg_stop = f"/{machine}/{border.emg_stop}"
         self._emg_stop = ros.publisher(Bool, emg_stop, 1, latched=keeps_emergency) if border.emg_stop else None
 
     def cancel_everything(self) -> None:
         """Cancel the goals of all clients, by requests with zero id."""
+        self._ros.on_executor(self._cancel)
+
+    def _cancel(self) -> None:
         for service in self._cancels:
-            if self._ros.has_service(CancelGoal, service):
-                self._ros.call_unanswered(CancelGoal, service, CancelGoal.Request())
+            if service in self._unanswered:  # servers take requests in order: the next answer stands for both
+                self._unanswered.pop(service)[1]()
+            taken = partial(self._taken, service)
+            forget = self._ros.call_then(CancelGoal, service, CancelGoal.Request(), taken)
+            if forget is not None:
+                self._unanswered[service] = monotonic(), forget
+
+    def _taken(self, service: str, _answer: CancelGoal.Response) -> None:
+        self._unanswered.pop(service, None)
+
+    def cancels(self) -> bool:
+        """Whether a busy server may still have a cancel before it, which would end a goal that is sent now."""
+        return any(monotonic() - sent < CANCEL_LIMIT for sent, _ in list(self._unanswered.values()))
 
     def zero(self) -> None:
         """Command zero velocity, where the machine takes velocities."""

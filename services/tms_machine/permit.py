@@ -10,9 +10,9 @@ from collections.abc import Callable
 from tms_msg_rc.msg import Permit as Message
 
 from tms_config.clock import monotonic
-from tms_machine import leases
 from tms_ros.client import AnyPeer
 from tms_ros.node import Ros
+from tms_runtime import leases
 from tms_runtime.pulse import Pulse
 
 BEATS = 2  # beats of the pulse from one assertion to the next: each assertion wakes every process of the machine

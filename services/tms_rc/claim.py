@@ -8,10 +8,10 @@ from prometheus_client import Gauge
 from tms_msg_rc.msg import GatewayClaim
 
 from tms_config.clock import sleep
-from tms_machine import leases
 from tms_machine.permit import BEATS, LEASE
 from tms_rc.reasons import Rival
 from tms_reason.reason import Reason
+from tms_runtime import leases
 from tms_runtime.app import App
 
 SETTLE = 0.4  # s for gateways to discover each other; a gateway that is discovered later is reported then

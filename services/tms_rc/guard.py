@@ -11,7 +11,7 @@ from std_msgs.msg import Bool
 from tms_msg_rc.msg import StopReceipt
 from tms_msg_rc.srv import StopMachine
 
-from tms_config.clock import monotonic
+from tms_config.clock import monotonic, sleep
 from tms_machine.border import STOP_PROVEN, Controls
 from tms_machine.permit import NOBODY, RemotePermit
 from tms_machine.reasons import DrivenByHand, NoPermit, SoftwareStop, SoftwareStopSaying
@@ -35,6 +35,7 @@ from tms_rc.stopper import Stop, Stopper
 from tms_rc.vigil import Vigil
 from tms_reason import wire
 from tms_reason.reason import Reason
+from tms_ros.loop import POLL
 from tms_ros.reasons import ProcessLost
 from tms_runtime.app import App
 from tms_runtime.fence import Owner
@@ -80,6 +81,8 @@ class Guard:
             return wrong
         self.press_known.wait(STOP_PROVEN)
         self.stopper.wait_idle(STOP_PROVEN)
+        while self.controls.cancels():
+            sleep(POLL)
         with self._taking:
             if self.active is not None:
                 return StillMoved(self._app.machine)

@@ -1,7 +1,7 @@
-"""Faults of data from outside: keys and values of any kind, names and texts."""
+"""Faults of data from outside: keys and values of any kind, names and texts, XML."""
 
 from tms_reason.reason import Reason
-from tms_reason.remedies import EDIT_CONFIG, Remedy
+from tms_reason.remedies import EDIT_CONFIG, EDIT_TASK, Remedy
 
 RETYPE = Remedy("retype", "", "Write a plain name")
 
@@ -36,4 +36,26 @@ class ControlLetter(Reason, text="holds the control character {letter}", action=
 class HiddenLetter(Reason, text="holds an invisible character", action=RETYPE): pass
 class OuterBlank(Reason, text="begins or ends with a blank", action=RETYPE): pass
 class LongName(Reason, text="has more than {limit} letters", action=RETYPE): limit: int
+
+# XML
+class TaskTooLarge(Reason, text="the task is larger than {limit} bytes"): limit: int
+class TextNotUtf8(Reason, text="the text is not UTF-8"): pass
+class NulByte(Reason, text="the text contains a NUL byte"): pass
+class TaskEmpty(Reason, text="the task is empty"): pass
+class ManyTags(Reason, text="the text has more than {limit} tags"): limit: int
+class ManyAttributes(Reason, text="an element has too many attributes"): pass
+class NotUnicodeCharacter(Reason, text="a character is no valid Unicode"): pass
+class HasDoctype(Reason, text="a task must not have a DOCTYPE (DTD) or entities"): pass
+class WordTooLong(Reason, text="a name or a value is too long"): pass
+class NotWellFormed(Reason, text="not well-formed XML ({problem})"): problem: str
+class ElementsTooDeep(Reason, text="the elements are nested deeper than {limit}"): limit: int
+class RightFile(Reason, text="a task file has some 10 to 100 kB: is this the right one?"): pass
+class SaveAsUtf8(Reason, text="save the file as UTF-8"): pass
+class SaveFromGroot(Reason, text="save it again from Groot"): pass
+class ExportFromGroot(Reason, text="export it from Groot; it begins with <root main_tree_to_execute=\"...\">"): pass
+class RemoveThem(Reason, text="remove them"): pass
+class CorrectThere(Reason, text="correct it there"): pass
+class SplitTask(Reason, text="split the task into subtrees"): pass
+class XmlLine(Reason, text="line {line}: {what}", action=EDIT_TASK): line: int; what: Reason
+class XmlHint(Reason, text="{what}: {hint}"): what: Reason; hint: Reason
 # fmt: on

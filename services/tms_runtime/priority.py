@@ -1,4 +1,7 @@
-"""Which threads get a processor first on a busy PC. Needs CAP_SYS_NICE; without it, these functions do nothing."""
+"""Which threads get a processor first on a busy PC. Needs CAP_SYS_NICE; without it, these functions do nothing.
+
+Real-time priorities: 1 for a participant that is being made, above it what works already (`run.FIRST`).
+"""
 
 import os
 import threading
@@ -12,11 +15,16 @@ def threads() -> set[int]:
     return {int(thread.name) for thread in Path("/proc/self/task").iterdir()}
 
 
-def come_first(nice: int, numbers: set[int]) -> None:
-    """Give these threads a share of the processors: -20 is the largest, 0 is usual. Threads they start inherit it."""
+def come_first(nice: int, numbers: set[int], realtime: int = 0) -> None:
+    """Give these threads a share of the processors: -20 is the largest, 0 is usual. Threads they start inherit it.
+
+    With `realtime` they come before all threads without, or with less; where the system refuses that, `nice` counts.
+    """
     for number in numbers:
         with suppress(ProcessLookupError, PermissionError):  # the thread has ended, or this process lacks the right
             os.setpriority(os.PRIO_PROCESS, number, nice)
+            if realtime:
+                os.sched_setscheduler(number, os.SCHED_RR, os.sched_param(realtime))
 
 
 def session_first(pid: int, nice: int) -> None:

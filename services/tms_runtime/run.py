@@ -30,9 +30,10 @@ END_CHECK_PERIOD = 0.5  # s
 FORGOTTEN = 3.0  # s; lease of discovery (5 s) less the time since the last announcement (1.5 s at most), 0.5 s to spare
 EXIT_LIMIT = 2.0  # s from SIGTERM to the end, even if the clean-up hangs
 PR_SET_PDEATHSIG = 1
-# Nice of processes that must not miss a beat on a busy PC, nor a beat of others, once they have started: processes that
-# are starting must not keep working ones from their beats.
-FIRST = {"tms_ts.node": -15, "tms_rc.node": -12, "tms_host.node": -12}
+# Nice and real-time priority of processes that must not miss a beat on a busy PC, nor a beat of others, once they have
+# started: processes that are starting must not keep working ones from their beats. Twenty of them come to the end of
+# their imports at the same time, and each then makes its participant with real-time priority 1.
+FIRST = {"tms_ts.node": (-15, 2), "tms_rc.node": (-12, 3), "tms_host.node": (-12, 3)}
 OF_A_MACHINE = -5  # planner and subtasks; the processes above, too, while they start
 
 
@@ -84,7 +85,8 @@ def _serve(site: Site, row: Process, leaving: ExitStack) -> int:
     app_box.append(app)
     Graph(ros, logger)
     if row.module in FIRST or row.group == row.machine:
-        come_first(FIRST.get(row.module, OF_A_MACHINE), threads())
+        nice, realtime = FIRST.get(row.module, (OF_A_MACHINE, 0))
+        come_first(nice, threads(), realtime)
     logger.info("started", pid=os.getpid())
     _wait_for_end(stop, ros.failed, logger)
     return _end(app, health, logger)

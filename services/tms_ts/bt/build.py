@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from lxml import etree
 
-from tms_runtime.xml_text import MAX_DEPTH
+from tms_reason.xml_text import MAX_DEPTH
 from tms_ts.bt.blackboard import Blackboard
 from tms_ts.bt.context import Context
 from tms_ts.bt.convert import Missing, text_to_bool

@@ -9,7 +9,7 @@ from pathlib import Path
 from lxml import etree
 
 from tms_reason.reason import Reason
-from tms_runtime.xml_text import MAX_BYTES, MAX_DEPTH
+from tms_reason.xml_text import MAX_BYTES, MAX_DEPTH
 from tms_ts.bt.errors import MAX_WARNINGS, TreeError, shortened
 from tms_ts.bt.reasons import (
     CannotInclude,

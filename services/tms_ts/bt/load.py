@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from tms_reason.reason import Reason
-from tms_runtime.xml_text import MAX_BYTES
+from tms_reason.xml_text import MAX_BYTES
 from tms_ts.bt.advice import advise
 from tms_ts.bt.blackboard import Blackboard
 from tms_ts.bt.build import Builder

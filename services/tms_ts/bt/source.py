@@ -11,8 +11,8 @@ from pathlib import Path
 
 from lxml import etree
 
-from tms_runtime import xml_text
-from tms_runtime.xml_text import MAX_BYTES
+from tms_reason import xml_text
+from tms_reason.xml_text import MAX_BYTES
 from tms_ts.bt.errors import TreeError
 from tms_ts.bt.reasons import ChooseGrootFile, FileTooLarge, NoFile, NotXml, TaskFilesAreSmall
 

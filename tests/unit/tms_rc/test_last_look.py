@@ -1,5 +1,6 @@
 """Between the permit and the goal's leaving, a stop or a loss may come."""
 
+import threading
 from types import SimpleNamespace
 from typing import Any
 
@@ -10,7 +11,7 @@ from tms_rc.active import Active, StopKind
 from tms_rc.gateway import Gateway
 from tms_rc.guard import Guard
 from tms_rc.latch import Latch
-from tms_rc.reasons import HeldByAnother, NoScheduler, NoSubtask
+from tms_rc.reasons import HeldByAnother, NoScheduler, NoSubtask, StillMoved
 from tms_reason.reason import Reason
 from tms_ros.reasons import ProcessLost
 from tms_runtime.fence import Owner
@@ -62,3 +63,15 @@ def test_a_goal_that_was_given_up_while_the_executor_stood_still_does_not_leave(
     gateway._guard = SimpleNamespace(active=None if answered else active, last_look=lambda _: None)
     gateway._send(active)
     assert len(left) == sent
+
+
+def test_a_goal_waits_for_a_cancel_that_would_end_it() -> None:
+    cancels = iter((True, True, False))
+    guard: Any = Guard.__new__(Guard)
+    guard._wait_for_permit = lambda owner: None
+    guard.press_known = SimpleNamespace(wait=lambda seconds: True)
+    guard.stopper = SimpleNamespace(wait_idle=lambda seconds: True)
+    guard.controls, guard._taking = SimpleNamespace(cancels=lambda: next(cancels)), threading.Lock()
+    guard.active, guard._app = object(), SimpleNamespace(machine="zx200")
+    assert guard.take(SimpleNamespace(owner=GOAL)) == StillMoved("zx200")
+    assert next(cancels, "none is left") == "none is left"

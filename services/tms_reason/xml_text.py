@@ -9,7 +9,7 @@ from lxml import etree
 
 from tms_reason.errors import TaskError
 from tms_reason.reason import Reason
-from tms_runtime.reasons import (
+from tms_reason.reasons import (
     CorrectThere,
     ElementsTooDeep,
     ExportFromGroot,

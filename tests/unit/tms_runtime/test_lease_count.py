@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from tms_machine.leases import _Count
+from tms_runtime.leases import _Count
 
 Numbers = tuple[int, int]
 
