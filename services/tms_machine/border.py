@@ -19,6 +19,7 @@ from tms_ros.node import Ros
 
 STOP_PROVEN = 10.0  # s within which a gateway sees that a machine stands, or reports that it does not
 CANCEL_LIMIT = 3.0  # s after which a server without an answer has lost a cancel
+RELEASE_LIMIT = 0.5  # s for a machine to take the release of its emergency stop: that is a message without an answer
 RECEIPT_LIMIT = STOP_PROVEN + 3.0  # s without a receipt of a stop after which a gateway counts as silent
 
 
@@ -65,6 +66,7 @@ class Controls:
             ros.prepare(CancelGoal, service)
         # By service: when the last cancel was sent, and how to forget it. Changed on the executor thread only.
         self._unanswered: dict[str, tuple[float, Callable[[], None]]] = {}
+        self._released = float("-inf")  # s, monotonic
         self._cmd_vel = ros.publisher(Twist, f"/{machine}/{border.cmd_vel}", 1) if border.cmd_vel else None
         emg_stop = f"/{machine}/{border.emg_stop}"
         self._emg_stop = ros.publisher(Bool, emg_stop, 1, latched=keeps_emergency) if border.emg_stop else None
@@ -85,9 +87,13 @@ class Controls:
     def _taken(self, service: str, _answer: CancelGoal.Response) -> None:
         self._unanswered.pop(service, None)
 
-    def cancels(self) -> bool:
-        """Whether a busy server may still have a cancel before it, which would end a goal that is sent now."""
-        return any(monotonic() - sent < CANCEL_LIMIT for sent, _ in list(self._unanswered.values()))
+    def settling(self) -> bool:
+        """Whether a busy machine may still have commands of a stop before it: a goal that is sent now could be lost.
+
+        A cancel that comes after the goal ends it, and a goal that comes before the release is refused.
+        """
+        now, sent = monotonic(), [at for at, _ in list(self._unanswered.values())]
+        return now - self._released < RELEASE_LIMIT or any(now - at < CANCEL_LIMIT for at in sent)
 
     def zero(self) -> None:
         """Command zero velocity, where the machine takes velocities."""
@@ -98,6 +104,7 @@ class Controls:
         """Set or clear the machine's own stop, where it has one."""
         if self._emg_stop is not None:
             self._emg_stop.publish(Bool(data=on))
+            self._released = float("-inf") if on else monotonic()
 
     def reachable(self) -> bool:
         """Whether a cancel would reach every action server of the machine now."""

@@ -81,7 +81,7 @@ class Guard:
             return wrong
         self.press_known.wait(STOP_PROVEN)
         self.stopper.wait_idle(STOP_PROVEN)
-        while self.controls.cancels():
+        while self.controls.settling():
             sleep(POLL)
         with self._taking:
             if self.active is not None:

@@ -65,13 +65,13 @@ def test_a_goal_that_was_given_up_while_the_executor_stood_still_does_not_leave(
     assert len(left) == sent
 
 
-def test_a_goal_waits_for_a_cancel_that_would_end_it() -> None:
-    cancels = iter((True, True, False))
+def test_a_goal_waits_for_the_commands_of_the_stop_before_it() -> None:
+    settling = iter((True, True, False))
     guard: Any = Guard.__new__(Guard)
     guard._wait_for_permit = lambda owner: None
     guard.press_known = SimpleNamespace(wait=lambda seconds: True)
     guard.stopper = SimpleNamespace(wait_idle=lambda seconds: True)
-    guard.controls, guard._taking = SimpleNamespace(cancels=lambda: next(cancels)), threading.Lock()
+    guard.controls, guard._taking = SimpleNamespace(settling=lambda: next(settling)), threading.Lock()
     guard.active, guard._app = object(), SimpleNamespace(machine="zx200")
     assert guard.take(SimpleNamespace(owner=GOAL)) == StillMoved("zx200")
-    assert next(cancels, "none is left") == "none is left"
+    assert next(settling, "none is left") == "none is left"

@@ -1,4 +1,4 @@
-"""A cancel of all goals that a busy server takes late would end a goal that was sent after it."""
+"""Commands of a stop that a busy machine takes late would end a goal that was sent after it, or have it refused."""
 
 from typing import Any
 
@@ -40,7 +40,7 @@ def busy(two_nodes: tuple[Ros, Ros]) -> Busy:
 
 @pytest.fixture
 def controls(two_nodes: tuple[Ros, Ros], busy: Busy) -> Controls:
-    made = Controls(two_nodes[1], "zx200", Border(set_swing_angle="turn"))
+    made = Controls(two_nodes[1], "zx200", Border(set_swing_angle="turn", emg_stop="emg_stop"))
     wait_until(made.reachable, LIMIT, "the server is found")
     return made
 
@@ -49,13 +49,23 @@ def test_a_cancel_counts_until_the_server_has_answered(
     busy: Busy, controls: Controls, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(border, "CANCEL_LIMIT", 3 * LIMIT)
-    assert not controls.cancels()
+    assert not controls.settling()
     for count in (1, 2):  # a stop repeats its commands
         controls.cancel_everything()
         wait_until(lambda count=count: busy.asked == count, LIMIT, "the server has it")  # type: ignore[misc]
-    assert controls.cancels()
+    assert controls.settling()
     busy.answer()
-    wait_until(lambda: not controls.cancels(), LIMIT, "both are answered")
+    wait_until(lambda: not controls.settling(), LIMIT, "both are answered")
+
+
+def test_a_release_counts_for_a_while(controls: Controls, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(border, "RELEASE_LIMIT", 3 * LIMIT)
+    controls.emergency(True)
+    assert not controls.settling()
+    controls.emergency(False)
+    assert controls.settling()
+    monkeypatch.setattr(border, "RELEASE_LIMIT", 0.0)
+    assert not controls.settling()
 
 
 def test_a_cancel_that_is_never_answered_counts_for_a_while(
@@ -63,6 +73,6 @@ def test_a_cancel_that_is_never_answered_counts_for_a_while(
 ) -> None:
     controls.cancel_everything()
     wait_until(lambda: busy.asked == 1, LIMIT, "the server has it")
-    assert controls.cancels()
+    assert controls.settling()
     monkeypatch.setattr(border, "CANCEL_LIMIT", 0.0)
-    assert not controls.cancels()
+    assert not controls.settling()
