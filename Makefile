@@ -25,7 +25,7 @@ TMS := $(VENV)/bin/tms $(if $(SITE),--site $(SITE))
 # A sourced ROS installation would mix its libraries into the venv's.
 unexport PYTHONPATH LD_LIBRARY_PATH AMENT_PREFIX_PATH CMAKE_PREFIX_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE
 .DEFAULT_GOAL := help
-.PHONY: help setup interfaces locks demo test test-fast up down status logs restart lint conformance bench pictures soak drill nightly test-docker system containers clean
+.PHONY: help setup interfaces locks demo test test-fast up down status logs restart lint conformance bench pictures soak drill simulate nightly test-docker system containers clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -119,6 +119,9 @@ conformance: setup ## replay behaviour-tree cases (CASES=path LEVEL=required|str
 
 drill: setup ## stop six simulated machines in every way; receipts against the truth (QUICK=1, ROUNDS=4, SEED=7, REPORT=file.md, ONLY="kill rc+tms:ts")
 	@$(VENV)/bin/tms --site $(or $(SITE),drill) drill $(if $(QUICK),--quick) $(if $(ROUNDS),--rounds $(ROUNDS)) $(if $(SEED),--seed $(SEED)) $(if $(ONLY),--only "$(ONLY)") $(if $(REPORT),--report $(REPORT))
+
+simulate: setup ## a site in virtual time goes wrong thousands of times; invariants against the true motion (SCHEDULES=15000 SEED=7)
+	@cd tests && $(abspath $(PY)) -m simulation.run $(if $(SCHEDULES),--schedules $(SCHEDULES)) $(if $(SEED),--seed $(SEED))
 
 nightly: setup ## what takes hours: properties with 400 examples, 30 power cuts while a machine moves (as root), the drill with four rounds
 	$(PY) -m pytest -q -n $(WORKERS) --hypothesis-profile=thorough tests/unit

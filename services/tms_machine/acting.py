@@ -7,7 +7,8 @@ from typing import Any
 from tms_config.clock import monotonic
 from tms_config.models import Joint, MachineModel
 from tms_config.naming import process_of
-from tms_machine.border import STOP_PROVEN
+from tms_decision.gateway.stops import STOP_PROVEN
+from tms_decision.reasons import ProcessLost
 from tms_machine.reasons import (
     Aborted,
     Canceled,
@@ -26,7 +27,7 @@ from tms_ros.client import AnyCall, AnyPeer
 from tms_ros.goals import Outcome
 from tms_ros.interface_types import ActionType, F, G, R
 from tms_ros.node import Ros
-from tms_ros.reasons import LostMeanwhile, NoAnswer, ProcessLost
+from tms_ros.reasons import LostMeanwhile, NoAnswer
 from tms_runtime.fence import derived
 
 SERVER_LIMIT = 5.0  # s for an action server to appear

@@ -14,10 +14,10 @@ from std_msgs.msg import Bool
 
 from tms_config.clock import monotonic
 from tms_config.models import Border
+from tms_decision.gateway.stops import STOP_PROVEN
 from tms_ros.interface_types import ActionType
 from tms_ros.node import Ros
 
-STOP_PROVEN = 10.0  # s within which a gateway sees that a machine stands, or reports that it does not
 CANCEL_LIMIT = 3.0  # s after which a server without an answer has lost a cancel
 RELEASE_LIMIT = 0.5  # s for a machine to take the release of its emergency stop: that is a message without an answer
 RECEIPT_LIMIT = STOP_PROVEN + 3.0  # s without a receipt of a stop after which a gateway counts as silent

@@ -10,15 +10,13 @@ from collections.abc import Callable
 from tms_msg_rc.msg import Permit as Message
 
 from tms_config.clock import monotonic
+from tms_decision.permit_link import GRACE, LEASE, NOBODY, PermitLink
 from tms_ros.client import AnyPeer
 from tms_ros.node import Ros
 from tms_runtime import leases
 from tms_runtime.pulse import Pulse
 
 BEATS = 2  # beats of the pulse from one assertion to the next: each assertion wakes every process of the machine
-LEASE = 0.5  # s without an assertion until a process counts as lost
-GRACE = 0.1  # s more when the reader's own PC did not run for a moment
-NOBODY = bytes(16)
 
 
 def topic(machine: str, process: str) -> str:
@@ -59,42 +57,50 @@ class RemotePermit:
     def __init__(
         self, ros: Ros, pulse: Pulse, machine: str, process: str, changed: Callable[["RemotePermit"], None]
     ) -> None:
-        self.process, self.goal, self.holder = process, NOBODY, ""
+        self._link = PermitLink(process)
         self._ros, self._pulse, self._changed = ros, pulse, changed
-        self.stale_writers = (
-            0  # predecessors that discovery has not dropped yet, or the process itself while it is frozen
-        )
-        self.left = False  # the last one ended in order; a killed one leaves a stale writer
-        self._received, self._alive, self._asserted = 0.0, False, 0
         leases.subscribe(ros, Message, topic(machine, process), LEASE, self._on_message, self._on_liveliness)
+
+    @property
+    def process(self) -> str:
+        return self._link.process
+
+    @property
+    def goal(self) -> bytes:
+        return self._link.goal
+
+    @property
+    def holder(self) -> str:
+        return self._link.holder
+
+    @property
+    def left(self) -> bool:
+        """Whether the last one ended in order; a killed one leaves a stale writer."""
+        return self._link.left
+
+    @property
+    def stale_writers(self) -> int:
+        """Predecessors that discovery has not dropped yet, or the process itself while it is frozen."""
+        return self._link.stale_writers
 
     @property
     def alive(self) -> bool:
         """Whether the process works for `goal` now."""
-        # A message may be handled before the report that its writer is asserted again.
-        return self.goal != NOBODY and (self._alive or monotonic() - self._received < LEASE)
+        return self._link.alive(monotonic())
 
     def _on_message(self, message: Message) -> None:
-        self._received = monotonic()
-        self.goal, self.holder = bytes(message.goal), message.holder
+        self._link.heard(bytes(message.goal), message.holder, monotonic())
         self._changed(self)
 
     def _on_liveliness(self, alive_count: int, not_alive_count: int) -> None:
-        if alive_count > 0 or self._asserted > 0:
-            self.left = alive_count == 0 and not_alive_count <= self.stale_writers
-        self._asserted, self.stale_writers = alive_count, not_alive_count
-        if alive_count > 0:
-            self._alive = True
-        elif self._pulse.late():  # its assertions may have come, but not been handled yet
-            self._ros.after(GRACE, self._judge)
-            return
+        self._link.reported(alive_count, not_alive_count, self._pulse.late(), monotonic())
+        if self._link.doubted is None:
+            self._changed(self)
         else:
-            self._alive, self._received = False, 0.0
-        self._changed(self)
+            self._ros.after(GRACE, self._judge)
 
     def _judge(self) -> None:
-        if self._asserted == 0 and self._alive:
-            self._alive, self._received = False, 0.0
+        if self._link.judge(float("inf")):  # its time is over
             self._changed(self)
 
 

@@ -1,23 +1,12 @@
-"""Why a machine cannot do, or must not do, what a goal asks; what it does meanwhile; and why machines are stopped."""
+"""Why a machine cannot do, or must not do, what a goal asks, and what it does meanwhile."""
 
-from tms_reason.quantities import Metres, Moments, Radians, Seconds
+from tms_reason.quantities import Metres, Radians, Seconds
 from tms_reason.reason import Reason
-from tms_reason.remedies import EDIT_CONFIG, GIVE_BACK, INSPECT, PROCESSES, REARM, RECORDS
+from tms_reason.remedies import EDIT_CONFIG, INSPECT, PROCESSES, RECORDS
 
 
 # fmt: off
-# stops
-class SoftwareStop(Reason, text="software stop"): pass
-class SoftwareStopBy(SoftwareStop, text="software stop by {person}"): person: str
-class SoftwareStopSaying(SoftwareStop, text="software stop: {why}"): why: Reason
-class NoNote(Reason, text="it is not known on this PC how the machine was left", action=INSPECT): pass
-class MachineLatched(Reason, text="{machine} is stopped: {cause}", action=REARM): machine: str; cause: Reason
-class NoPermit(Reason, text="no motion permit: {why}"): why: Reason
-
 # a goal that is refused
-class DrivenByHand(Reason, text="{driver} drives {machine} by hand", action=GIVE_BACK, code="TAKEN"):
-    driver: Reason; machine: str
-class ManualMode(Reason, text="a person at the machine's own levers"): pass
 class Busy(Reason, text="{process} is still at its last goal"): process: str
 class NoDatabase(Reason, text="{process} did not answer", action=PROCESSES): process: str
 class OneSubtask(Reason, text="{file}: {count} subtasks in it, there must be one"): file: str; count: int
@@ -56,11 +45,3 @@ class Driving(Reason, text="driving, {left} to go"): left: Metres
 class DrivingThrough(Reason, text="driving, {left} and {poses} poses to go"): left: Metres; poses: int
 class DrivingTo(Reason, text="driving to waypoint {waypoint} of 0 to {last}"): waypoint: int; last: int
 class Turning(Reason, text="turning, {left} to go"): left: Radians
-
-# how far a stop went
-class Stood(Reason, text="stood after {seconds}, {angle} ({joint}) and {way}: {cause}"):
-    seconds: Moments; angle: Radians; joint: str; way: Metres; cause: Reason
-class StoodWithoutJoints(Reason, text="stood after {seconds}, {way}: {cause}"):
-    seconds: Moments; way: Metres; cause: Reason
-class StopUnconfirmed(Reason, text="STOP UNCONFIRMED: {detail} ({cause})", action=INSPECT):
-    detail: Reason; cause: Reason

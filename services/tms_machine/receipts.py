@@ -2,7 +2,7 @@
 
 from tms_msg_rc.msg import StopReceipt
 
-from tms_machine.reasons import Stood, StoodWithoutJoints
+from tms_decision.reasons import Stood, StoodWithoutJoints
 from tms_reason.reason import Reason
 
 

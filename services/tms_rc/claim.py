@@ -8,7 +8,8 @@ from prometheus_client import Gauge
 from tms_msg_rc.msg import GatewayClaim
 
 from tms_config.clock import sleep
-from tms_machine.permit import BEATS, LEASE
+from tms_decision.permit_link import LEASE
+from tms_machine.permit import BEATS
 from tms_rc.reasons import Rival
 from tms_reason.reason import Reason
 from tms_runtime import leases

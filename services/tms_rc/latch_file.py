@@ -7,26 +7,15 @@ function of this module is called on the executor thread.
 
 import json
 import threading
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tms_machine.reasons import NoNote
+from tms_decision.gateway.events import Left
+from tms_decision.reasons import NoNote
 from tms_rc.reasons import NoteUnreadable
 from tms_reason import texts, wire
 from tms_reason.reason import Reason
 from tms_runtime import durable
-
-
-@dataclass(frozen=True)
-class Left:
-    """How the machine was left; `latched` is None when it was armed."""
-
-    latched: Reason | None
-    holder: str = ""  # the run or the foreign client that may have left it moving
-    run: int = 0  # fencing number of that run
-    taken: str = ""  # who drives it by hand
-    unproven: bool = False  # it was latched, but the receipt of that stop was never written to the disk
 
 
 class LatchFile:

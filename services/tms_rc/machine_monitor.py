@@ -10,10 +10,12 @@ from sensor_msgs.msg import Imu, JointState
 
 from tms_config.clock import monotonic
 from tms_config.models import Border
-from tms_rc.channel import Place
+from tms_decision.gateway.events import Event, Published, Sampled
+from tms_machine.geometry import yaw_of
+from tms_proof.channel import Place
+from tms_proof.source import LABELS, SourceSample
+from tms_proof.standstill import HEADING, IMU, JOINTS, ODOM, PLACE, POSE, TURNING, StandStill
 from tms_rc.reasons import StrangeType
-from tms_rc.source import LABELS, SourceSample
-from tms_rc.standstill import HEADING, IMU, JOINTS, ODOM, PLACE, POSE, TURNING, StandStill, yaw_of
 from tms_reason.reason import Reason
 from tms_ros.node import Ros, node_of
 from tms_ros.topics import Arrival
@@ -39,28 +41,28 @@ class MachineMonitor:
         ]
         self._counted = 0.0  # monotonic
 
-    def take_samples(self) -> None:
-        """Take the waiting messages."""
-        now = monotonic()
+    def samples(self) -> list[Event]:
+        """The waiting messages, and changes of who publishes them."""
+        now, found = monotonic(), list[Event]()
         for name, take_new, read in self._inputs:
             source, arrivals = self._watch.sources[name], take_new()
             if arrivals and source.age(now) > source.longest:
-                self._count(name)  # before its messages count: the topic may have several publishers now
-            for arrival in arrivals:
-                self._watch.take(name, _sample(arrival, *read(arrival.message)))
+                found += self._count(name)  # before its messages count: the topic may have several publishers now
+            found += [Sampled(name, _sample(arrival, *read(arrival.message))) for arrival in arrivals]
         if now - self._counted >= VOICES:
             self._counted = now
             for name in self._topics:
-                self._count(name)
+                found += self._count(name)
+        return found
 
-    def _count(self, name: str) -> None:
+    def _count(self, name: str) -> list[Event]:
         """Find other publishers of a source. The machine's own one, if killed, counts until discovery drops it."""
-        source, topic = self._watch.sources[name], self._topics[name]
+        known, topic = self._watch.sources[name].publishers, self._topics[name]
         count = int(self._app.ros.node.count_publishers(topic))
-        if count < 2:
-            source.publishers = ()
-        elif len(source.publishers) != count:
-            source.publishers = tuple(node for node, _ in _publishers(self._app.ros, topic))
+        if len(known) == count or (count < 2 and not known):
+            return []
+        nodes = () if count < 2 else tuple(node for node, _ in _publishers(self._app.ros, topic))
+        return [Published(name, nodes)]
 
     def strange_type(self) -> Reason | None:
         """A source that is published with another type than in the border: none of its messages can be received."""
@@ -122,7 +124,7 @@ def _placed(pose: Pose) -> dict[str, Place]:
     numbers = (at.x, at.y, turn.x, turn.y, turn.z, turn.w)
     if not all(map(math.isfinite, numbers)):
         return {}
-    return {PLACE: (at.x, at.y), HEADING: (yaw_of(turn.x, turn.y, turn.z, turn.w),)}
+    return {PLACE: (at.x, at.y), HEADING: (yaw_of((turn.x, turn.y, turn.z, turn.w)),)}
 
 
 def _pose(message: PoseStamped) -> Numbers:

@@ -7,7 +7,6 @@ from tms_reason.remedies import LOGS, PROCESSES
 
 # fmt: off
 # a goal ended because a process did: its run may send it again
-class ProcessLost(Reason, text="{why}"): why: Reason
 class BeingStopped(Reason, text="{process} is being stopped"): process: str
 class StoppedMeanwhile(Reason, text="{process} was stopped during its goal"): process: str
 class LostMeanwhile(Reason, text="{process} was lost during its goal", details="{name}"): process: str; name: str

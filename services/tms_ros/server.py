@@ -14,6 +14,7 @@ from rclpy.action.server import ServerGoalHandle
 from structlog.contextvars import bind_contextvars
 
 from tms_config.clock import monotonic, sleep
+from tms_decision.reasons import ProcessLost
 from tms_reason.reason import Reason
 from tms_reason.wire import to_line
 from tms_ros.goals import Accept, Ended, Outcome
@@ -21,7 +22,7 @@ from tms_ros.interface_types import ActionType, F, G, R
 from tms_ros.loop import EventLoop
 from tms_ros.privates import NamingActionServer
 from tms_ros.quality import SERVICE
-from tms_ros.reasons import BeingStopped, ProcessLost, StoppedMeanwhile
+from tms_ros.reasons import BeingStopped, StoppedMeanwhile
 from tms_ros.topics import Topics
 
 RESULT_KEPT = 10  # s that a server keeps a result; every status message lists all kept goals

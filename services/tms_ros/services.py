@@ -9,13 +9,14 @@ from rclpy.task import Future
 
 from tms_config.clock import monotonic
 from tms_config.naming import process_of
+from tms_decision.reasons import ProcessLost
 from tms_reason.errors import RosError
 from tms_reason.wire import to_line
 from tms_ros import quality
 from tms_ros.interface_types import Req, Res, ServiceType
 from tms_ros.loop import POLL, EventLoop
 from tms_ros.privates import send_surely
-from tms_ros.reasons import BadServiceName, Internal, LostMeanwhile, NoAnswer, NoServer, ProcessLost
+from tms_ros.reasons import BadServiceName, Internal, LostMeanwhile, NoAnswer, NoServer
 
 SERVER_CHECK_PERIOD = 0.1  # s between checks whether a server that must still answer exists
 

@@ -6,14 +6,15 @@ from control_msgs.action import FollowJointTrajectory
 
 from tms_config.clock import monotonic
 from tms_config.naming import process_of
-from tms_machine.border import STOP_PROVEN
+from tms_decision.gateway.stops import STOP_PROVEN
+from tms_decision.reasons import ProcessLost
 from tms_machine.reasons import MotionNotEnded, NoReason
 from tms_reason import wire
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
 from tms_ros.client import Call, Peer
 from tms_ros.goals import Outcome
-from tms_ros.reasons import LostMeanwhile, NoAnswer, ProcessLost
+from tms_ros.reasons import LostMeanwhile, NoAnswer
 from tms_ros.server import AnyGoal
 from tms_rp.messages import follow
 from tms_rp.reasons import MotionFailed, MotionLate, MoveOf

@@ -16,10 +16,10 @@ import structlog
 from prometheus_client import Counter
 from structlog.typing import EventDict, Processor, WrappedLogger
 
+from tms_decision.owner import parse
 from tms_reason.reason import Reason
 from tms_reason.texts import text
 from tms_reason.wire import to_line
-from tms_runtime.fence import parse
 
 Logger = structlog.stdlib.BoundLogger
 

@@ -8,13 +8,16 @@ from tms_msg_rc.msg import MachineState, StopReceipt
 from tms_msg_rc.srv import StopMachine
 
 from tms_config.clock import monotonic, sleep
+from tms_decision.owner import Owner
+from tms_decision.permit_link import NOBODY
+from tms_decision.reasons import DrivenByHand, MachineLatched, SoftwareStop
 from tms_machine.border import Controls
-from tms_machine.permit import NOBODY, Permit, RemotePermit
-from tms_machine.reasons import DrivenByHand, MachineLatched, NoReason, SoftwareStop
+from tms_machine.permit import Permit, RemotePermit
+from tms_machine.reasons import NoReason
 from tms_reason import wire
 from tms_reason.reason import Reason
 from tms_runtime.app import App
-from tms_runtime.fence import Owner
+from tms_runtime.fence import goal_id
 from tms_ts.reasons import MachineNotReady, ProcessAway
 
 SETTLE = 0.3  # s from the first message of a new gateway until it has discovered the scheduler, too
@@ -71,7 +74,7 @@ class Gateways:
         for machine in machines:
             if machine in self._permits:
                 self._holders[machine] = holder
-                self._permits[machine].hold(Owner(holder.number).goal_id(), run_id)
+                self._permits[machine].hold(goal_id(Owner(holder.number)), run_id)
 
     def drop(self, machines: list[str]) -> None:
         """End the permits of a run that is over and whose machines were stopped."""

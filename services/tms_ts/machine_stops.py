@@ -7,15 +7,15 @@ from tms_msg_rc.msg import StopReceipt
 from tms_msg_rc.srv import StopMachine
 
 from tms_config.clock import monotonic
+from tms_decision.reasons import ProcessLost, StopUnconfirmed
 from tms_machine.border import RECEIPT_LIMIT
-from tms_machine.reasons import NoReason, StopUnconfirmed
+from tms_machine.reasons import NoReason
 from tms_machine.receipts import stood_after
 from tms_reason import wire
 from tms_reason.errors import RosError
 from tms_reason.reason import Reason
 from tms_reason.wire import to_line
 from tms_ros.node import Ros
-from tms_ros.reasons import ProcessLost
 from tms_ts.gateways import Gateways
 from tms_ts.reasons import MachineStood, MachineStoodBy, MachineUnconfirmed
 

@@ -8,12 +8,14 @@ from prometheus_client import Histogram
 from tms_msg_ts.action import LeafNodeBase
 
 from tms_config.clock import monotonic
-from tms_machine.reasons import MachineLatched, NoDatabase, NoJointState, NoPermit, NoReason, Rejected
+from tms_decision.owner import LEAVES, Owner
+from tms_decision.reasons import MachineLatched, NoPermit, ProcessLost
+from tms_machine.reasons import NoDatabase, NoJointState, NoReason, Rejected
 from tms_reason.reason import Reason
 from tms_ros.goals import Outcome
 from tms_ros.node import Ros
-from tms_ros.reasons import LostMeanwhile, NoAnswer, NoServer, ProcessLost
-from tms_runtime.fence import LEAVES, Owner
+from tms_ros.reasons import LostMeanwhile, NoAnswer, NoServer
+from tms_runtime.fence import goal_id
 from tms_ts.gateways import Gateways
 from tms_ts.hosts import Hosts
 from tms_ts.interrupted_run import Key
@@ -150,9 +152,9 @@ class Machines:
         goal.begun = monotonic()
         self._log_event("goal", goal.node, GoalSent(goal.name, goal.record))
         self._leaves = self._leaves % LEAVES + 1
-        goal_id = Owner(self._number, self._leaves).goal_id()
+        uuid = goal_id(Owner(self._number, self._leaves))
         self._record.sent(goal.key)
-        goal.call = goal.peer.send(request, goal_id=goal_id, on_change=lambda call: self._changed(goal, call))
+        goal.call = goal.peer.send(request, goal_id=uuid, on_change=lambda call: self._changed(goal, call))
 
     def _obstacle(self, goal: SentGoal) -> Reason | None:
         """Why the goal cannot be sent now."""

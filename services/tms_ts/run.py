@@ -12,8 +12,8 @@ from tms_msg_ts.action import ExecuteTask
 from tms_msg_ts.msg import RunState
 
 from tms_config.clock import monotonic
-from tms_machine.border import STOP_PROVEN
-from tms_machine.reasons import SoftwareStop
+from tms_decision.gateway.stops import STOP_PROVEN
+from tms_decision.reasons import SoftwareStop
 from tms_machine.values import to_parameters
 from tms_reason.reason import Reason, Several
 from tms_reason.wire import to_line

@@ -4,7 +4,7 @@ from tms_msg_db.msg import Task
 from tms_msg_db.srv import GetTask
 from tms_msg_ts.srv import CheckTask
 
-from tms_machine.reasons import MachineLatched
+from tms_decision.reasons import MachineLatched
 from tms_reason.errors import TaskError, TmsError
 from tms_reason.reason import Reason
 from tms_reason.wire import refusal, to_line

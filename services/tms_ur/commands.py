@@ -14,7 +14,7 @@ from fastapi import FastAPI, Path, Request
 
 from tms_config.config import Site
 from tms_config.reasons import NoMachine
-from tms_machine.reasons import SoftwareStopBy
+from tms_decision.reasons import SoftwareStopBy
 from tms_reason.errors import TmsError
 from tms_reason.reason import Reason
 from tms_ur.access import Person

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 from bench.runner import Figure
 from conftest import claimed_domain
-from tms_machine.permit import LEASE
+from tms_decision.permit_link import LEASE
 from tms_ts.bt import load
 from unit.tms_ts.fakes import FakeMachines, FakeWorld
 

@@ -15,7 +15,7 @@ from playwright.sync_api import Page, expect
 from conftest import site_data
 from tms_config.clock import utc_now
 from tms_config.config import load_site
-from tms_machine.reasons import SoftwareStop
+from tms_decision.reasons import SoftwareStop
 from tms_reason.errors import TmsError
 from tms_reason.reason import Reason
 from tms_reason.remedies import REARM, RESUME

@@ -112,7 +112,7 @@ def test_imports_have_no_effects() -> None:
     """Importing a service must not start threads, read configuration or open anything."""
     code = (
         "import threading, importlib, pkgutil, sys\n"
-        "layers = ('tms_config', 'tms_machine', 'tms_reason', 'tms_ros', 'tms_runtime')\n"
+        "layers = ('tms_config', 'tms_decision', 'tms_machine', 'tms_proof', 'tms_reason', 'tms_ros', 'tms_runtime')\n"
         "for name in (*layers, 'tms_db', 'tms_ts', 'tms_rp', 'tms_rc', 'tms_sim', 'tms_host', 'tms_cli'):\n"
         "    package = importlib.import_module(name)\n"
         "    for found in pkgutil.walk_packages(package.__path__, name + '.'):\n"

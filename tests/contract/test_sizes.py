@@ -7,8 +7,9 @@ import pytest
 
 from conftest import PROJECT
 
-FILES, FUNCTIONS, PACKAGES = 300, 40, 1300  # lines
-LOWER = ("tms_reason", "tms_config", "tms_ros", "tms_runtime", "tms_machine")
+FILES, FUNCTIONS = 300, 40  # lines
+LOWER = {"tms_reason": 1300, "tms_proof": 1300, "tms_decision": 2500, "tms_config": 1300, "tms_ros": 1300,
+         "tms_runtime": 1300, "tms_machine": 1300}  # fmt: skip
 PYTHON = sorted(path for path in (PROJECT / "services").rglob("*.py"))
 
 
@@ -26,4 +27,4 @@ def test_its_sizes(path: Path) -> None:
 def test_the_size_of_a_package_that_all_services_use(package: str) -> None:
     files = [path for path in PYTHON if path.is_relative_to(PROJECT / "services" / package)]
     lines = sum(len(path.read_text(encoding="utf-8").splitlines()) for path in files)
-    assert files and lines <= PACKAGES, "move what one service uses to that service, or further up or down"
+    assert files and lines <= LOWER[package], "move what one service uses to that service, or further up or down"

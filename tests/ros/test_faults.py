@@ -12,7 +12,9 @@ from tms_msg_rc.msg import MachineState, StopReceipt
 from tms_msg_rc.srv import Rearm
 
 from stand_in_rig import SITE, Rig, client_in, pose
-from tms_rc.reasons import AtPose, Moving, NoNumber, NotSeen, NotStill
+from tms_decision.reasons import NotSeen, NotStill
+from tms_proof.reasons import Moving
+from tms_rc.reasons import AtPose, NoNumber
 from tms_reason import wire
 from tms_reason.wire import to_line
 from tms_ros.client import Call

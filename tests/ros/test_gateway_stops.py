@@ -14,8 +14,8 @@ from std_msgs.msg import Bool
 from tms_msg_rc.msg import MachineState, StopReceipt
 
 from conftest import GATEWAYS_ONLY, Mesh, mesh_apart, rearm, wait_until
+from tms_decision.reasons import SoftwareStop
 from tms_machine.border import MOTIONS, MotionAction
-from tms_machine.reasons import SoftwareStop
 from tms_reason.wire import to_line
 from tms_ros.goals import Outcome
 from tms_ros.node import Ros

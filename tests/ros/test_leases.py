@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from tms_msg_rc.msg import Permit as Message
 
-from tms_machine.permit import LEASE
+from tms_decision.permit_link import LEASE
 from tms_ros.node import Ros
 from tms_runtime import leases
 from tms_runtime.pulse import Pulse

@@ -22,8 +22,9 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 import programs
 from conftest import GATEWAYS_ONLY, Mesh, mesh_apart, wait_until
 from tms_config.config import load_site
-from tms_machine.reasons import DrivenByHand
-from tms_rc.reasons import LeftStandStill, Rival, Stalled, StrangeType
+from tms_decision.reasons import DrivenByHand, LeftStandStill
+from tms_proof.reasons import Stalled
+from tms_rc.reasons import Rival, StrangeType
 from tms_reason import wire
 from tms_reason.reason import Foreign
 from tms_reason.wire import to_line
@@ -201,7 +202,7 @@ def test_a_stop_in_the_dead_time_is_proven_after_it(machine: Machine) -> None:
 def test_a_software_stop_in_the_dead_time_that_is_ignored(machine: Machine) -> None:
     machine.be(ignore_emg_stop=True, ignore_cancel=True)
     call = machine.swing(duration=25)
-    machine.until(lambda: bool(machine.state.goal) or call.outcome is not None, "the goal is under way")
+    machine.until(lambda: call.feedback is not None or call.outcome is not None, "the controller works on the goal")
     assert call.outcome is None, call.result
     machine.button.publish(Bool(data=True))
     receipt = machine.wait_receipt()

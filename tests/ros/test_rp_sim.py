@@ -22,9 +22,8 @@ import programs
 from conftest import rearm
 from tms_config.config import load_site
 from tms_config.reasons import AboveLimit
-from tms_machine.reasons import MachineLatched
+from tms_decision.reasons import MachineLatched, PressedByOthers
 from tms_rc.latch_file import LatchFile
-from tms_rc.reasons import PressedByOthers
 from tms_reason import wire
 from tms_reason.reason import R
 from tms_ros.client import Call

@@ -11,10 +11,11 @@ from rclpy.clock_type import ClockType
 from tms_msg_ts.action import LeafNodeBase
 
 from conftest import wait_until
+from tms_decision.reasons import ProcessLost
 from tms_reason.wire import to_line
 from tms_ros.goals import Ended, Outcome
 from tms_ros.node import Ros
-from tms_ros.reasons import BeingStopped, ProcessLost
+from tms_ros.reasons import BeingStopped
 from tms_ros.server import Goal
 
 pytestmark = pytest.mark.ros

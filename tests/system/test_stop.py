@@ -18,12 +18,12 @@ from tms_msg_ts.msg import RunStates
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from conftest import CLI, Mesh, wait_until
-from tms_machine.reasons import MachineLatched, NoPermit
-from tms_rc.reasons import HeldByAnother, OldRun
+from tms_decision.owner import Owner
+from tms_decision.reasons import HeldByAnother, MachineLatched, NoPermit, OldRun
 from tms_reason import wire
 from tms_ros.goals import Outcome
 from tms_ros.node import Ros
-from tms_runtime.fence import Owner
+from tms_runtime.fence import goal_id
 
 pytestmark = pytest.mark.system
 JOINTS = ["swing_joint", "boom_joint", "arm_joint", "bucket_joint", "bucket_end_joint"]
@@ -113,10 +113,10 @@ def test_rearming_takes_two_steps_and_is_refused_while_the_stop_is_pressed(mesh:
 
 
 def test_goals_of_an_abandoned_run_are_refused(mesh: Mesh, node: Ros) -> None:
-    refused = ask_to_move(node, Owner(7, 1, 1).goal_id())
+    refused = ask_to_move(node, goal_id(Owner(7, 1, 1)))
     assert refused.outcome is Outcome.ABORTED and wire.known(refused.result.error_string).find(NoPermit) is not None
     with swinging(mesh, node):
-        stale = ask_to_move(node, Owner(7, 1, 1).goal_id())
+        stale = ask_to_move(node, goal_id(Owner(7, 1, 1)))
         foreign = ask_to_move(node)
         mesh.tms("cancel", newest(mesh))
     assert wire.known(stale.result.error_string).find(OldRun) is not None

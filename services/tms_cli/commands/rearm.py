@@ -6,7 +6,7 @@ import click
 
 from tms_cli import session, words
 from tms_cli.words import say
-from tms_machine.reasons import NoNote
+from tms_decision.reasons import NoNote
 from tms_reason import wire
 from tms_reason.errors import TmsError
 

@@ -8,7 +8,7 @@ import click
 from tms_cli import live, session, words
 from tms_cli.reasons import MachineUnknown
 from tms_cli.words import say
-from tms_machine.reasons import SoftwareStop
+from tms_decision.reasons import SoftwareStop
 from tms_reason.errors import ConfigError, RosError
 from tms_reason.wire import to_line
 

@@ -19,8 +19,9 @@ from tms_cli.drill.work import Work
 from tms_cli.reasons import DoesNotMove, NobodySays
 from tms_config.clock import sleep, unix_time
 from tms_config.config import Site
-from tms_machine.reasons import SoftwareStop
-from tms_rc.standstill import StandStill
+from tms_decision.reasons import SoftwareStop
+from tms_machine.facts import facts_of
+from tms_proof.standstill import StandStill
 from tms_reason import wire
 from tms_reason.errors import TmsError
 from tms_reason.wire import to_line
@@ -55,7 +56,7 @@ class Hand:
         self._site, self.machine = site, machine
         self.model = site.file.machines[machine].model
         self.eyes, self.work, self._node = StopObserver(node, site, machine), Work(node, site, machine), node
-        watch = StandStill(site.model_of(machine), site.border(machine), site.file.sim.speed)
+        watch = StandStill(facts_of(site, machine))
         self._ends = watch.dead_time + watch.braking
         self._hits = Hits(site)
         self._folder = site.state / "truth"

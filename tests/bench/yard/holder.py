@@ -13,10 +13,11 @@ from control_msgs.action import FollowJointTrajectory  # noqa: E402
 
 from bench.yard.machines import LIMIT, MODEL, motion, names  # noqa: E402
 from tms_config.config import load_site  # noqa: E402
+from tms_decision.owner import Owner  # noqa: E402
 from tms_machine.permit import Permit  # noqa: E402
 from tms_ros.client import Call  # noqa: E402
 from tms_ros.node import Ros  # noqa: E402
-from tms_runtime.fence import Owner  # noqa: E402
+from tms_runtime.fence import goal_id  # noqa: E402
 from tms_runtime.pulse import Pulse  # noqa: E402
 
 AGAIN = 0.5  # s between looks for refused goals: with busy cores not everybody has found everybody yet
@@ -29,7 +30,7 @@ def main(run: int) -> None:
     pulse = Pulse(ros)
     permits = {name: Permit(ros, pulse, name, subtask) for name in names()}
     for name in names():
-        Permit(ros, pulse, name, "ts").hold(Owner(run).goal_id(), "bench")
+        Permit(ros, pulse, name, "ts").hold(goal_id(Owner(run)), "bench")
     calls: dict[str, Call] = {}
     deadline = time.monotonic() + 10 * LIMIT
     leaf = 0
@@ -37,9 +38,9 @@ def main(run: int) -> None:
         for name, peer in peers.items():
             if name not in calls or calls[name].outcome is not None:
                 leaf += 1
-                permits[name].hold(Owner(run, leaf).goal_id())
+                permits[name].hold(goal_id(Owner(run, leaf)))
                 peer.wait_ready(LIMIT)
-                calls[name] = peer.send(motion(site.models[MODEL]), goal_id=Owner(run, leaf, 1).goal_id())
+                calls[name] = peer.send(motion(site.models[MODEL]), goal_id=goal_id(Owner(run, leaf, 1)))
         time.sleep(AGAIN)
 
 

@@ -6,7 +6,8 @@ from typing import Any
 import pytest
 from tms_msg_rc.msg import Permit as Message
 
-from tms_machine.permit import GRACE, RemotePermit, watch_server
+from tms_decision.permit_link import GRACE
+from tms_machine.permit import RemotePermit, watch_server
 from tms_runtime import leases
 
 GOAL = [7] * 16

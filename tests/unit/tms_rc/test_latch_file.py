@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from tms_machine.reasons import NoNote, SoftwareStop
+from tms_decision.reasons import NoNote, SoftwareStop
 from tms_rc.latch_file import LatchFile, Left
 from tms_rc.reasons import NoteUnreadable
 from tms_rc.receipts import Receipts

@@ -12,9 +12,11 @@ from sensor_msgs.msg import Imu, JointState
 
 from tms_config.models import MachineModel, Source
 from tms_config.yaml_file import parse
+from tms_decision.gateway.events import Published, Sampled
+from tms_machine.facts import machine_facts
+from tms_proof.reasons import ManyPublishers
+from tms_proof.standstill import HEADING, JOINTS, PLACE, TURNING, StandStill
 from tms_rc import machine_monitor
-from tms_rc.reasons import ManyPublishers
-from tms_rc.standstill import HEADING, JOINTS, PLACE, TURNING, StandStill
 from tms_ros.topics import Arrival
 
 CONFIGS = Path(__file__).resolve().parents[3] / "configs"
@@ -101,18 +103,25 @@ def test_a_source_that_speaks_again_is_not_believed_before_its_publishers_were_c
     border = next(iter(model.borders.values())).model_copy(update={"sources": {JOINTS: SOURCE}})
     site: Any = SimpleNamespace(border=lambda _: border, model_of=lambda _: model)
     app: Any = SimpleNamespace(machine="m", site=site, ros=ros)
-    watch = StandStill(model, border)
+    watch = StandStill(machine_facts("zx200", model, border))
     seen = machine_monitor.MachineMonitor(app, watch)
+
+    def take() -> None:
+        for event in seen.samples():
+            if isinstance(event, Sampled):
+                watch.take(event.source, event.sample)
+            elif isinstance(event, Published):
+                watch.sources[event.source].publishers = event.nodes
 
     def speak() -> None:
         message = JointState(name=list(model.initial), position=list(model.initial.values()))
         ros.waiting.append(Arrival(message, now[0], 1))
-        seen.take_samples()
+        take()
 
     speak()
     assert watch.trouble(now[0]) is None
     now[0] += 5.0
-    seen.take_samples()  # the regular count, while the first publisher, killed, is still the only one
+    take()  # the regular count, while the first publisher, killed, is still the only one
     now[0] += 0.01
     ros.voices = ["driver", "driver"]
     speak()

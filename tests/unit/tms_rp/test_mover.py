@@ -6,11 +6,11 @@ from typing import Any
 
 import pytest
 
+from tms_decision.reasons import ProcessLost
 from tms_machine.reasons import Busy
 from tms_reason import wire
 from tms_reason.errors import SubtaskFailed
 from tms_ros.goals import Outcome
-from tms_ros.reasons import ProcessLost
 from tms_rp.mover import _verdict
 
 

@@ -10,7 +10,7 @@ from conftest import site_data
 from tms_config.config import CONFIGS, Site, load_site
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
-from tms_machine.reasons import MachineLatched, SoftwareStop
+from tms_decision.reasons import MachineLatched, SoftwareStop
 from tms_reason.reason import Foreign, Reason
 from tms_ts import bt
 from tms_ts.preflight import StoredRecord, Values, at, machines_of, preflight, processes_of, records_of

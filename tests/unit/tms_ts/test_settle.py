@@ -12,7 +12,7 @@ from builtin_interfaces.msg import Time
 from tms_msg_rc.msg import StopReceipt
 from tms_msg_ts.action import ExecuteTask
 
-from tms_machine.reasons import MachineLatched, SoftwareStop, StopUnconfirmed
+from tms_decision.reasons import MachineLatched, SoftwareStop, StopUnconfirmed
 from tms_machine.values import from_parameters
 from tms_reason import wire
 from tms_reason.reason import Foreign, Reason

@@ -11,7 +11,7 @@ from fastapi import FastAPI
 
 from tms_config.config import Site, load_site
 from tms_config.site_file import Console, SiteFile
-from tms_machine.reasons import SoftwareStop
+from tms_decision.reasons import SoftwareStop
 from tms_reason.errors import TmsError
 from tms_reason.reason import Foreign, Reason
 from tms_reason.remedies import EDIT_TASK

@@ -7,7 +7,7 @@ from datetime import datetime, timedelta
 import pytest
 
 from tms_config.clock import utc_now
-from tms_machine.reasons import SoftwareStopBy
+from tms_decision.reasons import SoftwareStopBy
 from tms_reason.errors import TmsError
 from tms_reason.reason import Foreign
 from tms_ur.models import ActiveRun, Event, Host, Joint, Machine, Process

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from tms_machine.reasons import SoftwareStopBy
+from tms_decision.reasons import SoftwareStopBy
 from tms_ur import connections
 from tms_ur.connections import FULL, GRACE, HEADERS, MAX_CONNECTIONS, MAX_OF_ONE, Gate, Listener
 from tms_ur.room import MAX_OF_ONE as MAX_ASKED

@@ -1,0 +1,113 @@
+"""What happens to a gateway. Times are in the `now` of the step, unless an event says otherwise."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from tms_decision.owner import Owner
+from tms_proof.source import SourceSample
+from tms_reason.reason import Reason
+
+
+@dataclass(frozen=True)
+class Left:
+    """How the machine was left, by the notes on the disk; `latched` is None when it was armed."""
+
+    latched: Reason | None
+    holder: str = ""  # the run or the foreign client that may have left it moving
+    run: int = 0  # fencing number of that run
+    taken: str = ""  # who drives it by hand
+    unproven: bool = False  # it was latched, but the receipt of that stop was never written to the disk
+
+
+@dataclass(frozen=True)
+class Beat:
+    """A moment has passed: 50 ms, or 10 ms while a stop is being proven. What the shell sees at it."""
+
+    wall: float  # s since 1970, for receipts
+    reachable: bool = True  # a cancel would reach all servers of the machine
+    settling: bool = False  # the machine may still have commands of a stop before it, as a cancel
+    ready: bool = True  # the server of the active goal is there
+    gone: bool = False  # the server that took the active goal is gone
+    escaped: Reason | None = None  # the joint that has left its limits
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A trajectory: times [s] and angles [rad] in the order of `names`."""
+
+    names: Sequence[str]
+    points: Sequence[tuple[float, Sequence[float]]]
+
+
+@dataclass(frozen=True)
+class Turn:
+    """One joint goes to an angle [rad], at most this fast [rad/s, rad/s^2]: only the end of its motion is known."""
+
+    joint: str
+    angle: float
+    velocity: float
+    acceleration: float
+
+
+@dataclass(frozen=True)
+class GoalAsked:
+    """A client asks for a motion; `number` is new for each goal."""
+
+    number: int
+    owner: Owner | None  # None: a foreign client
+    server: str  # name of the machine's own server
+    wrong: Reason | None = None  # why the machine must not do it: its limits
+    motion: Reference | Turn | None = None
+    lasts: float = float("inf")  # s, as the goal says
+
+
+# fmt: off
+# what the machine tells
+@dataclass(frozen=True)
+class Sampled: source: str; sample: SourceSample
+@dataclass(frozen=True)
+class Published: source: str; nodes: tuple[str, ...]  # who publishes it, where there is more than one; else empty
+@dataclass(frozen=True)
+class Manual: on: bool  # its own signal that a person drives it by its levers
+@dataclass(frozen=True)
+class Pressed: pass  # its own emergency stop, by whomever
+@dataclass(frozen=True)
+class StoodIn: pass  # the host agent has pressed it just now, in place of this gateway
+
+# permits: a process says which goal it stands behind; DDS reports how many of its writers are asserted
+@dataclass(frozen=True)
+class PermitHeard: process: str; goal: bytes; holder: str
+@dataclass(frozen=True)
+class PermitReported: process: str; alive: int; not_alive: int; late: bool  # `late`: this PC did not run just now
+
+# goals: what their clients want, and what the machine's server does
+@dataclass(frozen=True)
+class GoalCancelled: number: int
+@dataclass(frozen=True)
+class CallAccepted: number: int
+@dataclass(frozen=True)
+class CallEnded: number: int; outcome: str; explained: bool = False  # its result says why; outcome: of tms_ros.goals
+
+# people, the scheduler; `request` is new for each call
+@dataclass(frozen=True)
+class Signal: on: bool  # a message of /emergency_signal
+@dataclass(frozen=True)
+class StopAsked: request: int; cause: Reason | None; orderly: bool  # the end of a goal or run, which needs no re-arm
+@dataclass(frozen=True)
+class RearmAsked: request: int; token: str; fresh: str  # without a token it asks for one, which will be `fresh`
+@dataclass(frozen=True)
+class TakeAsked: request: int; who: str; back: bool  # to drive by hand, or to give the machine back
+
+# the disk has what was to be kept, or why it has not; and the process ends in order
+@dataclass(frozen=True)
+class NoteKept: number: int; problem: Reason | None = None
+@dataclass(frozen=True)
+class ReceiptKept: stop: int; problem: str = ""
+@dataclass(frozen=True)
+class Leaving: pass
+# fmt: on
+
+Event = (
+    Beat | Sampled | Published | Manual | Pressed | StoodIn | PermitHeard | PermitReported | GoalAsked | GoalCancelled
+    | CallAccepted | CallEnded | Signal | StopAsked | RearmAsked | TakeAsked | NoteKept | ReceiptKept | Leaving
+)  # fmt: skip

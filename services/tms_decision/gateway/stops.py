@@ -1,0 +1,178 @@
+"""Stops the machine and proves it: commands at once, watches until it was seen to stand, then tells.
+
+The order of a stop is command, proof, note, receipt: a receipt is on the disk before it is published.
+"""
+
+from dataclasses import replace
+from enum import Enum
+
+from tms_decision.gateway import notes
+from tms_decision.gateway.effects import (
+    Cancel,
+    CancelAll,
+    Effect,
+    Emergency,
+    KeepReceipt,
+    Publish,
+    Receipt,
+    Stopped,
+    Tell,
+    Zero,
+)
+from tms_decision.gateway.events import ReceiptKept
+from tms_decision.gateway.state import Gateway, Goal, Stop
+from tms_decision.reasons import ByArrival, GoalOpen, LeftStandStill, NoEnd, NotOnDisk, NotSeenToStand
+from tms_proof.standstill import NOTHING, Expected
+from tms_reason.reason import Reason, Several
+
+STOP_PROVEN = 10.0  # s within which a gateway sees that a machine stands, or reports that it does not
+AGAIN = 0.5  # s between repeated commands while it is not proven
+DISK_LIMIT = 1.0  # s more for the disk; then the answer does not wait for it any longer
+
+
+class StopKind(Enum):
+    """What a stop means for the next motion."""
+
+    LATCH = "latched until re-armed"
+    HOLD = "held for its run"
+    PLAIN = "the end of a goal or of a run"
+
+
+def commands(latched: bool) -> list[Effect]:
+    """What stops a machine, whoever moves it; messages leave sooner than requests."""
+    return [Zero(), *([Emergency(True)] if latched else []), CancelAll()]
+
+
+def stop(
+    gateway: Gateway, now: float, cause: Reason, kind: StopKind, *, run: int = 0, expected: Expected = NOTHING,
+    broken: Reason | None = None,
+) -> Stop:  # fmt: skip
+    """Stop the machine, whichever client moves it.
+
+    `expected`: see `StandStill.proof`; with a goal under way, it is worked out from that goal.
+    """
+    active, latched = gateway.active, kind is StopKind.LATCH
+    gateway.do(*commands(latched))
+    if active is not None and active.sent and not active.outcome:
+        gateway.do(Cancel(active.number))  # also a goal that the machine has not answered yet
+    owner = active.owner if active is not None else None
+    if latched:
+        gateway.latch.close(cause)
+    elif kind is StopKind.HOLD and owner is not None:
+        gateway.latch.keep(cause, owner)
+    if active is not None and active.stop is None:
+        expected = _expected(gateway, active, now)
+    made = _begin(gateway, now, cause, latched, run or (owner.run if owner is not None else gateway.run or 0), expected)
+    made.broken = broken
+    if latched:
+        notes.keep(gateway)
+    if active is not None:
+        active.stop = active.stop or made
+    gateway.vigil.begin()
+    gateway.do(Publish())
+    return made
+
+
+def _expected(gateway: Gateway, active: Goal, now: float) -> Expected:
+    """The motion that must be seen if a goal is stopped now.
+
+    The machine may have begun to move as soon as the goal was sent: its answer comes later, or never.
+    """
+    if not active.sent:
+        return NOTHING
+    if active.follower is None:
+        return Expected(active.sent)
+    since = active.sent if active.follower.should_have_moved(now - active.sent) else None
+    return Expected(since, active.follower.on_its_way(now, gateway.watch.dead_times))
+
+
+def _begin(gateway: Gateway, now: float, cause: Reason, latched: bool, run: int, expected: Expected) -> Stop:
+    proof = gateway.watch.proof(now, latched, expected)
+    under_way = [other for other in gateway.stops if other.receipt is None]
+    for earlier in under_way:
+        proof = proof.after(earlier.proof)
+    if not under_way:
+        gateway.watch.mark()
+    gateway.numbered += 1
+    made = Stop(gateway.numbered, cause, latched, run, gateway.active, now, now + gateway.wall, proof, now + AGAIN)
+    gateway.stops.append(made)
+    return made
+
+
+def advance(gateway: Gateway, now: float) -> None:
+    """Repeat the commands of stops that are not proven yet, and end those that are, or have taken too long."""
+    for one in list(gateway.stops):
+        late = now - one.begun
+        if one.receipt is not None:
+            if late >= STOP_PROVEN + DISK_LIMIT and not one.over:
+                _over(gateway, one, replace(one.receipt, confirmed=False, latched=True, detail=NoEnd()))
+        elif _seen(gateway, one, now) or late >= STOP_PROVEN:
+            _end(gateway, one, now)
+        elif now > one.again:
+            one.again = now + AGAIN
+            gateway.do(*commands(one.latched))
+
+
+def _seen(gateway: Gateway, one: Stop, now: float) -> bool:
+    return one.ended() and gateway.watch.proven(one.proof, now)
+
+
+def _end(gateway: Gateway, one: Stop, now: float) -> None:
+    """Note what a stop has shown, then keep its receipt."""
+    receipt = one.receipt = _receipt(gateway, one, now)
+    if not receipt.confirmed:
+        gateway.latch.close(NotSeenToStand(one.cause, receipt.detail or NoEnd(), gateway.facts.name))
+        gateway.do(Emergency(True), Publish())
+    elif gateway.stood_in and gateway.latch.cause is None:
+        gateway.stood_in = False
+        gateway.do(Emergency(False))
+    if receipt.confirmed and gateway.run is None:  # it stands, and no run's goal moves it
+        notes.hold(gateway, "", 0)
+    else:
+        notes.keep(gateway)
+    gateway.do(KeepReceipt(one.number, receipt))
+
+
+def _receipt(gateway: Gateway, one: Stop, now: float) -> Receipt:
+    seen, travel = _seen(gateway, one, now), gateway.watch.travel()
+    obstacle = one.broken or (GoalOpen() if not one.ended() else gateway.watch.obstacle(now))
+    confirmed, unstamped = seen and one.broken is None, gateway.watch.unstamped
+    return Receipt(
+        one.cause, one.stamp, one.run, one.latched or not confirmed, confirmed, now - one.begun, travel.joint,
+        travel.angle, travel.way, None if confirmed else obstacle,
+        ByArrival(tuple(unstamped)) if unstamped else None,
+    )  # fmt: skip
+
+
+def kept(gateway: Gateway, event: ReceiptKept) -> None:
+    """A receipt is on the disk, or cannot be: it is told in any case, as a run must not wait for a full disk."""
+    one = next((one for one in gateway.stops if one.number == event.stop), None)
+    if one is None or one.receipt is None:
+        return
+    receipt = one.receipt
+    if event.problem:
+        known, lost = receipt.evidence, NotOnDisk(event.problem)
+        receipt = replace(receipt, evidence=lost if known is None else Several((known, lost)))
+    gateway.do(Tell(receipt))
+    gateway.stops.remove(one)
+    if not one.over:
+        _over(gateway, one, receipt)
+
+
+def _over(gateway: Gateway, one: Stop, receipt: Receipt) -> None:
+    one.answer = receipt
+    gateway.do(*(Stopped(request, receipt) for request in one.requests))
+
+
+def busy(gateway: Gateway) -> bool:
+    """Whether a stop is under way: its commands would end any motion that begins now."""
+    return any(not one.over for one in gateway.stops)
+
+
+def watch(gateway: Gateway, now: float) -> None:
+    """See that a stopped machine still stands."""
+    gateway.watch.settle(now)
+    if gateway.active is not None:
+        gateway.watch.commanded(now)
+    elif gateway.vigil.left(now, gateway.watch.moved_at) and gateway.by_hand is None and not busy(gateway):
+        stop(gateway, now, LeftStandStill(), StopKind.LATCH, broken=LeftStandStill())

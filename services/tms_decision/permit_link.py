@@ -1,0 +1,53 @@
+"""The permit of another process, as it is heard: which goal that process stands behind, and whether it lives."""
+
+from dataclasses import dataclass
+
+LEASE = 0.5  # s without an assertion until a process counts as lost
+GRACE = 0.1  # s more when the reader's own PC did not run for a moment
+NOBODY = bytes(16)  # the goal of a process that stands behind none
+
+
+@dataclass
+class PermitLink:
+    """One permit, by its messages and by the reports of DDS on who asserts it."""
+
+    process: str
+    goal: bytes = NOBODY
+    holder: str = ""
+    stale_writers: int = 0  # predecessors that discovery has not dropped yet, or the process itself while it is frozen
+    left: bool = False  # the last one ended in order; a killed one leaves a stale writer
+    received: float = float("-inf")
+    asserts: bool = False
+    asserted: int = 0  # writers that are asserted now
+    doubted: float | None = None  # since when it may be lost: its assertions may have come, but not been handled yet
+
+    def alive(self, now: float) -> bool:
+        """Whether the process works for `goal` now."""
+        # A message may be handled before the report that its writer is asserted again.
+        return self.goal != NOBODY and (self.asserts or now - self.received < LEASE)
+
+    def heard(self, goal: bytes, holder: str, now: float) -> None:
+        """Take a message of the process."""
+        self.received, self.goal, self.holder = now, goal, holder
+
+    def reported(self, alive: int, not_alive: int, late: bool, now: float) -> None:
+        """Take a report of DDS: how many writers are asserted, and are not; `late`: this PC did not run just now."""
+        if alive > 0 or self.asserted > 0:
+            self.left = alive == 0 and not_alive <= self.stale_writers
+        self.asserted, self.stale_writers = alive, not_alive
+        if alive > 0:
+            self.asserts, self.doubted = True, None
+        elif late and self.asserts:
+            self.doubted = now
+        else:
+            self._lose()
+
+    def judge(self, now: float) -> bool:
+        """Whether a doubted process counts as lost from now on."""
+        if self.doubted is None or now - self.doubted < GRACE:
+            return False
+        self._lose()
+        return True
+
+    def _lose(self) -> None:
+        self.asserts, self.doubted, self.received = False, None, float("-inf")

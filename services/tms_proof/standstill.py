@@ -1,0 +1,281 @@
+"""When a machine counts as standing: every joint and source, after the stop, by position and velocity. Pure logic.
+
+A stop is proven when samples that were received *and* measured after the stop and after the machine's dead time show,
+for every channel of every source, that it stood for a while: before that, a command that is still on its way through
+the hydraulics may move it. A channel without samples does not count as standing.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from tms_proof.channel import WORST, Limits, Place
+from tms_proof.facts import MachineFacts
+from tms_proof.reasons import Beyond, Moving, NoSource, NotLongEnough
+from tms_proof.source import LABELS, SourceSample, SourceWatch, Trouble
+from tms_reason.reason import Reason
+
+JOINTS, ODOM, POSE, IMU = "joint_states", "odom", "pose", "imu"
+PLACE, HEADING, TURNING = "place", "heading", "turning"
+HARD = 0.2  # rad; a joint that far beyond its limit is impossible: its sensor, or its name, is wrong
+INFINITE = float("inf")
+SEEN, SHARE = 0.003, 0.5  # a commanded motion above so many rad must be seen, and this share of it after the stop
+OBEYS = 3.5  # s that a machine may go on after the command to stop, unless it was seen to obey
+
+
+@dataclass(frozen=True)
+class Travel:
+    """How far a machine went."""
+
+    joint: str = ""  # the joint that went furthest, or `heading`
+    angle: float = 0.0  # rad
+    way: float = 0.0  # m, of the base
+
+
+@dataclass(frozen=True)
+class Expected:
+    """The motion that must be seen, or must have been seen, for the sources to be believed."""
+
+    since: float | None = None  # s, monotonic, when it began; None: no motion was commanded
+    to_come: Mapping[str, float] = field(default_factory=dict)  # joint -> rad that were commanded and not seen yet
+
+
+NOTHING = Expected()
+# For a restarted gateway: it sees only a part of the motion that was commanded. Without this, a machine that coasts and
+# replays a record of its last seconds, in which the motion had just begun, would be believed to stand.
+UNKNOWN = Expected(INFINITE)
+
+
+@dataclass(frozen=True)
+class Proof:
+    """What must be seen after one stop."""
+
+    start: float  # s, monotonic: only later measurements count ...
+    unseen: float  # s, ... and only those after this, if the expected motion was never seen
+    expected: Expected
+    seconds: float  # s of standing
+    immediate: bool = False  # the stop also cancels commands that are on their way
+
+    def after(self, other: "Proof") -> "Proof":
+        """What must be seen if another stop was commanded before: the motion that it waits for may still come."""
+        if self.immediate:
+            return self
+        since = [one for one in (self.expected.since, other.expected.since) if one is not None]
+        mine, others = self.expected.to_come, other.expected.to_come
+        to_come = {name: max(mine.get(name, 0.0), others.get(name, 0.0)) for name in {*mine, *others}}
+        return Proof(
+            max(self.start, other.start), max(self.unseen, other.unseen),
+            Expected(max(since, default=None), to_come), max(self.seconds, other.seconds),
+        )  # fmt: skip
+
+
+class StandStill:
+    """The watch over one machine; all times are seconds of one monotonic clock."""
+
+    def __init__(self, facts: MachineFacts) -> None:
+        self._facts = facts
+        self.sources: dict[str, SourceWatch] = {
+            name: SourceWatch(name, source, _channels(name, facts, source.resolution))
+            for name, source in facts.sources.items()
+        }
+        self._marks: dict[str, dict[str, Place]] = {}
+        self._angles: dict[str, float] = {}
+        self._way = 0.0
+        self._quiet_since = -INFINITE  # when our last goal ended: its last commands may still be on their way
+        self._motion_at = -INFINITE  # when a motion was last seen
+
+    @property
+    def dead_times(self) -> dict[str, float]:
+        """Seconds for which a command of each joint may still be on its way."""
+        return {name: self._dead_time(name) for name in self._facts.joints}
+
+    def _dead_time(self, joint: str) -> float:
+        response = self._facts.joint_response.get(joint)  # a passive joint has none
+        return response.dead_time / self._facts.speed if response else 0.0
+
+    @property
+    def dead_time(self) -> float:
+        """Seconds for which a command may still be on its way."""
+        return max((one.dead_time for one in self._facts.responses), default=0.0) / self._facts.speed
+
+    @property
+    def braking(self) -> float:
+        """Seconds after the dead time in which every motion has ended: from full speed, and a lag more."""
+        return max((one.brakes + one.lag for one in self._facts.responses), default=0.0) / self._facts.speed
+
+    @property
+    def reached(self) -> float:
+        """Dead time and lag of the slowest joint [s of the machine]: then it is where its reference was."""
+        response = self._facts.joint_response.values()
+        return max((one.dead_time for one in response), default=0.0) + max((one.lag for one in response), default=0.0)
+
+    @property
+    def unstamped(self) -> list[Reason]:
+        """Sources whose messages are not stamped: for them only the arrival counts."""
+        return [one.label for one in self.sources.values() if one.source.stamps == "none"]
+
+    def take(self, name: str, sample: SourceSample) -> None:
+        """Take one message of a source."""
+        source = self.sources[name]
+        source.take(sample)
+        if source.fast:
+            self._motion_at = max(self._motion_at, sample.received)
+        for channel, away in source.travel(self._marks.get(name, {})).items():
+            if channel == PLACE:
+                self._way = max(self._way, away)
+            else:
+                # A new dict: other threads read the old one without a lock.
+                self._angles = {**self._angles, channel: max(self._angles.get(channel, 0.0), away)}
+
+    # what is known
+
+    @property
+    def positions(self) -> dict[str, float]:
+        """Last position of each joint [rad]."""
+        joints = self.sources.get(JOINTS)
+        return {name: place[0] for name, place in joints.places().items()} if joints else {}
+
+    @property
+    def velocities(self) -> dict[str, float]:
+        """Last velocity of each joint, where it is reported [rad/s]."""
+        joints = self.sources.get(JOINTS)
+        last = {name: one.last for name, one in joints.channels.items()} if joints else {}
+        return {name: seen.speed for name, seen in last.items() if seen is not None and seen.speed is not None}
+
+    def age(self, now: float) -> float:
+        """Seconds since the last sample of the channel that is silent for longest, infinite before the first."""
+        return max((source.age(now) for source in self.sources.values()), default=INFINITE)
+
+    def silent(self, now: float, limit: float) -> Reason | None:
+        """The channel of which no sample has come for `limit` seconds."""
+        if not self.sources:
+            return NoSource()
+        return next(filter(None, (source.silent(now, limit) for source in self.sources.values())), None)
+
+    def trouble(self, now: float) -> Trouble | None:
+        """Why a source cannot be believed; a trouble that does not pass comes first."""
+        found = [one for source in self.sources.values() if (one := source.trouble(now)) is not None]
+        found += [Trouble(beyond) for beyond in [self._beyond()] if beyond is not None]
+        return min(found, key=lambda one: one.passes, default=None)
+
+    def _beyond(self) -> Reason | None:
+        for name, angle in self.positions.items():
+            joint = self._facts.joints[name]
+            if joint.low is not None and angle < joint.low - HARD:
+                return Beyond(LABELS[JOINTS], name, angle, joint.low)
+            if joint.high is not None and angle > joint.high + HARD:
+                return Beyond(LABELS[JOINTS], name, angle, joint.high)
+        return None
+
+    # motion
+
+    @property
+    def moved_at(self) -> float:
+        """When a motion was last seen [s]; minus infinity if never."""
+        return self._motion_at
+
+    def moving(self) -> bool:
+        """Whether any of the last messages showed a motion, or a channel has no samples."""
+        return not self.sources or any(source.moving() for source in self.sources.values())
+
+    def standing(self, now: float, passing: bool = False) -> bool:
+        """Whether it was seen to stand for long enough, with or without a stop; `passing`: also by a new clock."""
+        trouble = self.trouble(now)
+        return (trouble is None or (passing and trouble.passes)) and self._stands(-INFINITE, now)
+
+    def _stands(self, start: float, now: float) -> bool:
+        seconds = self._facts.still.seconds
+        return bool(self.sources) and all(one.proves(start, now, seconds) for one in self.sources.values())
+
+    def settle(self, now: float) -> None:
+        """Accept new clocks once the machine has stood long enough by their stamps."""
+        if any(source.new_clock for source in self.sources.values()):
+            stands = self._stands(-INFINITE, now)
+            for source in self.sources.values():
+                source.settle(now, stands)
+
+    def accept_clocks(self) -> None:
+        """Accept new clocks, as a person has looked at the machine."""
+        for source in self.sources.values():
+            source.accept_clock()
+
+    # proof
+
+    def commanded(self, now: float) -> None:
+        """Note that a goal of ours moves the machine now."""
+        self._quiet_since = now
+
+    def proof(self, begun: float, strongest: bool, expected: Expected = NOTHING) -> Proof:
+        """What must be seen after a stop that was commanded at `begun`.
+
+        A strongest stop that acts at once (`emg_stop_at_once`) needs no dead time if its effect can be seen: the
+        machine moves, or no command is on its way. Else a machine that ignores it would be believed to stand.
+        If an expected motion was never seen, the sources are doubtful (they may replay a record): then no sample counts
+        before every motion must have ended, also that of a machine which goes on for a while.
+        """
+        visible = self._motion_at > begun - WORST or begun - self._quiet_since > self.dead_time
+        immediate = strongest and self._facts.stops_at_once and visible
+        wait, coming = (0.0, {}) if immediate else (self.dead_time, expected.to_come)
+        expected = Expected(expected.since, {name: way for name, way in coming.items() if way > SEEN})
+        unseen = begun + self._settles
+        return Proof(begun + wait, unseen, expected, self._facts.still.seconds, immediate)
+
+    def proven(self, proof: Proof, now: float) -> bool:
+        """Whether all that the proof asks for was seen."""
+        if self.trouble(now) is not None:
+            return False
+        return self._stands(max(self._start(proof), self._surprised() + self._settles), now)
+
+    @property
+    def _settles(self) -> float:
+        """Seconds after a stop in which every motion has ended, also that of a machine which goes on for a while."""
+        return self.dead_time + self.braking + OBEYS
+
+    def _start(self, proof: Proof) -> float:
+        since, angles = proof.expected.since, self._angles
+        seen = since is None or self._motion_at > since
+        seen = seen and all(angles.get(name, 0.0) >= SHARE * way for name, way in proof.expected.to_come.items())
+        return proof.start if seen else proof.unseen
+
+    def _surprised(self) -> float:
+        return max((source.surprised for source in self.sources.values()), default=-INFINITE)
+
+    def obstacle(self, now: float) -> Reason:
+        """Why a stop is not proven."""
+        trouble = self.trouble(now)
+        if trouble is not None:
+            return trouble.reason
+        for source in self.sources.values():
+            if silent := source.silent(now, source.longest):
+                return silent
+        return Moving() if self.moving() else NotLongEnough()
+
+    # travel
+
+    def mark(self) -> None:
+        """Begin to count travel anew."""
+        self._marks = {name: source.places() for name, source in self.sources.items()}
+        self._angles, self._way = {}, 0.0
+
+    def travel(self) -> Travel:
+        """How far each part has been from the mark at most."""
+        angles = self._angles
+        joint = max(angles, key=lambda name: angles[name], default="")
+        return Travel(joint, angles.get(joint, 0.0), self._way)
+
+
+def _channels(name: str, facts: MachineFacts, resolution: float) -> dict[str, Limits]:
+    """The channels of a source, and when each counts as standing."""
+    still, speed = facts.still, facts.speed
+    if name == JOINTS:
+        return {
+            joint: Limits(
+                still.velocity, limits.velocity, resolution, limits.low is None and limits.high is None, speed
+            )
+            for joint, limits in facts.joints.items()
+        }
+    if name == IMU:
+        return {TURNING: Limits(still.angular, INFINITE, scale=speed)}
+    return {
+        PLACE: Limits(still.linear, facts.drive_velocity, resolution, scale=speed),
+        HEADING: Limits(still.angular, facts.turn_velocity, resolution, True, speed),
+    }

@@ -1,0 +1,112 @@
+"""A machine of one joint: its true motion, its server, and what it tells of itself. Pure; times are its own seconds."""
+
+from dataclasses import dataclass, field
+
+from tms_proof.facts import JointFacts, MachineFacts, ResponseFacts, SourceFacts, StillFacts
+from tms_proof.source import SourceSample
+from tms_proof.standstill import JOINTS
+
+JOINT = "boom"
+DEAD_TIME, LAG, TOP = 0.3, 0.1, 0.5  # s, s, rad/s
+PERIOD = 0.1  # s between messages
+
+
+def facts(name: str = "zx200", at_once: bool = False) -> MachineFacts:
+    """What the decisions know of it."""
+    return MachineFacts(
+        name, {JOINT: JointFacts(TOP, -9.0, 9.0)}, {JOINT: ResponseFacts(DEAD_TIME, LAG, 0.1)},
+        StillFacts(0.01, 0.02, 0.01, 0.2), {JOINTS: SourceFacts(PERIOD, "utc", 2.0)}, stops_at_once=at_once,
+    )  # fmt: skip
+
+
+@dataclass
+class Fault:
+    """How it is unkind."""
+
+    coast: float = 0.0  # s that it goes on after an order to stop
+    ignore_cancel: bool = False
+    ignore_emergency: bool = False
+    mute: bool = False  # tells nothing
+    frozen_stamp: bool = False
+    zero_velocity: bool = False  # tells velocity 0
+    replay: bool = False  # tells its last two seconds again and again
+    silent_server: bool = False  # does not answer
+
+
+@dataclass
+class Plant:
+    """Speeds are commands on their way: each takes effect a dead time later, those of a stop at once if it can."""
+
+    at_once: bool = False
+    fault: Fault = field(default_factory=Fault)
+    angle: float = 0.0  # rad
+    speed: float = 0.0  # rad/s
+    at: float = 0.0  # s
+    coming: list[tuple[float, float]] = field(default_factory=list)  # when, speed
+    goal: int | None = None
+    until: float = 0.0  # when the goal's motion ends
+    emergency: bool = False
+    number: int = 0  # of its messages
+    told: list[tuple[float, float, float]] = field(default_factory=list)  # stamp, angle, speed
+
+    def advance(self, now: float) -> None:
+        """Let time pass."""
+        while self.coming and self.coming[0][0] <= now:
+            when, speed = self.coming.pop(0)
+            self.angle += self.speed * (when - self.at)
+            self.at, self.speed = when, speed
+        self.angle += self.speed * (now - self.at)
+        self.at = now
+
+    def moves(self) -> bool:
+        """Whether it moves, or is on its way to."""
+        return self.speed != 0.0 or any(speed != 0.0 for _, speed in self.coming)
+
+    def accept(self, goal: int, seconds: float, speed: float, now: float) -> bool:
+        """Take a goal: to turn at a speed for some seconds."""
+        self.advance(now)
+        if self.emergency or self.goal is not None:
+            return False
+        self.goal, self.until = goal, now + seconds + DEAD_TIME
+        self.coming = sorted([*self.coming, (now + DEAD_TIME, speed), (self.until, 0.0)])
+        return True
+
+    def turn(self, speed: float, now: float, seconds: float) -> None:
+        """A person moves it by its levers, without dead time."""
+        self.advance(now)
+        self.coming = sorted([*self.coming, (now, speed), (now + seconds, 0.0)])
+
+    def halt(self, now: float, by_emergency: bool = False) -> int | None:
+        """Obey an order to stop; returns the goal that it ends."""
+        self.advance(now)
+        ignored = self.fault.ignore_emergency if by_emergency else self.fault.ignore_cancel
+        if ignored:
+            return None
+        wait = 0.0 if by_emergency and self.at_once else DEAD_TIME
+        effect = now + wait + self.fault.coast
+        self.coming = [one for one in self.coming if one[0] < effect] + [(effect, 0.0)]
+        ended, self.goal = self.goal, None
+        self.advance(now)
+        return ended
+
+    def done(self, now: float) -> int | None:
+        """The goal that has ended by itself."""
+        if self.goal is None or now < self.until:
+            return None
+        ended, self.goal = self.goal, None
+        return ended
+
+    def tell(self, now: float) -> SourceSample | None:
+        """Its message at this moment."""
+        self.advance(now)
+        if self.fault.mute:
+            return None
+        stamp, angle, speed = now, self.angle, 0.0 if self.fault.zero_velocity else self.speed
+        if self.fault.replay and len(self.told) >= 20:
+            _, angle, speed = self.told[self.number % 20]
+        else:
+            self.told = [*self.told, (stamp, angle, speed)][-20:]
+        if self.fault.frozen_stamp and self.told:
+            stamp = self.told[0][0]
+        self.number += 1
+        return SourceSample(now, stamp + 1e9, self.number, {JOINT: (angle,)}, {JOINT: speed})

@@ -1,0 +1,48 @@
+"""The simulation of a site itself: it repeats, it finds what is wrong, and it tells it shortly."""
+
+from collections.abc import Iterator
+
+import pytest
+
+from simulation.plan import plan
+from simulation.schedule import Schedule, shorter
+from tms_decision.gateway import motion
+from tms_proof.standstill import StandStill
+
+SEEDS = range(7_000, 7_012)
+
+
+def test_the_same_seed_gives_the_same_history() -> None:
+    first, second = (Schedule(17).run() for _ in range(2))
+    assert list(map(str, first.history)) == list(map(str, second.history))
+    assert first.events == second.events > 300
+
+
+def test_a_plan_has_faults_and_people() -> None:
+    for seed in SEEDS:
+        assert len(plan(seed)) >= 5 and plan(seed) == plan(seed)
+
+
+def test_a_few_schedules_hold_and_move_the_machine() -> None:
+    results = [Schedule(seed).run() for seed in SEEDS]
+    assert [result.violation for result in results if result.violation] == []
+    assert sum(result.goals for result in results) > len(results)
+
+
+@pytest.fixture
+def believes(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """A gateway that takes every machine for standing."""
+    monkeypatch.setattr(StandStill, "proven", lambda self, proof, now: True)
+    yield
+
+
+@pytest.mark.usefixtures("believes")
+def test_a_false_receipt_is_found_and_made_shorter() -> None:
+    found = next(result for result in (Schedule(seed).run() for seed in SEEDS) if result.violation)
+    assert "truly moving" in found.violation
+    assert len(shorter(found).plan) < len(found.plan)
+
+
+def test_a_gateway_that_looks_at_no_permit_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(motion, "check_chain", lambda gateway, now: None)
+    assert any("moves on" in Schedule(seed).run().violation for seed in range(7_080, 7_090))

@@ -1,0 +1,93 @@
+"""Joints that do not follow are told within dead time, lag and a second; those that do are left alone."""
+
+from collections.abc import Callable
+
+import pytest
+
+from tms_proof.following import Follower, Way, ways
+from tms_proof.reasons import OffPath, Stalled
+from tms_reason.reason import Reason
+
+DEAD, LAG, LOOK = 0.9, 1.0, 0.1  # s
+NAMES = ("swing", "boom")
+POINTS = [(0.0, (0.0, 0.5)), (2.0, (0.8, 0.5)), (4.0, (0.8, -0.1))]
+START = {"swing": 0.0, "boom": 0.5}
+
+
+def watched(
+    joint: Callable[[float, Way], float], points: list[tuple[float, tuple[float, ...]]] = POINTS, limit: float = 12.0
+) -> tuple[float, Reason | None]:
+    """When something is told of a machine whose joints are where `joint` says, and what; infinite for nothing."""
+    found = ways(NAMES, points, START)
+    follower = Follower(found, DEAD + LAG, 100.0)
+    for i in range(round(limit / LOOK)):
+        time = i * LOOK
+        wrong = follower.check(100.0 + time, {name: joint(time, way) for name, way in found.items()})
+        if wrong is not None:
+            return time, wrong
+    return float("inf"), None
+
+
+@pytest.mark.parametrize("late", [0.0, 0.3, DEAD, DEAD + LAG])
+def test_a_machine_that_follows_is_left_alone(late: float) -> None:
+    assert watched(lambda time, way: way.at(time - late)) == (float("inf"), None)
+
+
+def test_a_machine_that_never_moves_is_stalled() -> None:
+    when, what = watched(lambda time, way: way.at(0.0))
+    assert when <= DEAD + LAG + 1.0
+    assert isinstance(what, Stalled) and (what.joint, what.angle) == ("swing", 0.0)
+
+
+def test_a_stall_on_the_way_is_told_within_a_second_more() -> None:
+    when, what = watched(lambda time, way: way.at(min(time - DEAD, 1.0)))
+    assert 1.0 + DEAD < when <= 1.0 + DEAD + DEAD + LAG + 1.0
+    assert isinstance(what, Stalled) and what.joint == "swing"
+
+
+def test_a_joint_that_stands_short_of_its_goal_is_stalled() -> None:
+    _, what = watched(lambda time, way: max(way.at(time - DEAD), 0.1) if way.angles[0] else way.at(time - DEAD))
+    assert isinstance(what, Stalled) and (what.joint, what.angle) == ("boom", pytest.approx(0.1))
+
+
+def test_the_wrong_way_is_off_the_path() -> None:
+    when, what = watched(lambda time, way: 2 * way.angles[0] - way.at(time - DEAD))
+    assert isinstance(what, OffPath) and what.joint == "swing" and -0.3 < what.angle < -0.2
+    assert when < DEAD + 1.0
+
+
+def test_a_joint_that_goes_on_behind_its_end_is_off_the_path() -> None:
+    _, what = watched(lambda time, way: 0.4 * max(0.0, time - DEAD) if way.angles[0] == 0 else way.at(time - DEAD))
+    assert isinstance(what, OffPath) and what.joint == "swing"
+
+
+def test_a_joint_that_turns_may_be_told_a_turn_away() -> None:
+    found = ways(["swing"], [(0.0, (0.1,)), (1.0, (0.6,))], {"swing": 6.3831853})
+    assert found["swing"].angles[-1] == pytest.approx(6.8831853)
+
+
+def test_a_motion_is_to_be_seen_once_its_reference_has_moved() -> None:
+    follower = Follower(ways(NAMES, POINTS, START), DEAD + LAG, 100.0)
+    assert not follower.should_have_moved(0.0)
+    assert follower.should_have_moved(0.1)
+
+
+def test_what_is_on_its_way_is_a_joint_s_own_dead_time_by_either_kind_of_controller() -> None:
+    follower = Follower(ways(NAMES, POINTS, START), DEAD + LAG, 100.0)
+    on_its_way = follower.on_its_way(103.0, {"swing": 0.9, "boom": 0.3})
+    assert on_its_way["swing"] == pytest.approx(0.0)  # it has arrived 1 s ago
+    assert on_its_way["boom"] == pytest.approx(0.09)  # 0.3 rad/s
+    begins = follower.on_its_way(102.5, {"swing": 0.9, "boom": 0.3})
+    assert begins["swing"] == pytest.approx(0.16)
+    assert begins["boom"] == pytest.approx(0.0)  # led 0.6 s later, it has not been commanded yet
+
+
+def test_what_is_heard_must_change_while_the_reference_moves() -> None:
+    follower = Follower(ways(NAMES, POINTS, START), DEAD + LAG, 100.0)
+    assert follower.moved(103.0, 1.0) and not follower.moved(106.0, 1.0)
+
+
+def test_a_goal_that_asks_for_no_motion_changes_nothing() -> None:
+    follower = Follower(ways(NAMES, [(60.0, (0.0, 0.5))], START), DEAD + LAG, 100.0)
+    assert not follower.moved(130.0, 20.0)
+    assert follower.check(130.0, START) is None
