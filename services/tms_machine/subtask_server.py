@@ -189,16 +189,26 @@ class _Server:
 
 
 class _Feedback:
-    """Progress texts of one goal, at a bounded rate; the last one carries the reason of a failure."""
+    """Progress texts of one goal, at a bounded rate; the last one carries the reason of a failure.
+
+    A planner that was lost since its PC was busy goes on to report progress, from another thread.
+    """
 
     def __init__(self, goal: LeafGoal) -> None:
         self._goal = goal
         self._next = 0.0
+        self._saying = threading.Lock()
 
     def __call__(self, now: Reason | str) -> None:
-        if monotonic() >= self._next:
-            self.last(Foreign(now) if isinstance(now, str) else now)
+        with self._saying:
+            if monotonic() >= self._next:
+                self._next = monotonic() + FEEDBACK_GAP
+                self._publish(Foreign(now) if isinstance(now, str) else now)
 
     def last(self, reason: Reason) -> None:
-        self._next = monotonic() + FEEDBACK_GAP
+        with self._saying:
+            self._next = float("inf")
+            self._publish(reason)
+
+    def _publish(self, reason: Reason) -> None:
         self._goal.publish(LeafNodeBase.Feedback(status=to_line(reason)))

@@ -34,7 +34,8 @@ PR_SET_PDEATHSIG = 1
 # started: processes that are starting must not keep working ones from their beats. Twenty of them come to the end of
 # their imports at the same time, and each then makes its participant with real-time priority 1.
 FIRST = {"tms_ts.node": (-15, 2), "tms_rc.node": (-12, 3), "tms_host.node": (-12, 3)}
-OF_A_MACHINE = -5  # planner and subtasks; the processes above, too, while they start
+OF_A_MACHINE = (-5, 1)  # planner and subtasks, whose permits lapse as well
+STARTING = -5  # nice of all these while they start
 
 
 def main(name: str) -> int:
@@ -74,7 +75,7 @@ def _serve(site: Site, row: Process, leaving: ExitStack) -> int:
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda _number, _frame: stop.set())
     if row.module in FIRST:
-        come_first(OF_A_MACHINE, threads())
+        come_first(STARTING, threads())
     wire.load()  # now: the executor would stand still when it receives the first reason of another service
     ros = Ros(row.full.replace(":", "_"), process=row.full, creating=undisturbed())
     leaving.callback(_leave_unstarted, ros)
@@ -85,7 +86,7 @@ def _serve(site: Site, row: Process, leaving: ExitStack) -> int:
     app_box.append(app)
     Graph(ros, logger)
     if row.module in FIRST or row.group == row.machine:
-        nice, realtime = FIRST.get(row.module, (OF_A_MACHINE, 0))
+        nice, realtime = FIRST.get(row.module, OF_A_MACHINE)
         come_first(nice, threads(), realtime)
     logger.info("started", pid=os.getpid())
     _wait_for_end(stop, ros.failed, logger)

@@ -132,6 +132,22 @@ def test_a_motion_frees_the_record_however_it_ends() -> None:
     assert database.lock == [False]
 
 
+def test_progress_that_comes_after_the_reason_of_a_failure_does_not_hide_it() -> None:
+    server, kind = served(Database(1.0), plan_only=False)
+    tell: list[Any] = []
+
+    def fails(*words: Any) -> None:
+        tell.append(words[-1])
+        raise SubtaskFailed("too far")
+
+    kind.execute = fails
+    goal = Goal()
+    assert accepted(server) is None
+    assert server._execute(goal) is Outcome.ABORTED
+    tell[0]("move 2 of 3")  # of a planner that was taken for lost
+    assert goal.said == ['FOREIGN words="too far"']
+
+
 @pytest.mark.parametrize(("plan_only", "freed"), [(False, [False]), (True, [])])
 def test_a_motion_that_is_refused_for_its_record_frees_it(plan_only: bool, freed: list[bool]) -> None:
     database = Database("far")
