@@ -132,7 +132,9 @@ def test_what_is_backed_up_comes_back_byte_by_byte(shared_db: store.Db, other_db
     fill(shared_db)
     schema.bring_up(shared_db)
     run = Run("r1", 4, "text", "success", "", ("zx200",), BEGIN, BEGIN)
-    History(shared_db).write([run], [Event("r1", n, BEGIN, "node", values={"x.y": 1.5}) for n in range(1, 1200)])
+    history = [Event("r1", n, BEGIN, "node", values={"x.y": 1.5}) for n in range(1, 1200)]
+    for first in range(0, len(history), 100):  # on a busy PC, the store would not answer one large write in time
+        History(shared_db).write([run], history[first : first + 100])
     Tasks(shared_db).add('<root><BehaviorTree ID="new"><AlwaysSuccess/></BehaviorTree></root>')
     file = tmp_path / "b.archive"
     said: list[str] = []
