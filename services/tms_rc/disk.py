@@ -1,6 +1,5 @@
 """Keeps notes and receipts on the disk, one after the other in a thread of its own, and answers with events."""
 
-import threading
 from queue import SimpleQueue
 
 from prometheus_client import Counter
@@ -29,7 +28,7 @@ class Disk:
         shell.does(KeepState, self._waiting.put)
         shell.does(KeepDriver, self._waiting.put)
         shell.does(KeepReceipt, self._waiting.put)
-        threading.Thread(target=self._work, name="disk", daemon=True).start()
+        app.ros.loop.begin(self._work, "disk")
 
     def _work(self) -> None:
         while True:

@@ -14,7 +14,7 @@ from tms_decision.gateway.events import (
     GoalCancelled,
     Leaving,
 )
-from tms_decision.gateway.state import Gateway, Goal
+from tms_decision.gateway.state import Gateway
 from tms_decision.owner import parse
 from tms_machine.border import MotionAction
 from tms_rc.goal_check import GoalCheck
@@ -64,11 +64,6 @@ class MotionServers:
         name = f"/{self._app.machine}/rc/{motion.served}"
         self._app.ros.serve(motion.type, name, lambda goal: self._run(motion, peer, goal))
 
-    def goal_id(self, active: Goal | None) -> str:
-        """The UUID of the active goal; empty without one."""
-        served = self._served.get(active.number) if active is not None else None
-        return served.goal.id if served is not None else ""
-
     def look(self, gateway: Gateway) -> tuple[bool, bool, Reason | None]:
         """Whether the server of the active goal is there, or gone; and which joint has left its limits."""
         active = gateway.active
@@ -82,7 +77,7 @@ class MotionServers:
         served = Served(next(self._numbers), motion, goal, peer)
         self._served[served.number] = served
         wrong = self._shell.read(lambda gateway, now: self._check.problem(motion, goal.request, gateway))
-        asked = GoalAsked(served.number, parse(goal.uuid), peer.name, wrong)
+        asked = GoalAsked(served.number, goal.id, parse(goal.uuid), peer.name, wrong)
         if wrong is None:
             asked = replace(asked, motion=self._check.motion(motion, goal.request), lasts=duration(goal.request))
         self._shell.happened(asked)

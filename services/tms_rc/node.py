@@ -63,7 +63,8 @@ def _serve(app: App, claim: Claim) -> None:
 
     def look(seen: Gateway) -> Beat:
         ready, gone, escaped = servers.look(seen)
-        return Beat(unix_time(), controls.reachable(), controls.settling(), ready, gone, escaped)
+        reachable = seen.recovery.reached or controls.reachable()  # asked of the graph at the start only
+        return Beat(unix_time(), reachable, controls.settling(), ready, gone, escaped)
 
     shell.begin(effects, monitor.samples, look)
     for motion in motions(border):

@@ -59,7 +59,7 @@ class StateTopic:
         driver = gateway.by_hand
         return MachineState(
             machine=self._app.machine, ready=reason is None, moving=moving,
-            goal=self._servers.goal_id(gateway.active), owner=holder,
+            goal=gateway.active.asked.id if gateway.active is not None else "", owner=holder,
             joint_names=list(positions), positions=list(positions.values()),
             velocities=[velocities.get(name, 0.0) for name in positions],
             age=age, reason=to_line(reason), by_hand=driver.words if isinstance(driver, Foreign) else to_line(driver),

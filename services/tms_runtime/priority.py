@@ -1,6 +1,6 @@
 """Which threads get a processor first on a busy PC. Needs CAP_SYS_NICE; without it, these functions do nothing.
 
-Real-time priorities: 1 for a participant that is being made, above it what works already (`run.FIRST`).
+Real-time priorities: 1 for a participant that is being made, at least 1 for what works already (`run.FIRST`).
 """
 
 import os

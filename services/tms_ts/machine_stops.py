@@ -7,10 +7,10 @@ from tms_msg_rc.msg import StopReceipt
 from tms_msg_rc.srv import StopMachine
 
 from tms_config.clock import monotonic
+from tms_decision.gateway.stops import stood_after
 from tms_decision.reasons import ProcessLost, StopUnconfirmed
 from tms_machine.border import RECEIPT_LIMIT
 from tms_machine.reasons import NoReason
-from tms_machine.receipts import stood_after
 from tms_reason import wire
 from tms_reason.errors import RosError
 from tms_reason.reason import Reason
@@ -71,7 +71,7 @@ def reported_by(receipt: StopReceipt) -> Reason:
     if not receipt.confirmed:
         why = StopUnconfirmed(wire.of(receipt.detail) or NoReason(), cause)
         return MachineUnconfirmed(receipt.machine, why)
-    stood = stood_after(receipt, cause)
+    stood = stood_after(receipt.seconds, receipt.travel_joint, receipt.travel_rad, receipt.travel_m, cause)
     return (
         MachineStood(receipt.machine, stood) if evidence is None else MachineStoodBy(receipt.machine, stood, evidence)
     )

@@ -1,7 +1,7 @@
 """A site in virtual time: machine, gateway, host agent, scheduler, subtask, operator, foreign client, disk."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 from simulation.lease import Permit
 from simulation.plant import JOINT, PERIOD, Fault, Plant, facts
@@ -99,14 +99,30 @@ class Asked:
     answer: Callable[[f.End], None]
 
 
-class GatewayProcess(Process):
+class PermitProcess(Process):
+    """A process with a permit, whose lease lapses when it is killed or frozen."""
+
+    def __init__(self, site: "Site", name: str, permit: str) -> None:
+        super().__init__(site.world, name)
+        self.site, self.permit = site, Permit(site.world, f"permit/{permit}", self)
+
+    def kill(self) -> None:
+        super().kill()
+        self.permit.killed()
+
+    def freeze(self, seconds: float) -> None:
+        if self.alive and not self.frozen():
+            self.permit.frozen(seconds)
+        super().freeze(seconds)
+
+
+class GatewayProcess(PermitProcess):
     """The gateway's decisions in a process that may be killed or frozen."""
 
     def __init__(self, site: "Site") -> None:
-        super().__init__(site.world, f"{MACHINE}:rc")
-        self.site, self.disk = site, Disk()
+        super().__init__(site, f"{MACHINE}:rc", "rc")
+        self.disk = Disk()
         self.core: Gateway | None = None
-        self.permit = Permit(site.world, "permit/rc", self)
         self.asked: dict[int, Asked] = {}
         self.calls: dict[int, tuple[float, Callable[[f.Effect], None]]] = {}
         self.latched = False  # a person has pressed stop, and nobody has armed since: no goal may leave
@@ -140,12 +156,6 @@ class GatewayProcess(Process):
     def kill(self) -> None:
         super().kill()
         self.core = None
-        self.permit.killed()
-
-    def freeze(self, seconds: float) -> None:
-        if self.alive and not self.frozen():
-            self.permit.frozen(seconds)
-        super().freeze(seconds)
 
     def _beat(self) -> None:
         core = self.core
@@ -176,7 +186,7 @@ class GatewayProcess(Process):
             angle = core.watch.positions.get(JOINT, 0.0)
             way = e.Reference((JOINT,), [(at, (angle + SPEED * at,)) for at in (0.1, seconds)])
             self.world.tell(self.name, f"is asked for goal {number} of {owner}")
-            self._happens(e.GoalAsked(number, owner, "controller", motion=way, lasts=seconds))
+            self._happens(e.GoalAsked(number, f"goal {number}", owner, "controller", motion=way, lasts=seconds))
 
         self.handle(take)
 
@@ -223,7 +233,6 @@ class GatewayProcess(Process):
                 self._look()
             case f.Tell(receipt):
                 self.world.tell(self.name, f"tells: confirmed={receipt.confirmed} {receipt.cause!r} {receipt.detail!r}")
-                self.site.receipts.append(receipt)
             case f.Log(event, values):
                 self.world.tell(self.name, f"logs {event} {values}")
             case _:
@@ -327,13 +336,11 @@ class HostAgent(Process):
         self.later(BEAT, self._beat)
 
 
-class Subtask(Process):
+class Subtask(PermitProcess):
     """Passes the leaf goals of runs on to the gateway."""
 
     def __init__(self, site: "Site") -> None:
-        super().__init__(site.world, f"{MACHINE}:{SUBTASK}")
-        self.site = site
-        self.permit = Permit(site.world, f"permit/{SUBTASK}", self)
+        super().__init__(site, f"{MACHINE}:{SUBTASK}", SUBTASK)
 
     def ask(self, owner: Owner, seconds: float, answer: Callable[[bool], None]) -> None:
         def take() -> None:
@@ -352,23 +359,12 @@ class Subtask(Process):
 
         self.handle(take)
 
-    def kill(self) -> None:
-        super().kill()
-        self.permit.killed()
 
-    def freeze(self, seconds: float) -> None:
-        if self.alive and not self.frozen():
-            self.permit.frozen(seconds)
-        super().freeze(seconds)
-
-
-class Scheduler(Process):
+class Scheduler(PermitProcess):
     """Runs a task of a few leaves again and again; each leaf up to three times."""
 
     def __init__(self, site: "Site") -> None:
-        super().__init__(site.world, "tms:ts")
-        self.site = site
-        self.permit = Permit(site.world, "permit/ts", self)
+        super().__init__(site, "tms:ts", "ts")
         self.run_number = 0
         self.leaf = 0
 
@@ -418,15 +414,6 @@ class Scheduler(Process):
         self.world.send("stops", lambda: self.site.gateway.call(asked, answered))
         self.later(14.0, lambda: stopped(f.Look()) if self.permit.goal != NOBODY else None)
 
-    def kill(self) -> None:
-        super().kill()
-        self.permit.killed()
-
-    def freeze(self, seconds: float) -> None:
-        if self.alive and not self.frozen():
-            self.permit.frozen(seconds)
-        super().freeze(seconds)
-
 
 @dataclass
 class Site:
@@ -434,7 +421,6 @@ class Site:
 
     world: World
     at_once: bool = False
-    receipts: list[f.Receipt] = field(default_factory=list)
     sent_at: float = float("-inf")  # when the last goal left for the machine ...
     goals_sent: int = 0
     owned: bool = False  # ... and whether it was a run's

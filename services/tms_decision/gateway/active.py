@@ -5,7 +5,7 @@ from tms_decision.gateway import notes, stops
 from tms_decision.gateway.effects import End, Publish, Receipt, Send
 from tms_decision.gateway.events import CallEnded, NoteKept, Reference, Turn
 from tms_decision.gateway.state import Gateway, Goal, Phase
-from tms_decision.gateway.stops import StopKind
+from tms_decision.gateway.stops import StopKind, stood_after
 from tms_decision.reasons import (
     Cancelled,
     CancelledElsewhere,
@@ -14,8 +14,6 @@ from tms_decision.reasons import (
     GatewayStopped,
     NotReady,
     ProcessLost,
-    Stood,
-    StoodWithoutJoints,
     StopUnconfirmed,
 )
 from tms_proof.following import Follower, Way, ways
@@ -142,14 +140,7 @@ def _finish(gateway: Gateway, goal: Goal, end: End) -> None:
 def _stopped(gateway: Gateway, goal: Goal, cause: Reason, receipt: Receipt) -> End:
     if not receipt.confirmed:
         return End(goal.number, "ABORTED", StopUnconfirmed(receipt.detail or cause, cause))
-    stood = stood_after(receipt, cause)
+    stood = stood_after(receipt.seconds, receipt.joint, receipt.angle, receipt.way, cause)
     if not goal.cancelled or gateway.latch.cause is not None:
         return End(goal.number, "ABORTED", stood)
     return End(goal.number, "CANCELED", ProcessLost(GatewayStopped(stood)) if gateway.leaving else stood)
-
-
-def stood_after(receipt: Receipt, cause: Reason) -> Reason:
-    """How long it took until the machine stood, and how far it went."""
-    if not receipt.joint:
-        return StoodWithoutJoints(receipt.seconds, receipt.way, cause)
-    return Stood(receipt.seconds, receipt.angle, receipt.joint, receipt.way, cause)

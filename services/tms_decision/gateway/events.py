@@ -54,6 +54,7 @@ class GoalAsked:
     """A client asks for a motion; `number` is new for each goal."""
 
     number: int
+    id: str  # as its client, the log and the state of the machine have it
     owner: Owner | None  # None: a foreign client
     server: str  # name of the machine's own server
     wrong: Reason | None = None  # why the machine must not do it: its limits

@@ -24,7 +24,7 @@ FOREIGN = "a foreign client"
 def ask(gateway: Gateway, now: float, asked: GoalAsked) -> None:
     """Take a goal; it is answered by an `End`."""
     if asked.wrong is not None:
-        _refuse(gateway, asked.number, asked.wrong)
+        _refuse(gateway, asked, asked.wrong)
         return
     goal = Goal(asked, now, gateway.watch.positions)
     gateway.waiting.append(goal)
@@ -36,13 +36,13 @@ def cancel(gateway: Gateway, now: float, number: int) -> None:
     for goal in gateway.goals():
         if goal.number == number:
             goal.cancelled = True
-            if goal is gateway.active and goal.phase in (Phase.SENT, Phase.MOVING) and goal.stop is None:
+            if goal is gateway.active and goal.stop is None:
                 stops.stop(gateway, now, Cancelled(), StopKind.PLAIN)
 
 
-def _refuse(gateway: Gateway, number: int, why: Reason) -> None:
-    gateway.log("refused", goal=number, reason=why)
-    gateway.do(End(number, "ABORTED", why))
+def _refuse(gateway: Gateway, asked: GoalAsked, why: Reason) -> None:
+    gateway.log("refused", goal=asked.id, reason=why)
+    gateway.do(End(asked.number, "ABORTED", why))
 
 
 # before it is active
@@ -64,7 +64,7 @@ def _look_for_permit(gateway: Gateway, goal: Goal, now: float) -> None:
         wrong = NoPermit(missing.reason)
     if wrong is not None:
         gateway.waiting.remove(goal)
-        _refuse(gateway, goal.number, wrong)
+        _refuse(gateway, goal.asked, wrong)
     elif missing is None:
         goal.wait_for_look(Phase.SETTLING, gateway, now)
 
@@ -78,7 +78,7 @@ def _settle(gateway: Gateway, goal: Goal, now: float) -> None:
     gateway.waiting.remove(goal)
     wrong = _keeps(gateway, goal)
     if wrong is not None:
-        _refuse(gateway, goal.number, wrong)
+        _refuse(gateway, goal.asked, wrong)
         return
     gateway.active = goal
     goal.chain = members(goal.owner, gateway.held(now))

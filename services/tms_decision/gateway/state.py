@@ -113,7 +113,6 @@ class Notes:
     asked: tuple[Reason | None, str, int] | None = None  # the state that was last written, or is being written
     number: int = 0  # of the last note
     kept: int = 0  # of the last note that the disk has answered
-    driver: str = ""  # in the last note of who drives
 
 
 @dataclass
@@ -155,7 +154,6 @@ class Gateway:
     """Everything that a gateway knows. Only `gateway.step` changes it."""
 
     facts: MachineFacts
-    process: str  # as `tms ps` lists it
     watch: StandStill
     latch: Latch
     links: dict[str, PermitLink]  # by process; the scheduler's is called `ts`

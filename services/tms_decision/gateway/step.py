@@ -22,7 +22,6 @@ from tms_proof.standstill import StandStill
 from tms_reason.reason import Foreign, Reason
 
 MOVING_PERIOD, STILL_PERIOD = 0.2, 0.5  # s between messages about the machine; a change is published at once
-MANUAL = "manual"  # in the notes: the machine's own levers
 
 
 def start(
@@ -35,7 +34,7 @@ def start(
     if left.unproven:
         cause = GatewayRestartedUnproven(process)
     gateway = Gateway(
-        facts, process, StandStill(facts), Latch(facts.name, left.latched),
+        facts, StandStill(facts), Latch(facts.name, left.latched),
         {name: PermitLink(name) for name in (SCHEDULER, *names)},
         Recovery(ProcessLost(cause), left.holder, left.run, left.unproven, now),
     )  # fmt: skip

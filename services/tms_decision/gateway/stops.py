@@ -21,7 +21,16 @@ from tms_decision.gateway.effects import (
 )
 from tms_decision.gateway.events import ReceiptKept
 from tms_decision.gateway.state import Gateway, Goal, Stop
-from tms_decision.reasons import ByArrival, GoalOpen, LeftStandStill, NoEnd, NotOnDisk, NotSeenToStand
+from tms_decision.reasons import (
+    ByArrival,
+    GoalOpen,
+    LeftStandStill,
+    NoEnd,
+    NotOnDisk,
+    NotSeenToStand,
+    Stood,
+    StoodWithoutJoints,
+)
 from tms_proof.standstill import NOTHING, Expected
 from tms_reason.reason import Reason, Several
 
@@ -142,6 +151,13 @@ def _receipt(gateway: Gateway, one: Stop, now: float) -> Receipt:
         travel.angle, travel.way, None if confirmed else obstacle,
         ByArrival(tuple(unstamped)) if unstamped else None,
     )  # fmt: skip
+
+
+def stood_after(seconds: float, joint: str, angle: float, way: float, cause: Reason) -> Reason:
+    """How long it took until the machine stood, and how far it went; `joint` is empty if none was seen."""
+    if not joint:
+        return StoodWithoutJoints(seconds, way, cause)
+    return Stood(seconds, angle, joint, way, cause)
 
 
 def kept(gateway: Gateway, event: ReceiptKept) -> None:

@@ -105,7 +105,7 @@ class Rig:
         self.lasts[number] = seconds
         angle = self.gateway.watch.positions.get(JOINT, 0.0)
         way = e.Reference((JOINT,), [(at, (angle + TURN * at,)) for at in (0.1, seconds)])
-        self.happens(e.GoalAsked(number, owner, SERVER, **{"motion": way, "lasts": seconds, **more}))
+        self.happens(e.GoalAsked(number, f"goal {number}", owner, SERVER, **{"motion": way, "lasts": seconds, **more}))
 
     def moving(self, number: int = 1, owner: Owner | None = None, seconds: float = 5.0) -> "Rig":
         """Let a goal move the machine."""

@@ -197,6 +197,19 @@ def test_a_cancel_is_told_when_the_machine_was_seen_to_stand() -> None:
     assert not rig.plant.moves() and rig.gateway.latch.cause is None
 
 
+@pytest.mark.parametrize("waits", ["for its note", "for the server"])
+def test_a_cancel_before_the_goal_leaves_does_not_wait_for_what_it_waits_for(waits: str) -> None:
+    rig = ready()
+    rig.look = replace(rig.look, ready=waits != "for the server")
+    rig.run(0.1).disk_answers = waits != "for its note"
+    rig.ask(1)
+    rig.happens(e.GoalCancelled(1))
+    rig.run(1.0).disk_answers = True
+    for kept in rig.all(f.KeepReceipt) if waits == "for its note" else []:
+        rig.happens(e.ReceiptKept(kept.stop))
+    assert rig.end.outcome == "CANCELED" and rig.receipt.cause == Cancelled() and not rig.all(f.Send)
+
+
 def test_a_software_stop_ends_the_goal_and_latches() -> None:
     rig = ready().moving()
     rig.happens(e.Signal(True))
