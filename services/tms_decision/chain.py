@@ -1,8 +1,8 @@
 """Whether all processes behind a goal are alive: scheduler, subtask, planner. Pure logic."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
+from tms_decision.data import Data
 from tms_decision.owner import Owner
 from tms_decision.reasons import HeldByAnother, NoPlanner, NoScheduler, NoSubtask, OldRun
 from tms_reason.reason import Reason
@@ -10,8 +10,7 @@ from tms_reason.reason import Reason
 SCHEDULER = "ts"
 
 
-@dataclass(frozen=True)
-class Gap:
+class Gap(Data):
     """Why a goal has no permit; `late` when waiting cannot help."""
 
     reason: Reason

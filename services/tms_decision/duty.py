@@ -1,7 +1,8 @@
 """The duty of a host agent: it stops a machine in place of its lost gateway (see tms_host.standby)."""
 
-from dataclasses import dataclass
 from enum import Enum
+
+from tms_decision.data import Data
 
 LEASE_MARGIN = 0.09  # s more than the lease: a process frozen for 0.4 s may have asserted itself 0.1 s before
 AGAIN = 0.5  # s between repeated commands
@@ -15,8 +16,7 @@ class Act(Enum):
     EMERGENCY = "cancelled its goals, emg_stop"
 
 
-@dataclass(frozen=True)
-class GatewayStatus:
+class GatewayStatus(Data):
     """The state of a gateway at one beat."""
 
     alive: bool  # it has its pulse

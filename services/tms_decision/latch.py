@@ -8,6 +8,7 @@ lost too, the hold becomes a latch. An orderly end of the run ends the hold.
 from dataclasses import dataclass
 from hmac import compare_digest
 
+from tms_decision.data import Data
 from tms_decision.owner import Owner
 from tms_decision.reasons import Held, MachineLatched, ThenSchedulerLost, TokenOld, TokenUnknown
 from tms_reason.reason import Reason
@@ -17,8 +18,7 @@ ANY_LEAF = -1  # no leaf has this number: any leaf of the run may leave the hold
 UNKNOWN_RUN = -1  # no run has this number: no goal may leave the hold until its run is known
 
 
-@dataclass(frozen=True)
-class Hold:
+class Hold(Data):
     """The state after a stop that only its own run may leave."""
 
     cause: Reason

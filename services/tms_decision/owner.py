@@ -4,14 +4,15 @@ The client of an action chooses the UUID. So the types on the wire stay unchange
 goals of the present run from late goals of an abandoned run.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
+
+from tms_decision.data import Data
 
 MAGIC = b"TMS\x01"  # a random UUID of a foreign client starts like this once in 4 billion
 LEAVES = 0xFFFF  # leaf goals are counted modulo this
 
 
-@dataclass(frozen=True)
-class Owner:
+class Owner(Data):
     """Where a goal comes from: run number, leaf goal of that run, processes between scheduler and here."""
 
     run: int

@@ -2,7 +2,7 @@
 
 from tms_reason.quantities import Metres, Moments, Radians, Seconds
 from tms_reason.reason import Reason
-from tms_reason.remedies import CANCEL, GIVE_BACK, INSPECT, REARM, RELEASE_STOP, RETRY, STATUS
+from tms_reason.remedies import CANCEL, GIVE_BACK, INSPECT, LOGS, REARM, RELEASE_STOP, RESUME, RETRY, STATUS
 
 
 # fmt: off
@@ -95,3 +95,37 @@ class NotKept(Reason, text="{why}"): why: Reason
 class Nameless(Reason, text="say who drives"): pass
 class HeldByRun(Reason, text="run {run} holds {machine}", action=CANCEL): run: str; machine: str
 class NotTaken(Reason, text="{machine} is not taken", action=STATUS): machine: str
+
+# how a run ends
+class StopRequested(Reason, text="{machine} was told to stop: {cause}"): machine: str; cause: Reason
+class SchedulerWasLost(Reason, text="the scheduler was lost"): pass
+class SeenToStand(Reason, text="seen to stand: {machines}"): machines: tuple[str, ...]
+class NotSeenStanding(Reason, text="not seen to stand: {machines}"): machines: tuple[str, ...]
+class RunInterrupted(Reason, text="{seen}", action=RESUME): seen: tuple[Reason, ...]; run: str
+class NotResumed(Reason, text="not resumed: {why}"): why: Reason
+class HaltedGoalsEnd(Reason, text="the tree has succeeded, and goals that it halted still end"): pass
+class GoalNotEnded(Reason, text="{goal} has not ended its goal"): goal: str
+class MachineUnconfirmed(Reason, text="{machine}: {why}"): machine: str; why: Reason
+class NoReceipt(Reason, text="not seen to stand: no receipt of a stop came within {limit}"): limit: Seconds
+
+# goals of leaves, as the history of a run tells them
+class NotRepeatedDone(Reason, text="{goal} is not repeated: succeeded before the interruption"): goal: str
+class NotRepeatedFailed(Reason, text="{goal} is not repeated: failed before the interruption"): goal: str
+class FailedBefore(Reason, text="failed before"): pass
+class SentAgainSoon(Reason, text="it failed just now and is sent again soon"): pass
+class GoalSent(Reason, text="sent to {goal}, record {record}"): goal: str; record: str
+class GoalAccepted(Reason, text="{goal} accepted"): goal: str
+class GoalSucceeded(Reason, text="{goal} succeeded"): goal: str
+class GoalCancelled(Reason, text="{goal} was cancelled"): goal: str
+class GoalRefused(Reason, text="{goal} refused the goal: {why}"): goal: str; why: Reason
+class GoalGaveUp(Reason, text="{goal} gave up: {why}"): goal: str; why: Reason
+class GoalLost(Reason, text="{goal}: {why}"): goal: str; why: Reason
+class ForTooLong(Reason, text="{why}, for {seconds}"): why: Reason; seconds: Seconds
+class LostTimes(Reason, text="{why} (lost {times} times)"): why: Reason; times: int
+class SentAgain(Reason, text="{why}; sent again when the process is back"): why: Reason
+class SentAgainTimes(Reason, text="{why}; sent again when the process is back ({loss}/{retries})"):
+    why: Reason; loss: int; retries: int
+class MachineStopping(Reason, text="{machine} is being stopped"): machine: str
+class LastGoalOpen(Reason, text="{machine} has not ended its last goal yet"): machine: str
+class ProcessAway(Reason, text="{process} is not there", action=LOGS): process: str
+class ProcessEnded(Reason, text="process {process} ended during its goal", action=LOGS): process: str

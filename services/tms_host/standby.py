@@ -14,13 +14,14 @@ The sign of a working gateway is its pulse, the lease of its permit, not its pro
 
 from builtin_interfaces.msg import Time
 from prometheus_client import Counter, Gauge
+from std_msgs.msg import Bool
 from tms_msg_rc.msg import MachineState
 
 from tms_config.clock import monotonic
 from tms_config.processes import here
 from tms_decision.duty import Act, Duty, GatewayStatus
 from tms_decision.permit_link import NOBODY
-from tms_machine.border import Controls, stood_in
+from tms_machine.border import Controls, standby, stood_in
 from tms_machine.permit import RemotePermit
 from tms_runtime.app import App
 
@@ -41,6 +42,8 @@ class StandbyGateway:
         self._done: Act | None = None  # the command since the gateway was lost, as it was logged
         self._controls = Controls(ros, machine, app.site.border(machine), keeps_emergency=False)
         self._now, self._stood_in = ros.now, ros.publisher(Time, stood_in(machine), 1, latched=True)
+        self._acts = ros.publisher(Bool, standby(machine), 1, latched=True)
+        self._acts.publish(Bool(data=False))
         self._gateway = RemotePermit(ros, app.pulse, machine, "rc", _looked_at)
         self._scheduler = RemotePermit(ros, app.pulse, machine, "ts", _looked_at)
         self._samples = ros.sample(MachineState, f"/{machine}/rc/state")
@@ -76,6 +79,8 @@ class StandbyGateway:
             self._controls.emergency(True)
             self._stood_in.publish(self._now())
         self._controls.cancel_everything()
+        if self.duty.lost_since is not None:
+            self._acts.publish(Bool(data=True))  # a goal that leaves now would be cancelled
 
     def _publish(self, act: Act | None) -> None:
         lost = self.duty.lost_since is not None
@@ -87,6 +92,7 @@ class StandbyGateway:
             self._log.error("gateway_lost", machine=self.machine, action=act and act.value)
         elif not lost and self._done is not None:
             self._done = None
+            self._acts.publish(Bool(data=False))
             LOST.labels(self.machine).set(0)
             self._log.info("gateway_back", machine=self.machine)
         elif not lost and act is not None:

@@ -14,13 +14,11 @@ from std_msgs.msg import Bool
 
 from tms_config.clock import monotonic
 from tms_config.models import Border
-from tms_decision.gateway.stops import STOP_PROVEN
 from tms_ros.interface_types import ActionType
 from tms_ros.node import Ros
 
 CANCEL_LIMIT = 3.0  # s after which a server without an answer has lost a cancel
 RELEASE_LIMIT = 0.5  # s for a machine to take the release of its emergency stop: that is a message without an answer
-RECEIPT_LIMIT = STOP_PROVEN + 3.0  # s without a receipt of a stop after which a gateway counts as silent
 
 
 @dataclass(frozen=True)
@@ -50,6 +48,11 @@ def motions(border: Border) -> list[MotionAction]:
 def stood_in(machine: str) -> str:
     """Latched topic of the host agent: when it last pressed `emg_stop` in place of a lost gateway."""
     return f"/{machine}/rc/stood_in"
+
+
+def standby(machine: str) -> str:
+    """Latched topic of the host agent: whether it commands the machine in place of its gateway."""
+    return f"/{machine}/rc/standby"
 
 
 class Controls:

@@ -113,6 +113,10 @@ class StandStill:
         """Sources whose messages are not stamped: for them only the arrival counts."""
         return [one.label for one in self.sources.values() if one.source.stamps == "none"]
 
+    def published(self, source: str, nodes: tuple[str, ...]) -> None:
+        """Note who publishes a source, where there is more than one."""
+        self.sources[source].publishers = nodes
+
     def take(self, name: str, sample: SourceSample) -> None:
         """Take one message of a source."""
         source = self.sources[name]

@@ -17,12 +17,13 @@ from tms_decision.gateway.events import (
     Pressed,
     RearmAsked,
     Signal,
+    StandsIn,
     StoodIn,
     StopAsked,
     TakeAsked,
 )
 from tms_decision.gateway.stops import DISK_LIMIT, STOP_PROVEN
-from tms_machine.border import stood_in
+from tms_machine.border import standby, stood_in
 from tms_rc.shell import Shell
 from tms_rc.stop_receipt import message_of
 from tms_reason import wire
@@ -50,6 +51,7 @@ class People:
         shell.does(Rearmed, self._answered)
         shell.does(Taken, self._answered)
         ros, machine = app.ros, app.machine
+        ros.subscribe(Bool, standby(machine), lambda on: shell.happened(StandsIn(on.data)), latched=True)
         ros.subscribe(Bool, "/emergency_signal", lambda on: shell.happened(Signal(on.data)), depth=SIGNALS)
         if border.emg_stop:
             ros.subscribe(Time, stood_in(machine), self._stood_in, latched=True)

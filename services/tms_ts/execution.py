@@ -8,8 +8,10 @@ from structlog.contextvars import bind_contextvars
 from tms_msg_ts.action import ExecuteTask
 
 from tms_config.clock import monotonic, utc_now
+from tms_decision.leaf.replay import Replay
 from tms_reason import wire
 from tms_reason.errors import TaskError, TmsError
+from tms_reason.reason import Reason
 from tms_reason.wire import to_line
 from tms_ros.goals import Ended, Outcome
 from tms_ros.reasons import Internal, NoServer
@@ -31,13 +33,12 @@ from tms_ts.numbers import Numbers, no_disk
 from tms_ts.preflight import Findings, machines_of, processes_of, records_of
 from tms_ts.questions import Clicks
 from tms_ts.reasons import Preflight, PreflightMore, Resumed
-from tms_ts.replay import Replay
 from tms_ts.run import Run, TaskGoal
 from tms_ts.run_checkpoint import Records
 from tms_ts.run_states import STATES
 from tms_ts.runs_publisher import RunsPublisher
 from tms_ts.shared_records import SharedRecords
-from tms_ts.task_check import TaskCheck
+from tms_ts.task_check import TaskCheck, not_free
 from tms_ts.world import World
 
 BEGIN_STORED = 5.0  # s for the known facts of a run to be on the disk before it moves a machine
@@ -129,7 +130,6 @@ class Execution:
             run.refuse(Internal(parts.app.process.full))
         if run.flags is not None:
             run.flags.close()
-        parts.gateways.drop(parts.runs.held_by(run))
         parts.runs.remove(run)
         parts.publisher.changed()
         run.ended.set()
@@ -161,15 +161,9 @@ class Execution:
         self._prepare(run, processes_of(tree, parts.app.site), machines)
         if not parts.disk.wait(BEGIN_STORED):
             raise no_disk(parts.disk)
-        # Not before: while many processes start on a busy PC a permit may lapse, though nothing moves yet.
-        started = (facts.started.sec, facts.started.nanosec)
-        holder = Holder(facts.number, started, run.stopped, machines.stops.receipt, run.alive)
-        parts.gateways.hold(facts.machines, facts.run_id, holder)
-        if not run.cancelled.is_set():
-            parts.check.refuse_latched(facts.machines)  # a machine may have been stopped meanwhile
         with parts.monitors.watch(facts.run_id, tree):
-            outcome = run.execute(tree, machines)
-        return _ended(facts, outcome)
+            run.execute(tree, machines, _RunPermits(parts, run, machines))
+        return _ended(facts) if run.refused is None else _refused(facts.run_id, not_free(run.refused))
 
     def _xml(self, facts: Facts, past: InterruptedRun | None) -> str:
         """The text of the stored task; of a resumed run, as it was at its start."""
@@ -210,6 +204,24 @@ class Execution:
             run.wake.wait(0.02)
 
 
+class _RunPermits:
+    """The permits of one run. Held late: while many processes start on a busy PC, a permit may lapse."""
+
+    def __init__(self, parts: Parts, run: Run, machines: Machines) -> None:
+        self._parts, self._run, self._machines = parts, run, machines
+
+    def hold(self) -> Reason | None:
+        facts, parts, run = self._run.facts, self._parts, self._run
+        started = (facts.started.sec, facts.started.nanosec)
+        holder = Holder(facts.number, started, run.stopped, self._machines.stops.receipt, run.alive)
+        parts.gateways.hold(facts.machines, facts.run_id, holder)
+        back = map(parts.gateways.held_back, facts.machines)  # a machine may have been stopped meanwhile
+        return next(filter(None, back), None)
+
+    def drop(self) -> None:
+        self._parts.gateways.drop(self._run.facts.machines)
+
+
 def _refuse_errors(run: Run, found: Findings) -> None:
     for warning in found.warnings:
         run.log_event("warning", "", warning)
@@ -218,8 +230,8 @@ def _refuse_errors(run: Run, found: Findings) -> None:
         raise TaskError(PreflightMore(first, more) if more else Preflight(first), Preflight.code)
 
 
-def _ended(facts: Facts, outcome: str) -> Ended[ExecuteTask.Result]:
-    line = to_line(facts.reason)
+def _ended(facts: Facts) -> Ended[ExecuteTask.Result]:
+    line, outcome = to_line(facts.reason), facts.state
     result = ExecuteTask.Result(run_id=facts.run_id, outcome=outcome, error_code=CODES[outcome], error_msg=line)
     return HOW.get(outcome, Outcome.ABORTED), result
 

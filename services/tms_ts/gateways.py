@@ -10,7 +10,7 @@ from tms_msg_rc.srv import StopMachine
 from tms_config.clock import monotonic, sleep
 from tms_decision.owner import Owner
 from tms_decision.permit_link import NOBODY
-from tms_decision.reasons import DrivenByHand, MachineLatched, SoftwareStop
+from tms_decision.reasons import DrivenByHand, MachineLatched, ProcessAway, SoftwareStop
 from tms_machine.border import Controls
 from tms_machine.permit import Permit, RemotePermit
 from tms_machine.reasons import NoReason
@@ -18,7 +18,7 @@ from tms_reason import wire
 from tms_reason.reason import Reason
 from tms_runtime.app import App
 from tms_runtime.fence import goal_id
-from tms_ts.reasons import MachineNotReady, ProcessAway
+from tms_ts.reasons import MachineNotReady
 
 SETTLE = 0.3  # s from the first message of a new gateway until it has discovered the scheduler, too
 SIGNALS = 100  # messages of all stop buttons that may wait: no `false` of one may push out the `true` of another

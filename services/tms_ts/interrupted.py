@@ -9,25 +9,21 @@ from tms_msg_rc.msg import StopReceipt
 from tms_msg_ts.srv import CancelRun, ResumePlan
 
 from tms_config.clock import monotonic
-from tms_machine.border import RECEIPT_LIMIT
+from tms_decision.gateway.stops import RECEIPT_LIMIT
+from tms_decision.leaf.events import Key
+from tms_decision.past import Stop, stops_of, what_was_seen
 from tms_machine.values import to_parameters
 from tms_reason import wire
 from tms_reason.errors import TaskError
 from tms_reason.reason import Reason
 from tms_reason.wire import to_line
 from tms_runtime.app import App
-from tms_ts.interrupted_run import Header, InterruptedRun, Key, Over
+from tms_ts.interrupted_run import Header, InterruptedRun, Over
 from tms_ts.journal import Journal
 from tms_ts.machine_stops import reported_by
 from tms_ts.reasons import (
     GivenUp,
-    MachineUnconfirmed,
-    NoReceipt,
     NotInterrupted,
-    NotSeenStanding,
-    RunInterrupted,
-    SchedulerWasLost,
-    SeenToStand,
     StateAbandoned,
     StateBecause,
     StateInterrupted,
@@ -46,7 +42,7 @@ class Interrupted:
     def __init__(self, app: App, journal: Journal, records: Records) -> None:
         self._app, self._journal, self._records = app, journal, records
         self._active: set[str] = set()
-        self._receipts: deque[StopReceipt] = deque(maxlen=RECEIPTS)
+        self._receipts: deque[Stop] = deque(maxlen=RECEIPTS)
         self._lock = threading.Lock()  # guards the receipts; the executor thread takes it: held for moments only
         self._choosing = threading.Lock()  # a run is resumed or abandoned, and only once
         threading.Thread(target=self._close_all, name="interrupted", daemon=True).start()
@@ -55,8 +51,9 @@ class Interrupted:
 
     def receipt(self, receipt: StopReceipt) -> None:
         """Receive the receipt of a stop that belongs to no active run."""
+        at, what = _seconds(receipt.stamp), reported_by(receipt)
         with self._lock:
-            self._receipts.append(receipt)
+            self._receipts.append(Stop(receipt.machine, receipt.run, at, receipt.confirmed, what))
 
     def _close_all(self) -> None:
         left = [past for past in self._records.past() if not past.closed]
@@ -73,19 +70,19 @@ class Interrupted:
                 self._close(past, past.header)
 
     def _all_reported(self, past: InterruptedRun) -> bool:
-        return past.header is None or set(past.header.machines) <= {r.machine for r in self._stops(past, past.header)}
+        return past.header is None or set(past.header.machines) <= {
+            one.machine for one in self._stops(past, past.header)
+        }
 
-    def _stops(self, past: InterruptedRun, header: Header) -> list[StopReceipt]:
-        """The receipts of the stops at the end of this run, in order; latched topics may deliver one twice."""
+    def _stops(self, past: InterruptedRun, header: Header) -> list[Stop]:
+        """The stops at the end of this run."""
         with self._lock:
-            seen = {(_seconds(r.stamp), r.machine): r for r in self._receipts if r.run == header.number}
-        begin = {machine: max(past.last_time - 1.0, past.sent_at.get(machine, 0.0)) for machine in header.machines}
-        return [r for (at, machine), r in sorted(seen.items()) if machine in begin and at > begin[machine]]
+            return stops_of(past.lost(header), self._receipts)
 
     def _close(self, past: InterruptedRun, header: Header) -> None:
         record, number, stops = self._records.open(header.run_id), past.last_event, self._stops(past, header)
-        reason, unseen = _what_was_seen(header, stops)
-        reported = [("stop", reported_by(receipt)) for receipt in stops] + [("alarm", alarm) for alarm in unseen]
+        reason, unseen = what_was_seen(past.lost(header), stops)
+        reported = [("stop", one.what) for one in stops] + [("alarm", alarm) for alarm in unseen]
         ALARMS.inc(len(unseen))
         for kind, what in [*reported, ("run", StateBecause(StateInterrupted(), reason))]:
             number += 1
@@ -158,19 +155,6 @@ class Interrupted:
             known = tuple(p.header.run_id for p in self._records.past() if p.header and p.closed)
             raise TaskError(NotInterrupted(run_id, known), "NO_RUN")
         return past, past.header
-
-
-def _what_was_seen(header: Header, stops: list[StopReceipt]) -> tuple[Reason, list[Reason]]:
-    """Why the run is interrupted, with each machine's last receipt or the lack of one; and the alarms to raise."""
-    last = {receipt.machine: receipt for receipt in stops}
-    stood = tuple(machine for machine in header.machines if machine in last and last[machine].confirmed)
-    unseen = tuple(machine for machine in header.machines if machine not in stood)
-    seen: list[Reason] = [SchedulerWasLost()]
-    seen += [SeenToStand(stood)] if stood else []
-    seen += [NotSeenStanding(unseen)] if unseen else []
-    none = NoReceipt(RECEIPT_LIMIT)
-    alarms = [reported_by(last[name]) if name in last else MachineUnconfirmed(name, none) for name in unseen]
-    return RunInterrupted(tuple(seen), header.run_id), alarms
 
 
 def _words(key: Key) -> str:

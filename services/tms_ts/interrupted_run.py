@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-Key = tuple[str, str, str, str]  # node path, machine, subtask, record
+from tms_decision.leaf.events import Key
+from tms_decision.past import LostRun
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,7 @@ class InterruptedRun:
         self.header: Header | None = None
         self.last_event = 0
         self.last_time = 0.0  # s since 1970
-        self.closed = False
+        self.closed = False  # the history has it as interrupted
         self.over: Over | None = None
         self.ended: list[tuple[Key, bool]] = []
         self.open: list[Key] = []  # goals that were sent and have not ended
@@ -53,6 +54,10 @@ class InterruptedRun:
                 self._take(line)
             except (KeyError, TypeError, ValueError, AttributeError):
                 self.damaged += 1
+
+    def lost(self, header: Header) -> LostRun:
+        """What counts to close it."""
+        return LostRun(header.run_id, header.number, header.machines, self.last_time, self.sent_at)
 
     def _lines(self) -> Iterator[dict[str, Any]]:
         try:

@@ -7,9 +7,8 @@ from tms_msg_rc.msg import StopReceipt
 from tms_msg_rc.srv import StopMachine
 
 from tms_config.clock import monotonic
-from tms_decision.gateway.stops import stood_after
-from tms_decision.reasons import ProcessLost, StopUnconfirmed
-from tms_machine.border import RECEIPT_LIMIT
+from tms_decision.gateway.stops import RECEIPT_LIMIT, stood_after
+from tms_decision.reasons import MachineUnconfirmed, ProcessLost, StopUnconfirmed
 from tms_machine.reasons import NoReason
 from tms_reason import wire
 from tms_reason.errors import RosError
@@ -17,7 +16,7 @@ from tms_reason.reason import Reason
 from tms_reason.wire import to_line
 from tms_ros.node import Ros
 from tms_ts.gateways import Gateways
-from tms_ts.reasons import MachineStood, MachineStoodBy, MachineUnconfirmed
+from tms_ts.reasons import MachineStood, MachineStoodBy
 
 GATEWAY_LIMIT = 3.0  # s for a lost gateway to come back
 

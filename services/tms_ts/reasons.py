@@ -2,7 +2,7 @@
 
 from tms_reason.quantities import Seconds
 from tms_reason.reason import Reason
-from tms_reason.remedies import CANCEL, LOGS, RECORDS, RESUME, RUNS, STATUS, TASKS
+from tms_reason.remedies import CANCEL, LOGS, RECORDS, RUNS, STATUS, TASKS
 
 
 # fmt: off
@@ -20,16 +20,9 @@ class StateAbandoned(Reason, text="abandoned"): pass
 class StateBecause(Reason, text="{state}: {why}"): state: Reason; why: Reason
 
 # why a run ends, or is refused
-class StopRequested(Reason, text="{machine} was told to stop: {cause}"): machine: str; cause: Reason
 class SchedulerStopped(Reason, text="the scheduler was stopped"): pass
-class SchedulerWasLost(Reason, text="the scheduler was lost"): pass
-class SeenToStand(Reason, text="seen to stand: {machines}"): machines: tuple[str, ...]
-class NotSeenStanding(Reason, text="not seen to stand: {machines}"): machines: tuple[str, ...]
-class RunInterrupted(Reason, text="{seen}", action=RESUME): seen: tuple[Reason, ...]; run: str
 class Resumed(Reason, text="resumed"): pass
-class NotResumed(Reason, text="not resumed: {why}"): why: Reason
 class GivenUp(Reason, text="given up by an operator after an interruption"): pass
-class HaltedGoalsEnd(Reason, text="the tree has succeeded, and goals that it halted still end"): pass
 class NodeFailed(Reason, text="{node}: {why}", details="node {path}"): node: str; why: Reason; path: str
 class NoRun(Reason, text="no run '{run}' is active (active: {active})", action=RUNS): run: str; active: tuple[str, ...]
 class NotInterrupted(Reason, text="no run '{run}' is interrupted (interrupted: {runs})", code="NO_INTERRUPTED_RUN",
@@ -54,35 +47,12 @@ class AnsweredNo(Reason, text="no, by {person}"): person: str
 class NotAnswered(Reason, text="none: the question was withdrawn or timed out"): pass
 
 # goals of leaves
-class NotRepeatedDone(Reason, text="{goal} is not repeated: succeeded before the interruption"): goal: str
-class NotRepeatedFailed(Reason, text="{goal} is not repeated: failed before the interruption"): goal: str
-class FailedBefore(Reason, text="failed before"): pass
-class SentAgainSoon(Reason, text="it failed just now and is sent again soon"): pass
-class GoalSent(Reason, text="sent to {goal}, record {record}"): goal: str; record: str
-class GoalAccepted(Reason, text="{goal} accepted"): goal: str
-class GoalSucceeded(Reason, text="{goal} succeeded"): goal: str
-class GoalCancelled(Reason, text="{goal} was cancelled"): goal: str
-class GoalRefused(Reason, text="{goal} refused the goal: {why}"): goal: str; why: Reason
-class GoalGaveUp(Reason, text="{goal} gave up: {why}"): goal: str; why: Reason
-class GoalNotEnded(Reason, text="{goal} has not ended its goal"): goal: str
-class GoalLost(Reason, text="{goal}: {why}"): goal: str; why: Reason
-class ForTooLong(Reason, text="{why}, for {seconds}"): why: Reason; seconds: Seconds
-class LostTimes(Reason, text="{why} (lost {times} times)"): why: Reason; times: int
-class SentAgain(Reason, text="{why}; sent again when the process is back"): why: Reason
-class SentAgainTimes(Reason, text="{why}; sent again when the process is back ({loss}/{retries})"):
-    why: Reason; loss: int; retries: int
-class MachineStopping(Reason, text="{machine} is being stopped"): machine: str
-class LastGoalOpen(Reason, text="{machine} has not ended its last goal yet"): machine: str
-class ProcessAway(Reason, text="{process} is not there", action=LOGS): process: str
 class ProcessState(Reason, text="process {process} is {state}", action=LOGS): process: str; state: str
-class ProcessEnded(Reason, text="process {process} ended during its goal", action=LOGS): process: str
 class MachineNotReady(Reason, text="{machine} is not ready: {why}"): machine: str; why: Reason
 
 # stops
 class MachineStood(Reason, text="{machine} {stood}"): machine: str; stood: Reason
 class MachineStoodBy(Reason, text="{machine} {stood} ({evidence})"): machine: str; stood: Reason; evidence: Reason
-class MachineUnconfirmed(Reason, text="{machine}: {why}"): machine: str; why: Reason
-class NoReceipt(Reason, text="not seen to stand: no receipt of a stop came within {limit}"): limit: Seconds
 
 # the history
 class HistoryInMemory(Reason, text="the history is kept in memory only: {why}"): why: Reason

@@ -1,8 +1,9 @@
 """One run of a task: ticks its tree, records every change, and ends with every machine seen to stand."""
 
 import threading
+from collections import deque
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, Protocol
 
 from builtin_interfaces.msg import Time
 from prometheus_client import Counter, Histogram
@@ -12,10 +13,12 @@ from tms_msg_ts.action import ExecuteTask
 from tms_msg_ts.msg import RunState
 
 from tms_config.clock import monotonic
-from tms_decision.gateway.stops import STOP_PROVEN
-from tms_decision.reasons import SoftwareStop
+from tms_decision.run import effects as f
+from tms_decision.run import events as e
+from tms_decision.run.step import Phase, step
+from tms_decision.run.step import Run as Decisions
 from tms_machine.values import to_parameters
-from tms_reason.reason import Reason, Several
+from tms_reason.reason import Reason
 from tms_reason.wire import to_line
 from tms_ros.node import Ros
 from tms_ros.server import Goal
@@ -27,19 +30,11 @@ from tms_ts.journal import Journal
 from tms_ts.machine_stops import reported_by
 from tms_ts.machines import Machines
 from tms_ts.node_report import NodeReport
-from tms_ts.reasons import (
-    GoalNotEnded,
-    HaltedGoalsEnd,
-    NotResumed,
-    StopRequested,
-    TreeOf,
-)
+from tms_ts.reasons import TreeOf
 from tms_ts.run_checkpoint import RunCheckpoint
 from tms_ts.run_states import STATES, entered
 
 TICK_PERIOD = 0.05  # s between ticks when nothing wakes the loop
-TICK_LIMIT = 0.4  # s without a tick after which the scheduler ends the permits of its motions
-SETTLE_LIMIT = STOP_PROVEN + 7.0  # s for goals to end after a halt
 
 RUNS = Counter("tms_ts_runs_total", "Runs by outcome", ["outcome"])
 TICKS = Histogram("tms_ts_tick_seconds", "Duration of a tick", buckets=(0.001, 0.005, 0.01, 0.05, 0.1, 0.25, 0.5))
@@ -47,6 +42,14 @@ ALARMS = Counter("tms_ts_alarms_total", "Stops that were not seen, and processes
 OVERRUNS = Counter("tms_ts_tick_overruns_total", "Ticks that took longer than the tick period")
 
 TaskGoal = Goal[ExecuteTask.Goal, ExecuteTask.Feedback]
+
+
+class Permits(Protocol):
+    """The permits of the run's machines."""
+
+    def hold(self) -> Reason | None: ...  # returns why one of the machines may not move now
+
+    def drop(self) -> None: ...
 
 
 class Run:
@@ -61,33 +64,49 @@ class Run:
         self.wake = threading.Event()
         self.cancelled = threading.Event()
         self.ended = threading.Event()
-        self.over = False  # whether its end is in the history
         self._ros, self._journal, self._log, self._goal = ros, journal, log, goal
         self.record = record
         self.flags: Flags | None = None  # the flags of its tree
-        self._resumed = bool(goal.request.resume)
         self.number = 0  # number of the last event
         self._numbering = threading.Lock()  # the executor thread logs events, too
-        self._ending: tuple[str, Reason | None] = ("cancelled", None)  # outcome and reason if it is ended from outside
         self.nodes = NodeReport(facts, lambda node, what: self.log_event("node", node, what), changed)
-        self._ticked: float | None = None  # when the last tick ended; None while the tree is not ticked
+        self._core = Decisions(resumed=bool(goal.request.resume))  # changed by the run's own thread
+        self._coming: deque[e.Event] = deque()  # that other threads have told
+        self._doers: dict[type[f.Effect], Callable[[Any], None]] = {
+            f.Hold: self._hold, f.Drop: lambda _: self._permits.drop(), f.Enter: self._enter,
+            f.Halt: self._halt, f.StopMachines: self._stop_machines,
+            f.Alarm: lambda effect: self.log_event("alarm", "", effect.what),
+            f.KeepEnd: lambda effect: record.over(effect.outcome, to_line(effect.why)),
+            f.KeepInterrupted: self._close, f.Forget: lambda _: record.remove(),
+        }  # fmt: skip
 
     def cancel(self, outcome: str = "cancelled", reason: Reason | None = None) -> None:
         """Ask the run to stop; returns at once. The reason of the first call counts."""
-        if not self.cancelled.is_set():
-            self._ending = (outcome, reason)
-        self.cancelled.set()
-        self.wake.set()
+        self._end(e.EndAsked(outcome, reason))
 
     def stopped(self, machine: str, cause: Reason) -> None:
         """End the run, as a machine was stopped from outside and stays latched until a person re-arms it."""
-        wanted = cause.find(SoftwareStop) is not None
-        self.cancel("cancelled" if wanted else "failure", StopRequested(machine, cause))
+        self._end(e.StoppedOutside(machine, cause))
+
+    def _end(self, event: e.Event) -> None:
+        if not self.cancelled.is_set():
+            self._coming.append(event)
+        self.cancelled.set()
+        self.wake.set()
 
     def alive(self) -> bool:
         """Whether the loop that decides about motions still ticks."""
-        ticked = self._ticked
-        return ticked is None or monotonic() - ticked < TICK_LIMIT
+        return self._core.works(monotonic())
+
+    @property
+    def refused(self) -> Reason | None:
+        """Why it was refused, before any machine has moved."""
+        return self._core.refused
+
+    @property
+    def over(self) -> bool:
+        """Whether its end is in the history."""
+        return self._core.phase is Phase.OVER
 
     # what is reported
 
@@ -148,106 +167,111 @@ class Run:
 
     # the loop
 
-    def execute(self, tree: Tree, machines: Machines) -> str:
-        """Tick to the end and stop machines that still move; returns the outcome."""
+    def execute(self, tree: Tree, machines: Machines, permits: Permits) -> None:
+        """Tick to the end and stop machines that still move."""
+        self._tree, self._machines, self._permits = tree, machines, permits
         tree.observers.append(self.nodes.changed)
-        self.enter("running")
-        outcome = "failure"
+        self._step(e.Prepared())
+        next_tick = monotonic()
+        while self._core.phase is Phase.RUNNING:
+            next_tick = self._tick(next_tick)
+            self._take()
+        while self._core.phase is not Phase.OVER:
+            self.wake.wait(TICK_PERIOD)
+            self.wake.clear()
+            self._look()
+
+    def _tick(self, next_tick: float) -> float:
+        """Tick the tree once and wait for the next tick; returns when that is due."""
+        ended = e.Ticked("failure")  # if this raises
+        begun = monotonic()
         try:
-            outcome = self._tick_to_end(tree, machines)
+            ended = self._tick_once()
         except TreeError as error:
             self.nodes.failure = error.reason
             self.log_event("error", error.path or "", error.reason)
+            ended = e.Ticked("failure", error.reason)
         finally:
-            outcome = self._settle(tree, machines, outcome)
-        return outcome
+            self._step(ended)
+        if self._core.phase is not Phase.RUNNING:
+            return next_tick
+        next_tick = min(max(next_tick + TICK_PERIOD, begun), begun + TICK_PERIOD)  # also if it was woken often
+        self.wake.wait(max(0.0, next_tick - monotonic()))
+        self.wake.clear()
+        return next_tick
 
-    def _tick_to_end(self, tree: Tree, machines: Machines) -> str:
-        next_tick = self._ticked = monotonic()
-        while not self.cancelled.is_set():
-            machines.advance()
-            begun = monotonic()
-            self.nodes.begin_tick()
-            status = tree.tick()
-            self._ticked = monotonic()
-            took = self._ticked - begun
-            self.nodes.report_flood()
-            self.nodes.report(tree)
-            TICKS.observe(took)
-            self._report_to_client(tree)
-            if status.completed:
-                return "success" if status is Status.SUCCESS else "failure"
-            if took > TICK_PERIOD:
-                OVERRUNS.inc()
-            next_tick = min(max(next_tick + TICK_PERIOD, begun), begun + TICK_PERIOD)  # also if it was woken often
-            self.wake.wait(max(0.0, next_tick - monotonic()))
-            self.wake.clear()
-        outcome, self.nodes.failure = self._ending
-        return outcome
+    def _tick_once(self) -> e.Ticked:
+        self._machines.advance()
+        begun = monotonic()
+        self.nodes.begin_tick()
+        status = self._tree.tick()
+        took = monotonic() - begun
+        self.nodes.report_flood()
+        self.nodes.report(self._tree)
+        TICKS.observe(took)
+        self._report_to_client(self._tree)
+        if took > TICK_PERIOD and not status.completed:
+            OVERRUNS.inc()
+        if not status.completed:
+            return e.Ticked()
+        return e.Ticked("success" if status is Status.SUCCESS else "failure", self.nodes.failure)
 
-    def _settle(self, tree: Tree, machines: Machines, outcome: str) -> str:
-        """Stop the machines and watch them stand, except after a success without open goals: then no machine moves."""
-        self._ticked = None
-        moving, receipts = True, []
+    def _look(self) -> None:
+        self._step(e.Looked(not self._machines.settled(), self._machines.open_goals()))
+
+    # decisions
+
+    def _take(self) -> None:
+        """Decide about what other threads have told."""
+        while self._coming:
+            self._step(self._coming.popleft())
+
+    def _step(self, event: e.Event) -> None:
+        for effect in step(self._core, event, monotonic()):
+            self._doers[type(effect)](effect)
+
+    # effects
+
+    def _hold(self, _: f.Hold) -> None:
+        self._take()
+        self._step(e.Held(self._permits.hold()))
+
+    def _halt(self, _: f.Halt) -> None:
+        moves = True
         try:
-            if outcome != "success":
-                self.enter("stopping", self.nodes.failure or STATES[outcome])
-            tree.halt()
-            self.nodes.report(tree)
-            self._report_to_client(tree, last=True)
-            moving = outcome != "success" or not machines.settled()
-            if moving and outcome == "success":  # the tree succeeded in the tick that halted a leaf
-                self.nodes.failure = None
-                self.enter("stopping", HaltedGoalsEnd())
-        finally:  # also if the lines above raise
-            if moving:
-                # Call the gateways directly, while the cancels still pass subtask and planner: a stop takes the
-                # shortest way, and its receipt measures from here.
-                receipts = machines.stops.stop_all(self.facts.machines, STATES[outcome])
-        if not moving:
-            return self._end(outcome, None)
+            self._tree.halt()
+            self.nodes.report(self._tree)
+            self._report_to_client(self._tree, last=True)
+            moves = not self._machines.settled()
+        finally:  # the machines are stopped also if the lines above raise
+            self._step(e.Halted(moves))
+
+    def _stop_machines(self, effect: f.StopMachines) -> None:
+        """Call the gateways directly, while the cancels still pass subtask and planner.
+
+        A stop takes the shortest way, and its receipt measures from here.
+        """
+        stops = self._machines.stops
+        receipts = stops.stop_all(self.facts.machines, STATES[effect.outcome])
         for receipt in receipts:
-            machines.stops.receipt(receipt)
-        deadline = monotonic() + SETTLE_LIMIT
-        while not machines.settled() and monotonic() < deadline:
-            self.wake.wait(TICK_PERIOD)
-            self.wake.clear()
-        reason = self.nodes.failure
-        unseen = [reported_by(receipt) for receipt in receipts if not receipt.confirmed]
-        unseen += [GoalNotEnded(name) for name in machines.open_goals()]
-        for alarm in unseen:
-            self.log_event("alarm", "", alarm)
-        if unseen:
-            return self._end("stop_unconfirmed", Several((*unseen, *([reason] if reason is not None else []))))
-        return self._end(outcome, reason)
+            stops.receipt(receipt)
+        self._step(e.Stood([reported_by(receipt) for receipt in receipts if not receipt.confirmed]))
+        self._look()
 
-    def _end(self, outcome: str, reason: Reason | None) -> str:
-        self.over = True
-        self.nodes.report_flood(last=True)
-        if outcome != "interrupted":
-            self.record.over(outcome, to_line(reason))
-        self.enter(outcome, reason, ended=True)
-        self.close_record(outcome)
-        RUNS.labels(outcome).inc()
-        return outcome
+    def _enter(self, effect: f.Enter) -> None:
+        why = effect.why
+        if effect.state == "stopping" and why is None:
+            why = STATES[self._core.outcome]
+        if effect.ended:
+            self.nodes.report_flood(last=True)
+            RUNS.labels(effect.state).inc()
+        self.enter(effect.state, why, effect.ended)
 
-    def close_record(self, outcome: str) -> None:
-        """Keep the checkpoint of an interrupted run, which can be resumed; remove all others."""
-        if outcome == "interrupted":
-            self.record.interrupted()
-            self.record.close()
-        else:
-            self.record.remove()
+    def _close(self, _: f.KeepInterrupted) -> None:
+        """Keep the checkpoint of an interrupted run, which can be resumed."""
+        self.record.interrupted()
+        self.record.close()
 
     def refuse(self, reason: Reason) -> None:
-        """End the run before any machine has moved."""
-        self.over = True
-        if self._resumed:  # the run stays interrupted
-            self.enter("interrupted", NotResumed(reason), ended=True)
-            self.record.interrupted()
-            self.record.close()
-            return
-        self.record.over("refused", to_line(reason))
-        self.enter("refused", reason, ended=True)
-        self.record.remove()
-        RUNS.labels("refused").inc()
+        """End the run before any machine has moved, or by a bug."""
+        self._step(e.Refused(reason))

@@ -15,10 +15,11 @@ import structlog
 from prometheus_client import Counter
 
 from tms_config.clock import unix_time
+from tms_decision.leaf.events import Key
 from tms_runtime.durable import set_aside
 from tms_ts.append_file import AppendFile
 from tms_ts.group_commit import GroupCommit
-from tms_ts.interrupted_run import Header, InterruptedRun, Key
+from tms_ts.interrupted_run import Header, InterruptedRun
 
 READ_LIMIT = 2.0  # s for waiting lines to be on the disk before a checkpoint is read
 

@@ -1,62 +1,35 @@
-"""One goal of one leaf node, from its sending to its end."""
+"""One goal of one leaf node, as the tree sees it."""
 
-from tms_msg_ts.action import LeafNodeBase
+from collections.abc import Callable
 
-from tms_config.clock import monotonic
+from tms_decision.leaf.state import GoalState, LeafGoal
 from tms_reason import wire
 from tms_reason.reason import Reason
-from tms_ros.client import Call, Peer
-from tms_ts.interrupted_run import Key
-from tms_ts.world import GoalState
-
-ACCEPT_LIMIT = 5.0  # s for a subtask to accept or refuse a goal
-RECOVERY = 15.0  # s after a loss in which processes may still discover each other
-
-LeafPeer = Peer[LeafNodeBase.Goal, LeafNodeBase.Result, LeafNodeBase.Feedback]
-LeafCall = Call[LeafNodeBase.Result, LeafNodeBase.Feedback]
+from tms_ros.client import AnyCall
 
 
 class SentGoal:
-    """One goal of one leaf; fields change on the executor thread and in `Machines.advance`."""
+    """Readable from any thread; only the decisions change it."""
 
-    def __init__(self, machine: str, subtask: str, record: str, node: str) -> None:
-        self.machine, self.subtask, self.record, self.node = machine, subtask, record, node
-        self.name = f"{machine}:{subtask}"  # as `tms ps` lists it
-        self.action = f"/{machine}/{subtask}"
-        self.state = GoalState.SENDING
-        self.reason: Reason | None = None
-        self.cancelled = False
-        self.begun = monotonic()
-        self.call: LeafCall | None = None
-        self.peer: LeafPeer | None = None
-        self.pid: int | None = None  # pid of the subtask's process when the goal was sent
-        self.not_before = 0.0  # monotonic time of the next attempt
-        self.waits_since: float | None = None  # monotonic time since which the goal waits for the database
-        self.lost_at = 0.0
-        self.losses = 0  # times that a process was lost during this goal
+    def __init__(self, goal: LeafGoal, call: Callable[[], AnyCall | None], cancel: Callable[[], None]) -> None:
+        """`call`: its sending that is open now; `cancel`: asks for the cancel and returns at once."""
+        self._goal, self._call, self.cancel = goal, call, cancel
 
     @property
-    def key(self) -> Key:
-        """What distinguishes this goal from others of the same run."""
-        return self.node, self.machine, self.subtask, self.record
+    def state(self) -> GoalState:
+        return self._goal.state
+
+    @property
+    def reason(self) -> Reason | None:
+        """Why it waits, or how it has ended."""
+        return self._goal.reason
 
     @property
     def feedback(self) -> Reason | None:
         """The subtask's last feedback."""
-        return wire.of(getattr(self.call.feedback, "status", "")) if self.call is not None else None
+        return feedback(self._call())
 
-    def unreceived(self) -> bool:
-        """Whether the server has not answered within its time."""
-        return self.call is not None and not self.call.accepted and monotonic() - self.begun > ACCEPT_LIMIT
 
-    def recovers(self) -> bool:
-        """Whether, after a loss, the processes below may not have discovered each other yet."""
-        return self.losses > 0 and monotonic() - self.lost_at < RECOVERY
-
-    def cancel(self) -> None:
-        """Ask for the cancel; `Machines` watches until the goal has ended."""
-        self.cancelled = True
-        if self.call is None:
-            self.state = GoalState.CANCELLED  # never sent, so no machine moves
-        elif self.peer is not None:
-            self.peer.cancel(self.call)
+def feedback(call: AnyCall | None) -> Reason | None:
+    """The last feedback of a sending."""
+    return wire.of(getattr(call.feedback, "status", "")) if call is not None else None

@@ -67,7 +67,7 @@ class TaskCheck:
         for machine in machines:
             found = self._gateways.held_back(machine)
             if found is not None:
-                raise TaskError(found, "NOT_ARMED" if isinstance(found, MachineLatched) else found.code)
+                raise not_free(found)
 
     def _preflight(self, tree: bt.Tree, present: bool) -> Findings:
         """`present`: also report why machines may not move now; a run is refused for that later."""
@@ -81,3 +81,8 @@ class TaskCheck:
 
 def _no_problem(_machine: str) -> None:
     return None
+
+
+def not_free(why: Reason) -> TaskError:
+    """The error of a run whose machine may not move now; NOT_ARMED if it is latched."""
+    return TaskError(why, "NOT_ARMED" if isinstance(why, MachineLatched) else why.code)

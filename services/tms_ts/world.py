@@ -4,28 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from enum import Enum
 from typing import Any, Protocol, TypeVar
 
 from tms_config.clock import monotonic
+from tms_decision.leaf.state import GoalState
 from tms_reason.reason import Reason
 
 Value = str | bool | int | float
 T_co = TypeVar("T_co", covariant=True)
-
-
-class GoalState(Enum):
-    """How far a leaf's goal is."""
-
-    SENDING = "sending"
-    RUNNING = "running"
-    SUCCEEDED = "succeeded"
-    FAILED = "failed"  # aborted, rejected or not deliverable
-    CANCELLED = "cancelled"
-
-    @property
-    def final(self) -> bool:
-        return self in (GoalState.SUCCEEDED, GoalState.FAILED, GoalState.CANCELLED)
 
 
 class Goal(Protocol):

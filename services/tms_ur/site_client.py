@@ -25,7 +25,7 @@ from tms_msg_ts.srv import AnswerQuestion, CancelRun, CheckTask
 
 from tms_config.clock import monotonic
 from tms_config.config import Site
-from tms_machine.border import RECEIPT_LIMIT
+from tms_decision.gateway.stops import RECEIPT_LIMIT
 from tms_machine.frames import Frames
 from tms_machine.values import to_parameters
 from tms_reason import wire

@@ -1,21 +1,12 @@
 """The goal that moves the machine, from the note that names it to its end."""
 
+from tms_decision import reasons as r
 from tms_decision.chain import gap
 from tms_decision.gateway import notes, stops
 from tms_decision.gateway.effects import End, Publish, Receipt, Send
 from tms_decision.gateway.events import CallEnded, NoteKept, Reference, Turn
 from tms_decision.gateway.state import Gateway, Goal, Phase
 from tms_decision.gateway.stops import StopKind, stood_after
-from tms_decision.reasons import (
-    Cancelled,
-    CancelledElsewhere,
-    ControllerAway,
-    ControllerEnded,
-    GatewayStopped,
-    NotReady,
-    ProcessLost,
-    StopUnconfirmed,
-)
 from tms_proof.following import Follower, Way, ways
 from tms_reason.reason import Reason
 
@@ -55,7 +46,7 @@ def _reach(gateway: Gateway, goal: Goal, now: float) -> None:
     if goal.seen(gateway) and gateway.beat.ready:
         goal.enter(Phase.HEARING, now)
     elif now - goal.since >= SERVER_LIMIT:
-        _finish(gateway, goal, End(goal.number, "ABORTED", ControllerAway(gateway.facts.name, goal.asked.server)))
+        _finish(gateway, goal, End(goal.number, "ABORTED", r.ControllerAway(gateway.facts.name, goal.asked.server)))
 
 
 def _hear(gateway: Gateway, goal: Goal, now: float) -> None:
@@ -66,11 +57,11 @@ def _hear(gateway: Gateway, goal: Goal, now: float) -> None:
     silent = gateway.silent(now)
     if silent is not None and not goal.cancelled:
         if now - goal.since >= SERVER_LIMIT:
-            _finish(gateway, goal, End(goal.number, "ABORTED", NotReady(silent)))
+            _finish(gateway, goal, End(goal.number, "ABORTED", r.NotReady(silent)))
         return
     trouble = gateway.watch.trouble(now)
     if trouble is not None:
-        _finish(gateway, goal, End(goal.number, "ABORTED", NotReady(trouble.reason)))
+        _finish(gateway, goal, End(goal.number, "ABORTED", r.NotReady(trouble.reason)))
         return
     _last_look(gateway, goal, now)
     if goal.stop is None:
@@ -87,9 +78,9 @@ def _last_look(gateway: Gateway, goal: Goal, now: float) -> None:
     elif missing is not None:
         lost = goal.owner is not None and not missing.late
         kind = StopKind.HOLD if lost else StopKind.PLAIN
-        stops.stop(gateway, now, ProcessLost(missing.reason) if lost else missing.reason, kind)
+        stops.stop(gateway, now, r.ProcessLost(missing.reason) if lost else missing.reason, kind)
     elif goal.cancelled:
-        stops.stop(gateway, now, Cancelled(), StopKind.PLAIN)
+        stops.stop(gateway, now, r.Cancelled(), StopKind.PLAIN)
 
 
 def accepted(gateway: Gateway, now: float, number: int) -> None:
@@ -123,9 +114,9 @@ def ended(gateway: Gateway, now: float, event: CallEnded) -> None:
     elif event.outcome == "SUCCEEDED":
         _finish(gateway, goal, End(goal.number, "SUCCEEDED"))
     elif event.outcome == "CANCELED":  # not by our client: the standby of a gateway that seems lost did it
-        _finish(gateway, goal, End(goal.number, "ABORTED", ProcessLost(CancelledElsewhere())))
+        _finish(gateway, goal, End(goal.number, "ABORTED", r.ProcessLost(r.CancelledElsewhere())))
     else:
-        why = None if event.explained else ControllerEnded(gateway.facts.name, event.outcome)
+        why = None if event.explained else r.ControllerEnded(gateway.facts.name, event.outcome)
         _finish(gateway, goal, End(goal.number, "ABORTED", why))
 
 
@@ -139,8 +130,8 @@ def _finish(gateway: Gateway, goal: Goal, end: End) -> None:
 
 def _stopped(gateway: Gateway, goal: Goal, cause: Reason, receipt: Receipt) -> End:
     if not receipt.confirmed:
-        return End(goal.number, "ABORTED", StopUnconfirmed(receipt.detail or cause, cause))
+        return End(goal.number, "ABORTED", r.StopUnconfirmed(receipt.detail or cause, cause))
     stood = stood_after(receipt.seconds, receipt.joint, receipt.angle, receipt.way, cause)
     if not goal.cancelled or gateway.latch.cause is not None:
         return End(goal.number, "ABORTED", stood)
-    return End(goal.number, "CANCELED", ProcessLost(GatewayStopped(stood)) if gateway.leaving else stood)
+    return End(goal.number, "CANCELED", r.ProcessLost(r.GatewayStopped(stood)) if gateway.leaving else stood)

@@ -1,31 +1,11 @@
 """What a person does at a stopped machine: re-arm it, take it to drive it by hand, give it back."""
 
+from tms_decision import reasons as r
 from tms_decision.gateway import notes, stops
 from tms_decision.gateway.effects import Emergency, Publish, Rearmed, Taken
 from tms_decision.gateway.events import Manual, NoteKept, RearmAsked, TakeAsked
 from tms_decision.gateway.state import Gateway, Rearm
 from tms_decision.gateway.stops import StopKind
-from tms_decision.reasons import (
-    BadToken,
-    CausePersists,
-    DrivenByHand,
-    GivenBack,
-    HeldByRun,
-    ManualMode,
-    ManualOff,
-    ManualOn,
-    Nameless,
-    NotBelieved,
-    NotKept,
-    NotSeen,
-    NotStill,
-    NotStopped,
-    NotTaken,
-    StillActive,
-    StillPressed,
-    StillProven,
-    TokenUnknown,
-)
 from tms_reason.reason import Foreign, Reason
 
 PROOF_LIMIT = 3.0  # s that a person waits for a stop that is still being proven
@@ -48,10 +28,10 @@ def advance(gateway: Gateway, now: float) -> None:
 def _rearm(gateway: Gateway, now: float, one: Rearm) -> None:
     latch, token = gateway.latch, one.asked.token
     cause = latch.cause or latch.hold
-    wrong = NotStopped(gateway.facts.name) if cause is None else _keeps_from_arming(gateway, now)
+    wrong = r.NotStopped(gateway.facts.name) if cause is None else _keeps_from_arming(gateway, now)
     if wrong is None and token:
         refused = latch.confirm(token, now)
-        wrong = None if refused is None else BadToken(refused)
+        wrong = None if refused is None else r.BadToken(refused)
     if wrong is not None or not token:
         given = "" if wrong is not None else one.asked.fresh
         if given:
@@ -81,9 +61,9 @@ def noted(gateway: Gateway, now: float, event: NoteKept) -> None:
     for one in list(gateway.rearms):
         if one.note and event.number >= one.note:
             if event.problem is not None and event.number == one.note:
-                _answer(gateway, one, gateway.latch.cause or gateway.latch.hold, NotKept(event.problem), "")
+                _answer(gateway, one, gateway.latch.cause or gateway.latch.hold, r.NotKept(event.problem), "")
             elif one.closings != gateway.latch.closings:  # stopped again meanwhile
-                _answer(gateway, one, gateway.latch.cause, BadToken(TokenUnknown()), "")
+                _answer(gateway, one, gateway.latch.cause, r.BadToken(r.TokenUnknown()), "")
                 notes.keep(gateway)
             else:
                 _arm(gateway, now, one)
@@ -100,20 +80,20 @@ def _answer(gateway: Gateway, one: Rearm, cause: Reason | None, wrong: Reason | 
 def _keeps_from_arming(gateway: Gateway, now: float) -> Reason | None:
     machine, watch = gateway.facts.name, gateway.watch
     if gateway.active is not None:
-        return StillActive(machine)
+        return r.StillActive(machine)
     if gateway.by_hand is not None:
-        return DrivenByHand(gateway.by_hand, machine)
+        return r.DrivenByHand(gateway.by_hand, machine)
     if now - gateway.pressed < PRESSED:
-        return CausePersists(StillPressed())
+        return r.CausePersists(r.StillPressed())
     silent, trouble = gateway.silent(now), watch.trouble(now)
     if silent is not None:
-        return CausePersists(NotSeen(machine, silent))
+        return r.CausePersists(r.NotSeen(machine, silent))
     if trouble is not None and not trouble.passes:
-        return CausePersists(NotBelieved(machine, trouble.reason))
+        return r.CausePersists(r.NotBelieved(machine, trouble.reason))
     if stops.busy(gateway):
-        return CausePersists(StillProven(machine))
+        return r.CausePersists(r.StillProven(machine))
     if not watch.standing(now, passing=True):
-        return CausePersists(NotStill(machine))
+        return r.CausePersists(r.NotStill(machine))
     return None
 
 
@@ -134,7 +114,7 @@ def take(gateway: Gateway, now: float, asked: TakeAsked) -> None:
 
 
 def _taken(gateway: Gateway, now: float, problem: Reason | None, request: int, who: str, back: bool) -> None:
-    wrong: Reason | None = NotKept(problem) if problem is not None else None
+    wrong: Reason | None = r.NotKept(problem) if problem is not None else None
     if wrong is None and not back:  # a goal may have begun meanwhile
         wrong = _keeps_from_taking(gateway, now, who)
         if wrong is not None:
@@ -143,7 +123,7 @@ def _taken(gateway: Gateway, now: float, problem: Reason | None, request: int, w
         gateway.do(Taken(request, wrong))
     elif back:
         gateway.by_hand = None
-        stops.stop(gateway, now, GivenBack(who), StopKind.PLAIN).requests.append(request)
+        stops.stop(gateway, now, r.GivenBack(who), StopKind.PLAIN).requests.append(request)
     else:
         gateway.by_hand = Foreign(who)
         gateway.log("taken", who=who)
@@ -153,27 +133,27 @@ def _taken(gateway: Gateway, now: float, problem: Reason | None, request: int, w
 def _keeps_from_taking(gateway: Gateway, now: float, who: str) -> Reason | None:
     machine = gateway.facts.name
     if not who.strip() or not who.isprintable():
-        return Nameless()
+        return r.Nameless()
     if gateway.by_hand is not None:
-        return DrivenByHand(gateway.by_hand, machine)
+        return r.DrivenByHand(gateway.by_hand, machine)
     if gateway.active is not None:
-        return StillActive(machine)
+        return r.StillActive(machine)
     if gateway.run is not None:
-        return HeldByRun(gateway.holder(now), machine)
+        return r.HeldByRun(gateway.holder(now), machine)
     return None
 
 
 def _keeps_from_giving(gateway: Gateway) -> Reason | None:
     driver = gateway.by_hand
-    return NotTaken(gateway.facts.name) if driver is None or isinstance(driver, ManualMode) else None
+    return r.NotTaken(gateway.facts.name) if driver is None or isinstance(driver, r.ManualMode) else None
 
 
 def manual(gateway: Gateway, now: float, event: Manual) -> None:
     """The machine's own signal that a person drives it by its levers."""
     if event.on and gateway.by_hand is None:
-        stops.stop(gateway, now, ManualOn(), StopKind.PLAIN)
-        gateway.by_hand = ManualMode()
-    elif not event.on and isinstance(gateway.by_hand, ManualMode):
+        stops.stop(gateway, now, r.ManualOn(), StopKind.PLAIN)
+        gateway.by_hand = r.ManualMode()
+    elif not event.on and isinstance(gateway.by_hand, r.ManualMode):
         gateway.by_hand = None
-        stops.stop(gateway, now, ManualOff(), StopKind.PLAIN)
+        stops.stop(gateway, now, r.ManualOff(), StopKind.PLAIN)
     gateway.do(Publish())

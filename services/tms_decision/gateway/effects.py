@@ -1,13 +1,17 @@
 """What a gateway wants to be done. A shell does it in the order of the list, at once."""
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
+from tms_decision.data import Data
 from tms_reason.reason import Reason
 
 
-@dataclass(frozen=True)
-class Receipt:
+class Effect(Data):
+    """Something that a gateway wants to be done."""
+
+
+class Receipt(Data):
     """What a stop has shown."""
 
     cause: Reason
@@ -25,52 +29,29 @@ class Receipt:
 
 # fmt: off
 # commands to the machine
-@dataclass(frozen=True)
-class Zero: pass  # velocity
-@dataclass(frozen=True)
-class Emergency: on: bool  # press or release its own emergency stop
-@dataclass(frozen=True)
-class CancelAll: pass  # the goals of all clients at its servers
-@dataclass(frozen=True)
-class Send: number: int  # a goal to its server
-@dataclass(frozen=True)
-class Cancel: number: int  # a goal that was sent, also before its acceptance
-@dataclass(frozen=True)
-class GiveUp: number: int  # a goal that its server has not answered
-@dataclass(frozen=True)
-class Lose: number: int  # end a goal whose server is gone: no other process ends it
+class Zero(Effect): pass  # velocity
+class Emergency(Effect): on: bool  # press or release its own emergency stop
+class CancelAll(Effect): pass  # the goals of all clients at its servers
+class Send(Effect): number: int  # a goal to its server
+class Cancel(Effect): number: int  # a goal that was sent, also before its acceptance
+class GiveUp(Effect): number: int  # a goal that its server has not answered
+class Lose(Effect): number: int  # end a goal whose server is gone: no other process ends it
 
 # answers; a goal's outcome is one of tms_ros.goals, and without `why` the result of the machine's server says it
-@dataclass(frozen=True)
-class End: number: int; outcome: str; why: Reason | None = None
-@dataclass(frozen=True)
-class Stopped: request: int; receipt: Receipt
-@dataclass(frozen=True)
-class Rearmed:
+class End(Effect): number: int; outcome: str; why: Reason | None = None
+class Stopped(Effect): request: int; receipt: Receipt
+class Rearmed(Effect):
     request: int; cause: Reason | None = None; token: str = ""; armed: bool = False; wrong: Reason | None = None
-@dataclass(frozen=True)
-class Taken: request: int; wrong: Reason | None = None
+class Taken(Effect): request: int; wrong: Reason | None = None
 
-# the disk, in this order; each is answered by an event
-@dataclass(frozen=True)
-class KeepState: number: int; latched: Reason | None; holder: str; run: int  # who may move it; empty: no run or client
-@dataclass(frozen=True)
-class KeepDriver: number: int; who: str  # who drives the machine by hand; empty: no person does
-@dataclass(frozen=True)
-class KeepReceipt: stop: int; receipt: Receipt
+# the disk, in this order; each is answered by an event; an empty name: no run or client, no person
+class KeepState(Effect): number: int; latched: Reason | None; holder: str; run: int  # who may move it, if any
+class KeepDriver(Effect): number: int; who: str  # who drives the machine by hand
+class KeepReceipt(Effect): stop: int; receipt: Receipt
 
 # what others see, and what the shell sees
-@dataclass(frozen=True)
-class Publish: pass  # the state, now
-@dataclass(frozen=True)
-class Look: pass  # beat at once
-@dataclass(frozen=True)
-class Tell: receipt: Receipt
-@dataclass(frozen=True)
-class Log: event: str; values: dict[str, Any] = field(default_factory=dict); warning: bool = True
+class Publish(Effect): pass  # the state, now
+class Look(Effect): pass  # beat at once
+class Tell(Effect): receipt: Receipt
+class Log(Effect): event: str; values: dict[str, Any] = field(default_factory=dict); warning: bool = True
 # fmt: on
-
-Effect = (
-    Zero | Emergency | CancelAll | Send | Cancel | GiveUp | Lose | End | Stopped | Rearmed | Taken | KeepState
-    | KeepDriver | KeepReceipt | Publish | Look | Tell | Log
-)  # fmt: skip

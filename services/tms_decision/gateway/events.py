@@ -1,15 +1,18 @@
 """What happens to a gateway. Times are in the `now` of the step, unless an event says otherwise."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
+from tms_decision.data import Data
 from tms_decision.owner import Owner
 from tms_proof.source import SourceSample
 from tms_reason.reason import Reason
 
 
-@dataclass(frozen=True)
-class Left:
+class Event(Data):
+    """Something that happens to a gateway."""
+
+
+class Left(Data):
     """How the machine was left, by the notes on the disk; `latched` is None when it was armed."""
 
     latched: Reason | None
@@ -19,8 +22,7 @@ class Left:
     unproven: bool = False  # it was latched, but the receipt of that stop was never written to the disk
 
 
-@dataclass(frozen=True)
-class Beat:
+class Beat(Event):
     """A moment has passed: 50 ms, or 10 ms while a stop is being proven. What the shell sees at it."""
 
     wall: float  # s since 1970, for receipts
@@ -31,16 +33,14 @@ class Beat:
     escaped: Reason | None = None  # the joint that has left its limits
 
 
-@dataclass(frozen=True)
-class Reference:
+class Reference(Data):
     """A trajectory: times [s] and angles [rad] in the order of `names`."""
 
     names: Sequence[str]
     points: Sequence[tuple[float, Sequence[float]]]
 
 
-@dataclass(frozen=True)
-class Turn:
+class Turn(Data):
     """One joint goes to an angle [rad], at most this fast [rad/s, rad/s^2]: only the end of its motion is known."""
 
     joint: str
@@ -49,8 +49,7 @@ class Turn:
     acceleration: float
 
 
-@dataclass(frozen=True)
-class GoalAsked:
+class GoalAsked(Event):
     """A client asks for a motion; `number` is new for each goal."""
 
     number: int
@@ -64,51 +63,30 @@ class GoalAsked:
 
 # fmt: off
 # what the machine tells
-@dataclass(frozen=True)
-class Sampled: source: str; sample: SourceSample
-@dataclass(frozen=True)
-class Published: source: str; nodes: tuple[str, ...]  # who publishes it, where there is more than one; else empty
-@dataclass(frozen=True)
-class Manual: on: bool  # its own signal that a person drives it by its levers
-@dataclass(frozen=True)
-class Pressed: pass  # its own emergency stop, by whomever
-@dataclass(frozen=True)
-class StoodIn: pass  # the host agent has pressed it just now, in place of this gateway
+class Sampled(Event): source: str; sample: SourceSample
+class Published(Event): source: str; nodes: tuple[str, ...]  # who publishes it, if more than one
+class Manual(Event): on: bool  # its own signal that a person drives it by its levers
+class Pressed(Event): pass  # its own emergency stop, by whomever
+class StoodIn(Event): pass  # the host agent has pressed it just now, in place of this gateway
+class StandsIn(Event): on: bool  # the host agent commands the machine, since it misses this gateway
 
 # permits: a process says which goal it stands behind; DDS reports how many of its writers are asserted
-@dataclass(frozen=True)
-class PermitHeard: process: str; goal: bytes; holder: str
-@dataclass(frozen=True)
-class PermitReported: process: str; alive: int; not_alive: int; late: bool  # `late`: this PC did not run just now
+class PermitHeard(Event): process: str; goal: bytes; holder: str
+class PermitReported(Event): process: str; alive: int; not_alive: int; late: bool  # this PC did not run just now
 
-# goals: what their clients want, and what the machine's server does
-@dataclass(frozen=True)
-class GoalCancelled: number: int
-@dataclass(frozen=True)
-class CallAccepted: number: int
-@dataclass(frozen=True)
-class CallEnded: number: int; outcome: str; explained: bool = False  # its result says why; outcome: of tms_ros.goals
+# goals: what their clients want, and what the machine's server does; outcome: of tms_ros.goals
+class GoalCancelled(Event): number: int
+class CallAccepted(Event): number: int
+class CallEnded(Event): number: int; outcome: str; explained: bool = False  # its result says why
 
 # people, the scheduler; `request` is new for each call
-@dataclass(frozen=True)
-class Signal: on: bool  # a message of /emergency_signal
-@dataclass(frozen=True)
-class StopAsked: request: int; cause: Reason | None; orderly: bool  # the end of a goal or run, which needs no re-arm
-@dataclass(frozen=True)
-class RearmAsked: request: int; token: str; fresh: str  # without a token it asks for one, which will be `fresh`
-@dataclass(frozen=True)
-class TakeAsked: request: int; who: str; back: bool  # to drive by hand, or to give the machine back
+class Signal(Event): on: bool  # a message of /emergency_signal
+class StopAsked(Event): request: int; cause: Reason | None; orderly: bool  # the end of a goal or run: no re-arm
+class RearmAsked(Event): request: int; token: str; fresh: str  # without a token it asks for one, which will be `fresh`
+class TakeAsked(Event): request: int; who: str; back: bool  # to drive by hand, or to give the machine back
 
 # the disk has what was to be kept, or why it has not; and the process ends in order
-@dataclass(frozen=True)
-class NoteKept: number: int; problem: Reason | None = None
-@dataclass(frozen=True)
-class ReceiptKept: stop: int; problem: str = ""
-@dataclass(frozen=True)
-class Leaving: pass
+class NoteKept(Event): number: int; problem: Reason | None = None
+class ReceiptKept(Event): stop: int; problem: str = ""
+class Leaving(Event): pass
 # fmt: on
-
-Event = (
-    Beat | Sampled | Published | Manual | Pressed | StoodIn | PermitHeard | PermitReported | GoalAsked | GoalCancelled
-    | CallAccepted | CallEnded | Signal | StopAsked | RearmAsked | TakeAsked | NoteKept | ReceiptKept | Leaving
-)  # fmt: skip

@@ -1,20 +1,12 @@
 """Goals of clients that wait: which one may move the machine, one at a time."""
 
+from tms_decision import reasons as r
 from tms_decision.chain import gap, members
 from tms_decision.gateway import active, notes, stops
 from tms_decision.gateway.effects import End, Publish
 from tms_decision.gateway.events import GoalAsked
 from tms_decision.gateway.state import Gateway, Goal, Phase
 from tms_decision.gateway.stops import STOP_PROVEN, StopKind
-from tms_decision.reasons import (
-    Cancelled,
-    DrivenByHand,
-    NoPermit,
-    NotReady,
-    Recovering,
-    StillMoved,
-    StopUnderWay,
-)
 from tms_reason.reason import Reason
 
 PERMIT_LIMIT = 3.0  # s that a goal may arrive before the permits behind it: a busy PC discovers new processes late
@@ -37,7 +29,7 @@ def cancel(gateway: Gateway, now: float, number: int) -> None:
         if goal.number == number:
             goal.cancelled = True
             if goal is gateway.active and goal.stop is None:
-                stops.stop(gateway, now, Cancelled(), StopKind.PLAIN)
+                stops.stop(gateway, now, r.Cancelled(), StopKind.PLAIN)
 
 
 def _refuse(gateway: Gateway, asked: GoalAsked, why: Reason) -> None:
@@ -61,7 +53,7 @@ def _look_for_permit(gateway: Gateway, goal: Goal, now: float) -> None:
     missing = gap(goal.owner, gateway.held(now))
     wrong = gateway.latch.refusal(goal.owner) if gateway.latch.cause is not None else None
     if wrong is None and missing is not None and (missing.late or now - goal.since >= PERMIT_LIMIT):
-        wrong = NoPermit(missing.reason)
+        wrong = r.NoPermit(missing.reason)
     if wrong is not None:
         gateway.waiting.remove(goal)
         _refuse(gateway, goal.asked, wrong)
@@ -72,7 +64,7 @@ def _look_for_permit(gateway: Gateway, goal: Goal, now: float) -> None:
 def _settle(gateway: Gateway, goal: Goal, now: float) -> None:
     """Wait until the commands of all stops are over, since they would end the motion."""
     late = now - goal.since >= STOP_PROVEN
-    commands = bool(gateway.doubts) or stops.busy(gateway) or gateway.beat.settling
+    commands = bool(gateway.doubts) or stops.busy(gateway) or gateway.beat.settling or now < gateway.standby
     if not goal.seen(gateway) or (commands and not late):
         return
     gateway.waiting.remove(goal)
@@ -92,11 +84,11 @@ def _settle(gateway: Gateway, goal: Goal, now: float) -> None:
 def _keeps(gateway: Gateway, goal: Goal) -> Reason | None:
     """What keeps a goal from the machine that the machine, or its gateway, is in."""
     if gateway.active is not None:
-        return StillMoved(gateway.facts.name)
+        return r.StillMoved(gateway.facts.name)
     if gateway.recovering or stops.busy(gateway):
-        return NotReady(Recovering() if gateway.recovering else StopUnderWay())
+        return r.NotReady(r.Recovering() if gateway.recovering else r.StopUnderWay())
     if gateway.by_hand is not None:
-        return DrivenByHand(gateway.by_hand, gateway.facts.name)
+        return r.DrivenByHand(gateway.by_hand, gateway.facts.name)
     return gateway.latch.refusal(goal.owner)
 
 

@@ -1,18 +1,10 @@
 """The watch over the motion of the active goal."""
 
+from tms_decision import reasons as r
 from tms_decision.gateway import stops
 from tms_decision.gateway.effects import GiveUp, Lose
 from tms_decision.gateway.state import SCHEDULER, Gateway, Goal, Phase
 from tms_decision.gateway.stops import StopKind
-from tms_decision.reasons import (
-    ControllerLeft,
-    GatewayStood,
-    NoGoalAnswer,
-    ProcessesLost,
-    ProcessLost,
-    TooLong,
-    WhileMoving,
-)
 from tms_proof.following import Follower
 from tms_proof.reasons import Frozen, OffPath
 from tms_proof.standstill import JOINTS
@@ -30,19 +22,19 @@ def watch(gateway: Gateway, now: float, since: float) -> None:
         return
     frozen = now - max(since, goal.sent)
     if frozen > FROZEN:  # the gateway has read no message, the machine is not silent
-        stops.stop(gateway, now, ProcessLost(GatewayStood(frozen)), StopKind.HOLD)
+        stops.stop(gateway, now, r.ProcessLost(r.GatewayStood(frozen)), StopKind.HOLD)
     elif goal.phase is Phase.SENT and now - goal.since >= ACCEPT_LIMIT:
-        unanswered = NoGoalAnswer(gateway.facts.name, goal.asked.server)
-        stops.stop(gateway, now, ProcessLost(unanswered), StopKind.PLAIN)
+        unanswered = r.NoGoalAnswer(gateway.facts.name, goal.asked.server)
+        stops.stop(gateway, now, r.ProcessLost(unanswered), StopKind.PLAIN)
         gateway.do(GiveUp(goal.number))
     elif goal.phase is Phase.MOVING and gateway.beat.gone:
-        away = ControllerLeft(gateway.facts.name, goal.asked.server)
-        stops.stop(gateway, now, ProcessLost(away), StopKind.PLAIN)
+        away = r.ControllerLeft(gateway.facts.name, goal.asked.server)
+        stops.stop(gateway, now, r.ProcessLost(away), StopKind.PLAIN)
         gateway.do(Lose(goal.number))
     elif (wrong := _wrong(gateway, goal, now)) is not None:
         stops.stop(gateway, now, *wrong)
     elif goal.phase is Phase.MOVING and now - goal.since > goal.asked.lasts + OVERRUN:
-        stops.stop(gateway, now, TooLong(), StopKind.PLAIN)
+        stops.stop(gateway, now, r.TooLong(), StopKind.PLAIN)
 
 
 def _wrong(gateway: Gateway, goal: Goal, now: float) -> tuple[Reason, StopKind] | None:
@@ -50,10 +42,10 @@ def _wrong(gateway: Gateway, goal: Goal, now: float) -> tuple[Reason, StopKind] 
     if gateway.beat.escaped is not None:
         return gateway.beat.escaped, StopKind.LATCH
     if (silent := gateway.silent(now)) is not None:
-        return WhileMoving(silent), StopKind.LATCH
+        return r.WhileMoving(silent), StopKind.LATCH
     if (trouble := gateway.watch.trouble(now)) is not None:
         passes = trouble.passes and goal.owner is not None
-        return WhileMoving(trouble.reason), StopKind.HOLD if passes else StopKind.LATCH
+        return r.WhileMoving(trouble.reason), StopKind.HOLD if passes else StopKind.LATCH
     if goal.follower is None:
         return None
     if (frozen := _frozen(gateway, goal, goal.follower, now)) is not None:
@@ -82,4 +74,4 @@ def check_chain(gateway: Gateway, now: float) -> None:
     gone = [name for name, what in goal.chain.items() if held.get(name) != what]
     if gone:
         names = tuple(f"{'tms' if name == SCHEDULER else gateway.facts.name}:{name}" for name in gone)
-        stops.stop(gateway, now, ProcessLost(ProcessesLost(names)), StopKind.HOLD)
+        stops.stop(gateway, now, r.ProcessLost(r.ProcessesLost(names)), StopKind.HOLD)

@@ -6,7 +6,7 @@ A press of any other publisher latches, since only a person's re-arm may release
 
 from tms_decision.gateway import stops
 from tms_decision.gateway.arming import PRESSED
-from tms_decision.gateway.events import Signal
+from tms_decision.gateway.events import Signal, StandsIn
 from tms_decision.gateway.state import Doubt, Gateway
 from tms_decision.gateway.stops import StopKind
 from tms_decision.reasons import PressedByOthers, SoftwareStop
@@ -14,6 +14,7 @@ from tms_decision.reasons import PressedByOthers, SoftwareStop
 DOUBT = 0.3  # s for the host agent's message to come, if it has pressed
 YOUNG = 10.0  # s in which a new gateway finds the host agent's two publishers one by one, on a busy PC
 YOUNG_DOUBT = 1.5  # s
+STANDBY = 3.0  # s; a host agent that commands the machine repeats every 0.5 s that it does
 
 
 def pressed(gateway: Gateway, now: float) -> None:
@@ -26,6 +27,11 @@ def pressed(gateway: Gateway, now: float) -> None:
 def stood_in(gateway: Gateway, now: float) -> None:
     """The host agent says that it has pressed."""
     gateway.stood_in_at, gateway.stood_in = now, True
+
+
+def stands_in(gateway: Gateway, now: float, event: StandsIn) -> None:
+    """The host agent says whether it commands the machine: its cancels would end a goal that leaves now."""
+    gateway.standby = now + STANDBY if event.on else now
 
 
 def advance(gateway: Gateway, now: float) -> None:

@@ -172,6 +172,7 @@ class Gateway:
     by_hand: Reason | None = None  # who drives the machine
     stood_in: bool = False  # the host agent has pressed the emergency stop in place of this gateway
     stood_in_at: float = float("-inf")
+    standby: float = 0.0  # until then the host agent may command the machine in place of this gateway
     recovering: bool = False
     leaving: bool = False
     beat: Beat = field(default_factory=lambda: Beat(0.0))
@@ -189,6 +190,10 @@ class Gateway:
     def log(self, event: str, *, warning: bool = True, **values: object) -> None:
         """Want a line in the log."""
         self.out.append(Log(event, dict(values), warning))
+
+    def leave(self) -> None:
+        """The process ends in order."""
+        self.leaving = True
 
     def held(self, now: float) -> dict[str, Owner]:
         """The living processes, and what each stands behind."""

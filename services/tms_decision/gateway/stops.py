@@ -6,36 +6,17 @@ The order of a stop is command, proof, note, receipt: a receipt is on the disk b
 from dataclasses import replace
 from enum import Enum
 
+from tms_decision import reasons as r
+from tms_decision.gateway import effects as f
 from tms_decision.gateway import notes
-from tms_decision.gateway.effects import (
-    Cancel,
-    CancelAll,
-    Effect,
-    Emergency,
-    KeepReceipt,
-    Publish,
-    Receipt,
-    Stopped,
-    Tell,
-    Zero,
-)
 from tms_decision.gateway.events import ReceiptKept
 from tms_decision.gateway.state import Gateway, Goal, Stop
-from tms_decision.reasons import (
-    ByArrival,
-    GoalOpen,
-    LeftStandStill,
-    NoEnd,
-    NotOnDisk,
-    NotSeenToStand,
-    Stood,
-    StoodWithoutJoints,
-)
 from tms_proof.standstill import NOTHING, Expected
 from tms_reason.reason import Reason, Several
 
 STOP_PROVEN = 10.0  # s within which a gateway sees that a machine stands, or reports that it does not
 AGAIN = 0.5  # s between repeated commands while it is not proven
+RECEIPT_LIMIT = STOP_PROVEN + 3.0  # s without a receipt after which a gateway counts as silent
 DISK_LIMIT = 1.0  # s more for the disk; then the answer does not wait for it any longer
 
 
@@ -47,9 +28,9 @@ class StopKind(Enum):
     PLAIN = "the end of a goal or of a run"
 
 
-def commands(latched: bool) -> list[Effect]:
+def commands(latched: bool) -> list[f.Effect]:
     """What stops a machine, whoever moves it; messages leave sooner than requests."""
-    return [Zero(), *([Emergency(True)] if latched else []), CancelAll()]
+    return [f.Zero(), *([f.Emergency(True)] if latched else []), f.CancelAll()]
 
 
 def stop(
@@ -63,7 +44,7 @@ def stop(
     active, latched = gateway.active, kind is StopKind.LATCH
     gateway.do(*commands(latched))
     if active is not None and active.sent and not active.outcome:
-        gateway.do(Cancel(active.number))  # also a goal that the machine has not answered yet
+        gateway.do(f.Cancel(active.number))  # also a goal that the machine has not answered yet
     owner = active.owner if active is not None else None
     if latched:
         gateway.latch.close(cause)
@@ -78,7 +59,7 @@ def stop(
     if active is not None:
         active.stop = active.stop or made
     gateway.vigil.begin()
-    gateway.do(Publish())
+    gateway.do(f.Publish())
     return made
 
 
@@ -114,7 +95,7 @@ def advance(gateway: Gateway, now: float) -> None:
         late = now - one.begun
         if one.receipt is not None:
             if late >= STOP_PROVEN + DISK_LIMIT and not one.over:
-                _over(gateway, one, replace(one.receipt, confirmed=False, latched=True, detail=NoEnd()))
+                _over(gateway, one, replace(one.receipt, confirmed=False, latched=True, detail=r.NoEnd()))
         elif _seen(gateway, one, now) or late >= STOP_PROVEN:
             _end(gateway, one, now)
         elif now > one.again:
@@ -130,34 +111,34 @@ def _end(gateway: Gateway, one: Stop, now: float) -> None:
     """Note what a stop has shown, then keep its receipt."""
     receipt = one.receipt = _receipt(gateway, one, now)
     if not receipt.confirmed:
-        gateway.latch.close(NotSeenToStand(one.cause, receipt.detail or NoEnd(), gateway.facts.name))
-        gateway.do(Emergency(True), Publish())
+        gateway.latch.close(r.NotSeenToStand(one.cause, receipt.detail or r.NoEnd(), gateway.facts.name))
+        gateway.do(f.Emergency(True), f.Publish())
     elif gateway.stood_in and gateway.latch.cause is None:
         gateway.stood_in = False
-        gateway.do(Emergency(False))
+        gateway.do(f.Emergency(False))
     if receipt.confirmed and gateway.run is None:  # it stands, and no run's goal moves it
         notes.hold(gateway, "", 0)
     else:
         notes.keep(gateway)
-    gateway.do(KeepReceipt(one.number, receipt))
+    gateway.do(f.KeepReceipt(one.number, receipt))
 
 
-def _receipt(gateway: Gateway, one: Stop, now: float) -> Receipt:
+def _receipt(gateway: Gateway, one: Stop, now: float) -> f.Receipt:
     seen, travel = _seen(gateway, one, now), gateway.watch.travel()
-    obstacle = one.broken or (GoalOpen() if not one.ended() else gateway.watch.obstacle(now))
+    obstacle = one.broken or (r.GoalOpen() if not one.ended() else gateway.watch.obstacle(now))
     confirmed, unstamped = seen and one.broken is None, gateway.watch.unstamped
-    return Receipt(
+    return f.Receipt(
         one.cause, one.stamp, one.run, one.latched or not confirmed, confirmed, now - one.begun, travel.joint,
         travel.angle, travel.way, None if confirmed else obstacle,
-        ByArrival(tuple(unstamped)) if unstamped else None,
+        r.ByArrival(tuple(unstamped)) if unstamped else None,
     )  # fmt: skip
 
 
 def stood_after(seconds: float, joint: str, angle: float, way: float, cause: Reason) -> Reason:
     """How long it took until the machine stood, and how far it went; `joint` is empty if none was seen."""
     if not joint:
-        return StoodWithoutJoints(seconds, way, cause)
-    return Stood(seconds, angle, joint, way, cause)
+        return r.StoodWithoutJoints(seconds, way, cause)
+    return r.Stood(seconds, angle, joint, way, cause)
 
 
 def kept(gateway: Gateway, event: ReceiptKept) -> None:
@@ -167,17 +148,17 @@ def kept(gateway: Gateway, event: ReceiptKept) -> None:
         return
     receipt = one.receipt
     if event.problem:
-        known, lost = receipt.evidence, NotOnDisk(event.problem)
+        known, lost = receipt.evidence, r.NotOnDisk(event.problem)
         receipt = replace(receipt, evidence=lost if known is None else Several((known, lost)))
-    gateway.do(Tell(receipt))
+    gateway.do(f.Tell(receipt))
     gateway.stops.remove(one)
     if not one.over:
         _over(gateway, one, receipt)
 
 
-def _over(gateway: Gateway, one: Stop, receipt: Receipt) -> None:
+def _over(gateway: Gateway, one: Stop, receipt: f.Receipt) -> None:
     one.answer = receipt
-    gateway.do(*(Stopped(request, receipt) for request in one.requests))
+    gateway.do(*(f.Stopped(request, receipt) for request in one.requests))
 
 
 def busy(gateway: Gateway) -> bool:
@@ -191,4 +172,4 @@ def watch(gateway: Gateway, now: float) -> None:
     if gateway.active is not None:
         gateway.watch.commanded(now)
     elif gateway.vigil.left(now, gateway.watch.moved_at) and gateway.by_hand is None and not busy(gateway):
-        stop(gateway, now, LeftStandStill(), StopKind.LATCH, broken=LeftStandStill())
+        stop(gateway, now, r.LeftStandStill(), StopKind.LATCH, broken=r.LeftStandStill())

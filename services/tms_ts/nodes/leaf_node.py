@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 
+from tms_decision.leaf.state import GoalState
 from tms_reason.reason import Reason
 from tms_ts.bt.errors import TickError
 from tms_ts.bt.leaf import PlainAction
@@ -17,7 +18,7 @@ from tms_ts.bt.ports import In
 from tms_ts.bt.reasons import NoMachines, NoRosName, Sending, Working
 from tms_ts.bt.registry import generic
 from tms_ts.bt.status import FAILURE, RUNNING, SUCCESS, Status
-from tms_ts.world import Goal, GoalState
+from tms_ts.world import Goal
 
 # Names that ROS accepts: a topic may have 247 letters, including the machine's name and the endings of an action.
 ROS_NAME = re.compile(r"(?!.{201})[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*", re.ASCII)

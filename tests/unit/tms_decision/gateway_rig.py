@@ -36,6 +36,7 @@ class Rig:
             facts(at_once=at_once), "zx200:rc", ["swing"], left or e.Left(None), self.now, self.wall
         )
         self.do(effects)
+        self.happens(e.StandsIn(False))  # the host agent has seen it come
 
     def happens(self, event: e.Event) -> None:
         """Let something happen."""

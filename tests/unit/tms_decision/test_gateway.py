@@ -7,6 +7,7 @@ import pytest
 from tms_decision.gateway import effects as f
 from tms_decision.gateway import events as e
 from tms_decision.gateway import motion
+from tms_decision.gateway.presses import STANDBY
 from tms_decision.owner import Owner
 from tms_decision.reasons import (
     BadToken,
@@ -130,6 +131,25 @@ def test_a_goal_waits_for_the_commands_of_a_stop_before_it() -> None:
     assert not rig.run(0.5).all(f.Send)
     rig.look = replace(rig.look, settling=False)
     assert rig.run(0.2).all(f.Send) == [f.Send(1)]
+
+
+def test_a_goal_waits_until_the_host_agent_no_longer_commands_the_machine() -> None:
+    rig = ready()
+    rig.happens(e.StandsIn(True))
+    rig.run(0.1).ask(1)
+    assert not rig.run(STANDBY - 0.5).all(f.Send)
+    rig.happens(e.StandsIn(True))  # it repeats it
+    assert not rig.run(STANDBY - 0.5).all(f.Send)
+    rig.happens(e.StandsIn(False))
+    assert rig.run(0.2).all(f.Send) == [f.Send(1)]
+
+
+def test_a_host_agent_that_falls_silent_keeps_no_goal_for_long() -> None:
+    rig = ready()
+    rig.happens(e.StandsIn(True))
+    rig.ask(1)
+    assert not rig.run(STANDBY - 0.2).all(f.Send)
+    assert rig.run(0.4).all(f.Send) == [f.Send(1)]
 
 
 def test_a_server_that_is_away_is_waited_for_and_then_told() -> None:

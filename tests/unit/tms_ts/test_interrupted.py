@@ -12,13 +12,14 @@ from builtin_interfaces.msg import Time
 from tms_msg_rc.msg import StopReceipt
 from tms_msg_ts.srv import CancelRun
 
+from tms_decision.gateway.stops import RECEIPT_LIMIT
+from tms_decision.reasons import RunInterrupted
 from tms_machine.values import from_parameters
 from tms_reason import wire
 from tms_reason.errors import TaskError
 from tms_ts.group_commit import GroupCommit
-from tms_ts.interrupted import RECEIPT_LIMIT, Interrupted
+from tms_ts.interrupted import Interrupted
 from tms_ts.interrupted_run import Header, InterruptedRun
-from tms_ts.reasons import RunInterrupted
 from tms_ts.run_checkpoint import Records
 from words import words
 
@@ -138,8 +139,8 @@ def test_the_history_claims_no_stop_that_nobody_saw(
         ("stop", "zx200 stood after 0.50 s, 0.00 m: no scheduler"),
         ("stop", "ic120: STOP UNCONFIRMED: silent (no scheduler)"),
         ("alarm", "ic120: STOP UNCONFIRMED: silent (no scheduler)"),
-        ("alarm", "zx120: not seen to stand: no receipt of a stop came within 0.0 s"),
-        ("alarm", "mst110cr: not seen to stand: no receipt of a stop came within 0.0 s"),
+        ("alarm", "zx120: not seen to stand: no receipt of a stop came within 13.0 s"),
+        ("alarm", "mst110cr: not seen to stand: no receipt of a stop came within 13.0 s"),
     ]
     row = journal[-1]
     assert (row.state, list(row.records)) == ("interrupted", ["zx200/here"])

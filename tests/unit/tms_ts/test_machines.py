@@ -1,157 +1,156 @@
-"""What counts as a loss of a process, and what is only a server that has not found us yet."""
+"""What the decisions about leaf goals want is done at the subtasks' servers, and what these answer gets to them."""
 
-import time
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from tms_msg_rc.msg import StopReceipt
+from tms_msg_ts.action import LeafNodeBase
 
-from tms_reason.reason import Reason
+from tms_decision.leaf.events import NO_LOSS, Failure
+from tms_decision.leaf.replay import Replay
+from tms_decision.leaf.state import GoalState
+from tms_decision.owner import Owner, parse
+from tms_decision.reasons import NoPermit, NoScheduler, ProcessLost
+from tms_machine.reasons import NoDatabase
+from tms_reason.reason import Foreign, Reason
+from tms_reason.wire import to_line
 from tms_ros.client import Call
 from tms_ros.goals import Outcome
-from tms_ros.reasons import NoAnswer
+from tms_ros.reasons import LostMeanwhile
 from tms_ts.gateways import Gateways
-from tms_ts.machines import ASK_AGAIN, Identity, Machines
-from tms_ts.reasons import LostTimes, ProcessEnded, ProcessState, SentAgainSoon
-from tms_ts.replay import Replay
-from tms_ts.sent_goal import ACCEPT_LIMIT, RECOVERY, SentGoal
-from tms_ts.world import GoalState
+from tms_ts.machines import Identity, Machines, _ended
 from words import words
 
-RETRIES = 2
+LOST = ProcessLost(LostMeanwhile("zx200:rp", "/zx200/tms_rp_zx200_change_pose"))
 
 
 class Peer:
     """A server that is there and takes its time."""
 
-    def __init__(self) -> None:
-        self.calls: list[Call] = []
-        self.cancelled: list[Call] = []
-
-    def cancel(self, call: Call) -> None:
-        self.cancelled.append(call)
+    def __init__(self, told: list[str]) -> None:
+        self.told, self.calls, self.requests = told, list[Call](), list[Any]()
 
     def ready(self) -> bool:
         return True
 
     def send(self, request: Any, *, goal_id: bytes, on_change: Any) -> Call:
+        self.told.append("sent")
+        self.requests.append(request)
         self.calls.append(Call(goal_id, on_change, None))
         return self.calls[-1]
 
+    def cancel(self, call: Call) -> None:
+        self.told.append("cancelled")
+
+    def mark_lost(self) -> None:
+        self.told.append("server dead")
+
 
 class Site:
-    """One machine whose subtask has process 1, a clock that is set by hand, and stops that are told at once."""
+    """A machine whose subtask has process 1; what was done, in its order."""
 
-    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.now, self.pid, self.peer = 0.0, 1, Peer()
-        self.reported: list[str] = []
-        self.kept: list[tuple[Any, ...]] = []  # what the record has of ends
-        self.fatal: Reason | None = None
-        self.trouble: Reason | None = None
-        monkeypatch.setattr(time, "monotonic", lambda: self.now)
-        monkeypatch.setattr(Machines, "_stop_after_loss", lambda one, machine, cause: one._stopping.discard(machine))
-        self.peer.mark_lost = lambda: None  # type: ignore[attr-defined]
-        ros = SimpleNamespace(peer=lambda *_: self.peer)
-        hosts = SimpleNamespace(pid=lambda *_: self.pid, trouble=lambda *_: self.trouble, fatal=lambda *_: self.fatal)
+    def __init__(self) -> None:
+        self.told: list[str] = []
+        self.peer, self.pid = Peer(self.told), 1
+        hosts = SimpleNamespace(pid=lambda *_: self.pid, trouble=lambda *_: None, fatal=lambda *_: None)
         gateways = SimpleNamespace(obstacle=lambda _: None, latch=lambda _: None)
-        self.replay = Replay([(("0.1", "zx200", "dig", "here"), True)])
         record = SimpleNamespace(
-            sent=lambda _: None,
-            done=lambda key, succeeded: self.kept.append(("done", key, succeeded)),
-            gone=lambda key, left: self.kept.append(("gone", key, left)),
+            sent=lambda key: self.told.append(f"checkpoint: sent {key[3]}"),
+            done=lambda key, succeeded: self.told.append(f"checkpoint: done {key[3]} {succeeded}"),
+            gone=lambda key, left: self.told.append(f"checkpoint: gone {key[3]} {left}"),
         )
         self.machines = Machines(
-            ros,  # type: ignore[arg-type]
+            SimpleNamespace(peer=lambda *_: self.peer),  # type: ignore[arg-type]
             hosts,  # type: ignore[arg-type]
             gateways,  # type: ignore[arg-type]
             lambda: None,
-            lambda kind, _, what: self.reported.append(f"{kind}: {words(what)}"),
-            Identity(1, RETRIES, record, self.replay),  # type: ignore[arg-type]
+            lambda kind, _, what: self.told.append(f"{kind}: {words(what)}"),
+            Identity(7, 2, record, Replay([(("0.1", "zx200", "dig", "there"), True)])),  # type: ignore[arg-type]
         )
-        self.goal: SentGoal = self.machines.send("zx200", "subtask_zx200_change_pose", "pose", "0")
-
-    def retry(self, seconds: float, outcome: Outcome | None = None) -> None:
-        """What a RetryUntilSuccessful around a leaf does, at 20 ticks a second; its goals may all end at once."""
-        for _ in range(round(seconds * 20)):
-            for call in self.peer.calls if outcome is not None else []:
-                call.end(outcome)
-            if self.goal.state.final:
-                self.goal = self.send_again()
-            self.pass_time(0.05)
-
-    def send_again(self) -> SentGoal:
-        return self.machines.send("zx200", "subtask_zx200_change_pose", "pose", "0")
-
-    def pass_time(self, seconds: float) -> None:
-        self.now += seconds
-        self.machines.advance()
-
-    def lose(self) -> None:
-        """The subtask's process ends and is back under another number."""
-        self.pid += 1
-        self.pass_time(0.1)
-        self.pass_time(RETRIES)  # the goal is sent again
+        self.stopped: list[str] = []
+        self.machines._stop_after_loss = lambda machine, cause: self.stopped.append(machine)  # type: ignore[method-assign]
+        self.goal = self.machines.send("zx200", "dig", "here", "0.0")
 
 
 @pytest.fixture
-def site(monkeypatch: pytest.MonkeyPatch) -> Site:
-    return Site(monkeypatch)
+def site() -> Site:
+    return Site()
 
 
-def test_a_server_that_never_answers_is_a_loss(site: Site) -> None:
-    for losses in range(1, RETRIES + 1):
-        site.pass_time(RECOVERY + ACCEPT_LIMIT)
-        assert site.goal.losses == losses
-        site.pass_time(RETRIES)
-    assert site.peer.cancelled == site.peer.calls[:RETRIES]  # should they be accepted after all
-    site.pass_time(RECOVERY + ACCEPT_LIMIT)
-    name = "zx200:subtask_zx200_change_pose"
-    assert site.goal.reason == LostTimes(NoAnswer(name, site.goal.action, ACCEPT_LIMIT), RETRIES + 1)
-    assert site.goal.state.final
+def test_a_goal_is_kept_then_sent_with_the_number_of_its_run(site: Site) -> None:
+    assert site.told == ["goal: sent to zx200:dig, record here", "checkpoint: sent here", "sent"]
+    assert parse(site.peer.calls[0].id) == Owner(7, 1)
+    assert site.peer.requests[0] == LeafNodeBase.Goal(model_name="zx200", record_name="here")
 
 
-def test_a_server_that_does_not_hear_us_soon_after_a_loss_is_asked_again_without_a_further_loss(site: Site) -> None:
-    site.lose()
-    assert (site.goal.losses, len(site.peer.calls)) == (1, 2)
-    site.pass_time(ACCEPT_LIMIT + 0.1)
-    site.pass_time(RETRIES)
-    assert (site.goal.losses, len(site.peer.calls)) == (1, 3)
-    assert not site.goal.state.final
+def test_what_is_told_of_a_goal_reaches_the_tree(site: Site) -> None:
+    call = site.peer.calls[0]
+    assert site.goal.state is GoalState.SENDING
+    call.accepted = True
+    call.received(SimpleNamespace(feedback=LeafNodeBase.Feedback(status=to_line(Foreign("digs")))))
+    assert (site.goal.state, words(site.goal.feedback)) == (GoalState.RUNNING, "digs")
+    call.end(Outcome.SUCCEEDED)
+    assert site.goal.state is GoalState.SUCCEEDED and site.goal.reason is None and site.goal.feedback is None
+    assert site.told[-3:] == ["checkpoint: gone there 1", "checkpoint: done here True", "goal: zx200:dig succeeded"]
+    assert site.machines.settled()
 
 
-def test_a_process_that_ends_again_is_a_further_loss_however_soon(site: Site) -> None:
-    site.lose()
-    site.lose()
-    assert site.goal.losses == RETRIES
-    site.lose()
-    assert site.goal.state.final
-    assert site.goal.reason is not None and site.goal.reason.find(ProcessEnded) is not None
+def test_a_failure_is_told_with_the_last_feedback(site: Site) -> None:
+    call = site.peer.calls[0]
+    call.feedback = LeafNodeBase.Feedback(status=to_line(Foreign("it rains")))
+    call.end(Outcome.ABORTED)
+    assert (site.goal.state, words(site.goal.reason)) == (GoalState.FAILED, "zx200:dig gave up: it rains")
 
 
-@pytest.mark.parametrize(("outcome", "again"), [(Outcome.SUCCEEDED, True), (Outcome.CANCELED, False)])
-def test_with_a_goal_that_was_really_done_the_past_is_over(site: Site, outcome: Outcome, again: bool) -> None:
-    if outcome is Outcome.CANCELED:
+def test_a_cancel_goes_to_the_server_and_the_goal_is_open_until_it_has_ended(site: Site) -> None:
+    site.goal.cancel()
+    assert site.told[-1] == "cancelled" and site.machines.open_goals() == ["zx200:dig"]
+    site.peer.calls[0].end(Outcome.CANCELED)
+    assert site.machines.open_goals() == []
+
+
+def test_the_sending_to_a_process_that_has_ended_is_lost_once(site: Site) -> None:
+    site.pid = 2
+    site.machines.advance()
+    assert site.told[-2] == "server dead" and site.told[-1].startswith("loss: process zx200:dig ended")
+    assert site.peer.calls[0].outcome is Outcome.LOST
+    site.machines.advance()
+    assert len(site.told) == 5
+    assert not site.machines.settled()
+
+
+@pytest.mark.parametrize(
+    ("why", "failure"),
+    [
+        (Foreign("it rains"), NO_LOSS),
+        (NoDatabase("tms:db"), Failure.NO_STORE),
+        (NoPermit(NoScheduler()), Failure.UNREACHED),
+        (LOST, Failure.LOST),
+    ],
+)
+def test_what_a_failure_says_of_the_processes_below(why: Reason, failure: Failure) -> None:
+    call = Call(b"", None, None)
+    call.feedback = LeafNodeBase.Feedback(status=to_line(why))
+    assert _ended(1, call, Outcome.ABORTED).failure == failure
+
+
+def test_an_effect_that_fails_does_not_keep_the_next_ones(site: Site, monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(_call: Call) -> None:
+        raise RuntimeError("a bug")
+
+    monkeypatch.setattr(site.peer, "cancel", broken)
+    with pytest.raises(RuntimeError, match="a bug"):
         site.goal.cancel()
-    site.peer.calls[0].end(outcome)
-    after = site.machines.send("zx200", "dig", "here", "0.1")
-    assert (len(site.peer.calls) == 2) is again
-    assert after.state is (GoalState.SENDING if again else GoalState.SUCCEEDED)
+    site.peer.calls[0].end(Outcome.SUCCEEDED)
+    assert site.goal.state is GoalState.SUCCEEDED
 
 
 def test_a_receipt_is_told_once(site: Site) -> None:
     receipt = StopReceipt(machine="zx200", confirmed=True, seconds=0.5, cause="x")
     site.machines.stops.receipt(receipt)
     site.machines.stops.receipt(receipt)
-    assert [text for text in site.reported if text.startswith("stop")] == ["stop: zx200 stood after 0.50 s, 0.00 m: x"]
-
-
-def test_a_goal_that_is_cancelled_while_it_waits_to_be_sent_again_is_never_sent(site: Site) -> None:
-    site.goal.call, site.goal.state, site.goal.cancelled = None, GoalState.SENDING, True  # between two threads
-    site.pass_time(1.0)
-    assert site.goal.state is GoalState.CANCELLED
-    assert len(site.peer.calls) == 1
-    assert site.machines.settled()
+    assert [text for text in site.told if text.startswith("stop")] == ["stop: zx200 stood after 0.50 s, 0.00 m: x"]
 
 
 def test_a_request_is_made_again_when_the_gateway_is_lost_or_comes_back() -> None:
@@ -164,52 +163,3 @@ def test_a_request_is_made_again_when_the_gateway_is_lost_or_comes_back() -> Non
         gateway.alive = not before
         assert lost()
     assert not gateways.loss("zx9")()
-
-
-@pytest.mark.parametrize("outcome", [Outcome.REJECTED, Outcome.ABORTED, Outcome.CANCELED])
-def test_a_loop_around_a_goal_that_fails_at_once_floods_nothing(site: Site, outcome: Outcome) -> None:
-    site.retry(2.0, outcome)
-    assert 3 <= len(site.peer.calls) <= 1 + 2.0 / ASK_AGAIN
-    assert len(site.reported) < 20
-    assert site.goal.reason == SentAgainSoon()
-
-
-def test_only_the_goal_that_has_failed_waits(site: Site) -> None:
-    site.peer.calls[0].end(Outcome.ABORTED)
-    site.machines.send("zx200", "subtask_zx200_change_pose", "other pose", "1")
-    assert len(site.peer.calls) == 2
-    site.peer.calls[1].end(Outcome.SUCCEEDED)
-    site.machines.send("zx200", "subtask_zx200_change_pose", "other pose", "1")
-    assert len(site.peer.calls) == 3
-
-
-def test_a_goal_that_the_tree_has_halted_is_sent_again_at_once(site: Site) -> None:
-    site.goal.cancel()
-    site.peer.calls[0].end(Outcome.CANCELED)
-    site.send_again()
-    assert len(site.peer.calls) == 2
-
-
-def test_a_process_that_is_given_up_is_told_once(site: Site) -> None:
-    site.peer.calls[0].end(Outcome.ABORTED)
-    site.trouble = site.fatal = ProcessState("zx200:subtask_zx200_change_pose", "FATAL")
-    site.retry(10.0)
-    assert len([text for text in site.reported if text.startswith("alarm")]) == 1
-    assert site.reported.count(f"goal: {words(site.fatal)}") >= 10
-    assert len(site.peer.calls) == 1
-
-
-def test_what_the_tree_did_not_ask_for_again_is_gone_for_a_later_resume_too(site: Site) -> None:
-    site.peer.calls[0].end(Outcome.SUCCEEDED)
-    past = ("0.1", "zx200", "dig", "here")
-    assert site.kept == [("gone", past, 1), ("done", site.goal.key, True)]
-
-
-def test_the_past_is_over_before_the_tree_can_ask_for_the_next_goal(
-    site: Site, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    seen: list[bool] = []
-    monkeypatch.setattr(site.replay, "moved_on", lambda _: seen.append(site.goal.state.final) or [])
-    site.peer.calls[0].end(Outcome.SUCCEEDED)
-    assert seen == [False]
-    assert site.goal.state is GoalState.SUCCEEDED

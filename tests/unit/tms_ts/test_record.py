@@ -6,9 +6,10 @@ from pathlib import Path
 import pytest
 import structlog
 
+from tms_decision.leaf.events import Key
+from tms_decision.leaf.replay import Replay
 from tms_ts.group_commit import GroupCommit
-from tms_ts.interrupted_run import Header, InterruptedRun, Key, Over
-from tms_ts.replay import Replay
+from tms_ts.interrupted_run import Header, InterruptedRun, Over
 from tms_ts.run_checkpoint import LOST, Records
 
 HEADER = Header("run-1", 7, 3, "dig", ["zx200"], "<root/>", (1, 2), values={"nodes": 3})

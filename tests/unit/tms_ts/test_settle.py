@@ -64,18 +64,21 @@ def rows() -> list[Any]:
     return []
 
 
-@pytest.fixture
-def a_run(rows: list[Any]) -> Run:
-    record = SimpleNamespace(event=lambda _: None, over=lambda *_: None, remove=lambda: None)
+def new_run(rows: list[Any], record: Any, resume: str = "") -> Run:
     return Run(
         SimpleNamespace(now=Time),  # type: ignore[arg-type]
         SimpleNamespace(put=rows.append),  # type: ignore[arg-type]
         structlog.stdlib.get_logger("test"),
-        SimpleNamespace(request=SimpleNamespace(resume=""), publish=lambda _: None),  # type: ignore[arg-type]
+        SimpleNamespace(request=SimpleNamespace(resume=resume), publish=lambda _: None),  # type: ignore[arg-type]
         Facts("run", 1, 1, "", ["zx200"], Time()),
-        record,  # type: ignore[arg-type]
+        record,
         lambda: None,
     )
+
+
+@pytest.fixture
+def a_run(rows: list[Any]) -> Run:
+    return new_run(rows, SimpleNamespace(event=lambda _: None, over=lambda *_: None, remove=lambda: None))
 
 
 def parts(rows: list[Any], **own: Any) -> Any:
@@ -94,14 +97,41 @@ def parts(rows: list[Any], **own: Any) -> Any:
 
 
 def tree(tick: Callable[[], Status] = lambda: Status.RUNNING, halt: Callable[[], None] = lambda: None) -> Any:
-    return SimpleNamespace(tick=tick, halt=halt, nodes=[], running=list)
+    return SimpleNamespace(tick=tick, halt=halt, nodes=[], running=list, observers=[])
 
 
-@pytest.mark.parametrize("outcome", ["success", "failure", "cancelled"])
-def test_a_bug_while_the_tree_is_halted_does_not_keep_the_machines_from_being_stopped(a_run: Run, outcome: str) -> None:
+class Permits:
+    """Those of the run's machines."""
+
+    def __init__(self, back: Reason | None = None) -> None:
+        self.back, self.told = back, list[str]()
+
+    def hold(self) -> Reason | None:
+        self.told.append("held")
+        return self.back
+
+    def drop(self) -> None:
+        self.told.append("dropped")
+
+
+def states(rows: list[Any]) -> list[str]:
+    return [row.state for row in rows if hasattr(row, "state")]
+
+
+@pytest.mark.parametrize("ended", [Status.SUCCESS, Status.FAILURE])
+def test_a_bug_while_the_tree_is_halted_does_not_keep_the_machines_from_being_stopped(
+    a_run: Run, ended: Status
+) -> None:
     machines = Machines()
     with pytest.raises(RuntimeError, match="a bug"):
-        a_run._settle(tree(halt=broken), machines, outcome)  # type: ignore[arg-type]
+        a_run.execute(tree(lambda: ended, broken), machines, Permits())  # type: ignore[arg-type]
+    assert machines.stopped == ["zx200"]
+
+
+def test_a_bug_in_a_tick_does_not_keep_the_machines_from_being_stopped(a_run: Run) -> None:
+    machines = Machines()
+    with pytest.raises(RuntimeError, match="a bug"):
+        a_run.execute(tree(broken), machines, Permits())  # type: ignore[arg-type,return-value]
     assert machines.stopped == ["zx200"]
 
 
@@ -111,24 +141,45 @@ def test_further_fields_of_a_run_get_into_the_history(a_run: Run, rows: list[Any
     assert from_parameters(rows[0].values) == {"nodes": 3}
 
 
-def test_a_success_that_leaves_nothing_open_stops_nobody(a_run: Run) -> None:
-    machines = Machines()
-    assert a_run._settle(tree(), machines, "success") == "success"  # type: ignore[arg-type]
-    assert machines.stopped == []
+def test_a_success_stops_nobody_and_drops_its_permits_at_the_end(a_run: Run, rows: list[Any]) -> None:
+    machines, permits = Machines(), Permits()
+    a_run.execute(tree(lambda: Status.SUCCESS), machines, permits)  # type: ignore[arg-type]
+    assert (machines.stopped, permits.told) == ([], ["held", "dropped"])
+    assert states(rows) == ["running", "success"] and a_run.over
 
 
-def test_a_tree_that_succeeds_while_a_halted_leaf_still_moves_has_its_machine_seen_to_stop(a_run: Run) -> None:
+def test_a_tree_that_succeeds_while_a_halted_leaf_still_moves_has_its_machine_seen_to_stop(
+    a_run: Run, rows: list[Any]
+) -> None:
     machines = Machines("/zx200/st_zx200_swing")
     a_run.nodes.failure = Foreign("an earlier leaf failed")
-    assert a_run._settle(tree(), machines, "success") == "success"  # type: ignore[arg-type]
+    a_run.execute(tree(lambda: Status.SUCCESS), machines, Permits())  # type: ignore[arg-type]
     assert machines.stopped == ["zx200"]
-    assert a_run.facts.reason is None
+    assert states(rows) == ["running", "stopping", "success"] and a_run.facts.reason is None
 
 
-def test_a_success_whose_last_motion_was_not_seen_to_end_is_none(a_run: Run) -> None:
+def test_a_machine_that_was_not_seen_to_stand_is_told(a_run: Run, rows: list[Any]) -> None:
     machines = Machines("/zx200/st_zx200_swing", confirmed=False)
-    assert a_run._settle(tree(), machines, "success") == "stop_unconfirmed"  # type: ignore[arg-type]
+    a_run.execute(tree(lambda: Status.SUCCESS), machines, Permits())  # type: ignore[arg-type]
+    assert states(rows)[-1] == "stop_unconfirmed"
     assert a_run.facts.reason is not None and a_run.facts.reason.find(StopUnconfirmed) is not None
+    assert [row.kind for row in rows if getattr(row, "kind", "") == "alarm"] == ["alarm"]
+
+
+def test_a_machine_that_was_stopped_before_its_permit_was_held_refuses_the_run(a_run: Run, rows: list[Any]) -> None:
+    machines, permits = Machines(), Permits(Foreign("latched"))
+    a_run.execute(tree(broken), machines, permits)  # type: ignore[arg-type,return-value]
+    assert states(rows) == ["refused"] and a_run.refused == Foreign("latched")
+    assert (machines.stopped, permits.told) == ([], ["held", "dropped"])
+
+
+def test_a_run_that_is_cancelled_halts_its_tree_first(a_run: Run, rows: list[Any]) -> None:
+    machines, done = Machines(), list[str]()
+    monkey = lambda: done.append("halted") or done.extend(machines.stopped)  # noqa: E731
+    a_run.cancel("cancelled", Foreign("enough"))
+    a_run.execute(tree(broken, monkey), machines, Permits())  # type: ignore[arg-type,return-value]
+    assert (done, machines.stopped) == (["halted"], ["zx200"])
+    assert states(rows) == ["running", "stopping", "cancelled"] and a_run.facts.reason == Foreign("enough")
 
 
 def test_the_loop_never_sleeps_longer_than_its_period_after_many_wakes(
@@ -140,14 +191,14 @@ def test_the_loop_never_sleeps_longer_than_its_period_after_many_wakes(
     def wait(seconds: float) -> None:
         waits.append(seconds)
         now[0] += min(seconds, wakes.pop() if wakes else seconds)
-        if len(waits) > 110:
-            a_run.cancelled.set()
+        if len(waits) == 110:
+            a_run.cancel()
 
     monkeypatch.setattr(time, "monotonic", lambda: now[0])
-    monkeypatch.setattr(a_run, "wake", SimpleNamespace(wait=wait, clear=lambda: None))
-    a_run._tick_to_end(tree(), Machines())  # type: ignore[arg-type]
+    monkeypatch.setattr(a_run, "wake", SimpleNamespace(wait=wait, clear=lambda: None, set=lambda: None))
+    a_run.execute(tree(), Machines(), Permits())  # type: ignore[arg-type]
     assert max(waits) == pytest.approx(TICK_PERIOD)
-    assert len(waits) > 110
+    assert len(waits) >= 110
 
 
 def test_a_run_that_meets_a_bug_is_closed_in_the_history(rows: list[Any]) -> None:
@@ -165,18 +216,19 @@ def test_a_run_that_meets_a_bug_is_closed_in_the_history(rows: list[Any]) -> Non
     assert list(runs) == []
 
 
-def test_a_resume_that_is_refused_leaves_its_record_and_no_open_file(a_run: Run, tmp_path: Path) -> None:
+def test_a_resume_that_is_refused_leaves_its_record_and_no_open_file(rows: list[Any], tmp_path: Path) -> None:
     disk = GroupCommit(structlog.stdlib.get_logger("disk"))
 
     def files() -> int:
         return len(list(Path("/proc/self/fd").iterdir()))
 
     before = files()
-    a_run._resumed, a_run.record = True, Records(tmp_path, disk).open("run")
-    a_run.refuse(MachineLatched("zx200", SoftwareStop()))
+    record = Records(tmp_path, disk).open("run")
+    resumed = new_run(rows, record, resume="run")
+    resumed.refuse(MachineLatched("zx200", SoftwareStop()))
     disk.close(10)
     assert files() == before
-    assert InterruptedRun(a_run.record.path).closed
+    assert InterruptedRun(record.path).closed
 
 
 def test_a_loop_that_waits_is_told_to_whoever_looks_and_in_part_to_the_history(a_run: Run, rows: list[Any]) -> None:
@@ -191,7 +243,7 @@ def test_a_loop_that_waits_is_told_to_whoever_looks_and_in_part_to_the_history(a
     assert [row.text for row in rows if row.kind == "node" and not row.node] == [to_line(LeftOut(1))]
     message = a_run.nodes.feedback(tree(), last=True)
     assert message is not None and len(message.nodes) == MAX_BURST + 300
-    a_run._end("success", None)
+    a_run.execute(tree(lambda: Status.SUCCESS), Machines(), Permits())  # type: ignore[arg-type]
     reported_at_end = [row.text for row in rows if hasattr(row, "kind") and row.kind == "node" and not row.node][1:]
     assert len(reported_at_end) == 1 and wire.known(reported_at_end[0]).args["count"] > 280
 

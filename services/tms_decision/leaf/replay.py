@@ -1,9 +1,9 @@
-"""Leaf goals that ended before a run was interrupted are not done again when it is resumed. Pure logic."""
+"""Leaf goals that ended before a run was interrupted are not done again when it is resumed."""
 
 from collections import defaultdict, deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
-from tms_ts.interrupted_run import Key
+from tms_decision.leaf.events import Key
 
 
 class Replay:
@@ -13,7 +13,7 @@ class Replay:
     goals that the tree has not asked for until then are dropped: if the tree asks for them later, they are done again.
     """
 
-    def __init__(self, ended: list[tuple[Key, bool]]) -> None:
+    def __init__(self, ended: Iterable[tuple[Key, bool]] = ()) -> None:
         self.beside: Callable[[str, str], bool] = lambda node, other: False  # whether neither node waits for the other
         self._ended: dict[Key, deque[bool]] = defaultdict(deque)
         for key, succeeded in ended:

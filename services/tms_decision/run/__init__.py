@@ -1,0 +1,1 @@
+"""One run of a task: it is prepared, ticked, stopped, seen to stand, and ended."""
