@@ -5,6 +5,7 @@ goals of the present run from late goals of an abandoned run.
 """
 
 from dataclasses import replace
+from functools import lru_cache
 
 from tms_decision.data import Data
 
@@ -28,6 +29,7 @@ class Owner(Data):
         return replace(self, hop=self.hop + 1)
 
 
+@lru_cache(maxsize=64)
 def parse(goal_id: bytes) -> Owner | None:
     """The owner in a goal's UUID; None for a foreign client's goal."""
     if len(goal_id) != 16 or not goal_id.startswith(MAGIC):

@@ -27,6 +27,7 @@ class Stop(Data):
     run: int  # fencing number of the run that it ended
     at: float  # s since 1970, when it began
     confirmed: bool
+    latched: bool
     what: Reason  # for the history
 
 
@@ -37,9 +38,17 @@ def stops_of(lost: LostRun, receipts: Iterable[Stop]) -> list[Stop]:
     return [one for (at, name), one in sorted(seen.items()) if name in begin and at > begin[name]]
 
 
+def all_told(lost: LostRun, stops: Iterable[Stop]) -> bool:
+    """Whether the last stop of each machine is known."""
+    return set(lost.machines) <= {one.machine for one in stops if one.latched}
+
+
 def what_was_seen(lost: LostRun, stops: Sequence[Stop]) -> tuple[Reason, list[Reason]]:
-    """Why the run is interrupted, with each machine's last receipt or the lack of one; and the alarms to raise."""
-    last = {one.machine: one for one in stops}
+    """Why the run is interrupted, with each machine's last receipt or the lack of one; and the alarms to raise.
+
+    Only a stop that has latched is the end of a motion: after another one, a goal that waited for it may have left.
+    """
+    last = {one.machine: one for one in stops if one.latched}
     stood = tuple(name for name in lost.machines if name in last and last[name].confirmed)
     unseen = tuple(name for name in lost.machines if name not in stood)
     seen: list[Reason] = [r.SchedulerWasLost()]

@@ -48,6 +48,10 @@ class Channel:
         self._limits = limits
         # Replaced at each sample, not changed: other threads read it without a lock.
         self._samples: tuple[ChannelSample, ...] = ()
+        self._recent: tuple[ChannelSample, ...] = ()  # of the last moments
+        # What was concluded from these samples: most of them are looked at many times.
+        self._moves: bool | None = None
+        self._disagrees: tuple[Reason | None, ...] = ()
         self.surprised = float("-inf")  # when it last was at a place that no motion leads to, as in a replayed record
 
     @property
@@ -65,15 +69,24 @@ class Channel:
         if before is not None and before.place and self._leaps(before, stamped - before.stamped, place, speed):
             self.surprised = received
         kept = [one for one in self._samples if received - one.received <= KEPT]
-        self._samples = (*kept, ChannelSample(received, stamped, place, speed, fast))
+        self._take((*kept, ChannelSample(received, stamped, place, speed, fast)))
 
     def clear(self) -> None:
         """Forget everything: what was received belongs to another clock."""
-        self._samples = ()
+        self._take(())
+
+    def _take(self, samples: tuple[ChannelSample, ...]) -> None:
+        self._samples, self._moves, self._disagrees = samples, None, ()
+        self._recent = tuple(one for one in samples if samples[-1].received - one.received <= WORST + 1e-9)
 
     def moving(self) -> bool:
         """Whether any of the last samples showed a motion; unknown counts as moving."""
-        recent = self._recent()
+        if self._moves is None:
+            self._moves = self._moving()
+        return self._moves
+
+    def _moving(self) -> bool:
+        recent = self._recent
         if len(recent) < 2:
             return True
         first, last = recent[0], recent[-1]
@@ -95,7 +108,12 @@ class Channel:
 
     def disagreement(self) -> Reason | None:
         """Which of position and velocity shows a motion while the other shows none; None if they agree."""
-        recent = self._recent()
+        if not self._disagrees:
+            self._disagrees = (self._disagreement(),)
+        return self._disagrees[0]
+
+    def _disagreement(self) -> Reason | None:
+        recent = self._recent
         if not recent or not recent[0].place or recent[-1].received - recent[0].received < SPAN * WORST:
             return None
         reported = [abs(one.speed) for one in recent if one.speed is not None]
@@ -113,14 +131,10 @@ class Channel:
             return VelocitiesMove()
         return None
 
-    def _hidden(self, samples: list[ChannelSample]) -> bool:
+    def _hidden(self, samples: tuple[ChannelSample, ...]) -> bool:
         """Whether messages are missing between samples, or a stand-in is too fast for its period."""
         gaps = (after.stamped - before.stamped for before, after in pairwise(samples))
         return any(gap * self._limits.scale > HIDES for gap in gaps)
-
-    def _recent(self) -> list[ChannelSample]:
-        samples = self._samples
-        return [one for one in samples if samples[-1].received - one.received <= WORST + 1e-9]
 
     def _moved(self, received: float, stamped: float, place: Place, then: float, measured: float, now: Place) -> bool:
         """Whether the way between two samples is longer than a standing machine may have gone."""

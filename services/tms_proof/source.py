@@ -64,6 +64,7 @@ class SourceWatch:
         self.new_clock: tuple[float, Reason] | None = None  # since when, why
         self.fast = False  # whether its last message showed a motion
         self.publishers: tuple[str, ...] = ()  # nodes, where there is more than one
+        self._places: dict[str, Place] | None = None  # see `places`
         self._values: object = None
         self.changed = float("-inf")  # when its values last changed in any bit
 
@@ -76,7 +77,7 @@ class SourceWatch:
         """Take one message."""
         if sample.number < self._number or (sample.number == self._number and sample.number > 0):
             self._back = (*self._back, sample.received)[-2:]
-        self._number = sample.number
+        self._number, self._places = sample.number, None
         judged = self._clock.judge(sample.received, sample.stamp)
         if judged.verdict is StampVerdict.REPEATED:
             self._repeats = (*self._repeats, sample.received)[-PERIODS:]
@@ -167,4 +168,7 @@ class SourceWatch:
 
     def places(self) -> dict[str, Place]:
         """The last position of each channel."""
-        return {name: one.last.place for name, one in self.channels.items() if one.last is not None and one.last.place}
+        if self._places is None:
+            last = {name: channel.last for name, channel in self.channels.items()}
+            self._places = {name: one.place for name, one in last.items() if one is not None and one.place}
+        return self._places

@@ -220,17 +220,17 @@ class StandStill:
         immediate = strongest and self._facts.stops_at_once and visible
         wait, coming = (0.0, {}) if immediate else (self.dead_time, expected.to_come)
         expected = Expected(expected.since, {name: way for name, way in coming.items() if way > SEEN})
-        unseen = begun + self._settles
+        unseen = begun + self.settles
         return Proof(begun + wait, unseen, expected, self._facts.still.seconds, immediate)
 
     def proven(self, proof: Proof, now: float) -> bool:
         """Whether all that the proof asks for was seen."""
         if self.trouble(now) is not None:
             return False
-        return self._stands(max(self._start(proof), self._surprised() + self._settles), now)
+        return self._stands(max(self._start(proof), self._surprised() + self.settles), now)
 
     @property
-    def _settles(self) -> float:
+    def settles(self) -> float:
         """Seconds after a stop in which every motion has ended, also that of a machine which goes on for a while."""
         return self.dead_time + self.braking + OBEYS
 

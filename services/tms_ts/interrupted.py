@@ -11,7 +11,7 @@ from tms_msg_ts.srv import CancelRun, ResumePlan
 from tms_config.clock import monotonic
 from tms_decision.gateway.stops import RECEIPT_LIMIT
 from tms_decision.leaf.events import Key
-from tms_decision.past import Stop, stops_of, what_was_seen
+from tms_decision.past import Stop, all_told, stops_of, what_was_seen
 from tms_machine.values import to_parameters
 from tms_reason import wire
 from tms_reason.errors import TaskError
@@ -53,7 +53,7 @@ class Interrupted:
         """Receive the receipt of a stop that belongs to no active run."""
         at, what = _seconds(receipt.stamp), reported_by(receipt)
         with self._lock:
-            self._receipts.append(Stop(receipt.machine, receipt.run, at, receipt.confirmed, what))
+            self._receipts.append(Stop(receipt.machine, receipt.run, at, receipt.confirmed, receipt.latched, what))
 
     def _close_all(self) -> None:
         left = [past for past in self._records.past() if not past.closed]
@@ -70,9 +70,8 @@ class Interrupted:
                 self._close(past, past.header)
 
     def _all_reported(self, past: InterruptedRun) -> bool:
-        return past.header is None or set(past.header.machines) <= {
-            one.machine for one in self._stops(past, past.header)
-        }
+        header = past.header
+        return header is None or all_told(past.lost(header), self._stops(past, header))
 
     def _stops(self, past: InterruptedRun, header: Header) -> list[Stop]:
         """The stops at the end of this run."""

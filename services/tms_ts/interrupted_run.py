@@ -1,7 +1,7 @@
 """A run's checkpoint as it is read after a crash or a power cut; damaged lines are counted. Pure logic."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -37,9 +37,7 @@ class Over:
 class InterruptedRun:
     """A checkpoint. Without a header it cannot be used."""
 
-    def __init__(self, path: Path) -> None:
-        """Raises OSError: the file cannot be read."""
-        self.path = path
+    def __init__(self, lines: Iterable[dict[str, Any]]) -> None:
         self.header: Header | None = None
         self.last_event = 0
         self.last_time = 0.0  # s since 1970
@@ -49,7 +47,7 @@ class InterruptedRun:
         self.open: list[Key] = []  # goals that were sent and have not ended
         self.sent_at: dict[str, float] = {}  # machine -> s since 1970 of its last goal
         self.damaged = 0  # unreadable lines, without the last one, which any crash may cut short
-        for line in self._lines():
+        for line in lines:
             try:
                 self._take(line)
             except (KeyError, TypeError, ValueError, AttributeError):
@@ -58,19 +56,6 @@ class InterruptedRun:
     def lost(self, header: Header) -> LostRun:
         """What counts to close it."""
         return LostRun(header.run_id, header.number, header.machines, self.last_time, self.sent_at)
-
-    def _lines(self) -> Iterator[dict[str, Any]]:
-        try:
-            texts = self.path.read_bytes().split(b"\n")
-        except FileNotFoundError:
-            return  # its run has just ended in order
-        for place, text in enumerate(texts, 1):
-            try:
-                line = json.loads(text) if text else {}
-            except ValueError:
-                self.damaged += place < len(texts)
-                continue
-            yield line
 
     def _take(self, line: dict[str, Any]) -> None:
         self.last_time = float(line.get("t", self.last_time))
@@ -98,6 +83,23 @@ class InterruptedRun:
         places = [place for place, (ended, _) in enumerate(self.ended) if ended == key]
         for place in places[::-1][:left]:
             del self.ended[place]
+
+
+def read(path: Path) -> InterruptedRun:
+    """The checkpoint in a file; without a file, its run has just ended in order.
+
+    Raises:
+        OSError: the file cannot be read.
+    """
+    texts, lines, damaged = path.read_bytes().split(b"\n") if path.exists() else [], list[dict[str, Any]](), 0
+    for place, text in enumerate(texts, 1):
+        try:
+            lines.append(json.loads(text) if text else {})
+        except ValueError:
+            damaged += place < len(texts)
+    past = InterruptedRun(lines)
+    past.damaged += damaged
+    return past
 
 
 def _key(words: list[str]) -> Key:

@@ -101,7 +101,7 @@ class Machines:
         """Send waiting goals, and detect lost ones."""
         with self._lock:
             if self._goals.open:
-                self._happened(e.Looked({goal.number: self._seen(goal.asked.key) for goal in self._goals.open}))
+                self._happened(e.Looked({goal.asked.number: self._seen(goal.key) for goal in self._goals.open}))
 
     def settled(self) -> bool:
         """Whether every goal has ended and no machine is being stopped."""

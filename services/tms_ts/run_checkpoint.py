@@ -19,7 +19,7 @@ from tms_decision.leaf.events import Key
 from tms_runtime.durable import set_aside
 from tms_ts.append_file import AppendFile
 from tms_ts.group_commit import GroupCommit
-from tms_ts.interrupted_run import Header, InterruptedRun
+from tms_ts.interrupted_run import Header, InterruptedRun, read
 
 READ_LIMIT = 2.0  # s for waiting lines to be on the disk before a checkpoint is read
 
@@ -120,7 +120,7 @@ class Records:
         """Before the first run: set unreadable files aside, log that, and go on with the others."""
         for path in sorted(self._folder.glob("*.jsonl")):
             try:
-                past = InterruptedRun(path)
+                past = read(path)
                 problem = "" if past.header is not None else "it does not say which run it is of"
             except OSError as error:
                 problem = str(error)
@@ -135,7 +135,7 @@ class Records:
         found = []
         for path in sorted(self._folder.glob("*.jsonl")):
             with suppress(OSError):  # `check` has logged it at the start
-                found.append(InterruptedRun(path))
+                found.append(read(path))
         return [past for past in found if past.header is not None]
 
     def find(self, run_id: str) -> InterruptedRun | None:

@@ -12,12 +12,12 @@ from tms_msg_ts.action import LeafNodeBase
 from tms_msg_ts.srv import ResumePlan
 
 from conftest import wait_until
+from tms_decision.leaf.replay import Replay
 from tms_reason.reason import Foreign
 from tms_ros.client import Peer
 from tms_ros.goals import Outcome
 from tms_ros.node import Ros
 from tms_ts.machines import Identity, Machines
-from tms_ts.replay import Replay
 
 pytestmark = pytest.mark.ros
 LIMIT = 20.0  # s for whatever must happen at all

@@ -1,6 +1,7 @@
-"""Permits with leases, as DDS has them: a message for late comers, and reports of who is asserted."""
+"""Permits with leases, as DDS has them: a message for late comers, and reports of who is asserted and who is not."""
 
 from collections.abc import Callable
+from enum import Enum
 
 from simulation.world import Process, World
 from tms_decision.permit_link import LEASE, NOBODY
@@ -10,71 +11,144 @@ Heard = Callable[[bytes, str], None]
 Reported = Callable[[int, int], None]
 
 
-class Permit:
-    """The permit of one process on one machine; readers join at any time."""
+class Asserted(Enum):
+    """A writer's liveliness."""
 
-    def __init__(self, world: World, topic: str, owner: Process) -> None:
-        self.goal, self.holder = NOBODY, ""
-        self._world, self._topic, self._owner = world, topic, owner
-        self._readers: dict[str, tuple[Heard, Reported]] = {}
-        self._alive = False  # as DDS sees it
-        self._stale = 0  # killed writers that discovery has not dropped
+    NEVER = "not yet"
+    ALIVE = "asserted"
+    LAPSED = "its lease has lapsed"
+
+
+class Topic:
+    """The permits of one process on one machine: its present writer, and those of its predecessors."""
+
+    def __init__(self, world: World, name: str) -> None:
+        self.world, self.name = world, name
+        self.writers: list[Writer] = []
+        self.readers: dict[str, tuple[Heard, Reported]] = {}
 
     def join(self, name: str, heard: Heard, reported: Reported) -> None:
-        """A reader finds the writer a moment later, or much later on a busy PC."""
-        self._readers[name] = heard, reported
-        late = self._world.random.choice((0.02, 0.05, 0.1, 0.3))
-        self._world.after(late, lambda: self._tell(name) if self._owner.alive else None)
+        """A reader finds the writers a moment later, or much later on a busy PC."""
+        self.readers[name] = heard, reported
+        late = self.world.random.choice((0.02, 0.05, 0.1, 0.3, 1.5))
+        self.world.after(late, lambda: self._found(name))
 
-    def hold(self, goal: bytes, holder: str) -> None:
-        """Stand behind a goal; NOBODY: behind none."""
-        self.goal, self.holder = goal, holder
-        self._alive = goal != NOBODY
-        for name in self._readers:
-            self._tell(name)
+    def _found(self, name: str) -> None:
+        for writer in self.writers:
+            if writer.process.works() or writer.said is not None:
+                self.tell(name, *(writer.said or (NOBODY, "")))
+        self.report(name)
+
+    def tell(self, name: str, goal: bytes, holder: str) -> None:
+        """A reader receives a message."""
+        heard, _ = self.readers[name]
+        self.world.send(f"{self.name}/{name}", lambda: heard(goal, holder))
+
+    def report(self, name: str) -> None:
+        """A reader gets to know who is asserted."""
+        _, reported = self.readers[name]
+        alive = sum(writer.asserted is Asserted.ALIVE for writer in self.writers)
+        not_alive = sum(writer.asserted is Asserted.LAPSED for writer in self.writers)
+        self.world.send(f"{self.name}/{name}", lambda: reported(alive, not_alive))
+
+
+class Writer:
+    """The permit of one life of a process."""
+
+    def __init__(self, topic: Topic, process: Process) -> None:
+        self.topic, self.process, self.life = topic, process, process.life
+        self.said: tuple[bytes, str] | None = None
+        self.alive: Callable[[], bool] = lambda: True  # whether the process still does its work
+        self.asserted = Asserted.NEVER
+        topic.writers.append(self)
+
+    @property
+    def goal(self) -> bytes:
+        return self.said[0] if self.said is not None else NOBODY
+
+    def hold(self, goal: bytes, holder: str = "") -> None:
+        """Stand behind a goal; NOBODY: behind none, and the assertions end."""
+        self.said = goal, holder
+        for name in self.topic.readers:
+            self.topic.tell(name, goal, holder)
+        if goal != NOBODY:
+            self._is(Asserted.ALIVE)
+        elif self.asserted is Asserted.ALIVE:
+            self._lapses()
 
     def frozen(self, seconds: float) -> None:
         """Its process is frozen: the lease lapses if that lasts."""
-        lapse = self._lapse()
-        if self._alive and seconds > lapse:
-            self._world.after(lapse, self._lapsed)
-            self._world.after(seconds + 0.01, self._back)
+        if self.asserted is Asserted.ALIVE:
+            self._lapses()
+            self.topic.world.after(seconds + 0.01, self._back)
+
+    def hangs(self, noticed: float, seconds: float) -> None:
+        """What its process does hangs, which that notices after a while: then its assertions end."""
+        self.topic.world.after(noticed, self._lapses)
+        self.topic.world.after(seconds + 0.15, self._back)
 
     def killed(self) -> None:
-        """Its process is killed."""
-        if self._alive:
-            self._stale += 1
-            self._world.after(self._lapse(), self._lapsed)
-            self._world.after(FORGET, self._dropped)
-        self.goal, self.holder = NOBODY, ""
+        """Its process is killed; discovery drops it later."""
+        if self.asserted is Asserted.ALIVE:
+            self._lapses()
+        self.topic.world.after(FORGET, self.left)
 
-    def _lapse(self) -> float:
-        return LEASE - self._world.random.random() * 0.1  # the last assertion was up to 0.1 s before
-
-    def _lapsed(self) -> None:
-        if self._owner.alive and not self._owner.frozen() and self.goal != NOBODY:
-            return  # a successor asserts it
-        self._alive = False
-        self._report()
-
-    def _back(self) -> None:
-        if self._owner.alive and not self._owner.frozen() and self.goal != NOBODY:
-            self._alive = True
+    def left(self) -> None:
+        """It is no longer there."""
+        if self in self.topic.writers:
+            self.topic.writers.remove(self)
             self._report()
 
-    def _dropped(self) -> None:
-        self._stale -= 1
-        self._report()
+    def _works(self) -> bool:
+        return self.process.works() and self.process.life == self.life and self.goal != NOBODY and self.alive()
+
+    def _lapses(self) -> None:
+        world = self.topic.world
+        world.after(LEASE - world.random.random() * 0.1, self._lapsed)  # asserted up to 0.1 s before
+
+    def _lapsed(self) -> None:
+        if not self._works() and self in self.topic.writers:
+            self._is(Asserted.LAPSED)
+
+    def _back(self) -> None:
+        if self._works():
+            self._is(Asserted.ALIVE)
+
+    def _is(self, asserted: Asserted) -> None:
+        if asserted is not self.asserted:
+            self.asserted = asserted
+            self._report()
 
     def _report(self) -> None:
-        for _, reported in self._readers.values():
-            self._world.send(f"{self._topic}/lease", lambda reported=reported: reported(int(self._alive), self._stale))  # type: ignore[misc]
+        for name in self.topic.readers:
+            self.topic.report(name)
 
-    def _tell(self, name: str) -> None:
-        heard, reported = self._readers[name]
-        goal, holder, alive, stale = self.goal, self.holder, self._alive, self._stale
-        if goal != NOBODY or alive:
-            self._world.send(f"{self._topic}/{name}", lambda: heard(goal, holder))
-            self._world.send(f"{self._topic}/{name}/lease", lambda: reported(int(alive), stale))
-        else:
-            self._world.send(f"{self._topic}/{name}", lambda: heard(goal, holder))
+
+class PermitProcess(Process):
+    """A process with permits, whose leases lapse when it is killed or frozen."""
+
+    def __init__(self, world: World, name: str, topics: dict[str, Topic]) -> None:
+        super().__init__(world, name)
+        self._topics = topics
+        self.permits: dict[str, Writer] = {}  # by machine
+
+    def begin(self) -> None:
+        super().begin()
+        self.permits = {machine: Writer(topic, self) for machine, topic in self._topics.items()}
+
+    def kill(self) -> None:
+        super().kill()
+        for writer in self.permits.values():
+            writer.killed()
+
+    def end(self) -> None:
+        """It ends in order."""
+        super().kill()
+        for writer in self.permits.values():
+            writer.left()
+
+    def freeze(self, seconds: float) -> None:
+        if self.works():
+            for writer in self.permits.values():
+                writer.frozen(seconds)
+        super().freeze(seconds)

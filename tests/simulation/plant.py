@@ -96,8 +96,8 @@ class Plant:
         ended, self.goal = self.goal, None
         return ended
 
-    def tell(self, now: float) -> SourceSample | None:
-        """Its message at this moment."""
+    def tell(self, now: float, clock: float = 1e9) -> SourceSample | None:
+        """Its message at this moment; `clock`: what its stamps are ahead [s]."""
         self.advance(now)
         if self.fault.mute:
             return None
@@ -109,4 +109,4 @@ class Plant:
         if self.fault.frozen_stamp and self.told:
             stamp = self.told[0][0]
         self.number += 1
-        return SourceSample(now, stamp + 1e9, self.number, {JOINT: (angle,)}, {JOINT: speed})
+        return SourceSample(now, stamp + clock, self.number, {JOINT: (angle,)}, {JOINT: speed})

@@ -4,17 +4,16 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from simulation import invariants
 from simulation import plan as p
 from simulation.plan import SECONDS, Planned
 from simulation.plant import Fault
-from simulation.site import STOP_IN_TIME, Process, Site
-from simulation.world import Happened, Violation, World
-from tms_decision.gateway import effects as f
-from tms_decision.gateway import events as e
+from simulation.site import Site
+from simulation.unit import Unit
+from simulation.world import Happened, Process, Violation, World
 
 LOOK = 0.1  # s between looks at the invariants
-ANSWERED = 12.0  # s in which every call is answered
-LEVERS = 0.2  # rad/s of a person at the levers
+AGAIN = 1.0  # s until a process that has ended in order is started again
 
 
 @dataclass
@@ -35,11 +34,20 @@ class Schedule:
     def __init__(self, seed: int, plan: Sequence[Planned] | None = None) -> None:
         self.seed, self.plan = seed, p.plan(seed) if plan is None else plan
         self.world = World(seed)
-        self.site = Site(self.world, at_once=seed % 2 == 0)
-        self._doers: dict[type[Any], Callable[[Any], None]] = {
+        self.site = Site(self.world, p.machines(seed), at_once=seed % 2 == 0, planner=seed % 3 == 0)
+        self._units = list(self.site.units.values())
+        site = self.site
+        self._doers: dict[type[Any], Callable[[Unit, Any], None]] = {
             p.Kill: self._kill, p.Freeze: self._freeze, p.Lie: self._lie, p.Stall: self._stall, p.Press: self._press,
-            p.Rearm: lambda _: self.site.rearm(), p.Take: self._take, p.Stranger: self._stranger,
-            p.ForeignGoal: self._foreign,
+            p.Restart: self._restart, p.Clock: self._clock, p.Rearm: lambda _unit, _act: site.rearm(),
+            p.Take: lambda unit, act: site.take(unit, act.seconds),
+            p.Cancel: lambda _unit, _act: site.scheduler.handle(site.scheduler.cancel),
+            p.Resume: lambda _unit, _act: site.scheduler.handle(site.scheduler.resume),
+            p.SecondGateway: lambda unit, act: site.second_gateway(unit, act.seconds),
+            p.Trapped: self._trapped,
+            p.Hang: lambda _unit, act: site.scheduler.handle(lambda: site.scheduler.hang(act.seconds)),
+            p.Stranger: lambda unit, _: site.stranger(unit),
+            p.ForeignGoal: lambda unit, act: site.foreign(unit, act.seconds),
         }  # fmt: skip
 
     def run(self) -> Result:
@@ -48,90 +56,90 @@ class Schedule:
         try:
             site.start()
             for one in self.plan:
-                world.at(one.at, lambda one=one: self._doers[type(one.act)](one.act))  # type: ignore[misc]
+                world.at(one.at, lambda one=one: self._do(one))  # type: ignore[misc]
             world.after(LOOK, self._look)
             world.run(SECONDS)
         except Violation as found:
             violation = str(found)
             world.tell("VIOLATION", violation)
-        return Result(self.seed, self.plan, world.events, site.goals_sent, violation, world.history)
+        return Result(
+            self.seed, self.plan, world.events, sum(unit.goals for unit in self._units), violation, world.history
+        )
 
     # what goes wrong
 
-    def _process(self, name: str) -> Process:
-        site = self.site
-        return {"rc": site.gateway, "ts": site.scheduler, "subtask": site.subtask, "host": site.host}[name]
+    def _do(self, one: Planned) -> None:
+        unit = self._units[one.unit]
+        self._doers[type(one.act)](unit, one.act)
 
-    def _kill(self, act: p.Kill) -> None:
+    def _kill(self, unit: Unit, act: p.Kill) -> None:
         for name, again in zip(act.processes, act.again, strict=True):
-            process = self._process(name)
+            process = self.site.process(name, unit)
             if process.alive:
                 process.kill()
-                self.world.after(again, getattr(process, "start", process.begin))
+                self.site.ended(process)
+                self._start_again(process, again)
 
-    def _freeze(self, act: p.Freeze) -> None:
+    def _trapped(self, unit: Unit, act: p.Trapped) -> None:
+        process = self.site.process(act.process, unit)
+
+        def kill() -> None:
+            if process.alive:
+                self.world.tell("trap", f"{act.effect} is done")
+                process.kill()
+                self.site.ended(process)
+                self._start_again(process, act.again)
+
+        step = kill if not act.delay else lambda: self.world.after(act.delay, kill)
+        for trap in (unit.trap, self.site.trap):
+            trap.set(act.effect, step)
+
+    def _restart(self, unit: Unit, act: p.Restart) -> None:
+        """A scheduler that ends in order interrupts its runs first: that is like a cancel, and not done here."""
+        process = self.site.process(act.process, unit)
+        if process.alive and process is not self.site.scheduler:
+            getattr(process, "end", process.kill)()
+            self.site.ended(process)
+            self._start_again(process, AGAIN)
+
+    def _start_again(self, process: Process, seconds: float) -> None:
+        def start() -> None:
+            if not process.alive:
+                process.start()
+                self.site.ended(process)
+
+        self.world.after(seconds, start)
+
+    def _freeze(self, unit: Unit, act: p.Freeze) -> None:
         for name in act.processes:
-            self._process(name).freeze(act.seconds)
+            self.site.process(name, unit).freeze(act.seconds)
 
-    def _lie(self, act: p.Lie) -> None:
-        self.site.fault(act.fault)
-        self.world.after(act.seconds, lambda: self.site.fault(Fault()))
+    def _lie(self, unit: Unit, act: p.Lie) -> None:
+        self.site.fault(unit, act.fault)
+        self.world.after(act.seconds, lambda: self.site.fault(unit, Fault()))
 
-    def _stall(self, act: p.Stall) -> None:
-        disk, until = self.site.gateway.disk, self.world.now + act.seconds
+    def _stall(self, unit: Unit, act: p.Stall) -> None:
+        notes, until = unit.gateway.notes, self.world.now + act.seconds
         if act.full:
-            disk.full = until
+            notes.full = until
         else:
-            disk.stalls = until
+            notes.stalls = self.site.scheduler.disk.stalls = until
         self.world.tell("disk", f"{'is full' if act.full else 'stalls'} for {act.seconds:.2f} s")
 
-    def _press(self, act: p.Press) -> None:
+    def _press(self, _: Unit, act: p.Press) -> None:
         self.site.press(True)
         self.world.after(act.seconds, lambda: self.site.press(False))
 
-    def _take(self, act: p.Take) -> None:
-        """A person takes the machine, moves it, and gives it back."""
-        site, world = self.site, self.world
-
-        def taken(answer: f.Effect) -> None:
-            if isinstance(answer, f.Taken) and answer.wrong is None:
-                world.tell("operator", "moves the machine by its levers")
-                site.machine.plant.turn(LEVERS, world.now, act.seconds / 2)
-                world.after(act.seconds, lambda: world.send("take", lambda: site.gateway.call(
-                    lambda number: e.TakeAsked(number, "Sato", True), lambda _: None)))  # fmt: skip
-
-        world.send("take", lambda: site.gateway.call(lambda number: e.TakeAsked(number, "Sato", False), taken))
-
-    def _stranger(self, _act: p.Stranger) -> None:
-        self.world.tell("stranger", "cancels all goals at the machine")
-        self.world.send("stranger", self.site.machine.cancel)
-
-    def _foreign(self, act: p.ForeignGoal) -> None:
-        self.world.send("foreign", lambda: self.site.gateway.ask(None, act.seconds, lambda _: None))
-
-    # invariants
+    def _clock(self, unit: Unit, act: p.Clock) -> None:
+        self.world.tell("clock", f"of {unit.name} {'itself' if act.machine else 'at its PC'} is set by {act.seconds} s")
+        if act.machine:
+            unit.machine.clock += act.seconds
+        else:
+            unit.wall += act.seconds
 
     def _look(self) -> None:
-        self._in_time()
-        self._answered()
+        invariants.look(self.site)
         self.world.after(LOOK, self._look)
-
-    def _in_time(self) -> None:
-        """A run's goal whose processes are lost does not move the machine for long while its gateway lives."""
-        site = self.site
-        gateway, ignores = site.gateway, site.machine.plant.fault.ignore_cancel
-        if site.machine.plant.goal is None or ignores or not site.owned or gateway.worked_for() < 3.0:
-            return
-        for process in (site.scheduler, site.subtask):
-            if process.lost_for() > STOP_IN_TIME and site.machine.ordered_to_stop < site.sent_at:
-                raise Violation(f"{process.name} is lost for {process.lost_for():.1f} s, and the machine moves on")
-
-    def _answered(self) -> None:
-        """Whoever asks for a stop, a re-arm or a goal gets an answer, if the gateway works meanwhile."""
-        gateway, now = self.site.gateway, self.world.now
-        for since, _ in gateway.calls.values():
-            if now - max(since, gateway.up_at) > ANSWERED and gateway.worked_for() > ANSWERED:
-                raise Violation(f"a call is not answered within {ANSWERED:.0f} s")
 
 
 def shorter(result: Result) -> Result:

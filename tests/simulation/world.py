@@ -54,8 +54,9 @@ class World:
 
     def run(self, until: float) -> None:
         """Let events happen."""
-        while self._waiting and self._waiting[0][0] <= until:
-            self.now, _, step = heapq.heappop(self._waiting)
+        waiting = self._waiting
+        while waiting and waiting[0][0] <= until:
+            self.now, _, step = heapq.heappop(waiting)
             self.events += 1
             step()
         self.now = until
@@ -103,6 +104,15 @@ class Process:
         life = self.life
         self.world.after(seconds, lambda: self.handle(step) if self.life == life else None)
 
+    def in_life(self, step: Callable[..., None]) -> Callable[..., None]:
+        """A step of this life: what comes for it later, or while it is frozen, waits or is lost."""
+        life = self.life
+        return lambda *words: self.handle(lambda: step(*words)) if self.life == life else None
+
+    def start(self) -> None:
+        """Start it anew."""
+        self.begin()
+
     def begin(self) -> None:
         self.alive, self.thaws, self.waiting = True, 0.0, []
         self.life += 1
@@ -113,6 +123,9 @@ class Process:
         """Kill it; the caller starts it again."""
         self.alive, self.waiting, self.lost_at = False, [], self.world.now
         self.world.tell(self.name, "is killed")
+
+    def works(self) -> bool:
+        return self.alive and not self.frozen()
 
     def freeze(self, seconds: float) -> None:
         """Freeze it for a while."""

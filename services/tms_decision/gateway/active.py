@@ -19,7 +19,7 @@ def noted(gateway: Gateway, now: float, event: NoteKept) -> None:
     if goal is None or goal.phase is not Phase.NOTING or not goal.note or event.number < goal.note:
         return
     if event.problem is not None and event.number == goal.note and goal.stop is None:
-        _finish(gateway, goal, End(goal.number, "ABORTED", event.problem))
+        _finish(gateway, now, goal, "ABORTED", event.problem)
         return
     goal.note = 0
     go_on(gateway, now)
@@ -32,7 +32,7 @@ def go_on(gateway: Gateway, now: float) -> None:
         return
     if goal.stop is not None:
         if goal.stop.answer is not None:
-            _finish(gateway, goal, _stopped(gateway, goal, goal.stop.cause, goal.stop.answer))
+            _finish(gateway, now, goal, *_stopped(gateway, goal, goal.stop.cause, goal.stop.answer))
         return
     if goal.phase is Phase.NOTING and not goal.note:
         goal.wait_for_look(Phase.REACHING, gateway, now)
@@ -46,7 +46,7 @@ def _reach(gateway: Gateway, goal: Goal, now: float) -> None:
     if goal.seen(gateway) and gateway.beat.ready:
         goal.enter(Phase.HEARING, now)
     elif now - goal.since >= SERVER_LIMIT:
-        _finish(gateway, goal, End(goal.number, "ABORTED", r.ControllerAway(gateway.facts.name, goal.asked.server)))
+        _finish(gateway, now, goal, "ABORTED", r.ControllerAway(gateway.facts.name, goal.asked.server))
 
 
 def _hear(gateway: Gateway, goal: Goal, now: float) -> None:
@@ -57,11 +57,11 @@ def _hear(gateway: Gateway, goal: Goal, now: float) -> None:
     silent = gateway.silent(now)
     if silent is not None and not goal.cancelled:
         if now - goal.since >= SERVER_LIMIT:
-            _finish(gateway, goal, End(goal.number, "ABORTED", r.NotReady(silent)))
+            _finish(gateway, now, goal, "ABORTED", r.NotReady(silent))
         return
     trouble = gateway.watch.trouble(now)
     if trouble is not None:
-        _finish(gateway, goal, End(goal.number, "ABORTED", r.NotReady(trouble.reason)))
+        _finish(gateway, now, goal, "ABORTED", r.NotReady(trouble.reason))
         return
     _last_look(gateway, goal, now)
     if goal.stop is None:
@@ -112,26 +112,26 @@ def ended(gateway: Gateway, now: float, event: CallEnded) -> None:
     if goal.stop is not None:
         stops.advance(gateway, now)
     elif event.outcome == "SUCCEEDED":
-        _finish(gateway, goal, End(goal.number, "SUCCEEDED"))
+        _finish(gateway, now, goal, "SUCCEEDED")
     elif event.outcome == "CANCELED":  # not by our client: the standby of a gateway that seems lost did it
-        _finish(gateway, goal, End(goal.number, "ABORTED", r.ProcessLost(r.CancelledElsewhere())))
+        _finish(gateway, now, goal, "ABORTED", r.ProcessLost(r.CancelledElsewhere()))
     else:
         why = None if event.explained else r.ControllerEnded(gateway.facts.name, event.outcome)
-        _finish(gateway, goal, End(goal.number, "ABORTED", why))
+        _finish(gateway, now, goal, "ABORTED", why)
 
 
-def _finish(gateway: Gateway, goal: Goal, end: End) -> None:
+def _finish(gateway: Gateway, now: float, goal: Goal, outcome: str, why: Reason | None = None) -> None:
     """Answer the client: the goal moves the machine no more."""
-    gateway.active = None
+    gateway.active, gateway.last = None, (goal, now)
     if goal.owner is None and goal.stop is None:
         notes.hold(gateway, "", 0)
-    gateway.do(end, Publish())
+    gateway.do(End(goal.number, outcome, why), Publish())
 
 
-def _stopped(gateway: Gateway, goal: Goal, cause: Reason, receipt: Receipt) -> End:
+def _stopped(gateway: Gateway, goal: Goal, cause: Reason, receipt: Receipt) -> tuple[str, Reason]:
     if not receipt.confirmed:
-        return End(goal.number, "ABORTED", r.StopUnconfirmed(receipt.detail or cause, cause))
+        return "ABORTED", r.StopUnconfirmed(receipt.detail or cause, cause)
     stood = stood_after(receipt.seconds, receipt.joint, receipt.angle, receipt.way, cause)
     if not goal.cancelled or gateway.latch.cause is not None:
-        return End(goal.number, "ABORTED", stood)
-    return End(goal.number, "CANCELED", r.ProcessLost(r.GatewayStopped(stood)) if gateway.leaving else stood)
+        return "ABORTED", stood
+    return "CANCELED", r.ProcessLost(r.GatewayStopped(stood)) if gateway.leaving else stood

@@ -162,6 +162,7 @@ class Gateway:
     notes: Notes = field(default_factory=Notes)
     waiting: list[Goal] = field(default_factory=list)  # goals that are not active yet
     active: Goal | None = None
+    last: tuple[Goal | None, float] = None, 0.0  # the active goal that has ended last, and when
     stops: list[Stop] = field(default_factory=list)
     numbered: int = 0  # stops so far
     rearms: list[Rearm] = field(default_factory=list)

@@ -50,8 +50,9 @@ def stop(
         gateway.latch.close(cause)
     elif kind is StopKind.HOLD and owner is not None:
         gateway.latch.keep(cause, owner)
-    if active is not None and active.stop is None:
-        expected = _expected(gateway, active, now)
+    goal, over = (active, now) if active is not None else gateway.last
+    if goal is not None and goal.stop is None and now - over < gateway.watch.settles:
+        expected = _expected(gateway, goal, over, now)
     made = _begin(gateway, now, cause, latched, run or (owner.run if owner is not None else gateway.run or 0), expected)
     made.broken = broken
     if latched:
@@ -63,17 +64,19 @@ def stop(
     return made
 
 
-def _expected(gateway: Gateway, active: Goal, now: float) -> Expected:
-    """The motion that must be seen if a goal is stopped now.
+def _expected(gateway: Gateway, goal: Goal, over: float, now: float) -> Expected:
+    """The motion that must be seen if a goal is stopped now, or if it was over a moment ago.
 
-    The machine may have begun to move as soon as the goal was sent: its answer comes later, or never.
+    The machine may have begun to move as soon as the goal was sent: its answer comes later, or never. And it may go on
+    after the end that its server has told.
     """
-    if not active.sent:
+    follower = goal.follower
+    if not goal.sent:
         return NOTHING
-    if active.follower is None:
-        return Expected(active.sent)
-    since = active.sent if active.follower.should_have_moved(now - active.sent) else None
-    return Expected(since, active.follower.on_its_way(now, gateway.watch.dead_times))
+    if follower is None:
+        return Expected(goal.sent)
+    since = goal.sent if follower.should_have_moved(over - goal.sent) else None
+    return Expected(since, follower.on_its_way(now, gateway.watch.dead_times) if over == now else {})
 
 
 def _begin(gateway: Gateway, now: float, cause: Reason, latched: bool, run: int, expected: Expected) -> Stop:

@@ -43,17 +43,9 @@ class LeafGoal:
     losses: int = 0  # times that a process was lost during this goal
 
     @property
-    def number(self) -> int:
-        return self.asked.number
-
-    @property
     def key(self) -> Key:
         """What distinguishes this goal from others of the same run."""
         return self.asked.key
-
-    @property
-    def node(self) -> str:
-        return self.key[0]
 
     @property
     def machine(self) -> str:
@@ -93,7 +85,7 @@ class LeafGoals:
 
     def note(self, goal: LeafGoal, what: Reason, kind: str = "goal") -> None:
         """Want a line in the journal."""
-        self.out.append(Note(kind, goal.node, what))
+        self.out.append(Note(kind, goal.key[0], what))
 
     def taken(self) -> list[Effect]:
         """What is to be done after this step."""

@@ -32,13 +32,11 @@ def step(goals: LeafGoals, event: e.Event, now: float) -> list[f.Effect]:
     """Let something happen; returns what is to be done, in this order."""
     match event:
         case e.CancelAsked(number):
-            for goal in goals.open:
-                if goal.number == number:
-                    _cancel(goals, goal)
+            for goal in [goal for goal in goals.open if goal.asked.number == number]:
+                _cancel(goals, goal)
         case e.Looked(seen):
-            for goal in list(goals.open):
-                if goal.number in seen:
-                    _look(goals, goal, seen[goal.number], now)
+            for goal in [goal for goal in goals.open if goal.asked.number in seen]:
+                _look(goals, goal, seen[goal.asked.number], now)
         case e.Accepted(call):
             _accepted(goals, _of(goals, call))
         case e.Ended(call):
@@ -163,7 +161,7 @@ def _end(goals: LeafGoals, goal: LeafGoal, state: GoalState, reason: Reason | No
     if state is not GoalState.SUCCEEDED and not goal.cancelled:
         goals.failed[goal.key] = now
     if state is not GoalState.CANCELLED and not goal.cancelled:
-        goals.do(*(f.KeepGone(key, left) for key, left in goals.replay.moved_on(goal.node)))
+        goals.do(*(f.KeepGone(key, left) for key, left in goals.replay.moved_on(goal.key[0])))
         goals.do(f.KeepDone(goal.key, state is GoalState.SUCCEEDED))
     goal.call, goal.reason = 0, reason
     goal.state = state  # last: the tree may see it now and ask for the next goal

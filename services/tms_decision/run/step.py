@@ -16,7 +16,7 @@ from tms_reason.reason import Reason, Several
 
 TICK_LIMIT = 0.4  # s without a tick after which the permits of its motions end
 SETTLE_LIMIT = STOP_PROVEN + 7.0  # s for goals to end after a halt
-UNCONFIRMED, INTERRUPTED, REFUSED, SUCCESS = "stop_unconfirmed", "interrupted", "refused", "success"
+UNCONFIRMED, INTERRUPTED, SUCCESS = "stop_unconfirmed", "interrupted", "success"
 
 
 class Phase(Enum):
@@ -90,16 +90,15 @@ def step(run: Run, event: e.Event, now: float) -> list[f.Effect]:
 
 def _begin(run: Run, back: Reason | None, now: float) -> None:
     if back is not None and run.asked is None:
-        _refuse(run, back, now)
-    else:
-        run.ticked = now
-        run.enter(Phase.RUNNING, now, f.Enter("running"))
+        return _refuse(run, back, now)
+    run.ticked = now
+    run.enter(Phase.RUNNING, now, f.Enter("running"))
 
 
 def _refuse(run: Run, why: Reason, now: float) -> None:
     """End the run before any machine has moved; one that was to be resumed stays interrupted."""
     run.refused = why
-    run.outcome, run.why = (INTERRUPTED, NotResumed(why)) if run.resumed else (REFUSED, why)
+    run.outcome, run.why = (INTERRUPTED, NotResumed(why)) if run.resumed else ("refused", why)
     _end(run, now)
 
 
@@ -112,13 +111,11 @@ def _halt(run: Run, outcome: str, why: Reason | None, now: float) -> None:
 
 def _halted(run: Run, moves: bool, now: float) -> None:
     """Stop the machines, except after a success without open goals: then no machine moves."""
-    if run.outcome == SUCCESS and not moves:
+    if run.outcome == SUCCESS:
         run.why = None
-        _end(run, now)
-        return
-    if run.outcome == SUCCESS:  # the tree succeeded in the tick that halted a leaf
-        run.why = None
-        run.out.append(f.Enter("stopping", HaltedGoalsEnd()))
+        if not moves:
+            return _end(run, now)
+        run.out.append(f.Enter("stopping", HaltedGoalsEnd()))  # the tree succeeded in the tick that halted a leaf
     run.enter(Phase.STOPPING, now, f.StopMachines(run.outcome))
 
 
@@ -134,8 +131,8 @@ def _look(run: Run, moves: bool, names: Sequence[str], now: float) -> None:
 
 
 def _end(run: Run, now: float) -> None:
-    ended, interrupted = f.Enter(run.outcome, run.why, ended=True), run.outcome == INTERRUPTED
-    run.out.extend(
-        [ended, f.KeepInterrupted()] if interrupted else [f.KeepEnd(run.outcome, run.why), ended, f.Forget()]
-    )
-    run.enter(Phase.OVER, now, *([f.Drop()] if run.held else []))
+    ended, drop = f.Enter(run.outcome, run.why, ended=True), [f.Drop()] if run.held else []
+    if run.outcome == INTERRUPTED:
+        run.enter(Phase.OVER, now, ended, f.KeepInterrupted(), *drop)
+    else:
+        run.enter(Phase.OVER, now, f.KeepEnd(run.outcome, run.why), ended, f.Forget(), *drop)

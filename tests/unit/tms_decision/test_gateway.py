@@ -572,3 +572,17 @@ def test_a_damaged_number_of_a_stop_changes_nothing() -> None:
     rig = ready()
     rig.happens(e.ReceiptKept(17))
     assert rig.done == []
+
+
+def test_a_machine_that_goes_on_after_the_end_of_its_goal_is_not_believed_to_stand() -> None:
+    """Its server has ended the goal, and it replays a record of standing while it coasts."""
+    rig = ready()
+    rig.plant.fault.replay = True
+    rig.plant.told = [(0.0, 0.0, 0.0)] * 20
+    rig.ask(1)
+    rig.run(1.0)
+    assert rig.plant.speed > 0.0
+    rig.happens(e.CallEnded(1, "ABORTED"))
+    rig.happens(e.StopAsked(1, None, True))
+    rig.run(rig.gateway.watch.dead_time + 0.5)
+    assert not rig.all(f.Tell)

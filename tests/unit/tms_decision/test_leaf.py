@@ -64,7 +64,7 @@ class Goals:
         return self.happened(e.Ended(self.sent[-1], outcome, why, failure))
 
     def look(self) -> list[f.Effect]:
-        return self.happened(e.Looked({goal.number: self.seen for goal in self.goals.open}))
+        return self.happened(e.Looked({goal.asked.number: self.seen for goal in self.goals.open}))
 
     def retry(self, seconds: float, outcome: str = "") -> None:
         """What a RetryUntilSuccessful around a leaf does, at 20 ticks a second; its goals may all end at once."""

@@ -105,11 +105,14 @@ def lost_run(tmp_path: Path, disk: GroupCommit, machines: list[str]) -> tuple[Re
     return records, records.past()[0].last_time
 
 
-def receipt(machine: str, at: float, run: int = HEADER.number, confirmed: bool = True) -> StopReceipt:
+def receipt(
+    machine: str, at: float, run: int = HEADER.number, confirmed: bool = True, latched: bool = True
+) -> StopReceipt:
     stamp = Time(sec=int(at), nanosec=int(at % 1 * 1e9))
     return StopReceipt(
-        machine=machine, confirmed=confirmed, seconds=0.5, cause="no scheduler", detail="silent", stamp=stamp, run=run
-    )
+        machine=machine, confirmed=confirmed, latched=latched, seconds=0.5, cause="no scheduler", detail="silent",
+        stamp=stamp, run=run,
+    )  # fmt: skip
 
 
 def closed(records: Records, receipts: list[StopReceipt], monkeypatch: pytest.MonkeyPatch) -> list[Any]:
@@ -174,3 +177,12 @@ def test_a_run_whose_end_the_power_cut_came_upon_has_ended_and_is_not_interrupte
     assert (event.number, event.kind, words(event.text)) == (5, "run", "failure: it rains")
     assert (row.state, words(row.reason)) == ("failure", "it rains") and row.ended_at.sec > 0
     assert records.past() == []
+
+
+def test_a_stop_that_a_waiting_goal_may_have_followed_is_no_end(
+    tmp_path: Path, disk: GroupCommit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The gateway had just started and stopped its machine, when a run sent its first goal, which waited for that."""
+    records, last = lost_run(tmp_path, disk, ["zx200"])
+    row = closed(records, [receipt("zx200", last + 0.1, latched=False)], monkeypatch)[-1]
+    assert "not seen to stand: zx200" in words(row.reason)

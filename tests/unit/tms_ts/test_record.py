@@ -9,7 +9,7 @@ import structlog
 from tms_decision.leaf.events import Key
 from tms_decision.leaf.replay import Replay
 from tms_ts.group_commit import GroupCommit
-from tms_ts.interrupted_run import Header, InterruptedRun, Over
+from tms_ts.interrupted_run import Header, Over, read
 from tms_ts.run_checkpoint import LOST, Records
 
 HEADER = Header("run-1", 7, 3, "dig", ["zx200"], "<root/>", (1, 2), values={"nodes": 3})
@@ -121,7 +121,7 @@ def test_a_record_that_is_closed_stays(records: Records) -> None:
     made.close()
     made.event(2)  # late news
     records.past()
-    assert InterruptedRun(made.path).last_event == 1
+    assert read(made.path).last_event == 1
 
 
 def test_a_record_is_there_until_the_end_of_its_run_is_stored(records: Records, disk: GroupCommit) -> None:
@@ -130,7 +130,7 @@ def test_a_record_is_there_until_the_end_of_its_run_is_stored(records: Records, 
     record.event(4)
     record.over("failure", "it rains")
     record.event(5)
-    disk.after(lambda: seen.append(InterruptedRun(record.path).over == Over("failure", "it rains", 5)))
+    disk.after(lambda: seen.append(read(record.path).over == Over("failure", "it rains", 5)))
     record.remove()
     assert disk.wait(10)
     assert seen == [True] and not record.path.exists()
@@ -167,7 +167,7 @@ def test_a_record_without_its_run_is_told_kept_aside_and_keeps_nobody_from_start
     records.check()
     assert caplog.text.count("event=record_unreadable") == 2
     assert (folder / "bad.jsonl.unreadable").read_bytes() == left
-    assert [past.path.name for past in records.past()] == ["good.jsonl"]
+    assert [past.header and past.header.run_id for past in records.past()] == ["run-1"]
 
 
 def test_damaged_lines_are_told_and_the_others_count(

@@ -24,7 +24,7 @@ from tms_ts.budget import MAX_BURST
 from tms_ts.execution import END_STORED, Execution
 from tms_ts.facts import Facts
 from tms_ts.group_commit import GroupCommit
-from tms_ts.interrupted_run import InterruptedRun
+from tms_ts.interrupted_run import read
 from tms_ts.reasons import LeftOut
 from tms_ts.run import TICK_PERIOD, Run
 from tms_ts.run_checkpoint import Records
@@ -228,7 +228,7 @@ def test_a_resume_that_is_refused_leaves_its_record_and_no_open_file(rows: list[
     resumed.refuse(MachineLatched("zx200", SoftwareStop()))
     disk.close(10)
     assert files() == before
-    assert InterruptedRun(record.path).closed
+    assert read(record.path).closed
 
 
 def test_a_loop_that_waits_is_told_to_whoever_looks_and_in_part_to_the_history(a_run: Run, rows: list[Any]) -> None:

@@ -1,0 +1,221 @@
+"""The scheduler: it runs tasks, closes what a lost predecessor left open, and resumes that for an operator."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from simulation.disk import RunDisk
+from simulation.execution import Execution
+from simulation.gateway import State
+from simulation.lease import FORGET, PermitProcess
+from simulation.relay import Relay
+from simulation.task import Task, some_task
+from simulation.world import Violation
+from tms_decision.gateway import effects as f
+from tms_decision.gateway.stops import RECEIPT_LIMIT
+from tms_decision.leaf.events import Key
+from tms_decision.owner import Owner
+from tms_decision.past import LostRun, Stop, all_told, stops_of, what_was_seen
+from tms_decision.permit_link import PermitLink
+from tms_decision.reasons import DrivenByHand, MachineLatched, SeenToStand
+from tms_reason.reason import Foreign, Reason
+from tms_ts.interrupted_run import InterruptedRun
+
+if TYPE_CHECKING:
+    from simulation.site import Site
+    from simulation.unit import Unit
+
+LATE = 1.3  # s after the end or the loss of a run in which its last goal may leave
+SETTLED = 1.5  # s
+PAUSE = 0.5  # s between runs, at most twice as much
+
+
+class Scheduler(PermitProcess):
+    """Runs tasks again and again on the machines that are free."""
+
+    def __init__(self, site: Site) -> None:
+        super().__init__(site.world, "tms:ts", {name: unit.permits["ts"] for name, unit in site.units.items()})
+        self.site, self.disk = site, RunDisk(site.world)
+        self.runs: dict[str, Execution] = {}
+        self.told: dict[str, str] = {}  # outcomes that clients know
+        self._receipts: list[Stop] = []
+        self._states: dict[str, State] = {}
+        self._gateways: dict[str, PermitLink] = {}
+        self._last = 0
+        self._ended: dict[int, float] = {}  # when runs have ended, by fencing number
+        self.finished: dict[str, set[Key]] = {}  # leaf goals that have succeeded, and whose end must be on the disk
+        self.hung_at = float("inf")  # when its runs last began to hang
+
+    def start(self) -> None:
+        self.begin()
+        self.runs, self._states, self._receipts = {}, {}, []
+        self.hung_at = float("inf")
+        self._gateways = {name: PermitLink("rc") for name in self.site.units}
+        for name, unit in self.site.units.items():
+            link = self._gateways[name]
+            unit.permits["rc"].join(
+                f"ts{self.life}",
+                self.in_life(lambda goal, holder, link=link: link.heard(goal, holder, self.world.now)),
+                self.in_life(lambda alive, stale, link=link: link.reported(alive, stale, False, self.world.now)),
+            )
+            unit.hear_state("ts", self.in_life(lambda state, name=name: self._state(name, state)))
+            unit.hears_receipts = self.in_life(lambda receipt, name=name: self._receipt(name, receipt))
+            for old in unit.receipts[-20:]:  # the topic is latched
+                self._receipt(name, old)
+        self._close_all(self.world.now + RECEIPT_LIMIT)
+        settled = SETTLED if self.life == 1 else 0.0  # the gateways have just started, too
+        self.later(settled + self.world.random.random(), self._begin_some)
+
+    def kill(self) -> None:
+        super().kill()
+        self.disk.killed()
+
+    # runs
+
+    def _begin_some(self) -> None:
+        """Begin a run on some of the machines that are free."""
+        random = self.world.random
+        held = {name for run in self.runs.values() for name in run.task.machines()}
+        free = [name for name in self.site.units if name not in held and self.held_back(name) is None]
+        if free:
+            self._last += 1
+            machines = random.sample(free, random.randint(1, len(free)))
+            self._begin(f"run-{self.life}-{self._last}", some_task(random, machines))
+        self.later(PAUSE * (1.0 + random.random()), self._begin_some)
+
+    def _begin(self, run_id: str, task: Task, past: InterruptedRun | None = None) -> None:
+        self.runs[run_id] = run = Execution(self, run_id, task, past)
+        run.begin()
+
+    def resume(self) -> None:
+        """An operator resumes an interrupted run, if there is one and its machines are free."""
+        held = {name for run in self.runs.values() for name in run.task.machines()}
+        for run_id, lines in self.disk.checkpoints.items():
+            past = InterruptedRun(lines)
+            header = past.header
+            if header is None or not past.closed or run_id in self.runs or held & set(header.machines):
+                continue
+            self.world.tell("operator", f"resumes {run_id}")
+            self._begin(run_id, header.values["task"], past)
+            return
+
+    def cancel(self) -> None:
+        """An operator cancels a run."""
+        for run in list(self.runs.values())[:1]:
+            self.world.tell("operator", f"cancels {run.run_id}")
+            run.cancel()
+
+    def over(self, run: Execution, outcome: str) -> None:
+        """A run has ended; its client gets to know it when the end is on the disk."""
+        del self.runs[run.run_id]
+        self._ended[run.number] = self.world.now
+        for unit in run.units if outcome in ("success", "failure", "cancelled") else []:
+            if unit.machine.plant.goal is not None and unit.owner is not None and unit.owner.run == run.number:
+                raise Violation(f"{run.run_id} has ended as {outcome}, and its goal moves {unit.name}")
+        if outcome not in ("interrupted", "refused"):
+            self.written(lambda: self.told.__setitem__(run.run_id, outcome))
+
+    def written(self, step: Callable[[], None]) -> None:
+        """Do a step when everything so far is on the disk, in this life."""
+        self.disk.after(self.in_life(step))
+
+    # runs that a predecessor left open
+
+    def _close_all(self, deadline: float) -> None:
+        left = {run_id: InterruptedRun(lines) for run_id, lines in self.disk.checkpoints.items()}
+        for run_id, past in left.items():
+            if run_id in self.told and past.over is None:
+                raise Violation(
+                    f"the client of {run_id} knows its end {self.told[run_id]}, and its checkpoint does not"
+                )
+            if past.header is not None and past.over is not None:
+                self._complete(run_id, past)
+        self._close_open(list(left), deadline)
+
+    def _complete(self, run_id: str, past: InterruptedRun) -> None:
+        """Report the end of a run that had ended before: that report may be lost, or comes twice."""
+        assert past.over is not None
+        self.disk.tell(run_id, past.over.event, f"run {past.over.outcome}")
+        self.disk.forget(run_id)
+
+    def _close_open(self, left: list[str], deadline: float) -> None:
+        waits = False
+        for run_id in left:
+            past = InterruptedRun(self.disk.checkpoints.get(run_id, ()))
+            header = past.header
+            if header is None or past.closed or past.over is not None or run_id in self.runs:
+                continue
+            lost = past.lost(header)
+            stops = stops_of(lost, self._receipts)
+            if not all_told(lost, stops) and self.world.now < deadline:
+                waits = True
+                continue
+            reason, _ = what_was_seen(lost, stops)
+            self._check_claim(lost, reason)
+            self.world.tell("tms:ts", f"{run_id} is interrupted: {reason!r}")
+            number = past.last_event + 1
+            self.disk.line(run_id, {"n": number})
+            self.disk.tell(run_id, number, f"interrupted {reason!r}")
+            self.disk.line(run_id, {"interrupted": True})
+        if waits:
+            self.later(0.2, lambda: self._close_open(left, deadline))
+
+    def _check_claim(self, lost: LostRun, reason: Reason) -> None:
+        claim = reason.find(SeenToStand)
+        for name in claim.machines if claim is not None else ():
+            unit = self.site.units[name]
+            if unit.owner is not None and unit.owner.run == lost.number and unit.machine.plant.goal is not None:
+                raise Violation(f"{lost.run_id}: {name} was seen to stand, and a goal of that run moves it")
+
+    def check_owner(self, unit: Unit, owner: Owner | None) -> None:
+        """A goal of a run leaves for a machine: that run must hold the machine, or have held it a moment ago."""
+        if owner is None or self.lost_for() > 0 or self.worked_for() < LATE:
+            return
+        holds = any(run.number == owner.run and unit in run.units and run.core.held for run in self.runs.values())
+        if not holds and self.world.now - self._ended.get(owner.run, float("-inf")) > LATE:
+            raise Violation(f"a goal of {owner} leaves for {unit.name}, and that run does not hold it")
+
+    def hang(self, seconds: float) -> None:
+        """The threads of its runs hang, and the process does not."""
+        self.hung_at = self.world.now
+        for run in self.runs.values():
+            run.hang(seconds)
+
+    # what others tell
+
+    def _state(self, name: str, state: State) -> None:
+        self._states[name] = state
+        run = next((run for run in self.runs.values() if name in run.task.machines() and run.core.held), None)
+        if run is not None and state.latch is not None:
+            run.stopped(name, state.latch)
+
+    def _receipt(self, name: str, receipt: f.Receipt) -> None:
+        self._receipts.append(Stop(name, receipt.run, receipt.stamp, receipt.confirmed, receipt.latched, receipt.cause))
+
+    def latch(self, name: str) -> Reason | None:
+        """Why the machine is latched, as far as is known."""
+        state = self._states.get(name)
+        return state.latch if state is not None else None
+
+    def held_back(self, name: str) -> Reason | None:
+        """A state that only a person ends."""
+        state = self._states.get(name)
+        if state is None:
+            return None
+        if state.latch is not None:
+            return MachineLatched(name, state.latch)
+        return DrivenByHand(state.by_hand, name) if state.by_hand is not None else None
+
+    def obstacle(self, name: str) -> Reason | None:
+        """Why a goal would not move the machine now."""
+        state = self._states.get(name)
+        if state is None:
+            return None
+        if not self._gateways[name].alive(self.world.now):
+            return Foreign("its gateway is away")
+        return self.held_back(name) or (None if state.ready else Foreign("it is not ready"))
+
+    def finds(self, relay: Relay, dead: int) -> bool:
+        """Whether discovery shows its server; one that is gone is shown for a while. `dead`: life known to be gone."""
+        return relay.life > dead and (relay.alive or self.world.now - relay.lost_at < FORGET)
