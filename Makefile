@@ -118,10 +118,10 @@ conformance: setup ## replay behaviour-tree cases (CASES=path LEVEL=required|str
 	@$(PY) tests/conformance/replay.py "$(or $(CASES),tests/conformance/cases.jsonl)" --level "$(or $(LEVEL),required)"
 
 drill: setup ## stop six simulated machines in every way; receipts against the truth (QUICK=1, ROUNDS=4, SEED=7, REPORT=file.md, ONLY="kill rc+tms:ts")
-	@$(VENV)/bin/tms --site $(or $(SITE),drill) drill $(if $(QUICK),--quick) $(if $(ROUNDS),--rounds $(ROUNDS)) $(if $(SEED),--seed $(SEED)) $(if $(ONLY),--only "$(ONLY)") $(if $(REPORT),--report $(REPORT))
+	@$(VENV)/bin/tms --site $(or $(SITE),drill) drill $(if $(QUICK),--quick) $(if $(ROUNDS),--rounds $(ROUNDS)) $(if $(SEED),--seed $(SEED)) $(if $(LEDGER),--ledger $(LEDGER)) $(if $(ONLY),--only "$(ONLY)") $(if $(REPORT),--report $(REPORT))
 
 simulate: setup ## a site in virtual time goes wrong thousands of times; invariants against the true motion (SCHEDULES=15000 SEED=7)
-	@cd tests && $(abspath $(PY)) -m simulation.run $(if $(SCHEDULES),--schedules $(SCHEDULES)) $(if $(SEED),--seed $(SEED))
+	@cd tests && $(abspath $(PY)) -m simulation.run $(if $(SCHEDULES),--schedules $(SCHEDULES)) $(if $(SEED),--seed $(SEED)) $(if $(LEDGER),--ledger $(LEDGER))
 
 nightly: setup ## what takes hours: properties with 400 examples, 30 power cuts while a machine moves (as root), the drill with four rounds
 	$(PY) -m pytest -q -n $(WORKERS) --hypothesis-profile=thorough tests/unit

@@ -13,3 +13,11 @@ class Data:
     def __init_subclass__(cls, **more: Any) -> None:
         super().__init_subclass__(**more)
         dataclass(frozen=True)(cls)
+
+
+class Event(Data):
+    """Something that happens."""
+
+
+class Effect(Data):
+    """Something that is to be done."""

@@ -7,6 +7,7 @@ from tms_decision.data import Data
 LEASE_MARGIN = 0.09  # s more than the lease: a process frozen for 0.4 s may have asserted itself 0.1 s before
 AGAIN = 0.5  # s between repeated commands
 ESCALATE = 1.0  # s without a gateway until emg_stop
+HANDED_ON = 1.0  # s from a press until a gateway that is not latched is told of it
 
 
 class Act(Enum):
@@ -69,3 +70,18 @@ class Duty:
             return None
         self._again = now + AGAIN
         return Act.EMERGENCY if self._emergency else Act.STOP
+
+
+class Press:
+    """A press of the stop button, until the gateway shows that it is latched: it may have been lost when that came."""
+
+    def __init__(self) -> None:
+        self.since: float | None = None
+
+    def due(self, now: float, alive: bool, latched: bool) -> bool:
+        """Whether to stop the machine by a request to its gateway, which is back; `latched`: as it shows."""
+        self.since = None if latched else self.since
+        if self.since is None or not alive or now - self.since < HANDED_ON:
+            return False
+        self.since = now
+        return True

@@ -9,6 +9,8 @@ The sign of a working gateway is its pulse, the lease of its permit, not its pro
     levers, and a crash of software that does not move the machine must not take it from that person;
   - a gateway that ends in order (`tms restart`, `tms down`) has stopped the machine: cancel and zero again, no alarm.
 
+  A press of the stop button that a gateway did not live to remember is handed on to its successor as a request.
+
   Only a gateway releases `emg_stop`. The commands leave from the pulse's thread, before they are logged and counted.
 """
 
@@ -16,17 +18,21 @@ from builtin_interfaces.msg import Time
 from prometheus_client import Counter, Gauge
 from std_msgs.msg import Bool
 from tms_msg_rc.msg import MachineState
+from tms_msg_rc.srv import StopMachine
 
 from tms_config.clock import monotonic
 from tms_config.processes import here
-from tms_decision.duty import Act, Duty, GatewayStatus
+from tms_decision.duty import Act, Duty, GatewayStatus, Press
 from tms_decision.permit_link import NOBODY
+from tms_decision.reasons import SoftwareStop
 from tms_machine.border import Controls, standby, stood_in
 from tms_machine.permit import RemotePermit
+from tms_reason.wire import to_line
 from tms_runtime.app import App
 
 TOGETHER = 1.0  # s between the losses of scheduler and gateway within which they count as one
 GATEWAY = "tms_rc.node"
+SIGNALS = 100  # messages of all stop buttons that may wait: no `false` of one may push out the `true` of another
 
 STOOD_IN = Counter("tms_host_stood_in", "Times that a machine was stopped in place of its lost gateway", ["machine"])
 LOST = Gauge("tms_host_gateway_lost", "1 while a machine's gateway gives no pulse", ["machine"])
@@ -41,6 +47,9 @@ class StandbyGateway:
         self._log = app.log
         self._done: Act | None = None  # the command since the gateway was lost, as it was logged
         self._controls = Controls(ros, machine, app.site.border(machine), keeps_emergency=False)
+        self._ros, self._press = ros, Press()
+        ros.subscribe(Bool, "/emergency_signal", self._signal, depth=SIGNALS)
+        ros.prepare(StopMachine, f"/{machine}/rc/stop")
         self._now, self._stood_in = ros.now, ros.publisher(Time, stood_in(machine), 1, latched=True)
         self._acts = ros.publisher(Bool, standby(machine), 1, latched=True)
         self._acts.publish(Bool(data=False))
@@ -54,18 +63,21 @@ class StandbyGateway:
 
     def check(self, now: float) -> None:
         """Command what is due, at every beat of the pulse."""
-        act = self.duty.check(now, self._status(now))
+        lost, press = self.duty.lost_since is not None, self._press
+        reported = self._samples() if lost or press.since is not None or not self._gateway.alive else []
+        if press.due(now, self._gateway.alive, bool(reported and reported[-1].latch)):
+            self._ros.on_executor(self._hand_on)
+        act = self.duty.check(now, self._status(now, reported))
         if act is not None:
             self._command(act)
         self._publish(act)
 
-    def _status(self, now: float) -> GatewayStatus:
+    def _status(self, now: float, reported: list[MachineState]) -> GatewayStatus:
         gateway, scheduler, is_lost = self._gateway, self._scheduler, self.duty.lost_since is not None
         if scheduler.alive:
             self._held_at = now
         if gateway.alive and not is_lost:
             return GatewayStatus(alive=True)
-        reported = self._samples()
         if reported and not is_lost:  # not of a successor, which has no samples yet and reports a motion
             self._state = reported[-1]
         state = self._state
@@ -81,6 +93,16 @@ class StandbyGateway:
         self._controls.cancel_everything()
         if self.duty.lost_since is not None:
             self._acts.publish(Bool(data=True))  # a goal that leaves now would be cancelled
+
+    def _signal(self, message: Bool) -> None:
+        if message.data:
+            self._press.since = monotonic()
+
+    def _hand_on(self) -> None:
+        """Tell a gateway of the press that it did not live to remember."""
+        self._log.error("press_handed_on", machine=self.machine)
+        request = StopMachine.Request(cause=to_line(SoftwareStop()), orderly=False)
+        self._ros.call_then(StopMachine, f"/{self.machine}/rc/stop", request, _told)
 
     def _publish(self, act: Act | None) -> None:
         lost = self.duty.lost_since is not None
@@ -118,6 +140,10 @@ class Standby:
         now = monotonic()
         for one in self._standbys.values():
             one.check(now)
+
+
+def _told(_answer: StopMachine.Response) -> None:
+    """The state of the gateway shows whether it is latched."""
 
 
 def _looked_at(permit: RemotePermit) -> None:

@@ -21,7 +21,9 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from conftest import GATEWAYS_ONLY, Mesh, mesh_apart, running, wait_until
 from tms_config.config import load_site
+from tms_decision.reasons import SoftwareStop
 from tms_host.supervisor import Supervisor
+from tms_reason.wire import to_line
 from tms_ros.goals import Outcome
 from tms_ros.node import Ros
 
@@ -48,6 +50,7 @@ class Small:
         ros.subscribe(MachineState, "/zx200/rc/state", self._state, latched=True)
         ros.subscribe(Bool, "/zx200/emg_stop", self._emergency, depth=20)
         self.release = ros.publisher(Bool, "/zx200/emg_stop")
+        self.button = ros.publisher(Bool, "/emergency_signal")
 
     def _status(self, message: Any) -> None:
         with self.changed:
@@ -127,6 +130,15 @@ def test_a_killed_gateway_is_stood_in_for(small: Small, capsys: pytest.CaptureFi
             print(f"\nkill to stop: {time.monotonic() - at:.2f} s")
     wait_until(lambda: small.reported("gateway_lost", begin), 30, "the host agent tells of it")
     wait_until(lambda: small.reported("gateway_back", begin), 60, "its successor is there")
+
+
+def test_a_press_while_the_gateway_is_away_latches_its_successor(small: Small) -> None:
+    small.wait_armed()
+    wait_until(lambda: small.button.get_subscription_count() >= 2, 30, "gateway and host agent hear the button")
+    os.kill(small.pid(), signal.SIGKILL)
+    small.button.publish(Bool(data=True))
+    small.button.publish(Bool(data=False))
+    small.wait(lambda: small.state.latch == to_line(SoftwareStop()), "its successor is latched")
 
 
 def test_a_frozen_gateway_is_stood_in_for_and_replaced(small: Small, capsys: pytest.CaptureFixture[str]) -> None:

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 BEAT, PROOF_BEAT = 0.05, 0.025  # s, at least; at most twice as much
 SERVES = bytes([255]) * 16  # what its permit says
+UNSEEN = 0.3  # s in which nobody can have seen that a motion has begun
 SETTLES = 0.5  # s in which a machine takes the commands of a stop
 
 
@@ -244,7 +245,8 @@ class GatewayProcess(PermitProcess):
 
     def _keep(self, effect: f.KeepState | f.KeepDriver | f.KeepReceipt) -> None:
         plant = self.unit.machine.plant
-        if isinstance(effect, f.KeepReceipt) and effect.receipt.confirmed and plant.moves():
+        began = self.world.now - plant.turned < UNSEEN  # a person, just now
+        if isinstance(effect, f.KeepReceipt) and effect.receipt.confirmed and plant.moves() and not began:
             raise Violation(f"confirmed and truly moving: {effect.receipt.cause!r}")
         life = self.life
         self.notes.keep(effect, lambda: self.alive and self.life == life, self.happens)

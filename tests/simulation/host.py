@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING
 
 from simulation.gateway import State
 from simulation.world import Process
-from tms_decision.duty import Act, Duty, GatewayStatus
+from tms_decision.duty import Act, Duty, GatewayStatus, Press
 from tms_decision.gateway import events as e
 from tms_decision.permit_link import NOBODY, PermitLink
+from tms_decision.reasons import SoftwareStop
 
 if TYPE_CHECKING:
     from simulation.unit import Unit
@@ -24,7 +25,8 @@ class Standby:
     def __init__(self, host: HostAgent, unit: Unit) -> None:
         self._host, self._unit = host, unit
         self._duty, self._gateway, self._scheduler = Duty(), PermitLink("rc"), PermitLink("ts")
-        self._held_at = float("-inf")
+        self._held_at, self.press = float("-inf"), Press()
+        self._latched = False  # as the gateway has shown since the last beat
         self._reported = self._acts = False
         self._state: State | None = None
         world = host.world
@@ -38,12 +40,15 @@ class Standby:
         unit.stands_in(False)
 
     def _received(self, state: State) -> None:
-        self._reported = True
+        self._reported, self._latched = True, state.latch is not None
         if self._duty.lost_since is None:
             self._state = state
 
     def beat(self, now: float) -> None:
         """Command what is due."""
+        if self.press.due(now, self._gateway.alive(now), self._reported and self._latched):
+            self._host.world.tell("tms:host", f"hands a press on to {self._unit.name}:rc")
+            self._host.world.send(f"{self._unit.name} calls", lambda: self._unit.gateway.call(_press, lambda _: None))
         act = self._duty.check(now, self._status(now))
         self._reported = False
         if act is not None:
@@ -72,6 +77,10 @@ class Standby:
             unit.stands_in(True)
 
 
+def _press(number: int) -> e.Event:
+    return e.StopAsked(number, SoftwareStop(), False)
+
+
 class HostAgent(Process):
     """One PC with all machines' processes."""
 
@@ -87,6 +96,11 @@ class HostAgent(Process):
             for name in unit.relays:
                 self.noticed(unit, name)
         self._beat()
+
+    def pressed(self) -> None:
+        """The stop button is pressed."""
+        for standby in self._standbys:
+            standby.press.since = self.world.now
 
     def noticed(self, unit: Unit, name: str) -> None:
         """A process was started or has ended: who looks gets to know it a moment later."""

@@ -150,6 +150,10 @@ class Planned:
         return f"{self.at:7.3f}  m{self.unit}  {self.act}"
 
 
+HELPERS = (Rearm(), Rearm(), Rearm(), Resume(), Resume())  # people who put in order what has gone wrong
+PEOPLE = len(HELPERS)
+
+
 def machines(seed: int) -> int:
     """How many machines the site of this seed has."""
     return (1, 1, 1, 1, 1, 1, 2, 2, 2, 3)[random.Random(f"site {seed}").randrange(10)]
@@ -166,8 +170,7 @@ def plan(seed: int) -> list[Planned]:
         Planned(1.0 + chance.random() * (last - 1.0), chance.randrange(units), chance.choice(kinds)(chance))
         for _ in range(chance.randint(2, 6))
     ]
-    people = (Rearm(), Rearm(), Rearm(), Resume(), Resume())
-    found += [Planned(5.0 + chance.random() * (last - 3.0), 0, act) for act in people]
+    found += [Planned(5.0 + chance.random() * (last - 3.0), 0, act) for act in HELPERS]
     return sorted(found, key=lambda one: one.at)
 
 

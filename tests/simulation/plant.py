@@ -46,6 +46,7 @@ class Plant:
     goal: int | None = None
     until: float = 0.0  # when the goal's motion ends
     emergency: bool = False
+    turned: float = float("-inf")  # when a person last began to move it
     number: int = 0  # of its messages
     told: list[tuple[float, float, float]] = field(default_factory=list)  # stamp, angle, speed
 
@@ -74,6 +75,7 @@ class Plant:
     def turn(self, speed: float, now: float, seconds: float) -> None:
         """A person moves it by its levers, without dead time."""
         self.advance(now)
+        self.turned = now
         self.coming = sorted([*self.coming, (now, speed), (now + seconds, 0.0)])
 
     def halt(self, now: float, by_emergency: bool = False) -> int | None:

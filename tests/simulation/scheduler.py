@@ -18,7 +18,7 @@ from tms_decision.leaf.events import Key
 from tms_decision.owner import Owner
 from tms_decision.past import LostRun, Stop, all_told, stops_of, what_was_seen
 from tms_decision.permit_link import PermitLink
-from tms_decision.reasons import DrivenByHand, MachineLatched, SeenToStand
+from tms_decision.reasons import DrivenByHand, MachineLatched, SeenToStand, SoftwareStop
 from tms_reason.reason import Foreign, Reason
 from tms_ts.interrupted_run import InterruptedRun
 
@@ -192,6 +192,11 @@ class Scheduler(PermitProcess):
 
     def _receipt(self, name: str, receipt: f.Receipt) -> None:
         self._receipts.append(Stop(name, receipt.run, receipt.stamp, receipt.confirmed, receipt.latched, receipt.cause))
+
+    def pressed(self) -> None:
+        """The stop button is pressed."""
+        for run in [run for run in self.runs.values() if run.core.held]:
+            run.stopped(run.units[0].name, SoftwareStop())
 
     def latch(self, name: str) -> Reason | None:
         """Why the machine is latched, as far as is known."""

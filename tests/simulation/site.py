@@ -66,6 +66,8 @@ class Site:
                 gateway.latched = True
             gateway.happens(e.Signal(on))
 
+        for process in (self.host, self.scheduler) if on else ():
+            self.world.send(f"{process.name} button", lambda process=process: process.handle(process.pressed))  # type: ignore[misc]
         for unit in self.units.values():
             for gateway in unit.gateways():
                 self.world.send(f"{gateway.name} button", lambda gateway=gateway: arrives(gateway))  # type: ignore[misc]

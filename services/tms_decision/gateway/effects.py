@@ -3,12 +3,8 @@
 from dataclasses import field
 from typing import Any
 
-from tms_decision.data import Data
+from tms_decision.data import Data, Effect
 from tms_reason.reason import Reason
-
-
-class Effect(Data):
-    """Something that a gateway wants to be done."""
 
 
 class Receipt(Data):

@@ -2,14 +2,10 @@
 
 from collections.abc import Sequence
 
-from tms_decision.data import Data
+from tms_decision.data import Data, Event
 from tms_decision.owner import Owner
 from tms_proof.source import SourceSample
 from tms_reason.reason import Reason
-
-
-class Event(Data):
-    """Something that happens to a gateway."""
 
 
 class Left(Data):

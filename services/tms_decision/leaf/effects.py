@@ -1,13 +1,9 @@
 """What the leaf goals of a run want to be done, in the order of the list."""
 
-from tms_decision.data import Data
+from tms_decision.data import Effect
 from tms_decision.leaf.events import Key
 from tms_decision.owner import Owner
 from tms_reason.reason import Reason
-
-
-class Effect(Data):
-    """Something that they want to be done."""
 
 
 # fmt: off

@@ -3,14 +3,10 @@
 from collections.abc import Mapping
 from enum import Flag, auto
 
-from tms_decision.data import Data
+from tms_decision.data import Data, Event
 from tms_reason.reason import Reason
 
 Key = tuple[str, str, str, str]  # node path, machine, subtask, record
-
-
-class Event(Data):
-    """Something that happens to the leaf goals of a run."""
 
 
 class Failure(Flag):

@@ -1,11 +1,7 @@
 """What a run wants to be done, in the order of the list."""
 
-from tms_decision.data import Data
+from tms_decision.data import Effect
 from tms_reason.reason import Reason
-
-
-class Effect(Data):
-    """Something that a run wants to be done."""
 
 
 # fmt: off

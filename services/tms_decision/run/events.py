@@ -2,12 +2,8 @@
 
 from collections.abc import Sequence
 
-from tms_decision.data import Data
+from tms_decision.data import Event
 from tms_reason.reason import Reason
-
-
-class Event(Data):
-    """Something that happens to a run."""
 
 
 # fmt: off

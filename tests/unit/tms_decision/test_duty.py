@@ -1,6 +1,6 @@
 """When the host agent stops a machine in place of its gateway, and how."""
 
-from tms_decision.duty import AGAIN, ESCALATE, LEASE_MARGIN, Act, Duty, GatewayStatus
+from tms_decision.duty import AGAIN, ESCALATE, HANDED_ON, LEASE_MARGIN, Act, Duty, GatewayStatus, Press
 
 THERE = GatewayStatus(alive=True)
 SILENT = GatewayStatus(alive=False)
@@ -92,3 +92,16 @@ def test_a_stale_writer_that_discovery_drops_later_is_no_leave() -> None:
     acts(duty, 1.0, 0.2, SILENT)
     assert acts(duty, 6.0, 0.4, GatewayStatus(alive=False, left=True)) == [(0.0, Act.STOP)]
     assert duty.lost_since is not None
+
+
+def test_a_press_is_handed_on_to_a_gateway_that_does_not_show_a_latch() -> None:
+    press = Press()
+    assert not press.due(10.0, alive=True, latched=False)
+    press.since = 10.0
+    assert not press.due(10.0 + HANDED_ON - 0.01, alive=True, latched=False)  # it may have heard the button itself
+    assert not press.due(20.0, alive=False, latched=False)
+    assert press.due(21.0, alive=True, latched=False)
+    assert not press.due(21.1, alive=True, latched=False)
+    assert press.due(21.0 + HANDED_ON, alive=True, latched=False)
+    assert not press.due(30.0, alive=True, latched=True)
+    assert not press.due(40.0, alive=True, latched=False)
