@@ -132,7 +132,8 @@ bench: setup ## benchmarks with ratios to a floor of the same run (ONLY=group)
 	@sh deploy/system-packages.sh chromium
 	@$(PY) tests/bench $(if $(ONLY),--only "$(ONLY)")
 
-pictures: setup ## every page of the running demo's console as deploy/pictures/<page>.png; runs its task once more
+pictures: setup ## state machines in ARCHITECTURE.md; each page of the running demo's console (it runs its task once more)
+	@cd tests && $(abspath $(PY)) -m simulation.transitions
 	@sh deploy/system-packages.sh chromium japanese
 	@$(if $(SITE),TMS_SITE="$(SITE)") $(PY) tests/pictures.py
 

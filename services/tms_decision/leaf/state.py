@@ -15,11 +15,11 @@ RECOVERY = 15.0  # s after a loss in which processes may still discover each oth
 class GoalState(Enum):
     """How far a leaf's goal is."""
 
-    SENDING = "sending"
-    RUNNING = "running"
-    SUCCEEDED = "succeeded"
-    FAILED = "failed"  # aborted, rejected or not deliverable
-    CANCELLED = "cancelled"
+    SENDING = "waits to be sent, or to be accepted"
+    RUNNING = "is done by its subtask"
+    SUCCEEDED = "is done"
+    FAILED = "was aborted, rejected or not deliverable"
+    CANCELLED = "was halted by the tree, or by the end of the run"
 
     @property
     def final(self) -> bool:
