@@ -4,10 +4,11 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from tms_decision import reasons as r
 from tms_decision.data import Data
-from tms_decision.gateway.stops import RECEIPT_LIMIT
+from tms_decision.gateway.stops import STOP_PROVEN
 from tms_reason.reason import Reason
 
 CLOCKS = 1.0  # s by which the clocks of PCs may differ
+CLOSE_LIMIT = STOP_PROVEN + 10.0  # s for the receipts: a gateway that starts, too, waits for its run before it latches
 
 
 class LostRun(Data):
@@ -54,6 +55,6 @@ def what_was_seen(lost: LostRun, stops: Sequence[Stop]) -> tuple[Reason, list[Re
     seen: list[Reason] = [r.SchedulerWasLost()]
     seen += [r.SeenToStand(stood)] if stood else []
     seen += [r.NotSeenStanding(unseen)] if unseen else []
-    none = r.NoReceipt(RECEIPT_LIMIT)
+    none = r.NoReceipt(CLOSE_LIMIT)
     alarms = [last[name].what if name in last else r.MachineUnconfirmed(name, none) for name in unseen]
     return r.RunInterrupted(tuple(seen), lost.run_id), alarms

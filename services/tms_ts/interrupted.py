@@ -9,9 +9,8 @@ from tms_msg_rc.msg import StopReceipt
 from tms_msg_ts.srv import CancelRun, ResumePlan
 
 from tms_config.clock import monotonic
-from tms_decision.gateway.stops import RECEIPT_LIMIT
 from tms_decision.leaf.events import Key
-from tms_decision.past import Stop, all_told, stops_of, what_was_seen
+from tms_decision.past import CLOSE_LIMIT, Stop, all_told, stops_of, what_was_seen
 from tms_machine.values import to_parameters
 from tms_reason import wire
 from tms_reason.errors import TaskError
@@ -61,7 +60,7 @@ class Interrupted:
             if past.header is not None and past.over is not None:
                 self._complete(past, past.header, past.over)
         left = [past for past in left if past.over is None]
-        deadline = monotonic() + RECEIPT_LIMIT
+        deadline = monotonic() + CLOSE_LIMIT
         while not all(map(self._all_reported, left)) and monotonic() < deadline:
             if self._app.stopping.wait(RECEIPT_CHECK_PERIOD):
                 return

@@ -209,5 +209,7 @@ def test_a_restart_by_hand_is_no_loss(small: Small) -> None:
     begin, old = len(small.log()), small.pid()
     small.mesh.tms("restart", "zx200:rc")
     wait_until(lambda: small.reported("gateway_left", begin), 30, "the host agent has seen it leave")
+    small.state = None
     wait_until(lambda: small.pid() not in (0, old), 60, "the gateway is there again")
+    small.wait(lambda: small.state is not None and small.state.ready, "it works")
     assert not small.reported("gateway_lost", begin)

@@ -13,10 +13,9 @@ from simulation.relay import Relay
 from simulation.task import Task, some_task
 from simulation.world import Violation
 from tms_decision.gateway import effects as f
-from tms_decision.gateway.stops import RECEIPT_LIMIT
 from tms_decision.leaf.events import Key
 from tms_decision.owner import Owner
-from tms_decision.past import LostRun, Stop, all_told, stops_of, what_was_seen
+from tms_decision.past import CLOSE_LIMIT, LostRun, Stop, all_told, stops_of, what_was_seen
 from tms_decision.permit_link import PermitLink
 from tms_decision.reasons import DrivenByHand, MachineLatched, SeenToStand, SoftwareStop
 from tms_reason.reason import Foreign, Reason
@@ -63,7 +62,7 @@ class Scheduler(PermitProcess):
             unit.hears_receipts = self.in_life(lambda receipt, name=name: self._receipt(name, receipt))
             for old in unit.receipts[-20:]:  # the topic is latched
                 self._receipt(name, old)
-        self._close_all(self.world.now + RECEIPT_LIMIT)
+        self._close_all(self.world.now + CLOSE_LIMIT)
         settled = SETTLED if self.life == 1 else 0.0  # the gateways have just started, too
         self.later(settled + self.world.random.random(), self._begin_some)
 

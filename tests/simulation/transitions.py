@@ -23,7 +23,7 @@ from tms_decision.run.step import Phase as RunPhase
 from tms_decision.run.step import Run
 
 Arrow = tuple[str, str, str]  # machine, from, to
-SEEDS = range(250)
+SEEDS = range(80)
 PAGE = Path(__file__).parents[2] / "ARCHITECTURE.md"
 LATCH = {
     "ARMED": "goals may move the machine",

@@ -122,10 +122,9 @@ def _gone_for_good(goals: LeafGoals, goal: LeafGoal, seen: e.Seen) -> Reason | N
 
 
 def _accepted(goals: LeafGoals, goal: LeafGoal | None) -> None:
-    if goal is None or goal.state is not GoalState.SENDING:
-        return
-    goal.state = GoalState.RUNNING
-    goals.note(goal, r.GoalAccepted(goal.name))
+    if goal is not None and goal.state is GoalState.SENDING:
+        goal.state = GoalState.RUNNING
+        goals.note(goal, r.GoalAccepted(goal.name))
 
 
 def _ended(goals: LeafGoals, goal: LeafGoal | None, event: e.Ended, now: float) -> None:

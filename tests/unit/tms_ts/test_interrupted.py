@@ -12,7 +12,7 @@ from builtin_interfaces.msg import Time
 from tms_msg_rc.msg import StopReceipt
 from tms_msg_ts.srv import CancelRun
 
-from tms_decision.gateway.stops import RECEIPT_LIMIT
+from tms_decision.past import CLOSE_LIMIT
 from tms_decision.reasons import RunInterrupted
 from tms_machine.values import from_parameters
 from tms_reason import wire
@@ -122,7 +122,7 @@ def closed(records: Records, receipts: list[StopReceipt], monkeypatch: pytest.Mo
     runs = successor(records, journal)
     for one in receipts:
         runs.receipt(one)
-    monkeypatch.setattr("tms_ts.interrupted.RECEIPT_LIMIT", 0.0)
+    monkeypatch.setattr("tms_ts.interrupted.CLOSE_LIMIT", 0.0)
     runs._close_all()
     return journal
 
@@ -142,8 +142,8 @@ def test_the_history_claims_no_stop_that_nobody_saw(
         ("stop", "zx200 stood after 0.50 s, 0.00 m: no scheduler"),
         ("stop", "ic120: STOP UNCONFIRMED: silent (no scheduler)"),
         ("alarm", "ic120: STOP UNCONFIRMED: silent (no scheduler)"),
-        ("alarm", "zx120: not seen to stand: no receipt of a stop came within 13.0 s"),
-        ("alarm", "mst110cr: not seen to stand: no receipt of a stop came within 13.0 s"),
+        ("alarm", "zx120: not seen to stand: no receipt of a stop came within 20.0 s"),
+        ("alarm", "mst110cr: not seen to stand: no receipt of a stop came within 20.0 s"),
     ]
     row = journal[-1]
     assert (row.state, list(row.records)) == ("interrupted", ["zx200/here"])
@@ -152,7 +152,7 @@ def test_the_history_claims_no_stop_that_nobody_saw(
     )
     assert wire.known(row.reason).find(RunInterrupted).run == "run-1"
     assert [event.number for event in journal[:-1]] == [5, 6, 7, 8, 9, 10]
-    assert records.past()[0].closed and RECEIPT_LIMIT > 5.0  # s that the gateways take
+    assert records.past()[0].closed and CLOSE_LIMIT > 5.0  # s that the gateways take
 
 
 @pytest.mark.parametrize(("receipts", "seen"), [([0.6], True), ([-0.2], False), ([0.6, -0.2], True)])
