@@ -313,3 +313,23 @@ def test_leaves_are_numbered_and_begin_again_after_the_last_number(site: Goals) 
         _, effects = ask(goals, e.GoalAsked(1, POSE, e.Seen(), NO_ANSWER, AWAY), 0.0)
         sent += [effect.owner for effect in effects if isinstance(effect, f.Send)]
     assert sent == [Owner(7, 1), Owner(7, LEAVES), Owner(7, 1)]
+
+
+def test_a_cancel_of_a_goal_that_has_ended_changes_nothing(site: Goals) -> None:
+    site.end("SUCCEEDED")
+    assert site.happened(e.CancelAsked(1)) == []
+
+
+def test_a_goal_that_is_being_done_is_left_alone(site: Goals) -> None:
+    site.happened(e.Accepted(1))
+    assert site.look() == []
+
+
+def test_a_cancelled_goal_that_fails_is_not_sent_again(site: Goals) -> None:
+    site.happened(e.CancelAsked(1))
+    site.end("REJECTED", failure=e.Failure.NO_STORE)
+    assert site.goal.state is GoalState.FAILED and site.goals.settled()
+
+
+def test_an_event_of_no_kind_changes_nothing(site: Goals) -> None:
+    assert site.happened(e.Event()) == []

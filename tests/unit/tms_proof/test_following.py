@@ -91,3 +91,9 @@ def test_a_goal_that_asks_for_no_motion_changes_nothing() -> None:
     follower = Follower(ways(NAMES, [(60.0, (0.0, 0.5))], START), DEAD + LAG, 100.0)
     assert not follower.moved(130.0, 20.0)
     assert follower.check(130.0, START) is None
+
+
+def test_a_joint_that_is_not_told_is_not_judged() -> None:
+    made = ways(["boom", "unknown"], [(1.0, [0.5, 0.5])], {"boom": 0.0})
+    assert list(made) == ["boom"]
+    assert Follower(made, 0.1, 0.0).check(10.0, {"arm": 0.0}) is None

@@ -8,12 +8,16 @@ from hypothesis import strategies as st
 
 from tms_config.models import Border, MachineModel
 from tms_machine.facts import machine_facts
+from tms_proof.facts import MachineFacts, SourceFacts, StillFacts
 from tms_proof.reasons import (
     ClockAhead,
     JointStates,
     ManyPublishers,
     NewClock,
+    NoSource,
     Odometry,
+    Old,
+    OldOf,
     PositionsMove,
     StampRepeated,
     TwoPublishers,
@@ -23,7 +27,20 @@ from tms_proof.reasons import (
     VelocitiesMove,
 )
 from tms_proof.source import SourceSample
-from tms_proof.standstill import HEADING, JOINTS, NOTHING, ODOM, PLACE, UNKNOWN, Expected, StandStill, Travel
+from tms_proof.stamps import REMEMBERED
+from tms_proof.standstill import (
+    HEADING,
+    IMU,
+    JOINTS,
+    NOTHING,
+    ODOM,
+    PLACE,
+    TURNING,
+    UNKNOWN,
+    Expected,
+    StandStill,
+    Travel,
+)
 from tms_reason.texts import text
 
 LIMIT, PERIOD, DEAD = 0.01, 0.04, 0.6  # rad/s, s, s
@@ -455,3 +472,81 @@ def test_what_is_confirmed_stood(motion: list[tuple[int, float]], stop: int, lie
             assert lie == "stands" or all(abs(one) < LIMIT for one in window), (window, lie)
             assert i - stopped >= DEAD / PERIOD
             return
+
+
+def test_a_joint_below_its_limit_is_told() -> None:
+    reporter = Reporter(watch())
+    reporter.now += PERIOD
+    reporter.publish_now(-3.5, 0.0)
+    trouble = reporter.watch.trouble(reporter.now)
+    assert trouble is not None and "limit -3.000 rad" in text(trouble.reason, "en")
+
+
+def test_velocities_are_those_that_are_told() -> None:
+    reporter = Reporter(watch())
+    reporter.publish_now(0.1, None)
+    assert reporter.watch.velocities == {} and reporter.watch.positions == {"boom": 0.1, "arm": 0.1}
+    reporter.publish_now(0.2, 0.3, stamp=reporter.now + PERIOD)
+    assert reporter.watch.velocities == {"boom": 0.3, "arm": 0.3}
+
+
+def test_who_publishes_beside_the_driver_is_told() -> None:
+    reporter = Reporter(watch())
+    reporter.run(1.0, 0.0)
+    reporter.watch.published(JOINTS, ("driver", "stranger"))
+    trouble = reporter.watch.trouble(reporter.now)
+    assert trouble is not None and trouble.reason.find(ManyPublishers) is not None
+
+
+def test_a_source_that_has_fallen_silent_keeps_a_stop_from_being_proven() -> None:
+    reporter = Reporter(watch())
+    reporter.run(1.0, 0.0)
+    obstacle = reporter.watch.obstacle(reporter.now + 5.0)
+    assert obstacle.find(Old) is not None or obstacle.find(OldOf) is not None
+
+
+def test_velocities_that_are_told_now_and_then_are_compared_with_nothing() -> None:
+    reporter = Reporter(watch())
+    for i in range(20):
+        reporter.now += PERIOD
+        reporter.publish_now(0.0, 0.5 if i % 2 else None)
+    assert reporter.watch.trouble(reporter.now) is None
+
+
+def test_an_imu_tells_whether_the_machine_turns() -> None:
+    still, source = StillFacts(0.01, 0.02, 0.01, 0.2), SourceFacts(PERIOD, "utc", 2.0)
+    made = StandStill(MachineFacts("zx200", {}, {}, still, {IMU: source}))
+    for i in range(20):
+        made.take(IMU, SourceSample(i * PERIOD, i * PERIOD + 1e9, i, {TURNING: ()}, {TURNING: 0.0}))
+    assert not made.moving()
+    made.take(IMU, SourceSample(20 * PERIOD, 20 * PERIOD + 1e9, 20, {TURNING: ()}, {TURNING: 0.3}))
+    assert made.moving()
+
+
+def test_a_machine_that_tells_nothing_at_all_has_no_source() -> None:
+    made = StandStill(MachineFacts("zx200", {}, {}, StillFacts(0.01, 0.02, 0.01, 0.2), {}))
+    assert made.silent(1.0, 1.0) == NoSource() and made.moving()
+
+
+def test_a_delay_is_learned_anew_after_a_while() -> None:
+    """The clock of the machine drifts: after minutes, what was the shortest delay is none any more."""
+    reporter = Reporter(watch())
+    for _ in range(round(3 * REMEMBERED)):
+        reporter.now += 1.0
+        reporter.publish_now(0.0, 0.0, stamp=reporter.now * (1 - 1e-5))
+    reporter.run(1.0, 0.0)
+    assert reporter.watch.trouble(reporter.now) is None
+
+
+def test_the_way_of_the_base_counts_from_the_mark() -> None:
+    reporter = Reporter(watch(odom=True))
+    for i in range(50):
+        x = 0.02 * i
+        reporter.run(PERIOD, 0.0)
+        reporter.watch.take(ODOM, SourceSample(
+            reporter.now, reporter.now + 1e9, reporter.number, {PLACE: (x, 0.0), HEADING: (0.0,)},
+            {PLACE: 0.5, HEADING: 0.0},
+        ))  # fmt: skip
+        if i == 24:
+            reporter.watch.mark()
+    assert reporter.watch.travel().way == pytest.approx(0.5)
