@@ -53,7 +53,7 @@ def claimed(gateway: Gateway, now: float, run: int) -> None:
         return
     recovery.open = False
     if recovery.run and run != recovery.run:
-        stops.stop(gateway, now, TakenByAnother(recovery.cause), StopKind.LATCH)
+        stops.stop(gateway, now, TakenByAnother(recovery.cause), StopKind.LATCH, run=recovery.run)
         return
     gateway.latch.keep(recovery.cause, Owner(run, ANY_LEAF))
     if recovery.stop is None or recovery.stop.run != run:
@@ -78,5 +78,5 @@ def _close(gateway: Gateway, now: float) -> None:
     recovery = gateway.recovery
     known = gateway.latch.cause is not None or gateway.active is not None
     if recovery.open and recovery.stop is not None and not known:
-        stops.stop(gateway, now, NoRunTold(recovery.cause), StopKind.LATCH, expected=UNKNOWN)
+        stops.stop(gateway, now, NoRunTold(recovery.cause), StopKind.LATCH, run=recovery.run, expected=UNKNOWN)
     recovery.open = False

@@ -509,6 +509,7 @@ def test_a_goal_of_a_run_waits_for_the_end_of_a_start(left: e.Left) -> None:
 def test_a_run_that_does_not_report_itself_latches() -> None:
     rig = Rig(e.Left(None, "run-1", 7)).run(12.0)
     assert rig.gateway.latch.cause is not None and not rig.gateway.recovering
+    assert {one.receipt.run for one in rig.all(f.Tell)} == {7}  # a lost scheduler looks for the receipts of its run
 
 
 def test_a_moving_machine_without_a_run_is_stopped_and_latched() -> None:

@@ -381,6 +381,8 @@ def test_another_run_that_takes_a_machine_left_moving_latches_it() -> None:
     rig.run(0.2)
     rig.permits(RUN, None)
     assert rig.gateway.latch.cause is not None and rig.gateway.latch.cause.find(TakenByAnother) is not None
+    rig.run(9.0)
+    assert rig.receipt.run == 6  # that is the run whose motion was ended
 
 
 def test_a_start_that_is_claimed_twice_stops_once() -> None:
