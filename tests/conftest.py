@@ -279,9 +279,9 @@ def rearm(ros: "Ros", machine: str) -> bool:
     return bool(ros.call(Rearm, f"/{machine}/rearm", Rearm.Request(token=token), 30).armed)
 
 
-def wait_until(holds: Callable[[], bool], seconds: float, what: str, every: float = 0.02) -> None:
-    """Poll until something holds; fails the test with `what` when it does not."""
+def wait_until(holds: Callable[[], bool], seconds: float, what: str | Callable[[], str], every: float = 0.02) -> None:
+    """Poll until something holds; fails the test with `what` (made then, where it is a function) when it does not."""
     deadline = time.monotonic() + seconds
     while not holds():
-        assert time.monotonic() < deadline, f"not within {seconds} s: {what}"
+        assert time.monotonic() < deadline, f"not within {seconds} s: {what if isinstance(what, str) else what()}"
         time.sleep(every)

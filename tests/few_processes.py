@@ -2,7 +2,6 @@
 
 import os
 import subprocess
-import time
 import urllib.error
 import urllib.request
 from collections.abc import Callable, Iterator
@@ -13,7 +12,7 @@ import pytest
 from tms_msg_db.srv import ListTasks
 
 import programs
-from conftest import ports_of
+from conftest import ports_of, wait_until
 from tms_config.config import PROJECT, Site, load_site
 from tms_config.processes import find
 from tms_reason.errors import RosError
@@ -97,12 +96,7 @@ class Mesh:
         self.until(lambda: self.ready()[0] == 503 and "STORE_DOWN" in self.ready()[1], "/readyz 503")
 
     def until(self, there: Callable[[], bool], what: str) -> None:
-        deadline = time.monotonic() + LIMIT
-        while not there():
-            if time.monotonic() > deadline:
-                print(self.log.read_text())
-                pytest.fail(f"no {what} within {LIMIT} s")
-            time.sleep(0.02)
+        wait_until(there, LIMIT, lambda: f"{what}\n{self.log.read_text()}")
 
 
 def bare(folder: Path, domain: int, kind: type[M]) -> Iterator[M]:

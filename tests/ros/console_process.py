@@ -2,10 +2,9 @@
 
 import json
 import os
-import time
 import urllib.error
 import urllib.request
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +13,7 @@ from typing import Any
 import pytest
 
 import programs
-from conftest import ports_of
+from conftest import ports_of, wait_until
 from tms_config.config import Site, load_site
 from tms_config.processes import find
 from tms_runtime import environment
@@ -27,13 +26,6 @@ ports: {{metrics: {metrics}, console: {console}}}
 services: {{ur: {{role: cps}}}}
 machines: {{zx200: {{model: zx200}}}}
 """
-
-
-def until(holds: Callable[[], bool], what: str) -> None:
-    deadline = time.monotonic() + LIMIT
-    while not holds():
-        assert time.monotonic() < deadline, f"not within {LIMIT} s: {what}"
-        time.sleep(0.02)
 
 
 @dataclass
@@ -93,7 +85,7 @@ def running(site: Site, tmp_path: Path) -> Iterator[Console]:
     """The console's process, up; it is killed afterwards."""
     console = Console(site, spawn(site, tmp_path / "log.txt"), tmp_path / "log.txt")
     try:
-        until(console.ready, "/readyz 200")
+        wait_until(console.ready, LIMIT, "/readyz 200")
         yield console
     finally:
         console.process.kill()

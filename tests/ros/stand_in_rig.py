@@ -3,7 +3,6 @@
 import json
 import math
 import os
-import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -18,6 +17,7 @@ from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
 import programs
+from conftest import wait_until
 from tms_config.config import load_site
 from tms_ros.client import Call
 from tms_ros.goals import Outcome
@@ -73,10 +73,7 @@ class Rig:
         )
 
     def until(self, there: Callable[[], bool], what: str) -> None:
-        deadline = time.monotonic() + LIMIT
-        while not there():
-            assert time.monotonic() < deadline, f"no {what} within {LIMIT} s\n{self._log.read_text()}"
-            time.sleep(0.02)
+        wait_until(there, LIMIT, lambda: f"{what}\n{self._log.read_text()}")
 
     def send(self, action: Any, field: str, **goal: Any) -> Call:
         peer = self.ros.peer(action, f"/{self.machine}/{getattr(self.border, field)}")

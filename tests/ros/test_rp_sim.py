@@ -1,7 +1,6 @@
 """Planner, gateway and stand-in machine as real processes: motion, cancel, refusal, emergency stop."""
 
 import os
-import time
 from collections import deque
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -19,7 +18,7 @@ from tms_msg_rp.msg import TmsRpErrorCodes, TmsRpZx200PositionWithAngle
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 import programs
-from conftest import rearm
+from conftest import rearm, wait_until
 from tms_config.config import load_site
 from tms_config.reasons import AboveLimit
 from tms_decision.reasons import MachineLatched, PressedByOthers
@@ -90,12 +89,7 @@ class Rig:
             self.ros.close()
 
     def until(self, there: Callable[[], bool], what: str) -> None:
-        deadline = time.monotonic() + LIMIT
-        while not there():
-            if time.monotonic() > deadline:
-                print(self.log.read_text())
-                pytest.fail(f"no {what} within {LIMIT} s; said {self.said[-3:]}")
-            time.sleep(0.02)
+        wait_until(there, LIMIT, lambda: f"{what}; said {self.said[-3:]}\n{self.log.read_text()}")
 
     def send(self, action: Any, name: str, machine: str = MACHINE, **fields: Any) -> Call:
         peer = self.ros.peer(action, f"/{machine}/{name}")

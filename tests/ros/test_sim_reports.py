@@ -15,6 +15,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64, String
 
 import programs
+from conftest import wait_until
 from stand_in_rig import client_in
 from tms_config.config import load_site
 from tms_ros.node import Ros
@@ -53,10 +54,7 @@ class Said:
         self._swing = ros.publisher(Float64, f"/{NAME}/swing/cmd")
 
     def until(self, there: Callable[[], bool], what: str) -> None:
-        deadline = time.monotonic() + LIMIT
-        while not there():
-            assert time.monotonic() < deadline, f"no {what} within {LIMIT} s"
-            time.sleep(0.02)
+        wait_until(there, LIMIT, what)
 
     def more(self, key: str, count: int = 10) -> list[Any]:
         """Messages from now on."""

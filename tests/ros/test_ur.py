@@ -20,7 +20,8 @@ from tms_msg_ts.action import ExecuteTask
 from tms_msg_ts.msg import RunState, RunStates
 from tms_msg_ts.srv import CancelRun
 
-from console_process import LIMIT, Console, running, spawn, until
+from conftest import wait_until
+from console_process import LIMIT, Console, running, spawn
 from tms_config.config import Site
 from tms_ros.goals import Ended, Outcome
 from tms_ros.node import Ros
@@ -46,7 +47,7 @@ def test_the_certificate_is_beside_the_site_file(site: Site, tmp_path: Path) -> 
 
 
 def test_the_way_of_a_stop_is_there_before_it_is_needed(console: Console, ros: Ros) -> None:
-    until(lambda: ros.node.count_clients("/zx200/rc/stop") == 1, "the console's way to the gateway")
+    wait_until(lambda: ros.node.count_clients("/zx200/rc/stop") == 1, LIMIT, "the console's way to the gateway")
 
 
 def test_state_shows_what_is_published(console: Console, ros: Ros) -> None:
@@ -69,7 +70,7 @@ def test_state_shows_what_is_published(console: Console, ros: Ros) -> None:
         state = console.get("/api/state")
         return state["machines"][0]["state"] == "moving" and bool(state["runs"]) and len(state["hosts"]) == 2
 
-    until(received, "everything published is in the state")
+    wait_until(received, LIMIT, "everything published is in the state")
     state = console.get("/api/state")
     assert state["machines"][0]["joints"] == [{"name": "swing_joint", "position": -1.5, "velocity": 0.25}]
     assert state["scheduler"]["alive"]
@@ -78,12 +79,12 @@ def test_state_shows_what_is_published(console: Console, ros: Ros) -> None:
     assert console.get("/api/sensing") == {"age": None, "inputs": []}
     inputs = ros.publisher(InputStates, "/tms/sp/inputs", depth=1, latched=True)
     inputs.publish(InputStates(inputs=[InputState(name="pile", age=3.0, refused=2, last_refusal="z: too high")]))
-    until(lambda: console.get("/api/sensing")["inputs"], "inputs are heard")
+    wait_until(lambda: console.get("/api/sensing")["inputs"], LIMIT, "inputs are heard")
     pile = console.get("/api/sensing")["inputs"][0]
     assert (pile["refused"], pile["last_refusal"]["text"]["en"], pile["age"] >= 3.0) == (2, "z: too high", True)
     assert [host["name"] for host in state["hosts"]] == ["pc1", "pc2"]
     assert state["hosts"][0]["processes"][0]["uptime"] >= 3.0
-    until(lambda: console.get("/api/state")["machines"][0]["state"] == "silent", "silence is told")
+    wait_until(lambda: console.get("/api/state")["machines"][0]["state"] == "silent", LIMIT, "silence is told")
 
 
 def refusal(answer: tuple[int, Any]) -> tuple[int, str, str]:

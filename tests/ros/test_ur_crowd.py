@@ -14,7 +14,8 @@ import pytest
 from tms_msg_rc.msg import StopReceipt
 from tms_msg_rc.srv import StopMachine
 
-from console_process import LIMIT, Console, running, until
+from conftest import wait_until
+from console_process import LIMIT, Console, running
 from hanging import hanging, still_open
 from tms_config.config import Site, load_site
 from tms_config.processes import find
@@ -45,7 +46,7 @@ def test_a_stop_beside_a_thousand_hanging_connections(
     stops: list[str],
     source: str,
 ) -> None:
-    until(lambda: console.ask("/api/stop", {})[1][0]["confirmed"], "the gateway is there")
+    wait_until(lambda: console.ask("/api/stop", {})[1][0]["confirmed"], LIMIT, "the gateway is there")
     stops.clear()
     with hanging(console.site.file.ports.console, MANY, source):
         for _ in range(3):
@@ -54,7 +55,9 @@ def test_a_stop_beside_a_thousand_hanging_connections(
             assert time.monotonic() - begun < SOON
             assert (status, receipts[0]["confirmed"]) == (200, True)
         assert len(stops) == 3
-        until(lambda: console.ask("/api/state")[0] == 200, "others are answered as soon as slow readers are closed")
+        wait_until(
+            lambda: console.ask("/api/state")[0] == 200, LIMIT, "others are answered once slow readers are closed"
+        )
         assert psutil.Process(console.process.pid).num_fds() < 1024
     assert "Traceback" not in console.log.read_text()
     assert "out of system resource" not in console.log.read_text()
@@ -76,8 +79,8 @@ def test_what_hangs_is_closed_and_viewers_are_not(console: Console) -> None:
         threading.Thread(target=look, daemon=True).start()
         assert seen.wait(LIMIT)
         with hanging(port, MANY) as opened:
-            until(lambda: still_open(opened) <= 64, "as many as one address may have")
-            until(lambda: still_open(opened) == 0, "all time-outs")
+            wait_until(lambda: still_open(opened) <= 64, LIMIT, "as many as one address may have")
+            wait_until(lambda: still_open(opened) == 0, LIMIT, "all time-outs")
             seen.clear()
             assert seen.wait(LIMIT)
             assert not gone.is_set()
@@ -87,8 +90,8 @@ def test_what_hangs_is_closed_and_viewers_are_not(console: Console) -> None:
 
 def test_readers_of_nothing_are_closed(console: Console) -> None:
     with hanging(console.site.file.ports.console, 40):
-        until(lambda: cut(console, "slow_reader") > 0, "a slow reader is closed")
-        until(lambda: cut(console, "headers") > 0 and cut(console, "body") > 0, "so are the others")
+        wait_until(lambda: cut(console, "slow_reader") > 0, LIMIT, "a slow reader is closed")
+        wait_until(lambda: cut(console, "headers") > 0 and cut(console, "body") > 0, LIMIT, "so are the others")
 
 
 def test_handshakes_that_hang_are_closed_too(site: Site, tmp_path: Path) -> None:
@@ -108,7 +111,7 @@ def test_handshakes_that_hang_are_closed_too(site: Site, tmp_path: Path) -> None
                 assert page.status == 200
             assert time.monotonic() - begun < SOON
             assert psutil.Process(console.process.pid).num_fds() < 1024
-            until(lambda: still_open(opened) == 0, "all have been closed")
+            wait_until(lambda: still_open(opened) == 0, LIMIT, "all have been closed")
     assert "Traceback" not in console.log.read_text()
 
 

@@ -10,6 +10,7 @@ from rclpy.serialization import deserialize_message, serialize_message
 from tms_msg_db.msg import Event
 from tms_msg_db.srv import ListEvents, WriteJournal
 
+from conftest import wait_until
 from tms_reason.errors import RosError
 from tms_reason.reason import Foreign
 from tms_ur import audit
@@ -70,13 +71,6 @@ def start(ros: FakeRos, tmp_path: Path) -> Iterator[Callable[[], audit.Audit]]:
         one.close()
 
 
-def until(holds: Callable[[], bool]) -> None:
-    deadline = time.monotonic() + 10
-    while not holds():
-        assert time.monotonic() < deadline
-        time.sleep(0.005)
-
-
 def put(notes: audit.Audit, *targets: str) -> None:
     for target in targets:
         assert notes.put("mina", "192.0.2.1", "restart", target).wait(10)
@@ -85,7 +79,7 @@ def put(notes: audit.Audit, *targets: str) -> None:
 def test_notes_wait_for_the_database(ros: FakeRos, start: Callable[[], audit.Audit]) -> None:
     ros.away = 3
     put(start(), "a", "b")
-    until(lambda: len(ros.stored) == 2)
+    wait_until(lambda: len(ros.stored) == 2, 10, "notes reach the database")
     assert (ros.targets(), sorted(ros.stored)) == (["a", "b"], [1, 2])
     assert ros.verdict().intact
 
@@ -98,7 +92,7 @@ def test_what_waits_survives_a_restart(ros: FakeRos, start: Callable[[], audit.A
     assert ros.stored == {}
     ros.away = 0
     put(start(), "c")
-    until(lambda: len(ros.stored) == 3)
+    wait_until(lambda: len(ros.stored) == 3, 10, "notes reach the database")
     assert ros.targets() == ["a", "b", "c"]
 
 
@@ -107,14 +101,14 @@ def test_an_answer_that_got_lost_before_a_restart_stores_nothing_twice(
 ) -> None:
     first = start()
     put(first, "a")
-    until(lambda: first.number() == 1)
+    wait_until(lambda: first.number() == 1, 10, "notes are numbered")
     ros.forgets_to_answer = True
     put(first, "b")
-    until(lambda: len(ros.stored) == 2)
+    wait_until(lambda: len(ros.stored) == 2, 10, "notes reach the database")
     first.close()
     ros.forgets_to_answer, ros.away = False, 0
     put(start(), "c")
-    until(lambda: len(ros.stored) == 3)
+    wait_until(lambda: len(ros.stored) == 3, 10, "notes reach the database")
     assert ros.targets() == ["a", "b", "c"]
     assert ros.verdict().intact
 
@@ -125,11 +119,11 @@ def test_a_lost_file_goes_on_behind_the_database(
 ) -> None:
     first = start()
     put(first, "a", "b")
-    until(lambda: first.number() == 2)
+    wait_until(lambda: first.number() == 2, 10, "notes are numbered")
     first.close()
     damage(tmp_path / "audit.db")
     put(start(), "c")
-    until(lambda: len(ros.stored) == 3)
+    wait_until(lambda: len(ros.stored) == 3, 10, "notes reach the database")
     assert (sorted(ros.stored), ros.targets()) == ([1, 2, 3], ["a", "b", "c"])
     assert ros.verdict().intact
 
@@ -140,16 +134,16 @@ def test_a_file_from_a_backup_takes_no_entry_for_a_duplicate(
     file = tmp_path / "audit.db"
     first = start()
     put(first, "a")
-    until(lambda: first.number() == 1)
+    wait_until(lambda: first.number() == 1, 10, "notes are numbered")
     first.close()
     old = file.read_bytes()
     second = start()
     put(second, "b", "c")
-    until(lambda: second.number() == 3)
+    wait_until(lambda: second.number() == 3, 10, "notes are numbered")
     second.close()
     file.write_bytes(old)
     put(start(), "d")
-    until(lambda: len(ros.stored) == 4)
+    wait_until(lambda: len(ros.stored) == 4, 10, "notes reach the database")
     assert ros.targets() == ["a", "b", "c", "d"]
     assert ros.verdict().intact
 
@@ -158,7 +152,7 @@ def test_entries_from_before_are_the_beginning(ros: FakeRos, start: Callable[[],
     now = int(time.time()) + 631  # they were numbered by the clock, or ahead of it
     ros.stored = {number: Event(run_id="audit", number=number, kind="stop", node="old") for number in (now - 9, now)}
     put(start(), "a", "b")
-    until(lambda: len(ros.stored) == 4)
+    wait_until(lambda: len(ros.stored) == 4, 10, "notes reach the database")
     assert sorted(ros.stored)[2:] == [now + 1, now + 2]
     verdict = ros.verdict()
     assert (verdict.older, verdict.chained, verdict.first, verdict.intact) == (2, 2, now + 1, True)
@@ -167,7 +161,7 @@ def test_entries_from_before_are_the_beginning(ros: FakeRos, start: Callable[[],
 @pytest.mark.parametrize("target", ["half a character: \ud800", "a NUL\0behind it", "x" * 10**6])
 def test_any_text_can_be_sent_and_stays_as_it_is(ros: FakeRos, start: Callable[[], audit.Audit], target: str) -> None:
     put(start(), target, "b")
-    until(lambda: len(ros.stored) == 2)
+    wait_until(lambda: len(ros.stored) == 2, 10, "notes reach the database")
     assert ros.verdict().intact
     assert len(ros.targets()[0]) <= audit.LONGEST
 
@@ -182,7 +176,7 @@ def test_put_waits_neither_for_disk_nor_database(
     kept = [notes.put("mina", "192.0.2.1", "stop", f"stop {number}") for number in range(audit.MAX_NEW + 50)]
     assert not any(one.is_set() for one in kept)
     assert audit.LOST._value.get() > before
-    until(lambda: "event=audit_disk_failed" in caplog.text)
+    wait_until(lambda: "event=audit_disk_failed" in caplog.text, 10, "the failing disk is told")
 
 
 def test_strangers_are_summed_up(ros: FakeRos, start: Callable[[], audit.Audit]) -> None:
@@ -190,10 +184,10 @@ def test_strangers_are_summed_up(ros: FakeRos, start: Callable[[], audit.Audit])
     for number in range(654):
         notes.refused(f"guess {number}", "192.0.2.9", "login_refused", "LOGIN")
     notes.refused("-", "192.0.2.9", "refused", "FOREIGN_ORIGIN")
-    until(lambda: len(ros.stored) == 2)
+    wait_until(lambda: len(ros.stored) == 2, 10, "notes reach the database")
     notes.close()
     again = start()  # what was counted meanwhile is on the disk
-    until(lambda: again.number() == 3)
+    wait_until(lambda: again.number() == 3, 10, "notes are numbered")
     rows = [(event.kind, event.node, event.text, audit.of_event(event).note.times) for event in ros.stored.values()]
     assert rows == [
         ("login_refused", "LOGIN", "guess 0 from 192.0.2.9", 1),
