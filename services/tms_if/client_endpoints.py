@@ -11,6 +11,7 @@ from prometheus_client import Counter
 from tms_if import joint_cmd
 from tms_if.commands import CommandError, Registration, command, full_name
 from tms_if.framing import encode
+from tms_if.hearing import Hearing
 from tms_if.interfaces import interface, short_name
 from tms_if.names import Allowed
 from tms_if.on_executor import do
@@ -21,6 +22,7 @@ from tms_ros.packing import pack, unpack
 ROS_LIMIT = 5.0  # s for the ROS thread to make or remove something
 ANSWER_LIMIT = 30.0  # s for a service to answer, on either side
 OPEN_CALLS = 100  # calls that wait for an answer, on either side
+FOLLOW_PERIOD = 0.5  # s between looks at who publishes what a client hears
 REFUSED = 1000  # refused topics that are kept for one client
 
 LEFT_OUT = Counter("tms_if_left_out_total", "Messages on topics that a client may not publish")
@@ -61,13 +63,14 @@ class ClientEndpoints:
         self._published: dict[str, tuple[Any, Any]] = {}  # publisher, type
         self._waiting: dict[str, Registration] = {}  # until another client stops publishing the topic
         self._refused: set[str] = set()
-        self._received: dict[str, Any] = {}
+        self._received: dict[str, Hearing] = {}
         self._called: dict[str, Any] = {}  # type
         self._offered: dict[str, tuple[Any, Any]] = {}  # service, type
         self._asked: dict[int, PendingRequest] = {}
         self._numbers = itertools.count(1001)
         self._calls = 0
         self._closed = False
+        self._timer = ros.every(FOLLOW_PERIOD, self._follow)
 
     # registrations
 
@@ -106,7 +109,7 @@ class ClientEndpoints:
                 self._say(f"{wanted.topic}: {error}")
 
         name = full_name(wanted.topic)
-        self._received[wanted.topic] = self._on_ros(lambda: self._ros.subscribe_raw(kind, name, received), wanted)
+        self._received[wanted.topic] = self._on_ros(lambda: Hearing(self._ros, kind, name, received), wanted)
 
     def ros_service(self, wanted: Registration) -> None:
         self._check(self._allowed.calling, wanted)
@@ -133,7 +136,7 @@ class ClientEndpoints:
 
     def remove_subscriber(self, topic: str) -> None:
         if (gone := self._received.pop(topic, None)) is not None:
-            self._drop(lambda: self._ros.node.destroy_subscription(gone))
+            self._drop(gone.close)
 
     def remove_ros_service(self, topic: str) -> None:
         self._called.pop(topic, None)
@@ -145,6 +148,7 @@ class ClientEndpoints:
     def close(self) -> None:
         """Remove everything; callers that still wait for the client get no answer."""
         self._closed = True
+        self._drop(lambda: self._ros.node.destroy_timer(self._timer))
         for asked in list(self._asked.values()):
             asked.over.set()
         for topics, remove in (
@@ -225,6 +229,10 @@ class ClientEndpoints:
         if asked.response is None and not self._closed:
             self._say(f"the client did not answer {full_name(asked.topic)} within {ANSWER_LIMIT:.0f} s")
         return asked.response
+
+    def _follow(self) -> None:
+        for hearing in list(self._received.values()):
+            hearing.follow()
 
     def _for_client(self, kind: Any, data: bytes) -> bytes:
         return joint_cmd.convert(data, self._layout) if self._foreign(kind) else data

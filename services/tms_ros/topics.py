@@ -118,10 +118,11 @@ class Topics:
 
         return take_new
 
-    def subscribe_raw(self, message_type: type[Message], topic: str, on_message: Callable[[bytes], None]) -> Any:
-        """Call `on_message` with each serialised message, with the QoS of the present publishers."""
-        offered = [info.qos_profile for info in self._loop.node.get_publishers_info_by_topic(topic)]
-        return self._subscribed(message_type, topic, on_message, quality.as_offered(offered), raw=True)
+    def subscribe_raw(
+        self, message_type: type[Message], topic: str, on_message: Callable[[bytes], None], qos: QoSProfile
+    ) -> Any:
+        """Call `on_message` with each serialised message."""
+        return self._subscribed(message_type, topic, on_message, qos, raw=True)
 
     def lease_publisher(self, message_type: type[M], topic: str, seconds: float) -> Publisher[M]:
         """A latched publisher; DDS notifies its readers when it was not asserted for `seconds`."""

@@ -5,7 +5,6 @@ import os
 import re
 import socket
 import struct
-import time
 from array import array
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -35,6 +34,7 @@ pytestmark = [
 ]
 LIMIT = 40.0  # s for whatever must happen at all
 MACHINE = "zx200_5"  # a name of its own: other tests may have machines in the same domain
+EMG_STOP = f"/{MACHINE}/emg_stop"
 SITE = """
 name: iftest
 domain: {domain}
@@ -167,13 +167,44 @@ def test_what_unity_hears_is_the_frame_of_the_protocol(bridge: Bridge, unity: Un
     assert unity.got(topic)[0] == b"\0\1\0\0" + struct.pack("<6d", 0.5, 0, 0, 0, 0, 0)
 
 
-def test_a_simulator_that_comes_late_is_told_that_it_is_stopped(bridge: Bridge) -> None:
-    bridge.ros.publisher(Bool, f"/{MACHINE}/emg_stop", latched=True).publish(Bool(data=True))
+@pytest.fixture
+def stop(bridge: Bridge) -> Iterator[Callable[[], None]]:
+    """Press a machine's stop as a gateway that begins: its publisher is new, and says it once."""
+    made: list[Any] = []
+
+    def press() -> None:
+        made.append(bridge.ros.publisher(Bool, EMG_STOP, latched=True))
+        made[0].publish(Bool(data=True))
+
+    yield press
+    bridge.ros.node.destroy_publisher(made[0])
+    bridge.until(lambda: bridge.ros.node.count_publishers(EMG_STOP) == 0, "no gateway any more")
+
+
+def hear_stops(simulator: Unity) -> None:
+    simulator.command("__subscribe", topic=EMG_STOP[1:], message_name="std_msgs/Bool")
+
+
+def stops(simulator: Unity) -> list[bytes]:
+    return simulator.got(EMG_STOP[1:])
+
+
+def test_a_simulator_that_comes_late_is_told_that_it_is_stopped(bridge: Bridge, stop: Callable[[], None]) -> None:
+    stop()
     late = bridge.unity()
-    late.command("__subscribe", topic=f"{MACHINE}/emg_stop", message_name="std_msgs/Bool")
-    late.until(lambda: late.got(f"{MACHINE}/emg_stop"), "the latched stop")
-    assert late.got(f"{MACHINE}/emg_stop")[0] in (b"\0\1\0\0\1", b"\0\1\0\0\1\0\0\0")  # DDS pads to four bytes
+    hear_stops(late)
+    late.until(lambda: stops(late), "the latched stop")
+    assert stops(late)[0] in (b"\0\1\0\0\1", b"\0\1\0\0\1\0\0\0")  # DDS pads to four bytes
     late.close()
+
+
+def test_a_simulator_that_comes_early_is_told_that_it_is_stopped(
+    bridge: Bridge, unity: Unity, stop: Callable[[], None]
+) -> None:
+    hear_stops(unity)
+    bridge.until(lambda: bridge.ros.node.count_subscribers(EMG_STOP) > 0, "the bridge hears")
+    stop()  # the bridge does not know its publisher yet
+    unity.until(lambda: stops(unity), "the latched stop")
 
 
 def test_joint_commands_in_the_layout_of_the_simulator(bridge: Bridge, unity: Unity) -> None:
@@ -376,13 +407,13 @@ def test_a_best_effort_publisher_is_heard(bridge: Bridge, unity: Unity) -> None:
 
     qos = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
     topic = f"{MACHINE}/swing/cmd"
+    unity.command("__subscribe", topic=topic, message_name="std_msgs/Float64")
+    wait_until(lambda: bridge.ros.node.count_subscribers(f"/{topic}") > 0, LIMIT, "the bridge hears")
     publisher = bridge.ros.node.create_publisher(Float64, f"/{topic}", qos)
-    wait_until(lambda: bool(publisher.topic_name), LIMIT, "publisher")
-    deadline = time.monotonic() + LIMIT
-    while not unity.got(topic):  # whether the bridge knows the publisher yet, only its messages tell
-        assert time.monotonic() < deadline
-        unity.command("__subscribe", topic=topic, message_name="std_msgs/Float64")
-        for _ in range(5):
-            publisher.publish(Float64(data=0.5))
-            time.sleep(0.05)
+
+    def heard() -> bool:
+        publisher.publish(Float64(data=0.5))
+        return bool(unity.got(topic))
+
+    bridge.until(heard, "what is published later, and at best effort")
     assert unpack(unity.got(topic)[0], Float64).data == 0.5

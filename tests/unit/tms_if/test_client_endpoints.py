@@ -41,7 +41,12 @@ class Ros:
     def __init__(self) -> None:
         self.trouble: Exception | None = None
         self.publishers: list[Publisher] = []
-        self.node = SimpleNamespace(destroy_publisher=lambda gone: self.publishers.remove(gone))
+        self.node = SimpleNamespace(
+            destroy_publisher=lambda gone: self.publishers.remove(gone), destroy_timer=lambda gone: None
+        )
+
+    def every(self, _seconds: float, _step: Callable[[], None]) -> None:
+        """No time passes here."""
 
     async def call_async(self, *_: Any) -> Any:
         if self.trouble is not None:
