@@ -169,15 +169,15 @@ def test_what_unity_hears_is_the_frame_of_the_protocol(bridge: Bridge, unity: Un
 
 @pytest.fixture
 def stop(bridge: Bridge) -> Iterator[Callable[[], None]]:
-    """Press a machine's stop as a gateway that begins: its publisher is new, and says it once."""
-    made: list[Any] = []
+    """Press a machine's stop as a gateway that has just begun: it says it once, before it has discovered anybody."""
+    gateways: list[Ros] = []
 
     def press() -> None:
-        made.append(bridge.ros.publisher(Bool, EMG_STOP, latched=True))
-        made[0].publish(Bool(data=True))
+        gateways.append(Ros("if_gateway"))
+        gateways[0].publisher(Bool, EMG_STOP, latched=True).publish(Bool(data=True))
 
     yield press
-    bridge.ros.node.destroy_publisher(made[0])
+    gateways[0].close()
     bridge.until(lambda: bridge.ros.node.count_publishers(EMG_STOP) == 0, "no gateway any more")
 
 
@@ -203,7 +203,7 @@ def test_a_simulator_that_comes_early_is_told_that_it_is_stopped(
 ) -> None:
     hear_stops(unity)
     bridge.until(lambda: bridge.ros.node.count_subscribers(EMG_STOP) > 0, "the bridge hears")
-    stop()  # the bridge does not know its publisher yet
+    stop()
     unity.until(lambda: stops(unity), "the latched stop")
 
 
