@@ -1,6 +1,6 @@
 #!/bin/sh
 # Prints the command that installs the missing system packages; as root, installs them.
-# Arguments are groups: setup (when there is none), test, containers, chromium, japanese, debootstrap.
+# Arguments are groups: setup (when there is none), test, containers, chromium, japanese, spin, debootstrap.
 set -eu
 PATH=$PATH:${SBIN:-/usr/local/sbin:/usr/sbin:/sbin} # folders of nft and others, only in root's PATH
 missing=""
@@ -59,6 +59,7 @@ tests() {
   need openssl openssl
   need e2fsprogs mkfs.ext4
   need git git
+  need spin spin
 }
 
 containers() {
@@ -74,6 +75,7 @@ for group in "$@"; do
     test) tests ;;
     chromium) browser ;;
     japanese) letters ;;
+    spin) need spin spin; need gcc gcc ;;
     debootstrap) need debootstrap debootstrap ;;
     setup | containers) "$group" ;;
     *) echo "no group of system packages: $group" >&2; exit 2 ;;

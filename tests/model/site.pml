@@ -1,0 +1,32 @@
+/* A site: machines, gateways, relays, a scheduler, a host agent, people. Its size is given by
+   MACHINES GATEWAYS RUNS TRIES (goals a run sends a machine, at most) GOALS (that it needs) FAULTS PRESSES ARMS_MOST CANCELS LONG. */
+
+#include "words.pml"
+#include "state.pml"
+#include "machine.pml"
+#include "stops.pml"
+#include "gateway.pml"
+#include "scheduler.pml"
+#include "host.pml"
+#include "trouble.pml"
+#include "promises.pml"
+
+init {
+	byte n;
+	atomic {
+		n = 0;
+		do
+		:: n < MACHINES ->
+			note_armed[n] = 1;
+			run Machine(n); run Gateway(n); run Runs(n); run Host(n); run Trouble(n);
+			n++
+		:: else -> break
+		od;
+		do
+		:: n < GATEWAYS -> gateway[n] = DOWN; run Gateway(n); run Trouble(n); n++
+		:: else -> break
+		od;
+		n = 0;
+		run People(); run Promises()
+	}
+}
