@@ -8,6 +8,7 @@ LEASE_MARGIN = 0.09  # s more than the lease: a process frozen for 0.4 s may hav
 AGAIN = 0.5  # s between repeated commands
 ESCALATE = 1.0  # s without a gateway until emg_stop
 HANDED_ON = 1.0  # s from a press until a gateway that is not latched is told of it
+NOTED = 0.3  # s from a press until a latch that is shown is on the disk: a gateway that is killed before forgets it
 
 
 class Act(Enum):
@@ -34,8 +35,7 @@ class Duty:
         self.lost_since: float | None = None
         self._watched = False  # a gateway works, or did a moment ago
         self._silent_since: float | None = None
-        self._reported = self._emergency = False
-        self._again = 0.0
+        self._reported, self._emergency, self._again = False, False, 0.0
 
     def check(self, now: float, status: GatewayStatus) -> Act | None:
         """The command that is due now."""
@@ -75,13 +75,13 @@ class Duty:
 class Press:
     """A press of the stop button, until the gateway shows that it is latched: it may have been lost when that came."""
 
-    def __init__(self) -> None:
-        self.since: float | None = None
+    since: float | None = None
 
     def due(self, now: float, alive: bool, latched: bool) -> bool:
         """Whether to stop the machine by a request to its gateway, which is back; `latched`: as it shows."""
-        self.since = None if latched else self.since
-        if self.since is None or not alive or now - self.since < HANDED_ON:
+        if self.since is not None and latched and now - self.since >= NOTED:
+            self.since = None
+        if self.since is None or not alive or latched or now - self.since < HANDED_ON:
             return False
         self.since = now
         return True

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from simulation.plan import machines, plan
+from simulation.plan import Planned, Press, Trapped, machines, plan
 from simulation.schedule import Schedule, shorter
 from tms_decision.gateway import motion, stops
 from tms_proof.standstill import NOTHING, StandStill
@@ -59,3 +59,9 @@ def test_what_was_found_and_mended_is_found_again_without_the_mending(monkeypatc
     assert Schedule(53).run().violation == ""
     monkeypatch.setattr(stops, "_expected", without)
     assert "truly moving" in Schedule(53).run().violation
+
+
+def test_a_press_is_not_forgotten_when_its_gateway_is_killed_before_the_disk_has_the_latch() -> None:
+    """Found by `make model`: the latch was shown, so the host agent did not hand the press on."""
+    pressed = [Planned(2.0, 0, Press(0.1)), Planned(2.001, 0, Trapped("Publish", "rc", 0.0, 0.8))]
+    assert [Schedule(seed, pressed).run().violation for seed in range(8)] == [""] * 8

@@ -1,6 +1,6 @@
 """When the host agent stops a machine in place of its gateway, and how."""
 
-from tms_decision.duty import AGAIN, ESCALATE, HANDED_ON, LEASE_MARGIN, Act, Duty, GatewayStatus, Press
+from tms_decision.duty import AGAIN, ESCALATE, HANDED_ON, LEASE_MARGIN, NOTED, Act, Duty, GatewayStatus, Press
 
 THERE = GatewayStatus(alive=True)
 SILENT = GatewayStatus(alive=False)
@@ -105,3 +105,13 @@ def test_a_press_is_handed_on_to_a_gateway_that_does_not_show_a_latch() -> None:
     assert press.due(21.0 + HANDED_ON, alive=True, latched=False)
     assert not press.due(30.0, alive=True, latched=True)
     assert not press.due(40.0, alive=True, latched=False)
+
+
+def test_a_latch_that_is_shown_at_once_may_not_be_on_the_disk_yet() -> None:
+    press = Press()
+    press.since = 10.0
+    assert not press.due(10.0 + NOTED / 2, alive=True, latched=True)
+    assert press.due(10.0 + HANDED_ON, alive=True, latched=False)  # that gateway was killed, its successor is armed
+    press.since = 20.0
+    assert not press.due(20.0 + NOTED, alive=True, latched=True)
+    assert not press.due(20.0 + HANDED_ON, alive=True, latched=False)  # re-armed since
