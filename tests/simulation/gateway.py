@@ -50,15 +50,24 @@ class GatewayProcess(PermitProcess):
         self.calls: dict[int, tuple[float, Callable[[f.Effect], None]]] = {}
         self.latched = False  # a person has pressed stop, and nobody has armed since: no goal may leave
         self.noted_at = 0.0  # when the disk last knew of every latch
+        self.cancelled: dict[int, float] = {}  # goals whose client has cancelled them, and when
+        self._kept: set[float] = set()  # receipts that the disk has answered, by their stamps
         self._settles = float("-inf")  # when the last command of a stop left
 
     def start(self) -> None:
         self.begin()
-        self.asked, self.calls = {}, {}
+        self.asked, self.calls, self.cancelled, self._kept = {}, {}, {}, set()
         unit, now = self.unit, self.world.now
         names = [name for name in unit.permits if name not in ("rc", "ts")]
         machine = unit.machine
-        cores = start(facts(unit.name, machine.plant.at_once), self.name, names, self.notes.left(), now, self._wall())
+        cores = start(
+            facts(unit.name, machine.plant.at_once, machine.plant.passive),
+            self.name,
+            names,
+            self.notes.left(),
+            now,
+            self._wall(),
+        )
         self.core, effects = cores
         self._do(effects)
         if not self.alive:
@@ -147,7 +156,12 @@ class GatewayProcess(PermitProcess):
 
     def cancel(self, order: Order) -> None:
         """A client cancels its goal."""
-        self.handle(lambda: self._happens(e.GoalCancelled(order.at_server)) if order.at_server in self.asked else None)
+        self.handle(lambda: self._cancel(order.at_server))
+
+    def _cancel(self, number: int) -> None:
+        if number in self.asked:
+            self.cancelled.setdefault(number, self.world.now)
+            self._happens(e.GoalCancelled(number))
 
     def call(self, event: Callable[[int], e.Event], answer: Callable[[f.Effect], None]) -> None:
         """A service call arrives."""
@@ -165,6 +179,9 @@ class GatewayProcess(PermitProcess):
         life = self.life
         if any(isinstance(effect, f.Rearmed) and effect.armed for effect in effects):
             self.latched = self.notes.latch_told = False
+            self.unit.missed = float("inf")
+            if not self.notes.armed:
+                raise Violation(f"{self.name} is armed, and the disk does not say so")
         for effect in effects:
             self._one(effect)
             self.unit.trap.sprung(type(effect).__name__)
@@ -202,6 +219,8 @@ class GatewayProcess(PermitProcess):
             case f.Publish():
                 self._publish()
             case f.Tell(receipt):
+                if receipt.stamp not in self._kept:
+                    raise Violation(f"a receipt is told before the disk has answered: {receipt.cause!r}")
                 self.world.tell(self.name, f"tells: confirmed={receipt.confirmed} {receipt.cause!r} {receipt.detail!r}")
                 self.unit.told(receipt)
             case f.Log(event, values):
@@ -220,9 +239,12 @@ class GatewayProcess(PermitProcess):
     def _send(self, number: int) -> None:
         if self.latched:
             raise Violation(f"goal {number} leaves after a stop, before a re-arm")
-        if not self.notes.armed or not self.notes.holder:
-            raise Violation(f"goal {number} leaves, and the note does not say whose it is")
         order = self.asked[number]
+        run = order.owner.run if order.owner is not None else 0
+        if not self.notes.armed or not self.notes.holder or self.notes.run != run:
+            raise Violation(f"goal {number} leaves, and the note does not say whose it is")
+        if self.unit.driven:
+            raise Violation(f"goal {number} leaves, and a person drives {self.unit.name}")
         self.world.tell(self.name, f"sends goal {number}")
         self.unit.leaves(order.owner)
         self.unit.check_owner(self.unit, order.owner)
@@ -236,6 +258,8 @@ class GatewayProcess(PermitProcess):
 
     def _end(self, end: f.End) -> None:
         order = self.asked.pop(end.number)
+        if end.outcome != "ABORTED" and self.unit.machine.plant.goal == end.number:
+            raise Violation(f"goal {end.number} is told to have ended as {end.outcome}, and moves {self.unit.name}")
         self.world.tell(self.name, f"ends goal {end.number}: {end.outcome} {end.why!r}")
         order.end(end.outcome, end.why)
 
@@ -249,4 +273,10 @@ class GatewayProcess(PermitProcess):
         if isinstance(effect, f.KeepReceipt) and effect.receipt.confirmed and plant.moves() and not began:
             raise Violation(f"confirmed and truly moving: {effect.receipt.cause!r}")
         life = self.life
-        self.notes.keep(effect, lambda: self.alive and self.life == life, self.happens)
+
+        def answer(event: e.Event) -> None:
+            if isinstance(effect, f.KeepReceipt):
+                self._kept.add(effect.receipt.stamp)
+            self.happens(event)
+
+        self.notes.keep(effect, lambda: self.alive and self.life == life, answer)

@@ -1,8 +1,10 @@
 """What must hold at every moment, against the true motion of the machines."""
 
+from simulation.plant import Fault
 from simulation.site import Site
 from simulation.unit import Unit
 from simulation.world import Process, Violation
+from tms_decision.duty import HANDED_ON
 from tms_decision.run.step import TICK_LIMIT
 
 STOP_IN_TIME = 1.3  # s from a loss until the machine must have been told to stop
@@ -19,6 +21,9 @@ def look(site: Site) -> None:
         _stood_in(site, unit)
         _answered(unit, now)
         _noted(unit, now)
+        _cancelled(unit, now)
+        _left(unit, now)
+        _pressed(site, unit, now)
     for run in site.scheduler.runs.values():
         run.in_time(now)
 
@@ -59,6 +64,35 @@ def _noted(unit: Unit, now: float) -> None:
             gateway.noted_at = now
         elif now - max(gateway.noted_at, notes.stalls, gateway.up_at) > NOTED:
             raise Violation(f"{gateway.name} is latched, and the disk does not know it")
+
+
+def _cancelled(unit: Unit, now: float) -> None:
+    """A goal that its client has cancelled does not move the machine for long."""
+    gateway, machine = unit.gateway, unit.machine
+    for number, since in gateway.cancelled.items():
+        late = now - max(since, gateway.up_at) > STOP_IN_TIME and gateway.works()
+        if late and machine.plant.goal == number and machine.ordered_to_stop < since:
+            raise Violation(f"goal {number} is cancelled for {now - since:.1f} s, and {unit.name} moves on")
+
+
+def _left(unit: Unit, now: float) -> None:
+    """A latched machine that somebody moves is stopped again, if it tells the truth."""
+    (begun, ends), core, plant = unit.levers, unit.gateway.core, unit.machine.plant
+    unit.latched_since = unit.latched_since if core is not None and core.latch.cause is not None else now
+    if not begun + STOP_IN_TIME < now < ends or unit.latched_since > begun or plant.speed == 0.0 or unit.driven:
+        return
+    if plant.fault == Fault() and unit.machine.ordered_to_stop < begun and unit.gateway.worked_for() > now - begun:
+        raise Violation(f"{unit.name} is latched, moves, and nobody stops it")
+
+
+def _pressed(site: Site, unit: Unit, now: float) -> None:
+    """A press that the gateway was away for is handed on to its successor."""
+    gateway = unit.gateway
+    if gateway.core is not None and gateway.core.latch.cause is not None:
+        unit.missed = float("inf")
+    since = max(unit.missed, gateway.up_at)
+    if now - since > HANDED_ON + FOUND and min(gateway.worked_for(), site.host.worked_for() - now + unit.missed) > 0.0:
+        raise Violation(f"the stop button was pressed without {gateway.name}, which does not know it")
 
 
 def _answered(unit: Unit, now: float) -> None:

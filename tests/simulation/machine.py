@@ -12,8 +12,8 @@ SPEED = 0.3  # rad/s of every goal
 class Machine:
     """Its server takes one goal at a time."""
 
-    def __init__(self, world: World, name: str, at_once: bool) -> None:
-        self.world, self.name, self.plant = world, name, Plant(at_once)
+    def __init__(self, world: World, name: str, at_once: bool, passive: bool = False) -> None:
+        self.world, self.name, self.plant = world, name, Plant(at_once, passive)
         self.hears: dict[str, Callable[[SourceSample], None]] = {}  # who receives what it tells
         self.presses: dict[str, Callable[[], None]] = {}  # who sees that its emergency stop is pressed
         self.clock = 1e9  # s, of its stamps, less virtual time
@@ -23,12 +23,15 @@ class Machine:
 
     def _beat(self) -> None:
         now = self.world.now
-        sample = self.plant.tell(now, self.clock)
+        self._tell(self.plant.tell(now, self.clock))
+        self._tell(self.plant.other(now, self.clock))
+        self._ends(self.plant.done(now), "SUCCEEDED")
+        self.world.after(PERIOD, self._beat)
+
+    def _tell(self, sample: SourceSample | None) -> None:
         if sample is not None:
             for name, hear in list(self.hears.items()):
                 self.world.send(f"{name} telemetry", lambda hear=hear: hear(sample))  # type: ignore[misc]
-        self._ends(self.plant.done(now), "SUCCEEDED")
-        self.world.after(PERIOD, self._beat)
 
     def zero(self) -> None:
         self._halt(False, "ABORTED")

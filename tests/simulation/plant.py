@@ -6,15 +6,17 @@ from tms_proof.facts import JointFacts, MachineFacts, ResponseFacts, SourceFacts
 from tms_proof.source import SourceSample
 from tms_proof.standstill import JOINTS
 
-JOINT = "boom"
+JOINT, PASSIVE = "boom", "bucket"
+PLACE = 0.5  # rad, where the passive joint is
 DEAD_TIME, LAG, TOP = 0.3, 0.1, 0.5  # s, s, rad/s
 PERIOD = 0.1  # s between messages
 
 
-def facts(name: str = "zx200", at_once: bool = False) -> MachineFacts:
-    """What the decisions know of it."""
+def facts(name: str = "zx200", at_once: bool = False, passive: bool = False) -> MachineFacts:
+    """What the decisions know of it; `passive`: it has a second joint, which no command moves."""
+    joints = {one: JointFacts(TOP, -9.0, 9.0) for one in ((JOINT, PASSIVE) if passive else (JOINT,))}
     return MachineFacts(
-        name, {JOINT: JointFacts(TOP, -9.0, 9.0)}, {JOINT: ResponseFacts(DEAD_TIME, LAG, 0.1)},
+        name, joints, {JOINT: ResponseFacts(DEAD_TIME, LAG, 0.1)},
         StillFacts(0.01, 0.02, 0.01, 0.2), {JOINTS: SourceFacts(PERIOD, "utc", 2.0)}, stops_at_once=at_once,
     )  # fmt: skip
 
@@ -31,6 +33,9 @@ class Fault:
     zero_velocity: bool = False  # tells velocity 0
     replay: bool = False  # tells its last two seconds again and again
     silent_server: bool = False  # does not answer
+    mute_joint: bool = False  # tells nothing of the joint that moves
+    stuck: bool = False  # tells its last message again and again, with its stamp
+    second_publisher: bool = False  # another one says that it stands
 
 
 @dataclass
@@ -38,6 +43,7 @@ class Plant:
     """Speeds are commands on their way: each takes effect a dead time later, those of a stop at once if it can."""
 
     at_once: bool = False
+    passive: bool = False  # it has a second joint, which does not move
     fault: Fault = field(default_factory=Fault)
     angle: float = 0.0  # rad
     speed: float = 0.0  # rad/s
@@ -48,6 +54,7 @@ class Plant:
     emergency: bool = False
     turned: float = float("-inf")  # when a person last began to move it
     number: int = 0  # of its messages
+    others: int = 0  # messages of a second publisher
     told: list[tuple[float, float, float]] = field(default_factory=list)  # stamp, angle, speed
 
     def advance(self, now: float) -> None:
@@ -108,7 +115,22 @@ class Plant:
             _, angle, speed = self.told[self.number % 20]
         else:
             self.told = [*self.told, (stamp, angle, speed)][-20:]
+        if self.fault.stuck:
+            self.told = self.told[:1]
+            stamp, angle, speed = self.told[0]
         if self.fault.frozen_stamp and self.told:
             stamp = self.told[0][0]
         self.number += 1
-        return SourceSample(now, stamp + clock, self.number, {JOINT: (angle,)}, {JOINT: speed})
+        places, speeds = ({PASSIVE: (PLACE,)}, {PASSIVE: 0.0}) if self.passive else ({}, {})
+        if not self.fault.mute_joint:
+            places, speeds = {JOINT: (angle,), **places}, {JOINT: speed, **speeds}
+        return SourceSample(now, stamp + clock, self.number, places, speeds)
+
+    def other(self, now: float, clock: float) -> SourceSample | None:
+        """The message of a second publisher, which says that it stands where it is."""
+        if not self.fault.second_publisher:
+            return None
+        self.advance(now)
+        self.others += 1
+        places, speeds = ({PASSIVE: (PLACE,)}, {PASSIVE: 0.0}) if self.passive else ({}, {})
+        return SourceSample(now, now + clock, self.others, {JOINT: (self.angle,), **places}, {JOINT: 0.0, **speeds})

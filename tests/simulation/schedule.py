@@ -34,7 +34,9 @@ class Schedule:
     def __init__(self, seed: int, plan: Sequence[Planned] | None = None) -> None:
         self.seed, self.plan = seed, p.plan(seed) if plan is None else plan
         self.world = World(seed)
-        self.site = Site(self.world, p.machines(seed), at_once=seed % 2 == 0, planner=seed % 3 == 0)
+        self.site = Site(
+            self.world, p.machines(seed), at_once=seed % 2 == 0, planner=seed % 3 == 0, passive=seed % 5 == 0
+        )
         self._units = list(self.site.units.values())
         site = self.site
         self._doers: dict[type[Any], Callable[[Unit, Any], None]] = {
@@ -47,6 +49,7 @@ class Schedule:
             p.Trapped: self._trapped,
             p.Hang: lambda _unit, act: site.scheduler.handle(lambda: site.scheduler.hang(act.seconds)),
             p.Stranger: lambda unit, _: site.stranger(unit),
+            p.Levers: lambda unit, act: site.levers(unit, act.seconds),
             p.ForeignGoal: lambda unit, act: site.foreign(unit, act.seconds),
         }  # fmt: skip
 

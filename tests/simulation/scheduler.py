@@ -73,15 +73,32 @@ class Scheduler(PermitProcess):
     # runs
 
     def _begin_some(self) -> None:
-        """Begin a run on some of the machines that are free."""
+        """Begin a run on some of the machines that are free; after a crash, an operator resumes one if that goes."""
         random = self.world.random
         held = {name for run in self.runs.values() for name in run.task.machines()}
         free = [name for name in self.site.units if name not in held and self.held_back(name) is None]
+        if self.life > 1 and self.life % 2 == 0:
+            free = self._resumed(free)
         if free:
             self._last += 1
             machines = random.sample(free, random.randint(1, len(free)))
             self._begin(f"run-{self.life}-{self._last}", some_task(random, machines))
         self.later(PAUSE * (1.0 + random.random()), self._begin_some)
+
+    def _resumed(self, free: list[str]) -> list[str]:
+        """Resume an interrupted run whose machines are all free; returns those that are left."""
+        for run_id, lines in list(self.disk.checkpoints.items()):
+            past = InterruptedRun(lines)
+            if (
+                past.header is not None
+                and past.closed
+                and run_id not in self.runs
+                and {*past.header.machines} <= {*free}
+            ):
+                self.world.tell("operator", f"resumes {run_id} at once")
+                self._begin(run_id, past.header.values["task"], past)
+                return [name for name in free if name not in past.header.machines]
+        return free
 
     def _begin(self, run_id: str, task: Task, past: InterruptedRun | None = None) -> None:
         self.runs[run_id] = run = Execution(self, run_id, task, past)

@@ -20,10 +20,12 @@ LEVERS = 0.2  # rad/s of a person at the levers
 class Site:
     """All of it; one to three machines."""
 
-    def __init__(self, world: World, machines: int, *, at_once: bool, planner: bool) -> None:
+    def __init__(self, world: World, machines: int, *, at_once: bool, planner: bool, passive: bool = False) -> None:
         self.world, self._numbers, self.trap = world, count(100), Trap()
         names = [f"m{i}" for i in range(machines)]
-        self.units = {name: Unit(world, name, self._numbers, at_once=at_once, planner=planner) for name in names}
+        self.units = {
+            name: Unit(world, name, self._numbers, at_once=at_once, planner=planner, passive=passive) for name in names
+        }
         self.host = HostAgent(list(self.units.values()))
         for unit in self.units.values():
             unit.host = self.host
@@ -69,6 +71,7 @@ class Site:
         for process in (self.host, self.scheduler) if on else ():
             self.world.send(f"{process.name} button", lambda process=process: process.handle(process.pressed))  # type: ignore[misc]
         for unit in self.units.values():
+            unit.missed = self.world.now if on and not unit.gateway.works() else unit.missed
             for gateway in unit.gateways():
                 self.world.send(f"{gateway.name} button", lambda gateway=gateway: arrives(gateway))  # type: ignore[misc]
 
@@ -95,10 +98,21 @@ class Site:
             if isinstance(answer, f.Taken) and answer.wrong is None:
                 world.tell("operator", f"moves {unit.name} by its levers")
                 unit.machine.plant.turn(LEVERS, world.now, seconds / 2)
-                world.after(seconds, lambda: self._call(
-                    gateway, lambda number: e.TakeAsked(number, "Sato", True), lambda _: None))  # fmt: skip
+                unit.driven = True
+                world.after(seconds, give_back)
+
+        def give_back() -> None:
+            unit.driven = False
+            self._call(gateway, lambda number: e.TakeAsked(number, "Sato", True), lambda _: None)
 
         self._call(gateway, lambda number: e.TakeAsked(number, "Sato", False), taken)
+
+    def levers(self, unit: Unit, seconds: float) -> None:
+        """Somebody moves a machine by its levers without a word to anybody."""
+        now = self.world.now
+        self.world.tell("somebody", f"moves {unit.name} by its levers, untold")
+        unit.machine.plant.turn(LEVERS, now, seconds)
+        unit.levers = now, now + seconds
 
     def _call(
         self, gateway: GatewayProcess, event: Callable[[int], e.Event], answer: Callable[[f.Effect], None]

@@ -46,12 +46,14 @@ def _nobody_checks(unit: Unit, owner: Owner | None) -> None:
 class Unit:
     """One machine."""
 
-    def __init__(self, world: World, name: str, numbers: count[int], *, at_once: bool, planner: bool) -> None:
+    def __init__(
+        self, world: World, name: str, numbers: count[int], *, at_once: bool, planner: bool, passive: bool = False
+    ) -> None:
         self.world, self.name, self._numbers = world, name, numbers
         self.wall = 1e9  # s since 1970 of its PC, less virtual time
         names = ["ts", "rc", SUBTASK, *([PLANNER] if planner else [])]
         self.permits = {one: Topic(world, f"{name}/{one}") for one in names}
-        self.machine = Machine(world, name, at_once)
+        self.machine = Machine(world, name, at_once, passive)
         self.gateway = GatewayProcess(self, f"{name}:rc", Notes(world))
         self.second: GatewayProcess | None = None
         self.relays = {SUBTASK: Relay(self, SUBTASK, PLANNER if planner else "rc")}
@@ -62,6 +64,10 @@ class Unit:
         self.sent_at = float("-inf")  # when the last goal left for the machine ...
         self.owner: Owner | None = None  # ... and whose it was
         self.goals = 0  # sent
+        self.driven = False  # a person has taken it
+        self.missed = float("inf")  # when a press came that its gateway has not heard
+        self.latched_since = 0.0
+        self.levers = 0.0, 0.0  # when somebody moves it by its levers without a word, from and to
         self.receipts: list[f.Receipt] = []
         self.trap = Trap()
         self.check_owner = _nobody_checks
