@@ -25,7 +25,7 @@ TMS := $(VENV)/bin/tms $(if $(SITE),--site $(SITE))
 # A sourced ROS installation would mix its libraries into the venv's.
 unexport PYTHONPATH LD_LIBRARY_PATH AMENT_PREFIX_PATH CMAKE_PREFIX_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE
 .DEFAULT_GOAL := help
-.PHONY: help setup interfaces locks demo test test-fast up down status logs restart lint conformance bench pictures soak drill simulate model nightly test-docker system containers clean
+.PHONY: help setup interfaces locks demo test test-fast up down status logs restart lint conformance bench pictures soak drill simulate model mutants nightly test-docker system containers clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -126,6 +126,9 @@ simulate: setup ## a site in virtual time goes wrong thousands of times; invaria
 model: setup ## stop, permit, fence and latch in all their states (ONLY=check; DEFECTS=1: each planted defect must be found)
 	@sh deploy/system-packages.sh spin
 	@cd tests && $(abspath $(PY)) -m model.run $(if $(DEFECTS),--defects) $(if $(ONLY),--only "$(ONLY)")
+
+mutants: setup ## defects planted in the decisions one at a time; the simulation must find each (SLICE=20 ONLY=name SCHEDULES=5000 TURN=3 LIST=1)
+	@cd tests && $(abspath $(PY)) -m mutants.run $(if $(ONLY),--only $(ONLY)) $(if $(SLICE),--slice $(SLICE)) $(if $(TURN),--turn $(TURN)) $(if $(SCHEDULES),--schedules $(SCHEDULES)) $(if $(LEDGER),--ledger $(LEDGER)) $(if $(filter-out auto,$(WORKERS)),--workers $(WORKERS)) $(if $(LIST),--list)
 
 nightly: setup ## what takes hours: properties with 400 examples, 30 power cuts while a machine moves (as root), the drill with four rounds
 	$(PY) -m pytest -q -n $(WORKERS) --hypothesis-profile=thorough tests/unit
