@@ -6,12 +6,10 @@ from tms_decision.gateway.state import Gateway
 
 
 def keep(gateway: Gateway, armed: bool = False) -> int:
-    """Write the present state; returns the number of the note that says so, 0 if the disk has it already.
-
-    `armed`: as it will be when the machine is armed.
-    """
-    notes = gateway.notes
-    state = (None if armed else gateway.latch.cause, notes.holder, notes.run)
+    """Write the state, `armed`: after a re-arm; returns the number of its note, 0 if the disk has it already."""
+    notes, latch = gateway.notes, gateway.latch
+    arms = armed or any(one.note and one.closings == latch.closings for one in gateway.rearms)  # it waits for its note
+    state = (None if arms else latch.cause, notes.holder, notes.run)
     if state == notes.asked:
         return notes.number if notes.number > notes.kept else 0
     notes.asked = state

@@ -415,6 +415,22 @@ def test_a_stop_while_the_note_of_a_re_arm_is_written_keeps_the_machine_latched(
     assert rig.all(f.KeepState)[-1].latched == SoftwareStop()
 
 
+def test_a_stop_of_a_run_that_ends_does_not_undo_the_note_of_a_re_arm() -> None:
+    rig = ready()
+    rig.happens(e.Signal(True))
+    rig.happens(e.Signal(False))
+    rig.run(2.0)
+    rig.happens(e.RearmAsked(1, "", "t0ken"))
+    rig.disk_answers = False
+    rig.happens(e.RearmAsked(2, "t0ken", ""))
+    note = rig.all(f.KeepState)[-1]
+    rig.happens(e.StopAsked(3, Foreign("the end of a run"), True))
+    rig.run(1.0)
+    assert rig.all(f.KeepReceipt)[-1].receipt.confirmed
+    rig.happens(e.NoteKept(note.number))
+    assert rig.all(f.Rearmed)[-1].armed and rig.all(f.KeepState)[-1] == note and note.latched is None
+
+
 @pytest.mark.parametrize("token", ["", "wrong"])
 def test_an_armed_machine_needs_no_re_arm(token: str) -> None:
     rig = ready()
