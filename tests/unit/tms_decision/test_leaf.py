@@ -129,6 +129,16 @@ def test_a_process_that_ends_again_is_a_further_loss_however_soon(site: Goals) -
     assert site.goal.reason is not None and site.goal.reason.find(ProcessEnded) is not None
 
 
+def test_a_process_that_nobody_knew_when_the_goal_was_sent_is_known_later(site: Goals) -> None:
+    site.seen = replace(site.seen, pid=None)
+    site.ask((*PAST[:3], "there"))
+    goal = site.goals.open[-1]
+    step(site.goals, e.Looked({goal.asked.number: replace(site.seen, pid=5)}), site.now)
+    assert goal.losses == 0
+    step(site.goals, e.Looked({goal.asked.number: replace(site.seen, pid=6)}), site.now)
+    assert goal.losses == 1
+
+
 def test_the_server_of_a_lost_process_is_left_alone_until_there_is_another(site: Goals) -> None:
     site.seen = replace(site.seen, pid=2)
     assert f.Lose(1, dead=True) in site.look()
