@@ -49,13 +49,11 @@ class Execution:
         self.done_before = {key for key, succeeded in past.ended if succeeded} if past is not None else set()
         self.events = past.last_event if past is not None else 0
         self._numbers = 0
-        self._orders: dict[int, tuple[Unit, Order, int, le.Key]] = {}  # by sending; with the subtask's life
+        self.orders: dict[int, tuple[Unit, Order, int, le.Key]] = {}  # by sending; with the subtask's life
         self.hangs = 0.0  # until then
         self._dead: dict[str, int] = {}  # machine -> life of a relay that is known to be gone
         self._tree = Tree(task, self._ask, self._cancel)
         self.units = [scheduler.site.units[name] for name in task.machines()]
-
-    # its life
 
     def begin(self) -> None:
         """Write its facts to the disk; then hold the permits and run."""
@@ -247,10 +245,10 @@ class Execution:
             case lf.Send(key, call, owner):
                 self._send(key, call, owner)
             case lf.Cancel(call):
-                unit, order, _, _ = self._orders[call]
+                unit, order, _, _ = self.orders[call]
                 self.world.send(f"{unit.name} leaf cancels", lambda: unit.relays[SUBTASK].cancel(order))
             case lf.Lose(call, dead):
-                unit, _, life, _ = self._orders.pop(call)
+                unit, _, life, _ = self.orders.pop(call)
                 self._dead[unit.name] = life if dead else self._dead.get(unit.name, 0)
             case lf.StopMachine(machine):
                 unit = self.scheduler.site.units[machine]
@@ -276,19 +274,20 @@ class Execution:
             scheduler.in_life(lambda: self._leaf(le.Accepted(call))),
             scheduler.in_life(lambda outcome, why: self._ended(call, outcome, why)),
         )  # fmt: skip
-        self._orders[call] = unit, order, unit.relays[SUBTASK].life, key
+        self.orders[call] = unit, order, unit.relays[SUBTASK].life, key
         self.world.tell("tms:ts", f"{self.run_id} sends {key[0]} to {unit.name}")
         self.world.send(order.topic, lambda: unit.relays[SUBTASK].ask(order))
 
     def _finished(self, key: le.Key) -> None:
         """A leaf goal has succeeded: when what is written now is on the disk, its end is."""
         found = self.scheduler.finished.setdefault(self.run_id, set())
+        self.scheduler.succeeded.add((self.run_id, key))
         self.scheduler.later(0.0, lambda: self.scheduler.disk.after(lambda: found.add(key)))
 
     def _ended(self, call: int, outcome: str, why: Reason | None) -> None:
-        if outcome == "SUCCEEDED" and call in self._orders:
-            self._finished(self._orders[call][3])
-        self._orders.pop(call, None)
+        if outcome == "SUCCEEDED" and call in self.orders:
+            self._finished(self.orders[call][3])
+        self.orders.pop(call, None)
         reason, failure = why or Foreign("no reason"), le.NO_LOSS
         if reason == UNREACHED or reason.find(NoPermit) is not None:
             failure |= le.Failure.UNREACHED

@@ -49,6 +49,7 @@ class GatewayProcess(PermitProcess):
         self.asked: dict[int, Order] = {}
         self.calls: dict[int, tuple[float, Callable[[f.Effect], None]]] = {}
         self.latched = False  # a person has pressed stop, and nobody has armed since: no goal may leave
+        self.pressed_at = float("-inf")  # when it last heard the button
         self.noted_at = 0.0  # when the disk last knew of every latch
         self.cancelled: dict[int, float] = {}  # goals whose client has cancelled them, and when
         self._kept: set[float] = set()  # receipts that the disk has answered, by their stamps
@@ -261,6 +262,8 @@ class GatewayProcess(PermitProcess):
         if end.outcome != "ABORTED" and self.unit.machine.plant.goal == end.number:
             raise Violation(f"goal {end.number} is told to have ended as {end.outcome}, and moves {self.unit.name}")
         self.world.tell(self.name, f"ends goal {end.number}: {end.outcome} {end.why!r}")
+        if end.outcome == "SUCCEEDED" and end.number not in self.unit.machine.succeeded:
+            raise Violation(f"goal {end.number} is told to have succeeded, and did not")
         order.end(end.outcome, end.why)
 
     def _answer(self, request: int, effect: f.Effect) -> None:
@@ -272,6 +275,13 @@ class GatewayProcess(PermitProcess):
         began = self.world.now - plant.turned < UNSEEN  # a person, just now
         if isinstance(effect, f.KeepReceipt) and effect.receipt.confirmed and plant.moves() and not began:
             raise Violation(f"confirmed and truly moving: {effect.receipt.cause!r}")
+        if (
+            isinstance(effect, f.KeepReceipt)
+            and not effect.receipt.confirmed
+            and self.core is not None
+            and self.core.latch.cause is None
+        ):
+            raise Violation(f"{self.name} is not latched after a stop that is not confirmed: {effect.receipt.cause!r}")
         life = self.life
 
         def answer(event: e.Event) -> None:

@@ -1,14 +1,17 @@
 """What must hold at every moment, against the true motion of the machines."""
 
+from simulation.execution import Execution
 from simulation.plant import Fault
 from simulation.site import Site
-from simulation.unit import Unit
+from simulation.unit import SUBTASK, Unit
 from simulation.world import Process, Violation
 from tms_decision.duty import HANDED_ON
-from tms_decision.run.step import TICK_LIMIT
+from tms_decision.run.step import TICK_LIMIT, Phase
 
 STOP_IN_TIME = 1.3  # s from a loss until the machine must have been told to stop
 FOUND = 3.0  # s for processes to find each other, on a busy PC
+NOTICED = 3.0  # s until a machine that lies must have been told to stop
+GIVEN_UP = 6.0  # s until a run must know that a process is gone
 NOTED = 0.5  # s for a latch to be noted
 ANSWERED = 12.0  # s in which every call is answered
 
@@ -23,9 +26,11 @@ def look(site: Site) -> None:
         _noted(unit, now)
         _cancelled(unit, now)
         _left(unit, now)
+        _believed(unit, now)
         _pressed(site, unit, now)
     for run in site.scheduler.runs.values():
         run.in_time(now)
+        _abandoned(site, run, now)
 
 
 def _in_time(site: Site, unit: Unit) -> None:
@@ -83,6 +88,27 @@ def _left(unit: Unit, now: float) -> None:
         return
     if plant.fault == Fault() and unit.machine.ordered_to_stop < begun and unit.gateway.worked_for() > now - begun:
         raise Violation(f"{unit.name} is latched, moves, and nobody stops it")
+
+
+def _believed(unit: Unit, now: float) -> None:
+    """A machine that falls silent, or tells what cannot be, does not move on for long."""
+    fault, plant, gateway = unit.machine.plant.fault, unit.machine.plant, unit.gateway
+    lies = fault.mute or fault.stuck or fault.second_publisher or fault.zero_velocity or (
+        fault.mute_joint and plant.passive)  # fmt: skip
+    since = max(unit.lies_since, unit.sent_at)
+    if not lies or plant.goal is None or plant.speed == 0.0 or min(now - since, gateway.worked_for()) < NOTICED:
+        return
+    if unit.machine.ordered_to_stop < since:
+        raise Violation(f"{unit.name} is {fault}, and moves on")
+
+
+def _abandoned(site: Site, run: Execution, now: float) -> None:
+    """A run does not wait for the answer of a process that is gone."""
+    for unit, _, life, key in run.orders.values() if run.core.phase is Phase.RUNNING else ():
+        relay = unit.relays[SUBTASK]
+        waits = min(relay.worked_for(), site.host.worked_for(), site.scheduler.worked_for(), now - run.hangs)
+        if relay.life != life and waits > GIVEN_UP and relay.lost_at > FOUND:  # before, nobody knows which it was
+            raise Violation(f"{run.run_id} waits for {key}, whose process is gone for {waits:.1f} s")
 
 
 def _pressed(site: Site, unit: Unit, now: float) -> None:

@@ -18,6 +18,7 @@ class Machine:
         self.presses: dict[str, Callable[[], None]] = {}  # who sees that its emergency stop is pressed
         self.clock = 1e9  # s, of its stamps, less virtual time
         self.ordered_to_stop = 0.0  # when it last received an order to stop
+        self.succeeded: set[int] = set()  # goals that it has done to their end
         self._open: dict[int, Callable[[str], None]] = {}
         world.after(PERIOD, self._beat)
 
@@ -25,7 +26,9 @@ class Machine:
         now = self.world.now
         self._tell(self.plant.tell(now, self.clock))
         self._tell(self.plant.other(now, self.clock))
-        self._ends(self.plant.done(now), "SUCCEEDED")
+        done = self.plant.done(now)
+        self.succeeded.update([done] if done is not None else [])
+        self._ends(done, "SUCCEEDED")
         self.world.after(PERIOD, self._beat)
 
     def _tell(self, sample: SourceSample | None) -> None:

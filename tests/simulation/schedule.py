@@ -35,7 +35,12 @@ class Schedule:
         self.seed, self.plan = seed, p.plan(seed) if plan is None else plan
         self.world = World(seed)
         self.site = Site(
-            self.world, p.machines(seed), at_once=seed % 2 == 0, planner=seed % 3 == 0, passive=seed % 5 == 0
+            self.world,
+            p.machines(seed),
+            at_once=seed % 2 == 0,
+            planner=seed % 3 == 0,
+            passive=seed % 5 == 0,
+            slow=seed % 4 == 1,
         )
         self._units = list(self.site.units.values())
         site = self.site

@@ -18,6 +18,7 @@ from tms_decision.owner import Owner
 from tms_decision.past import CLOSE_LIMIT, LostRun, Stop, all_told, stops_of, what_was_seen
 from tms_decision.permit_link import PermitLink
 from tms_decision.reasons import DrivenByHand, MachineLatched, SeenToStand, SoftwareStop
+from tms_decision.run.step import Phase
 from tms_reason.reason import Foreign, Reason
 from tms_ts.interrupted_run import InterruptedRun
 
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from simulation.unit import Unit
 
 LATE = 1.3  # s after the end or the loss of a run in which its last goal may leave
+FOUND = 3.0  # s for processes to find each other, on a busy PC
 SETTLED = 1.5  # s
 PAUSE = 0.5  # s between runs, at most twice as much
 
@@ -44,6 +46,7 @@ class Scheduler(PermitProcess):
         self._last = 0
         self._ended: dict[int, float] = {}  # when runs have ended, by fencing number
         self.finished: dict[str, set[Key]] = {}  # leaf goals that have succeeded, and whose end must be on the disk
+        self.succeeded: set[tuple[str, Key]] = set()  # run and leaf goal, as soon as that is known
         self.hung_at = float("inf")  # when its runs last began to hang
 
     def start(self) -> None:
@@ -101,6 +104,9 @@ class Scheduler(PermitProcess):
         return free
 
     def _begin(self, run_id: str, task: Task, past: InterruptedRun | None = None) -> None:
+        for key, succeeded in past.ended if past is not None else ():
+            if succeeded and (run_id, key) not in self.succeeded:
+                raise Violation(f"{run_id} is resumed without {key}, which has not succeeded")
         self.runs[run_id] = run = Execution(self, run_id, task, past)
         run.begin()
 
@@ -186,11 +192,21 @@ class Scheduler(PermitProcess):
 
     def check_owner(self, unit: Unit, owner: Owner | None) -> None:
         """A goal of a run leaves for a machine: that run must hold the machine, or have held it a moment ago."""
-        if owner is None or self.lost_for() > 0 or self.worked_for() < LATE:
+        if self.lost_for() > 0 or self.worked_for() < LATE:
             return
+        if owner is None:
+            return self._check_foreign(unit)
         holds = any(run.number == owner.run and unit in run.units and run.core.held for run in self.runs.values())
         if not holds and self.world.now - self._ended.get(owner.run, float("-inf")) > LATE:
             raise Violation(f"a goal of {owner} leaves for {unit.name}, and that run does not hold it")
+
+    def _check_foreign(self, unit: Unit) -> None:
+        """A foreign goal leaves for a machine: no run holds that, as far as its gateway must know by now."""
+        now = self.world.now
+        for run in self.runs.values() if unit.gateway.worked_for() > FOUND and unit.second is None else ():
+            ticks = run.core.phase is Phase.RUNNING and now - max(run.core.since, run.hangs) > LATE
+            if ticks and unit in run.units and self.worked_for() > FOUND:
+                raise Violation(f"a foreign goal leaves for {unit.name}, which {run.run_id} holds")
 
     def hang(self, seconds: float) -> None:
         """The threads of its runs hang, and the process does not."""

@@ -10,7 +10,7 @@ from simulation.order import Order
 from simulation.plant import Fault
 from simulation.scheduler import Scheduler
 from simulation.unit import PLANNER, SUBTASK, Trap, Unit
-from simulation.world import Process, World
+from simulation.world import Process, Violation, World
 from tms_decision.gateway import effects as f
 from tms_decision.gateway import events as e
 
@@ -20,8 +20,10 @@ LEVERS = 0.2  # rad/s of a person at the levers
 class Site:
     """All of it; one to three machines."""
 
-    def __init__(self, world: World, machines: int, *, at_once: bool, planner: bool, passive: bool = False) -> None:
-        self.world, self._numbers, self.trap = world, count(100), Trap()
+    def __init__(
+        self, world: World, machines: int, *, at_once: bool, planner: bool, passive: bool = False, slow: bool = False
+    ) -> None:
+        self.world, self._numbers, self.trap, self._slow = world, count(100), Trap(), slow
         names = [f"m{i}" for i in range(machines)]
         self.units = {
             name: Unit(world, name, self._numbers, at_once=at_once, planner=planner, passive=passive) for name in names
@@ -65,7 +67,7 @@ class Site:
 
         def arrives(gateway: GatewayProcess) -> None:
             if gateway.works() and on:
-                gateway.latched = True
+                gateway.latched, gateway.pressed_at = True, self.world.now
             gateway.happens(e.Signal(on))
 
         for process in (self.host, self.scheduler) if on else ():
@@ -86,7 +88,18 @@ class Site:
 
         def answered(answer: f.Effect) -> None:
             if isinstance(answer, f.Rearmed) and answer.token:
-                self._call(gateway, lambda number: e.RearmAsked(number, answer.token, ""), lambda _: None)
+                given = self.world.now
+                if self._slow:
+                    self.world.after(0.3 + 2.0 * self.world.random.random(), lambda: confirm(answer.token, given))
+                else:
+                    confirm(answer.token, given)
+
+        def confirm(token: str, given: float) -> None:
+            self._call(gateway, lambda number: e.RearmAsked(number, token, ""), lambda answer: armed(answer, given))
+
+        def armed(answer: f.Effect, given: float) -> None:
+            if isinstance(answer, f.Rearmed) and answer.wrong is None and gateway.pressed_at > given:
+                raise Violation(f"{gateway.name} is armed, and was stopped after its token was given out")
 
         self._call(gateway, lambda number: e.RearmAsked(number, "", token), answered)
 
@@ -148,6 +161,7 @@ class Site:
     def fault(self, unit: Unit, fault: Fault) -> None:
         """A machine becomes unkind, or kind again."""
         self.world.tell(unit.name, f"is now {fault}")
+        unit.lies_since = self.world.now
         unit.machine.plant.fault = fault
 
 
