@@ -10,6 +10,16 @@ from tms_decision.gateway import events as e
 from tms_decision.reasons import NoNote
 from tms_reason.reason import Reason
 
+
+@dataclass(frozen=True)
+class Entry:
+    """One event of a run, as its history has it."""
+
+    kind: str
+    node: str
+    what: Reason
+
+
 FULL = "No space left on device"
 GROUP = 0.03  # s that lines wait for others
 
@@ -65,7 +75,7 @@ class RunDisk:
 
     world: World
     checkpoints: dict[str, list[dict[str, Any]]] = field(default_factory=dict)
-    journal: dict[tuple[str, int], str] = field(default_factory=dict)  # what the history has
+    journal: dict[tuple[str, int], Entry] = field(default_factory=dict)  # what the history has
     stalls: float = 0.0  # until then
     _waiting: list[Callable[[], None]] = field(default_factory=list)
     _last: list[Callable[[], None]] = field(default_factory=list)  # after those: the journal, and what follows
@@ -76,13 +86,13 @@ class RunDisk:
         stamped = {**line, "t": 1e9 + self.world.now}
         self._put(self._waiting, lambda: self.checkpoints.setdefault(run, []).append(stamped), urgent)
 
-    def tell(self, run: str, number: int, text: str) -> None:
+    def tell(self, run: str, number: int, entry: Entry) -> None:
         """Add an entry to the journal, which has each number once."""
 
         def write() -> None:
-            before = self.journal.setdefault((run, number), text)
-            if before != text:
-                raise Violation(f"event {number} of {run} is told twice: {before}, {text}")
+            before = self.journal.setdefault((run, number), entry)
+            if before != entry:
+                raise Violation(f"event {number} of {run} is told twice: {before}, {entry}")
 
         self._put(self._last, write)
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from simulation.disk import Entry
 from simulation.order import Order
 from simulation.relay import UNREACHED
 from simulation.task import Leaf, Task, Tree, beside
-from simulation.unit import SUBTASK, Unit
+from simulation.unit import PLANNER, SUBTASK, Unit
 from simulation.world import Violation
 from tms_decision.gateway import effects as g
 from tms_decision.gateway import events as ge
@@ -24,6 +25,9 @@ from tms_decision.run import effects as rf
 from tms_decision.run import events as re
 from tms_decision.run.step import TICK_LIMIT, Phase, Run, step
 from tms_reason.reason import Foreign, Reason
+from tms_reason.wire import to_line
+from tms_ts.reasons import ProcessState
+from tms_ts.run_states import entered
 
 if TYPE_CHECKING:
     from simulation.scheduler import Scheduler
@@ -60,7 +64,7 @@ class Execution:
         self.scheduler.disk.line(self.run_id, {"run": self._header()})
         self._enter("preparing")
         self.scheduler.written(lambda: self._step(re.Prepared()))
-        self.scheduler.later(STORED, lambda: self._refuse(Foreign("the disk is too slow")))
+        self.scheduler.later(STORED, lambda: self.refuse(Foreign("the disk is too slow")))
 
     def _header(self) -> dict[str, Any]:
         return {
@@ -68,7 +72,8 @@ class Execution:
             "machines": self.task.machines(), "started": (0, 0), "values": {"task": self.task},
         }  # fmt: skip
 
-    def _refuse(self, why: Reason) -> None:
+    def refuse(self, why: Reason) -> None:
+        """End it if no machine may move yet."""
         if self.core.phase is Phase.PREPARING and not self.core.held:
             self._step(re.Refused(why))
 
@@ -125,17 +130,17 @@ class Execution:
             case rf.Drop():
                 for unit in self.units:
                     self.scheduler.permits[unit.name].hold(NOBODY)
-            case rf.Enter(state, _, ended):
-                self._enter(state, ended)
+            case rf.Enter(state, why, ended):
+                self._enter(state, why, ended)
             case rf.Halt():
                 self._tree.halt()
                 self._step(re.Halted(not self.goals.settled()))
             case rf.StopMachines():
                 self._stop_all()
             case rf.Alarm(what):
-                self._event(f"alarm {what!r}")
-            case rf.KeepEnd(outcome):
-                disk.line(self.run_id, {"over": outcome, "reason": ""})
+                self._event("alarm", "", what)
+            case rf.KeepEnd(outcome, why):
+                disk.line(self.run_id, {"over": outcome, "reason": to_line(why)})
             case rf.KeepInterrupted():
                 disk.line(self.run_id, {"interrupted": True})
             case rf.Forget():
@@ -149,18 +154,18 @@ class Execution:
         back = [one for unit in self.units if (one := self.scheduler.held_back(unit.name)) is not None]
         self._step(re.Held(back[0] if back else None))
 
-    def _enter(self, state: str, ended: bool = False) -> None:
-        self._event(f"run {state}")
+    def _enter(self, state: str, why: Reason | None = None, ended: bool = False) -> None:
+        self._event("run", "", entered(state, why))
         self.world.tell("tms:ts", f"{self.run_id} is {state}")
         if state == "running":
             self.scheduler.later(0.0, self._tick)
         if ended:
             self.scheduler.over(self, state)
 
-    def _event(self, text: str) -> None:
+    def _event(self, kind: str, node: str, what: Reason) -> None:
         self.events += 1
         self.scheduler.disk.line(self.run_id, {"n": self.events})
-        self.scheduler.disk.tell(self.run_id, self.events, text)
+        self.scheduler.disk.tell(self.run_id, self.events, Entry(kind, node, what))
 
     # stops
 
@@ -225,8 +230,9 @@ class Execution:
         unit, scheduler = self.scheduler.site.units[key[1]], self.scheduler
         ready = scheduler.finds(unit.relays[SUBTASK], self._dead.get(unit.name, 0))
         return le.Seen(
-            ready, unit.pids.get(SUBTASK), machine=scheduler.obstacle(unit.name), latch=scheduler.latch(unit.name)
-        )
+            ready, unit.pids.get(SUBTASK), _trouble(unit, PLANNER), _trouble(unit, SUBTASK),
+            machine=scheduler.obstacle(unit.name), latch=scheduler.latch(unit.name),
+        )  # fmt: skip
 
     def _leaf(self, event: le.Event) -> None:
         self._do_leaf(leaf_step(self.goals, event, self.world.now))
@@ -254,7 +260,7 @@ class Execution:
                 unit = self.scheduler.site.units[machine]
                 self._stop(unit, lambda _, machine=machine: self._leaf(le.MachineStopped(machine)))
             case lf.Note(kind, node, what):
-                self._event(f"{kind} {node} {what!r}")
+                self._event(kind, node, what)
             case lf.KeepSent(key):
                 disk.line(self.run_id, {"sent": key}, urgent=True)
             case lf.KeepDone(key, succeeded):
@@ -294,6 +300,11 @@ class Execution:
         if reason.find(ProcessLost) is not None:
             failure |= le.Failure.LOST
         self._leaf(le.Ended(call, outcome, reason, failure))
+
+
+def _trouble(unit: Unit, name: str) -> Reason | None:
+    """What is wrong with a process, as far as the host agent has told."""
+    return ProcessState(f"{unit.name}:{name}", "STARTING") if unit.pids.get(name) == 0 else None
 
 
 def _end_of_run(number: int) -> ge.Event:

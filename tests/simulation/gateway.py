@@ -34,6 +34,7 @@ class State:
     """What a gateway publishes of its machine."""
 
     latch: Reason | None
+    hold: Reason | None
     by_hand: Reason | None
     ready: bool
     busy: bool  # it moves, or has a goal or a run
@@ -235,7 +236,7 @@ class GatewayProcess(PermitProcess):
             raise Violation(f"{self.name} was latched, nobody has armed it, and it is not latched any more")
         self.notes.latch_told = core.latch.cause is not None and not self.notes.armed
         busy = core.watch.moving() or core.active is not None or bool(core.holder(now))
-        self.unit.published(State(core.latch.cause, core.by_hand, ready, busy))
+        self.unit.published(State(core.latch.cause, core.latch.hold, core.by_hand, ready, busy))
 
     def _send(self, number: int) -> None:
         if self.latched:

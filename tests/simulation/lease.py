@@ -35,8 +35,8 @@ class Topic:
 
     def _found(self, name: str) -> None:
         for writer in self.writers:
-            if writer.process.works() or writer.said is not None:
-                self.tell(name, *(writer.said or (NOBODY, "")))
+            if writer.works() and writer.said is not None:
+                self.tell(name, *writer.said)
         self.report(name)
 
     def tell(self, name: str, goal: bytes, holder: str) -> None:
@@ -99,19 +99,23 @@ class Writer:
             self.topic.writers.remove(self)
             self._report()
 
-    def _works(self) -> bool:
-        return self.process.works() and self.process.life == self.life and self.goal != NOBODY and self.alive()
+    def works(self) -> bool:
+        """Whether its process is there and works."""
+        return self.process.works() and self.process.life == self.life
+
+    def _asserts(self) -> bool:
+        return self.works() and self.goal != NOBODY and self.alive()
 
     def _lapses(self) -> None:
         world = self.topic.world
         world.after(LEASE - world.random.random() * 0.1, self._lapsed)  # asserted up to 0.1 s before
 
     def _lapsed(self) -> None:
-        if not self._works() and self in self.topic.writers:
+        if not self._asserts() and self in self.topic.writers:
             self._is(Asserted.LAPSED)
 
     def _back(self) -> None:
-        if self._works():
+        if self._asserts():
             self._is(Asserted.ALIVE)
 
     def _is(self, asserted: Asserted) -> None:

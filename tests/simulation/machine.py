@@ -19,6 +19,7 @@ class Machine:
         self.clock = 1e9  # s, of its stamps, less virtual time
         self.ordered_to_stop = 0.0  # when it last received an order to stop
         self.succeeded: set[int] = set()  # goals that it has done to their end
+        self.watched: Callable[[int, str], None] = lambda goal, word: None  # `accepted`, or how it has ended
         self._open: dict[int, Callable[[str], None]] = {}
         world.after(PERIOD, self._beat)
 
@@ -62,9 +63,11 @@ class Machine:
             return
         self._open[goal] = answer
         self.world.tell(self.name, f"accepts goal {goal} for {seconds:.1f} s")
+        self.watched(goal, "accepted")
         answer("accepted")
 
     def _ends(self, goal: int | None, outcome: str) -> None:
         if goal is not None and goal in self._open:
             self.world.tell(self.name, f"goal {goal} ends: {outcome}")
+            self.watched(goal, outcome)
             self._open.pop(goal)(outcome)

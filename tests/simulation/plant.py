@@ -29,7 +29,7 @@ class Fault:
     ignore_cancel: bool = False
     ignore_emergency: bool = False
     mute: bool = False  # tells nothing
-    frozen_stamp: bool = False
+    frozen_stamp: bool = False  # tells the same again and again
     zero_velocity: bool = False  # tells velocity 0
     replay: bool = False  # tells its last two seconds again and again
     silent_server: bool = False  # does not answer
@@ -56,6 +56,7 @@ class Plant:
     number: int = 0  # of its messages
     others: int = 0  # messages of a second publisher
     told: list[tuple[float, float, float]] = field(default_factory=list)  # stamp, angle, speed
+    frozen: tuple[float, float, float] | None = None  # what it repeats
 
     def advance(self, now: float) -> None:
         """Let time pass."""
@@ -93,7 +94,9 @@ class Plant:
             return None
         wait = 0.0 if by_emergency and self.at_once else DEAD_TIME
         effect = now + wait + self.fault.coast
-        self.coming = [one for one in self.coming if one[0] < effect] + [(effect, 0.0)]
+        self.coming = [one for one in self.coming if one[0] < effect]
+        if (self.coming[-1][1] if self.coming else self.speed) != 0.0:  # else it will stand anyway
+            self.coming.append((effect, 0.0))
         ended, self.goal = self.goal, None
         self.advance(now)
         return ended
@@ -115,11 +118,11 @@ class Plant:
             _, angle, speed = self.told[self.number % 20]
         else:
             self.told = [*self.told, (stamp, angle, speed)][-20:]
+        self.frozen = (self.frozen or (stamp, angle, speed)) if self.fault.frozen_stamp else None
+        stamp, angle, speed = self.frozen or (stamp, angle, speed)
         if self.fault.stuck:
             self.told = self.told[:1]
             stamp, angle, speed = self.told[0]
-        if self.fault.frozen_stamp and self.told:
-            stamp = self.told[0][0]
         self.number += 1
         places, speeds = ({PASSIVE: (PLACE,)}, {PASSIVE: 0.0}) if self.passive else ({}, {})
         if not self.fault.mute_joint:

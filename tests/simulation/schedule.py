@@ -36,7 +36,7 @@ class Schedule:
         self.world = World(seed)
         self.site = Site(
             self.world,
-            p.machines(seed),
+            [f"m{number}" for number in range(p.machines(seed))],
             at_once=seed % 2 == 0,
             planner=seed % 3 == 0,
             passive=seed % 5 == 0,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from simulation.disk import RunDisk
+from simulation.disk import Entry, RunDisk
 from simulation.execution import Execution
 from simulation.gateway import State
 from simulation.lease import FORGET, PermitProcess
@@ -19,8 +19,10 @@ from tms_decision.past import CLOSE_LIMIT, LostRun, Stop, all_told, stops_of, wh
 from tms_decision.permit_link import PermitLink
 from tms_decision.reasons import DrivenByHand, MachineLatched, SeenToStand, SoftwareStop
 from tms_decision.run.step import Phase
+from tms_reason import wire
 from tms_reason.reason import Foreign, Reason
 from tms_ts.interrupted_run import InterruptedRun
+from tms_ts.run_states import entered
 
 if TYPE_CHECKING:
     from simulation.site import Site
@@ -62,12 +64,12 @@ class Scheduler(PermitProcess):
                 self.in_life(lambda alive, stale, link=link: link.reported(alive, stale, False, self.world.now)),
             )
             unit.hear_state("ts", self.in_life(lambda state, name=name: self._state(name, state)))
-            unit.hears_receipts = self.in_life(lambda receipt, name=name: self._receipt(name, receipt))
+            unit.hears_receipts["ts"] = self.in_life(lambda receipt, name=name: self._receipt(name, receipt))
             for old in unit.receipts[-20:]:  # the topic is latched
                 self._receipt(name, old)
         self._close_all(self.world.now + CLOSE_LIMIT)
         settled = SETTLED if self.life == 1 else 0.0  # the gateways have just started, too
-        self.later(settled + self.world.random.random(), self._begin_some)
+        self.later(settled + self.world.random.random(), self.begin_some)
 
     def kill(self) -> None:
         super().kill()
@@ -75,7 +77,7 @@ class Scheduler(PermitProcess):
 
     # runs
 
-    def _begin_some(self) -> None:
+    def begin_some(self) -> None:
         """Begin a run on some of the machines that are free; after a crash, an operator resumes one if that goes."""
         random = self.world.random
         held = {name for run in self.runs.values() for name in run.task.machines()}
@@ -85,8 +87,8 @@ class Scheduler(PermitProcess):
         if free:
             self._last += 1
             machines = random.sample(free, random.randint(1, len(free)))
-            self._begin(f"run-{self.life}-{self._last}", some_task(random, machines))
-        self.later(PAUSE * (1.0 + random.random()), self._begin_some)
+            self.begin_run(f"run-{self.life}-{self._last}", some_task(random, machines))
+        self.later(PAUSE * (1.0 + random.random()), self.begin_some)
 
     def _resumed(self, free: list[str]) -> list[str]:
         """Resume an interrupted run whose machines are all free; returns those that are left."""
@@ -99,11 +101,12 @@ class Scheduler(PermitProcess):
                 and {*past.header.machines} <= {*free}
             ):
                 self.world.tell("operator", f"resumes {run_id} at once")
-                self._begin(run_id, past.header.values["task"], past)
+                self.begin_run(run_id, past.header.values["task"], past)
                 return [name for name in free if name not in past.header.machines]
         return free
 
-    def _begin(self, run_id: str, task: Task, past: InterruptedRun | None = None) -> None:
+    def begin_run(self, run_id: str, task: Task, past: InterruptedRun | None = None) -> None:
+        """Begin a run, or go on with one that was interrupted."""
         for key, succeeded in past.ended if past is not None else ():
             if succeeded and (run_id, key) not in self.succeeded:
                 raise Violation(f"{run_id} is resumed without {key}, which has not succeeded")
@@ -119,7 +122,7 @@ class Scheduler(PermitProcess):
             if header is None or not past.closed or run_id in self.runs or held & set(header.machines):
                 continue
             self.world.tell("operator", f"resumes {run_id}")
-            self._begin(run_id, header.values["task"], past)
+            self.begin_run(run_id, header.values["task"], past)
             return
 
     def cancel(self) -> None:
@@ -158,7 +161,8 @@ class Scheduler(PermitProcess):
     def _complete(self, run_id: str, past: InterruptedRun) -> None:
         """Report the end of a run that had ended before: that report may be lost, or comes twice."""
         assert past.over is not None
-        self.disk.tell(run_id, past.over.event, f"run {past.over.outcome}")
+        why = wire.of(past.over.reason)
+        self.disk.tell(run_id, past.over.event, Entry("run", "", entered(past.over.outcome, why)))
         self.disk.forget(run_id)
 
     def _close_open(self, left: list[str], deadline: float) -> None:
@@ -173,12 +177,14 @@ class Scheduler(PermitProcess):
             if not all_told(lost, stops) and self.world.now < deadline:
                 waits = True
                 continue
-            reason, _ = what_was_seen(lost, stops)
+            reason, unseen = what_was_seen(lost, stops)
             self._check_claim(lost, reason)
             self.world.tell("tms:ts", f"{run_id} is interrupted: {reason!r}")
-            number = past.last_event + 1
-            self.disk.line(run_id, {"n": number})
-            self.disk.tell(run_id, number, f"interrupted {reason!r}")
+            alarms = [Entry("alarm", "", alarm) for alarm in unseen]
+            ended = Entry("run", "", entered("interrupted", reason))
+            for number, entry in enumerate([*alarms, ended], past.last_event + 1):
+                self.disk.line(run_id, {"n": number})
+                self.disk.tell(run_id, number, entry)
             self.disk.line(run_id, {"interrupted": True})
         if waits:
             self.later(0.2, lambda: self._close_open(left, deadline))

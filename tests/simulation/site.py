@@ -1,12 +1,12 @@
 """A site in virtual time: machines with their processes, a scheduler, a host agent, people, foreign clients."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from itertools import count
 
 from simulation.disk import Notes
 from simulation.gateway import GatewayProcess
 from simulation.host import HostAgent
-from simulation.order import Order
+from simulation.order import Ended, Order
 from simulation.plant import Fault
 from simulation.scheduler import Scheduler
 from simulation.unit import PLANNER, SUBTASK, Trap, Unit
@@ -18,20 +18,21 @@ LEVERS = 0.2  # rad/s of a person at the levers
 
 
 class Site:
-    """All of it; one to three machines."""
+    """All of it."""
 
     def __init__(
-        self, world: World, machines: int, *, at_once: bool, planner: bool, passive: bool = False, slow: bool = False
-    ) -> None:
+        self, world: World, names: Iterable[str], *, at_once: bool, planner: bool, passive: bool = False,
+        slow: bool = False, scheduler: type[Scheduler] = Scheduler,
+    ) -> None:  # fmt: skip
+        """`names`: of its machines."""
         self.world, self._numbers, self.trap, self._slow = world, count(100), Trap(), slow
-        names = [f"m{i}" for i in range(machines)]
         self.units = {
             name: Unit(world, name, self._numbers, at_once=at_once, planner=planner, passive=passive) for name in names
         }
         self.host = HostAgent(list(self.units.values()))
         for unit in self.units.values():
             unit.host = self.host
-        self.scheduler = Scheduler(self)
+        self.scheduler = scheduler(self)
         for unit in self.units.values():
             unit.check_owner = self.scheduler.check_owner
 
@@ -81,27 +82,33 @@ class Site:
         """An operator looks at every machine, and arms those that stand."""
         self.world.tell("operator", "re-arms")
         for unit in self.units.values():
-            self._rearm(unit)
+            self.arm(unit)
 
-    def _rearm(self, unit: Unit) -> None:
+    def arm(self, unit: Unit, told: Callable[[f.Rearmed], None] = lambda answer: None) -> None:
+        """Both steps of a re-arm; `told` gets the answer to the last one."""
         gateway, token = unit.gateway, f"token{self.number()}"
 
         def answered(answer: f.Effect) -> None:
-            if isinstance(answer, f.Rearmed) and answer.token:
+            assert isinstance(answer, f.Rearmed)
+            if answer.token:
                 given = self.world.now
                 if self._slow:
                     self.world.after(0.3 + 2.0 * self.world.random.random(), lambda: confirm(answer.token, given))
                 else:
                     confirm(answer.token, given)
+            else:
+                told(answer)
 
         def confirm(token: str, given: float) -> None:
-            self._call(gateway, lambda number: e.RearmAsked(number, token, ""), lambda answer: armed(answer, given))
+            self.call(gateway, lambda number: e.RearmAsked(number, token, ""), lambda answer: armed(answer, given))
 
         def armed(answer: f.Effect, given: float) -> None:
-            if isinstance(answer, f.Rearmed) and answer.wrong is None and gateway.pressed_at > given:
+            assert isinstance(answer, f.Rearmed)
+            if answer.wrong is None and gateway.pressed_at > given:
                 raise Violation(f"{gateway.name} is armed, and was stopped after its token was given out")
+            told(answer)
 
-        self._call(gateway, lambda number: e.RearmAsked(number, "", token), answered)
+        self.call(gateway, lambda number: e.RearmAsked(number, "", token), answered)
 
     def take(self, unit: Unit, seconds: float) -> None:
         """A person takes a machine, moves it, and gives it back."""
@@ -116,9 +123,9 @@ class Site:
 
         def give_back() -> None:
             unit.driven = False
-            self._call(gateway, lambda number: e.TakeAsked(number, "Sato", True), lambda _: None)
+            self.call(gateway, lambda number: e.TakeAsked(number, "Sato", True), lambda _: None)
 
-        self._call(gateway, lambda number: e.TakeAsked(number, "Sato", False), taken)
+        self.call(gateway, lambda number: e.TakeAsked(number, "Sato", False), taken)
 
     def levers(self, unit: Unit, seconds: float) -> None:
         """Somebody moves a machine by its levers without a word to anybody."""
@@ -127,9 +134,10 @@ class Site:
         unit.machine.plant.turn(LEVERS, now, seconds)
         unit.levers = now, now + seconds
 
-    def _call(
+    def call(
         self, gateway: GatewayProcess, event: Callable[[int], e.Event], answer: Callable[[f.Effect], None]
     ) -> None:
+        """Call a service of a gateway."""
         self.world.send(f"{gateway.name} calls", lambda: gateway.call(event, answer))
 
     # strangers
@@ -139,9 +147,9 @@ class Site:
         self.world.tell("stranger", f"cancels all goals at {unit.name}")
         self.world.send("stranger", unit.machine.cancel)
 
-    def foreign(self, unit: Unit, seconds: float) -> None:
+    def foreign(self, unit: Unit, seconds: float, ended: Ended = lambda outcome, why: None) -> None:
         """A client without a run asks for a motion."""
-        order = Order(self.world, "foreign", None, seconds)
+        order = Order(self.world, "foreign", None, seconds, ended=ended)
         self.world.send("foreign", lambda: unit.gateway.ask(order))
 
     def second_gateway(self, unit: Unit, seconds: float) -> None:

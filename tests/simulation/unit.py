@@ -72,7 +72,7 @@ class Unit:
         self.receipts: list[f.Receipt] = []
         self.trap = Trap()
         self.check_owner = _nobody_checks
-        self.hears_receipts: Callable[[f.Receipt], None] = lambda receipt: None
+        self.hears_receipts: dict[str, Callable[[f.Receipt], None]] = {}
         self._state: State | None = None
         self._hear_state: dict[str, Callable[[State], None]] = {}
         self._stands_in: bool | None = None
@@ -112,7 +112,8 @@ class Unit:
     def told(self, receipt: f.Receipt) -> None:
         """A gateway has told a receipt."""
         self.receipts.append(receipt)
-        self.world.send(f"{self.name}/receipts", lambda: self.hears_receipts(receipt))
+        for name, hear in self.hears_receipts.items():
+            self.world.send(f"{self.name}/receipts/{name}", lambda hear=hear: hear(receipt))  # type: ignore[misc]
 
     def to_gateway(self, topic: str, event: e.Event) -> None:
         """A message for the gateway."""
