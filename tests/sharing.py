@@ -13,7 +13,7 @@ from xdist.workermanage import WorkerController
 
 TESTS = Path(__file__).resolve().parent
 MESH = "the mesh of the test run"
-PROCESSES = ("tests/browser/", "tests/docker/", "tests/ros/", "tests/system/")
+PROCESSES = ("tests/browser/", "tests/docker/", "tests/replay/test_replay", "tests/ros/", "tests/system/")
 LONGEST = ("test_several_losses", "test_power_cut", "test_receipts", "test_official_tasks", "test_every_subtask",
            "test_sensing")  # fmt: skip
 USES_MESH = re.compile(r"^def test_\w+\([^)]*\b(mesh|idle): Mesh", re.MULTILINE)
