@@ -116,7 +116,7 @@ def _end(gateway: Gateway, one: Stop, now: float) -> None:
     if not receipt.confirmed:
         gateway.latch.close(r.NotSeenToStand(one.cause, receipt.detail or r.NoEnd(), gateway.facts.name))
         gateway.do(f.Emergency(True), f.Publish())
-    elif gateway.stood_in and gateway.latch.cause is None:
+    elif gateway.stood_in and gateway.latch.cause is None and gateway.recovery.reached:  # else it is lost
         gateway.stood_in = False
         gateway.do(f.Emergency(False))
     if receipt.confirmed and gateway.run is None:  # it stands, and no run's goal moves it

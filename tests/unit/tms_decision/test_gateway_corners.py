@@ -348,6 +348,21 @@ def test_a_press_of_the_host_agent_is_released_when_the_machine_stands() -> None
     assert f.Emergency(False) in rig.done and not rig.gateway.stood_in
 
 
+def test_a_press_of_the_host_agent_is_not_released_before_the_machine_would_hear_it() -> None:
+    rig = Rig(e.Left(None, "run-1", 7))
+    rig.look = replace(rig.look, reachable=False)
+    rig.permits(RUN, None)
+    rig.happens(e.StoodIn())
+    rig.happens(e.StopAsked(1, None, True))
+    rig.run(4.5)
+    assert rig.receipt.confirmed and f.Emergency(False) not in rig.done
+    rig.look = replace(rig.look, reachable=True)
+    rig.run(0.2)
+    rig.happens(e.StopAsked(2, None, True))
+    rig.run(6.0)
+    assert f.Emergency(False) in rig.done
+
+
 def test_a_goal_that_an_ending_gateway_has_stopped_is_told_so() -> None:
     rig = ready().moving()
     rig.happens(e.Leaving())
