@@ -4,7 +4,7 @@ import json
 import os
 import signal
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import AbstractContextManager, suppress
+from contextlib import AbstractContextManager, closing, suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -81,7 +81,8 @@ class RealSite:
 
     def pids(self, processes: Iterable[str]) -> list[int]:
         """Of processes as plans name them."""
-        found = {row.name: row.pid for row in Supervisor(self.site).processes()}
+        with closing(Supervisor(self.site)) as supervisor:
+            found = {row.name: row.pid for row in supervisor.processes()}
         return [found[full_name(process)] for process in processes]
 
 

@@ -27,7 +27,7 @@ from tms_ts.reasons import MachineBusy
 LOOK = 0.02  # s
 STILL = 0.01  # rad/s, of the machines of the simulation
 SWINGS = {"left": 6.0, "right": 6.0, "far": 20.0}  # s
-READY = 3.0  # s until all processes have found each other
+READY = 5.0  # s until all processes have found each other
 BACK = 1.2  # s until a killed process is started again
 FAULTS = {
     a.Fault.COASTS: Fault(coast=2.0),

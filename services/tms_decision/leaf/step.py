@@ -78,6 +78,7 @@ def _look(goals: LeafGoals, goal: LeafGoal, seen: e.Seen, now: float) -> None:
 def _try(goals: LeafGoals, goal: LeafGoal, seen: e.Seen, now: float) -> None:
     if now < goal.not_before:
         return
+    goal.begun = now if goal.machine in goals.stopping else goal.begun  # a stop ends by itself, after 13 s at most
     goal.reason = _obstacle(goals, goal, seen)
     if goal.reason is None:
         _send(goals, goal, seen, now)
@@ -112,8 +113,7 @@ def _gone_for_good(goals: LeafGoals, goal: LeafGoal, seen: e.Seen) -> Reason | N
     """Why waiting cannot help: supervisord has given up a process, or only a person can re-arm the machine."""
     if seen.latch is not None:
         return r.MachineLatched(goal.machine, seen.latch)
-    fatal = seen.given_up
-    if fatal is not None and fatal not in goals.given_up:
+    if (fatal := seen.given_up) is not None and fatal not in goals.given_up:
         goals.given_up.add(fatal)
         goals.note(goal, fatal, "alarm")
     return fatal

@@ -157,6 +157,16 @@ def test_the_machine_of_a_lost_goal_is_stopped_before_the_goal_is_sent_again(sit
     assert site.sent == [1, 2]
 
 
+def test_a_stop_may_take_longer_than_a_server_may_be_away(site: Goals) -> None:
+    site.seen = replace(site.seen, pid=2)
+    step(site.goals, e.Looked({1: site.seen}), site.now)
+    site.pass_time(SERVER_LIMIT + 2.0)
+    assert site.goal.state is GoalState.SENDING
+    site.happened(e.MachineStopped("zx200"))
+    site.look()
+    assert site.sent == [1, 2]
+
+
 def test_two_stops_of_a_machine_must_both_end(site: Goals) -> None:
     site.goals.stopping += ["zx200", "zx200"]
     site.happened(e.MachineStopped("zx200"))
