@@ -93,7 +93,7 @@ def _left(unit: Unit, now: float) -> None:
 def _believed(unit: Unit, now: float) -> None:
     """A machine that falls silent, or tells what cannot be, does not move on for long."""
     fault, plant, gateway = unit.machine.plant.fault, unit.machine.plant, unit.gateway
-    lies = fault.mute or fault.stuck or fault.second_publisher or fault.zero_velocity or (
+    lies = fault.mute or fault.second_publisher or fault.zero_velocity or (
         fault.mute_joint and plant.passive)  # fmt: skip
     since = max(unit.lies_since, unit.sent_at)
     if not lies or plant.goal is None or plant.speed == 0.0 or min(now - since, gateway.worked_for()) < NOTICED:

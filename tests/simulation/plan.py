@@ -19,10 +19,6 @@ LIES: tuple[dict[str, float | bool], ...] = (
     {"ignore_cancel": True, "ignore_emergency": True},
 )  # fmt: skip
 
-SELDOM: tuple[dict[str, float | bool], ...] = (
-    {"coast": 2.0, "mute_joint": True}, {"coast": 2.0, "stuck": True}, {"coast": 2.0, "second_publisher": True},
-)  # fmt: skip
-
 
 @dataclass(frozen=True)
 class Kill:
@@ -182,18 +178,7 @@ def plan(seed: int) -> list[Planned]:
         for _ in range(chance.randint(2, 6))
     ]
     found += [Planned(5.0 + chance.random() * (last - 3.0), 0, act) for act in HELPERS]
-    found += _seldom(seed, units)
     return sorted(found, key=lambda one: one.at)
-
-
-def _seldom(seed: int, units: int) -> list[Planned]:
-    """In one of four schedules one more fault, of those that only a few decisions are about."""
-    chance = random.Random(f"seldom {seed}")
-    if chance.random() >= 0.25:
-        return []
-    seconds, at = 2.0 + 6.0 * chance.random(), 3.0 + chance.random() * (SECONDS - QUIET - 3.0)
-    acts: tuple[Act, ...] = (Levers(seconds / 2), *(Lie(Fault(**lie), seconds) for lie in SELDOM))  # type: ignore[arg-type]
-    return [Planned(at, chance.randrange(units), chance.choice(acts))]
 
 
 def _some(chance: random.Random) -> tuple[str, ...]:

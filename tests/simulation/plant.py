@@ -34,7 +34,6 @@ class Fault:
     replay: bool = False  # tells its last two seconds again and again
     silent_server: bool = False  # does not answer
     mute_joint: bool = False  # tells nothing of the joint that moves
-    stuck: bool = False  # tells its last message again and again, with its stamp
     second_publisher: bool = False  # another one says that it stands
 
 
@@ -120,9 +119,6 @@ class Plant:
             self.told = [*self.told, (stamp, angle, speed)][-20:]
         self.frozen = (self.frozen or (stamp, angle, speed)) if self.fault.frozen_stamp else None
         stamp, angle, speed = self.frozen or (stamp, angle, speed)
-        if self.fault.stuck:
-            self.told = self.told[:1]
-            stamp, angle, speed = self.told[0]
         self.number += 1
         places, speeds = ({PASSIVE: (PLACE,)}, {PASSIVE: 0.0}) if self.passive else ({}, {})
         if not self.fault.mute_joint:

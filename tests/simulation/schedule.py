@@ -8,6 +8,7 @@ from simulation import invariants
 from simulation import plan as p
 from simulation.plan import SECONDS, Planned
 from simulation.plant import Fault
+from simulation.scenes import planned
 from simulation.site import Site
 from simulation.unit import Unit
 from simulation.world import Happened, Process, Violation, World
@@ -32,7 +33,7 @@ class Schedule:
     """One seed, with its plan or a shorter one."""
 
     def __init__(self, seed: int, plan: Sequence[Planned] | None = None) -> None:
-        self.seed, self.plan = seed, p.plan(seed) if plan is None else plan
+        self.seed, self.plan = seed, planned(seed) if plan is None else plan
         self.world = World(seed)
         self.site = Site(
             self.world,

@@ -158,6 +158,7 @@ class Site:
             return
         unit.second = second = GatewayProcess(unit, f"{unit.name}:rc2", Notes(self.world))
         second.start()
+        unit.missed = float("inf")  # its latch, of a machine that it knows nothing of, looks like the effect of a press
 
         def found() -> None:
             unit.second = None
