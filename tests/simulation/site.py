@@ -100,11 +100,18 @@ class Site:
                 told(answer)
 
         def confirm(token: str, given: float) -> None:
-            self.call(gateway, lambda number: e.RearmAsked(number, token, ""), lambda answer: armed(answer, given))
+            stopped = False
 
-        def armed(answer: f.Effect, given: float) -> None:
+            def asks(number: int) -> e.Event:
+                nonlocal stopped
+                stopped = gateway.pressed_at > given
+                return e.RearmAsked(number, token, "")
+
+            self.call(gateway, asks, lambda answer: armed(answer, stopped))
+
+        def armed(answer: f.Effect, stopped: bool) -> None:
             assert isinstance(answer, f.Rearmed)
-            if answer.wrong is None and gateway.pressed_at > given:
+            if answer.wrong is None and stopped:
                 raise Violation(f"{gateway.name} is armed, and was stopped after its token was given out")
             told(answer)
 
