@@ -37,9 +37,6 @@ def _refuse(gateway: Gateway, asked: GoalAsked, why: Reason) -> None:
     gateway.do(End(asked.number, "ABORTED", why))
 
 
-# before it is active
-
-
 def admit(gateway: Gateway, now: float) -> None:
     """Let a waiting goal move the machine if nothing speaks against it any more."""
     for goal in list(gateway.waiting):

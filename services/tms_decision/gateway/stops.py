@@ -162,6 +162,8 @@ def kept(gateway: Gateway, event: ReceiptKept) -> None:
 def _over(gateway: Gateway, one: Stop, receipt: f.Receipt) -> None:
     one.answer = receipt
     gateway.do(*(f.Stopped(request, receipt) for request in one.requests))
+    for goal in gateway.waiting if one.requests and not one.latched else ():
+        goal.cancelled |= goal.owner is not None  # the run has ended that asked for the stop
 
 
 def busy(gateway: Gateway) -> bool:

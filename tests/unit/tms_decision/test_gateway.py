@@ -133,6 +133,24 @@ def test_a_goal_waits_for_the_commands_of_a_stop_before_it() -> None:
     assert rig.run(0.2).all(f.Send) == [f.Send(1)]
 
 
+def test_a_goal_that_waits_while_its_run_ends_never_leaves() -> None:
+    rig = ready()
+    rig.permits()
+    rig.happens(e.StopAsked(9, Foreign("the end of a run"), True))
+    rig.ask(1, GOAL)
+    rig.run(3.0)
+    assert rig.receipt.confirmed and not rig.all(f.Send)
+    assert (rig.end.number, rig.end.outcome) == (1, "CANCELED")
+
+
+def test_a_foreign_goal_waits_for_the_end_of_a_run_and_leaves() -> None:
+    rig = ready()
+    rig.happens(e.StopAsked(9, Foreign("the end of a run"), True))
+    rig.ask(1)
+    rig.run(3.0)
+    assert [one.number for one in rig.all(f.Send)] == [1]
+
+
 def test_a_goal_waits_until_the_host_agent_no_longer_commands_the_machine() -> None:
     rig = ready()
     rig.happens(e.StandsIn(True))
