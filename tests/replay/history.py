@@ -72,7 +72,7 @@ def once(words: Iterable[str]) -> Told:
 def of_machine(record: TrialRecording) -> Told:
     """Its goals, stops with their proof and the truth about it, and whether it may move."""
     told = [(goal.began, _goal(goal)) for goal in record.goals.values()]
-    told += [(one.came, _receipt(one, record)) for one in record.receipts]
+    told += [(one.at, _receipt(one, record)) for one in record.receipts]  # it may come later than the next goal
     told += _latches(record.states)
     return once(word for _, word in sorted(told, key=lambda one: one[0]))
 
@@ -82,7 +82,7 @@ def _goal(goal: Goal) -> str:
 
 
 def _receipt(receipt: Receipt, record: TrialRecording) -> str:
-    stands = stood(receipt.at if receipt.confirmed else receipt.came, record)
+    stands = stood(receipt.at, record)
     seen = "is seen to stand" if receipt.confirmed else "is not seen to stand"
     return f"{seen}, {'and stands' if stands else 'and moves'}"
 

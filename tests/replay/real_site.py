@@ -24,7 +24,11 @@ from tms_ros.node import Ros
 
 LIMIT = 60.0  # s for whatever must happen at all
 SUBTASK = "subtask_zx200_change_pose"
-SWINGS = {"left": 1.5, "right": 0.0, "far": 2.5}  # rad from where the machine stands at the begin
+SWINGS = {
+    "left": 2.5,
+    "right": 0.5,
+    "far": 3.0,
+}  # rad, long enough for a busy PC, from where the machine stands at the begin
 FAULTS: Mapping[a.Fault, Mapping[str, Any]] = {
     a.Fault.COASTS: {"coast": 2.0},
     a.Fault.IGNORES_STOPS: {"ignore_cancel": True, "ignore_emg_stop": True},

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from simulation.unit import Unit
 
 ACCEPT_LIMIT = 3.0  # s for the next process to answer
+LEAVES = 0.8  # s from its cancel until a process that ends in order is gone
 ENDS_LIMIT = STOP_PROVEN + 2.5  # s for a cancelled motion to end
 BUSY, UNREACHED = Foreign("busy"), Foreign("no answer")
 
@@ -48,6 +49,15 @@ class Relay(PermitProcess):
             self.in_life(lambda goal, holder: link.heard(goal, holder, self.world.now)),
             self.in_life(self._reported),
         )
+
+    def end(self) -> None:
+        """End in order: cancel the goal that it has sent, which has a moment to end, and answer nothing any more."""
+        passed, self._passed = self._passed, None
+        if passed is None:
+            super().end()
+        else:
+            self.world.send(f"{self.name} cancels", lambda: self._next.cancel(passed))
+            self.later(LEAVES, super().end)
 
     @property
     def _next(self) -> Server:
