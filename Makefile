@@ -25,7 +25,7 @@ TMS := $(VENV)/bin/tms $(if $(SITE),--site $(SITE))
 # A sourced ROS installation would mix its libraries into the venv's.
 unexport PYTHONPATH LD_LIBRARY_PATH AMENT_PREFIX_PATH CMAKE_PREFIX_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE
 .DEFAULT_GOAL := help
-.PHONY: help setup interfaces locks demo test test-fast up down status logs restart lint conformance bench pictures soak drill simulate model mutants coverage nightly test-docker system containers clean
+.PHONY: help setup interfaces locks demo test test-fast up down status logs restart lint conformance bench pictures soak drill simulate replay model mutants coverage nightly test-docker system containers clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -130,15 +130,20 @@ model: setup ## stop, permit, fence and latch in all their states (ONLY=check; D
 mutants: setup ## defects planted in the decisions one at a time; the simulation must find each (SLICE=20 ONLY=name SCHEDULES=5000 TURN=3 LIST=1)
 	@cd tests && $(abspath $(PY)) -m mutants.run $(if $(ONLY),--only $(ONLY)) $(if $(SLICE),--slice $(SLICE)) $(if $(TURN),--turn $(TURN)) $(if $(SCHEDULES),--schedules $(SCHEDULES)) $(if $(LEDGER),--ledger $(LEDGER)) $(if $(filter-out auto,$(WORKERS)),--workers $(WORKERS)) $(if $(LIST),--list)
 
+replay: setup ## twenty simulated plans on real processes, as root: both tell the same history (ONLY="gateway and killed": words of their names)
+	@DOCKER=$(DOCKER) sh deploy/system-packages.sh test
+	TMS_REPLAY=1 $(PY) -m pytest -p no:randomly tests/replay/test_replay.py $(if $(ONLY),-k "$(ONLY)")
+
 coverage: setup ## unit tests take every branch of the decisions and proofs
 	$(PY) -m coverage run --data-file=$(VENV)/coverage --branch --source tms_decision,tms_proof -m pytest -q tests/unit/tms_decision tests/unit/tms_proof tests/unit/tms_ts/test_interrupted.py
 	$(PY) -m coverage report --data-file=$(VENV)/coverage --show-missing --skip-covered --fail-under=100
 
-nightly: setup ## what takes hours: properties with 400 examples, all mutants, every branch, 30 power cuts while a machine moves (as root), the drill with four rounds
+nightly: setup ## what takes hours: properties with 400 examples, all mutants, every branch, 30 power cuts while a machine moves (as root), all replays, the drill with four rounds
 	$(PY) -m pytest -q -n $(WORKERS) --hypothesis-profile=thorough tests/unit
 	@$(MAKE) coverage
 	@$(MAKE) mutants
 	TMS_POWER_CUTS=30 $(PY) -m pytest tests/system/test_power_cut.py
+	@$(MAKE) replay
 	@$(MAKE) drill ROUNDS=4
 
 bench: setup ## benchmarks with ratios to a floor of the same run (ONLY=group)

@@ -1,5 +1,6 @@
 """A real site for plans: one machine at its own speed, on a disk that can stall."""
 
+import os
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -10,6 +11,8 @@ from power_cut import own_disk
 
 if TYPE_CHECKING:
     from replay.real_site import RealSite
+
+collect_ignore = [] if os.environ.get("TMS_REPLAY") else ["test_replay.py"]  # it takes ten minutes
 
 
 @pytest.fixture(scope="module")
