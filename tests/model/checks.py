@@ -3,7 +3,7 @@
 from model.spin import Check
 
 #                          machines gateways runs tries goals faults presses arms cancels long
-ONE = Check("1x2", "one machine, two runs, at most two faults", (1, 1, 2, 2, 1, 2, 1, 1, 0, 1))
+ONE = Check("1x2", "one machine, two runs, a press, at most two faults", (1, 1, 2, 2, 1, 2, 1, 0, 0, 1))
 ENDS = Check("1x2-ends", "... one fault: every history ends, and its stops", (1, 1, 2, 2, 1, 1, 1, 1, 0, 1), True)
 CANCEL = Check("1x2-cancel", "... which an operator cancels, one fault", (1, 1, 2, 2, 1, 1, 0, 0, 1, 1))
 TWIN = Check("1x1-twin", "one machine with a second gateway, one fault", (1, 2, 1, 2, 1, 1, 1, 1, 0, 1))

@@ -80,11 +80,11 @@ inline admit(g, m) {
 
 inline send_goal(g, m) {
 	printf("gateway %d sends goal %d of run %d\n", g, current[g], run_of(current[g]));
-	assert(!stopped[g]);                                             /* no command after a stop, before a re-arm */
-	assert(note_armed[g] && note_run[g] == run_of(current[g]));     /* the disk says whose the motion is */
-	assert(run_of(current[g]) == sees_run[g]);                      /* one owner */
-	assert(g < MACHINES);                                           /* a second gateway moves nothing */
-	assert(!(away[g] && duty[m] && host == UP));                    /* the host agent does not command the machine */
+	promise(!stopped[g]);                                             /* no command after a stop, before a re-arm */
+	promise(note_armed[g] && note_run[g] == run_of(current[g]));     /* the disk says whose the motion is */
+	promise(run_of(current[g]) == sees_run[g]);                      /* one owner */
+	promise(g < MACHINES);                                           /* a second gateway moves nothing */
+	promise(!(away[g] && duty[m] && host == UP));                    /* the host agent does not command the machine */
 	goal_flies[m] = current[g]; goal_from[m] = g; phase[g] = SENT; outcome[g] = 0
 }
 
@@ -98,7 +98,7 @@ inline start_gateway(g, m) {
 #endif
 	:: else -> latch[g] = LATCHED; shown[g] = 1
 	fi;
-	assert(!known[g] || latch[g] == LATCHED); /* a latch survives */
+	promise(!known[g] || latch[g] == LATCHED); /* a latch survives */
 #ifndef START_WITHOUT_STOP
 	if
 	:: latch[g] == LATCHED && unproven[g] -> claim_run[g] = ANY
@@ -123,11 +123,11 @@ inline note_written(g, m) {
 
 inline arm(g, m) {
 	printf("gateway %d: armed\n", g);
-	assert(body[m] == STANDS);
-	assert(stopped[g] != 2); /* a press makes a re-arm void that waits for the disk */
+	promise(body[m] == STANDS);
+	promise(stopped[g] != 2); /* a press makes a re-arm void that waits for the disk */
 	rearm[g] = 0; latch[g] = ARMED; held_run[g] = 0; held_goal[g] = 0; shown[g] = 0;
 	stopped[g] = 0; known[g] = 0;
-	assert(note_armed[g]) /* armed only if the disk says so */
+	promise(note_armed[g]) /* armed only if the disk says so */
 }
 
 inline hear_press(g) {
@@ -175,7 +175,7 @@ end:	do
 		signal[g] = 0; hear_press(g) }
 	:: atomic { gateway[g] == UP && stop[g] == PROVES && proven(g, m) && sick[m] != MUTE ->
 		printf("gateway %d saw its machine stand\n", g);
-		assert(body[m] == STANDS && at_server[m] == 0 && goal_flies[m] == 0); /* confirmed means truly standing */
+		promise(body[m] == STANDS && at_server[m] == 0 && goal_flies[m] == 0); /* confirmed means truly standing */
 		confirms[g] = 1; stop[g] = KEEPS; settle(g) }
 #ifndef NO_TIME_OUT
 	:: atomic { gateway[g] == UP && stop[g] == PROVES && sick[m] != 0 && goal_flies[m] == 0 && body[m] != STARTS ->
@@ -189,6 +189,10 @@ end:	do
 	:: atomic { gateway[g] == UP && stop[g] == KEEPS && writes[g] == 0 && see((confirms[g] -> CONFIRMED : UNCONFIRMED), g, 0) -> seen;
 		printf("gateway %d tells its receipt: confirmed %d\n", g, confirms[g]);
 		tell_receipt(g) }
+#ifdef HISTORY /* stops that were proven together tell a receipt each */
+	:: atomic { gateway[g] == UP && stop[g] == KEEPS && see((confirms[g] -> CONFIRMED : UNCONFIRMED), g, 0) -> seen }
+	:: atomic { gateway[g] == UP && earlier[g] != 0 && see((earlier[g] == GOOD -> CONFIRMED : UNCONFIRMED), g, 0) -> seen }
+#endif
 	:: atomic { gateway[g] == UP && stop[g] == PROVES && at_server[m] != 0 && !cancel_flies[m] && sick[m] != DEAF -> cancel_flies[m] = 1 }
 	:: atomic { gateway[g] == UP && writes[g] != 0 && rearm[g] != 2 ->
 		note_written(g, m);
@@ -198,7 +202,7 @@ end:	do
 		fi }
 	/* re-arms, in two steps of a person */
 	:: atomic { gateway[g] == UP && arms < ARMS_MOST && latch[g] != ARMED && rearm[g] == 0 && waiting[g] == 0 && may_arm(g, m) &&
-		!signal[g] && (g >= MACHINES || !host_press[m] || host != UP) -> arms++; /* a press arrives, and the host agent looks, sooner than a person can re-arm */
+		!signal[g] && (g >= MACHINES || !host_press[m] || host != UP) -> count(arms); /* a press arrives, and the host agent looks, sooner than a person can re-arm */
 		printf("gateway %d gives out a token to re-arm\n", g);
 		rearm[g] = 1 }
 	:: atomic { gateway[g] == UP && rearm[g] == 1 && latch[g] != ARMED && may_arm(g, m) -> rearm[g] = 2; holder[g] = 0; writes[g] = WRITE_ARMED }

@@ -15,7 +15,7 @@ end:	do
 		outcome[goal_from[m]] = BAD; goal_flies[m] = 0 }
 	:: atomic { goal_flies[m] != 0 && at_server[m] == 0 && see(ACCEPTS, m, run_of(goal_flies[m])) -> seen;
 		printf("machine %d accepts goal %d\n", m, goal_flies[m]);
-		assert(run_of(goal_flies[m]) >= newest[m]); /* an old run moves nothing */
+		promise(run_of(goal_flies[m]) >= newest[m]); /* an old run moves nothing */
 		newest[m] = run_of(goal_flies[m]);
 		at_server[m] = goal_flies[m]; goal_flies[m] = 0; body[m] = STARTS;
 		if

@@ -43,7 +43,11 @@ inline drop(m, r) {
 	fi
 }
 
+#ifdef HISTORY /* a press has arrived before the next run begins */
+#define free(m, r) (runs[m] == 0 && (!signal[m] || gateway[m] == FROZEN))
+#else
 #define free(m, r) (!uses(r, m) || (runs[m] == 0 && !shown[m]))
+#endif
 #define finished(m, r) (runs[m] != (r) || leaf[m] == DONE)
 #define stands(m, r) (runs[m] != (r) || (leaf[m] == STOOD && (serves[m] == 0 || relay[m] != UP)))
 #define asks_for_stop(m) ((leaf[m] == ENDS || leaf[m] == AGAIN) && receipt[m] == 0)
@@ -64,7 +68,7 @@ end:	do
 		tries[m]++; leaf[m] = OPEN;
 		ask_relay(m, (runs[m] - 1) * TRIES + tries[m]) }
 	:: atomic { scheduler == UP && leaf[m] == NEXT && tries[m] == TRIES -> r = runs[m]; end_run(r); r = 0 }
-	:: atomic { scheduler == UP && leaf[m] == OPEN && relay_new[m] ->
+	:: atomic { scheduler == UP && leaf[m] == OPEN && (relay_new[m] || EITHER) ->
 		printf("run %d has lost the relay of machine %d\n", runs[m], m);
 		leaf[m] = AGAIN; relay_new[m] = 0 }
 #ifdef STOP_NOT_ASKED_AGAIN
@@ -79,7 +83,7 @@ end:	do
 	:: atomic { scheduler == UP && leaf[m] == ENDS && gateway[m] != UP -> receipt[m] = 0; leaf[m] = STOOD } /* no receipt in its time */
 	:: atomic { scheduler == UP && runs[m] != 0 && leaf[m] != ENDS && leaf[m] != STOOD && (shown[m] || hears_press) ->
 		r = runs[m]; end_run(r); r = 0 }
-	:: atomic { scheduler == UP && cancels < CANCELS && runs[m] != 0 && leaf[m] != ENDS && leaf[m] != STOOD -> cancels++;
+	:: atomic { scheduler == UP && cancels < CANCELS && runs[m] != 0 && leaf[m] != ENDS && leaf[m] != STOOD -> count(cancels);
 		printf("an operator cancels run %d\n", runs[m]);
 		r = runs[m]; end_run(r); r = 0 }
 	:: atomic { scheduler == UP && runs[m] != 0 && ((finished(0, runs[m]) && finished(other, runs[m])) || (stands(0, runs[m]) && stands(other, runs[m]))) &&
@@ -100,9 +104,17 @@ end:	do
 		fi;
 		serves[m] = 0; answer[m] = 0;
 		if
-		:: leaf[m] == OPEN && r == GOOD -> leaf[m] = (tries[m] < GOALS -> NEXT : DONE)
+		:: leaf[m] == OPEN && r == GOOD -> 
+			if
+			:: tries[m] < GOALS || EITHER -> leaf[m] = NEXT
+			:: tries[m] >= GOALS || EITHER -> leaf[m] = DONE
+			fi
 		:: leaf[m] == OPEN && r == LOST -> leaf[m] = AGAIN
-		:: leaf[m] == OPEN && r == BAD -> leaf[m] = NEXT; r = runs[m]; end_run(r)
+		:: leaf[m] == OPEN && r == BAD -> leaf[m] = NEXT; r = runs[m];
+			if
+			:: EITHER
+			:: true -> end_run(r)
+			fi
 		:: else
 		fi;
 		r = 0 }

@@ -1,6 +1,9 @@
 /* A site: machines, gateways, relays, a scheduler, a host agent, people. Its size is given by
    MACHINES GATEWAYS RUNS TRIES (goals a run sends a machine, at most) GOALS (that it needs) FAULTS PRESSES ARMS_MOST CANCELS LONG. */
 
+#ifdef HISTORY
+c_decl { \#include "history.h" }
+#endif
 #include "words.pml"
 #include "state.pml"
 #include "machine.pml"
@@ -15,6 +18,10 @@ init {
 	byte n;
 	atomic {
 		n = 0;
+#ifdef HISTORY
+		c_code { now.wanted = history_word(0); };
+		claim_open[0] = 1; claim_open[other] = 1;
+#endif
 		do
 		:: n < MACHINES ->
 			note_armed[n] = 1;

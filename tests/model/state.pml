@@ -58,4 +58,5 @@ byte newest[MACHINES];   /* the newest run whose goal the machine has accepted *
 
 #ifdef HISTORY
 short position, wanted;
+byte earlier[GATEWAYS]; /* the receipt of a stop that was proven before another one began */
 #endif

@@ -35,6 +35,9 @@ inline begin_stop(g, becomes) {
 		latch[g] = HELD; held_run[g] = run_of(current[g]); held_goal[g] = current[g]
 	:: else
 	fi;
+#ifdef HISTORY
+	earlier[g] = (stop[g] == KEEPS -> (confirms[g] -> GOOD : BAD) : earlier[g]);
+#endif
 	stop[g] = PROVES; confirms[g] = 0
 }
 
@@ -67,8 +70,8 @@ inline answer_client(g, how) {
 
 inline tell_receipt(g) {
 	stop[g] = 0; unproven[g] = 0;
-	assert(confirms[g] || latch[g] == LATCHED);     /* what was not seen to stand is latched */
-	assert(latch[g] != LATCHED || !note_armed[g]);  /* the disk knows a latch before it is told */
+	promise(confirms[g] || latch[g] == LATCHED);     /* what was not seen to stand is latched */
+	promise(latch[g] != LATCHED || !note_armed[g]);  /* the disk knows a latch before it is told */
 	if
 	:: current[g] != 0 -> answer_client(g, (latch[g] == HELD -> LOST : BAD))
 	:: else

@@ -66,10 +66,18 @@
 #define OVER 20      /* what: the run */
 #define HANDED_ON 21
 
-#ifdef HISTORY
+#ifdef HISTORY /* reads one: no budgets, and what depends on the task may go either way */
 #define see(word, who, what) (wanted == (word) * 1024 + (who) * 256 + (what))
 #define seen c_code { now.position++; now.wanted = history_word(now.position); }
+#define count(what) skip
+#define may_kill(process) (process != DOWN)
+#define EITHER true
+#define promise(holds) (holds) /* a history that breaks one is not accepted */
 #else
 #define see(word, who, what) true
 #define seen skip
+#define count(what) what++
+#define may_kill(process) (process == UP)
+#define EITHER false
+#define promise(holds) assert(holds)
 #endif
