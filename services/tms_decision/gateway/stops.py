@@ -176,5 +176,5 @@ def watch(gateway: Gateway, now: float) -> None:
     gateway.watch.settle(now)
     if gateway.active is not None:
         gateway.watch.commanded(now)
-    elif gateway.vigil.left(now, gateway.watch.moved_at) and gateway.by_hand is None and not busy(gateway):
+    elif gateway.vigil.left(now, gateway.watch.moved_at) and gateway.by_hand is None and not gateway.proves():
         stop(gateway, now, r.LeftStandStill(), StopKind.LATCH, broken=r.LeftStandStill())

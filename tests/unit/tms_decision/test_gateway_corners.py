@@ -443,3 +443,15 @@ def test_what_is_under_way() -> None:
     assert not rig.gateway.at_work() and not rig.gateway.proves()
     rig.happens(e.StopAsked(1, None, True))
     assert rig.gateway.at_work() and rig.gateway.proves()
+
+
+def test_a_machine_that_moves_while_a_receipt_waits_for_the_disk_is_stopped() -> None:
+    rig = latched()
+    rig.disk_answers = False
+    rig.happens(e.StopAsked(9, None, False))
+    rig.run(1.5)
+    assert rig.all(f.KeepReceipt) and rig.gateway.stops
+    rig.done.clear()
+    rig.plant.turn(0.3, rig.now, 3.0)
+    rig.run(1.0)
+    assert rig.all(f.CancelAll)
