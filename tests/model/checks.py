@@ -6,9 +6,10 @@ from model.spin import Check
 ONE = Check("1x2", "one machine, two runs, a press, at most two faults", (1, 1, 2, 2, 1, 2, 1, 0, 0, 1))
 ENDS = Check("1x2-ends", "... one fault: every history ends, and its stops", (1, 1, 2, 2, 1, 1, 1, 1, 0, 1), True)
 CANCEL = Check("1x2-cancel", "... which an operator cancels, one fault", (1, 1, 2, 2, 1, 1, 0, 0, 1, 1))
-TWIN = Check("1x1-twin", "one machine with a second gateway, one fault", (1, 2, 1, 2, 1, 1, 1, 1, 0, 1))
+TWIN = Check("1x1-twin", "one machine with a second gateway, one fault", (1, 2, 1, 2, 1, 1, 1, 0, 0, 1))
+TWO = Check("2x2", "two machines, two runs, one fault", (2, 2, 2, 1, 1, 1, 0, 0, 0, 0))
 SMALL = Check("1x2-small", "one machine, two runs, one fault", (1, 1, 2, 2, 1, 1, 1, 1, 0, 1))
-CHECKS = (ONE, ENDS, CANCEL, TWIN)
+CHECKS = (ENDS, CANCEL, TWO, ONE)
 
 DEFECTS = {
     "LATCH_NOT_WRITTEN": ("a stop is told before its latch is on the disk", SMALL),
@@ -22,8 +23,7 @@ DEFECTS = {
     "PROOF_IN_DEAD_TIME": ("a stop is proven in the dead time of the machine", SMALL),
     "GOAL_MAY_BE_OPEN": ("a stop is proven while its goal is still on its way", SMALL),
     "LOSS_NOT_SEEN": ("a process behind a moving goal is lost, and nothing happens", SMALL),
-    "HOLD_FOR_ALL": ("a held machine obeys the goal that lost its process, and other runs", SMALL),
-    "START_WITHOUT_STOP": ("a gateway that starts does not stop a machine that was left moving", SMALL),
+    "START_WITHOUT_STOP": ("a gateway that starts does not stop a machine that was left moving", ONE),
     "NOT_SEEN_NOT_LATCHED": ("a stop that is not proven does not latch", SMALL),
     "NO_TIME_OUT": ("a stop that is never proven never ends", SMALL),
     "STOP_NOT_ASKED_AGAIN": ("a run does not ask the next gateway for the stop that the last one forgot", SMALL),

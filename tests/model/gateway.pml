@@ -8,11 +8,7 @@
 #define run_differs(g, k) (sees_run[g] != run_of(k))
 #endif
 #define misses(g, m, k) (relay_lost(m, k) || run_differs(g, k))
-#ifdef HOLD_FOR_ALL
-#define refuses(g, k) (latch[g] == LATCHED)
-#else
 #define refuses(g, k) (latch[g] == LATCHED || (latch[g] == HELD && (held_run[g] != run_of(k) || held_goal[g] == (k))))
-#endif
 #ifdef SENT_WHILE_HOST_STANDS_IN
 #define may_settle(g, m) (stop[g] == 0 && !cancel_flies[m])
 #else
@@ -89,7 +85,7 @@ inline send_goal(g, m) {
 }
 
 inline start_gateway(g, m) {
-	gateway[g] = UP; claim_open[g] = 1; cancel_flies[m] = 1; away[g] = duty[m];
+	gateway[g] = UP; claim_open[g] = 1; away[g] = duty[m];
 	if
 #ifdef NO_NOTE_MEANS_ARMED
 	:: note_armed[g] || g >= MACHINES -> latch[g] = ARMED; shown[g] = 0; claim_run[g] = note_run[g]
@@ -100,6 +96,7 @@ inline start_gateway(g, m) {
 	fi;
 	promise(!known[g] || latch[g] == LATCHED); /* a latch survives */
 #ifndef START_WITHOUT_STOP
+	cancel_flies[m] = 1;
 	if
 	:: latch[g] == LATCHED && unproven[g] -> claim_run[g] = ANY
 	:: else
@@ -178,7 +175,8 @@ end:	do
 		promise(body[m] == STANDS && at_server[m] == 0 && goal_flies[m] == 0); /* confirmed means truly standing */
 		confirms[g] = 1; stop[g] = KEEPS; settle(g) }
 #ifndef NO_TIME_OUT
-	:: atomic { gateway[g] == UP && stop[g] == PROVES && sick[m] != 0 && goal_flies[m] == 0 && body[m] != STARTS ->
+	:: atomic { gateway[g] == UP && stop[g] == PROVES && sick[m] != 0 && goal_flies[m] == 0 && body[m] != STARTS &&
+		(at_server[m] == 0 || sick[m] == DEAF) -> /* its commands were repeated until then */
 		printf("gateway %d did not see its machine stand\n", g);
 		confirms[g] = 0; stop[g] = KEEPS;
 #ifndef NOT_SEEN_NOT_LATCHED

@@ -48,7 +48,7 @@ end:	do
 		:: sick[m] = DEAF; printf("machine %d obeys no cancel any more\n", m)
 		:: sick[m] = MUTE; printf("machine %d tells nothing any more\n", m)
 		fi }
-	:: atomic { g < MACHINES && sick[m] != 0 -> printf("machine %d is well again\n", m); sick[m] = 0; endless[m] = 0 }
+	:: atomic { g < MACHINES && (sick[m] == DEAF || (sick[m] != 0 && EITHER)) -> printf("machine %d is well again\n", m); sick[m] = 0; endless[m] = 0 }
 	od
 }
 
