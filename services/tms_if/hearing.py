@@ -3,8 +3,6 @@
 from collections.abc import Callable
 from typing import Any
 
-from rclpy.qos import QoSProfile
-
 from tms_ros.interface_types import Message
 from tms_ros.node import Ros
 from tms_ros.quality import as_offered
@@ -34,7 +32,7 @@ class Hearing:
         """End the subscription."""
         self._ros.node.destroy_subscription(self._subscription)
 
-    def _wanted(self) -> QoSProfile:
+    def _wanted(self) -> Any:  # a quality of service of rclpy
         return as_offered([info.qos_profile for info in self._ros.node.get_publishers_info_by_topic(self._topic)])
 
     def _subscribed(self) -> Any:
