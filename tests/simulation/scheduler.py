@@ -166,7 +166,7 @@ class Scheduler(PermitProcess):
         self.disk.forget(run_id)
 
     def _close_open(self, left: list[str], deadline: float) -> None:
-        waits = False
+        waits: list[str] = []  # one that is closed may be resumed, and is no longer left open
         for run_id in left:
             past = InterruptedRun(self.disk.checkpoints.get(run_id, ()))
             header = past.header
@@ -175,7 +175,7 @@ class Scheduler(PermitProcess):
             lost = past.lost(header)
             stops = stops_of(lost, self._receipts)
             if not all_told(lost, stops) and self.world.now < deadline:
-                waits = True
+                waits.append(run_id)
                 continue
             reason, unseen = what_was_seen(lost, stops)
             self._check_claim(lost, reason)
@@ -187,7 +187,7 @@ class Scheduler(PermitProcess):
                 self.disk.tell(run_id, number, entry)
             self.disk.line(run_id, {"interrupted": True})
         if waits:
-            self.later(0.2, lambda: self._close_open(left, deadline))
+            self.later(0.2, lambda: self._close_open(waits, deadline))
 
     def _check_claim(self, lost: LostRun, reason: Reason) -> None:
         claim = reason.find(SeenToStand)
