@@ -32,6 +32,7 @@ class Mapping:
     """Turns lines of a history into words; the model numbers runs from 1, in the order in which they begin."""
 
     words: list[str] = field(default_factory=list)
+    _begun: int = 0  # runs so far; one that is resumed counts as another: it has a new fencing number
     _runs: dict[str, int] = field(default_factory=dict)  # by name
     _fences: dict[str, int] = field(default_factory=dict)  # by fencing number
     _goals: dict[str, int] = field(default_factory=dict)  # by number, their runs
@@ -67,7 +68,9 @@ class Mapping:
         return self._goals[found[1]]
 
     def _begins(self, what: str) -> int:
-        return self._runs.setdefault(what.split()[0], len(self._runs) + 1)
+        self._begun += 1
+        self._runs[what.split()[0]] = self._begun
+        return self._begun
 
 
 def words_of(history: Iterable[Happened]) -> list[str]:
