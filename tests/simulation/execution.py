@@ -284,15 +284,20 @@ class Execution:
         self.world.tell("tms:ts", f"{self.run_id} sends {key[0]} to {unit.name}")
         self.world.send(order.topic, lambda: unit.relays[SUBTASK].ask(order))
 
-    def _finished(self, key: le.Key) -> None:
-        """A leaf goal has succeeded: when what is written now is on the disk, its end is."""
+    def _finished(self, key: le.Key, halted: bool) -> None:
+        """A leaf goal has succeeded: when what is written now is on the disk, its end is.
+
+        One that the tree halted before is not over for the tree: a resumed run does it again.
+        """
         found = self.scheduler.finished.setdefault(self.run_id, set())
         self.scheduler.succeeded.add((self.run_id, key))
-        self.scheduler.later(0.0, lambda: self.scheduler.disk.after(lambda: found.add(key)))
+        if not halted:
+            self.scheduler.later(0.0, lambda: self.scheduler.disk.after(lambda: found.add(key)))
 
     def _ended(self, call: int, outcome: str, why: Reason | None) -> None:
         if outcome == "SUCCEEDED" and call in self.orders:
-            self._finished(self.orders[call][3])
+            halted = any(goal.call == call and goal.cancelled for goal in self.goals.open)
+            self._finished(self.orders[call][3], halted)
         self.orders.pop(call, None)
         reason, failure = why or Foreign("no reason"), le.NO_LOSS
         if reason == UNREACHED or reason.find(NoPermit) is not None:
