@@ -8,7 +8,7 @@ LEASE_MARGIN = 0.09  # s more than the lease: a process frozen for 0.4 s may hav
 AGAIN = 0.5  # s between repeated commands
 ESCALATE = 1.0  # s without a gateway until emg_stop
 HANDED_ON = 1.0  # s from a press until a gateway that is not latched is told of it
-NOTED = 0.3  # s from a press until a latch that is shown is on the disk: a gateway that is killed before forgets it
+NOTED = 10.0  # s from a press until a latch that is shown is on the disk: a gateway that is lost before forgets it
 
 
 class Act(Enum):
@@ -73,15 +73,17 @@ class Duty:
 
 
 class Press:
-    """A press of the stop button, until the gateway shows that it is latched: it may have been lost when that came."""
+    """A press of the stop button, until the gateway that shows its latch must have it on the disk, or is re-armed."""
 
     since: float | None = None
+    shown = False  # the present gateway has shown its latch
 
-    def due(self, now: float, alive: bool, latched: bool) -> bool:
-        """Whether to stop the machine by a request to its gateway, which is back; `latched`: as it shows."""
-        if self.since is not None and latched and now - self.since >= NOTED:
-            self.since = None
-        if self.since is None or not alive or latched or now - self.since < HANDED_ON:
+    def due(self, now: float, alive: bool, latched: bool | None) -> bool:
+        """Whether to stop the machine by a request to its gateway, which is back; `latched`: if it shows something."""
+        if self.since is None:
             return False
-        self.since = now
-        return True
+        again = alive and not latched and not self.shown and now - self.since >= HANDED_ON
+        over = alive and (now - self.since >= NOTED if latched else latched is False and self.shown)
+        self.since = now if again else None if over else self.since
+        self.shown = alive and not over and (self.shown or bool(latched))
+        return again

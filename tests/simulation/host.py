@@ -46,7 +46,7 @@ class Standby:
 
     def beat(self, now: float) -> None:
         """Command what is due."""
-        if self.press.due(now, self._gateway.alive(now), self._reported and self._latched):
+        if self.press.due(now, self._gateway.alive(now), self._latched if self._reported else None):
             self._host.world.tell("tms:host", f"hands a press on to {self._unit.name}:rc")
             self._host.world.send(f"{self._unit.name} calls", lambda: self._unit.gateway.call(_press, lambda _: None))
         act = self._duty.check(now, self._status(now))

@@ -104,14 +104,26 @@ def test_a_press_is_handed_on_to_a_gateway_that_does_not_show_a_latch() -> None:
     assert not press.due(21.1, alive=True, latched=False)
     assert press.due(21.0 + HANDED_ON, alive=True, latched=False)
     assert not press.due(30.0, alive=True, latched=True)
-    assert not press.due(40.0, alive=True, latched=False)
+    assert not press.due(40.0, alive=True, latched=False)  # re-armed
 
 
 def test_a_latch_that_is_shown_at_once_may_not_be_on_the_disk_yet() -> None:
     press = Press()
     press.since = 10.0
-    assert not press.due(10.0 + NOTED / 2, alive=True, latched=True)
-    assert press.due(10.0 + HANDED_ON, alive=True, latched=False)  # that gateway was killed, its successor is armed
+    assert not press.due(10.1, alive=True, latched=True)
+    assert not press.due(11.0 + HANDED_ON, alive=False, latched=None)  # killed before the disk had it
+    assert press.due(12.0 + HANDED_ON, alive=True, latched=False)  # its successor is armed
+    assert not press.due(20.0, alive=True, latched=True)
+    assert not press.due(20.1, alive=True, latched=None)  # it says nothing new
+    assert not press.due(13.0 + HANDED_ON + NOTED, alive=True, latched=True)  # by now the disk must have it
+    assert press.since is None
+
+
+def test_a_press_is_over_when_its_gateway_is_re_armed() -> None:
+    press = Press()
+    press.since = 10.0
+    assert not press.due(10.1, alive=True, latched=True)
+    assert not press.due(10.2, alive=True, latched=False)
+    assert press.since is None
     press.since = 20.0
-    assert not press.due(20.0 + NOTED, alive=True, latched=True)
-    assert not press.due(20.0 + HANDED_ON, alive=True, latched=False)  # re-armed since
+    assert press.due(20.0 + HANDED_ON, alive=True, latched=False)  # a new press, which it has not heard
