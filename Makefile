@@ -138,9 +138,10 @@ coverage: setup ## unit tests take every branch of the decisions and proofs
 	$(PY) -m coverage run --data-file=$(VENV)/coverage --branch --source tms_decision,tms_proof -m pytest -q tests/unit/tms_decision tests/unit/tms_proof tests/unit/tms_ts/test_interrupted.py
 	$(PY) -m coverage report --data-file=$(VENV)/coverage --show-missing --skip-covered --fail-under=100
 
-nightly: setup ## what takes hours: properties with 400 examples, all mutants, every branch, 30 power cuts while a machine moves (as root), all replays, the drill with four rounds
+nightly: setup ## what takes hours: properties with 400 examples, 100,000 schedules, all mutants, replays and 30 power cuts (as root), a long drill
 	$(PY) -m pytest -q -n $(WORKERS) --hypothesis-profile=thorough tests/unit
 	@$(MAKE) coverage
+	@$(MAKE) simulate SCHEDULES=100000
 	@$(MAKE) mutants
 	TMS_POWER_CUTS=30 $(PY) -m pytest tests/system/test_power_cut.py
 	@$(MAKE) replay

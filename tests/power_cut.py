@@ -51,7 +51,8 @@ class Disk:
             self._control(FITHAW)
 
     def _mount(self) -> None:
-        _do("mount", "-o", "loop", str(self._image), str(self.folder))
+        # A busy PC takes longer than the 5 s after which a file system writes names and sizes by itself.
+        _do("mount", "-o", "loop,commit=600", str(self._image), str(self.folder))
 
     def _control(self, request: int, argument: bytes = bytes(4)) -> None:
         file = os.open(self.folder, os.O_RDONLY)

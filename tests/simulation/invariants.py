@@ -109,7 +109,7 @@ def _abandoned(site: Site, run: Execution, now: float) -> None:
     for unit, _, life, key in run.orders.values() if run.core.phase is Phase.RUNNING else ():
         relay = unit.relays[SUBTASK]
         waits = min(relay.worked_for(), site.host.worked_for(), site.scheduler.worked_for(), now - run.hangs)
-        if relay.life != life and waits > GIVEN_UP and relay.lost_at > FOUND:  # before, nobody knows which it was
+        if relay.life != life and waits > GIVEN_UP and relay.killed_at > FOUND:  # before, nobody knows which it was
             raise Violation(f"{run.run_id} waits for {key}, whose process is gone for {waits:.1f} s")
 
 

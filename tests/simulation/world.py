@@ -77,6 +77,7 @@ class Process:
     thaws: float = 0.0  # frozen until then
     waiting: list[Step] = field(default_factory=list)
     lost_at: float = 0.0  # when it was killed or frozen last
+    killed_at: float = 0.0
     up_at: float = 0.0  # when it began to work last
 
     def frozen(self) -> bool:
@@ -122,6 +123,7 @@ class Process:
     def kill(self) -> None:
         """Kill it; the caller starts it again."""
         self.alive, self.waiting, self.lost_at = False, [], self.world.now
+        self.killed_at = self.world.now
         self.world.tell(self.name, "is killed")
 
     def works(self) -> bool:

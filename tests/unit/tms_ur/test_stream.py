@@ -148,6 +148,6 @@ def test_the_end_of_the_process_ends_the_streams() -> None:
         await console.message()
         await console.state()
         site_client.board.close()
-        await asyncio.wait_for(console.task, 0.5)
+        await asyncio.wait_for(console.task, 30)
 
     play(scenario)
