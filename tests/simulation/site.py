@@ -74,7 +74,8 @@ class Site:
         for process in (self.host, self.scheduler) if on else ():
             self.world.send(f"{process.name} button", lambda process=process: process.handle(process.pressed))  # type: ignore[misc]
         for unit in self.units.values():
-            unit.missed = self.world.now if on and not unit.gateway.works() else unit.missed
+            missed = on and not unit.gateway.works() and unit.second is None  # the latch of a second one hides it
+            unit.missed = self.world.now if missed else unit.missed
             for gateway in unit.gateways():
                 self.world.send(f"{gateway.name} button", lambda gateway=gateway: arrives(gateway))  # type: ignore[misc]
 
