@@ -115,7 +115,7 @@ lint: setup ## ruff, mypy, import-linter
 	cd services && ../$(VENV)/bin/lint-imports --config ../pyproject.toml
 
 conformance: setup ## replay behaviour-tree cases (CASES=path LEVEL=required|strict)
-	@$(PY) tests/conformance/replay.py "$(or $(CASES),tests/conformance/cases.jsonl)" --level "$(or $(LEVEL),required)"
+	@$(PY) tests/conformance/replay_cases.py "$(or $(CASES),tests/conformance/cases.jsonl)" --level "$(or $(LEVEL),required)"
 
 drill: setup ## stop six simulated machines in every way; receipts against the truth (QUICK=1, ROUNDS=4, SEED=7, REPORT=file.md, ONLY="kill rc+tms:ts")
 	@$(VENV)/bin/tms --site $(or $(SITE),drill) drill $(if $(QUICK),--quick) $(if $(ROUNDS),--rounds $(ROUNDS)) $(if $(SEED),--seed $(SEED)) $(if $(LEDGER),--ledger $(LEDGER)) $(if $(ONLY),--only "$(ONLY)") $(if $(REPORT),--report $(REPORT))

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from conformance.case_file import Case, read_cases
-from conformance.replay import difference, replayed, scripted_registry
+from conformance.replay_cases import difference, replayed, scripted_registry
 
 CASES = read_cases(Path(__file__).parent / "cases.jsonl")
 
@@ -34,7 +34,7 @@ def test_engine_is_saner_than_the_library_where_a_case_is_a_quirk() -> None:
 
 
 def replay(*words: str | Path) -> subprocess.CompletedProcess[str]:
-    script = Path(__file__).parent / "replay.py"
+    script = Path(__file__).parent / "replay_cases.py"
     return subprocess.run([sys.executable, script, *words], capture_output=True, text=True, timeout=60, check=False)
 
 
@@ -87,5 +87,5 @@ def test_a_bug_of_the_engine_fails_its_case_only(monkeypatch: pytest.MonkeyPatch
     def broken(*_: object) -> str:
         raise KeyError("x")
 
-    monkeypatch.setattr("conformance.replay.difference", broken)
+    monkeypatch.setattr("conformance.replay_cases.difference", broken)
     assert replayed(CASES[0], scripted_registry(), "required") == "KeyError: 'x'"

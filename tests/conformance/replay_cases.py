@@ -1,4 +1,4 @@
-"""Replay recorded cases and compare: `replay.py CASES [--level required|strict]`.
+"""Replay recorded cases and compare: `replay_cases.py CASES [--level required|strict]`.
 
 Prints failing ids with their first difference, and `N passed, M failed` last. Exit code: 0 all passed, 1 some failed,
 2 the cases cannot be read.
