@@ -112,6 +112,7 @@ lint: setup ## ruff, mypy, import-linter
 	$(VENV)/bin/ruff check .
 	$(VENV)/bin/ruff format --check .
 	$(VENV)/bin/mypy services
+	MYPYPATH=tests $(VENV)/bin/mypy tests/operasim
 	cd services && ../$(VENV)/bin/lint-imports --config ../pyproject.toml
 
 conformance: setup ## replay behaviour-tree cases (CASES=path LEVEL=required|strict)

@@ -97,7 +97,7 @@ def test_it_tells_and_hears(rig: Rig) -> None:
 def test_single_joints_are_registered_late(rig: Rig) -> None:
     rig.until(lambda: ("__subscribe", "zx200/bucket/cmd") in rig.endpoint.commands(), "the last registration")
     commands = rig.endpoint.commands()
-    assert commands.index(("__topic_list", "")) < commands.index(("__subscribe", "zx200/swing/cmd"))
+    assert commands.index(("__subscribe", "zx200/track_cmd")) < commands.index(("__subscribe", "zx200/swing/cmd"))
 
 
 def test_a_pause_keeps_the_connection(rig: Rig) -> None:
