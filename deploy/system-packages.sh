@@ -75,7 +75,7 @@ for group in "$@"; do
     test) tests ;;
     chromium) browser ;;
     japanese) letters ;;
-    spin) need spin spin; need gcc gcc ;;
+    spin) need spin spin ;;
     debootstrap) need debootstrap debootstrap ;;
     setup | containers) "$group" ;;
     *) echo "no group of system packages: $group" >&2; exit 2 ;;

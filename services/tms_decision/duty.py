@@ -79,7 +79,7 @@ class Press:
     shown = False  # the present gateway has shown its latch
 
     def due(self, now: float, alive: bool, latched: bool | None) -> bool:
-        """Whether to stop the machine by a request to its gateway, which is back; `latched`: if it shows something."""
+        """Whether to ask its gateway, which is back, to stop; `latched`: as it shows, None if it shows nothing new."""
         if self.since is None:
             return False
         again = alive and not latched and not self.shown and now - self.since >= HANDED_ON

@@ -4,11 +4,12 @@ import json
 import socket
 import struct
 
+from unity_client import frame
+
 
 def endpoint_frame(destination: str, payload: bytes) -> bytes:
     """A frame of the endpoint: without the NUL that the simulator itself sends."""
-    name = destination.encode()
-    return struct.pack("<I", len(name)) + name + struct.pack("<I", len(payload)) + payload
+    return frame(destination.encode(), payload)
 
 
 def handshake(version: str = "v0.7.0", protocol: str = "ROS2", name: str = "__handshake") -> bytes:

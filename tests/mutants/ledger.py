@@ -1,11 +1,11 @@
 """What is done already, in a file, so that a long series can be continued."""
 
 import hashlib
-import json
 from dataclasses import asdict
 from functools import cache
 from pathlib import Path
 
+from ledger import Lines
 from mutants.catalogue import SERVICES, Mutant
 from mutants.plant import TESTS, Verdict
 
@@ -24,11 +24,8 @@ class Ledger:
     """Verdicts by mutant; they count while the mutant, the code and the first seed stay the same."""
 
     def __init__(self, path: Path | None, seed: int, schedules: int) -> None:
-        self._path, self._seed, self._schedules = path, seed, schedules
-        self._verdicts: dict[str, Verdict] = {}
-        for line in path.read_text(encoding="utf-8").splitlines() if path is not None and path.exists() else []:
-            key, values = json.loads(line)
-            self._verdicts[key] = Verdict(**values)
+        self._lines, self._seed, self._schedules = Lines(path), seed, schedules
+        self._verdicts = {key: Verdict(**values) for key, values in self._lines.read}
 
     def _key(self, mutant: Mutant) -> str:
         return hashlib.sha256(f"{self._seed}\n{code()}\n{mutant}".encode()).hexdigest()[:16]
@@ -44,6 +41,4 @@ class Ledger:
 
     def keep(self, mutant: Mutant, verdict: Verdict) -> None:
         """Add a verdict."""
-        if self._path is not None:
-            with self._path.open("a", encoding="utf-8") as file:
-                file.write(json.dumps([self._key(mutant), asdict(verdict)]) + "\n")
+        self._lines.keep(self._key(mutant), asdict(verdict))

@@ -118,8 +118,7 @@ class Simulated:
         self.site.scheduler.handle(self.site.scheduler.resume)
 
     def _press(self, _: a.Press) -> None:
-        self.site.press(True)
-        self.world.after(PRESSED, lambda: self.site.press(False))
+        self.site.press_for(PRESSED)
 
     def _rearm(self, act: a.Rearm) -> None:
         self.site.arm(self._unit(act), lambda answer: self._told(act, answer.wrong))
@@ -143,21 +142,11 @@ class Simulated:
 
     def _kill(self, act: a.Kill) -> None:
         for process in self._processes(act, act.processes):
-            process.kill()
-            self._start_again(process)
+            self.site.kill(process, BACK)
 
     def _restart(self, act: a.Restart) -> None:
         for process in self._processes(act, (act.process,)):
-            getattr(process, "end", process.kill)()
-            self._start_again(process)
-
-    def _start_again(self, process: Process) -> None:
-        def start() -> None:
-            process.start()
-            self.site.ended(process)
-
-        self.site.ended(process)
-        self.world.after(BACK, start)
+            self.site.restart(process, BACK)
 
     def _freeze(self, act: a.Freeze) -> None:
         for process in self._processes(act, act.processes):

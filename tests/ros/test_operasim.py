@@ -1,9 +1,7 @@
 """The stand-in of OperaSim-PhysX connected to a real bridge: what ROS sees of it, and what reaches its drives."""
 
-import json
 import os
 import re
-import socket
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -19,6 +17,7 @@ from std_msgs.msg import Bool
 
 import programs
 from conftest import PROJECT, wait_until
+from control_client import ControlClient
 from tms_config.config import load_site
 from tms_ros.node import Ros
 from tms_runtime import environment
@@ -71,19 +70,13 @@ class Site:
         self.ros = Ros("operasim_test")
         self.until(lambda: "event=control" in self.log.read_text(), "the control port")
         (control,) = re.findall(r"event=control port=(\d+)", self.log.read_text())
-        self._control = socket.create_connection(("127.0.0.1", int(control)), timeout=LIMIT)
-        self._answers = self._control.makefile("r")
+        self._control = ControlClient(int(control), LIMIT)
+        self.command = self._control.command
 
     def until(self, holds: Callable[[], Any], what: str) -> None:
         wait_until(
             lambda: bool(holds()), LIMIT, lambda: f"{what}\n{self.log.read_text()}\n{self.bridge_log.read_text()}"
         )
-
-    def command(self, line: str) -> dict[str, Any]:
-        self._control.sendall(line.encode() + b"\n")
-        answer = json.loads(self._answers.readline())
-        assert isinstance(answer, dict)
-        return answer
 
     def truth(self) -> dict[str, Any]:
         found = self.command("state")["machines"][MACHINE]
@@ -106,7 +99,6 @@ class Site:
         return publisher
 
     def close(self) -> None:
-        self._answers.close()
         self._control.close()
         for process in (self.simulator, self.bridge):
             process.terminate()

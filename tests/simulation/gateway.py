@@ -272,17 +272,8 @@ class GatewayProcess(PermitProcess):
         self.world.send(f"{self.name} results", lambda: answer(effect))
 
     def _keep(self, effect: f.KeepState | f.KeepDriver | f.KeepReceipt) -> None:
-        plant = self.unit.machine.plant
-        began = self.world.now - plant.turned < UNSEEN  # a person, just now
-        if isinstance(effect, f.KeepReceipt) and effect.receipt.confirmed and plant.moves() and not began:
-            raise Violation(f"confirmed and truly moving: {effect.receipt.cause!r}")
-        if (
-            isinstance(effect, f.KeepReceipt)
-            and not effect.receipt.confirmed
-            and self.core is not None
-            and self.core.latch.cause is None
-        ):
-            raise Violation(f"{self.name} is not latched after a stop that is not confirmed: {effect.receipt.cause!r}")
+        if isinstance(effect, f.KeepReceipt):
+            self._check_receipt(effect.receipt)
         life = self.life
 
         def answer(event: e.Event) -> None:
@@ -291,3 +282,11 @@ class GatewayProcess(PermitProcess):
             self.happens(event)
 
         self.notes.keep(effect, lambda: self.alive and self.life == life, answer)
+
+    def _check_receipt(self, receipt: f.Receipt) -> None:
+        plant = self.unit.machine.plant
+        began = self.world.now - plant.turned < UNSEEN  # a person, just now
+        if receipt.confirmed and plant.moves() and not began:
+            raise Violation(f"confirmed and truly moving: {receipt.cause!r}")
+        if not receipt.confirmed and self.core is not None and self.core.latch.cause is None:
+            raise Violation(f"{self.name} is not latched after a stop that is not confirmed: {receipt.cause!r}")

@@ -84,9 +84,14 @@ def _left(unit: Unit, now: float) -> None:
     """A latched machine that somebody moves is stopped again, if it tells the truth."""
     (begun, ends), core, plant = unit.levers, unit.gateway.core, unit.machine.plant
     unit.latched_since = unit.latched_since if core is not None and core.latch.cause is not None else now
-    unit.lied_at = unit.lied_at if plant.fault == Fault() else now
-    begun = max(begun, unit.lied_at)
-    if not begun + STOP_IN_TIME < now < ends or unit.latched_since > begun or plant.speed == 0.0 or unit.driven:
+    begun = max(begun, unit.lies_since)
+    if (
+        plant.fault != Fault()
+        or not begun + STOP_IN_TIME < now < ends
+        or unit.latched_since > begun
+        or plant.speed == 0.0
+        or unit.driven
+    ):
         return
     if unit.machine.ordered_to_stop < begun and unit.gateway.worked_for() > now - begun:
         raise Violation(f"{unit.name} is latched, moves, and nobody stops it")

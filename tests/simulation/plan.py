@@ -166,6 +166,11 @@ def machines(seed: int) -> int:
     return (1, 1, 1, 1, 1, 1, 2, 2, 2, 3)[random.Random(f"site {seed}").randrange(10)]
 
 
+def passive(seed: int) -> bool:
+    """Whether its machines have a second joint, which no command moves."""
+    return seed % 5 == 0
+
+
 def plan(seed: int) -> list[Planned]:
     """What goes wrong with this seed: at least two faults, and people who re-arm."""
     chance = random.Random(f"plan {seed}")

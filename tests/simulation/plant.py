@@ -120,10 +120,8 @@ class Plant:
         self.frozen = (self.frozen or (stamp, angle, speed)) if self.fault.frozen_stamp else None
         stamp, angle, speed = self.frozen or (stamp, angle, speed)
         self.number += 1
-        places, speeds = ({PASSIVE: (PLACE,)}, {PASSIVE: 0.0}) if self.passive else ({}, {})
-        if not self.fault.mute_joint:
-            places, speeds = {JOINT: (angle,), **places}, {JOINT: speed, **speeds}
-        return SourceSample(now, stamp + clock, self.number, places, speeds)
+        seen = None if self.fault.mute_joint else (angle, speed)
+        return self._sample(now, stamp + clock, self.number, seen)
 
     def other(self, now: float, clock: float) -> SourceSample | None:
         """The message of a second publisher, which says that it stands where it is."""
@@ -131,5 +129,11 @@ class Plant:
             return None
         self.advance(now)
         self.others += 1
-        places, speeds = ({PASSIVE: (PLACE,)}, {PASSIVE: 0.0}) if self.passive else ({}, {})
-        return SourceSample(now, now + clock, self.others, {JOINT: (self.angle,), **places}, {JOINT: 0.0, **speeds})
+        return self._sample(now, now + clock, self.others, (self.angle, 0.0))
+
+    def _sample(self, now: float, stamp: float, number: int, seen: tuple[float, float] | None) -> SourceSample:
+        """A message with this angle and speed, or without the joint that moves."""
+        found = {JOINT: seen} if seen is not None else {}
+        found |= {PASSIVE: (PLACE, 0.0)} if self.passive else {}
+        places = {name: (angle,) for name, (angle, _) in found.items()}
+        return SourceSample(now, stamp, number, places, {name: speed for name, (_, speed) in found.items()})

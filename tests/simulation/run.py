@@ -1,6 +1,5 @@
 """`make simulate`: thousands of schedules of a site in virtual time, side by side."""
 
-import json
 import os
 import random
 import sys
@@ -14,6 +13,7 @@ from typing import Any
 
 import click
 
+from ledger import Lines
 from simulation.plan import PEOPLE, SECONDS
 from simulation.schedule import Result, Schedule, shorter
 
@@ -70,18 +70,12 @@ class Ledger:
     """The batches that are done, in a file, so that a long series can be continued."""
 
     def __init__(self, path: Path | None) -> None:
-        self._path = path
-        lines = path.read_text(encoding="utf-8").splitlines() if path is not None and path.exists() else []
-        self.known: dict[int, Done] = {}
-        for line in lines:
-            first, values = json.loads(line)
-            self.known[first] = _done(values)
+        self._lines = Lines(path)
+        self.known: dict[int, Done] = {first: _done(values) for first, values in self._lines.read}
 
     def keep(self, first: int, done: Done) -> None:
         """Add a batch."""
-        if self._path is not None:
-            with self._path.open("a", encoding="utf-8") as file:
-                file.write(json.dumps([first, vars(done)]) + "\n")
+        self._lines.keep(first, vars(done))
 
 
 def _done(values: dict[str, Any]) -> Done:

@@ -18,6 +18,7 @@ from simulation.plan import (
     Stall,
     Take,
     machines,
+    passive,
     plan,
 )
 from simulation.plant import Fault
@@ -39,13 +40,13 @@ def scene(seed: int) -> list[Planned]:
     if chance.random() >= OFTEN:
         return []
     begin = 3.0 + chance.random() * (SECONDS - QUIET - LASTS)
-    unit, found = chance.randrange(machines(seed)), chance.choice(_scenes(chance, passive=seed % 5 == 0))
+    unit, found = chance.randrange(machines(seed)), chance.choice(_scenes(chance, passive(seed)))
     return [Planned(begin + after, unit, act) for after, act in found]
 
 
-def _scenes(chance: random.Random, passive: bool) -> list[Scene]:
+def _scenes(chance: random.Random, two_joints: bool) -> list[Scene]:
     press, later = Press(0.2), chance.random()
-    lies = [Fault(coast=2.0, mute_joint=True)] if passive else [
+    lies = [Fault(coast=2.0, mute_joint=True)] if two_joints else [
         Fault(coast=2.0, frozen_stamp=True, zero_velocity=True), Fault(coast=2.0, second_publisher=True)]  # fmt: skip
     stop = chance.choice((press, Cancel()))
     return [

@@ -11,7 +11,7 @@ from simulation.plant import Fault
 from simulation.scenes import planned
 from simulation.site import Site
 from simulation.unit import Unit
-from simulation.world import Happened, Process, Violation, World
+from simulation.world import Happened, Violation, World
 
 LOOK = 0.1  # s between looks at the invariants
 AGAIN = 1.0  # s until a process that has ended in order is started again
@@ -40,13 +40,14 @@ class Schedule:
             [f"m{number}" for number in range(p.machines(seed))],
             at_once=seed % 2 == 0,
             planner=seed % 3 == 0,
-            passive=seed % 5 == 0,
+            passive=p.passive(seed),
             slow=seed % 4 == 1,
         )
         self._units = list(self.site.units.values())
         site = self.site
         self._doers: dict[type[Any], Callable[[Unit, Any], None]] = {
-            p.Kill: self._kill, p.Freeze: self._freeze, p.Lie: self._lie, p.Stall: self._stall, p.Press: self._press,
+            p.Kill: self._kill, p.Freeze: self._freeze, p.Lie: self._lie, p.Stall: self._stall,
+            p.Press: lambda _unit, act: site.press_for(act.seconds),
             p.Restart: self._restart, p.Clock: self._clock, p.Rearm: lambda _unit, _act: site.rearm(),
             p.Take: lambda unit, act: site.take(unit, act.seconds),
             p.Cancel: lambda _unit, _act: site.scheduler.handle(site.scheduler.cancel),
@@ -83,11 +84,7 @@ class Schedule:
 
     def _kill(self, unit: Unit, act: p.Kill) -> None:
         for name, again in zip(act.processes, act.again, strict=True):
-            process = self.site.process(name, unit)
-            if process.alive:
-                process.kill()
-                self.site.ended(process)
-                self._start_again(process, again)
+            self.site.kill(self.site.process(name, unit), again)
 
     def _trapped(self, unit: Unit, act: p.Trapped) -> None:
         process = self.site.process(act.process, unit)
@@ -95,9 +92,7 @@ class Schedule:
         def kill() -> None:
             if process.alive:
                 self.world.tell("trap", f"{act.effect} is done")
-                process.kill()
-                self.site.ended(process)
-                self._start_again(process, act.again)
+                self.site.kill(process, act.again)
 
         step = kill if not act.delay else lambda: self.world.after(act.delay, kill)
         for trap in (unit.trap, self.site.trap):
@@ -106,18 +101,8 @@ class Schedule:
     def _restart(self, unit: Unit, act: p.Restart) -> None:
         """A scheduler that ends in order interrupts its runs first: that is like a cancel, and not done here."""
         process = self.site.process(act.process, unit)
-        if process.alive and process is not self.site.scheduler:
-            getattr(process, "end", process.kill)()
-            self.site.ended(process)
-            self._start_again(process, AGAIN)
-
-    def _start_again(self, process: Process, seconds: float) -> None:
-        def start() -> None:
-            if not process.alive:
-                process.start()
-                self.site.ended(process)
-
-        self.world.after(seconds, start)
+        if process is not self.site.scheduler:
+            self.site.restart(process, AGAIN)
 
     def _freeze(self, unit: Unit, act: p.Freeze) -> None:
         for name in act.processes:
@@ -134,10 +119,6 @@ class Schedule:
         else:
             notes.stalls = self.site.scheduler.disk.stalls = until
         self.world.tell("disk", f"{'is full' if act.full else 'stalls'} for {act.seconds:.2f} s")
-
-    def _press(self, _: Unit, act: p.Press) -> None:
-        self.site.press(True)
-        self.world.after(act.seconds, lambda: self.site.press(False))
 
     def _clock(self, unit: Unit, act: p.Clock) -> None:
         self.world.tell("clock", f"of {unit.name} {'itself' if act.machine else 'at its PC'} is set by {act.seconds} s")

@@ -80,30 +80,31 @@ class Scheduler(PermitProcess):
     def begin_some(self) -> None:
         """Begin a run on some of the machines that are free; after a crash, an operator resumes one if that goes."""
         random = self.world.random
-        held = {name for run in self.runs.values() for name in run.task.machines()}
-        free = [name for name in self.site.units if name not in held and self.held_back(name) is None]
+        free = [name for name in self._free() if self.held_back(name) is None]
         if self.life > 1 and self.life % 2 == 0:
-            free = self._resumed(free)
+            free = self._resumed(free, " at once")
         if free:
             self._last += 1
             machines = random.sample(free, random.randint(1, len(free)))
             self.begin_run(f"run-{self.life}-{self._last}", some_task(random, machines))
         self.later(PAUSE * (1.0 + random.random()), self.begin_some)
 
-    def _resumed(self, free: list[str]) -> list[str]:
-        """Resume an interrupted run whose machines are all free; returns those that are left."""
-        for run_id, lines in list(self.disk.checkpoints.items()):
+    def _resumed(self, free: list[str], how: str) -> list[str]:
+        """Resume the first interrupted run whose machines are all free; returns those that are left."""
+        for run_id, lines in self.disk.checkpoints.items():
             past = InterruptedRun(lines)
-            if (
-                past.header is not None
-                and past.closed
-                and run_id not in self.runs
-                and {*past.header.machines} <= {*free}
-            ):
-                self.world.tell("operator", f"resumes {run_id} at once")
-                self.begin_run(run_id, past.header.values["task"], past)
-                return [name for name in free if name not in past.header.machines]
+            header = past.header
+            if header is None or not past.closed or run_id in self.runs or not {*header.machines} <= {*free}:
+                continue
+            self.world.tell("operator", f"resumes {run_id}{how}")
+            self.begin_run(run_id, header.values["task"], past)
+            return [name for name in free if name not in header.machines]
         return free
+
+    def _free(self) -> list[str]:
+        """Machines that no run has."""
+        held = {name for run in self.runs.values() for name in run.task.machines()}
+        return [name for name in self.site.units if name not in held]
 
     def begin_run(self, run_id: str, task: Task, past: InterruptedRun | None = None) -> None:
         """Begin a run, or go on with one that was interrupted."""
@@ -115,15 +116,7 @@ class Scheduler(PermitProcess):
 
     def resume(self) -> None:
         """An operator resumes an interrupted run, if there is one and its machines are free."""
-        held = {name for run in self.runs.values() for name in run.task.machines()}
-        for run_id, lines in self.disk.checkpoints.items():
-            past = InterruptedRun(lines)
-            header = past.header
-            if header is None or not past.closed or run_id in self.runs or held & set(header.machines):
-                continue
-            self.world.tell("operator", f"resumes {run_id}")
-            self.begin_run(run_id, header.values["task"], past)
-            return
+        self._resumed(self._free(), "")
 
     def cancel(self) -> None:
         """An operator cancels a run."""

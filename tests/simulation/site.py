@@ -60,6 +60,27 @@ class Site:
                 if relay is process:
                     self.host.noticed(unit, name)
 
+    def kill(self, process: Process, again: float) -> None:
+        """Kill a process, which is started again after some seconds."""
+        if process.alive:
+            process.kill()
+            self._start_again(process, again)
+
+    def restart(self, process: Process, again: float) -> None:
+        """End a process in order, where it knows how to; it is started again after some seconds."""
+        if process.alive:
+            getattr(process, "end", process.kill)()
+            self._start_again(process, again)
+
+    def _start_again(self, process: Process, seconds: float) -> None:
+        def start() -> None:
+            if not process.alive:
+                process.start()
+                self.ended(process)
+
+        self.ended(process)
+        self.world.after(seconds, start)
+
     # people
 
     def press(self, on: bool) -> None:
@@ -78,6 +99,11 @@ class Site:
             unit.missed = self.world.now if missed else unit.missed
             for gateway in unit.gateways():
                 self.world.send(f"{gateway.name} button", lambda gateway=gateway: arrives(gateway))  # type: ignore[misc]
+
+    def press_for(self, seconds: float) -> None:
+        """An operator presses the button, and releases it."""
+        self.press(True)
+        self.world.after(seconds, lambda: self.press(False))
 
     def rearm(self) -> None:
         """An operator looks at every machine, and arms those that stand."""
@@ -178,7 +204,7 @@ class Site:
     def fault(self, unit: Unit, fault: Fault) -> None:
         """A machine becomes unkind, or kind again."""
         self.world.tell(unit.name, f"is now {fault}")
-        unit.lies_since = self.world.now
+        unit.lies_since = self.world.now if fault != unit.machine.plant.fault else unit.lies_since
         unit.machine.plant.fault = fault
 
 

@@ -67,7 +67,6 @@ class Unit:
         self.driven = False  # a person has taken it
         self.missed = float("inf")  # when a press came that its gateway has not heard
         self.latched_since = 0.0
-        self.lied_at = 0.0  # when it last had a fault
         self.lies_since = 0.0  # when it last became unkind, or kind again
         self.levers = 0.0, 0.0  # when somebody moves it by its levers without a word, from and to
         self.receipts: list[f.Receipt] = []

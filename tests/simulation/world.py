@@ -122,8 +122,8 @@ class Process:
 
     def kill(self) -> None:
         """Kill it; the caller starts it again."""
-        self.alive, self.waiting, self.lost_at = False, [], self.world.now
-        self.killed_at = self.world.now
+        self.alive, self.waiting = False, []
+        self.lost_at = self.killed_at = self.world.now
         self.world.tell(self.name, "is killed")
 
     def works(self) -> bool:

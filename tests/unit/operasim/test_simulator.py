@@ -1,9 +1,7 @@
 """The stand-in of OperaSim-PhysX as it runs, in a thread, steered by its control port; and its program."""
 
-import json
 import os
 import signal
-import socket
 import subprocess
 import sys
 import threading
@@ -15,6 +13,7 @@ import pytest
 from click.testing import CliRunner
 
 from conftest import PROJECT, wait_until
+from control_client import ControlClient
 from fake_endpoint import FakeEndpoint, endpoint_frame, handshake
 from operasim import model
 from operasim.cdr import Writer
@@ -36,14 +35,8 @@ class Rig:
         self.simulator = Simulator(settings, self._event)
         self._thread = threading.Thread(target=self.simulator.run, daemon=True)
         self._thread.start()
-        self._control = socket.create_connection(("127.0.0.1", self.told("control")[0]["port"]), timeout=LIMIT)
-        self._answers = self._control.makefile("r")
-
-    def command(self, line: str) -> dict[str, Any]:
-        self._control.sendall(line.encode() + b"\n")
-        answer = json.loads(self._answers.readline())
-        assert isinstance(answer, dict)
-        return answer
+        self._control = ControlClient(self.told("control")[0]["port"], LIMIT)
+        self.command = self._control.command
 
     def until(self, holds: Callable[[], bool], what: str) -> None:
         def done() -> bool:
@@ -67,7 +60,6 @@ class Rig:
         self.simulator.end()
         self._thread.join(LIMIT)
         assert not self._thread.is_alive()
-        self._answers.close()
         self._control.close()
         self.endpoint.close()
 

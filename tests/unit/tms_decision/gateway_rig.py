@@ -143,3 +143,20 @@ def ready(**more: Any) -> Rig:
     rig = Rig(**more).run(3.0)
     rig.done.clear()
     return rig
+
+
+def latched(**more: Any) -> Rig:
+    """A gateway whose machine a person has stopped, and that stands."""
+    rig = ready(**more)
+    rig.happens(e.Signal(True))
+    rig.happens(e.Signal(False))
+    return rig.run(2.0)
+
+
+def rearming() -> tuple[Rig, f.KeepState]:
+    """A latched gateway whose re-arm waits for the disk, and the note that it waits for."""
+    rig = latched()
+    rig.happens(e.RearmAsked(1, "", "t0ken"))
+    rig.disk_answers = False
+    rig.happens(e.RearmAsked(2, "t0ken", ""))
+    return rig, rig.all(f.KeepState)[-1]

@@ -46,7 +46,7 @@ from tms_decision.reasons import (
     WhileMoving,
 )
 from tms_reason.reason import Foreign, Reason
-from unit.tms_decision.gateway_rig import GOAL, LEAF, RUN, SERVER, Rig, ready
+from unit.tms_decision.gateway_rig import GOAL, LEAF, RUN, SERVER, Rig, latched, ready, rearming
 
 FULL: Reason = Foreign("the disk is full")
 
@@ -408,24 +408,14 @@ def test_a_re_arm_takes_two_steps_and_releases_the_machine() -> None:
 
 
 def test_a_re_arm_counts_only_when_its_note_is_on_the_disk() -> None:
-    rig = ready()
-    rig.happens(e.Signal(True))
-    rig.happens(e.Signal(False))
-    rig.run(2.0)
+    rig = latched()
     rig.disk_problem = FULL
     answer = rig.rearm()
     assert answer.wrong == NotKept(FULL) and not answer.armed and rig.gateway.latch.cause == SoftwareStop()
 
 
 def test_a_stop_while_the_note_of_a_re_arm_is_written_keeps_the_machine_latched() -> None:
-    rig = ready()
-    rig.happens(e.Signal(True))
-    rig.happens(e.Signal(False))
-    rig.run(2.0)
-    rig.happens(e.RearmAsked(1, "", "t0ken"))
-    rig.disk_answers = False
-    rig.happens(e.RearmAsked(2, "t0ken", ""))
-    note = rig.all(f.KeepState)[-1]
+    rig, note = rearming()
     rig.happens(e.Signal(True))
     rig.happens(e.NoteKept(note.number))
     answer = rig.all(f.Rearmed)[-1]
@@ -434,14 +424,7 @@ def test_a_stop_while_the_note_of_a_re_arm_is_written_keeps_the_machine_latched(
 
 
 def test_a_stop_of_a_run_that_ends_does_not_undo_the_note_of_a_re_arm() -> None:
-    rig = ready()
-    rig.happens(e.Signal(True))
-    rig.happens(e.Signal(False))
-    rig.run(2.0)
-    rig.happens(e.RearmAsked(1, "", "t0ken"))
-    rig.disk_answers = False
-    rig.happens(e.RearmAsked(2, "t0ken", ""))
-    note = rig.all(f.KeepState)[-1]
+    rig, note = rearming()
     rig.happens(e.StopAsked(3, Foreign("the end of a run"), True))
     rig.run(1.0)
     assert rig.all(f.KeepReceipt)[-1].receipt.confirmed

@@ -35,16 +35,7 @@ from tms_decision.reasons import (
 from tms_proof.reasons import Frozen
 from tms_proof.standstill import JOINTS, ODOM
 from tms_reason.reason import Foreign
-from unit.tms_decision.gateway_rig import GOAL, RUN, Rig, ready
-
-
-def latched(**more: Any) -> Rig:
-    """A machine that a person has stopped, and that stands."""
-    rig = ready(**more)
-    rig.happens(e.Signal(True))
-    rig.happens(e.Signal(False))
-    rig.run(2.0)
-    return rig
+from unit.tms_decision.gateway_rig import GOAL, RUN, Rig, latched, ready, rearming
 
 
 def refused(rig: Rig) -> Any:
@@ -256,10 +247,7 @@ def test_a_machine_that_shakes_is_not_armed() -> None:
 
 
 def test_two_re_arms_wait_for_their_own_notes() -> None:
-    rig = latched()
-    rig.happens(e.RearmAsked(1, "", "t0ken"))
-    rig.disk_answers = False
-    rig.happens(e.RearmAsked(2, "t0ken", ""))
+    rig, _ = rearming()
     rig.happens(e.RearmAsked(3, "", "other"))
     note = rig.all(f.KeepState)[-1].number
     rig.happens(e.NoteKept(note - 1))
