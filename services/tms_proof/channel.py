@@ -1,8 +1,8 @@
 """One quantity of a machine, such as a joint's angle or the place of its base, and whether it moved. Pure logic."""
 
+import itertools
 import math
 from dataclasses import dataclass
-from itertools import pairwise
 
 from tms_proof.reasons import PositionsMove, VelocitiesMove
 from tms_reason.reason import Reason
@@ -123,17 +123,22 @@ class Channel:
         seconds = last.stamped - first.stamped
         if seconds <= 0 or self._hidden(recent):
             return None
-        away = max(0.0, self._distance(first.place, last.place) - self._limits.resolution)
-        mean = away / (seconds * self._limits.scale)
-        if mean > CLEARLY * limit and max(reported) < limit:
+        away, seconds = self._way(first, last), seconds * self._limits.scale
+        if away / seconds > CLEARLY * limit and max(reported) < limit:
             return PositionsMove()
-        if min(reported) > CLEARLY * limit and mean < limit:
+        # The way and not how far it came: a joint that turns back is soon where it was.
+        gone = sum(itertools.starmap(self._way, itertools.pairwise(recent)))
+        if min(reported) > CLEARLY * limit and gone / seconds < limit:
             return VelocitiesMove()
         return None
 
+    def _way(self, before: ChannelSample, after: ChannelSample) -> float:
+        """How far it went at least between two samples [rad or m]."""
+        return max(0.0, self._distance(before.place, after.place) - self._limits.resolution)
+
     def _hidden(self, samples: tuple[ChannelSample, ...]) -> bool:
         """Whether messages are missing between samples, or a stand-in is too fast for its period."""
-        gaps = (after.stamped - before.stamped for before, after in pairwise(samples))
+        gaps = (after.stamped - before.stamped for before, after in itertools.pairwise(samples))
         return any(gap * self._limits.scale > HIDES for gap in gaps)
 
     def _moved(self, received: float, stamped: float, place: Place, then: float, measured: float, now: Place) -> bool:

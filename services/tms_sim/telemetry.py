@@ -50,12 +50,12 @@ class Telemetry:
 
     def tick(self) -> None:
         """Let the machine's time catch up with ours, and publish. The timer calls this."""
-        now = monotonic()
+        now, measured = monotonic(), unix_ns()
         self._machine.step(min(now - self._stepped, LAG) * self._speed)
         self._stepped = now
         self._truth.publish()
         self._ticks += 1
-        reading = self._read()
+        reading = self._read(measured)
         reported = self._sensors.apply(reading, self._machine.fault)
         for topic in self._topics:
             if topic.due(self._ticks, STEP_PERIOD):
@@ -64,11 +64,11 @@ class Telemetry:
         if self._ticks % TF_EVERY == 0:
             self._publish_frames(reading)
 
-    def _read(self) -> Reading:
+    def _read(self, measured: int) -> Reading:
         arm, base = self._machine.arm, self._machine.base
         place = (base.x, base.y, base.yaw) if base else self._origin
         speeds = (base.v + base.leak, base.w) if base else (0.0, 0.0)
-        return Reading(unix_ns(), tuple(arm.positions), tuple(arm.velocities), place, speeds)
+        return Reading(measured, tuple(arm.positions), tuple(arm.velocities), place, speeds)
 
     def _publish_frames(self, reading: Reading) -> None:
         now = (reading.place, reading.positions)

@@ -170,6 +170,15 @@ def test_velocities_that_go_on_while_positions_stand_are_implausible() -> None:
     assert trouble is not None and trouble.reason.find(VelocitiesMove) is not None
 
 
+def test_a_joint_that_turns_back_is_no_lie() -> None:
+    """It is where it was seven messages ago, and each velocity says that it moves."""
+    reporter = Reporter(watch())
+    reporter.run(1.0, 0.3)
+    for _ in range(4):
+        reporter.run(PERIOD, -0.3 * 3 / 4)
+        assert reporter.watch.trouble(reporter.now) is None
+
+
 def test_a_reported_stop_before_the_stop_does_not_count() -> None:
     """It says 0.3 s before the stop that it stands, and moves on."""
     reporter = Reporter(watch())
