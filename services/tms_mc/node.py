@@ -1,0 +1,32 @@
+"""Process `<machine>:mc`: serves the actions of a machine's border, and commands its drives."""
+
+from control_msgs.action import FollowJointTrajectory
+
+from tms_control.arm_motion import Ending
+from tms_mc.gateway_watch import GatewayWatch
+from tms_mc.guard import Guard
+from tms_mc.joint_servers import TURNS, JointServers
+from tms_mc.joints import Joints
+from tms_runtime.app import App
+
+
+def start(app: App) -> None:
+    """Serve what the border names."""
+    gateway = GatewayWatch(app)
+    guard = Guard(app, gateway)
+    app.ready_when(guard.unready)
+    _serve_joints(app, guard, gateway)
+
+
+def _serve_joints(app: App, guard: Guard, gateway: GatewayWatch) -> None:
+    border, machine = app.site.border(app.machine), app.machine
+    joints = Joints(app, gateway)
+    guard.watch(joints.unready, lambda: joints.stands, lambda why: joints.stop(why, Ending.ABORTED))
+    servers = JointServers(joints, guard)
+    if border.trajectory:
+        name = f"/{machine}/{border.trajectory}"
+        app.ros.serve(FollowJointTrajectory, name, servers.follow, servers.refuse_trajectory)
+    for field in TURNS:
+        if own := getattr(border, field):
+            action, run, refuse = servers.turn(field)
+            app.ros.serve(action, f"/{machine}/{own}", run, refuse)
