@@ -92,6 +92,7 @@ class Joints:
         with self._lock:
             if not self.arm.busy:
                 return
+            self._app.log.info("stopping", reason=why, gateway=self._gateway.alive)
             if self._gateway.alive:
                 self.arm.silence(self._time(), verdict)
             else:

@@ -72,8 +72,10 @@ class OperaSim:
         return found
 
     def stands(self) -> bool:
-        """Whether no joint moves."""
-        return all(joint is None or abs(joint["velocity"]) < 1e-3 for joint in self.truth()["joints"].values())
+        """Whether no joint moves, some time after the start, when all of them begin to."""
+        joints = self.truth()["joints"].values()
+        still = all(joint is None or abs(joint["velocity"]) < 1e-3 for joint in joints)
+        return still and self.command("state")["time"] > 1.0
 
     def joint(self, name: str) -> dict[str, float]:
         found = self.truth()["joints"][name]
