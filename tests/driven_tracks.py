@@ -1,5 +1,6 @@
 """The stand-in of OperaSim-PhysX under a trip, in virtual time: poses and commands come late, some poses never."""
 
+import math
 import random
 from collections.abc import Callable
 from functools import cache
@@ -41,6 +42,9 @@ class DrivenTracks:
         self.machine = Machine(machine(name), Placed(model=name, place=(0.0, 0.0, 0.0)), Unknowns(yaw_gain=gain))
         self.estimate = TrackEstimate(model(name).response[DRIVE])
         self.blind = False  # no pose arrives
+        self.noise = 0.0  # m, rad
+        self.slip = 0.0  # m/s to the side while it turns
+        self.latest = LATEST
         self.sent: list[tuple[float, Command]] = []
         self.been: list[Pose] = []
         self._tick = 0
@@ -76,15 +80,21 @@ class DrivenTracks:
         if self._tick % ENGINE == 0:
             self.step_engine()
         if self._tick % POSES.get(self.name, OFTEN) == 0 and not self.blind:
-            self._poses.append((self._late(), PoseSample(self.now, self.pose)))
+            self._poses.append((self._late(), PoseSample(self.now, self._noisy())))
         if self._tick % CONTROL == 0:
             self._control(trip)
+
+    def _noisy(self):
+        return Pose(*(one + self._chance.gauss(0, self.noise) for one in self.pose))
 
     def step_engine(self) -> None:
         while self._commands and self._commands[0][0] <= self.now:
             command = self._commands.pop(0)[1]
             self.machine.tracks.twist(command.v, command.w)
         self.machine.physics(ENGINE * TICK)
+        w=self.machine.tracks.turn
+        b=self.machine.base
+        b.x += -math.sin(b.yaw)*self.slip*(w>0.05)*.02; b.y += math.cos(b.yaw)*self.slip*(w>0.05)*.02
         self.been.append(self.pose)
 
     def _control(self, trip: Trip) -> None:
@@ -97,4 +107,4 @@ class DrivenTracks:
             self._commands.append((self._late(), command))
 
     def _late(self) -> float:
-        return self.now + self._chance.uniform(0.0, LATEST)
+        return self.now + self._chance.uniform(0.0, self.latest)

@@ -5,10 +5,11 @@ turn, so that an arc of more than half a turn has one meaning.
 """
 
 import math
+from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import accumulate, pairwise
+from itertools import accumulate, groupby, pairwise
 from typing import NamedTuple
 
 SAME_PLACE = 1e-3  # m
@@ -93,7 +94,7 @@ class Run:
         """The pose after some metres; beyond the end, straight on."""
         if way >= self.length:
             return Piece(self.pieces[-1].end, 1.0, 0.0, self.direction).at(way - self.length)
-        number = max(i for i, start in enumerate(self.starts[:-1]) if start <= max(way, 0.0))
+        number = bisect_right(self.starts, max(way, 0.0)) - 1
         return self.pieces[number].at(way - self.starts[number])
 
     def project(self, place: Pose, near: float) -> float:
@@ -126,14 +127,9 @@ class Path:
     def parts(self) -> tuple[Part, ...]:
         """What is driven without a stop, and turns on the spot."""
         found: list[Part] = []
-        for piece in self.pieces:
-            last = found[-1] if found else None
-            if not piece.length:
-                found.append(piece)
-            elif isinstance(last, Run) and last.direction == piece.direction:
-                found[-1] = Run((*last.pieces, piece))
-            else:
-                found.append(Run((piece,)))
+        for direction, pieces in groupby(self.pieces, lambda piece: piece.direction if piece.length else 0):
+            same = tuple(pieces)
+            found += [Run(same)] if direction else same
         return tuple(found)
 
     def poses(self, step: float) -> Iterator[Pose]:

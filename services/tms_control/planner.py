@@ -1,13 +1,13 @@
 """Plans paths of tracks between poses: of all candidates, the one that takes least time.
 
-Candidates are the turn on the spot, line and turn; and arc, line and arc (the words of L. E. Dubins, 1957); each forward
+Candidates are turn on the spot, line, turn; and arc, line, arc (the words of L. E. Dubins, 1957); each of them forward
 and in reverse. Reverse is slower, so that only a short way is taken so. There are no obstacles.
 """
 
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import product
+from itertools import pairwise, product
 from typing import NamedTuple
 
 from tms_config.models import Drive
@@ -51,9 +51,7 @@ class Pace:
 
     def total(self, pieces: Sequence[Piece]) -> float:
         """How long they take, one after the other [s]."""
-        changes = sum(
-            a.length > 0 < b.length and a.direction != b.direction for a, b in zip(pieces, pieces[1:], strict=False)
-        )
+        changes = sum(a.length > 0 < b.length and a.direction != b.direction for a, b in pairwise(pieces))
         return math.fsum(map(self.seconds, pieces)) + STOP * changes
 
 

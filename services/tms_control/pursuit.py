@@ -1,14 +1,14 @@
 """Follows a path: regulated pure pursuit along runs, and turns on the spot in between. Pure logic.
 
-Pure pursuit after R. C. Coulter (1992): the machine is always on the arc to a place of the path some metres ahead. It is
-regulated as in Nav2: slower in curves and towards the end. Figures: the path follower of the real mst110cr.
+Pure pursuit after R. C. Coulter (1992): the machine is always on the arc to a place of the path some metres ahead. It
+is regulated as in Nav2: slower in curves and towards the end. Figures: the path follower of the real mst110cr.
 """
 
 import math
 from dataclasses import dataclass
 
 from tms_config.models import Drive
-from tms_control.path import Part, Path, Piece, Pose, Run
+from tms_control.path import Part, Path, Piece, Run
 from tms_control.planner import RADIUS, REVERSE
 from tms_control.track_estimate import ZERO, Command, TrackState
 from tms_control.track_servo import TrackServo

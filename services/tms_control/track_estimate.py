@@ -21,7 +21,7 @@ SUBSTEP = 0.02  # s
 BRAKE = 0.1  # s, lag of the brakes, far shorter than that of any drive; a simulator's hold almost at once
 BRAKES = 1e-3  # m/s, rad/s: smaller commands brake
 GAP = 0.5  # s between poses, after which nothing is learned from the way in between
-BELIEF = 0.5  # share of what the model was off in a speed that is taken over with each pose
+BELIEF = 0.2  # s, time constant with which measured speeds are believed more than those of the model
 TRIM_TIME = 1.5  # s, time constant of the trims
 MOST_TRIM, MOST_TURN_TRIM = 0.3, 0.15  # m/s, rad/s
 FIRST_GAIN, LEAST_GAIN, MOST_GAIN = 0.6, 0.25, 1.25
@@ -62,12 +62,12 @@ class TrackState:
 
     @property
     def stands(self) -> bool:
-        """Whether it stands, for all that a controller needs."""
-        return abs(self.v) < 0.02 and abs(self.r) < 0.01
+        """Whether it stands, as far as poses that jitter by some millimetres can tell."""
+        return abs(self.v) < 0.05 and abs(self.r) < 0.03
 
 
 class TrackEstimate:
-    """Kept for as long as the machine runs. Times are seconds of the machine's clock."""
+    """Kept for as long as the machine's clock goes on, whose seconds all times are. It may pause, not be set back."""
 
     def __init__(self, response: Response) -> None:
         self.lag = response.lag
@@ -81,12 +81,12 @@ class TrackEstimate:
         self._products, self._squares = FIRST_WEIGHT * FIRST_GAIN, FIRST_WEIGHT  # rad2, of the fit of the gain
 
     def age(self, now: float) -> float:
-        """How old the last pose is [s]; infinite without one."""
-        return math.inf if self._last is None else now - self._last.time
+        """How old the last pose is [s]; infinite without one, and a pose of the future is as bad as an old one."""
+        return math.inf if self._last is None else abs(now - self._last.time)
 
     def sent(self, now: float, command: Command) -> None:
         """Take a command that the machine gets now; it counts until the next one."""
-        self._times.append(now + self._dead_time)
+        self._times.append(max([now + self._dead_time, *self._times[-1:]]))
         self._commands.append(command)
 
     def measured(self, sample: PoseSample) -> None:
@@ -104,7 +104,7 @@ class TrackEstimate:
         del self._times[:keep], self._commands[:keep]
 
     def at(self, now: float) -> TrackState:
-        """Where it is, and how it moves, by the last pose and the commands since; when a command of now takes effect."""
+        """Where it is and how it moves when a command of now takes effect, by the last pose and the commands since."""
         if self._last is None:
             return self._state
         return self._moved(self._state, self._last.time, now + self._dead_time)[0]
@@ -113,7 +113,8 @@ class TrackEstimate:
         before, braked = self._state.pose, self._in_effect(sample.time).brakes
         ahead = model.pose.seen(sample.pose)[0]
         turn = model.pose.off(sample.pose.yaw)
-        v_off, r_off = BELIEF * ahead / seconds, BELIEF * turn / seconds
+        belief = -math.expm1(-seconds / BELIEF)
+        v_off, r_off = belief * ahead / seconds, belief * turn / seconds
         self._state = replace(model, pose=sample.pose, v=model.v + v_off, r=model.r + r_off)
         if braked:
             return

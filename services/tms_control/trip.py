@@ -52,7 +52,7 @@ class Missed:
 
 @dataclass(frozen=True)
 class Task:
-    """What a goal asks: stages, after each of which the machine stands; the goals within a stage but its last are passed."""
+    """What a goal asks: stages, after each of which it stands. All goals of a stage but the last are only passed."""
 
     stages: tuple[tuple[Goal, ...], ...]
     goes_on: bool = False  # after a stage that cannot be reached
@@ -105,6 +105,7 @@ class Trip:
         self._reached: tuple[int, ...] = ()  # pieces of the present path after which the other goals are reached
         self._path = Path((_nothing(task),))
         self._pursuit: Pursuit | None = None  # None: it shall stand
+        self._begun_pieces = 0  # of the path, behind it when the present one began
         self._stands_since: float | None = None
         self._seen = now  # s, when a pose was last young enough
         self._ending: Verdict | None = None  # once it stands
@@ -132,12 +133,12 @@ class Trip:
     def feedback(self, now: float) -> Feedback:
         """How far it is."""
         pose, goals = self._estimate.at(now).pose, self._task.stages[self._stage]
-        goal, rest, left = goals[-1], (), 0.0
-        if self._pursuit is not None:
-            rest, left = self._path.pieces[self._pursuit.pieces_done :], self._pursuit.left
+        if self._pursuit is None:
+            left = pose.away(Pose(goals[-1].x, goals[-1].y, 0.0))
+            seconds = left / self._drive.velocity
         else:
-            left = pose.away(Pose(goal.x, goal.y, 0.0))
-        seconds = self._pace().total(rest) if rest else left / self._drive.velocity
+            left = self._pursuit.left
+            seconds = self._pace().total(self._path.pieces[self._pursuit.pieces_done :])
         return Feedback(pose, now - self._begun, left, seconds, self._stage, len(goals) - self._passed)
 
     def _unseen(self, now: float) -> Command:
@@ -156,6 +157,9 @@ class Trip:
 
     def _follow(self, now: float, state: TrackState, pursuit: Pursuit) -> Command:
         off = pursuit.deviation(state)
+        if pursuit.pieces_done != self._begun_pieces:
+            self._begun_pieces = pursuit.pieces_done
+            self._progress.restart()  # two turns, there and back, end where they began
         if self._progress.lacks(now, state.pose):
             self._give_up(NoProgress(PATIENCE))
         elif off.beside > BESIDE or off.turned > ASKEW:
@@ -191,18 +195,18 @@ class Trip:
         elif self._attempts >= (1 if self._task.told else ATTEMPTS):
             self._give_up(ShortOfPose(away, turned, self._attempts))
         else:
-            self._plan(pose)
+            near = self._attempts > 0 and away <= NEAR
+            self._plan(pose, (Goal(pose.x, pose.y, goal.yaw),) if near else self._task.stages[self._stage])
 
-    def _plan(self, pose: Pose) -> None:
+    def _plan(self, pose: Pose, goals: Sequence[Goal]) -> None:
+        """Begin a way to the goals that are left."""
         self._attempts += 1
-        goals = self._task.stages[self._stage]
         if self._task.told is not None:
             self._path, self._reached = self._task.told, ()
         else:
-            rest = goals[min(self._passed, len(goals) - 1) :]
-            found = plan(pose, rest, self._pace())
+            found = plan(pose, goals[min(self._passed, len(goals) - 1) :], self._pace())
             self._path, self._reached = found.path, found.reached[:-1]
-        self._pursuit = Pursuit(self._path, self._drive, self._servo)
+        self._pursuit, self._begun_pieces = Pursuit(self._path, self._drive, self._servo), 0
         self._progress.restart()
 
     def _next_stage(self) -> None:
