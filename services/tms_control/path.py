@@ -32,6 +32,10 @@ class Pose(NamedTuple):
         """How far to turn to a heading the short way, in [-pi, pi]."""
         return math.remainder(yaw - self.yaw, math.tau)
 
+    def ahead(self, way: float) -> "Pose":
+        """The place some metres ahead, with the same heading."""
+        return Pose(self.x + way * math.cos(self.yaw), self.y + way * math.sin(self.yaw), self.yaw)
+
     def seen(self, other: "Pose") -> tuple[float, float]:
         """Where another place is from here: forward and to the left [m]."""
         dx, dy = other.x - self.x, other.y - self.y

@@ -1,10 +1,12 @@
 """Where a machine with tracks is now, how fast it moves, and how its tracks answer. Pure logic.
 
 Poses come seldom and late. In between, a model moves by the commands that were sent: a dead time, then a first-order
-lag for speed and yaw rate. With each pose the model is corrected, and two things are learned:
+lag for speed and yaw rate. With each pose the model is corrected, and three things are learned:
 
 - the yaw gain: tracks scrub when they turn, so that the yaw rate is an unknown part of the one commanded, 1/3 to 1 in
   OperaSim-PhysX. It is fitted by least squares to the turns measured and those that a gain of 1 would have made.
+- the pivot: the place of the machine that stays where it is in a turn on the spot. In OperaSim-PhysX the middle wheels
+  hold it, and those of ic120 are half a metre behind the place whose pose is told.
 - trims: what the tracks do beyond a command, for instance by an integral part in the drive that outlives a stop.
   They are the integral of what the model was off.
 """
@@ -27,6 +29,9 @@ MOST_TRIM, MOST_TURN_TRIM = 0.3, 0.15  # m/s, rad/s
 FIRST_GAIN, LEAST_GAIN, MOST_GAIN = 0.6, 0.25, 1.25
 FIRST_WEIGHT = 2e-4  # rad2, what the first gain counts: two poses of a turn outweigh it
 FORGETS = 1.0  # rad of commanded turn, after which a measured one counts 1/e
+PIVOT_WEIGHT = 2e-3  # rad2, what a pivot at 0 counts at first
+MOST_PIVOT = 1.0  # m
+KICK, KICK_TURN = 0.25, 0.1  # m, rad off the model in one step: something else than the tracks has moved it
 
 
 class Command(NamedTuple):
@@ -78,6 +83,8 @@ class TrackEstimate:
         self._state = TrackState(Pose(0.0, 0.0, 0.0))  # at the last pose
         self._times: list[float] = []  # s, when commands take effect
         self._commands: list[Command] = []
+        self.pivot = 0.0  # m ahead of the place whose pose is told
+        self._sides, self._turns = 0.0, PIVOT_WEIGHT  # m rad, rad2, of the fit of the pivot
         self._products, self._squares = FIRST_WEIGHT * FIRST_GAIN, FIRST_WEIGHT  # rad2, of the fit of the gain
 
     def age(self, now: float) -> float:
@@ -110,21 +117,35 @@ class TrackEstimate:
         return self._moved(self._state, self._last.time, now + self._dead_time)[0]
 
     def _learn(self, model: TrackState, full_turn: float, sample: PoseSample, seconds: float) -> None:
-        before, braked = self._state.pose, self._in_effect(sample.time).brakes
-        ahead = model.pose.seen(sample.pose)[0]
-        turn = model.pose.off(sample.pose.yaw)
+        before, turn = self._state.pose, model.pose.off(sample.pose.yaw)
+        self._state = replace(model, pose=sample.pose)
+        if model.pose.away(sample.pose) > KICK or abs(turn) > KICK_TURN:
+            return
         belief = -math.expm1(-seconds / BELIEF)
-        v_off, r_off = belief * ahead / seconds, belief * turn / seconds
-        self._state = replace(model, pose=sample.pose, v=model.v + v_off, r=model.r + r_off)
-        if braked:
+        v_off, r_off = belief * model.pose.seen(sample.pose)[0] / seconds, belief * turn / seconds
+        self._state = replace(self._state, v=model.v + v_off, r=model.r + r_off)
+        if self._in_effect(sample.time).brakes:
             return
         share = self.lag / TRIM_TIME
         self.trim = _within(self.trim + share * v_off, MOST_TRIM)
         self.turn_trim = _within(self.turn_trim + share * r_off, MOST_TURN_TRIM)
+        self._learn_gain(full_turn, before.off(sample.pose.yaw))
+        self._learn_pivot(before, sample.pose)
+
+    def _learn_gain(self, full_turn: float, turn: float) -> None:
         kept = math.exp(-abs(full_turn) / FORGETS)
-        self._products = kept * self._products + full_turn * before.off(sample.pose.yaw)
+        self._products = kept * self._products + full_turn * turn
         self._squares = kept * self._squares + full_turn**2
         self.yaw_gain = min(max(self._products / self._squares, LEAST_GAIN), MOST_GAIN)
+
+    def _learn_pivot(self, before: Pose, after: Pose) -> None:
+        """A turn moves what is ahead of the pivot to the side."""
+        turn = before.off(after.yaw)
+        side = before._replace(yaw=before.yaw + turn / 2).seen(after)[1]
+        kept = math.exp(-abs(turn) / FORGETS)
+        self._sides = kept * self._sides - turn * side
+        self._turns = kept * self._turns + turn**2
+        self.pivot = _within(self._sides / self._turns, MOST_PIVOT)
 
     def _in_effect(self, time: float) -> Command:
         number = bisect_right(self._times, time)

@@ -5,7 +5,7 @@ not, the rest is planned anew. Times are seconds of the machine's clock.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 from tms_config.models import Drive
@@ -92,7 +92,7 @@ class Feedback:
 
 
 class Trip:
-    """`verdict` is None until the goal has ended. Keep one TrackEstimate for all trips: it remembers the yaw gain."""
+    """`verdict` is None until the goal has ended. One TrackEstimate serves all trips of a machine: it learns."""
 
     def __init__(self, task: Task, drive: Drive, estimate: TrackEstimate, now: float) -> None:
         self.verdict: Verdict | None = None
@@ -105,6 +105,7 @@ class Trip:
         self._reached: tuple[int, ...] = ()  # pieces of the present path after which the other goals are reached
         self._path = Path((_nothing(task),))
         self._pursuit: Pursuit | None = None  # None: it shall stand
+        self._pivot = 0.0  # m, that of the present path
         self._begun_pieces = 0  # of the path, behind it when the present one began
         self._stands_since: float | None = None
         self._seen = now  # s, when a pose was last young enough
@@ -153,7 +154,7 @@ class Trip:
         self._seen, state = now, self._estimate.at(now)
         if self._pursuit is None:
             return self._stand(now, state)
-        return self._follow(now, state, self._pursuit)
+        return self._follow(now, replace(state, pose=state.pose.ahead(self._pivot)), self._pursuit)
 
     def _follow(self, now: float, state: TrackState, pursuit: Pursuit) -> Command:
         off = pursuit.deviation(state)
@@ -195,26 +196,34 @@ class Trip:
         elif self._attempts >= (1 if self._task.told else ATTEMPTS):
             self._give_up(ShortOfPose(away, turned, self._attempts))
         else:
-            near = self._attempts > 0 and away <= NEAR
-            self._plan(pose, (Goal(pose.x, pose.y, goal.yaw),) if near else self._task.stages[self._stage])
+            self._begin(pose, turns=self._attempts > 0 and away <= NEAR)
 
-    def _plan(self, pose: Pose, goals: Sequence[Goal]) -> None:
-        """Begin a way to the goals that are left."""
+    def _begin(self, pose: Pose, turns: bool) -> None:
+        """Begin a way to the goals that are left; or only turn, where the machine is near enough."""
         self._attempts += 1
         if self._task.told is not None:
-            self._path, self._reached = self._task.told, ()
+            self._path, self._reached, self._pivot = self._task.told, (), 0.0
         else:
-            found = plan(pose, goals[min(self._passed, len(goals) - 1) :], self._pace())
+            self._pivot = self._estimate.pivot
+            found = plan(pose.ahead(self._pivot), self._goals(pose, turns), self._pace())
             self._path, self._reached = found.path, found.reached[:-1]
         self._pursuit, self._begun_pieces = Pursuit(self._path, self._drive, self._servo), 0
         self._progress.restart()
 
+    def _goals(self, pose: Pose, turns: bool) -> list[Goal]:
+        """Where the pivot shall go."""
+        goals = self._task.stages[self._stage]
+        if turns:
+            here = pose.ahead(self._pivot)
+            return [Goal(here.x, here.y, goals[-1].yaw)]
+        left = goals[min(self._passed, len(goals) - 1) :]
+        return [goal if goal.yaw is None else Goal(*Pose(goal.x, goal.y, goal.yaw).ahead(self._pivot)) for goal in left]
+
     def _next_stage(self) -> None:
-        self._attempts = self._passed = 0
         if self._stage + 1 == len(self._task.stages):
             self._stop(Verdict(Ending.SUCCEEDED))
         else:
-            self._stage += 1
+            self._stage, self._attempts, self._passed = self._stage + 1, 0, 0
         self._rest()
 
     def _give_up_way(self, why: Reason) -> None:
