@@ -1,6 +1,6 @@
 """Why a motion controller refuses a goal, or ends it before it is reached."""
 
-from tms_reason.quantities import Moments, Radians, Seconds
+from tms_reason.quantities import Metres, Moments, Radians, Seconds
 from tms_reason.reason import Reason
 from tms_reason.remedies import INSPECT
 
@@ -22,4 +22,12 @@ class ShortOfGoal(Reason, text="{joint} is {off} off its goal {late} after its t
 class OffReference(Reason, text="{joint} is {off} off its path: {allowed} is allowed"):
     joint: str; off: Radians; allowed: Radians
 class TakenOver(Reason, text="a newer goal has taken over"): pass
+
+# tracks
+class Silenced(Reason, text="the gateway has stopped the machine"): pass
+class NoProgress(Reason, text="no progress within {seconds}", action=INSPECT): seconds: Seconds
+class PosesStopped(Reason, text="no pose of the machine for {seconds}", action=INSPECT): seconds: Seconds
+class OffPath(Reason, text="{beside} and {turned} off the path"): beside: Metres; turned: Radians
+class ShortOfPose(Reason, text="{away} and {turned} off the goal after {attempts} attempts", action=INSPECT):
+    away: Metres; turned: Radians; attempts: int
 # fmt: on
