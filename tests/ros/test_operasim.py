@@ -19,6 +19,7 @@ import programs
 from conftest import PROJECT, wait_until
 from control_client import ControlClient
 from tms_config.config import load_site
+from tms_machine.places import Places
 from tms_ros.node import Ros
 from tms_runtime import environment
 
@@ -52,6 +53,7 @@ class Site:
         file.write_text(SITE.format(domain=domain, port=port, tcp=port + 2, machine=MACHINE))
         scene.write_text(SCENE.format(machine=MACHINE))
         self.bridge_log, self.log = folder / "bridge.log", folder / "operasim.log"
+        self.border = load_site(str(file)).border(MACHINE)
         env = {**os.environ, **environment.environment(load_site(str(file)))}
         self.bridge = programs.process("tms:if", env, self.bridge_log)
         words = [
@@ -137,6 +139,14 @@ def test_what_it_tells_arrives(site: Site) -> None:
     assert [told.x, told.y] == pytest.approx(site.truth()["place"][:2], abs=1e-5)
     assert odometry[-1].child_frame_id == f"{MACHINE}/base_link"
     assert "endpoint_says" in site.log.read_text()  # c30r is no machine of the site
+
+
+def test_its_place_is_known_without_frames(site: Site) -> None:
+    places = Places(site.ros, {MACHINE: site.border})
+    site.until(lambda: places.take() == {MACHINE}, "its place")
+    place, true = places.place(MACHINE), site.truth()
+    assert place is not None
+    assert place[:3] == pytest.approx((*true["place"][:2], true["yaw"]), abs=1e-5)
 
 
 def test_front_cmd_moves_the_arm(site: Site) -> None:
