@@ -6,7 +6,8 @@ its heading; that of simulated machines tells half or a third of each turn.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from typing import Any
 
 from geometry_msgs.msg import Pose, PoseStamped
 from nav_msgs.msg import Odometry
@@ -21,6 +22,7 @@ from tms_proof.source import LABELS
 from tms_proof.standstill import POSE
 from tms_reason.reason import Reason
 from tms_ros.node import Ros
+from tms_ros.topics import Arrival
 
 # s between two calls of `take`: to wake up for each message would be most of an idle console's load, and a plan that
 # looks itself would take some ms longer.
@@ -40,7 +42,8 @@ class PoseTopic:
     """The last place that a machine's pose topic has told."""
 
     def __init__(self, ros: Ros, topic: str, source: Source) -> None:
-        self._topic, self._arrivals = topic, ros.sample_arrivals(POSES[source.message], topic)
+        self._topic = topic
+        self._arrivals: Callable[[], list[Arrival[Any]]] = ros.sample_arrivals(POSES[source.message], topic)
         self._frame = MAP  # of the last message
         self.place: FramePose | None = None  # replaced, never changed: other threads read it without a lock
 
