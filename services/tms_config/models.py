@@ -116,7 +116,7 @@ class Border(Settings):
     # topics
     joint_states: str | None = None
     odom: str | None = None
-    pose: str | None = None  # of the base in `map`
+    pose: str | None = None  # of the base in `map`; absent: /tf tells its place
     imu: str | None = None
     sources: dict[SourceName, Source] = {}  # each of the four topics above that is present has its entry
     cmd_vel: str | None = None
@@ -130,8 +130,9 @@ class Border(Settings):
     dump_returns: bool = False  # a goal for the vessel is a whole cycle there: it tips, waits, and comes back by itself
     # frames; {name} is the machine, so that two machines of one model never share a frame
     frame_prefix: str = "{name}/"
-    base_frame: str = "{name}/base_link"  # child of `map`: the place of the machine
+    base_frame: str = "{name}/base_link"  # below `map` in /tf: the place of the machine
     joints: dict[str, str] = {}  # joint of the model -> its name at this border, where they differ
+    initial: dict[str, float] = {}  # rad, joint -> where it starts, if not as in the model
 
     @model_validator(mode="after")
     def _sources_known(self) -> "Border":
@@ -165,7 +166,7 @@ class MachineModel(Settings):
     shapes: dict[str, Box] = {}  # link -> its body in its own frame, for the planner
     drive: Drive | None = None
     response: dict[str, Response] = {}  # joint, or `drive` for the tracks -> how it answers commands
-    initial: dict[str, float] = {}  # rad, the simulator's start pose
+    initial: dict[str, float] = {}  # rad, start pose of its stand-in
     start: tuple[float, float, float] = (0.0, 0.0, 0.0)  # x m, y m, yaw rad, simulator, frame map
     still: Still
     borders: dict[Backend, Border]
@@ -220,4 +221,4 @@ class MachineModel(Settings):
         return self
 
     def _border_joints(self) -> list[str]:
-        return [name for border in self.borders.values() for name in (*border.joints, *border.joint_angles)]
+        return [name for one in self.borders.values() for name in (*one.joints, *one.joint_angles, *one.initial)]

@@ -1,7 +1,7 @@
 """What the decisions know of a machine, from its model, its border and the site."""
 
 from tms_config.config import Site
-from tms_config.models import DRIVE, Border, MachineModel
+from tms_config.models import DRIVE, Border, MachineModel, Source
 from tms_proof.facts import JointFacts, MachineFacts, ResponseFacts, SourceFacts, StillFacts
 
 
@@ -27,7 +27,10 @@ def machine_facts(machine: str, model: MachineModel, border: Border, speed: floa
         {name: JointFacts(joint.velocity, joint.min, joint.max) for name, joint in joints.items()},
         responses,
         StillFacts(still.velocity, still.linear, still.angular, still.seconds),
-        {name: SourceFacts(one.period, one.stamps, one.frozen_after, one.resolution)
-         for name, one in border.sources.items()},
+        {name: _source(one, f"/{machine}/{getattr(border, name)}") for name, one in border.sources.items()},
         drive_response, stops_at_once=bool(border.emg_stop) and border.emg_stop_at_once, speed=speed, **tops,
     )  # fmt: skip
+
+
+def _source(one: Source, topic: str) -> SourceFacts:
+    return SourceFacts(one.period, one.stamps, one.frozen_after, topic, one.resolution)

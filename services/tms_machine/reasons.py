@@ -38,6 +38,8 @@ class NotReached(Reason, text="{machine} says that it did not reach {angle}", de
 class NoJointState(Reason, text="no state of {joint} of {machine} was received within {limit}", action=PROCESSES,
     details="{topic}"): joint: str; machine: str; limit: Seconds; topic: str
 class MotionNotEnded(Reason, text="{machine} did not end its motion", action=INSPECT): machine: str
+class NotInMap(Reason, text="the pose is told in the frame '{frame}', not in 'map'", action=INSPECT, details="{topic}"):
+    frame: str; topic: str
 class WaitingFor(Reason, text="waiting for {process}", action=PROCESSES): process: str
 
 # progress

@@ -19,6 +19,12 @@ class GatewayAbsent(Reason, text="the gateway does not stand behind the machine"
 class NoAngle(Reason, text="the angle for {joint} is not a number"): joint: str
 class JointLimit(Reason, text="{joint}: {why}"): joint: str; why: Reason
 class StopPressed(Reason, text="the emergency stop of the machine is on"): pass
+class PosesUnheard(Reason, text="the machine does not tell where it is", action=INSPECT, details="{topic}"): topic: str
+class PosesSilent(Reason, text="the machine has not told where it is for {seconds}", action=INSPECT,
+    details="{topic}"): seconds: Seconds; topic: str
+class NoPoses(Reason, text="the goal has no pose"): pass
+class StrangeFrame(Reason, text="pose {number} is told in the frame '{frame}', not in 'map'"): number: int; frame: str
+class PoseUnfit(Reason, text="pose {number} holds no orientation, or a value that is not a number"): number: int
 
 # the end of a goal
 class GatewayGone(Reason, text="the gateway was lost while the machine moved"): pass

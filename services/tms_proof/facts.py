@@ -42,6 +42,7 @@ class SourceFacts:
     period: float  # s between messages
     stamps: Stamps
     frozen_after: float  # s with equal values while a goal should change them
+    topic: str  # its full name
     resolution: float = 0.0  # rad or m by which positions jitter
 
 

@@ -10,10 +10,13 @@ class JointStates(Reason, text="joint states"): pass
 class Odometry(Reason, text="odometry"): pass
 class Pose(Reason, text="pose"): pass
 class Imu(Reason, text="IMU"): pass
-class Unheard(Reason, text="no {source} from the machine yet", action=INSPECT): source: Reason
-class UnheardOf(Reason, text="no {source} of {part} from the machine yet", action=INSPECT): source: Reason; part: str
-class Old(Reason, text="{source} {age} old"): source: Reason; age: Seconds
-class OldOf(Reason, text="{source} of {part} {age} old"): source: Reason; part: str; age: Seconds
+class Unheard(Reason, text="no {source} from the machine yet", action=INSPECT, details="{topic}"):
+    source: Reason; topic: str
+class UnheardOf(Reason, text="no {source} of {part} from the machine yet", action=INSPECT, details="{topic}"):
+    source: Reason; part: str; topic: str
+class Old(Reason, text="{source} {age} old", details="{topic}"): source: Reason; age: Seconds; topic: str
+class OldOf(Reason, text="{source} of {part} {age} old", details="{topic}"):
+    source: Reason; part: str; age: Seconds; topic: str
 class NoSource(Reason, text="the border declares no source that tells of its motion", action=EDIT_CONFIG): pass
 class ManyPublishers(Reason, text="{source} come from {count} publishers", details="{nodes}"):
     source: Reason; count: int; nodes: tuple[str, ...]

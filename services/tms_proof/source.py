@@ -105,14 +105,15 @@ class SourceWatch:
 
     def silent(self, now: float, limit: float) -> Reason | None:
         """The channel of which no sample has come for `limit` seconds."""
+        topic = self.source.topic
         for name, channel in self.channels.items():
             last = channel.last
             whole = len(self.channels) == 1 or self._advanced is None
             if last is None:
-                return Unheard(self.label) if whole else UnheardOf(self.label, name)
+                return Unheard(self.label, topic) if whole else UnheardOf(self.label, name, topic)
             age = now - last.received
             if age > limit:
-                return Old(self.label, age) if whole else OldOf(self.label, name, age)
+                return Old(self.label, age, topic) if whole else OldOf(self.label, name, age, topic)
         return None
 
     def trouble(self, now: float) -> Trouble | None:

@@ -12,9 +12,10 @@ from tms_config.clock import monotonic
 from tms_config.models import Border
 from tms_decision.gateway.events import Event, Published, Sampled
 from tms_machine.geometry import yaw_of
+from tms_machine.places import POSES, pose_of
 from tms_proof.channel import Place
 from tms_proof.source import LABELS, SourceSample
-from tms_proof.standstill import HEADING, IMU, JOINTS, ODOM, PLACE, POSE, TURNING, StandStill
+from tms_proof.standstill import HEADING, IMU, JOINTS, ODOM, PLACE, TURNING, StandStill
 from tms_rc.reasons import StrangeType
 from tms_reason.reason import Reason
 from tms_ros.node import Ros, node_of
@@ -36,7 +37,7 @@ class MachineMonitor:
         self._names = {border.joints.get(name, name): name for name in app.site.model_of(app.machine).joints}
         self._topics: dict[str, str] = {name: f"/{app.machine}/{getattr(border, name)}" for name in border.sources}
         self._inputs = [
-            (name, app.ros.sample_arrivals(_type(name, border), topic, DEPTH), self._reader(name, border))
+            (name, app.ros.sample_arrivals(_type(name, border), topic, DEPTH), self._reader(name))
             for name, topic in self._topics.items()
         ]
         self._counted = 0.0  # monotonic
@@ -76,14 +77,12 @@ class MachineMonitor:
                     return StrangeType(LABELS[name], node, topic, kind, wanted)
         return None
 
-    def _reader(self, name: str, border: Border) -> Callable[[Any], Numbers]:
+    def _reader(self, name: str) -> Callable[[Any], Numbers]:
         if name == JOINTS:
             return self._joints
         if name == IMU:
             return _imu
-        if name == ODOM:
-            return _odometry
-        return _global_odometry if border.sources["pose"].message == "Odometry" else _pose
+        return _odometry if name == ODOM else _pose
 
     def _joints(self, message: JointState) -> Numbers:
         """Joint states are matched by name: backends order them differently, and may send some joints at a time."""
@@ -102,7 +101,7 @@ def _type(name: str, border: Border) -> Any:
         return JointState
     if name == IMU:
         return Imu
-    return Odometry if name == ODOM or (name == POSE and border.sources["pose"].message == "Odometry") else PoseStamped
+    return Odometry if name == ODOM else POSES[border.sources["pose"].message]
 
 
 def _full_name(kind: Any) -> str:
@@ -127,13 +126,9 @@ def _placed(pose: Pose) -> dict[str, Place]:
     return {PLACE: (at.x, at.y), HEADING: (yaw_of((turn.x, turn.y, turn.z, turn.w)),)}
 
 
-def _pose(message: PoseStamped) -> Numbers:
-    return _placed(message.pose), {}
-
-
-def _global_odometry(message: Odometry) -> Numbers:
-    """A pose as odometry: its twist is not filled in, which does not mean a speed of 0."""
-    return _placed(message.pose.pose), {}
+def _pose(message: PoseStamped | Odometry) -> Numbers:
+    """A pose, also as odometry: its twist is not filled in, which does not mean a speed of 0."""
+    return _placed(pose_of(message)), {}
 
 
 def _odometry(message: Odometry) -> Numbers:

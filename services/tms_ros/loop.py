@@ -159,7 +159,7 @@ class EventLoop:
         """Call `step` on the executor thread at a fixed rate."""
         return self.node.create_timer(seconds, step, callback_group=self.group, clock=self._steady)
 
-    def poll_in_thread(self, seconds: float, step: Callable[[], None], name: str) -> None:
+    def poll_in_thread(self, seconds: float, step: Callable[[], object], name: str) -> None:
         """Call `step` at a fixed rate in a thread of its own, if it only samples: this costs a tenth of a timer."""
 
         def sample() -> None:

@@ -89,6 +89,8 @@ class Planner:
             self.joints()
         except SubtaskFailed as error:
             return error.reason
+        if missing := self._neighbours.unready():
+            return missing
         return None if self._rc.ready() else GatewayAway(process_of(self._rc.name), self._rc.name)
 
     def joints(self) -> Angles:

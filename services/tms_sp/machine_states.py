@@ -4,11 +4,14 @@ import json
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from geometry_msgs.msg import PoseStamped, PoseWithCovariance
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
 from tms_msg_db.msg import MachineState
 from tms_msg_db.srv import WriteMachineStates
 
+from tms_config.models import Border
+from tms_machine.places import POSES, pose_of
 from tms_ros.interface_types import Message
 from tms_runtime.app import App
 
@@ -21,8 +24,8 @@ class MachineStateSampler:
         self._topics: list[tuple[str, str, Callable[[], Sequence[Message]]]] = []
         for machine in app.site.file.machines:
             border = app.site.border(machine)
-            if border.odom:
-                self._topics.append(("machine_pose", machine, app.ros.sample(Odometry, f"/{machine}/{border.odom}")))
+            if (pose := _pose_topic(border)) is not None:
+                self._topics.append(("machine_pose", machine, app.ros.sample(pose[0], f"/{machine}/{pose[1]}")))
             if border.joint_states:
                 topic = f"/{machine}/{border.joint_states}"
                 self._topics.append(("machine_joints", machine, app.ros.sample(JointState, topic)))
@@ -35,7 +38,7 @@ class MachineStateSampler:
             self._waiting = False
             return
         states = [
-            MachineState(collection=collection, machine=machine, stamp=self._ros.now(), msg=json.dumps(plain(message)))
+            MachineState(collection=collection, machine=machine, stamp=self._ros.now(), msg=_text(message))
             for collection, machine, take in self._topics
             for message in take()
         ]
@@ -46,6 +49,20 @@ class MachineStateSampler:
 
     def _written(self, _: WriteMachineStates.Response) -> None:
         self._waiting = False
+
+
+def _pose_topic(border: Border) -> tuple[type[Message], str] | None:
+    """Type and name of the topic that tells where the base is; None if there is none."""
+    if border.pose:
+        return POSES[border.sources["pose"].message], border.pose
+    return (Odometry, border.odom) if border.odom else None
+
+
+def _text(message: Any) -> str:
+    """A state as the C++ system keeps it, which has poses as odometry."""
+    if isinstance(message, PoseStamped):
+        message = Odometry(header=message.header, pose=PoseWithCovariance(pose=pose_of(message)))
+    return json.dumps(plain(message))
 
 
 def plain(message: Any) -> Any:

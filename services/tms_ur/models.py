@@ -48,8 +48,8 @@ class Machine(Model):
     latch: ReasonView | None = Field(default=None, description="why it is stopped until it is re-armed; null: armed")
     hold: ReasonView | None = Field(default=None, description="why it is held until its run goes on")
     by_hand: str = Field(default="", description="who drives it by hand, empty if nobody does")
-    place: Place | None = Field(default=None, description="null: /tf has not told")
-    place_age: float | None = Field(default=None, description="s since /tf told the place, null: never")
+    place: Place | None = Field(default=None, description="null: never told")
+    place_age: float | None = Field(default=None, description="s since the place was told, null: never")
     joints: list[Joint] = []
     joint_age: float | None = Field(default=None, description="s since the last joint states, null: never")
     age: float | None = Field(default=None, description="s since the gateway last reported, null: never")

@@ -2,7 +2,6 @@
 
 from typing import Any
 
-from tf2_msgs.msg import TFMessage
 from tms_msg_db.srv import (
     AddTask,
     GetTask,
@@ -26,7 +25,7 @@ from tms_msg_ts.srv import AnswerQuestion, CancelRun, CheckTask
 from tms_config.clock import monotonic
 from tms_config.config import Site
 from tms_decision.gateway.stops import RECEIPT_LIMIT
-from tms_machine.frames import Frames
+from tms_machine.places import PERIOD, Places
 from tms_machine.values import to_parameters
 from tms_reason import wire
 from tms_reason.errors import RosError, TmsError
@@ -46,8 +45,6 @@ SCHEDULER = "tms:ts"
 CALL_LIMIT = 4.0  # s for an answer of a module
 START_LIMIT = 30.0  # s for a run to begin; the scheduler may have to start its subtasks first
 PROCESS_LIMIT = 15.0  # s for a process to end and to be started
-FRAMES_PERIOD = 0.2  # s between reads of /tf: a wake-up for each message would be most of an idle console's load
-FRAMES_DEPTH = 200  # messages of all machines within FRAMES_PERIOD
 
 
 class SiteClient:
@@ -59,17 +56,14 @@ class SiteClient:
         self.board = Board(names)
         self._inputs: tuple[list[InputState], float] | None = None  # read and replaced in one step
         self._scheduler = ros.peer(ExecuteTask, "/tms/execute_task")
-        self._machines = {site.border(name).base_frame: name for name in names}
-        self._frames = Frames(self._machines)
+        self._places = Places(ros, {name: site.border(name) for name in names})
         for name in names:
             ros.subscribe(MachineState, f"/{name}/rc/state", self._on_machine, latched=True)
             ros.prepare(StopMachine, f"/{name}/rc/stop")
         ros.subscribe(RunStates, "/tms/runs", self._on_runs, latched=True)
         ros.subscribe(Processes, "/tms/host/processes", self._on_processes, depth=10, latched=True)
         ros.subscribe(InputStates, "/tms/sp/inputs", self._on_inputs, latched=True)
-        self._new_frames = ros.sample(TFMessage, "/tf", FRAMES_DEPTH)
-        ros.subscribe(TFMessage, "/tf_static", self._frames.receive_fixed, depth=FRAMES_DEPTH, latched=True)
-        ros.poll_in_thread(FRAMES_PERIOD, self._update_places, "frames")
+        ros.poll_in_thread(PERIOD, self._update_places, "places")
 
     # topics
 
@@ -87,12 +81,11 @@ class SiteClient:
         self._inputs = (list(message.inputs), monotonic())
 
     def _update_places(self) -> None:
-        moved = set[str]().union(*map(self._frames.receive, self._new_frames()))
-        for frame in moved & self._machines.keys():
-            seen = self._frames.place(frame)
+        for name in self._places.take():
+            seen = self._places.place(name)
             if seen is not None:
                 place = Place(x=round(seen.x, 2), y=round(seen.y, 2), yaw=round(seen.yaw, 3))
-                self.board.put_place(self._machines[frame], place, max(0.0, monotonic() - seen.received))
+                self.board.put_place(name, place, max(0.0, monotonic() - seen.received))
 
     def sensing(self) -> Sensing:
         """The sensing inputs as `tms:sp` reported them last."""

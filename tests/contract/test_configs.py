@@ -26,8 +26,8 @@ SUBTASKS = sorted(path.stem for path in (PROJECT / "services" / "tms_subtasks").
 @pytest.mark.parametrize("path", MODELS, ids=lambda path: path.stem)
 def test_model_is_consistent(path: Path) -> None:
     model = parse(path, MachineModel)
-    assert set(model.initial) <= set(model.joints)
-    for name, angle in model.initial.items():
+    starts = [*model.initial.items(), *(one for border in model.borders.values() for one in border.initial.items())]
+    for name, angle in starts:
         assert model.joints[name].violation(angle) is None, f"{name} starts outside its limits"
     assert {model.subtask(action).run for action in model.subtasks} <= set(SUBTASKS)
     for border in model.borders.values():

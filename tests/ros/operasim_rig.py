@@ -34,7 +34,9 @@ class OperaSim:
         file.write_text(yaml.safe_dump({**site, "services": {"if": bridge}, "machines": {machine: {"model": model}}}))
         machines = {machine: {"model": model, "place": PLACE}, "c30r": {"model": "c30r", "place": [0, 0, 0]}}
         scene.write_text(yaml.safe_dump({"machines": machines}))
-        self._env = {**os.environ, **environment.environment(load_site(str(file)))}
+        loaded = load_site(str(file))
+        self.border = loaded.border(machine)
+        self._env = {**os.environ, **environment.environment(loaded)}
         self._folder, self._log = folder, folder / "operasim.log"
         self._processes: dict[str, Program] = {}
         self.run("tms:if")

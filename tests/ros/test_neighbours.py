@@ -9,6 +9,7 @@ from geometry_msgs.msg import TransformStamped
 from tf2_msgs.msg import TFMessage
 
 from conftest import wait_until
+from tms_config.models import Border
 from tms_ros.node import Ros
 from tms_rp.neighbours import Neighbours
 
@@ -27,7 +28,7 @@ def reported(*frames: str, x: float) -> TFMessage:
 def test_a_place_that_is_told_now_and_then_is_heard_among_all_the_joints(two_nodes: tuple[Ros, Ros]) -> None:
     nav, planner = two_nodes
     site: Any = SimpleNamespace(
-        border=lambda name: SimpleNamespace(base_frame=f"{name}/base"),
+        border=lambda name: Border(base_frame=f"{name}/base"),
         file=SimpleNamespace(machines=MACHINES),
         model_of=lambda _: SimpleNamespace(footprint={"body": object()}),
     )

@@ -11,6 +11,8 @@ from operasim_rig import OperaSim
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool
 
+from tms_machine.places import Places
+
 pytestmark = [
     pytest.mark.ros,
     pytest.mark.filterwarnings("ignore:module 'sre_:DeprecationWarning"),  # a parser that the ROS wheels bring
@@ -45,6 +47,14 @@ def test_what_it_tells_arrives(site: OperaSim) -> None:
     assert [told.x, told.y] == pytest.approx(site.truth()["place"][:2], abs=1e-5)
     assert odometry[-1].child_frame_id == f"{MACHINE}/base_link"
     assert "endpoint_says" in site.log  # c30r is no machine of the site
+
+
+def test_its_place_is_known_without_frames(site: OperaSim) -> None:
+    places = Places(site.ros, {MACHINE: site.border})
+    site.until(lambda: places.take() == {MACHINE}, "its place")
+    place, true = places.place(MACHINE), site.truth()
+    assert place is not None
+    assert place[:3] == pytest.approx((*true["place"][:2], true["yaw"]), abs=1e-5)
 
 
 def test_front_cmd_moves_the_arm(site: OperaSim) -> None:

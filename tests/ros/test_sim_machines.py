@@ -152,7 +152,7 @@ def test_it_dies_on_request(client: Ros, tmp_path: Path, domain: int, first_port
     try:
         assert (rig.border.odom, rig.border.cmd_vel, rig.border.emg_stop) == ("odom", "tracks/cmd_vel", None)
         assert list(rig.states[-1].name) == ["vessel_pin_joint"]
-        assert "ic120_9_groundtruth" in rig.frames and rig.odom[-1].child_frame_id == "ic120_9_tf/base_link"
+        assert "ic120_9_tf/base_link" in rig.frames and rig.odom[-1].child_frame_id == "ic120_9_tf/base_link"
         rig.be(die=1.0)
         rig.until(lambda: rig.ros.node.count_subscribers("/ic120_9/sim/fault") > 0, "subscription")
         rig.be(die=1.0)

@@ -17,7 +17,8 @@ def facts(name: str = "zx200", at_once: bool = False, passive: bool = False) -> 
     joints = {one: JointFacts(TOP, -9.0, 9.0) for one in ((JOINT, PASSIVE) if passive else (JOINT,))}
     return MachineFacts(
         name, joints, {JOINT: ResponseFacts(DEAD_TIME, LAG, 0.1)},
-        StillFacts(0.01, 0.02, 0.01, 0.2), {JOINTS: SourceFacts(PERIOD, "utc", 2.0)}, stops_at_once=at_once,
+        StillFacts(0.01, 0.02, 0.01, 0.2), {JOINTS: SourceFacts(PERIOD, "utc", 2.0, f"/{name}/{JOINTS}")},
+        stops_at_once=at_once,
     )  # fmt: skip
 
 

@@ -119,7 +119,7 @@ def test_nothing_heard_is_not_standing() -> None:
     made = watch()
     assert made.moving()
     assert not made.standing(100.0)
-    assert made.silent(0.0, 1.0) == Unheard(JointStates())
+    assert made.silent(0.0, 1.0) == Unheard(JointStates(), "/zx200/joint_states")
     assert made.age(5.0) == float("inf")
 
 
@@ -225,7 +225,7 @@ def test_a_joint_that_was_never_heard_is_unknown() -> None:
         reporter.publish_now(0.0, 0.0, arm=False)
 
     assert stood_after(reporter, one_of_two, reporter.now) == float("inf")
-    assert reporter.watch.silent(reporter.now, 1.0) == UnheardOf(JointStates(), "arm")
+    assert reporter.watch.silent(reporter.now, 1.0) == UnheardOf(JointStates(), "arm", "/zx200/joint_states")
 
 
 def test_two_publishers_prove_nothing() -> None:
@@ -420,7 +420,7 @@ def test_a_replayed_record_is_never_proven() -> None:
 def test_a_machine_that_drives_does_not_stand() -> None:
     reporter = Reporter(watch(odom=True))
     reporter.run(0.4, 0.0)
-    assert reporter.watch.silent(reporter.now, 1.0) == Unheard(Odometry())
+    assert reporter.watch.silent(reporter.now, 1.0) == Unheard(Odometry(), "/zx200/odom")
     x = 0.0
 
     def drive(speed: float) -> Callable[[], None]:
@@ -523,7 +523,7 @@ def test_velocities_that_are_told_now_and_then_are_compared_with_nothing() -> No
 
 
 def test_an_imu_tells_whether_the_machine_turns() -> None:
-    still, source = StillFacts(0.01, 0.02, 0.01, 0.2), SourceFacts(PERIOD, "utc", 2.0)
+    still, source = StillFacts(0.01, 0.02, 0.01, 0.2), SourceFacts(PERIOD, "utc", 2.0, "/zx200/imu")
     made = StandStill(MachineFacts("zx200", {}, {}, still, {IMU: source}))
     for i in range(20):
         made.take(IMU, SourceSample(i * PERIOD, i * PERIOD + 1e9, i, {TURNING: ()}, {TURNING: 0.0}))

@@ -65,7 +65,7 @@ def test_a_place_that_is_not_a_number_was_not_heard() -> None:
 
 
 def test_the_empty_twist_of_a_global_pose_is_no_speed() -> None:
-    assert machine_monitor._global_odometry(odometry())[1] == {}
+    assert machine_monitor._pose(odometry())[1] == {}
 
 
 def test_an_imu_tells_how_it_turns() -> None:
