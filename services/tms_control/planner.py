@@ -63,24 +63,25 @@ class Plan:
     reached: tuple[int, ...]  # number of pieces, after which each goal is reached
 
 
-def plan(start: Pose, goals: Sequence[Goal], pace: Pace) -> Plan:
+def plan(start: Pose, goals: Sequence[Goal], pace: Pace, pivot: float = 0.0) -> Plan:
     """The fastest path from a pose through goals, the last of which has a heading.
 
-    For a goal that is only passed, a few headings are tried: those of the ways there and on, and between both.
+    The path is that of the pivot, the place `pivot` [m] ahead that a turn on the spot does not move. For a goal that is
+    only passed, a few headings are tried: those of the ways there and on, and between both.
     """
-    best: dict[Pose, list[list[Piece]]] = {start: []}
+    best: dict[Pose, list[list[Piece]]] = {start.ahead(pivot): []}
     for number, goal in enumerate(goals):
         before = goals[number - 1] if number else start
         onward = goals[number + 1] if number + 1 < len(goals) else None
         reached: dict[Pose, list[list[Piece]]] = {}
-        for pose in _poses(before, goal, onward):
+        for pose in (one.ahead(pivot) for one in _poses(before, goal, onward)):
             ways = ([*legs, fastest(begin, pose, pace)] for begin, legs in best.items())
             reached[pose] = min(ways, key=lambda legs: pace.total([piece for leg in legs for piece in leg]))
         best = reached
     legs = min(best.values(), key=lambda legs: pace.total([piece for leg in legs for piece in leg]))
     pieces = [piece for leg in legs for piece in leg]
     counts = tuple(sum(map(len, legs[: i + 1])) for i in range(len(legs)))
-    return Plan(Path(tuple(pieces) or (Piece(start, 0.0, 0.0),)), counts)
+    return Plan(Path(tuple(pieces) or (Piece(start.ahead(pivot), 0.0, 0.0),)), counts)
 
 
 def _poses(before: Goal | Pose, goal: Goal, onward: Goal | None) -> list[Pose]:

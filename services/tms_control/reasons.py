@@ -27,7 +27,7 @@ class TakenOver(Reason, text="a newer goal has taken over"): pass
 class Silenced(Reason, text="the gateway has stopped the machine"): pass
 class NoProgress(Reason, text="no progress within {seconds}", action=INSPECT): seconds: Seconds
 class PosesStopped(Reason, text="no pose of the machine for {seconds}", action=INSPECT): seconds: Seconds
-class OffPath(Reason, text="{beside} and {turned} off the path"): beside: Metres; turned: Radians
+class LeftPath(Reason, text="{beside} and {turned} off the path"): beside: Metres; turned: Radians
 class ShortOfPose(Reason, text="{away} and {turned} off the goal after {attempts} attempts", action=INSPECT):
     away: Metres; turned: Radians; attempts: int
 # fmt: on

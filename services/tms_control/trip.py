@@ -13,7 +13,7 @@ from tms_control.path import Path, Piece, Pose
 from tms_control.planner import Goal, Pace, plan
 from tms_control.progress import PATIENCE, Progress
 from tms_control.pursuit import Pursuit
-from tms_control.reasons import NoProgress, OffPath, PosesStopped, ShortOfPose, Silenced
+from tms_control.reasons import LeftPath, NoProgress, PosesStopped, ShortOfPose, Silenced
 from tms_control.track_estimate import ZERO, Command, PoseSample, TrackEstimate, TrackState
 from tms_control.track_servo import TrackServo
 from tms_reason.reason import Reason
@@ -164,7 +164,7 @@ class Trip:
         if self._progress.lacks(now, state.pose):
             self._give_up(NoProgress(PATIENCE))
         elif off.beside > BESIDE or off.turned > ASKEW:
-            self._give_up_way(OffPath(off.beside, off.turned))
+            self._give_up_way(LeftPath(off.beside, off.turned))
         else:
             command = pursuit.step(state)
             while self._reached and self._reached[0] <= pursuit.pieces_done:
@@ -205,19 +205,17 @@ class Trip:
             self._path, self._reached, self._pivot = self._task.told, (), 0.0
         else:
             self._pivot = self._estimate.pivot
-            found = plan(pose.ahead(self._pivot), self._goals(pose, turns), self._pace())
+            found = plan(pose, self._goals(pose, turns), self._pace(), self._pivot)
             self._path, self._reached = found.path, found.reached[:-1]
         self._pursuit, self._begun_pieces = Pursuit(self._path, self._drive, self._servo), 0
         self._progress.restart()
 
-    def _goals(self, pose: Pose, turns: bool) -> list[Goal]:
-        """Where the pivot shall go."""
+    def _goals(self, pose: Pose, turns: bool) -> Sequence[Goal]:
         goals = self._task.stages[self._stage]
         if turns:
-            here = pose.ahead(self._pivot)
-            return [Goal(here.x, here.y, goals[-1].yaw)]
-        left = goals[min(self._passed, len(goals) - 1) :]
-        return [goal if goal.yaw is None else Goal(*Pose(goal.x, goal.y, goal.yaw).ahead(self._pivot)) for goal in left]
+            turned = pose.ahead(self._pivot)._replace(yaw=goals[-1].yaw or 0.0)
+            return [Goal(*turned.ahead(-self._pivot))]
+        return goals[min(self._passed, len(goals) - 1) :]
 
     def _next_stage(self) -> None:
         if self._stage + 1 == len(self._task.stages):

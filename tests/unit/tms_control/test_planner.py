@@ -21,16 +21,18 @@ def same(a: Pose, b: Pose) -> bool:
     return a.away(b) < 0.01 and abs(a.off(b.yaw)) < 0.01
 
 
-@given(poses, st.lists(passed, max_size=3), poses)
-def test_a_plan_begins_and_ends_as_asked_and_has_no_gaps(start: Pose, through: list[Goal], end: Pose) -> None:
+@given(poses, st.lists(passed, max_size=3), poses, st.sampled_from([0.0, -0.5]))
+def test_a_plan_begins_and_ends_as_asked_and_has_no_gaps(
+    start: Pose, through: list[Goal], end: Pose, pivot: float
+) -> None:
     goals = [*through, Goal(*end)]
-    found = plan(start, goals, PACE)
+    found = plan(start, goals, PACE, pivot)
     pieces = found.path.pieces
-    assert same(pieces[0].start, start)
-    assert same(pieces[-1].end, end)
+    assert same(pieces[0].start.ahead(-pivot), start)
+    assert same(pieces[-1].end.ahead(-pivot), end)
     assert all(same(a.end, b.start) for a, b in pairwise(pieces))
     for goal, count in zip(goals, found.reached, strict=True):
-        pose = pieces[count - 1].end if count else start
+        pose = pieces[count - 1].end.ahead(-pivot) if count else start
         assert pose.away(Pose(goal.x, goal.y, 0.0)) < 0.01
         assert goal.yaw is None or abs(pose.off(goal.yaw)) < 0.01
 

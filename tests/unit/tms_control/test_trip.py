@@ -7,7 +7,7 @@ import pytest
 
 from driven_tracks import GAINS, MODELS, DrivenTracks
 from tms_control.path import Path, Piece, Pose
-from tms_control.reasons import NoProgress, OffPath, PosesStopped, ShortOfPose, Silenced
+from tms_control.reasons import LeftPath, NoProgress, PosesStopped, ShortOfPose, Silenced
 from tms_control.track_estimate import ZERO
 from tms_control.trip import PATIENCE_FOR_POSES, Ending, Task, Trip, Verdict
 
@@ -116,7 +116,7 @@ def test_off_a_told_path_the_goal_ends() -> None:
     machine.run(trip, until=lambda: machine.pose.x > 2)
     machine.kick(0.0, beside=1.0)
     machine.run(trip)
-    assert trip.verdict is not None and isinstance(trip.verdict.reason, OffPath)
+    assert trip.verdict is not None and isinstance(trip.verdict.reason, LeftPath)
     assert trip.verdict.ending is Ending.ABORTED and machine.speed == 0.0
 
 
