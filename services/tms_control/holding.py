@@ -26,13 +26,18 @@ class Orders:
     release: bool = False  # emg_stop
 
 
+def released_after(dead_time: float) -> float:
+    """How long after a stop its emergency stop is released at the earliest [s]."""
+    return dead_time + RELEASE_MARGIN if dead_time else 0.0
+
+
 class Holding:
     """Times are monotonic seconds."""
 
     def __init__(self, dead_time: float, droops: Angles) -> None:
         """`dead_time` [s]: the longest of the joints' commands, 0 if they act at once; `droops` [rad] by joint."""
         self._plays = dead_time + MARGIN if dead_time else MARGIN
-        self._waits = dead_time + RELEASE_MARGIN if dead_time else 0.0
+        self._waits = released_after(dead_time)
         self._droops = droops
         self._begun: float | None = None  # s, of the last stop
         self._ends = float("-inf")  # s, until when the joints are held

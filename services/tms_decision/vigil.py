@@ -11,21 +11,26 @@ class Vigil:
         self._watching = False
         self._until: float | None = None
         self._since: float | None = None
+        self._from = float("-inf")
 
     def begin(self) -> None:
         """Begin to watch: the machine was stopped, or is held or latched."""
-        self._watching, self._until = True, None
+        self._watching, self._until, self._from = True, None, float("-inf")
 
-    def end(self, now: float | None = None) -> None:
-        """End the watch, as a goal may move the machine; after a re-arm at `now`, only after SETTLED."""
+    def end(self, now: float | None = None, jumps: float = 0.0) -> None:
+        """End the watch, as a goal may move the machine; after a re-arm at `now`, only after SETTLED.
+
+        `jumps`: s after it in which the release of its emergency stop may move the machine a little.
+        """
         self._watching, self._since = now is not None and self._watching, None
         self._until = None if now is None else now + SETTLED
+        self._from = float("-inf") if now is None else now + jumps
 
     def left(self, now: float, moved_at: float) -> bool:
         """Whether it has left stand-still; `moved_at` is when a motion was last seen."""
         if self._until is not None and now > self._until:
             self.end()
-        if not self._watching or now - moved_at > LASTS:
+        if not self._watching or now < self._from or now - moved_at > LASTS:
             self._since = None
             return False
         self._since = now if self._since is None else self._since

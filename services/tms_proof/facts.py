@@ -59,6 +59,7 @@ class MachineFacts:
     drive_velocity: float = float("inf")  # m/s, at most
     turn_velocity: float = float("inf")  # rad/s, at most
     stops_at_once: bool = False  # its `emg_stop` acts without the dead time
+    jumps: float = 0.0  # s after a re-arm in which the release of its `emg_stop` may move it a little
     speed: float = 1.0  # of a stand-in
 
     @property

@@ -7,6 +7,7 @@ from tms_config.clock import monotonic
 from tms_config.models import DRIVE
 from tms_control.holding import Holding
 from tms_machine.border import Controls
+from tms_machine.facts import longest_dead_time
 from tms_machine.joint_commands import JointCommands
 from tms_runtime.app import App
 
@@ -18,7 +19,7 @@ class Holder:
         """`positions`: the joints' angles [rad] as measured last."""
         model, border = app.site.model_of(app.machine), app.site.border(app.machine)
         response = {name: one for name, one in model.responses(border).items() if name != DRIVE}
-        dead_time = max((one.dead_time for one in response.values()), default=0.0) if border.joint_cmd else 0.0
+        dead_time = longest_dead_time(model, border)
         self._pulse, self._controls, self._positions = app.pulse, controls, positions
         self._joints = set(response)
         self._commands = JointCommands(app.ros, app.machine, border, single=True)

@@ -50,7 +50,7 @@ def _arm(gateway: Gateway, now: float, one: Rearm) -> None:
     gateway.latch.open()
     gateway.watch.accept_clocks()
     gateway.stood_in = False
-    gateway.vigil.end(now)
+    gateway.vigil.end(now, gateway.facts.jumps)
     gateway.do(Emergency(False), Publish())
     gateway.log("armed", warning=False)
     _answer(gateway, one, cause, None, "")
@@ -101,10 +101,7 @@ def _keeps_from_arming(gateway: Gateway, now: float) -> Reason | None:
 
 
 def take(gateway: Gateway, now: float, asked: TakeAsked) -> None:
-    """Let a person drive the machine, or end that: meanwhile no goal moves it, and no command opposes the person.
-
-    The gateway still watches the machine; latch and alarms stay as they are.
-    """
+    """Let a person drive the machine, or end that; the gateway still watches it, but no command opposes the person."""
     wrong = _keeps_from_giving(gateway) if asked.back else _keeps_from_taking(gateway, now, asked.who)
     if wrong is not None:
         gateway.do(Taken(asked.request, wrong))

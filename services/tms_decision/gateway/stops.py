@@ -65,11 +65,7 @@ def stop(
 
 
 def _expected(gateway: Gateway, goal: Goal, over: float, now: float) -> Expected:
-    """The motion that must be seen if a goal is stopped now, or if it was over a moment ago.
-
-    The machine may have begun to move as soon as the goal was sent: its answer comes later, or never. And it may go on
-    after the end that its server has told.
-    """
+    """The motion that must be seen if a goal is stopped now, or was over a moment ago: its server may answer late."""
     follower = goal.follower
     if not goal.sent:
         return NOTHING
