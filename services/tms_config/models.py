@@ -84,6 +84,7 @@ class Response(Settings):
 
     dead_time: float = Field(ge=0)  # s
     lag: float = Field(gt=0)  # s, time constant
+    droop: float = 0.0  # rad, how far a joint stays short of a commanded angle, by its sign: gravity pulls at it
     origin: str = Field(min_length=1)  # where the figures come from
 
 
@@ -122,7 +123,9 @@ class Border(Settings):
     emg_stop: str | None = None
     emg_stop_at_once: bool = False  # emg_stop acts without the machine's dead time
     manual: str | None = None  # std_msgs/Bool, true while a person drives the machine by its own levers
-    joint_cmd: str | None = None  # com3_msgs/JointCmd; a controller of the machine publishes it, no process of ours
+    controller: Literal["ours", "theirs"] = "theirs"  # who serves the actions and commands the drives
+    response: dict[str, Response] = {}  # where drives answer otherwise than the model's
+    joint_cmd: str | None = None  # com3_msgs/JointCmd, published by the controller
     joint_angles: dict[str, str] = {}  # joint -> topic of std_msgs/Float64 [rad], for some simulated machines
     dump_returns: bool = False  # a goal for the vessel is a whole cycle there: it tips, waits, and comes back by itself
     # frames; {name} is the machine, so that two machines of one model never share a frame
@@ -173,6 +176,10 @@ class MachineModel(Settings):
         """The use for an action name; the short form `action: file` is completed."""
         use = self.subtasks[action]
         return SubtaskUse(run=use) if isinstance(use, str) else use
+
+    def responses(self, border: Border) -> dict[str, Response]:
+        """How joints and tracks answer commands at a border."""
+        return {**self.response, **border.response}
 
     def turned(self, action: str) -> str | None:
         """The joint that an action like set_dump_angle moves; None if the model has none."""

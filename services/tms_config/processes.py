@@ -33,6 +33,7 @@ PURPOSES = {  # what they and the other processes are for; `tms ps` shows it in 
     "discovery": "lets the PCs' processes find each other",
     "sim": "stand-in for {machine}",
     "rc": "gateway: every motion passes it",
+    "mc": "moves joints and tracks",
     "rp": "plans motions",
     "subtask": "subtask {file}",
 }
@@ -152,6 +153,8 @@ def _machine(site: Site, machine: str) -> list[Process]:
     if site.file.backend == "sim":
         rows.append(Process("sim", machine, "sim", "tms_sim.node", 0, PURPOSES["sim"], machine))
     rows.append(Process(machine, "rc", use.role, "tms_rc.node", 0, PURPOSES["rc"], machine))
+    if site.border(machine).controller == "ours":
+        rows.append(Process(machine, "mc", use.role, "tms_mc.node", 0, PURPOSES["mc"], machine))
     if model.planner is not None:
         _require(site, machine, f"tms_rp/kinds/{model.planner}/__init__.py", "planner")
         rows.append(Process(machine, "rp", use.role, "tms_rp.node", 0, PURPOSES["rp"], machine))

@@ -17,7 +17,9 @@ def machine_facts(machine: str, model: MachineModel, border: Border, speed: floa
     brakes = {name: joint.velocity / joint.acceleration for name, joint in joints.items()}
     if drive is not None:
         brakes[DRIVE] = max(drive.velocity / drive.acceleration, drive.turn_velocity / drive.turn_acceleration)
-    responses = {name: ResponseFacts(one.dead_time, one.lag, brakes[name]) for name, one in model.response.items()}
+    responses = {
+        name: ResponseFacts(one.dead_time, one.lag, brakes[name]) for name, one in model.responses(border).items()
+    }
     drive_response = responses.pop(DRIVE, None)
     tops = {} if drive is None else {"drive_velocity": drive.velocity, "turn_velocity": drive.turn_velocity}
     return MachineFacts(

@@ -34,7 +34,8 @@ PR_SET_PDEATHSIG = 1
 # started: processes that are starting must not keep working ones from their beats. Twenty of them come to the end of
 # their imports at the same time, and each then makes its participant with real-time priority 1.
 # A stand-in is a machine, which no PC can keep from its motions.
-FIRST = {"tms_ts.node": (-15, 2), "tms_rc.node": (-12, 3), "tms_host.node": (-12, 3), "tms_sim.node": (-12, 3)}
+FIRST = {"tms_ts.node": (-15, 2), "tms_rc.node": (-12, 3), "tms_host.node": (-12, 3), "tms_sim.node": (-12, 3),
+         "tms_mc.node": (-12, 3)}  # fmt: skip
 OF_A_MACHINE = (-5, 1)  # planner and subtasks, whose permits lapse as well
 STARTING = -5  # nice of all these while they start
 

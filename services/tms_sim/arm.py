@@ -5,7 +5,7 @@ import threading
 from collections.abc import Mapping, Sequence
 
 from tms_config.models import Joint, Response
-from tms_sim.reference_trajectory import Knot, ReferenceTrajectory
+from tms_control.reference_trajectory import Knot, ReferenceTrajectory
 from tms_sim.servo import Servo
 
 SUBSTEP = 0.01  # s: the same motion at any time scale

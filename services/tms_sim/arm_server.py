@@ -4,9 +4,9 @@ from builtin_interfaces.msg import Duration
 from control_msgs.action import FollowJointTrajectory
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
+from tms_control.reference_trajectory import Knot
 from tms_sim.controller import Controller, TrajectoryMotion
 from tms_sim.motion import MotionVerdict
-from tms_sim.reference_trajectory import Knot
 from tms_sim.servers import ActionHandler
 
 

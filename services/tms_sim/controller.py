@@ -3,9 +3,10 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from tms_control.reference_trajectory import Knot, ReferenceTrajectory, refusal
+from tms_reason.texts import text
 from tms_sim.arm import Arm
 from tms_sim.motion import Motion, MotionVerdict
-from tms_sim.reference_trajectory import Knot, ReferenceTrajectory, refusal
 
 TOLERANCE = 0.03  # rad, at the end of a goal
 STOPPED = 0.01  # rad/s, at the end of a goal
@@ -40,7 +41,8 @@ class Controller:
         """Result code and reason of a goal's refusal, or None."""
         if self.emergency:
             return INVALID_GOAL, "the emergency stop is on: publish false on emg_stop to release it"
-        return refusal(self.arm.joints, names, points)
+        refused = refusal(self.arm.joints, names, points)
+        return None if refused is None else (refused[0], text(refused[1], "en"))
 
     def begin(self, names: Sequence[str], points: Sequence[Knot], goal_time: float = 0.0) -> TrajectoryMotion:
         """Follow a trajectory that was not refused; a motion under way is preempted."""

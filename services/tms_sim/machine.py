@@ -31,7 +31,7 @@ class StandIn:
     ) -> None:
         """`ideal`: without dead time and lag."""
         self._border = border or Border()
-        response = {} if ideal else model.response
+        response = {} if ideal else model.responses(self._border)
         self.arm = Arm(model.joints, {**model.initial, **self._border.initial}, response)
         self.controller = Controller(self.arm)
         self.turner = Turner(self.arm, self._border.dump_returns)

@@ -3,7 +3,7 @@
 import math
 
 from tms_config.models import Joint, Response
-from tms_sim.control_law import ControlLaw
+from tms_control.control_law import ControlLaw
 from tms_sim.drive import JointDrive
 
 SETTLED = 1e-3  # rad and rad/s, within which the controller ends its commands

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
+from tms_control.reference_trajectory import Knot
 from tms_sim.arm import SUBSTEP, Arm
 from tms_sim.drive import JointDrive
-from tms_sim.reference_trajectory import Knot
 
 MODEL = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel)
 NAMES = tuple(MODEL.joints)

@@ -5,9 +5,9 @@ import pytest
 from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
+from tms_control.reference_trajectory import Knot
 from tms_sim.arm import Arm
 from tms_sim.controller import GOAL_VIOLATED, Controller, Motion
-from tms_sim.reference_trajectory import Knot
 
 MODEL = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel)
 NAMES = tuple(MODEL.joints)

@@ -8,11 +8,11 @@ from tms_config.config import CONFIGS
 from tms_config.models import Border, MachineModel
 from tms_config.site_file import Fault
 from tms_config.yaml_file import parse
+from tms_control.reference_trajectory import Knot
 from tms_sim.base import Leg
 from tms_sim.machine import StandIn
 from tms_sim.motion import Motion
 from tms_sim.navigator import PATIENCE, Navigator
-from tms_sim.reference_trajectory import Knot
 
 CARRIER = parse(CONFIGS / "machines" / "mst110cr.yaml", MachineModel)
 DIGGER = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel)

@@ -8,10 +8,10 @@ from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.site_file import Fault
 from tms_config.yaml_file import parse
+from tms_control.reference_trajectory import Knot
 from tms_sim.base import Base, Leg
 from tms_sim.machine import CREEPS, StandIn
 from tms_sim.navigator import Trip
-from tms_sim.reference_trajectory import Knot
 
 DIGGER = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel)
 NAMES = list(DIGGER.joints)

@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from tms_config.models import Joint
+from tms_control.reasons import OtherJoints, PointNotFinite, PointTooEarly, PointUnfit, TrajectoryEmpty
+from tms_reason.reason import Reason
 
 INVALID_GOAL, INVALID_JOINTS = -1, -2  # control_msgs/FollowJointTrajectory result codes
 
@@ -19,20 +21,20 @@ class Knot:
     velocities: tuple[float, ...] = ()
 
 
-def refusal(joints: Mapping[str, Joint], names: Sequence[str], points: Sequence[Knot]) -> tuple[int, str] | None:
+def refusal(joints: Mapping[str, Joint], names: Sequence[str], points: Sequence[Knot]) -> tuple[int, Reason] | None:
     """Result code and reason why a trajectory cannot be followed, or None; as strict as ros2_control's."""
     if sorted(names) != sorted(joints):
-        return INVALID_JOINTS, f"joints {', '.join(names) or '(none)'} given, {', '.join(joints)} expected"
+        return INVALID_JOINTS, OtherJoints(tuple(names), tuple(joints))
     if not points:
-        return INVALID_GOAL, "the trajectory has no points"
+        return INVALID_GOAL, TrajectoryEmpty()
     before = -1.0
     for number, point in enumerate(points):
         if len(point.positions) != len(names) or len(point.velocities) not in (0, len(names)):
-            return INVALID_GOAL, f"point {number} does not have one position (and velocity) for each joint"
+            return INVALID_GOAL, PointUnfit(number)
         if not all(map(math.isfinite, (*point.positions, *point.velocities))):
-            return INVALID_GOAL, f"point {number} holds a value that is not a number"
+            return INVALID_GOAL, PointNotFinite(number)
         if point.time <= before or point.time < 0:
-            return INVALID_GOAL, f"point {number} is at {point.time:.3f} s, not after the one before it"
+            return INVALID_GOAL, PointTooEarly(number, point.time)
         before = point.time
     return None
 

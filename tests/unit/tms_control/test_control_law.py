@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tms_sim.control_law import MARGIN, ControlLaw
+from tms_control.control_law import MARGIN, ControlLaw
 
 TURN = 0.04  # s
 

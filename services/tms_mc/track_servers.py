@@ -1,0 +1,131 @@
+"""The actions that drive tracks, with the messages of Jazzy or of Humble, as built."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from builtin_interfaces.msg import Duration
+from geometry_msgs.msg import PoseStamped
+from nav2_msgs.action import FollowWaypoints, NavigateThroughPoses, NavigateToPose
+
+from tms_config.clock import sleep
+from tms_control.path import Pose
+from tms_control.trip import Feedback, Missed, Task, Trip, Verdict
+from tms_machine.frames import MAP
+from tms_machine.geometry import about, is_orientation, yaw_of
+from tms_machine.places import IN_MAP
+from tms_mc.guard import Guard
+from tms_mc.reasons import NoPoses, PoseUnfit, StrangeFrame
+from tms_mc.tracks import Tracks
+from tms_reason.reason import Reason
+from tms_reason.wire import to_line
+from tms_ros.goals import Ended, Outcome
+from tms_ros.server import AnyGoal
+
+FEEDBACK = 0.1  # s
+FAILED = 1  # error code of a goal
+MISSED = 601  # error code of a waypoint
+
+
+class TrackServers:
+    """Serves the navigation of one machine."""
+
+    def __init__(self, tracks: Tracks, guard: Guard) -> None:
+        self._tracks, self._guard = tracks, guard
+
+    def refuse(self, request: Any) -> Reason | None:
+        """Why a goal is refused."""
+        return self._guard.refusal() or _wrong(_poses(request))
+
+    def to_pose(self, goal: AnyGoal) -> Ended[Any]:
+        """NavigateToPose."""
+        return self._drive(goal, NavigateToPose, Task.to(_pose(goal.request.pose)), self._progress)
+
+    def through_poses(self, goal: AnyGoal) -> Ended[Any]:
+        """NavigateThroughPoses."""
+        task = Task.through([_pose(one) for one in goal.request.poses])
+        return self._drive(goal, NavigateThroughPoses, task, self._progress)
+
+    def waypoints(self, goal: AnyGoal) -> Ended[Any]:
+        """FollowWaypoints."""
+        task = Task.waypoints([_pose(one) for one in goal.request.poses])
+
+        def progress(action: Any, told: Feedback) -> Any:
+            return action.Feedback(current_waypoint=told.waypoint)
+
+        return self._drive(goal, FollowWaypoints, task, progress)
+
+    def _drive(self, goal: AnyGoal, action: Any, task: Task, progress: Callable[[Any, Feedback], Any]) -> Ended[Any]:
+        with self._guard.working_for(goal):
+            if (kept := self._guard.wait(goal)) is not None:
+                return Outcome.ABORTED, _result(action, kept, [])
+            trip = self._tracks.begin(task)
+            goal.on_cancel = lambda: self._tracks.stop(trip)
+            if goal.cancelled.is_set():  # the request came before the motion began
+                goal.on_cancel()
+            while trip.verdict is None and not self._guard.closing:
+                sleep(FEEDBACK)
+                goal.publish(progress(action, self._tracks.told(trip)))
+        return _ended(action, goal, trip)
+
+    def _progress(self, action: Any, told: Feedback) -> Any:
+        now = PoseStamped()
+        now.header.frame_id = MAP
+        now.pose.position.x, now.pose.position.y = told.pose.x, told.pose.y
+        _, _, now.pose.orientation.z, now.pose.orientation.w = about("z", told.pose.yaw)
+        found = action.Feedback(
+            current_pose=now, navigation_time=_duration(told.seconds), distance_remaining=told.left,
+            estimated_time_remaining=_duration(told.seconds_left),
+        )  # fmt: skip
+        if action is NavigateThroughPoses:
+            found.number_of_poses_remaining = told.poses_left
+        return found
+
+
+def _ended(action: Any, goal: AnyGoal, trip: Trip) -> Ended[Any]:
+    verdict: Verdict | None = trip.verdict
+    if verdict is None:  # this process ends
+        return Outcome.ABORTED, action.Result()
+    outcome = Outcome.CANCELED if goal.cancelled.is_set() else Outcome[verdict.ending.value]
+    return outcome, _result(action, verdict.reason, trip.missed)
+
+
+def _result(action: Any, why: Reason | None, missed: Sequence[Missed]) -> Any:
+    found = action.Result()
+    if hasattr(found, "error_code") and why is not None:  # Humble's results have no reason
+        found.error_code, found.error_msg = FAILED, to_line(why)
+    if action is FollowWaypoints and missed:
+        found.missed_waypoints = _missed([one.number for one in missed])
+    return found
+
+
+def _missed(numbers: Sequence[int]) -> Any:
+    if not hasattr(FollowWaypoints.Result(), "error_code"):
+        return list(numbers)
+    from nav2_msgs.msg import MissedWaypoint  # Humble has no such message
+
+    return [MissedWaypoint(index=number, error_code=MISSED) for number in numbers]
+
+
+def _poses(request: Any) -> Sequence[PoseStamped]:
+    return list(request.poses) if hasattr(request, "poses") else [request.pose]
+
+
+def _wrong(poses: Sequence[PoseStamped]) -> Reason | None:
+    if not poses:
+        return NoPoses()
+    for number, stamped in enumerate(poses):
+        q = stamped.pose.orientation
+        if stamped.header.frame_id not in (*IN_MAP, ""):
+            return StrangeFrame(number, stamped.header.frame_id)
+        if not is_orientation((q.x, q.y, q.z, q.w)):
+            return PoseUnfit(number)
+    return None
+
+
+def _pose(stamped: PoseStamped) -> Pose:
+    at, q = stamped.pose.position, stamped.pose.orientation
+    return Pose(at.x, at.y, yaw_of((q.x, q.y, q.z, q.w)))
+
+
+def _duration(seconds: float) -> Duration:
+    return Duration(sec=int(seconds), nanosec=int(seconds % 1 * 1e9))

@@ -1,0 +1,148 @@
+"""Drives the tracks of one machine: hears where it is, and commands speeds at 20 Hz while a goal is open."""
+
+import math
+import threading
+from collections.abc import Callable
+from typing import Any
+
+from geometry_msgs.msg import Twist
+
+from tms_config.clock import monotonic, sleep
+from tms_config.models import DRIVE, Drive
+from tms_control.machine_clock import MachineClock
+from tms_control.path import Pose
+from tms_control.track_estimate import Command, PoseSample, TrackEstimate
+from tms_control.trip import Task, Trip
+from tms_machine.geometry import is_orientation, yaw_of
+from tms_machine.places import IN_MAP, POSES, pose_of
+from tms_mc.gateway_watch import GatewayWatch
+from tms_mc.reasons import PosesSilent, PosesUnheard
+from tms_reason.reason import Reason
+from tms_ros.topics import Arrival
+from tms_runtime.app import App
+
+PERIOD = 0.05  # s between commands
+IDLE = 0.1  # s between looks at what the machine tells while nothing moves it
+DEPTH = 10  # messages that may come between two looks
+SILENT = 0.5  # s without a pose after which no goal is taken
+
+
+class Tracks:
+    """One goal at a time. Safe to call from several threads."""
+
+    def __init__(self, app: App, gateway: GatewayWatch, drive: Drive) -> None:
+        site, machine = app.site, app.machine
+        border = site.border(machine)
+        self._app, self._gateway, self._drive = app, gateway, drive
+        self._response = site.model_of(machine).responses(border)[DRIVE]
+        self._topic, source = f"/{machine}/{border.pose}", border.sources["pose"]
+        self._heard: Callable[[], list[Arrival[Any]]] = app.ros.sample_arrivals(POSES[source.message], self._topic, DEPTH)
+        self._cmd_vel = app.ros.publisher(Twist, f"/{machine}/{border.cmd_vel}", 1)
+        self._clock, self._estimate = MachineClock(), TrackEstimate(self._response)
+        self._trip: Trip | None = None
+        self._lock = threading.RLock()  # guards the trip and the estimate
+        self._begun = threading.Event()  # wakes the thread below
+        app.ros.loop.begin(self._turn, "tracks")
+
+    def unready(self) -> Reason | None:
+        """What keeps it from driving, or None."""
+        with self._lock:
+            silent = self._clock.silent(monotonic())
+        if math.isinf(silent):
+            return PosesUnheard(self._topic)
+        return PosesSilent(silent, self._topic) if silent > SILENT else None
+
+    @property
+    def stands(self) -> bool:
+        """Whether the machine was seen to stand."""
+        with self._lock:
+            return self._clock.stamp is not None and self._estimate.at(self._time()).stands
+
+    @property
+    def pose(self) -> Pose:
+        """Where it is now."""
+        with self._lock:
+            return self._estimate.at(self._time()).pose
+
+    def begin(self, task: Task) -> Trip:
+        """Drive, from where the machine is; an open goal ends."""
+        with self._lock:
+            now = self._time()
+            if self._trip is not None:
+                self._trip.silence(now)
+            trip = self._trip = Trip(task, self._drive, self._estimate, now)
+        self._begun.set()
+        return trip
+
+    def told(self, trip: Trip) -> Any:
+        """What the feedback of a goal tells."""
+        with self._lock:
+            return trip.feedback(self._time())
+
+    def stop(self, trip: Trip | None = None) -> None:
+        """End a goal, or the open one: with a gateway, it brakes and nothing is sent; without, it ramps down here."""
+        with self._lock:
+            trip = trip or self._trip
+            if trip is None or trip.verdict is not None:
+                return
+            self._app.log.info("stopping", gateway=self._gateway.alive)
+            if self._gateway.alive:
+                trip.silence(self._time())
+            else:
+                trip.cancel()
+
+    def _time(self) -> float:
+        """The machine's time [s]; only after it was heard of."""
+        now = self._clock.now(monotonic())
+        assert now is not None
+        return now
+
+    def _turn(self) -> None:
+        while not self._app.ros.closing:
+            if self._step():
+                sleep(PERIOD)
+            else:
+                self._begun.wait(IDLE)
+                self._begun.clear()
+
+    def _step(self) -> bool:
+        """Take what was heard, and command what is due; whether a goal is open."""
+        with self._lock:
+            samples = [sample for arrival in self._heard() if (sample := self._sample(arrival)) is not None]
+            trip = self._trip
+            if trip is None or trip.verdict is not None:
+                for sample in samples:
+                    self._estimate.measured(sample)
+                return False
+            if not self._gateway.alive:
+                trip.cancel()
+            for sample in samples[:-1]:
+                self._estimate.measured(sample)
+            self._send(trip.step(self._time(), samples[-1] if samples else None))
+            return True
+
+    def _send(self, command: Command | None) -> None:
+        if command is not None:
+            twist = Twist()
+            twist.linear.x, twist.angular.z = command.v, command.w
+            self._cmd_vel.publish(twist)
+
+    def _sample(self, arrival: Arrival[Any]) -> PoseSample | None:
+        """A pose in the map, with the machine's time; None where it says nothing."""
+        header, pose = arrival.message.header, pose_of(arrival.message)
+        at, q = pose.position, pose.orientation
+        turn = (q.x, q.y, q.z, q.w)
+        known = header.frame_id in IN_MAP and is_orientation(turn)
+        if not (known and math.isfinite(at.x) and math.isfinite(at.y)):
+            return None
+        stamp = header.stamp.sec + header.stamp.nanosec * 1e-9
+        if not self._clock.hear(arrival.received, stamp):
+            self._begin_anew()
+        return PoseSample(stamp, Pose(at.x, at.y, yaw_of(turn)))
+
+    def _begin_anew(self) -> None:
+        """The clock was set back: no time before counts any more."""
+        if self._trip is not None:
+            self._trip.silence(self._time())
+            self._trip = None
+        self._estimate = TrackEstimate(self._response)
