@@ -36,7 +36,8 @@ class Tracks:
         self._app, self._gateway, self._drive = app, gateway, drive
         self._response = site.model_of(machine).responses(border)[DRIVE]
         self._topic, source = f"/{machine}/{border.pose}", border.sources["pose"]
-        self._heard: Callable[[], list[Arrival[Any]]] = app.ros.sample_arrivals(POSES[source.message], self._topic, DEPTH)
+        kind = POSES[source.message]
+        self._heard: Callable[[], list[Arrival[Any]]] = app.ros.sample_arrivals(kind, self._topic, DEPTH)
         self._cmd_vel = app.ros.publisher(Twist, f"/{machine}/{border.cmd_vel}", 1)
         self._clock, self._estimate = MachineClock(), TrackEstimate(self._response)
         self._trip: Trip | None = None
