@@ -1,6 +1,5 @@
 """The chosen site with its machine models, checked: see `load_site`."""
 
-import importlib.metadata
 import os
 from dataclasses import dataclass
 from pathlib import Path
@@ -65,16 +64,12 @@ class Site:
         """The border of a machine for this site's backend, with the machine's own name in its names."""
         border = self.model_of(machine).borders[self.file.names]
         own = {key: getattr(border, key).format(name=machine) for key in ("frame_prefix", "base_frame")}
-        return border.model_copy(update=own)
+        stand_in = {"controller": "theirs"} if self.file.backend == "sim" else {}
+        return border.model_copy(update={**own, **stand_in})
 
     def start_of(self, machine: str) -> tuple[float, float, float]:
         """Start place of a stand-in: x [m], y [m], yaw [rad] in map."""
         return self.file.machines[machine].start or self.model_of(machine).start
-
-
-def version() -> str:
-    """Version of the installed project."""
-    return importlib.metadata.version("ros2-tms")
 
 
 def site_path(chosen: str | None = None) -> Path:

@@ -166,7 +166,7 @@ def _subtask(site: Site, machine: str, model: MachineModel, action: str) -> Proc
     file = model.subtask(action).run
     _require(site, machine, f"tms_subtasks/{file}.py", "subtasks", action)
     return Process(
-        machine, action, site.file.machines[machine].role, "tms_machine.subtask_server", 0,
+        machine, action, site.file.machines[machine].role, "tms_kit.subtask_server", 0,
         PURPOSES["subtask"], machine, action, autostart=False,
     )  # fmt: skip
 

@@ -18,7 +18,6 @@ from pymongo.collection import Collection
 from pymongo.errors import BulkWriteError
 
 from tms_config.clock import utc_now
-from tms_config.config import version
 from tms_db import archive, schema, store
 from tms_db.archive import Name
 from tms_db.reasons import (
@@ -33,6 +32,7 @@ from tms_db.reasons import (
 )
 from tms_db.store import Db, errors
 from tms_reason.errors import DbError, TmsError
+from tms_runtime.version import version
 
 STAGED = "restoring."  # before the names of collections that are not complete yet
 BATCH = 500  # documents

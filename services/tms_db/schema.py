@@ -8,11 +8,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from tms_config.clock import utc_now
-from tms_config.config import version
 from tms_db import store
 from tms_db.reasons import NewerSchema
 from tms_db.store import Db, errors
 from tms_reason.errors import DbError
+from tms_runtime.version import version
 
 COLLECTION = "schema"
 KEY = {"_id": "tms"}  # key of the only document

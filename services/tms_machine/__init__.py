@@ -1,1 +1,1 @@
-"""Machines: border, permit, geometry, and the interface for authors of subtasks."""
+"""Machines: border, permit, fencing, geometry, places, and what people write of them."""

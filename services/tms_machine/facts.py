@@ -1,7 +1,9 @@
 """What the decisions know of a machine, from its model, its border and the site."""
 
+from collections.abc import Mapping
+
 from tms_config.config import Site
-from tms_config.models import DRIVE, Border, MachineModel, Source
+from tms_config.models import DRIVE, Border, MachineModel, Response, Source
 from tms_proof.facts import JointFacts, MachineFacts, ResponseFacts, SourceFacts, StillFacts
 
 
@@ -17,9 +19,9 @@ def machine_facts(machine: str, model: MachineModel, border: Border, speed: floa
     brakes = {name: joint.velocity / joint.acceleration for name, joint in joints.items()}
     if drive is not None:
         brakes[DRIVE] = max(drive.velocity / drive.acceleration, drive.turn_velocity / drive.turn_acceleration)
-    responses = {
-        name: ResponseFacts(one.dead_time, one.lag, brakes[name]) for name, one in model.responses(border).items()
-    }
+    answers = model.responses(border)
+    late = {name: _late(answers, name, border) for name in answers}
+    responses = {name: ResponseFacts(late[name], one.lag, brakes[name]) for name, one in answers.items()}
     drive_response = responses.pop(DRIVE, None)
     tops = {} if drive is None else {"drive_velocity": drive.velocity, "turn_velocity": drive.turn_velocity}
     return MachineFacts(
@@ -34,3 +36,10 @@ def machine_facts(machine: str, model: MachineModel, border: Border, speed: floa
 
 def _source(one: Source, topic: str) -> SourceFacts:
     return SourceFacts(one.period, one.stamps, one.frozen_after, topic, one.resolution)
+
+
+def _late(answers: Mapping[str, Response], name: str, border: Border) -> float:
+    """Dead time of a joint or of the tracks [s]: our controller moves all joints together, as late as the latest."""
+    if border.controller == "theirs" or name == DRIVE:
+        return answers[name].dead_time
+    return max(one.dead_time for joint, one in answers.items() if joint != DRIVE)

@@ -5,7 +5,7 @@ from contextlib import contextmanager
 
 from std_msgs.msg import Bool
 
-from tms_config.clock import monotonic, sleep
+from tms_config.clock import monotonic
 from tms_machine.permit import Permit
 from tms_mc.gateway_watch import GatewayWatch
 from tms_mc.reasons import EmergencyStopped, GatewayAbsent, StillMoves, Stopped, StopPressed
@@ -13,7 +13,7 @@ from tms_reason.reason import Reason
 from tms_ros.server import AnyGoal
 from tms_runtime.app import App
 
-SETTLES = 20.0  # s that a machine may take to stand: a simulator that has just begun brings its joints to their targets
+SETTLES = 20.0  # s that it may take: a simulator that has just begun brings its joints to their targets
 POLL = 0.05  # s
 
 
@@ -44,22 +44,21 @@ class Guard:
         """What the machine lacks, or None."""
         return next((why for unready, _, _ in self._watched if (why := unready()) is not None), None)
 
-    def refusal(self) -> Reason | None:
-        """Why no goal is taken now, or None."""
+    def _missing(self) -> Reason | None:
+        """What a motion that begins now would lack, or None."""
         if not self._gateway.alive:
             return GatewayAbsent()
-        return StopPressed() if self._pressed else self.unready()
+        if (why := StopPressed() if self._pressed else self.unready()) is not None:
+            return why
+        return None if all(stands() for _, stands, _ in self._watched) else StillMoves()
 
     def wait(self, goal: AnyGoal) -> Reason | None:
-        """Wait until the machine stands; returns why a goal cannot begin."""
+        """Wait until the machine may be moved, and stands; returns why a goal cannot begin."""
         ends = monotonic() + SETTLES
-        while not all(stands() for _, stands, _ in self._watched):
-            if goal.cancelled.is_set():
+        while (why := self._missing()) is not None and monotonic() < ends:
+            if goal.cancelled.wait(POLL):
                 return Stopped()
-            if monotonic() > ends:
-                return StillMoves()
-            sleep(POLL)
-        return self.refusal()
+        return why
 
     @contextmanager
     def working_for(self, goal: AnyGoal) -> Iterator[None]:

@@ -43,7 +43,7 @@ class JointServers:
     def refuse_trajectory(self, request: FollowJointTrajectory.Goal) -> Reason | None:
         """Why a trajectory is refused."""
         wrong = refusal(self._joints.arm.joints, list(request.trajectory.joint_names), _knots(request.trajectory))
-        return self._guard.refusal() or (None if wrong is None else wrong[1])
+        return None if wrong is None else wrong[1]
 
     def follow(self, goal: AnyGoal) -> Ended[FollowJointTrajectory.Result]:
         """Follow a trajectory to its end."""
@@ -83,7 +83,7 @@ class JointServers:
             if not math.isfinite(request.target_angle):
                 return NoAngle(joint)
             broken = joints[joint].violation(request.target_angle)
-            return self._guard.refusal() or (None if broken is None else JointLimit(joint, broken))
+            return None if broken is None else JointLimit(joint, broken)
 
         def run(goal: AnyGoal) -> Ended[Any]:
             now, angle = self._joints.positions, float(goal.request.target_angle)

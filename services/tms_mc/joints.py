@@ -12,7 +12,7 @@ from tms_control.arm_controller import ArmController
 from tms_control.arm_motion import ArmMotion, Ending, Tolerances, Verdict
 from tms_control.machine_clock import MachineClock
 from tms_control.reference_trajectory import Knot, ReferenceTrajectory
-from tms_mc.commands import JointCommands
+from tms_machine.joint_commands import JointCommands
 from tms_mc.gateway_watch import GatewayWatch
 from tms_mc.reasons import ClockSetBack, GatewayGone, JointMissing, JointsNotHeard, JointsSilent, NoCommandTopic
 from tms_reason.reason import Reason

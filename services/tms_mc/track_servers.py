@@ -32,9 +32,10 @@ class TrackServers:
     def __init__(self, tracks: Tracks, guard: Guard) -> None:
         self._tracks, self._guard = tracks, guard
 
-    def refuse(self, request: Any) -> Reason | None:
+    @staticmethod
+    def refuse(request: Any) -> Reason | None:
         """Why a goal is refused."""
-        return self._guard.refusal() or _wrong(_poses(request))
+        return _wrong(_poses(request))
 
     def to_pose(self, goal: AnyGoal) -> Ended[Any]:
         """NavigateToPose."""

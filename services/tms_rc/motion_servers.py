@@ -17,6 +17,7 @@ from tms_decision.gateway.events import (
 from tms_decision.gateway.state import Gateway
 from tms_decision.owner import parse
 from tms_machine.border import MotionAction
+from tms_machine.permit import watch_server
 from tms_rc.goal_check import GoalCheck
 from tms_rc.motion_goals import duration, reason_of, with_reason
 from tms_rc.shell import Shell
@@ -52,6 +53,8 @@ class MotionServers:
         self._served: dict[int, Served] = {}
         self._numbers = count(1)
         self.peers: list[AnyPeer] = []
+        ours = app.site.border(app.machine).controller == "ours"
+        self._watch = watch_server(app.ros, app.pulse, app.machine, "mc") if ours else None
         shell.does(Send, lambda effect: self._send(self._served[effect.number]))
         shell.does(End, self._end)
         for kind, act in ((Cancel, _cancel), (GiveUp, _give_up), (Lose, _lose)):
@@ -61,6 +64,8 @@ class MotionServers:
         """Offer /<machine>/rc/<action> in front of the machine's own action `own`."""
         peer = self._app.ros.peer(motion.type, f"/{self._app.machine}/{own}")
         self.peers.append(peer)
+        if self._watch is not None:
+            self._watch(peer)
         name = f"/{self._app.machine}/rc/{motion.served}"
         self._app.ros.serve(motion.type, name, lambda goal: self._run(motion, peer, goal))
 

@@ -14,6 +14,7 @@ from tms_machine.permit import Permit
 from tms_rc import permits
 from tms_rc.claim import Claim
 from tms_rc.disk import Disk
+from tms_rc.holder import Holder
 from tms_rc.latch_file import LatchFile
 from tms_rc.machine_monitor import MachineMonitor
 from tms_rc.motion_servers import MotionServers
@@ -57,14 +58,17 @@ def _serve(app: App, claim: Claim) -> None:
     state = StateTopic(app, shell, monitor, servers, claim)
     ReceiptTopic(app, shell, kept)
     Disk(app, shell, notes, kept)
-    shell.does(Zero, lambda _: controls.zero())
-    shell.does(Emergency, lambda effect: controls.emergency(effect.on))
+    drives: Controls | Holder = controls
+    if border.controller == "ours":
+        drives = Holder(app, controls, lambda: gateway.watch.positions)
+    shell.does(Zero, lambda _: drives.zero())
+    shell.does(Emergency, lambda effect: drives.emergency(effect.on))
     shell.does(CancelAll, lambda _: controls.cancel_everything())
 
     def look(seen: Gateway) -> Beat:
         ready, gone, escaped = servers.look(seen)
         reachable = seen.recovery.reached or controls.reachable()  # asked of the graph at the start only
-        return Beat(unix_time(), reachable, controls.settling(), ready, gone, escaped)
+        return Beat(unix_time(), reachable, drives.settling(), ready, gone, escaped)
 
     shell.begin(effects, monitor.samples, look)
     for motion in motions(border):

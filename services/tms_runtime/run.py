@@ -11,7 +11,7 @@ from contextlib import ExitStack
 from typing import TYPE_CHECKING
 
 from tms_config.clock import monotonic
-from tms_config.config import Site, load_site, version
+from tms_config.config import Site, load_site
 from tms_config.processes import Process, find
 from tms_reason import wire
 from tms_reason.errors import ConfigError
@@ -21,6 +21,7 @@ from tms_runtime.log import Logger
 from tms_runtime.metrics import Health
 from tms_runtime.priority import come_first, threads, undisturbed
 from tms_runtime.reasons import LongCallback, ParentGone, PcBusy, ProcessStarting
+from tms_runtime.version import version
 
 if TYPE_CHECKING:
     from tms_ros.node import Ros

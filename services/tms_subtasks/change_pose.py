@@ -4,8 +4,8 @@ from collections.abc import Mapping
 
 from geometry_msgs.msg import Point, Pose, Quaternion
 
+from tms_kit.subtask import Machine, Params, Progress, SubtaskFailed, subtask
 from tms_machine.reasons import FieldMissing, NoFlag
-from tms_machine.subtask import Machine, Params, Progress, SubtaskFailed, subtask
 
 ARM = ("swing_joint", "boom_joint", "arm_joint", "bucket_joint", "bucket_end_joint")
 

@@ -1,6 +1,6 @@
 """Dig at a point: swing there, lower the bucket, scoop."""
 
-from tms_machine.subtask import Machine, Params, Progress, subtask
+from tms_kit.subtask import Machine, Params, Progress, subtask
 
 
 class DigPoint(Params):

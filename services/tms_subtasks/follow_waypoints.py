@@ -1,6 +1,6 @@
 """Drive to each waypoint of a record in turn; one that is not reached is a failure that names it."""
 
-from tms_machine.subtask import Machine, Progress, subtask
+from tms_kit.subtask import Machine, Progress, subtask
 from tms_subtasks.records.places import PathRecord
 
 

@@ -1,6 +1,6 @@
 """Drive to the place of a record and stand there."""
 
-from tms_machine.subtask import Machine, Progress, subtask
+from tms_kit.subtask import Machine, Progress, subtask
 from tms_subtasks.records.places import PoseRecord
 
 

@@ -1,6 +1,6 @@
 """Drive through the poses of a record without a stop."""
 
-from tms_machine.subtask import Machine, Progress, subtask
+from tms_kit.subtask import Machine, Progress, subtask
 from tms_subtasks.records.places import PathRecord
 
 

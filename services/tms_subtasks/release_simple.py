@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from tms_machine.subtask import Machine, Params, Progress, subtask
+from tms_kit.subtask import Machine, Params, Progress, subtask
 
 
 class Opening(Params):

@@ -6,8 +6,8 @@ from typing import Any
 
 from pydantic import field_validator, model_validator
 
+from tms_kit.subtask import Machine, Params, Progress, subtask
 from tms_machine.reasons import FieldMissing, MoreThanOneTurn
-from tms_machine.subtask import Machine, Params, Progress, subtask
 from tms_reason.validation import Wrong
 
 

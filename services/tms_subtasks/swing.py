@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from tms_config.models import TURNED
-from tms_machine.subtask import Machine, Params, Progress, subtask
+from tms_kit.subtask import Machine, Params, Progress, subtask
 
 
 class Heading(Params):

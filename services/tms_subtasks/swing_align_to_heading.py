@@ -2,7 +2,7 @@
 
 import math
 
-from tms_machine.subtask import Machine, Params, Progress, subtask
+from tms_kit.subtask import Machine, Params, Progress, subtask
 
 
 class Body(Params):

@@ -10,7 +10,7 @@ from tms_msg_sp.msg import InputState, InputStates
 
 from tms_config.clock import monotonic, sleep, unix_time
 from tms_config.models import MachineModel
-from tms_machine.subtask import load
+from tms_kit.subtask import load
 from tms_machine.values import from_parameters
 from tms_reason.errors import RosError
 from tms_reason.reason import Reason

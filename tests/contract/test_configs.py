@@ -15,8 +15,8 @@ from tms_config.processes import table
 from tms_config.sensing import load_sensing
 from tms_config.yaml_file import parse, read_yaml
 from tms_host.supervisor import render
+from tms_kit.subtask_server import load
 from tms_machine.record_lock import FLAG
-from tms_machine.subtask_server import load
 
 MODELS = sorted((CONFIGS / "machines").glob("*.yaml"))
 SITES = [CONFIGS / "site.yaml", *sorted((CONFIGS / "sites").glob("*.yaml"))]

@@ -54,6 +54,10 @@ class OperaSim:
         for name in names:
             self._processes[name] = programs.process(name, self._env, self._log_of(name))
 
+    def kill(self, name: str) -> None:
+        """Kill a process of ours."""
+        self._processes.pop(name).kill()
+
     def _log_of(self, process: str) -> Path:
         return self._folder / f"{process.replace(':', '_')}.log"
 

@@ -1,13 +1,18 @@
 """A zx200 of OperaSim-PhysX moved by our controller: bridge, gateway and controller as real processes."""
 
+import math
 from array import array
 from collections.abc import Iterator
 from typing import Any
 
 import pytest
 from builtin_interfaces.msg import Duration
+from com3_msgs.msg import JointCmd
 from control_msgs.action import FollowJointTrajectory
+from geometry_msgs.msg import PoseStamped
+from nav2_msgs.action import NavigateToPose
 from operasim_rig import LIMIT, OperaSim
+from tms_msg_rc.srv import StopMachine
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from conftest import rearm
@@ -58,12 +63,86 @@ def send(site: OperaSim, change: dict[str, float], seconds: int = 6) -> tuple[An
     return peer, peer.send(goal({**now, **{name: now[name] + way for name, way in change.items()}}, seconds))
 
 
+def ended(site: OperaSim, call: Any) -> Any:
+    site.until(lambda: call.outcome is not None, "the end of the goal")
+    return call.outcome
+
+
+def moving(site: OperaSim, joint: str) -> None:
+    site.until(lambda: abs(site.joint(joint)["velocity"]) > 0.05, f"{joint} moves")
+
+
 def test_a_trajectory_is_followed_through_the_gateway(site: OperaSim) -> None:
     begun = angles(site)
     _, call = send(site, {"boom_joint": 0.2, "swing_joint": 0.5})
-    assert call.wait_for(lambda: call.outcome is not None, LIMIT)
-    assert call.outcome is Outcome.SUCCEEDED, call.result
+    assert ended(site, call) is Outcome.SUCCEEDED, call.result
     now = angles(site)
     assert now["boom_joint"] - begun["boom_joint"] == pytest.approx(0.2, abs=0.03)
     assert now["swing_joint"] - begun["swing_joint"] == pytest.approx(0.5, abs=0.03)
     assert now["arm_joint"] == pytest.approx(begun["arm_joint"], abs=0.03)
+
+
+def test_a_pose_is_driven_to_through_the_gateway(site: OperaSim) -> None:
+    place, yaw = site.truth()["place"], site.truth()["yaw"]
+    x, y = place[0] + 2.0 * math.cos(yaw), place[1] + 2.0 * math.sin(yaw)
+    pose = PoseStamped()
+    pose.header.frame_id, pose.pose.position.x, pose.pose.position.y = "map", x, y
+    pose.pose.orientation.z, pose.pose.orientation.w = math.sin(yaw / 2), math.cos(yaw / 2)
+    peer = site.ros.peer(NavigateToPose, f"/{MACHINE}/rc/navigate_to_pose")
+    peer.wait_ready(LIMIT)
+    call = peer.send(NavigateToPose.Goal(pose=pose))
+    assert ended(site, call) is Outcome.SUCCEEDED, call.result
+    there = site.truth()["place"]
+    assert math.dist(there[:2], (x, y)) <= 0.3
+    assert site.truth()["tracks"] == {"left": 0.0, "right": 0.0}
+
+
+def test_a_cancelled_goal_leaves_the_joints_to_the_gateway(site: OperaSim) -> None:
+    peer, call = send(site, {"swing_joint": -1.0}, 8)
+    moving(site, "swing_joint")
+    peer.cancel(call)
+    assert ended(site, call) is Outcome.CANCELED, call.result
+    site.until(site.stands, "it stands")
+    heard: list[JointCmd] = site.hear(JointCmd, "front_cmd")
+    stood = angles(site)
+    _, call = send(site, {"bucket_joint": 0.2})
+    assert ended(site, call) is Outcome.SUCCEEDED, call.result
+    assert heard, "our controller sends again"
+    assert site.joint("swing_joint")["position"] == pytest.approx(stood["swing_joint"], abs=0.03)
+    assert site.joint("bucket_joint")["position"] == pytest.approx(stood["bucket_joint"] + 0.2, abs=0.03)
+
+
+def test_a_stop_presses_and_a_rearm_releases_without_a_jump(site: OperaSim) -> None:
+    _, call = send(site, {"swing_joint": 1.0}, 8)
+    moving(site, "swing_joint")
+    site.ros.call(StopMachine, f"/{MACHINE}/rc/stop", StopMachine.Request(cause="a test"), LIMIT)
+    assert ended(site, call) is Outcome.ABORTED
+    site.until(lambda: site.truth()["stopped"], "its emergency stop is pressed")
+    site.until(site.stands, "it stands")
+    stood = angles(site)
+    site.until(lambda: rearm(site.ros, MACHINE), "it is armed")
+    site.until(lambda: not site.truth()["stopped"], "its emergency stop is released")
+    _, call = send(site, {"bucket_joint": -0.2})
+    assert ended(site, call) is Outcome.SUCCEEDED, call.result
+    assert site.joint("swing_joint")["position"] == pytest.approx(stood["swing_joint"], abs=0.03)
+
+
+def test_without_its_controller_a_goal_ends_and_the_machine_is_stopped(site: OperaSim) -> None:
+    _, call = send(site, {"swing_joint": -1.0}, 8)
+    moving(site, "swing_joint")
+    site.kill(f"{MACHINE}:mc")
+    assert ended(site, call) is Outcome.ABORTED
+    site.until(site.stands, "it stands")
+    site.run(f"{MACHINE}:mc")
+    site.until(lambda: rearm(site.ros, MACHINE), "it is armed")
+    _, call = send(site, {"bucket_joint": 0.2})
+    assert ended(site, call) is Outcome.SUCCEEDED, call.result
+
+
+def test_without_the_gateway_the_controller_ramps_down_and_holds(site: OperaSim) -> None:
+    send(site, {"swing_joint": 1.0}, 8)
+    moving(site, "swing_joint")
+    site.kill(f"{MACHINE}:rc")
+    site.until(site.stands, "it stands")
+    site.run(f"{MACHINE}:rc")
+    site.until(lambda: rearm(site.ros, MACHINE), "it is armed")

@@ -6,9 +6,9 @@ from typing import Literal
 from geometry_msgs.msg import Point, Pose, Quaternion
 from pydantic import model_validator
 
+from tms_kit.subtask import Params
 from tms_machine import geometry
 from tms_machine.reasons import FieldMissing, ListsDiffer, NoUnitLength, PathEmpty
-from tms_machine.subtask import Params
 from tms_reason.validation import Wrong
 
 Angles = Literal["quaternion", "degrees"]

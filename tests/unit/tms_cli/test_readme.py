@@ -12,7 +12,7 @@ import pytest
 
 from tms_cli.main import tms
 from tms_config.config import PROJECT
-from tms_machine.subtask import Subtask
+from tms_kit.subtask import Subtask
 from tms_ts.bt import Registry, Status, load, palette
 
 PAGES = {name: (PROJECT / name).read_text(encoding="utf-8") for name in (

@@ -207,7 +207,11 @@ def test_the_backend_chooses_the_names(tmp_path: Path) -> None:
     assert names["physx"].border("ic120_2").cmd_vel == "tracks/cmd_vel"
     assert {names["sim"].border(f"ic120_{i}").frame_prefix for i in (1, 2)} == {"ic120_1_tf/", "ic120_2_tf/"}
     as_physx = load_site(site(tmp_path, machines=machines, sim={"names": "physx"}))
-    assert as_physx.border("zx200") == names["physx"].border("zx200")
+    assert names["physx"].border("zx200").controller == "ours"
+    assert any(row.full == "zx200:mc" for row in table(names["physx"]))
+    theirs = names["physx"].border("zx200").model_copy(update={"controller": "theirs"})
+    assert as_physx.border("zx200") == theirs  # a stand-in has controllers of its own
+    assert not any(row.name == "mc" for row in table(as_physx))
     assert any(row.full == "sim:zx200" for row in table(as_physx))
 
 

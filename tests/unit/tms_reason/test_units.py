@@ -5,7 +5,7 @@ import pytest
 from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
-from tms_machine.subtask import load
+from tms_kit.subtask import load
 from tms_reason.units import unit
 
 WITHOUT = {"trajectory", "pose", "position_with_angle", "qx", "qy", "qz", "qw"}  # flags, quaternions

@@ -162,7 +162,8 @@ def test_it_dies_only_in_motion() -> None:
 
 def test_a_dump_that_returns_is_one_goal_that_nothing_ends() -> None:
     model = parse(CONFIGS / "machines" / "ic120.yaml", MachineModel)
-    made = StandIn(model, (0.0, 0.0, 0.0), Fault(), lambda: None, model.borders["physx"], ideal=True)
+    border = model.borders["physx"].model_copy(update={"dump_returns": True})
+    made = StandIn(model, (0.0, 0.0, 0.0), Fault(), lambda: None, border, ideal=True)
     cycle = made.turner.begin("vessel_pin_joint", -0.6)
     run(made, 5)
     made.turner.cancel(cycle)

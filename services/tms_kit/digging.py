@@ -8,7 +8,7 @@ from tms_msg_rp.action import TmsRpZx200ChangePose, TmsRpZx200ExcavateSimple, Tm
 from tms_msg_rp.msg import TmsRpZx200PositionWithAngle
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from tms_machine.acting import Acting, Progress
+from tms_kit.acting import Acting, Progress
 from tms_machine.reasons import NoReason
 from tms_reason import wire
 from tms_ros.interface_types import ActionType, G, Message, R

@@ -7,7 +7,7 @@ from typing import Any, TypeVar, get_type_hints
 
 from pydantic import BaseModel, ConfigDict
 
-from tms_machine.machine import Machine, Progress, SubtaskCancelled
+from tms_kit.machine import Machine, Progress, SubtaskCancelled
 from tms_machine.reasons import OneSubtask
 from tms_machine.values import Value
 from tms_reason.errors import ConfigError, SubtaskFailed

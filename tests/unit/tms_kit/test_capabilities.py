@@ -13,8 +13,8 @@ from tms_msg_rp.action import TmsRpZx200ChangePose, TmsRpZx200ExcavateSimple
 from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
-from tms_machine.acting import missed
-from tms_machine.machine import Machine
+from tms_kit.acting import missed
+from tms_kit.machine import Machine
 from tms_machine.reasons import DrivingThrough, DrivingTo
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason

@@ -11,10 +11,10 @@ from tms_msg_db.msg import Record
 from tms_msg_db.srv import GetParameter, SetParameter
 from tms_msg_ts.action import LeafNodeBase
 
+from tms_kit.subtask import Params, Progress, Subtask
+from tms_kit.subtask_server import _Server
 from tms_machine.reasons import BadRecord
 from tms_machine.record_lock import FLAG
-from tms_machine.subtask import Params, Progress, Subtask
-from tms_machine.subtask_server import _Server
 from tms_machine.values import from_parameters, to_parameters
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reasons import MustBeNumber

@@ -9,11 +9,11 @@ from tms_msg_db.srv import GetParameter
 from tms_msg_ts.action import LeafNodeBase
 
 from tms_config.clock import monotonic
-from tms_machine.machine import Machine, SubtaskCancelled
+from tms_kit.machine import Machine, SubtaskCancelled
+from tms_kit.subtask import Params, Subtask, load
 from tms_machine.permit import Permit, watch_server
 from tms_machine.reasons import BadRecord, Busy, MotionNotEnded, NoDatabase, WaitingFor
 from tms_machine.record_lock import FLAG, RecordLock
-from tms_machine.subtask import Params, Subtask, load
 from tms_machine.values import Value, from_parameters
 from tms_reason.errors import RosError, SubtaskFailed
 from tms_reason.reason import Foreign, Reason

@@ -3,8 +3,8 @@
 import pytest
 from pydantic import ValidationError
 
-from tms_machine.subtask import Machine, Params, Progress, Subtask, subtask
-from tms_machine.subtask_server import load
+from tms_kit.subtask import Machine, Params, Progress, Subtask, subtask
+from tms_kit.subtask_server import load
 from tms_reason.errors import ConfigError
 from tms_reason.validation import explain
 from words import words

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from geometry_msgs.msg import Pose, PoseStamped
 from nav2_msgs.action import FollowWaypoints, NavigateThroughPoses, NavigateToPose
 
-from tms_machine.acting import Acting, Progress, missed
+from tms_kit.acting import Acting, Progress, missed
 from tms_machine.frames import MAP
 from tms_machine.reasons import Driving, DrivingThrough, DrivingTo, MissedWaypoints, Waypoint
 from tms_reason.errors import SubtaskFailed

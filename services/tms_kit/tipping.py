@@ -6,7 +6,7 @@ from typing import Any
 from com3_msgs.action import SetDumpAngle, SetSwingAngle
 from tms_msg_rc.msg import MachineState
 
-from tms_machine.acting import Acting, Progress
+from tms_kit.acting import Acting, Progress
 from tms_machine.reasons import NoJointState, NotReached, Turning
 from tms_reason.errors import SubtaskFailed
 

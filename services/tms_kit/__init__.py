@@ -1,0 +1,1 @@
+"""The interface for authors of subtasks, and the process that runs one."""
