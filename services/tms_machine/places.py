@@ -24,9 +24,7 @@ from tms_reason.reason import Reason
 from tms_ros.node import Ros
 from tms_ros.topics import Arrival
 
-# s between two calls of `take`: to wake up for each message would be most of an idle console's load, and a plan that
-# looks itself would take some ms longer.
-PERIOD = 0.2
+PERIOD = 0.2  # s between two calls of `take`: to wake up for each message would be most of an idle console's load
 DEPTH = 200  # messages of /tf within PERIOD: as many as ten machines with joints and navigation publish meanwhile
 FIXED = 100  # messages of /tf_static, which are published once, by as many processes
 IN_MAP = (MAP, "world")  # frames of a pose; `world` is OperaSim-PhysX's name of the map
@@ -36,6 +34,20 @@ POSES = {"PoseStamped": PoseStamped, "Odometry": Odometry}  # types of a pose to
 def pose_of(message: PoseStamped | Odometry) -> Pose:
     """The pose in a message of a pose topic."""
     return message.pose.pose if isinstance(message, Odometry) else message.pose
+
+
+def place_of(message: PoseStamped | Odometry) -> tuple[float, float, float] | None:
+    """The place in a message of a pose topic: x [m], y [m], yaw [rad] in the map.
+
+    None in another frame, and for a localisation without a fix: it sends NaN, or no orientation.
+    """
+    pose = pose_of(message)
+    at, q = pose.position, pose.orientation
+    turn = (q.x, q.y, q.z, q.w)
+    numbers = all(map(math.isfinite, (at.x, at.y, *turn)))
+    if message.header.frame_id not in IN_MAP or not numbers or not is_orientation(turn):
+        return None
+    return at.x, at.y, yaw_of(turn)
 
 
 class PoseTopic:
@@ -51,17 +63,10 @@ class PoseTopic:
         """Take what has come; whether it told a place."""
         before = self.place
         for arrival in self._arrivals():
-            self._receive(arrival.message, arrival.received)
+            self._frame = arrival.message.header.frame_id
+            if (place := place_of(arrival.message)) is not None:
+                self.place = FramePose(*place, arrival.received)
         return self.place is not before
-
-    def _receive(self, message: PoseStamped | Odometry, received: float) -> None:
-        self._frame = message.header.frame_id
-        pose = pose_of(message)
-        at, q = pose.position, pose.orientation
-        turn = (q.x, q.y, q.z, q.w)
-        # A localisation without a fix sends NaN, or no orientation.
-        if self._frame in IN_MAP and all(map(math.isfinite, (at.x, at.y, *turn))) and is_orientation(turn):
-            self.place = FramePose(at.x, at.y, yaw_of(turn), received)
 
     def missing(self, now: float, limit: float) -> Reason | None:
         """Why no place younger than `limit` [s] is known at `now` [s, monotonic]; None if one is."""
@@ -77,12 +82,10 @@ class Places:
     """Keeps the last place of every given machine: one without new messages still stands there."""
 
     def __init__(self, ros: Ros, borders: Mapping[str, Border]) -> None:
-        """`borders` by machine, with the machine's own name in their names."""
-        self._topics = {
-            name: PoseTopic(ros, f"/{name}/{border.pose}", border.sources["pose"])
-            for name, border in borders.items() if border.pose
-        }  # fmt: skip
-        self._bases = {name: border.base_frame for name, border in borders.items() if name not in self._topics}
+        """`borders`: by machine, as `Site.border` gives them."""
+        posed = {name: border for name, border in borders.items() if border.pose}
+        self._topics = {name: PoseTopic(ros, f"/{name}/{one.pose}", one.sources["pose"]) for name, one in posed.items()}
+        self._bases = {name: border.base_frame for name, border in borders.items() if name not in posed}
         self._frames = Frames(self._bases.values())
         if self._bases:
             self._new_frames = ros.sample(TFMessage, "/tf", DEPTH)

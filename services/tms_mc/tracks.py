@@ -13,8 +13,7 @@ from tms_control.machine_clock import MachineClock
 from tms_control.path import Pose
 from tms_control.track_estimate import Command, PoseSample, TrackEstimate
 from tms_control.trip import Task, Trip
-from tms_machine.geometry import is_orientation, yaw_of
-from tms_machine.places import IN_MAP, POSES, pose_of
+from tms_machine.places import POSES, place_of
 from tms_mc.gateway_watch import GatewayWatch
 from tms_mc.reasons import PosesSilent, PosesUnheard
 from tms_reason.reason import Reason
@@ -130,16 +129,14 @@ class Tracks:
 
     def _sample(self, arrival: Arrival[Any]) -> PoseSample | None:
         """A pose in the map, with the machine's time; None where it says nothing."""
-        header, pose = arrival.message.header, pose_of(arrival.message)
-        at, q = pose.position, pose.orientation
-        turn = (q.x, q.y, q.z, q.w)
-        known = header.frame_id in IN_MAP and is_orientation(turn)
-        if not (known and math.isfinite(at.x) and math.isfinite(at.y)):
+        place = place_of(arrival.message)
+        if place is None:
             return None
-        stamp = header.stamp.sec + header.stamp.nanosec * 1e-9
+        at = arrival.message.header.stamp
+        stamp = at.sec + at.nanosec * 1e-9
         if not self._clock.hear(arrival.received, stamp):
             self._begin_anew()
-        return PoseSample(stamp, Pose(at.x, at.y, yaw_of(turn)))
+        return PoseSample(stamp, Pose(*place))
 
     def _begin_anew(self) -> None:
         """The clock was set back: no time before counts any more."""

@@ -1,21 +1,31 @@
 """Where machines stand, over real topics: a stamped pose, a pose as odometry, and /tf, as their borders say."""
 
 import math
+import os
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 from geometry_msgs.msg import Pose, PoseStamped, TransformStamped
 from nav_msgs.msg import Odometry
+from sensor_msgs.msg import JointState
 from tf2_msgs.msg import TFMessage
 
-from conftest import wait_until
+import programs
+from conftest import ports_of, wait_until
 from tms_config.clock import monotonic
 from tms_config.config import load_site
 from tms_config.models import Border
+from tms_config.processes import table
 from tms_machine.places import Places
-from tms_proof.reasons import Unheard
+from tms_proof.reasons import Old, Unheard
+from tms_proof.reasons import Pose as PoseSource
+from tms_rc.latch_file import LatchFile
+from tms_reason.reason import Reason
 from tms_ros.node import Ros
+from tms_runtime import environment, metrics
+from tms_runtime.reasons import PortSilent
 
 pytestmark = pytest.mark.ros
 LIMIT = 40.0  # s for whatever must happen at all
@@ -127,3 +137,67 @@ def test_a_machine_that_goes_on_is_seen_there(machines: Machines) -> None:
     wait_until(there, LIMIT, "the new place")
     after = machines.places.place(DIGGER)
     assert after is not None and before.received < after.received <= monotonic()
+
+
+class Processes:
+    """Gateway and planner of a simulated excavator, and what keeps each from its work."""
+
+    def __init__(self, folder: Path, domain: int) -> None:
+        file = folder / "site.yaml"
+        ports = f"ports: {{metrics: {ports_of(domain)}}}, domain: {domain}"
+        file.write_text(
+            f"{{name: places, {ports}, backend: physx, services: {{}},"
+            f" machines: {{{DIGGER}: {{model: zx200}}, {CARRIER}: {{model: mst110cr}}}}}}"
+        )
+        site = load_site(str(file))
+        LatchFile(site.state, DIGGER).arm()  # as a person has left it
+        self._rows = {row.full: row for row in table(site)}
+        env = {**os.environ, **environment.environment(site)}
+        names = [f"{DIGGER}:rc", f"{DIGGER}:rp"]
+        self.running = {name: programs.process(name, env, folder / "log.txt") for name in names}
+
+    def unready(self, name: str) -> Reason | None:
+        """What keeps a process from its work, as it says itself."""
+        return metrics.unready(self._rows[name])
+
+    def close(self) -> None:
+        for process in self.running.values():
+            process.terminate()
+        for process in self.running.values():
+            process.wait(30)
+
+
+@pytest.fixture
+def processes(tmp_path: Path, own_domain: int, monkeypatch: pytest.MonkeyPatch) -> Iterator[Processes]:
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(own_domain))
+    monkeypatch.setenv("TMS_STATE", str(tmp_path / "state"))
+    made = Processes(tmp_path, own_domain)
+    yield made
+    made.close()
+
+
+def test_processes_without_the_pose_of_their_machine_are_not_ready_and_name_its_topic(
+    processes: Processes, machines: Machines
+) -> None:
+    joints = JointState(name=["swing_joint", "boom_joint", "arm_joint", "bucket_joint", "bucket_end_joint"])
+    joints.position = joints.velocity = [0.0] * 5
+    topic = f"/{DIGGER}/base_link/pose"
+
+    def tell(*, posed: bool) -> None:
+        machines.tell(f"/{DIGGER}/joint_state", joints)
+        machines.tell(f"/{DIGGER}/odom", odometry(f"{DIGGER}_tf/odom", pose(0.0, 0.0, 0.0)))
+        if posed:
+            machines.tell(topic, stamped("world", pose(1.0, 2.0, 0.0)))
+
+    def lacking(name: str) -> bool:
+        tell(posed=False)
+        return processes.unready(name) == Unheard(PoseSource(), topic)
+
+    def heard(name: str) -> bool:
+        tell(posed=True)
+        return not isinstance(processes.unready(name), (Unheard, Old, PortSilent))
+
+    for name in processes.running:
+        wait_until(lambda name=name: lacking(name), LIMIT, f"{name} lacks the pose")  # type: ignore[misc]
+    for name in processes.running:
+        wait_until(lambda name=name: heard(name), LIMIT, f"{name} has it")  # type: ignore[misc]

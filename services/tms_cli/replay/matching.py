@@ -87,8 +87,9 @@ def _topics_of_machines(site: Site) -> dict[str, str]:
 
 
 def _topics(border: Border) -> list[str]:
-    single = (border.joint_states, border.odom, border.cmd_vel, border.emg_stop, border.joint_cmd)
-    return [topic for topic in (*single, *border.joint_angles.values()) if topic]
+    sources = [getattr(border, name) for name in border.sources]
+    commands = (border.cmd_vel, border.emg_stop, border.joint_cmd, *border.joint_angles.values())
+    return [topic for topic in (*sources, *commands) if topic]
 
 
 def built_hash(name: str) -> str:

@@ -19,9 +19,12 @@ from std_msgs.msg import Float64
 from conftest import site_data
 from tms_cli import session
 from tms_cli.commands.sensing import command
-from tms_cli.replay import player
+from tms_cli.replay import matching, player
 from tms_cli.replay.matching import built_hash
 from tms_cli.replay.recording import Recording
+from tms_config.config import CONFIGS
+from tms_config.models import MachineModel
+from tms_config.yaml_file import parse
 from tms_reason.errors import TmsError
 from tms_ros.packing import pack, unpack
 
@@ -176,6 +179,12 @@ def test_what_is_left_out_is_named_with_the_reason(replay: Callable[..., Result]
     assert "left out /zx200/joint_states: zx200 itself speaks there" in done.stderr
     said = "recorded as sensing_msgs/msg/Sample, but input dig takes sensing_msgs/msg/ExcavateSimple"
     assert f"left out /dig: {said}" in done.stderr
+
+
+def test_whatever_a_machine_tells_of_itself_is_left_out() -> None:
+    """Its pose, too: planners and the console would take the recording for the place of the machine."""
+    border = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel).borders["physx"]
+    assert {"joint_state", "odom", "base_link/pose", "tracks/cmd_vel", "swing/cmd"} <= set(matching._topics(border))
 
 
 def test_a_type_that_was_defined_otherwise_is_left_out(replay: Callable[..., Result], tmp_path: Path) -> None:

@@ -43,6 +43,13 @@ def ended(motion: Motion) -> str:
     return motion.verdict.outcome if motion.verdict else "open"
 
 
+def test_it_starts_where_its_border_says_else_as_its_model() -> None:
+    starts = DIGGER.borders["physx"].initial
+    made = StandIn(DIGGER, (0.0, 0.0, 0.0), Fault(), lambda: None, DIGGER.borders["physx"])
+    assert dict(zip(made.arm.joints, made.arm.positions, strict=True)) == {**DIGGER.initial, **starts}
+    assert machine(DIGGER).arm.positions == list(DIGGER.initial.values()) != made.arm.positions
+
+
 def test_the_bed_tips_and_the_body_turns_at_the_same_time() -> None:
     made = machine()
     tip, turn = made.turner.begin("dump_joint", -1.0), made.turner.begin("rotate_joint", 1.5)
