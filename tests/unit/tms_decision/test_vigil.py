@@ -43,3 +43,19 @@ def test_a_machine_that_was_never_stopped_is_not_watched() -> None:
     vigil = Vigil()
     vigil.end(10.0)
     assert not moving(vigil, 11.0, 3.0)
+
+
+def test_the_release_of_its_stop_may_move_it_for_a_moment_and_no_longer() -> None:
+    vigil = Vigil()
+    vigil.begin()
+    vigil.end(10.0, 2.0)
+    assert not moving(vigil, 10.0, 1.9)
+    assert moving(vigil, 12.0, 1.0)
+
+
+def test_stopped_again_it_is_watched_at_once() -> None:
+    vigil = Vigil()
+    vigil.begin()
+    vigil.end(10.0, 2.0)
+    vigil.begin()
+    assert moving(vigil, 10.5, 1.0)
