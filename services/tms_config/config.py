@@ -39,22 +39,14 @@ class Site:
 
     @property
     def bridge(self) -> Bridge:
-        """Settings of the ROS-TCP endpoint.
-
-        Raises:
-            ConfigError: the site has none.
-        """
+        """Settings of the ROS-TCP endpoint; ConfigError where the site has none."""
         found = self.file.services.get("if")
         if not isinstance(found, Bridge):
             raise ConfigError(located(self.path, reasons.NoService("if", tuple(self.file.services)), "services"))
         return found
 
     def model_of(self, machine: str) -> MachineModel:
-        """The model of a machine instance.
-
-        Raises:
-            ConfigError: the site has no such machine.
-        """
+        """The model of a machine; ConfigError where the site has no such machine."""
         use = self.file.machines.get(machine)
         if use is None:
             raise ConfigError(located(self.path, reasons.NoMachine(machine, tuple(self.file.machines)), "machines"))

@@ -17,7 +17,7 @@ from tms_config.reasons import (
     SameName,
     SeveralProcesses,
 )
-from tms_config.site_file import Role, roles
+from tms_config.site_file import Bridge, Role, roles
 from tms_config.yaml_file import located
 from tms_reason.errors import ConfigError
 
@@ -32,6 +32,7 @@ PURPOSES = {  # what they and the other processes are for; `tms ps` shows it in 
     "store": "embedded store of the demo",
     "discovery": "lets the PCs' processes find each other",
     "sim": "stand-in for {machine}",
+    "operasim": "stand-in for OperaSim-PhysX",
     "rc": "gateway: every motion passes it",
     "mc": "moves joints and tracks",
     "rp": "plans motions",
@@ -143,6 +144,8 @@ def _services(site: Site) -> list[Process]:
             raise ConfigError(located(site.path, NoService(name, SERVICES), "services", name))
         row = Process("tms", name, service.role, f"tms_{name}.node", 0, PURPOSES[name])
         several = site.file.pcs.items() if name == "host" else ()
+        if isinstance(service, Bridge) and service.trial:
+            rows.append(Process("sim", "operasim", "sim", "tms_if.trial", 0, PURPOSES["operasim"], ours=False))
         rows += [replace(row, name=f"host_{pc}", role=roles(pc, facts)[0], pc=pc) for pc, facts in several] or [row]
     return rows
 

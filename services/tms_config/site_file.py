@@ -30,6 +30,7 @@ class Bridge(Service):
     joint_cmd: Literal["plain", "control_type"] = "plain"  # the simulator's layout of com3_msgs/JointCmd
     message_limit: int = Field(ge=1024, le=64 * 1024 * 1024, default=4 * 1024 * 1024)  # bytes a message
     clock: bool = False  # publish the simulator's time as /clock
+    trial: str | None = Field(default=None, pattern=r"^[A-Za-z]+$")  # scene of a stand-in that is started in its place
     calls: dict[ServiceName, ServiceType] = Field(default_factory=dict)  # ROS services that a client may call
     offers: dict[ServiceName, ServiceType] = Field(default_factory=dict)  # services that a client may serve
 
