@@ -178,7 +178,7 @@ def _between(a: Pose, b: Pose) -> Piece:
     chord, bearing, turn = a.away(b), math.atan2(b.y - a.y, b.x - a.x), a.off(b.yaw)
     middle = Pose(a.x, a.y, a.yaw + turn / 2)
     for direction, heading in ((1, bearing), (-1, bearing + math.pi)):
-        if abs(middle.off(heading)) <= ALONG and abs(turn) <= ALONG:
+        if abs(middle.off(heading)) <= ALONG:
             length = chord * (turn / 2) / math.sin(turn / 2) if abs(turn) > SAME_HEADING else chord
             return Piece(Pose(a.x, a.y, heading - turn / 2), length, turn, direction)
     return Piece(Pose(a.x, a.y, bearing), chord, 0.0)

@@ -137,8 +137,8 @@ def _arcs(start: Pose, goal: Pose, direction: int, first: int, last: int) -> Ite
         return
     length = math.sqrt(apart**2 - across**2)
     along = math.atan2(b[1] - a[1], b[0] - a[0]) + first * math.atan2(across, length) - back
-    one = first * _positive(first * (along - start.yaw))
-    two = last * _positive(last * (goal.yaw - along))
+    one = first * (first * (along - start.yaw) % math.tau)
+    two = last * (last * (goal.yaw - along) % math.tau)
     arc = Piece(start, RADIUS * abs(one), one, direction)
     line = Piece(arc.end, length, 0.0, direction)
     yield [arc, line, Piece(line.end, RADIUS * abs(two), two, direction)]
@@ -148,9 +148,3 @@ def _centre(pose: Pose, sense: int, back: float) -> tuple[float, float]:
     """Centre of the circle that it moves on."""
     yaw = pose.yaw + back
     return pose.x - sense * RADIUS * math.sin(yaw), pose.y + sense * RADIUS * math.cos(yaw)
-
-
-def _positive(angle: float) -> float:
-    """The same angle in [0, 2 pi), where a hair below a whole turn is none."""
-    found = angle % math.tau
-    return 0.0 if math.tau - found < SAME_HEADING else found

@@ -20,7 +20,6 @@ GENTLE = 0.6  # share of the acceleration that braking for an end or a curve use
 SPARE = 0.8  # share of the yaw rate that a curve may use; the rest is for corrections
 LATE = 0.08  # s until brakes act
 ALIGNED = 0.02  # rad, where a turn on the spot ends
-PULL = 0.8  # 1/s, yaw rate per angle left near the end of a turn on the spot
 HOLD, HOLD_SPEED = 0.4, 0.1  # 1/s, m/s: a turn on the spot keeps its place along the heading
 
 
@@ -62,7 +61,7 @@ class Pursuit:
     def deviation(self, state: TrackState) -> Deviation:
         """How far off the path it is: none in a turn on the spot, which ends wherever it began."""
         part = self._parts[0] if self._parts else None
-        if not isinstance(part, Run) or self._braking:
+        if not isinstance(part, Run):
             return Deviation(0.0, 0.0)
         on = part.at(self._way)
         return Deviation(abs(on.seen(state.pose)[1]), abs(on.off(state.pose.yaw)))
@@ -86,11 +85,11 @@ class Pursuit:
     def _turn(self, piece: Piece, state: TrackState) -> Command:
         off = state.pose.off(piece.end.yaw)
         comes_to = off - state.r * LATE
-        if abs(comes_to) <= ALIGNED or (off * state.r > 0.0 > off * comes_to):
+        if abs(comes_to) <= ALIGNED:
             self._braking = True
             return ZERO
         braking = math.sqrt(2 * GENTLE * self._drive.turn_acceleration * abs(off))
-        r = math.copysign(min(SPARE * self._servo.fastest_turn, braking, PULL * abs(off)), off)
+        r = math.copysign(min(SPARE * self._servo.fastest_turn, braking), off)
         back = HOLD * state.pose.seen(piece.start)[0]
         return self._servo.lead(state, max(-HOLD_SPEED, min(HOLD_SPEED, back)), r)
 

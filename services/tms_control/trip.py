@@ -238,8 +238,8 @@ class Trip:
             self._stop(Verdict(Ending.ABORTED, why))
 
     def _stop(self, verdict: Verdict) -> None:
-        """End with a verdict, the first one, once it stands."""
-        self._ending = self._ending or verdict
+        """End with a verdict once it stands."""
+        self._ending = verdict
         self._rest()
 
     def _rest(self) -> None:

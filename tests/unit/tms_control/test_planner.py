@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tms_control.path import Pose
-from tms_control.planner import RADIUS, Goal, Pace, fastest, plan
+from tms_control.path import Piece, Pose
+from tms_control.planner import RADIUS, REVERSE, STOP, Goal, Pace, fastest, plan
 
 PACE = Pace(forward=1.0, turn=0.24)
 place = st.floats(-20, 20)
@@ -73,6 +73,16 @@ def test_poses_that_are_only_passed_are_no_reason_to_stand() -> None:
     found = plan(Pose(0, 0, 0), [Goal(10, 0, None), Goal(20, 5, None), Goal(30, 5, 0.0)], PACE)
     assert all(piece.length for piece in found.path.pieces)
     assert len(found.path.parts()) == 1
+
+
+def test_poses_behind_are_passed_in_reverse() -> None:
+    pieces = plan(Pose(0, 0, 0), [Goal(-2, 0, None), Goal(-4, 0, 0)], PACE).path.pieces
+    assert [piece.direction for piece in pieces] == [-1, -1]
+
+
+def test_a_change_of_direction_costs_a_stop() -> None:
+    ahead, back = Piece(Pose(0, 0, 0), 2.0, 0.0), Piece(Pose(2, 0, 0), 2.0, 0.0, -1)
+    assert PACE.total([ahead, back]) == pytest.approx(2.0 + STOP + 2.0 / REVERSE)
 
 
 def test_a_machine_whose_yaw_rate_is_low_turns_less() -> None:

@@ -42,6 +42,12 @@ def test_it_is_slow_enough_before_a_curve_for_tracks_that_scrub(gain: float) -> 
     path = (LINE, ARC, Piece(ARC.end, 20.0, 0.0))
     assert speed(on(*path, gain=gain), Pose(20, 0, 0), fastest + 0.02) < 0.0
     assert speed(on(*path, gain=gain), Pose(5, 0, 0), 0.9) > 0.0
+    if gain < 0.5:
+        assert speed(on(*path, gain=gain), Pose(19, 0, 0), 0.95) < 0.0
+
+
+def test_it_is_slow_where_it_has_to_steer_much() -> None:
+    assert speed(on(LINE, gain=1 / 3), Pose(5, 0.7, 0), 0.8) < 0.0 < speed(on(LINE, gain=1 / 3), Pose(5, 0, 0), 0.8)
 
 
 @pytest.mark.parametrize("direction", [1, -1])
@@ -59,6 +65,8 @@ def test_a_turn_on_the_spot_keeps_its_place_and_brakes_at_its_end(turn: float) -
     pursuit = on(Piece(Pose(0, 0, 0), 0.0, turn))
     command = pursuit.step(TrackState(Pose(0.1, 0, 0)))
     assert command.w * turn > 0.0 > command.v
+    fast = 0.3 if turn > 0 else -0.3
+    assert abs(pursuit.step(TrackState(Pose(0, 0, turn * 0.96), 0.0, fast)).w) < 0.1, "it slows down"
     assert pursuit.step(TrackState(Pose(0, 0, turn * 0.995), 0.0, turn * 0.05)) == ZERO
     assert not pursuit.done
     assert pursuit.step(TrackState(Pose(0, 0, turn))) == ZERO
@@ -73,6 +81,8 @@ def test_it_counts_what_is_behind() -> None:
     assert (pursuit.pieces_done, pursuit.left) == (0, pytest.approx(8.0))
     pursuit.step(TrackState(ARC.at(1.0), 0.5))
     assert (pursuit.pieces_done, pursuit.left) == (1, pytest.approx(5.0))
-    pursuit.step(TrackState(ARC.end))
+    for v in (0.5, 0.3, 0.1):
+        assert pursuit.step(TrackState(ARC.end, v)) == ZERO
+        assert pursuit.pieces_done == 1 or not pursuit.left, "it shall stand first"
     pursuit.step(TrackState(ARC.end))
     assert (pursuit.pieces_done, pursuit.left) == (2, 0.0)

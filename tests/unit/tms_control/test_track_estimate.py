@@ -7,7 +7,7 @@ import pytest
 from driven_tracks import GAINS, MODELS, DrivenTracks
 from tms_config.models import Response
 from tms_control.path import Pose
-from tms_control.track_estimate import ZERO, Command, PoseSample, TrackEstimate
+from tms_control.track_estimate import ZERO, Command, PoseSample, TrackEstimate, TrackState
 from tms_control.trip import Task
 
 RESPONSE = Response(dead_time=0.0, lag=1.0, origin="a test")
@@ -73,6 +73,22 @@ def test_what_the_tracks_do_beyond_a_command_is_learned() -> None:
         x, now = x + 0.06 * 0.2, now + 0.06  # twice as fast as told
     assert estimate.trim == pytest.approx(0.1, abs=0.01)
     assert estimate.at(now).v == pytest.approx(0.2, abs=0.01)
+
+
+def test_jitter_while_it_brakes_teaches_nothing() -> None:
+    estimate, known = TrackEstimate(RESPONSE), TrackEstimate(RESPONSE).yaw_gain
+    for i in range(100):
+        estimate.sent(0.06 * i, ZERO)
+        estimate.measured(PoseSample(0.06 * i, Pose(0.004 * (i % 3), 0, 0.004 * (i % 2))))
+    assert (estimate.trim, estimate.turn_trim, estimate.yaw_gain) == (0.0, 0.0, pytest.approx(known))
+
+
+def test_after_a_pause_nothing_is_concluded_from_it() -> None:
+    estimate = TrackEstimate(RESPONSE)
+    estimate.measured(PoseSample(0.0, Pose(0, 0, 0)))
+    estimate.sent(0.0, Command(1.0, 0.0))
+    estimate.measured(PoseSample(100.0, Pose(2, 0, 0)))
+    assert estimate.at(100.0) == TrackState(Pose(2, 0, 0))
 
 
 def test_poses_that_are_not_newer_say_nothing() -> None:

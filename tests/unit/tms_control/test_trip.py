@@ -98,6 +98,45 @@ def test_feedback_counts_down() -> None:
     assert (told[-1].seconds, told[-1].left) == pytest.approx((machine.now, 0.0), abs=0.1)
 
 
+def test_the_time_that_is_left_counts_down_also_in_turns() -> None:
+    machine = DrivenTracks("zx200")
+    trip, told = machine.trip(Task.to(Pose(0, 4, 0))), []
+    machine.run(trip, until=lambda: bool(told.append(trip.feedback(machine.now))))
+    assert max(one.seconds_left for one in told) == pytest.approx(machine.now, abs=8.0)
+    assert max(one.seconds_left for one in told if one.pose.y > 3.9) < 15.0
+
+
+def test_there_and_back_is_progress() -> None:
+    """Two turns on the spot end where they have begun."""
+    turn = Piece(Pose(0, 0, 0), 0.0, 0.55)
+    way = Piece(turn.end, 0.3, 0.0)
+    back = Piece(way.end, 0.0, -0.55)
+    path = Path((turn, way, back, Piece(back.end, 2.0, 0.0)))
+    machine = DrivenTracks("zx200", 1 / 3)
+    trip = machine.trip(Task.along(path))
+    machine.run(trip)
+    assert trip.verdict == ARRIVED and at(machine, path.end)
+
+
+def test_a_round_trip_is_driven() -> None:
+    machine = DrivenTracks("zx200")
+    trip = machine.trip(Task.through([Pose(5, 0, 0), Pose(0, 0, 0)]))
+    machine.run(trip)
+    assert trip.verdict == ARRIVED and at(machine, Pose(0, 0, 0))
+    assert max(one.x for one in machine.been) > 4.7
+
+
+def test_a_way_that_is_planned_anew_does_not_go_back_to_what_has_been_passed() -> None:
+    machine = DrivenTracks("zx200")
+    trip = machine.trip(Task.through([Pose(5, 0, 0), Pose(15, 0, 0)]))
+    machine.run(trip, until=lambda: machine.pose.x > 6)
+    machine.kick(0.0, beside=1.0)
+    machine.run(trip)
+    assert trip.verdict == ARRIVED and at(machine, Pose(15, 0, 0))
+    after = machine.been[next(i for i, one in enumerate(machine.been) if one.y > 0.5) :]
+    assert min(one.x for one in after) > 5.9
+
+
 TOLD = Path((Piece(Pose(0, 0, 0), 5.0, 0.0), Piece(Pose(5, 0, 0), 8.0, 1.0)))
 
 
@@ -148,9 +187,11 @@ def test_kicked_while_it_stands(model: str) -> None:
     trip = machine.trip(Task.to(Pose(8, 0, 0)))
     machine.run(trip, until=lambda: machine.pose.away(Pose(8, 0, 0)) < 0.1 and machine.speed == 0.0)
     assert trip.verdict is None
-    machine.kick(0.2)
+    machine.kick(0.2, beside=0.1)
+    begun = len(machine.been)
     machine.run(trip)
     assert trip.verdict == ARRIVED and at(machine, Pose(8, 0, 0))
+    assert all(-0.1 < one.yaw < 0.25 for one in machine.been[begun:]), "it has driven off to come back"
 
 
 def test_missing_poses_do_not_stop_it_at_once_and_then_do() -> None:
@@ -162,8 +203,8 @@ def test_missing_poses_do_not_stop_it_at_once_and_then_do() -> None:
     assert ZERO not in machine.sent[begun:]
     machine.run(trip, 0.3)
     assert machine.sent[-1] == ZERO and machine.speed == 0.0
-    machine.run(trip, 3.0)
-    assert set(machine.sent[-50:]) == {ZERO}
+    machine.run(trip, 9.0)
+    assert set(machine.sent[-150:]) == {ZERO}
     machine.blind = False
     machine.run(trip)
     assert trip.verdict == ARRIVED and at(machine, Pose(10, 0, 0))
@@ -222,6 +263,7 @@ def test_silence() -> None:
     machine.run(trip, 5.0)
     trip.silence(machine.now)
     assert trip.verdict == Verdict(Ending.ABORTED, Silenced())
+    assert machine.estimate.at(machine.now + 1.0).stands
     sent = len(machine.sent)
     for _ in range(100):
         machine.tick(trip)
