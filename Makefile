@@ -25,7 +25,7 @@ TMS := $(VENV)/bin/tms $(if $(SITE),--site $(SITE))
 # A sourced ROS installation would mix its libraries into the venv's.
 unexport PYTHONPATH LD_LIBRARY_PATH AMENT_PREFIX_PATH CMAKE_PREFIX_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE
 .DEFAULT_GOAL := help
-.PHONY: help setup interfaces locks demo test test-fast up down status logs restart lint conformance bench pictures soak drill simulate replay model mutants coverage nightly test-docker system containers clean
+.PHONY: help setup interfaces locks demo test test-fast up down status logs restart lint conformance bench verify pictures soak drill simulate replay model mutants coverage nightly test-docker system containers clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -151,6 +151,10 @@ nightly: setup ## what takes hours: properties with 400 examples, 100,000 schedu
 bench: setup ## benchmarks with ratios to a floor of the same run (ONLY=group)
 	@sh deploy/system-packages.sh chromium
 	@$(PY) tests/bench $(if $(ONLY),--only "$(ONLY)")
+
+verify: setup ## the verification run of the paper over a stand-in of OperaSim-PhysX: 13 requirements, measured; kept in .state/verification/
+	@sh deploy/system-packages.sh chromium
+	@cd tests && $(abspath $(PY)) -m verify
 
 pictures: setup ## state machines in ARCHITECTURE.md; each page of the running demo's console (it runs its task once more)
 	@cd tests && $(abspath $(PY)) -m simulation.transitions
