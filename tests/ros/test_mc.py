@@ -11,12 +11,12 @@ from com3_msgs.msg import JointCmd
 from control_msgs.action import FollowJointTrajectory
 from geometry_msgs.msg import PoseStamped
 from nav2_msgs.action import NavigateToPose
-from operasim_rig import LIMIT, OperaSim
 from tms_msg_rc.msg import MachineState
 from tms_msg_rc.srv import StopMachine
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from conftest import rearm
+from operasim_rig import LIMIT, OperaSim
 from tms_ros.goals import Outcome
 
 pytestmark = [
