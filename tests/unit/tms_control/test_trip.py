@@ -210,6 +210,19 @@ def test_missing_poses_do_not_stop_it_at_once_and_then_do() -> None:
     assert trip.verdict == ARRIVED and at(machine, Pose(10, 0, 0))
 
 
+def test_time_without_poses_is_no_lack_of_progress() -> None:
+    machine = DrivenTracks("ic120")
+    trip = machine.trip(Task.to(Pose(10, 0, 0)))
+    machine.run(trip, until=lambda: machine.pose.x > 3)
+    machine.stuck = machine.blind = True
+    machine.run(trip, 9.0)
+    machine.blind = False
+    machine.run(trip, 4.0)
+    machine.stuck = False
+    machine.run(trip)
+    assert trip.verdict == ARRIVED
+
+
 @pytest.mark.parametrize("x", [-1.0, 3.0])
 def test_without_poses_the_goal_ends(x: float) -> None:
     machine = DrivenTracks("ic120")
