@@ -1,21 +1,15 @@
 """A zx200 of OperaSim-PhysX moved by our controller: bridge, gateway and controller as real processes."""
 
 import math
-from array import array
 from collections.abc import Iterator
-from typing import Any
 
 import pytest
-from builtin_interfaces.msg import Duration
 from com3_msgs.msg import JointCmd
-from control_msgs.action import FollowJointTrajectory
 from geometry_msgs.msg import PoseStamped
 from nav2_msgs.action import NavigateToPose
-from tms_msg_rc.msg import MachineState
 from tms_msg_rc.srv import StopMachine
-from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from conftest import rearm
+from mc_rig import angles, armed, ended, moving, send
 from operasim_rig import LIMIT, OperaSim
 from tms_ros.goals import Outcome
 
@@ -24,14 +18,6 @@ pytestmark = [
     pytest.mark.filterwarnings("ignore:module 'sre_:DeprecationWarning"),  # a parser that the ROS wheels bring
 ]
 MACHINE = "zx200_8"  # a name of its own: other tests may have machines in the same domain
-JOINTS = ["swing_joint", "boom_joint", "arm_joint", "bucket_joint", "bucket_end_joint"]
-
-
-def armed(site: OperaSim) -> None:
-    """Re-arm the machine, once its gateway lives: a killed one stays in the graph for a while."""
-    states: list[MachineState] = site.hear(MachineState, "rc/state")
-    site.until(lambda: states, "its gateway")
-    site.until(lambda: rearm(site.ros, MACHINE), "it is armed")
 
 
 @pytest.fixture(scope="module")
@@ -48,36 +34,6 @@ def site(tmp_path_factory: pytest.TempPathFactory, domain: int, first_port: int)
             yield made
         finally:
             made.close()
-
-
-def goal(angles: dict[str, float], seconds: int) -> FollowJointTrajectory.Goal:
-    point = JointTrajectoryPoint(
-        positions=array("d", [angles[name] for name in JOINTS]), velocities=array("d", [0.0] * 5),
-        time_from_start=Duration(sec=seconds, nanosec=0),
-    )  # fmt: skip
-    return FollowJointTrajectory.Goal(trajectory=JointTrajectory(joint_names=JOINTS, points=[point]))
-
-
-def angles(site: OperaSim) -> dict[str, float]:
-    joints = site.truth()["joints"]
-    return {name: joints[name]["position"] if joints.get(name) else 0.0 for name in JOINTS}
-
-
-def send(site: OperaSim, change: dict[str, float], seconds: int = 6) -> tuple[Any, Any]:
-    """A goal of somebody else, through the gateway: its peer and its call."""
-    peer = site.ros.peer(FollowJointTrajectory, f"/{MACHINE}/rc/follow_joint_trajectory")
-    peer.wait_ready(LIMIT)
-    now = angles(site)
-    return peer, peer.send(goal({**now, **{name: now[name] + way for name, way in change.items()}}, seconds))
-
-
-def ended(site: OperaSim, call: Any) -> Any:
-    site.until(lambda: call.outcome is not None, "the end of the goal")
-    return call.outcome
-
-
-def moving(site: OperaSim, joint: str) -> None:
-    site.until(lambda: abs(site.joint(joint)["velocity"]) > 0.05, f"{joint} moves")
 
 
 def test_a_trajectory_is_followed_through_the_gateway(site: OperaSim) -> None:
