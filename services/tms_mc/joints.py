@@ -9,9 +9,10 @@ from sensor_msgs.msg import JointState
 from tms_config.clock import monotonic, sleep
 from tms_config.models import DRIVE
 from tms_control.arm_controller import ArmController
-from tms_control.arm_motion import ArmMotion, Ending, Tolerances, Verdict
+from tms_control.arm_motion import ArmMotion, Tolerances
 from tms_control.machine_clock import MachineClock
 from tms_control.reference_trajectory import Knot, ReferenceTrajectory
+from tms_control.verdict import Ending, Verdict
 from tms_machine.joint_commands import JointCommands
 from tms_mc.gateway_watch import GatewayWatch
 from tms_mc.reasons import ClockSetBack, GatewayGone, JointMissing, JointsNotHeard, JointsSilent, NoCommandTopic
@@ -88,7 +89,7 @@ class Joints:
 
     def stop(self, why: Reason | None, ending: Ending = Ending.CANCELED) -> None:
         """End the open goal: with a gateway, it holds the joints and nothing is sent; without, they are braked here."""
-        verdict = Verdict(ending, reason=why)
+        verdict = Verdict(ending, why)
         with self._lock:
             if not self.arm.busy:
                 return
@@ -121,7 +122,7 @@ class Joints:
             if not self.arm.busy:
                 return False
             if (lost := self._lost()) is not None:
-                self.arm.cancel(self._time(), Verdict(Ending.ABORTED, reason=lost))
+                self.arm.cancel(self._time(), Verdict(Ending.ABORTED, lost))
             angles = self.arm.step(self._time())
             if angles:
                 self._commands.send(angles)
@@ -144,7 +145,7 @@ class Joints:
         stamp = message.header.stamp.sec + message.header.stamp.nanosec * 1e-9
         before = self._clock.stamp
         if not self._clock.hear(arrival.received, stamp):
-            self.arm.abandon(Verdict(Ending.ABORTED, reason=ClockSetBack()))
+            self.arm.abandon(Verdict(Ending.ABORTED, ClockSetBack()))
         elif stamp == before:
             return
         if all(name in self._positions for name in self.arm.servos):

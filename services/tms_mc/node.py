@@ -3,7 +3,7 @@
 from control_msgs.action import FollowJointTrajectory
 from nav2_msgs.action import FollowWaypoints, NavigateThroughPoses, NavigateToPose
 
-from tms_control.arm_motion import Ending
+from tms_control.verdict import Ending
 from tms_mc.gateway_watch import GatewayWatch
 from tms_mc.guard import Guard
 from tms_mc.joint_servers import TURNS, JointServers

@@ -9,7 +9,8 @@ from nav2_msgs.action import FollowWaypoints, NavigateThroughPoses, NavigateToPo
 
 from tms_config.clock import sleep
 from tms_control.path import Pose
-from tms_control.trip import Feedback, Missed, Task, Trip, Verdict
+from tms_control.trip import Feedback, Missed, Task, Trip
+from tms_control.verdict import Verdict
 from tms_machine.frames import MAP
 from tms_machine.geometry import about, is_orientation, yaw_of
 from tms_machine.places import IN_MAP
