@@ -34,7 +34,7 @@ class ArmController:
         """`joints` in the order of trajectories; passive ones are never commanded."""
         self.joints = joints
         self.servos = {name: JointServo(one, response[name]) for name, one in joints.items() if not one.passive}
-        self.learned: dict[str, Fit] = {}  # what the last goals have shown of the drives
+        self.learned: dict[str, Fit] = {}  # what the last goal has shown of the drives
         self._motion: ArmMotion | None = None
         self._braking: Verdict | None = None  # of the motion, once the joints stand
         self._silent: float | None = None  # s, since when somebody else has the drives

@@ -4,6 +4,7 @@ import math
 import threading
 from collections.abc import Sequence
 
+from prometheus_client import Gauge
 from sensor_msgs.msg import JointState
 
 from tms_config.clock import monotonic, sleep
@@ -19,6 +20,10 @@ from tms_mc.reasons import ClockSetBack, GatewayGone, JointMissing, JointsNotHea
 from tms_reason.reason import Reason
 from tms_ros.topics import Arrival
 from tms_runtime.app import App
+
+DEAD_TIME = Gauge("tms_mc_dead_time_seconds", "Until a command shows, as learned from moves", ["joint"])
+LAG = Gauge("tms_mc_lag_seconds", "Time constant of the answer to a command, as learned from moves", ["joint"])
+DROOP = Gauge("tms_mc_droop_radians", "How far a joint stays short of its command, as learned from moves", ["joint"])
 
 PERIOD = 0.02  # s between commands
 IDLE = 0.1  # s between looks at what the machine tells while nothing moves it
@@ -126,7 +131,17 @@ class Joints:
             angles = self.arm.step(self._time())
             if angles:
                 self._commands.send(angles)
+            self._tell()
             return True
+
+    def _tell(self) -> None:
+        """Say what a goal that has just ended has shown of the drives."""
+        learned, self.arm.learned = self.arm.learned, {}
+        for joint, fit in learned.items():
+            DEAD_TIME.labels(joint).set(fit.dead_time)
+            LAG.labels(joint).set(fit.lag)
+            DROOP.labels(joint).set(fit.droop)
+            self._app.log.info("learned", joint=joint, dead_time=fit.dead_time, lag=fit.lag, droop=fit.droop)
 
     def _lost(self) -> Reason | None:
         """Without what the machine must not be moved any more."""
