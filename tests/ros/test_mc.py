@@ -7,6 +7,7 @@ import pytest
 from com3_msgs.msg import JointCmd
 from geometry_msgs.msg import PoseStamped
 from nav2_msgs.action import NavigateToPose
+from tms_msg_rc.msg import StopReceipt
 from tms_msg_rc.srv import StopMachine
 
 from mc_rig import angles, armed, ended, moving, send
@@ -94,8 +95,11 @@ def test_a_stop_presses_and_a_rearm_releases_without_a_jump(site: OperaSim) -> N
 def test_without_its_controller_a_goal_ends_and_the_machine_is_stopped(site: OperaSim) -> None:
     _, call = send(site, {"swing_joint": -1.0}, 8)
     moving(site, "swing_joint")
+    receipts: list[StopReceipt] = site.hear(StopReceipt, "rc/receipts")
     site.kill(f"{MACHINE}:mc")
     assert ended(site, call) is Outcome.ABORTED
+    site.until(lambda: receipts, "the receipt of its stop")
+    assert receipts[-1].confirmed
     site.until(site.stands, "it stands")
     site.run(f"{MACHINE}:mc")
     armed(site)
