@@ -28,7 +28,7 @@ DROOP = Gauge("tms_mc_droop_radians", "How far a joint stays short of its comman
 PERIOD = 0.02  # s between commands
 IDLE = 0.1  # s between looks at what the machine tells while nothing moves it
 DEPTH = 20  # messages that may come between two looks: 50 Hz and some to spare
-SILENT = 0.5  # s without joint states after which nothing is commanded
+SILENT = 0.8  # s without joint states after which the joints are braked; the gateway stops the machine after 1 s
 
 
 class Joints:
@@ -148,7 +148,8 @@ class Joints:
         if not self._gateway.alive:
             return GatewayGone()
         silent = self._clock.silent(monotonic())
-        return JointsSilent(silent, self._topic) if silent > SILENT else None
+        late = self._app.pulse.late()  # this process itself did not run
+        return JointsSilent(silent, self._topic) if silent > SILENT and not late else None
 
     def _measured(self, arrival: Arrival[JointState]) -> None:
         message = arrival.message
