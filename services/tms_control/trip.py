@@ -84,6 +84,7 @@ class Feedback:
     """How far a goal is."""
 
     pose: Pose
+    speed: float  # m/s, of the base
     seconds: float  # s since it began
     left: float  # m to the end of the stage
     seconds_left: float  # s to the end of the stage
@@ -133,14 +134,15 @@ class Trip:
 
     def feedback(self, now: float) -> Feedback:
         """How far it is."""
-        pose, goals = self._estimate.at(now).pose, self._task.stages[self._stage]
+        state, goals = self._estimate.at(now), self._task.stages[self._stage]
         if self._pursuit is None:
-            left = pose.away(Pose(goals[-1].x, goals[-1].y, 0.0))
+            left = state.pose.away(Pose(goals[-1].x, goals[-1].y, 0.0))
             seconds = left / self._drive.velocity
         else:
             left = self._pursuit.left
             seconds = self._pace().total(self._path.pieces[self._pursuit.pieces_done :])
-        return Feedback(pose, now - self._begun, left, seconds, self._stage, len(goals) - self._passed)
+        poses_left = len(goals) - self._passed
+        return Feedback(state.pose, abs(state.v), now - self._begun, left, seconds, self._stage, poses_left)
 
     def _unseen(self, now: float) -> Command:
         """Stand while nobody knows where it is."""

@@ -8,7 +8,9 @@ from conftest import PROJECT
 from tms_reason import texts, wire
 from tms_reason.reason import REGISTRY
 
-PAGES = {lang: (PROJECT / "deploy" / f"OPERASIM{end}.md").read_text("utf-8") for lang, end in (("en", ""), ("ja", ".ja"))}
+PAGES = {
+    lang: (PROJECT / "deploy" / f"OPERASIM{end}.md").read_text("utf-8") for lang, end in (("en", ""), ("ja", ".ja"))
+}
 
 
 def commands(text: str) -> list[str]:
