@@ -6,7 +6,6 @@ not, the rest is planned anew. Times are seconds of the machine's clock.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from enum import Enum
 
 from tms_config.models import Drive
 from tms_control.path import Path, Piece, Pose
@@ -16,6 +15,7 @@ from tms_control.pursuit import Pursuit
 from tms_control.reasons import LeftPath, NoProgress, PosesStopped, ShortOfPose, Silenced
 from tms_control.track_estimate import ZERO, Command, PoseSample, TrackEstimate, TrackState
 from tms_control.track_servo import TrackServo
+from tms_control.verdict import Ending, Verdict
 from tms_reason.reason import Reason
 
 OLD = 0.5  # s, age of a pose from which on the machine stands
@@ -24,22 +24,6 @@ NEAR, ALIGNED = 0.25, 0.08  # m, rad: less off the goal is arrived; a waypoint i
 BESIDE, ASKEW = 0.8, 0.8  # m, rad off the path, from which on it is given up
 ATTEMPTS = 4  # ways that are planned to one goal, before it counts as one that cannot be reached
 STANDS = 0.3  # s with poses that show it standing
-
-
-class Ending(Enum):
-    """How a goal ended, as ROS names it."""
-
-    SUCCEEDED = "SUCCEEDED"
-    CANCELED = "CANCELED"
-    ABORTED = "ABORTED"
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """The end of a goal."""
-
-    ending: Ending
-    reason: Reason | None = None
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from control_msgs.action import FollowJointTrajectory
 from nav2_msgs.action import ComputePathToPose, FollowPath, FollowWaypoints, NavigateThroughPoses, NavigateToPose
 
-from tms_control.arm_motion import Ending
+from tms_control.verdict import Ending
 from tms_mc.gateway_watch import GatewayWatch
 from tms_mc.goal_poses import refuse
 from tms_mc.guard import Guard

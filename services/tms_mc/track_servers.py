@@ -8,7 +8,8 @@ from nav2_msgs.action import FollowPath, FollowWaypoints, NavigateThroughPoses, 
 
 from tms_config.clock import sleep
 from tms_control.path import told as told_path
-from tms_control.trip import Feedback, Missed, Task, Trip, Verdict
+from tms_control.trip import Feedback, Missed, Task, Trip
+from tms_control.verdict import Verdict
 from tms_mc.goal_poses import in_map, pose_of
 from tms_mc.guard import Guard
 from tms_mc.tracks import Tracks

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from geometry_msgs.msg import Twist
+from prometheus_client import Gauge
 
 from tms_config.clock import monotonic, sleep
 from tms_config.models import DRIVE, Drive
@@ -20,6 +21,8 @@ from tms_mc.reasons import PosesSilent, PosesUnheard
 from tms_reason.reason import Reason
 from tms_ros.topics import Arrival
 from tms_runtime.app import App
+
+YAW_GAIN = Gauge("tms_mc_yaw_gain", "Yaw rate of the tracks as a part of the one commanded, as learned from turns")
 
 PERIOD = 0.05  # s between commands
 IDLE = 0.1  # s between looks at what the machine tells while nothing moves it
@@ -126,6 +129,7 @@ class Tracks:
             for sample in samples[:-1]:
                 self._estimate.measured(sample)
             self._send(trip.step(self._time(), samples[-1] if samples else None))
+            YAW_GAIN.set(self._estimate.yaw_gain)
             return True
 
     def _send(self, command: Command | None) -> None:

@@ -5,8 +5,9 @@ from dataclasses import replace
 import pytest
 
 from driven_joints import NONE, DrivenJoints
-from tms_control.arm_motion import GOAL_VIOLATED, PATH_VIOLATED, Ending, Verdict
+from tms_control.arm_motion import GOAL_VIOLATED, PATH_VIOLATED
 from tms_control.reasons import OffReference, ShortOfGoal, TakenOver
+from tms_control.verdict import Ending, Verdict
 
 WORST, SETTLED = 0.05, 0.5  # rad, s: what is promised
 CANCELLED = Verdict(Ending.CANCELED)
@@ -120,7 +121,7 @@ def test_a_newer_goal_takes_over() -> None:
     rig.tick()
     second = rig.begin("bucket_joint", 0.3)
     rig.until(second)
-    assert first.verdict == Verdict(Ending.ABORTED, reason=TakenOver())
+    assert first.verdict == Verdict(Ending.ABORTED, TakenOver())
     assert second.verdict == Verdict(Ending.SUCCEEDED)
 
 

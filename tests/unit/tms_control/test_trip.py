@@ -9,7 +9,8 @@ from driven_tracks import GAINS, MODELS, DrivenTracks
 from tms_control.path import Path, Piece, Pose
 from tms_control.reasons import LeftPath, NoProgress, PosesStopped, ShortOfPose, Silenced
 from tms_control.track_estimate import ZERO
-from tms_control.trip import PATIENCE_FOR_POSES, Ending, Task, Trip, Verdict
+from tms_control.trip import PATIENCE_FOR_POSES, Task, Trip
+from tms_control.verdict import Ending, Verdict
 
 WAYPOINTS = (Pose(1, 3, 2.5), Pose(12, 6, 1.2), Pose(4, 8, 3.1), Pose(6, 8, 3.1), Pose(0, 0, 0))
 ARRIVED, CANCELED = Verdict(Ending.SUCCEEDED), Verdict(Ending.CANCELED)
