@@ -96,6 +96,8 @@ def test_feedback_counts_down() -> None:
     driving = [one for one in told if one.pose.x > 0.1]
     assert all(one.left == pytest.approx(10 - one.pose.x, abs=0.2) for one in driving)
     assert driving[0].seconds_left == pytest.approx(10.0, abs=1.0)
+    assert max(one.speed for one in told) == pytest.approx(machine.drive.velocity, abs=0.2)
+    assert told[-1].speed == pytest.approx(0.0, abs=0.05)
     assert (told[-1].seconds, told[-1].left) == pytest.approx((machine.now, 0.0), abs=0.1)
 
 
