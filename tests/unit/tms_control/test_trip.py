@@ -166,9 +166,18 @@ def test_short_of_the_end_of_a_told_path_it_has_not_arrived() -> None:
     machine = DrivenTracks("zx200")
     trip = machine.trip(Task.along(TOLD))
     machine.run(trip, until=lambda: machine.pose.away(TOLD.end) < 0.1)
-    machine.kick(0.2)
+    machine.kick(0.0, beside=0.5)
     machine.run(trip)
     assert trip.verdict is not None and isinstance(trip.verdict.reason, ShortOfPose)
+
+
+def test_at_the_end_of_a_told_path_it_turns_to_the_heading_there() -> None:
+    machine = DrivenTracks("zx200")
+    trip = machine.trip(Task.along(TOLD))
+    machine.run(trip, until=lambda: machine.pose.away(TOLD.end) < 0.1)
+    machine.kick(0.2)
+    machine.run(trip)
+    assert trip.verdict == ARRIVED and at(machine, TOLD.end)
 
 
 @pytest.mark.parametrize("beside", [0.0, 1.0])

@@ -11,8 +11,11 @@ from geometry_msgs.msg import PoseStamped
 from nav2_msgs.action import ComputePathToPose, FollowPath, NavigateToPose
 from nav_msgs.msg import Path
 
+from driven_tracks import DrivenTracks
 from tms_control.path import Pose, told
 from tms_control.planner import Pace
+from tms_control.trip import Task
+from tms_control.verdict import Ending
 from tms_mc.goal_poses import in_map, pose_of, refuse
 from tms_mc.path_server import FAILED, STEP, PathServer
 from tms_mc.reasons import NoPoses, PosesUnheard, PoseUnfit, StrangeFrame
@@ -80,6 +83,18 @@ def test_the_path_that_is_told_is_the_one_that_will_be_followed() -> None:
     followed = told(poses)
     assert followed.pieces[0].start.away(HERE) < 1e-3
     assert followed.end.away(THERE) < 0.02 and abs(followed.end.off(THERE.yaw)) < 0.02
+
+
+@pytest.mark.parametrize(("name", "pivot"), [("zx200", 0.0), ("ic120", -0.5), ("mst110cr", 0.0)])
+@pytest.mark.parametrize("goal", [Pose(8.0, 3.0, 1.0), Pose(-3.0, 0.5, 0.0), Pose(0.0, 6.0, -2.0), Pose(0.0, 0.0, 2.0)])
+def test_a_planned_path_is_followed_to_its_end(name: str, pivot: float, goal: Pose) -> None:
+    machine = DrivenTracks(name, pivot=pivot)
+    start = machine.pose
+    poses = planned(FakeTracks(pose=start), ComputePathToPose.Goal(goal=in_map(goal)))
+    trip = machine.trip(Task.along(told(poses)))
+    machine.run(trip)
+    assert trip.verdict is not None and trip.verdict.ending is Ending.SUCCEEDED, trip.verdict
+    assert machine.pose.away(goal) <= 0.3 and abs(machine.pose.off(goal.yaw)) <= 0.35
 
 
 def stamped(frame: str, x: float = 0.0) -> PoseStamped:
