@@ -12,6 +12,7 @@ from tms_config.clock import monotonic, sleep
 from tms_config.models import DRIVE, Drive
 from tms_control.machine_clock import MachineClock
 from tms_control.path import Pose
+from tms_control.planner import Pace
 from tms_control.track_estimate import Command, PoseSample, TrackEstimate
 from tms_control.trip import Task, Trip
 from tms_machine.places import POSES, place_of
@@ -66,6 +67,12 @@ class Tracks:
         """Where it is now."""
         with self._lock:
             return self._estimate.at(self._time()).pose
+
+    @property
+    def pace(self) -> Pace:
+        """What a plan reckons with now."""
+        with self._lock:
+            return Pace.of(self._drive, self._estimate.yaw_gain)
 
     def begin(self, task: Task) -> Trip:
         """Drive, from where the machine is; an open goal ends."""

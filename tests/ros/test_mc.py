@@ -2,11 +2,13 @@
 
 import math
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 from com3_msgs.msg import JointCmd
 from geometry_msgs.msg import PoseStamped
-from nav2_msgs.action import NavigateToPose
+from nav2_msgs.action import ComputePathToPose, FollowPath, NavigateToPose
+from nav_msgs.msg import Path
 from tms_msg_rc.msg import StopReceipt
 from tms_msg_rc.srv import StopMachine
 
@@ -47,19 +49,45 @@ def test_a_trajectory_is_followed_through_the_gateway(site: OperaSim) -> None:
     assert now["arm_joint"] == pytest.approx(begun["arm_joint"], abs=0.03)
 
 
-def test_a_pose_is_driven_to_through_the_gateway(site: OperaSim) -> None:
+def ahead(site: OperaSim, way: float) -> PoseStamped:
+    """The pose some metres ahead of the machine."""
     place, yaw = site.truth()["place"], site.truth()["yaw"]
-    x, y = place[0] + 2.0 * math.cos(yaw), place[1] + 2.0 * math.sin(yaw)
     pose = PoseStamped()
-    pose.header.frame_id, pose.pose.position.x, pose.pose.position.y = "map", x, y
+    pose.header.frame_id = "map"
+    pose.pose.position.x, pose.pose.position.y = place[0] + way * math.cos(yaw), place[1] + way * math.sin(yaw)
     pose.pose.orientation.z, pose.pose.orientation.w = math.sin(yaw / 2), math.cos(yaw / 2)
-    peer = site.ros.peer(NavigateToPose, f"/{MACHINE}/rc/navigate_to_pose")
+    return pose
+
+
+def done(site: OperaSim, kind: Any, action: str, goal: Any) -> Any:
+    """The result of a goal that must succeed."""
+    peer = site.ros.peer(kind, f"/{MACHINE}/{action}")
     peer.wait_ready(LIMIT)
-    call = peer.send(NavigateToPose.Goal(pose=pose))
+    call = peer.send(goal)
     assert ended(site, call) is Outcome.SUCCEEDED, call.result
-    there = site.truth()["place"]
-    assert math.dist(there[:2], (x, y)) <= 0.3
-    assert site.truth()["tracks"] == {"left": 0.0, "right": 0.0}
+    return call.result
+
+
+def stands_at(site: OperaSim, pose: PoseStamped) -> bool:
+    off = math.dist(site.truth()["place"][:2], (pose.pose.position.x, pose.pose.position.y))
+    return off <= 0.3 and site.truth()["tracks"] == {"left": 0.0, "right": 0.0}
+
+
+def test_a_pose_is_driven_to_through_the_gateway(site: OperaSim) -> None:
+    pose = ahead(site, 2.0)
+    done(site, NavigateToPose, "rc/navigate_to_pose", NavigateToPose.Goal(pose=pose))
+    assert stands_at(site, pose)
+
+
+def test_a_path_is_planned_without_the_gateway_and_followed_through_it(site: OperaSim) -> None:
+    here, pose = ahead(site, 0.0), ahead(site, -2.0)
+    path: Path = done(site, ComputePathToPose, "compute_path_to_pose", ComputePathToPose.Goal(goal=pose)).path
+    first, last = path.poses[0].pose.position, path.poses[-1].pose.position
+    assert (first.x, first.y) == pytest.approx((here.pose.position.x, here.pose.position.y), abs=0.1)
+    assert (last.x, last.y) == pytest.approx((pose.pose.position.x, pose.pose.position.y), abs=0.01)
+    assert stands_at(site, here), "planning has moved nothing"
+    done(site, FollowPath, "rc/follow_path", FollowPath.Goal(path=path))
+    assert stands_at(site, pose)
 
 
 def test_a_cancelled_goal_leaves_the_joints_to_the_gateway(site: OperaSim) -> None:

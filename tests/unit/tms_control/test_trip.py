@@ -96,6 +96,8 @@ def test_feedback_counts_down() -> None:
     driving = [one for one in told if one.pose.x > 0.1]
     assert all(one.left == pytest.approx(10 - one.pose.x, abs=0.2) for one in driving)
     assert driving[0].seconds_left == pytest.approx(10.0, abs=1.0)
+    assert max(one.speed for one in told) == pytest.approx(machine.drive.velocity, abs=0.2)
+    assert told[-1].speed == pytest.approx(0.0, abs=0.05)
     assert (told[-1].seconds, told[-1].left) == pytest.approx((machine.now, 0.0), abs=0.1)
 
 
@@ -164,9 +166,18 @@ def test_short_of_the_end_of_a_told_path_it_has_not_arrived() -> None:
     machine = DrivenTracks("zx200")
     trip = machine.trip(Task.along(TOLD))
     machine.run(trip, until=lambda: machine.pose.away(TOLD.end) < 0.1)
-    machine.kick(0.2)
+    machine.kick(0.0, beside=0.5)
     machine.run(trip)
     assert trip.verdict is not None and isinstance(trip.verdict.reason, ShortOfPose)
+
+
+def test_at_the_end_of_a_told_path_it_turns_to_the_heading_there() -> None:
+    machine = DrivenTracks("zx200")
+    trip = machine.trip(Task.along(TOLD))
+    machine.run(trip, until=lambda: machine.pose.away(TOLD.end) < 0.1)
+    machine.kick(0.2)
+    machine.run(trip)
+    assert trip.verdict == ARRIVED and at(machine, TOLD.end)
 
 
 @pytest.mark.parametrize("beside", [0.0, 1.0])
