@@ -111,8 +111,10 @@ class Border(Settings):
     navigate_to_pose: str | None = None
     navigate_through_poses: str | None = None
     follow_waypoints: str | None = None
+    follow_path: str | None = None
     set_dump_angle: str | None = None
     set_swing_angle: str | None = None
+    compute_path_to_pose: str | None = None  # moves nothing, so the gateway does not serve it
     # topics
     joint_states: str | None = None
     odom: str | None = None

@@ -13,15 +13,14 @@ from tms_control.arm_motion import (
     STOPPED,
     TOLERANCE,
     ArmMotion,
-    Ending,
     Tolerances,
-    Verdict,
     limit,
 )
 from tms_control.drive_estimate import Fit
 from tms_control.joint_servo import PERIOD, JointServo
 from tms_control.reasons import OffReference, ShortOfGoal, TakenOver
 from tms_control.reference_trajectory import ReferenceTrajectory
+from tms_control.verdict import Ending, Verdict
 from tms_reason.reason import Reason
 
 ENDLESS = float("inf")
@@ -35,7 +34,7 @@ class ArmController:
         """`joints` in the order of trajectories; passive ones are never commanded."""
         self.joints = joints
         self.servos = {name: JointServo(one, response[name]) for name, one in joints.items() if not one.passive}
-        self.learned: dict[str, Fit] = {}  # what the last goals have shown of the drives
+        self.learned: dict[str, Fit] = {}  # what the last goal has shown of the drives
         self._motion: ArmMotion | None = None
         self._braking: Verdict | None = None  # of the motion, once the joints stand
         self._silent: float | None = None  # s, since when somebody else has the drives
@@ -57,7 +56,7 @@ class ArmController:
 
     def begin(self, now: float, reference: ReferenceTrajectory, tolerances: Tolerances) -> ArmMotion:
         """Follow a reference that begins where the joints are; an open goal ends."""
-        self._end(Verdict(Ending.ABORTED, reason=TakenOver()))
+        self._end(Verdict(Ending.ABORTED, TakenOver()))
         for servo in self.servos.values():
             servo.begin()
         longest = max(servo.dead_time for servo in self.servos.values())
@@ -100,7 +99,7 @@ class ArmController:
         since = now - motion.begun
         sent = {name: self._follow(name, motion.reference, now, since) for name in self.servos}
         if (off := self._off_path(motion, since)) is not None:
-            self.cancel(now, Verdict(Ending.ABORTED, PATH_VIOLATED, off))
+            self.cancel(now, Verdict(Ending.ABORTED, off, PATH_VIOLATED))
         elif since >= motion.reference.duration:
             self._arrive(now, motion, since - motion.reference.duration)
         return sent
@@ -141,7 +140,7 @@ class ArmController:
             self._end(Verdict(Ending.SUCCEEDED))
         elif late > motion.goal_time:
             worst = max(away, key=lambda name: away[name])
-            self.cancel(now, Verdict(Ending.ABORTED, GOAL_VIOLATED, ShortOfGoal(worst, away[worst], late)))
+            self.cancel(now, Verdict(Ending.ABORTED, ShortOfGoal(worst, away[worst], late), GOAL_VIOLATED))
 
     def _away(self, name: str, motion: ArmMotion) -> float:
         return abs(self.servos[name].position - motion.reference.end[list(self.joints).index(name)])

@@ -6,32 +6,14 @@ there is none.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from enum import Enum
 
 from tms_control.reference_trajectory import ReferenceTrajectory
-from tms_reason.reason import Reason
+from tms_control.verdict import Verdict
 
 TOLERANCE = 0.03  # rad, at the end of a goal
 STOPPED = 0.01  # rad/s, at the end of a goal
 GOAL_TIME = 60.0  # s after the end in which the arm may still arrive, as in OPERA's configuration
-SUCCESSFUL, INVALID_GOAL, INVALID_JOINTS, PATH_VIOLATED, GOAL_VIOLATED = 0, -1, -2, -4, -5  # control_msgs result codes
-
-
-class Ending(Enum):
-    """How a goal ended, as ROS names it."""
-
-    SUCCEEDED = "SUCCEEDED"
-    CANCELED = "CANCELED"
-    ABORTED = "ABORTED"
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """The end of a goal."""
-
-    ending: Ending
-    code: int = SUCCESSFUL
-    reason: Reason | None = None
+PATH_VIOLATED, GOAL_VIOLATED = -4, -5  # control_msgs result codes
 
 
 @dataclass(frozen=True)

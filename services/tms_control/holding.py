@@ -65,7 +65,7 @@ class Holding:
         self._releases = max(now, begun + self._waits)
 
     def step(self, now: float, measured: Angles) -> Orders:
-        """What to send now; `measured` are the joints' angles [rad]."""
+        """What to send now; `measured` are the joints' angles [rad], none while they are not heard."""
         release = self._releases is not None and now >= self._releases
         if release:
             self._releases = None
@@ -73,9 +73,9 @@ class Holding:
             self._angles = self._held(measured)
         if self._begun is None:
             return Orders()
-        if not self._angles or now - self._begun < self._plays:
+        if not measured or not self._angles or now - self._begun < self._plays:
             self._angles = self._held(measured)
-        orders = Orders(self._angles, release)
+        orders = Orders(self._angles or None, release)
         if now >= self._ends:
             self._begun = None
         return orders

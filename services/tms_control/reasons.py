@@ -7,8 +7,8 @@ from tms_reason.remedies import INSPECT
 
 # fmt: off
 # a trajectory that cannot be followed
-class OtherJoints(Reason, text="the trajectory is for other joints than the machine has",
-    details="{given} given, {known} expected"): given: tuple[str, ...]; known: tuple[str, ...]
+class OtherJoints(Reason, text="the trajectory is for the joints {given}, the machine has {known}"):
+    given: tuple[str, ...]; known: tuple[str, ...]
 class TrajectoryEmpty(Reason, text="the trajectory is empty"): pass
 class PointUnfit(Reason,
     text="point {number} of the trajectory does not give a position, or a velocity, for each joint"): number: int

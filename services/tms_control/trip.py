@@ -6,7 +6,6 @@ not, the rest is planned anew. Times are seconds of the machine's clock.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from enum import Enum
 
 from tms_config.models import Drive
 from tms_control.path import Path, Piece, Pose
@@ -16,6 +15,7 @@ from tms_control.pursuit import Pursuit
 from tms_control.reasons import LeftPath, NoProgress, PosesStopped, ShortOfPose, Silenced
 from tms_control.track_estimate import ZERO, Command, PoseSample, TrackEstimate, TrackState
 from tms_control.track_servo import TrackServo
+from tms_control.verdict import Ending, Verdict
 from tms_reason.reason import Reason
 
 OLD = 0.5  # s, age of a pose from which on the machine stands
@@ -24,22 +24,6 @@ NEAR, ALIGNED = 0.25, 0.08  # m, rad: less off the goal is arrived; a waypoint i
 BESIDE, ASKEW = 0.8, 0.8  # m, rad off the path, from which on it is given up
 ATTEMPTS = 4  # ways that are planned to one goal, before it counts as one that cannot be reached
 STANDS = 0.3  # s with poses that show it standing
-
-
-class Ending(Enum):
-    """How a goal ended, as ROS names it."""
-
-    SUCCEEDED = "SUCCEEDED"
-    CANCELED = "CANCELED"
-    ABORTED = "ABORTED"
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """The end of a goal."""
-
-    ending: Ending
-    reason: Reason | None = None
 
 
 @dataclass(frozen=True)
@@ -56,7 +40,7 @@ class Task:
 
     stages: tuple[tuple[Goal, ...], ...]
     goes_on: bool = False  # after a stage that cannot be reached
-    told: Path | None = None  # the way to the only stage; it is not planned, and not anew
+    told: Path | None = None  # the way to the only stage; planned is only what turns there have put it off
 
     @classmethod
     def to(cls, pose: Pose) -> "Task":
@@ -84,6 +68,7 @@ class Feedback:
     """How far a goal is."""
 
     pose: Pose
+    speed: float  # m/s, of the base
     seconds: float  # s since it began
     left: float  # m to the end of the stage
     seconds_left: float  # s to the end of the stage
@@ -133,14 +118,15 @@ class Trip:
 
     def feedback(self, now: float) -> Feedback:
         """How far it is."""
-        pose, goals = self._estimate.at(now).pose, self._task.stages[self._stage]
+        state, goals = self._estimate.at(now), self._task.stages[self._stage]
         if self._pursuit is None:
-            left = pose.away(Pose(goals[-1].x, goals[-1].y, 0.0))
+            left = state.pose.away(Pose(goals[-1].x, goals[-1].y, 0.0))
             seconds = left / self._drive.velocity
         else:
             left = self._pursuit.left
             seconds = self._pace().total(self._path.pieces[self._pursuit.pieces_done :])
-        return Feedback(pose, now - self._begun, left, seconds, self._stage, len(goals) - self._passed)
+        poses_left = len(goals) - self._passed
+        return Feedback(state.pose, abs(state.v), now - self._begun, left, seconds, self._stage, poses_left)
 
     def _unseen(self, now: float) -> Command:
         """Stand while nobody knows where it is."""
@@ -163,7 +149,7 @@ class Trip:
             self._progress.restart()  # two turns, there and back, end where they began
         if self._progress.lacks(now, state.pose):
             self._give_up(NoProgress(PATIENCE))
-        elif off.beside > BESIDE or off.turned > ASKEW:
+        elif off.beside > BESIDE + self._swerve() or off.turned > ASKEW:
             self._give_up_way(LeftPath(off.beside, off.turned))
         else:
             command = pursuit.step(state)
@@ -193,7 +179,7 @@ class Trip:
         away, turned = pose.away(Pose(goal.x, goal.y, 0.0)), abs(pose.off(goal.yaw or 0.0))
         if self._attempts and away <= NEAR and turned <= ALIGNED:
             self._next_stage()
-        elif self._attempts >= (1 if self._task.told else ATTEMPTS):
+        elif self._attempts >= (1 if self._task.told and away > NEAR + self._swerve() else ATTEMPTS):
             self._give_up(ShortOfPose(away, turned, self._attempts))
         else:
             self._begin(pose, turns=self._attempts > 0 and away <= NEAR)
@@ -201,7 +187,7 @@ class Trip:
     def _begin(self, pose: Pose, turns: bool) -> None:
         """Begin a way to the goals that are left; or only turn, where the machine is near enough."""
         self._attempts += 1
-        if self._task.told is not None:
+        if self._task.told is not None and self._attempts == 1:
             self._path, self._reached, self._pivot = self._task.told, (), 0.0
         else:
             self._pivot = self._estimate.pivot
@@ -216,6 +202,10 @@ class Trip:
             turned = pose.ahead(self._pivot)._replace(yaw=goals[-1].yaw or 0.0)
             return [Goal(*turned.ahead(-self._pivot))]
         return goals[min(self._passed, len(goals) - 1) :]
+
+    def _swerve(self) -> float:
+        """How far turns on the spot of a told path, which is not that of the pivot, put the machine off [m]."""
+        return 2 * abs(self._estimate.pivot) if self._task.told is not None else 0.0
 
     def _next_stage(self) -> None:
         if self._stage + 1 == len(self._task.stages):

@@ -8,9 +8,11 @@ from typing import Any, TypeVar
 
 from prometheus_client import Counter
 
+from tms_config.clock import monotonic
 from tms_if import joint_cmd
 from tms_if.commands import CommandError, Registration, command, full_name
 from tms_if.framing import encode
+from tms_if.fresh_start import FreshStart
 from tms_if.hearing import Hearing
 from tms_if.interfaces import interface, short_name
 from tms_if.names import Allowed
@@ -70,6 +72,7 @@ class ClientEndpoints:
         self._numbers = itertools.count(1001)
         self._calls = 0
         self._closed = False
+        self._fresh = FreshStart(lambda topic, data: send(encode(topic, data), True), monotonic())
         self._timer = ros.every(FOLLOW_PERIOD, self._follow)
 
     # registrations
@@ -103,12 +106,19 @@ class ClientEndpoints:
         self.remove_subscriber(wanted.topic)
 
         def received(data: bytes) -> None:
+            if self._fresh.young():
+                return
             try:
                 self._send(encode(wanted.topic, self._for_client(kind, bytes(data))), True)
             except joint_cmd.LayoutError as error:
                 self._say(f"{wanted.topic}: {error}")
 
+        def stopped(data: bytes) -> None:
+            self._fresh.stop(wanted.topic, bytes(data), monotonic())
+
         name = full_name(wanted.topic)
+        if name in self._allowed.stops:
+            received = stopped
         self._received[wanted.topic] = self._on_ros(lambda: Hearing(self._ros, kind, name, received), wanted)
 
     def ros_service(self, wanted: Registration) -> None:
@@ -172,7 +182,9 @@ class ClientEndpoints:
         if name not in self._published:
             raise CommandError(f"Not registered to publish topic '{topic}'! Send __publish first")
         publisher, kind = self._published[name]
-        _read(payload, kind, topic)
+        read = _read(payload, kind, topic)
+        if hasattr(read, "header"):
+            self._fresh.told(read.header.stamp.sec + read.header.stamp.nanosec * 1e-9, monotonic())
         publisher.publish(payload)
 
     def request(self, topic: str, payload: bytes, number: int) -> None:
@@ -231,6 +243,7 @@ class ClientEndpoints:
         return asked.response
 
     def _follow(self) -> None:
+        self._fresh.look(monotonic())
         for hearing in list(self._received.values()):
             hearing.follow()
 

@@ -31,6 +31,7 @@ class Allowed:
     received: Named
     called: Named
     offered: Named
+    stops: frozenset[str] = frozenset()  # topics of the machines' emergency stops
 
     def publishing(self, name: str, kind: str) -> str | None:
         """Why a client may not publish this full name; None if it may."""
@@ -71,6 +72,7 @@ def allowed(site: Site) -> Allowed:
         received={name: _one(kind) for name, kind in {**_commands(site), **RECEIVED_BY_ALL}.items()},
         called={name: _one(kind) for name, kind in settings.calls.items()},
         offered={name: _one(kind) for name, kind in settings.offers.items()},
+        stops=frozenset(f"/{name}/{stop}" for name in site.file.machines if (stop := site.border(name).emg_stop)),
     )
 
 

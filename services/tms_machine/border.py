@@ -9,7 +9,7 @@ from action_msgs.srv import CancelGoal
 from com3_msgs.action import SetDumpAngle, SetSwingAngle
 from control_msgs.action import FollowJointTrajectory
 from geometry_msgs.msg import Twist
-from nav2_msgs.action import FollowWaypoints, NavigateThroughPoses, NavigateToPose
+from nav2_msgs.action import FollowPath, FollowWaypoints, NavigateThroughPoses, NavigateToPose
 from std_msgs.msg import Bool
 
 from tms_config.clock import monotonic
@@ -35,6 +35,7 @@ MOTIONS = (
     MotionAction("navigate_to_pose", "navigate_to_pose", NavigateToPose),
     MotionAction("navigate_through_poses", "navigate_through_poses", NavigateThroughPoses),
     MotionAction("follow_waypoints", "follow_waypoints", FollowWaypoints),
+    MotionAction("follow_path", "follow_path", FollowPath),
     MotionAction("set_dump_angle", "set_dump_angle", SetDumpAngle),
     MotionAction("set_swing_angle", "set_swing_angle", SetSwingAngle),
 )

@@ -12,9 +12,10 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from tms_config.clock import sleep
 from tms_config.models import TURNED
-from tms_control.arm_motion import ArmMotion, Ending, Tolerances
+from tms_control.arm_motion import ArmMotion, Tolerances
 from tms_control.reference_trajectory import Knot, refusal
 from tms_control.turning import turning
+from tms_control.verdict import Ending
 from tms_mc.guard import Guard
 from tms_mc.joints import Joints
 from tms_mc.reasons import JointLimit, NoAngle, Stopped

@@ -4,14 +4,16 @@ import math
 import threading
 from collections.abc import Sequence
 
+from prometheus_client import Gauge
 from sensor_msgs.msg import JointState
 
 from tms_config.clock import monotonic, sleep
 from tms_config.models import DRIVE
 from tms_control.arm_controller import ArmController
-from tms_control.arm_motion import ArmMotion, Ending, Tolerances, Verdict
+from tms_control.arm_motion import ArmMotion, Tolerances
 from tms_control.machine_clock import MachineClock
 from tms_control.reference_trajectory import Knot, ReferenceTrajectory
+from tms_control.verdict import Ending, Verdict
 from tms_machine.joint_commands import JointCommands
 from tms_mc.gateway_watch import GatewayWatch
 from tms_mc.reasons import ClockSetBack, GatewayGone, JointMissing, JointsNotHeard, JointsSilent, NoCommandTopic
@@ -19,10 +21,14 @@ from tms_reason.reason import Reason
 from tms_ros.topics import Arrival
 from tms_runtime.app import App
 
+DEAD_TIME = Gauge("tms_mc_dead_time_seconds", "Until a command shows, as learned from moves", ["joint"])
+LAG = Gauge("tms_mc_lag_seconds", "Time constant of the answer to a command, as learned from moves", ["joint"])
+DROOP = Gauge("tms_mc_droop_radians", "How far a joint stays short of its command, as learned from moves", ["joint"])
+
 PERIOD = 0.02  # s between commands
 IDLE = 0.1  # s between looks at what the machine tells while nothing moves it
 DEPTH = 20  # messages that may come between two looks: 50 Hz and some to spare
-SILENT = 0.5  # s without joint states after which nothing is commanded
+SILENT = 0.8  # s without joint states after which the joints are braked; the gateway stops the machine after 1 s
 
 
 class Joints:
@@ -88,7 +94,7 @@ class Joints:
 
     def stop(self, why: Reason | None, ending: Ending = Ending.CANCELED) -> None:
         """End the open goal: with a gateway, it holds the joints and nothing is sent; without, they are braked here."""
-        verdict = Verdict(ending, reason=why)
+        verdict = Verdict(ending, why)
         with self._lock:
             if not self.arm.busy:
                 return
@@ -121,18 +127,29 @@ class Joints:
             if not self.arm.busy:
                 return False
             if (lost := self._lost()) is not None:
-                self.arm.cancel(self._time(), Verdict(Ending.ABORTED, reason=lost))
+                self.arm.cancel(self._time(), Verdict(Ending.ABORTED, lost))
             angles = self.arm.step(self._time())
             if angles:
                 self._commands.send(angles)
+            self._tell()
             return True
+
+    def _tell(self) -> None:
+        """Say what a goal that has just ended has shown of the drives."""
+        learned, self.arm.learned = self.arm.learned, {}
+        for joint, fit in learned.items():
+            DEAD_TIME.labels(joint).set(fit.dead_time)
+            LAG.labels(joint).set(fit.lag)
+            DROOP.labels(joint).set(fit.droop)
+            self._app.log.info("learned", joint=joint, dead_time=fit.dead_time, lag=fit.lag, droop=fit.droop)
 
     def _lost(self) -> Reason | None:
         """Without what the machine must not be moved any more."""
         if not self._gateway.alive:
             return GatewayGone()
         silent = self._clock.silent(monotonic())
-        return JointsSilent(silent, self._topic) if silent > SILENT else None
+        late = self._app.pulse.late()  # this process itself did not run
+        return JointsSilent(silent, self._topic) if silent > SILENT and not late else None
 
     def _measured(self, arrival: Arrival[JointState]) -> None:
         message = arrival.message
@@ -144,7 +161,7 @@ class Joints:
         stamp = message.header.stamp.sec + message.header.stamp.nanosec * 1e-9
         before = self._clock.stamp
         if not self._clock.hear(arrival.received, stamp):
-            self.arm.abandon(Verdict(Ending.ABORTED, reason=ClockSetBack()))
+            self.arm.abandon(Verdict(Ending.ABORTED, ClockSetBack()))
         elif stamp == before:
             return
         if all(name in self._positions for name in self.arm.servos):

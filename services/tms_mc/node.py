@@ -1,13 +1,15 @@
 """Process `<machine>:mc`: serves the actions of a machine's border, and commands its drives."""
 
 from control_msgs.action import FollowJointTrajectory
-from nav2_msgs.action import FollowWaypoints, NavigateThroughPoses, NavigateToPose
+from nav2_msgs.action import ComputePathToPose, FollowPath, FollowWaypoints, NavigateThroughPoses, NavigateToPose
 
-from tms_control.arm_motion import Ending
+from tms_control.verdict import Ending
 from tms_mc.gateway_watch import GatewayWatch
+from tms_mc.goal_poses import refuse
 from tms_mc.guard import Guard
 from tms_mc.joint_servers import TURNS, JointServers
 from tms_mc.joints import Joints
+from tms_mc.path_server import PathServer
 from tms_mc.track_servers import TrackServers
 from tms_mc.tracks import Tracks
 from tms_runtime.app import App
@@ -47,6 +49,10 @@ def _serve_tracks(app: App, guard: Guard, gateway: GatewayWatch) -> None:
         ("navigate_to_pose", NavigateToPose, servers.to_pose),
         ("navigate_through_poses", NavigateThroughPoses, servers.through_poses),
         ("follow_waypoints", FollowWaypoints, servers.waypoints),
+        ("follow_path", FollowPath, servers.path),
     ):
         if own := getattr(border, field):
-            app.ros.serve(action, f"/{app.machine}/{own}", run, servers.refuse)
+            app.ros.serve(action, f"/{app.machine}/{own}", run, refuse)
+    if border.compute_path_to_pose:
+        planner = PathServer(tracks)
+        app.ros.serve(ComputePathToPose, f"/{app.machine}/{border.compute_path_to_pose}", planner.run, planner.refuse)

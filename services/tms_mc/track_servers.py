@@ -4,17 +4,14 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from builtin_interfaces.msg import Duration
-from geometry_msgs.msg import PoseStamped
-from nav2_msgs.action import FollowWaypoints, NavigateThroughPoses, NavigateToPose
+from nav2_msgs.action import FollowPath, FollowWaypoints, NavigateThroughPoses, NavigateToPose
 
 from tms_config.clock import sleep
-from tms_control.path import Pose
-from tms_control.trip import Feedback, Missed, Task, Trip, Verdict
-from tms_machine.frames import MAP
-from tms_machine.geometry import about, is_orientation, yaw_of
-from tms_machine.places import IN_MAP
+from tms_control.path import told as told_path
+from tms_control.trip import Feedback, Missed, Task, Trip
+from tms_control.verdict import Verdict
+from tms_mc.goal_poses import in_map, pose_of
 from tms_mc.guard import Guard
-from tms_mc.reasons import NoPoses, PoseUnfit, StrangeFrame
 from tms_mc.tracks import Tracks
 from tms_reason.reason import Reason
 from tms_reason.wire import to_line
@@ -32,28 +29,32 @@ class TrackServers:
     def __init__(self, tracks: Tracks, guard: Guard) -> None:
         self._tracks, self._guard = tracks, guard
 
-    @staticmethod
-    def refuse(request: Any) -> Reason | None:
-        """Why a goal is refused."""
-        return _wrong(_poses(request))
-
     def to_pose(self, goal: AnyGoal) -> Ended[Any]:
         """NavigateToPose."""
-        return self._drive(goal, NavigateToPose, Task.to(_pose(goal.request.pose)), self._progress)
+        return self._drive(goal, NavigateToPose, Task.to(pose_of(goal.request.pose)), self._progress)
 
     def through_poses(self, goal: AnyGoal) -> Ended[Any]:
         """NavigateThroughPoses."""
-        task = Task.through([_pose(one) for one in goal.request.poses])
+        task = Task.through([pose_of(one) for one in goal.request.poses])
         return self._drive(goal, NavigateThroughPoses, task, self._progress)
 
     def waypoints(self, goal: AnyGoal) -> Ended[Any]:
         """FollowWaypoints."""
-        task = Task.waypoints([_pose(one) for one in goal.request.poses])
+        task = Task.waypoints([pose_of(one) for one in goal.request.poses])
 
         def progress(action: Any, told: Feedback) -> Any:
             return action.Feedback(current_waypoint=told.waypoint)
 
         return self._drive(goal, FollowWaypoints, task, progress)
+
+    def path(self, goal: AnyGoal) -> Ended[Any]:
+        """FollowPath."""
+        task = Task.along(told_path([pose_of(one) for one in goal.request.path.poses]))
+
+        def progress(action: Any, told: Feedback) -> Any:
+            return action.Feedback(distance_to_goal=told.left, speed=told.speed)
+
+        return self._drive(goal, FollowPath, task, progress)
 
     def _drive(self, goal: AnyGoal, action: Any, task: Task, progress: Callable[[Any, Feedback], Any]) -> Ended[Any]:
         with self._guard.working_for(goal):
@@ -69,12 +70,8 @@ class TrackServers:
         return _ended(action, goal, trip)
 
     def _progress(self, action: Any, told: Feedback) -> Any:
-        now = PoseStamped()
-        now.header.frame_id = MAP
-        now.pose.position.x, now.pose.position.y = told.pose.x, told.pose.y
-        _, _, now.pose.orientation.z, now.pose.orientation.w = about("z", told.pose.yaw)
         found = action.Feedback(
-            current_pose=now, navigation_time=_duration(told.seconds), distance_remaining=told.left,
+            current_pose=in_map(told.pose), navigation_time=_duration(told.seconds), distance_remaining=told.left,
             estimated_time_remaining=_duration(told.seconds_left),
         )  # fmt: skip
         if action is NavigateThroughPoses:
@@ -105,27 +102,6 @@ def _missed(numbers: Sequence[int]) -> Any:
     from nav2_msgs.msg import MissedWaypoint  # Humble has no such message
 
     return [MissedWaypoint(index=number, error_code=MISSED) for number in numbers]
-
-
-def _poses(request: Any) -> Sequence[PoseStamped]:
-    return list(request.poses) if hasattr(request, "poses") else [request.pose]
-
-
-def _wrong(poses: Sequence[PoseStamped]) -> Reason | None:
-    if not poses:
-        return NoPoses()
-    for number, stamped in enumerate(poses):
-        q = stamped.pose.orientation
-        if stamped.header.frame_id not in (*IN_MAP, ""):
-            return StrangeFrame(number, stamped.header.frame_id)
-        if not is_orientation((q.x, q.y, q.z, q.w)):
-            return PoseUnfit(number)
-    return None
-
-
-def _pose(stamped: PoseStamped) -> Pose:
-    at, q = stamped.pose.position, stamped.pose.orientation
-    return Pose(at.x, at.y, yaw_of((q.x, q.y, q.z, q.w)))
 
 
 def _duration(seconds: float) -> Duration:

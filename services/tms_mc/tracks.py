@@ -6,11 +6,13 @@ from collections.abc import Callable
 from typing import Any
 
 from geometry_msgs.msg import Twist
+from prometheus_client import Gauge
 
 from tms_config.clock import monotonic, sleep
 from tms_config.models import DRIVE, Drive
 from tms_control.machine_clock import MachineClock
 from tms_control.path import Pose
+from tms_control.planner import Pace
 from tms_control.track_estimate import Command, PoseSample, TrackEstimate
 from tms_control.trip import Task, Trip
 from tms_machine.places import POSES, place_of
@@ -19,6 +21,8 @@ from tms_mc.reasons import PosesSilent, PosesUnheard
 from tms_reason.reason import Reason
 from tms_ros.topics import Arrival
 from tms_runtime.app import App
+
+YAW_GAIN = Gauge("tms_mc_yaw_gain", "Yaw rate of the tracks as a part of the one commanded, as learned from turns")
 
 PERIOD = 0.05  # s between commands
 IDLE = 0.1  # s between looks at what the machine tells while nothing moves it
@@ -63,6 +67,12 @@ class Tracks:
         """Where it is now."""
         with self._lock:
             return self._estimate.at(self._time()).pose
+
+    @property
+    def pace(self) -> Pace:
+        """What a plan reckons with now."""
+        with self._lock:
+            return Pace.of(self._drive, self._estimate.yaw_gain)
 
     def begin(self, task: Task) -> Trip:
         """Drive, from where the machine is; an open goal ends."""
@@ -119,6 +129,7 @@ class Tracks:
             for sample in samples[:-1]:
                 self._estimate.measured(sample)
             self._send(trip.step(self._time(), samples[-1] if samples else None))
+            YAW_GAIN.set(self._estimate.yaw_gain)
             return True
 
     def _send(self, command: Command | None) -> None:

@@ -138,6 +138,11 @@ class StandStill:
         joints = self.sources.get(JOINTS)
         return {name: place[0] for name, place in joints.places().items()} if joints else {}
 
+    def seen(self, now: float) -> dict[str, float]:
+        """Positions of the joints [rad] as long as they are news; a machine that is not heard may be anywhere."""
+        joints = self.sources.get(JOINTS)
+        return self.positions if joints is not None and joints.age(now) <= joints.longest else {}
+
     @property
     def velocities(self) -> dict[str, float]:
         """Last velocity of each joint, where it is reported [rad/s]."""

@@ -16,7 +16,7 @@ class Holder:
     """Takes the commands of stops, which never wait, and sends what holds the joints at every beat of the pulse."""
 
     def __init__(self, app: App, controls: Controls, positions: Callable[[], Mapping[str, float]]) -> None:
-        """`positions`: the joints' angles [rad] as measured last."""
+        """`positions`: the joints' angles [rad] as measured just now, none while they are not heard."""
         model, border = app.site.model_of(app.machine), app.site.border(app.machine)
         response = {name: one for name, one in model.responses(border).items() if name != DRIVE}
         dead_time = longest_dead_time(model, border)

@@ -19,6 +19,8 @@ UNKNOWN = 600  # for nav2_msgs, whose results have an unsigned code
 
 def poses_of(request: Any) -> Sequence[PoseStamped]:
     """The poses of a goal for the navigation."""
+    if hasattr(request, "path"):
+        return list(request.path.poses)
     return list(request.poses) if hasattr(request, "poses") else [request.pose]
 
 

@@ -16,8 +16,9 @@ from tms_decision.gateway.events import (
 )
 from tms_decision.gateway.state import Gateway
 from tms_decision.owner import parse
+from tms_decision.permit_link import NOBODY
 from tms_machine.border import MotionAction
-from tms_machine.permit import watch_server
+from tms_machine.permit import RemotePermit
 from tms_rc.goal_check import GoalCheck
 from tms_rc.motion_goals import duration, reason_of, with_reason
 from tms_rc.shell import Shell
@@ -54,7 +55,7 @@ class MotionServers:
         self._numbers = count(1)
         self.peers: list[AnyPeer] = []
         ours = app.site.border(app.machine).controller == "ours"
-        self._watch = watch_server(app.ros, app.pulse, app.machine, "mc") if ours else None
+        self._controller = RemotePermit(app.ros, app.pulse, app.machine, "mc", lambda _: None) if ours else None
         shell.does(Send, lambda effect: self._send(self._served[effect.number]))
         shell.does(End, self._end)
         for kind, act in ((Cancel, _cancel), (GiveUp, _give_up), (Lose, _lose)):
@@ -64,8 +65,6 @@ class MotionServers:
         """Offer /<machine>/rc/<action> in front of the machine's own action `own`."""
         peer = self._app.ros.peer(motion.type, f"/{self._app.machine}/{own}")
         self.peers.append(peer)
-        if self._watch is not None:
-            self._watch(peer)
         name = f"/{self._app.machine}/rc/{motion.served}"
         self._app.ros.serve(motion.type, name, lambda goal: self._run(motion, peer, goal))
 
@@ -75,8 +74,14 @@ class MotionServers:
         served = self._served.get(active.number) if active is not None else None
         if active is None or served is None:
             return True, False, None
-        gone = served.call is not None and served.call.accepted and served.peer.left()
+        taken = served.call is not None and served.call.accepted
+        gone = taken and (served.peer.left() or self._controller_lost())
         return served.peer.ready(), gone, self._check.escaped(gateway, active.start)
+
+    def _controller_lost(self) -> bool:
+        """Whether our own controller was lost while it moved the machine; discovery notices that seconds later."""
+        permit = self._controller
+        return permit is not None and permit.goal != NOBODY and not permit.alive
 
     def _run(self, motion: MotionAction, peer: AnyPeer, goal: AnyGoal) -> Ended[Any]:
         served = Served(next(self._numbers), motion, goal, peer)

@@ -60,7 +60,7 @@ def _serve(app: App, claim: Claim) -> None:
     Disk(app, shell, notes, kept)
     drives: Controls | Holder = controls
     if border.controller == "ours":
-        drives = Holder(app, controls, lambda: gateway.watch.positions)
+        drives = Holder(app, controls, lambda: gateway.watch.seen(monotonic()))
     shell.does(Zero, lambda _: drives.zero())
     shell.does(Emergency, lambda effect: drives.emergency(effect.on))
     shell.does(CancelAll, lambda _: controls.cancel_everything())

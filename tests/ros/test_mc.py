@@ -1,22 +1,19 @@
 """A zx200 of OperaSim-PhysX moved by our controller: bridge, gateway and controller as real processes."""
 
 import math
-from array import array
 from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from builtin_interfaces.msg import Duration
 from com3_msgs.msg import JointCmd
-from control_msgs.action import FollowJointTrajectory
 from geometry_msgs.msg import PoseStamped
-from nav2_msgs.action import NavigateToPose
-from operasim_rig import LIMIT, OperaSim
-from tms_msg_rc.msg import MachineState
+from nav2_msgs.action import ComputePathToPose, FollowPath, NavigateToPose
+from nav_msgs.msg import Path
+from tms_msg_rc.msg import StopReceipt
 from tms_msg_rc.srv import StopMachine
-from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from conftest import rearm
+from mc_rig import angles, armed, ended, moving, send
+from operasim_rig import LIMIT, OperaSim
 from tms_ros.goals import Outcome
 
 pytestmark = [
@@ -24,14 +21,6 @@ pytestmark = [
     pytest.mark.filterwarnings("ignore:module 'sre_:DeprecationWarning"),  # a parser that the ROS wheels bring
 ]
 MACHINE = "zx200_8"  # a name of its own: other tests may have machines in the same domain
-JOINTS = ["swing_joint", "boom_joint", "arm_joint", "bucket_joint", "bucket_end_joint"]
-
-
-def armed(site: OperaSim) -> None:
-    """Re-arm the machine, once its gateway lives: a killed one stays in the graph for a while."""
-    states: list[MachineState] = site.hear(MachineState, "rc/state")
-    site.until(lambda: states, "its gateway")
-    site.until(lambda: rearm(site.ros, MACHINE), "it is armed")
 
 
 @pytest.fixture(scope="module")
@@ -50,36 +39,6 @@ def site(tmp_path_factory: pytest.TempPathFactory, domain: int, first_port: int)
             made.close()
 
 
-def goal(angles: dict[str, float], seconds: int) -> FollowJointTrajectory.Goal:
-    point = JointTrajectoryPoint(
-        positions=array("d", [angles[name] for name in JOINTS]), velocities=array("d", [0.0] * 5),
-        time_from_start=Duration(sec=seconds, nanosec=0),
-    )  # fmt: skip
-    return FollowJointTrajectory.Goal(trajectory=JointTrajectory(joint_names=JOINTS, points=[point]))
-
-
-def angles(site: OperaSim) -> dict[str, float]:
-    joints = site.truth()["joints"]
-    return {name: joints[name]["position"] if joints.get(name) else 0.0 for name in JOINTS}
-
-
-def send(site: OperaSim, change: dict[str, float], seconds: int = 6) -> tuple[Any, Any]:
-    """A goal of somebody else, through the gateway: its peer and its call."""
-    peer = site.ros.peer(FollowJointTrajectory, f"/{MACHINE}/rc/follow_joint_trajectory")
-    peer.wait_ready(LIMIT)
-    now = angles(site)
-    return peer, peer.send(goal({**now, **{name: now[name] + way for name, way in change.items()}}, seconds))
-
-
-def ended(site: OperaSim, call: Any) -> Any:
-    site.until(lambda: call.outcome is not None, "the end of the goal")
-    return call.outcome
-
-
-def moving(site: OperaSim, joint: str) -> None:
-    site.until(lambda: abs(site.joint(joint)["velocity"]) > 0.05, f"{joint} moves")
-
-
 def test_a_trajectory_is_followed_through_the_gateway(site: OperaSim) -> None:
     begun = angles(site)
     _, call = send(site, {"boom_joint": 0.2, "swing_joint": 0.5})
@@ -90,19 +49,45 @@ def test_a_trajectory_is_followed_through_the_gateway(site: OperaSim) -> None:
     assert now["arm_joint"] == pytest.approx(begun["arm_joint"], abs=0.03)
 
 
-def test_a_pose_is_driven_to_through_the_gateway(site: OperaSim) -> None:
+def ahead(site: OperaSim, way: float) -> PoseStamped:
+    """The pose some metres ahead of the machine."""
     place, yaw = site.truth()["place"], site.truth()["yaw"]
-    x, y = place[0] + 2.0 * math.cos(yaw), place[1] + 2.0 * math.sin(yaw)
     pose = PoseStamped()
-    pose.header.frame_id, pose.pose.position.x, pose.pose.position.y = "map", x, y
+    pose.header.frame_id = "map"
+    pose.pose.position.x, pose.pose.position.y = place[0] + way * math.cos(yaw), place[1] + way * math.sin(yaw)
     pose.pose.orientation.z, pose.pose.orientation.w = math.sin(yaw / 2), math.cos(yaw / 2)
-    peer = site.ros.peer(NavigateToPose, f"/{MACHINE}/rc/navigate_to_pose")
+    return pose
+
+
+def done(site: OperaSim, kind: Any, action: str, goal: Any) -> Any:
+    """The result of a goal that must succeed."""
+    peer = site.ros.peer(kind, f"/{MACHINE}/{action}")
     peer.wait_ready(LIMIT)
-    call = peer.send(NavigateToPose.Goal(pose=pose))
+    call = peer.send(goal)
     assert ended(site, call) is Outcome.SUCCEEDED, call.result
-    there = site.truth()["place"]
-    assert math.dist(there[:2], (x, y)) <= 0.3
-    assert site.truth()["tracks"] == {"left": 0.0, "right": 0.0}
+    return call.result
+
+
+def stands_at(site: OperaSim, pose: PoseStamped) -> bool:
+    off = math.dist(site.truth()["place"][:2], (pose.pose.position.x, pose.pose.position.y))
+    return off <= 0.3 and site.truth()["tracks"] == {"left": 0.0, "right": 0.0}
+
+
+def test_a_pose_is_driven_to_through_the_gateway(site: OperaSim) -> None:
+    pose = ahead(site, 2.0)
+    done(site, NavigateToPose, "rc/navigate_to_pose", NavigateToPose.Goal(pose=pose))
+    assert stands_at(site, pose)
+
+
+def test_a_path_is_planned_without_the_gateway_and_followed_through_it(site: OperaSim) -> None:
+    here, pose = ahead(site, 0.0), ahead(site, -2.0)
+    path: Path = done(site, ComputePathToPose, "compute_path_to_pose", ComputePathToPose.Goal(goal=pose)).path
+    first, last = path.poses[0].pose.position, path.poses[-1].pose.position
+    assert (first.x, first.y) == pytest.approx((here.pose.position.x, here.pose.position.y), abs=0.1)
+    assert (last.x, last.y) == pytest.approx((pose.pose.position.x, pose.pose.position.y), abs=0.01)
+    assert stands_at(site, here), "planning has moved nothing"
+    done(site, FollowPath, "rc/follow_path", FollowPath.Goal(path=path))
+    assert stands_at(site, pose)
 
 
 def test_a_cancelled_goal_leaves_the_joints_to_the_gateway(site: OperaSim) -> None:
@@ -138,8 +123,11 @@ def test_a_stop_presses_and_a_rearm_releases_without_a_jump(site: OperaSim) -> N
 def test_without_its_controller_a_goal_ends_and_the_machine_is_stopped(site: OperaSim) -> None:
     _, call = send(site, {"swing_joint": -1.0}, 8)
     moving(site, "swing_joint")
+    receipts: list[StopReceipt] = site.hear(StopReceipt, "rc/receipts")
     site.kill(f"{MACHINE}:mc")
     assert ended(site, call) is Outcome.ABORTED
+    site.until(lambda: receipts, "the receipt of its stop")
+    assert receipts[-1].confirmed
     site.until(site.stands, "it stands")
     site.run(f"{MACHINE}:mc")
     armed(site)

@@ -7,10 +7,10 @@ import pytest
 from com3_msgs.msg import JointCmd
 from geometry_msgs.msg import PoseStamped, Twist
 from nav_msgs.msg import Odometry
-from operasim_rig import OperaSim
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool
 
+from operasim_rig import OperaSim
 from tms_machine.places import Places
 
 pytestmark = [

@@ -230,7 +230,7 @@ def test_a_plan_never_moves_and_bad_goals_are_refused(machine: Rig) -> None:
     wrong = JointTrajectory(joint_names=["swing_joint"], points=[JointTrajectoryPoint(positions=[0.0])])
     controller = "upper_arm_controller/follow_joint_trajectory"
     assert machine.end(machine.send(FollowJointTrajectory, controller, trajectory=wrong)) is Outcome.REJECTED
-    assert "code=-2 reason='joints swing_joint given" in machine.log.read_text()
+    assert "code=-2 reason='the trajectory is for the joints swing_joint" in machine.log.read_text()
 
 
 def test_emergency_stop_ends_a_motion_until_it_is_released(machine: Rig) -> None:

@@ -50,7 +50,7 @@ def _wrong(gateway: Gateway, goal: Goal, now: float) -> tuple[Reason, StopKind] 
         return None
     if (frozen := _frozen(gateway, goal, goal.follower, now)) is not None:
         return frozen, StopKind.LATCH
-    wrong = goal.follower.check(now, gateway.watch.positions)
+    wrong = goal.follower.check(now, gateway.watch.seen(now))
     return None if wrong is None else (wrong, StopKind.LATCH if isinstance(wrong, OffPath) else StopKind.PLAIN)
 
 

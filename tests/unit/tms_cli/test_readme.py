@@ -16,7 +16,8 @@ from tms_kit.subtask import Subtask
 from tms_ts.bt import Registry, Status, load, palette
 
 PAGES = {name: (PROJECT / name).read_text(encoding="utf-8") for name in (
-    "README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "deploy/CONSOLE.md", "configs/README.md",
+    "README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "deploy/CONSOLE.md", "deploy/OPERASIM.md",
+    "deploy/OPERASIM.ja.md", "configs/README.md",
 )}  # fmt: skip
 README = "\n".join(PAGES.values())
 SUBTASK, BEHAVIOUR = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
@@ -56,7 +57,7 @@ def test_both_languages_of_the_readme_show_the_same() -> None:
         ours, theirs = ([re.sub(r"#.*", "", part) for part in found] for found in parts)
         assert [re.sub(r"\s+\n", "\n", one) for one in ours] == [re.sub(r"\s+\n", "\n", one) for one in theirs]
         assert ours
-    japanese = japanese.replace(".ja.png)", ".png)")  # the same pages of the console
+    japanese = re.sub(r"\.ja\.(png|md)\)", r".\1)", japanese)  # the same pages
     assert re.findall(r"\]\(([^)]+)\)", japanese)[1:] == re.findall(r"\]\(([^)]+)\)", PAGES["README.md"])[1:]
 
 

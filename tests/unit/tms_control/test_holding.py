@@ -85,6 +85,14 @@ def test_long_after_a_stop_a_release_is_at_once_and_holds_the_joints() -> None:
     assert sent[0] == (60.0, float("inf")) and {angle for _, angle in sent[1:]} == {0.4}
 
 
+def test_a_machine_that_is_not_heard_is_not_brought_back_to_where_it_was() -> None:
+    holding = Holding(DEAD, {})
+    holding.stop(0.0)
+    run(holding, 0.0, 0.5, angle=0.1)
+    assert holding.step(0.5, {}).angles is None
+    assert holding.step(0.6, {"boom": 0.4}).angles == {"boom": 0.4}
+
+
 def test_a_press_takes_a_release_back() -> None:
     holding = Holding(DEAD, {})
     holding.stop(0.0)

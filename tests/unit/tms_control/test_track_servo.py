@@ -11,7 +11,7 @@ from tms_control.track_estimate import ZERO, Command, PoseSample, TrackEstimate,
 from tms_control.track_servo import TrackServo
 
 DRIVE = Drive(velocity=1.0, acceleration=0.5, turn_velocity=0.4, turn_acceleration=0.4)
-LAG, STEP = 1.3, 0.05  # s
+LAG, STEP = 0.6, 0.05  # s
 
 
 class Tracks:
@@ -51,14 +51,19 @@ def test_speeds_are_reached_in_spite_of_what_nobody_has_commanded(gain: float, v
     assert (tracks.v, tracks.r) == pytest.approx((v, r), abs=0.01)
 
 
+def test_a_track_that_drags_does_not_turn_a_machine_that_goes_straight() -> None:
+    tracks = Tracks(0.6, more_turn=0.1)
+    tracks.go(0.5, 0.0, 15.0)
+    assert tracks.r == pytest.approx(0.0, abs=0.005)
+
+
 def test_acceleration_is_limited() -> None:
-    tracks = Tracks()
-    tracks.go(0.0, 0.0, 1.0)
-    tracks.estimate.yaw_gain = 1.0
+    tracks = Tracks(0.6)  # what is thought at first
     speeds = tracks.go(0.9, 0.0, 1.0)
     assert max(b[0] - a[0] for a, b in pairwise(speeds)) <= 1.1 * DRIVE.acceleration * STEP
-    turns = tracks.go(0.0, 0.2, 0.3)
-    assert max(b[1] - a[1] for a, b in pairwise(turns)) <= 1.1 * DRIVE.turn_acceleration * STEP
+    tracks.go(0.0, 0.2, 3.0)
+    turns = tracks.go(0.0, -0.2, 0.3)
+    assert max(a[1] - b[1] for a, b in pairwise(turns)) <= 1.1 * DRIVE.turn_acceleration * STEP
 
 
 def test_limits_of_commands_hold() -> None:

@@ -9,7 +9,8 @@ from driven_tracks import GAINS, MODELS, DrivenTracks
 from tms_control.path import Path, Piece, Pose
 from tms_control.reasons import LeftPath, NoProgress, PosesStopped, ShortOfPose, Silenced
 from tms_control.track_estimate import ZERO
-from tms_control.trip import PATIENCE_FOR_POSES, Ending, Task, Trip, Verdict
+from tms_control.trip import PATIENCE_FOR_POSES, Task, Trip
+from tms_control.verdict import Ending, Verdict
 
 WAYPOINTS = (Pose(1, 3, 2.5), Pose(12, 6, 1.2), Pose(4, 8, 3.1), Pose(6, 8, 3.1), Pose(0, 0, 0))
 ARRIVED, CANCELED = Verdict(Ending.SUCCEEDED), Verdict(Ending.CANCELED)
@@ -95,6 +96,8 @@ def test_feedback_counts_down() -> None:
     driving = [one for one in told if one.pose.x > 0.1]
     assert all(one.left == pytest.approx(10 - one.pose.x, abs=0.2) for one in driving)
     assert driving[0].seconds_left == pytest.approx(10.0, abs=1.0)
+    assert max(one.speed for one in told) == pytest.approx(machine.drive.velocity, abs=0.2)
+    assert told[-1].speed == pytest.approx(0.0, abs=0.05)
     assert (told[-1].seconds, told[-1].left) == pytest.approx((machine.now, 0.0), abs=0.1)
 
 
@@ -163,9 +166,18 @@ def test_short_of_the_end_of_a_told_path_it_has_not_arrived() -> None:
     machine = DrivenTracks("zx200")
     trip = machine.trip(Task.along(TOLD))
     machine.run(trip, until=lambda: machine.pose.away(TOLD.end) < 0.1)
-    machine.kick(0.2)
+    machine.kick(0.0, beside=0.5)
     machine.run(trip)
     assert trip.verdict is not None and isinstance(trip.verdict.reason, ShortOfPose)
+
+
+def test_at_the_end_of_a_told_path_it_turns_to_the_heading_there() -> None:
+    machine = DrivenTracks("zx200")
+    trip = machine.trip(Task.along(TOLD))
+    machine.run(trip, until=lambda: machine.pose.away(TOLD.end) < 0.1)
+    machine.kick(0.2)
+    machine.run(trip)
+    assert trip.verdict == ARRIVED and at(machine, TOLD.end)
 
 
 @pytest.mark.parametrize("beside", [0.0, 1.0])
@@ -208,6 +220,19 @@ def test_missing_poses_do_not_stop_it_at_once_and_then_do() -> None:
     machine.blind = False
     machine.run(trip)
     assert trip.verdict == ARRIVED and at(machine, Pose(10, 0, 0))
+
+
+def test_time_without_poses_is_no_lack_of_progress() -> None:
+    machine = DrivenTracks("ic120")
+    trip = machine.trip(Task.to(Pose(10, 0, 0)))
+    machine.run(trip, until=lambda: machine.pose.x > 3)
+    machine.stuck = machine.blind = True
+    machine.run(trip, 9.0)
+    machine.blind = False
+    machine.run(trip, 4.0)
+    machine.stuck = False
+    machine.run(trip)
+    assert trip.verdict == ARRIVED
 
 
 @pytest.mark.parametrize("x", [-1.0, 3.0])

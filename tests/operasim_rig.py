@@ -54,6 +54,10 @@ class OperaSim:
         for name in names:
             self._processes[name] = programs.process(name, self._env, self._log_of(name))
 
+    def process(self, name: str) -> Program:
+        """A process of ours that runs."""
+        return self._processes[name]
+
     def kill(self, name: str) -> None:
         """Kill a process of ours."""
         self._processes.pop(name).kill()

@@ -1,0 +1,53 @@
+"""ComputePathToPose: plans the path of the tracks to a pose, and moves nothing."""
+
+from typing import Any
+
+from builtin_interfaces.msg import Duration
+from nav2_msgs.action import ComputePathToPose
+from nav_msgs.msg import Path
+
+from tms_config.clock import monotonic
+from tms_control.path import Pose
+from tms_control.planner import Goal, plan
+from tms_machine.frames import MAP
+from tms_mc.goal_poses import in_map, pose_of, wrong
+from tms_mc.tracks import Tracks
+from tms_reason.reason import Reason
+from tms_reason.wire import to_line
+from tms_ros.goals import Ended, Outcome
+from tms_ros.server import AnyGoal
+
+STEP = 0.1  # m between poses of a path
+FAILED = 200  # nav2_msgs UNKNOWN of this action
+
+
+class PathServer:
+    """Plans as the machine's own goals do, but for the place whose pose is told: that is what FollowPath follows."""
+
+    def __init__(self, tracks: Tracks) -> None:
+        self._tracks = tracks
+
+    @staticmethod
+    def refuse(request: Any) -> Reason | None:
+        """Why a goal is refused."""
+        return wrong([request.goal, request.start] if request.use_start else [request.goal])
+
+    def run(self, goal: AnyGoal) -> Ended[Any]:
+        """Plan from the goal's start, or from where the machine is."""
+        begun, request = monotonic(), goal.request
+        if not request.use_start and (unknown := self._tracks.unready()) is not None:
+            result = ComputePathToPose.Result()
+            if hasattr(result, "error_code"):  # Humble's results have no reason
+                result.error_code, result.error_msg = FAILED, to_line(unknown)
+            return Outcome.ABORTED, result
+        start = pose_of(request.start) if request.use_start else self._tracks.pose
+        path = self._path(start, pose_of(request.goal))
+        seconds = monotonic() - begun
+        took = Duration(sec=int(seconds), nanosec=int(seconds % 1 * 1e9))
+        return Outcome.SUCCEEDED, ComputePathToPose.Result(path=path, planning_time=took)
+
+    def _path(self, start: Pose, goal: Pose) -> Path:
+        found = plan(start, [Goal(*goal)], self._tracks.pace)
+        told = Path(poses=[in_map(pose) for pose in found.path.poses(STEP)])
+        told.header.frame_id = MAP
+        return told
