@@ -10,6 +10,7 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from conftest import rearm
 from operasim_rig import LIMIT, OperaSim
+from tms_ros.goals import Outcome
 
 JOINTS = ["swing_joint", "boom_joint", "arm_joint", "bucket_joint", "bucket_end_joint"]
 
@@ -49,3 +50,13 @@ def ended(site: OperaSim, call: Any) -> Any:
 
 def moving(site: OperaSim, joint: str) -> None:
     site.until(lambda: abs(site.joint(joint)["velocity"]) > 0.05, f"{joint} moves")
+
+
+def taken(site: OperaSim) -> None:
+    """Wait until the gateway takes goals: at its start it first proves that the machine stands, for some seconds."""
+
+    def succeeds() -> bool:
+        _, call = send(site, {}, 1)
+        return bool(ended(site, call) is Outcome.SUCCEEDED)
+
+    site.until(succeeds, "a goal that moves nothing succeeds")

@@ -12,7 +12,7 @@ from nav_msgs.msg import Path
 from tms_msg_rc.msg import StopReceipt
 from tms_msg_rc.srv import StopMachine
 
-from mc_rig import angles, armed, ended, moving, send
+from mc_rig import angles, armed, ended, moving, send, taken
 from operasim_rig import LIMIT, OperaSim
 from tms_ros.goals import Outcome
 
@@ -34,6 +34,7 @@ def site(tmp_path_factory: pytest.TempPathFactory, domain: int, first_port: int)
             made.until(made.stands, "the joints are where the simulator brings them at its start")
             made.run(f"{MACHINE}:rc", f"{MACHINE}:mc")
             armed(made)
+            taken(made)
             yield made
         finally:
             made.close()

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from tms_msg_rc.msg import MachineState, StopReceipt
 
-from mc_rig import angles, armed, ended, moving, send
+from mc_rig import angles, armed, ended, moving, send, taken
 from operasim_rig import OperaSim
 from tms_ros.goals import Outcome
 
@@ -27,6 +27,8 @@ def site(tmp_path_factory: pytest.TempPathFactory, domain: int, first_port: int)
         try:
             made.until(made.stands, "the joints are where the simulator brings them at its start")
             made.run(f"{MACHINE}:rc", f"{MACHINE}:mc")
+            armed(made)
+            taken(made)
             yield made
         finally:
             made.close()
