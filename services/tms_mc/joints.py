@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from prometheus_client import Gauge
 from sensor_msgs.msg import JointState
 
-from tms_config.clock import monotonic, sleep
+from tms_config.clock import monotonic
 from tms_config.models import DRIVE
 from tms_control.arm_controller import ArmController
 from tms_control.arm_motion import ArmMotion, Tolerances
@@ -17,6 +17,7 @@ from tms_control.verdict import Ending, Verdict
 from tms_machine.joint_commands import JointCommands
 from tms_mc.gateway_watch import GatewayWatch
 from tms_mc.reasons import ClockSetBack, GatewayGone, JointMissing, JointsNotHeard, JointsSilent, NoCommandTopic
+from tms_mc.turns import Turns
 from tms_reason.reason import Reason
 from tms_ros.topics import Arrival
 from tms_runtime.app import App
@@ -26,7 +27,6 @@ LAG = Gauge("tms_mc_lag_seconds", "Time constant of the answer to a command, as 
 DROOP = Gauge("tms_mc_droop_radians", "How far a joint stays short of its command, as learned from moves", ["joint"])
 
 PERIOD = 0.02  # s between commands
-IDLE = 0.1  # s between looks at what the machine tells while nothing moves it
 DEPTH = 20  # messages that may come between two looks: 50 Hz and some to spare
 SILENT = 0.8  # s without joint states after which the joints are braked; the gateway stops the machine after 1 s
 
@@ -48,8 +48,7 @@ class Joints:
         self._positions: dict[str, float] = {}
         self._velocities: dict[str, float] = {}
         self._lock = threading.RLock()  # guards the controller and what is measured
-        self._begun = threading.Event()  # wakes the thread below
-        app.ros.loop.begin(self._turn, "joints")
+        self._turns = Turns(app.ros, self._step, PERIOD, "joints")
 
     def unready(self) -> Reason | None:
         """What keeps it from moving the joints, or None."""
@@ -84,7 +83,7 @@ class Joints:
             start = Knot(0.0, tuple(now.values()), tuple(0.0 for _ in now))
             reference = ReferenceTrajectory(self.arm.joints, start, names, points)
             motion = self.arm.begin(self._time(), reference, tolerances)
-        self._begun.set()
+        self._turns.wake()
         return motion
 
     def since(self, motion: ArmMotion) -> float:
@@ -109,15 +108,6 @@ class Joints:
         now = self._clock.now(monotonic())
         assert now is not None
         return now
-
-    def _turn(self) -> None:
-        while not self._app.ros.closing:
-            busy = self._step()
-            if busy:
-                sleep(PERIOD)
-            else:
-                self._begun.wait(IDLE)
-                self._begun.clear()
 
     def _step(self) -> bool:
         """Take what was heard, and command what is due; whether a goal is open."""

@@ -3,13 +3,13 @@
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from builtin_interfaces.msg import Duration
 from nav2_msgs.action import FollowPath, FollowWaypoints, NavigateThroughPoses, NavigateToPose
 
 from tms_config.clock import sleep
 from tms_control.path import told as told_path
 from tms_control.trip import Feedback, Missed, Task, Trip
 from tms_control.verdict import Verdict
+from tms_machine.navigation_messages import duration, missed_waypoints
 from tms_mc.goal_poses import in_map, pose_of
 from tms_mc.guard import Guard
 from tms_mc.tracks import Tracks
@@ -20,7 +20,6 @@ from tms_ros.server import AnyGoal
 
 FEEDBACK = 0.1  # s
 FAILED = 1  # error code of a goal
-MISSED = 601  # error code of a waypoint
 
 
 class TrackServers:
@@ -71,8 +70,8 @@ class TrackServers:
 
     def _progress(self, action: Any, told: Feedback) -> Any:
         found = action.Feedback(
-            current_pose=in_map(told.pose), navigation_time=_duration(told.seconds), distance_remaining=told.left,
-            estimated_time_remaining=_duration(told.seconds_left),
+            current_pose=in_map(told.pose), navigation_time=duration(told.seconds), distance_remaining=told.left,
+            estimated_time_remaining=duration(told.seconds_left),
         )  # fmt: skip
         if action is NavigateThroughPoses:
             found.number_of_poses_remaining = told.poses_left
@@ -92,17 +91,5 @@ def _result(action: Any, why: Reason | None, missed: Sequence[Missed]) -> Any:
     if hasattr(found, "error_code") and why is not None:  # Humble's results have no reason
         found.error_code, found.error_msg = FAILED, to_line(why)
     if action is FollowWaypoints and missed:
-        found.missed_waypoints = _missed([one.number for one in missed])
+        found.missed_waypoints = missed_waypoints([one.number for one in missed])
     return found
-
-
-def _missed(numbers: Sequence[int]) -> Any:
-    if not hasattr(FollowWaypoints.Result(), "error_code"):
-        return list(numbers)
-    from nav2_msgs.msg import MissedWaypoint  # Humble has no such message
-
-    return [MissedWaypoint(index=number, error_code=MISSED) for number in numbers]
-
-
-def _duration(seconds: float) -> Duration:
-    return Duration(sec=int(seconds), nanosec=int(seconds % 1 * 1e9))

@@ -8,7 +8,7 @@ from typing import Any
 from geometry_msgs.msg import Twist
 from prometheus_client import Gauge
 
-from tms_config.clock import monotonic, sleep
+from tms_config.clock import monotonic
 from tms_config.models import DRIVE, Drive
 from tms_control.machine_clock import MachineClock
 from tms_control.path import Pose
@@ -18,6 +18,7 @@ from tms_control.trip import Task, Trip
 from tms_machine.places import POSES, place_of
 from tms_mc.gateway_watch import GatewayWatch
 from tms_mc.reasons import PosesSilent, PosesUnheard
+from tms_mc.turns import Turns
 from tms_reason.reason import Reason
 from tms_ros.topics import Arrival
 from tms_runtime.app import App
@@ -25,7 +26,6 @@ from tms_runtime.app import App
 YAW_GAIN = Gauge("tms_mc_yaw_gain", "Yaw rate of the tracks as a part of the one commanded, as learned from turns")
 
 PERIOD = 0.05  # s between commands
-IDLE = 0.1  # s between looks at what the machine tells while nothing moves it
 DEPTH = 10  # messages that may come between two looks
 SILENT = 0.5  # s without a pose after which no goal is taken
 
@@ -45,8 +45,7 @@ class Tracks:
         self._clock, self._estimate = MachineClock(), TrackEstimate(self._response)
         self._trip: Trip | None = None
         self._lock = threading.RLock()  # guards the trip and the estimate
-        self._begun = threading.Event()  # wakes the thread below
-        app.ros.loop.begin(self._turn, "tracks")
+        self._turns = Turns(app.ros, self._step, PERIOD, "tracks")
 
     def unready(self) -> Reason | None:
         """What keeps it from driving, or None."""
@@ -81,7 +80,7 @@ class Tracks:
             if self._trip is not None:
                 self._trip.silence(now)
             trip = self._trip = Trip(task, self._drive, self._estimate, now)
-        self._begun.set()
+        self._turns.wake()
         return trip
 
     def told(self, trip: Trip) -> Any:
@@ -106,14 +105,6 @@ class Tracks:
         now = self._clock.now(monotonic())
         assert now is not None
         return now
-
-    def _turn(self) -> None:
-        while not self._app.ros.closing:
-            if self._step():
-                sleep(PERIOD)
-            else:
-                self._begun.wait(IDLE)
-                self._begun.clear()
 
     def _step(self) -> bool:
         """Take what was heard, and command what is due; whether a goal is open."""

@@ -3,16 +3,16 @@
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from builtin_interfaces.msg import Duration
 from geometry_msgs.msg import Pose, PoseStamped
 from nav2_msgs.action import FollowWaypoints, NavigateThroughPoses, NavigateToPose
 
 from tms_machine.frames import MAP
 from tms_machine.geometry import about, yaw_of
+from tms_machine.navigation_messages import duration, missed_waypoints
 from tms_sim.base import Leg
 from tms_sim.machine import StandIn
 from tms_sim.motion import MotionVerdict
-from tms_sim.navigator import MISSED, Navigator, Trip
+from tms_sim.navigator import Navigator, Trip
 from tms_sim.servers import ActionHandler
 
 
@@ -67,8 +67,8 @@ def _feedback(action: Any, navigator: Navigator, trip: Trip) -> Any:
     now.pose.position.x, now.pose.position.y = base.x, base.y
     _, _, now.pose.orientation.z, now.pose.orientation.w = about("z", base.yaw)
     reported = action.Feedback(
-        current_pose=now, navigation_time=_duration(trip.seconds), distance_remaining=away,
-        estimated_time_remaining=_duration(away / base.drive.velocity),
+        current_pose=now, navigation_time=duration(trip.seconds), distance_remaining=away,
+        estimated_time_remaining=duration(away / base.drive.velocity),
     )  # fmt: skip
     if action is NavigateThroughPoses:
         reported.number_of_poses_remaining = len(base.legs)
@@ -80,17 +80,5 @@ def _result(action: Any, trip: Trip, verdict: MotionVerdict) -> Any:
     if hasattr(reported, "error_code"):  # Humble's results have no reason
         reported.error_code, reported.error_msg = verdict.code, verdict.text
     if action is FollowWaypoints and trip.missed:
-        reported.missed_waypoints = _missed(trip.missed)
+        reported.missed_waypoints = missed_waypoints(trip.missed)
     return reported
-
-
-def _missed(numbers: Sequence[int]) -> Any:
-    if not hasattr(FollowWaypoints.Result(), "error_code"):
-        return list(numbers)
-    from nav2_msgs.msg import MissedWaypoint  # Humble has no such message
-
-    return [MissedWaypoint(index=number, error_code=MISSED) for number in numbers]
-
-
-def _duration(seconds: float) -> Duration:
-    return Duration(sec=int(seconds), nanosec=int(seconds % 1 * 1e9))

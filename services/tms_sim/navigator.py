@@ -11,7 +11,6 @@ from tms_sim.motion import ABORTED, CANCELED, SUCCEEDED, Motion, MotionVerdict
 PROGRESS, PATIENCE = 0.5, 10.0  # m within s: figures of the machines' progress checker
 TURNED = 0.3  # rad, a turn that counts as progress, too
 FAILED = 1  # error code of the navigation
-MISSED = 601  # error code of a waypoint that was not reached
 
 
 @dataclass

@@ -1,0 +1,23 @@
+"""Parts of the navigation's messages that its servers fill in, with the types of Jazzy or of Humble, as built."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from builtin_interfaces.msg import Duration
+from nav2_msgs.action import FollowWaypoints
+
+MISSED = 601  # error code of a waypoint that was not reached
+
+
+def missed_waypoints(numbers: Sequence[int]) -> Any:
+    """The waypoints, from 0, that FollowWaypoints has missed."""
+    if not hasattr(FollowWaypoints.Result(), "error_code"):
+        return list(numbers)
+    from nav2_msgs.msg import MissedWaypoint  # Humble has no such message
+
+    return [MissedWaypoint(index=number, error_code=MISSED) for number in numbers]
+
+
+def duration(seconds: float) -> Duration:
+    """A time as a message."""
+    return Duration(sec=int(seconds), nanosec=int(seconds % 1 * 1e9))
