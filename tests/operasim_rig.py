@@ -4,10 +4,12 @@ import os
 import re
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import pytest
 import yaml
 
 import programs
@@ -114,3 +116,16 @@ class OperaSim:
             for process in running.values():
                 process.kill()
             self.ros.close()
+
+
+@contextmanager
+def operasim(folder: Path, domain: int, port: int, machine: str, model: str) -> Iterator[OperaSim]:
+    """A site of its own, which ends with the block; `port` is the first of some that are free."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ROS_DOMAIN_ID", str(domain))
+        patch.setenv("TMS_STATE", str(folder / "state"))
+        made = OperaSim(folder, domain, port, machine, model)
+        try:
+            yield made
+        finally:
+            made.close()

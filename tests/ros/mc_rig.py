@@ -60,3 +60,11 @@ def taken(site: OperaSim) -> None:
         return bool(ended(site, call) is Outcome.SUCCEEDED)
 
     site.until(succeeds, "a goal that moves nothing succeeds")
+
+
+def begin(site: OperaSim) -> None:
+    """Start gateway and controller of the machine, once it stands, and wait until they take goals."""
+    site.until(site.stands, "the joints are where the simulator brings them at its start")
+    site.run(f"{site.machine}:rc", f"{site.machine}:mc")
+    armed(site)
+    taken(site)

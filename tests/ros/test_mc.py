@@ -12,8 +12,8 @@ from nav_msgs.msg import Path
 from tms_msg_rc.msg import StopReceipt
 from tms_msg_rc.srv import StopMachine
 
-from mc_rig import angles, armed, ended, moving, send, taken
-from operasim_rig import LIMIT, OperaSim
+from mc_rig import angles, armed, begin, ended, moving, send
+from operasim_rig import LIMIT, OperaSim, operasim
 from tms_ros.goals import Outcome
 
 pytestmark = [
@@ -25,19 +25,9 @@ MACHINE = "zx200_8"  # a name of its own: other tests may have machines in the s
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory, domain: int, first_port: int) -> Iterator[OperaSim]:
-    folder = tmp_path_factory.mktemp("mc")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("ROS_DOMAIN_ID", str(domain))
-        patch.setenv("TMS_STATE", str(folder / "state"))
-        made = OperaSim(folder, domain, first_port + 64, MACHINE, "zx200")
-        try:
-            made.until(made.stands, "the joints are where the simulator brings them at its start")
-            made.run(f"{MACHINE}:rc", f"{MACHINE}:mc")
-            armed(made)
-            taken(made)
-            yield made
-        finally:
-            made.close()
+    with operasim(tmp_path_factory.mktemp("mc"), domain, first_port + 64, MACHINE, "zx200") as made:
+        begin(made)
+        yield made
 
 
 def test_a_trajectory_is_followed_through_the_gateway(site: OperaSim) -> None:

@@ -6,8 +6,8 @@ from typing import Any
 import pytest
 from tms_msg_rc.msg import MachineState, StopReceipt
 
-from mc_rig import angles, armed, ended, moving, send, taken
-from operasim_rig import OperaSim
+from mc_rig import angles, armed, begin, ended, moving, send
+from operasim_rig import OperaSim, operasim
 from tms_ros.goals import Outcome
 
 pytestmark = [
@@ -19,19 +19,9 @@ MACHINE = "zx200_9"  # a name of its own: other tests may have machines in the s
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory, domain: int, first_port: int) -> Iterator[OperaSim]:
-    folder = tmp_path_factory.mktemp("mc_losses")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("ROS_DOMAIN_ID", str(domain))
-        patch.setenv("TMS_STATE", str(folder / "state"))
-        made = OperaSim(folder, domain, first_port + 64, MACHINE, "zx200")
-        try:
-            made.until(made.stands, "the joints are where the simulator brings them at its start")
-            made.run(f"{MACHINE}:rc", f"{MACHINE}:mc")
-            armed(made)
-            taken(made)
-            yield made
-        finally:
-            made.close()
+    with operasim(tmp_path_factory.mktemp("mc_losses"), domain, first_port + 64, MACHINE, "zx200") as made:
+        begin(made)
+        yield made
 
 
 def swinging(site: OperaSim) -> tuple[Any, list[MachineState], list[StopReceipt]]:

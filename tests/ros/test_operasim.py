@@ -10,7 +10,7 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool
 
-from operasim_rig import OperaSim
+from operasim_rig import OperaSim, operasim
 from tms_machine.places import Places
 
 pytestmark = [
@@ -23,13 +23,8 @@ FOUR = ["bucket_joint", "arm_joint", "boom_joint", "swing_joint"]  # the last na
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory, domain: int, first_port: int) -> Iterator[OperaSim]:
-    folder = tmp_path_factory.mktemp("operasim")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("ROS_DOMAIN_ID", str(domain))
-        patch.setenv("TMS_STATE", str(folder / "state"))
-        made = OperaSim(folder, domain, first_port + 64, MACHINE, "zx200")
+    with operasim(tmp_path_factory.mktemp("operasim"), domain, first_port + 64, MACHINE, "zx200") as made:
         yield made
-        made.close()
 
 
 def stamp(message: Any) -> float:
