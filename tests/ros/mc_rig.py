@@ -53,9 +53,14 @@ def moving(site: OperaSim, joint: str) -> None:
 
 
 def taken(site: OperaSim) -> None:
-    """Wait until the gateway takes goals: at its start it first proves that the machine stands, for some seconds."""
+    """Wait until the gateway takes goals: at its start it first proves that the machine stands, for some seconds.
+
+    The release of its stop falls into that time, which may latch the machine once more.
+    """
 
     def succeeds() -> bool:
+        if not rearm(site.ros, site.machine):
+            return False
         _, call = send(site, {}, 1)
         return bool(ended(site, call) is Outcome.SUCCEEDED)
 
