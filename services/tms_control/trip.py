@@ -24,6 +24,7 @@ NEAR, ALIGNED = 0.25, 0.08  # m, rad: less off the goal is arrived; a waypoint i
 BESIDE, ASKEW = 0.8, 0.8  # m, rad off the path, from which on it is given up
 ATTEMPTS = 4  # ways that are planned to one goal, before it counts as one that cannot be reached
 STANDS = 0.3  # s with poses that show it standing
+CANCELLED = Verdict(Ending.CANCELED)
 
 
 @dataclass(frozen=True)
@@ -107,8 +108,9 @@ class Trip:
         return command
 
     def cancel(self) -> None:
-        """Ramp down; the goal ends as soon as the machine stands."""
-        self._stop(Verdict(Ending.CANCELED))
+        """Ramp down; the goal ends as soon as the machine stands. Asked again, it goes on to come to stand."""
+        if self._ending != CANCELLED:
+            self._stop(CANCELLED)
 
     def silence(self, now: float) -> None:
         """End the goal, and send nothing from this moment: the gateway has stopped the machine."""

@@ -272,6 +272,20 @@ def test_a_cancel_ramps_down(model: str) -> None:
     assert len(speeds) * 0.01 < 5.0
 
 
+def again(trip: Trip) -> bool:
+    trip.cancel()
+    return False
+
+
+def test_a_cancel_that_is_repeated_at_each_step_ends_it_too() -> None:
+    """As without the gateway: the controller asks again and again."""
+    machine = DrivenTracks("zx200")
+    trip = machine.trip(Task.to(Pose(20, 0, 0)))
+    machine.run(trip, until=lambda: machine.pose.x > 5)
+    machine.run(trip, 10.0, until=lambda: again(trip))
+    assert trip.verdict == CANCELED and machine.speed == 0.0
+
+
 def test_a_cancel_counts_even_if_poses_stop() -> None:
     machine = DrivenTracks("zx200")
     trip = machine.trip(Task.to(Pose(20, 0, 0)))
