@@ -34,6 +34,7 @@ class ArmController:
         """`joints` in the order of trajectories; passive ones are never commanded."""
         self.joints = joints
         self.servos = {name: JointServo(one, response[name]) for name, one in joints.items() if not one.passive}
+        self._numbers = {name: number for number, name in enumerate(joints)}  # in references
         self.learned: dict[str, Fit] = {}  # what the last goal has shown of the drives
         self._motion: ArmMotion | None = None
         self._braking: Verdict | None = None  # of the motion, once the joints stand
@@ -49,6 +50,11 @@ class ArmController:
         """Whether all joints were measured to stand."""
         return all(abs(servo.velocity) <= STOPPED for servo in self.servos.values())
 
+    @property
+    def _dead_time(self) -> float:
+        """The longest of the joints [s]."""
+        return max(servo.dead_time for servo in self.servos.values())
+
     def measured(self, at: float, positions: Mapping[str, float], velocities: Mapping[str, float]) -> None:
         """Take a measurement of all joints; times only go on."""
         for name, servo in self.servos.items():
@@ -59,8 +65,7 @@ class ArmController:
         self._end(Verdict(Ending.ABORTED, TakenOver()))
         for servo in self.servos.values():
             servo.begin()
-        longest = max(servo.dead_time for servo in self.servos.values())
-        self._motion = ArmMotion(reference, tolerances, now + longest)
+        self._motion = ArmMotion(reference, tolerances, now + self._dead_time)
         return self._motion
 
     def cancel(self, now: float, verdict: Verdict) -> None:
@@ -105,7 +110,7 @@ class ArmController:
         return sent
 
     def _follow(self, name: str, reference: ReferenceTrajectory, now: float, since: float) -> float:
-        servo, number = self.servos[name], list(self.joints).index(name)
+        servo, number = self.servos[name], self._numbers[name]
         ahead = since + servo.dead_time
         return servo.follow(now, reference.joint(number, ahead), reference.joint(number, ahead + PERIOD))
 
@@ -117,15 +122,15 @@ class ArmController:
 
     def _watch(self, since: float, verdict: Verdict) -> None:
         """End the goal when the joints stand, and what was sent before cannot move them any more."""
-        if self.stands and since > PLAYS_ON + max(servo.dead_time for servo in self.servos.values()):
+        if self.stands and since > PLAYS_ON + self._dead_time:
             self._end(verdict)
 
     def _off_path(self, motion: ArmMotion, since: float) -> Reason | None:
         """Which joint is further from the reference than its goal allows."""
-        for number, name in enumerate(self.joints):
+        for name, servo in self.servos.items():
             allowed = limit(motion.tolerances.path, name, ENDLESS)
-            if name in self.servos and since >= 0.0 and allowed < ENDLESS:
-                off = abs(self.servos[name].position - motion.reference.joint(number, since))
+            if since >= 0.0 and allowed < ENDLESS:
+                off = abs(servo.position - motion.reference.joint(self._numbers[name], since))
                 if off > allowed:
                     return OffReference(name, off, allowed)
         return None
@@ -143,7 +148,7 @@ class ArmController:
             self.cancel(now, Verdict(Ending.ABORTED, ShortOfGoal(worst, away[worst], late), GOAL_VIOLATED))
 
     def _away(self, name: str, motion: ArmMotion) -> float:
-        return abs(self.servos[name].position - motion.reference.end[list(self.joints).index(name)])
+        return abs(self.servos[name].position - motion.reference.end[self._numbers[name]])
 
     def _end(self, verdict: Verdict) -> None:
         if self._motion is not None:

@@ -36,7 +36,7 @@ class Holding:
 
     def __init__(self, dead_time: float, droops: Angles) -> None:
         """`dead_time` [s]: the longest of the joints' commands, 0 if they act at once; `droops` [rad] by joint."""
-        self._plays = dead_time + MARGIN if dead_time else MARGIN
+        self._plays = dead_time + MARGIN
         self._waits = released_after(dead_time)
         self._droops = droops
         self._begun: float | None = None  # s, of the last stop

@@ -56,6 +56,12 @@ class MachineClock:
         since = min(ours - arrived, RUNS_ON)
         return max(stamp, self._offset + self._rate * since)
 
+    def time(self, ours: float) -> float:
+        """As `now`, for who knows that it was heard."""
+        its = self.now(ours)
+        assert its is not None, "before its first message nothing moves"
+        return its
+
     def silent(self, ours: float) -> float:
         """How long no message has come [s of ours]."""
         return ours - self._heard[-1][0] if self._heard else float("inf")

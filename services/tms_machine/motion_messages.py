@@ -1,12 +1,23 @@
-"""Parts of the navigation's messages that its servers fill in, with the types of Jazzy or of Humble, as built."""
+"""Parts of motion messages that their servers read or fill in, with the types of Jazzy or of Humble, as built."""
 
 from collections.abc import Sequence
 from typing import Any
 
 from builtin_interfaces.msg import Duration
 from nav2_msgs.action import FollowWaypoints
+from trajectory_msgs.msg import JointTrajectory
+
+from tms_control.reference_trajectory import Knot
 
 MISSED = 601  # error code of a waypoint that was not reached
+
+
+def knots(trajectory: JointTrajectory) -> list[Knot]:
+    """The points of a trajectory."""
+    return [
+        Knot(p.time_from_start.sec + p.time_from_start.nanosec * 1e-9, tuple(p.positions), tuple(p.velocities))
+        for p in trajectory.points
+    ]
 
 
 def missed_waypoints(numbers: Sequence[int]) -> Any:

@@ -4,18 +4,18 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from builtin_interfaces.msg import Duration
 from com3_msgs.action import SetDumpAngle, SetSwingAngle
 from control_msgs.action import FollowJointTrajectory
 from control_msgs.msg import JointTolerance
-from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+from trajectory_msgs.msg import JointTrajectoryPoint
 
 from tms_config.clock import sleep
 from tms_config.models import TURNED
 from tms_control.arm_motion import ArmMotion, Tolerances
-from tms_control.reference_trajectory import Knot, refusal
+from tms_control.reference_trajectory import refusal
 from tms_control.turning import turning
 from tms_control.verdict import Ending
+from tms_machine.motion_messages import duration, knots
 from tms_mc.guard import Guard
 from tms_mc.joints import Joints
 from tms_mc.reasons import JointLimit, NoAngle, Stopped
@@ -43,12 +43,12 @@ class JointServers:
 
     def refuse_trajectory(self, request: FollowJointTrajectory.Goal) -> Reason | None:
         """Why a trajectory is refused."""
-        wrong = refusal(self._joints.arm.joints, list(request.trajectory.joint_names), _knots(request.trajectory))
+        wrong = refusal(self._joints.arm.joints, list(request.trajectory.joint_names), knots(request.trajectory))
         return None if wrong is None else wrong[1]
 
     def follow(self, goal: AnyGoal) -> Ended[FollowJointTrajectory.Result]:
         """Follow a trajectory to its end."""
-        names, points = list(goal.request.trajectory.joint_names), _knots(goal.request.trajectory)
+        names, points = list(goal.request.trajectory.joint_names), knots(goal.request.trajectory)
 
         def begin() -> ArmMotion:
             return self._joints.begin(names, points, _tolerances(goal.request))
@@ -66,7 +66,7 @@ class JointServers:
         desired, actual = list(motion.reference.at(since)), list(now.values())
         return FollowJointTrajectory.Feedback(
             joint_names=list(now),
-            desired=JointTrajectoryPoint(positions=desired, time_from_start=_duration(since)),
+            desired=JointTrajectoryPoint(positions=desired, time_from_start=duration(since)),
             actual=JointTrajectoryPoint(positions=actual),
             error=JointTrajectoryPoint(positions=[d - a for d, a in zip(desired, actual, strict=True)]),
         )
@@ -119,13 +119,6 @@ class JointServers:
             return motion.verdict or Stopped()
 
 
-def _knots(trajectory: JointTrajectory) -> list[Knot]:
-    return [
-        Knot(p.time_from_start.sec + p.time_from_start.nanosec * 1e-9, tuple(p.positions), tuple(p.velocities))
-        for p in trajectory.points
-    ]
-
-
 def _tolerances(request: FollowJointTrajectory.Goal) -> Tolerances:
     late = request.goal_time_tolerance
     return Tolerances(
@@ -138,7 +131,3 @@ def _tolerances(request: FollowJointTrajectory.Goal) -> Tolerances:
 
 def _positions(tolerances: Sequence[JointTolerance]) -> dict[str, float]:
     return {one.name: one.position for one in tolerances}
-
-
-def _duration(seconds: float) -> Duration:
-    return Duration(sec=int(seconds), nanosec=int(seconds % 1 * 1e9))

@@ -102,9 +102,7 @@ class Tracks:
 
     def _time(self) -> float:
         """The machine's time [s]; only after it was heard of."""
-        now = self._clock.now(monotonic())
-        assert now is not None
-        return now
+        return self._clock.time(monotonic())
 
     def _step(self) -> bool:
         """Take what was heard, and command what is due; whether a goal is open."""

@@ -1,10 +1,9 @@
 """The joint trajectory controller's action."""
 
-from builtin_interfaces.msg import Duration
 from control_msgs.action import FollowJointTrajectory
-from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+from trajectory_msgs.msg import JointTrajectoryPoint
 
-from tms_control.reference_trajectory import Knot
+from tms_machine.motion_messages import duration, knots
 from tms_sim.controller import Controller, TrajectoryMotion
 from tms_sim.motion import MotionVerdict
 from tms_sim.servers import ActionHandler
@@ -15,10 +14,10 @@ def trajectory_server(controller: Controller) -> ActionHandler:
 
     def begin(request: FollowJointTrajectory.Goal) -> TrajectoryMotion:
         wanted, late = request.trajectory, request.goal_time_tolerance
-        return controller.begin(list(wanted.joint_names), _points(wanted), late.sec + late.nanosec * 1e-9)
+        return controller.begin(list(wanted.joint_names), knots(wanted), late.sec + late.nanosec * 1e-9)
 
     def refusal(request: FollowJointTrajectory.Goal) -> tuple[int, str] | None:
-        return controller.refusal(list(request.trajectory.joint_names), _points(request.trajectory))
+        return controller.refusal(list(request.trajectory.joint_names), knots(request.trajectory))
 
     def feedback(motion: TrajectoryMotion) -> FollowJointTrajectory.Feedback:
         arm = controller.arm
@@ -26,7 +25,7 @@ def trajectory_server(controller: Controller) -> ActionHandler:
         desired, actual = list(motion.reference.at(since)), arm.positions
         return FollowJointTrajectory.Feedback(
             joint_names=list(arm.joints),
-            desired=JointTrajectoryPoint(positions=desired, time_from_start=_duration(since)),
+            desired=JointTrajectoryPoint(positions=desired, time_from_start=duration(since)),
             actual=JointTrajectoryPoint(positions=actual, velocities=arm.velocities),
             error=JointTrajectoryPoint(positions=[d - a for d, a in zip(desired, actual, strict=True)]),
         )
@@ -35,14 +34,3 @@ def trajectory_server(controller: Controller) -> ActionHandler:
         return FollowJointTrajectory.Result(error_code=verdict.code, error_string=verdict.text)
 
     return ActionHandler("trajectory", FollowJointTrajectory, refusal, begin, controller.cancel, feedback, result)
-
-
-def _points(trajectory: JointTrajectory) -> list[Knot]:
-    return [
-        Knot(p.time_from_start.sec + p.time_from_start.nanosec * 1e-9, tuple(p.positions), tuple(p.velocities))
-        for p in trajectory.points
-    ]
-
-
-def _duration(seconds: float) -> Duration:
-    return Duration(sec=int(seconds), nanosec=int(seconds % 1 * 1e9))
