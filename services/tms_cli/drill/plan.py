@@ -109,6 +109,7 @@ class Kinds:
     shared: tuple[StopScenario, ...]
     faults: tuple[str, ...] = (NONE,)
     beside: tuple[tuple[StopScenario, ...], ...] = BESIDE
+    delay: tuple[float, float] = DELAY
 
     @property
     def stops(self) -> dict[str, StopScenario]:
@@ -127,6 +128,7 @@ OPERASIM = Kinds(
         *(StopScenario(how, shared=True, covered=False, latches=how is not How.PAUSE) for how in TROUBLES),
         *(StopScenario(how, (BRIDGE,), shared=True, covered=False) for how in BOTH),
     ),
+    delay=(0.05, 3.5),  # its joints begin to move after their dead time
 )
 STOPS = STAND_INS.stops | OPERASIM.stops
 OFTEN = 3  # trials of each stop without a fault, for one trial with each fault
@@ -170,7 +172,7 @@ class _Dealer:
     """Two decks of pairs; each is dealt completely before it begins again."""
 
     def __init__(self, seed: int, planners: Mapping[str, bool], kinds: Kinds) -> None:
-        self.dice, self._planners = random.Random(seed), planners
+        self.dice, self._planners, self._delay = random.Random(seed), planners, kinds.delay
         pairs = [(stop, fault) for stop in kinds.single for fault in [*kinds.faults, *[NONE] * (OFTEN - 1)]]
         self.dice.shuffle(pairs)
         first = {stop: (stop, fault) for stop, fault in pairs}  # each stop early, for a short drill
@@ -202,4 +204,4 @@ class _Dealer:
         return self._faults[-1]
 
     def _trial(self, machine: str, stop: StopScenario, fault: str) -> Trial:
-        return Trial(machine, stop, fault, self.dice.uniform(*AROUND), self.dice.uniform(*DELAY))
+        return Trial(machine, stop, fault, self.dice.uniform(*AROUND), self.dice.uniform(*self._delay))
