@@ -200,19 +200,23 @@ def test_a_simulator_that_comes_late_is_told_that_it_is_stopped(bridge: Bridge, 
 
 
 def test_a_simulator_that_comes_late_is_told_so_where_a_host_agent_may_press_too(
-    bridge: Bridge, stop: Callable[[], None]
+    bridge: Bridge, unity: Unity, stop: Callable[[], None]
 ) -> None:
     host = Ros("if_host")
     controls = Controls(host, MACHINE, load_site(str(bridge.file)).border(MACHINE), keeps_emergency=False)
     (info,) = host.node.get_publishers_info_by_topic(EMG_STOP)
     assert info.qos_profile.lifespan.nanoseconds == PRESS_LIVES * 1e9, "what it presses is not kept for long"
+    hear_stops(unity)
+    bridge.until(lambda: host.node.count_subscribers(EMG_STOP) > 0, "the host agent knows the bridge")
+    controls.emergency(False)
+    unity.until(lambda: stops(unity), "what the host agent says")
     stop()
-    bridge.until(lambda: bridge.ros.node.count_publishers(EMG_STOP) == 2, "both of them")
+    unity.until(lambda: stops(unity)[-1][4] == 1, "what the gateway says")
     late = bridge.unity()
     hear_stops(late)
     late.until(lambda: stops(late), "the latched stop")
     controls.emergency(False)
-    late.until(lambda: [one[4] for one in stops(late)] == [1, 0], "what the host agent says is heard as well")
+    late.until(lambda: stops(late)[-1][4] == 0, "what the host agent says is heard as well")
     late.close()
     host.close()
 
