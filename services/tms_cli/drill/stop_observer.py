@@ -74,6 +74,9 @@ class StopObserver:
     def _on_emergency(self, message: Bool) -> None:
         if message.data:
             self._commanded()
+            return
+        with self._lock:
+            self._record.releases.append(unix_time())
 
     def _commanded(self) -> None:
         with self._lock:
