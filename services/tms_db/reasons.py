@@ -5,7 +5,18 @@
 
 from tms_reason.quantities import Megabytes, Seconds
 from tms_reason.reason import Reason
-from tms_reason.remedies import CANCEL, EDIT_CONFIG, EDIT_TASK, LOGS, PROCESSES, RECORDS, RETRY, RUNS, TASKS
+from tms_reason.remedies import (
+    CANCEL,
+    EDIT_CONFIG,
+    EDIT_TASK,
+    LOGS,
+    PROCESSES,
+    RECORDS,
+    RETRY,
+    RUNS,
+    TASKS,
+    TEMPLATES,
+)
 
 
 # fmt: off
@@ -101,6 +112,12 @@ class NoTreeInRoot(Reason, text="line {line}: there is no <BehaviorTree> with no
 class NoFileGiven(Reason, text="no file is given: add --ros-args -p bt_tree_xml_file_name:=NAME"): pass
 class NoSuchFile(Reason, text="no file '{name}' here and no '{name}.xml' in {folder}: check bt_tree_xml_file_name"):
     name: str; folder: str
+
+# templates
+class TemplateMissing(Reason, text="there is no template '{template}'", action=TEMPLATES): template: str
+class BadTemplateName(Reason, text="template name '{name}' {why}"): name: str; why: Reason
+class TemplateExists(Reason, text="template '{template}' is stored with another text: `tms template add --replace` "
+    "takes this one"): template: str
 
 # terrain
 class TerrainMissing(Reason, text="there is no terrain '{name}': `tms terrain list` shows what is stored"): name: str

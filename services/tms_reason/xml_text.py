@@ -42,6 +42,9 @@ MAX_TAGS = 200_000  # "<" in the text; bounds the memory that the parser takes
 MAX_DEPTH = 200  # trees drawn by people have a tenth of it
 MAX_EQUALS = 5000  # "=" in one tag; the parser compares attribute names pairwise
 
+CALL = "ExecuteSubtask"  # an action that calls a template
+OPEN_KEY = re.compile(r"\$(\w+)\$", re.ASCII)  # what a call of a template gives a value to
+
 _PROLOG = re.compile(r"\s+|<\?.*?\?>|<!--.*?-->", re.DOTALL)
 _DECLARATION = re.compile(r"<\?xml\s.*?\?>", re.DOTALL)
 
@@ -122,6 +125,11 @@ def template_top(root: etree._Element) -> etree._Element:
     if len(nodes) != 1:
         raise XmlRefused(TemplateNodes(len(nodes)), _line_of(trees[0]))
     return nodes[0]
+
+
+def is_call(element: etree._Element) -> bool:
+    """Whether an element calls a template."""
+    return element.tag == CALL or (element.tag == "Action" and element.get("ID") == CALL)
 
 
 def _line_of(element: etree._Element) -> int:

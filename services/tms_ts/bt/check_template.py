@@ -12,9 +12,10 @@ from lxml import etree
 
 from tms_reason import xml_text
 from tms_reason.reason import Reason
+from tms_reason.xml_text import OPEN_KEY
 from tms_ts.bt.document import Document, read
 from tms_ts.bt.errors import TreeError
-from tms_ts.bt.expand import MAX_ERRORS, OPEN_KEY, Templates, expand, filled
+from tms_ts.bt.expand import MAX_ERRORS, Templates, expand, filled
 from tms_ts.bt.reasons import TreeNameForCpp
 from tms_ts.bt.registry import registry
 from tms_ts.bt.source import line_of

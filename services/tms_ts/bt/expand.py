@@ -15,7 +15,6 @@ nobody has (there the call goes); templates may call templates (there such a tre
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping
 from copy import deepcopy
 from dataclasses import dataclass
@@ -24,6 +23,7 @@ from lxml import etree
 
 from tms_reason import xml_text
 from tms_reason.reason import Reason
+from tms_reason.xml_text import CALL, OPEN_KEY, is_call
 from tms_ts.bt.document import Document, TreeElement, check_depth, children, described
 from tms_ts.bt.errors import TreeError
 from tms_ts.bt.reasons import (
@@ -48,9 +48,7 @@ from tms_ts.bt.reasons import (
 )
 from tms_ts.bt.source import ParsedXml, line_of, parse, set_line, settled
 
-CALL = "ExecuteSubtask"
 NO_KEYS = frozenset({"ID", "subtask_name", "subtask_parameters"})
-OPEN_KEY = re.compile(r"\$(\w+)\$", re.ASCII)
 MAX_CHAIN = 50  # templates that call each other
 MAX_NODES = 20_000  # of all templates of a task
 MAX_VALUE = 100_000  # letters of an attribute after the keys are filled in
@@ -81,11 +79,6 @@ def expand(document: Document, templates: Templates | None, *, cpp: bool = False
         expansion.call(call, tree, (inside,) if inside else ())
     for source in plain.values():
         check_depth(source)
-
-
-def is_call(element: etree._Element) -> bool:
-    """Whether an element calls a template."""
-    return element.tag == CALL or (element.tag == "Action" and element.get("ID") == CALL)
 
 
 def given_values(attributes: Mapping[str, str]) -> dict[str, str]:
