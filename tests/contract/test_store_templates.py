@@ -2,7 +2,6 @@
 
 from typing import Any
 
-import mongomock
 import pytest
 
 from tms_db import store
@@ -14,13 +13,6 @@ TEXT = """<root main_tree_to_execute="BehaviorTree">
 </root>"""
 OTHER = TEXT.replace("$r$", "$s$")
 COMPACT = TEXT.replace("\n", "").replace("  ", "")
-
-
-@pytest.fixture
-def db() -> store.Db:
-    found: store.Db = mongomock.MongoClient(tz_aware=True)["rostmsdb"]
-    store.prepare(found)
-    return found
 
 
 def theirs(db: store.Db, name: str, text: str, **more: Any) -> None:
