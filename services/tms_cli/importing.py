@@ -1,6 +1,7 @@
 """The report of `tms import`: what was found, what the check of its trees says, and what comes of it."""
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -8,13 +9,44 @@ import click
 from tms_cli import session
 from tms_cli.reasons import CannotRun
 from tms_cli.words import say, sentence
+from tms_reason.errors import DbError
 from tms_reason.reason import Reason
 from tms_reason.texts import text
 
 if TYPE_CHECKING:
     from tms_db.import_plan import Item, Plan
+    from tms_db.store import Db
 
 SHOWN = 3  # warnings of one tree on a terminal; --json has all
+
+
+def carry_out(db: "Db", folder: Path, *, replace: bool, dry_run: bool, skip_refused: bool) -> "tuple[Plan, bool]":
+    """Import a folder; returns the report, and whether it was written.
+
+    Raises:
+        TmsError: there is nothing to import, or the store is away; then nothing was written.
+    """
+    from tms_db import import_plan, import_source, import_write, schema, templates
+    from tms_db.task_text import MODELS
+
+    source = import_source.read_folder(folder)
+    schema.refuse_newer(f"database {db.name}", schema.stored(db))
+    plan = import_plan.plan(db, source, {*MODELS, *session.site().models}, replace=replace)
+
+    def stored(name: str) -> str | None:
+        try:
+            return templates.Templates(db).get(name).task_sequence
+        except DbError as error:
+            if error.code == "TEMPLATE_MISSING":
+                return None
+            raise
+
+    judge(plan, stored)
+    if dry_run or (plan.count(import_plan.REFUSED) and not skip_refused):
+        return plan, False
+    schema.bring_up(db)
+    import_write.write(db, plan)
+    return plan, True
 
 
 def judge(plan: "Plan", stored: Callable[[str], str | None]) -> None:

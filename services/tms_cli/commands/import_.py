@@ -17,7 +17,7 @@ from tms_cli.words import say
 @session.json_option
 @click.pass_context
 def command(ctx: click.Context, folder: Path, dry_run: bool, replace: bool, skip_refused: bool, as_json: bool) -> None:
-    """Take over the tasks, templates and records of the C++ system, version 5 or 6; exit code 1 if nothing is written.
+    """Take over the tasks, templates and records of the C++ system, version 5 or 6; exit code 1 if something is refused.
 
     FOLDER is its configuration (trees as .xml, records as .yaml) or a dump of its database (task, subtask and
     parameter as .bson of mongodump, or as .json); folders in it are read, too. A tree that others call with
@@ -34,31 +34,13 @@ def command(ctx: click.Context, folder: Path, dry_run: bool, replace: bool, skip
       tms import ~/ros2_ws/src/ros2_tms_for_construction/tms_ts/tms_ts_manager/config --dry-run
       tms import dump/rostmsdb
     """
-    from tms_db import import_plan, import_source, import_write, schema, templates
-    from tms_db.task_text import MODELS
-    from tms_reason.errors import DbError
-
-    source = import_source.read_folder(folder)
     with opened() as db:
-        schema.refuse_newer(f"database {db.name}", schema.stored(db))
-        plan = import_plan.plan(db, source, {*MODELS, *session.site().models}, replace=replace)
-
-        def stored(name: str) -> str | None:
-            try:
-                return templates.Templates(db).get(name).task_sequence
-            except DbError as error:
-                if error.code == "TEMPLATE_MISSING":
-                    return None
-                raise
-
-        importing.judge(plan, stored)
-        blocked = plan.count(import_plan.REFUSED) > 0 and not skip_refused
-        if not (dry_run or blocked):
-            schema.bring_up(db)
-            import_write.write(db, plan)
-    importing.show(plan, imported=not (dry_run or blocked), as_json=as_json)
-    if blocked:
-        click.echo(say("nothing was written: correct what is refused, or --skip-refused imports the rest"), err=True)
-    elif dry_run:
+        plan, imported = importing.carry_out(db, folder, replace=replace, dry_run=dry_run, skip_refused=skip_refused)
+    importing.show(plan, imported=imported, as_json=as_json)
+    if imported:
+        return
+    if dry_run:
         click.echo(say("nothing was written: this was a trial"), err=True)
-    ctx.exit(1 if blocked else 0)
+    else:
+        click.echo(say("nothing was written: correct what is refused, or --skip-refused imports the rest"), err=True)
+    ctx.exit(1 if importing.summary(plan)["refused"] and not skip_refused else 0)

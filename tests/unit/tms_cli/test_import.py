@@ -84,6 +84,9 @@ def test_what_is_refused_keeps_the_rest_out(db: store.Db, tms, folder: Path) -> 
     (line,) = [line for line in end.stdout.splitlines() if line.startswith("broken.xml")]
     assert line.startswith("broken.xml: refused: line 2: not well-formed")
     assert Tasks(db).all() == [] and Templates(db).all() == []
+    assert tms(import_.command, folder, "--dry-run").exit_code == 1
+    assert tms(import_.command, folder, "--dry-run", "--skip-refused").exit_code == 0
+    assert Tasks(db).all() == []
     end = tms(import_.command, folder, "--skip-refused", "--json")
     assert (end.exit_code, json.loads(end.stdout)["imported"]) == (0, True)
     assert len(Tasks(db).all()) == 2
