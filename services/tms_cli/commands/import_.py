@@ -17,7 +17,7 @@ from tms_cli.words import say
 @session.json_option
 @click.pass_context
 def command(ctx: click.Context, folder: Path, dry_run: bool, replace: bool, skip_refused: bool, as_json: bool) -> None:
-    """Take over the tasks, templates and records of the C++ system, version 5 or 6; exit code 1 if something is refused.
+    """Take over tasks, templates and records of the C++ system, version 5 or 6; exit code 1 if something is refused.
 
     FOLDER is its configuration (trees as .xml, records as .yaml) or a dump of its database (task, subtask and
     parameter as .bson of mongodump, or as .json); folders in it are read, too. A tree that others call with
