@@ -59,12 +59,16 @@ def test_list_and_removal(db: store.Db) -> None:
 
 
 def test_documents_of_the_cpp_system(db: store.Db) -> None:
-    theirs(db, "Dig", COMPACT)
-    theirs(db, "Dig", OTHER)  # stored again after a change: it goes on reading the first
+    theirs(db, "Dig", OTHER, _id=2)
+    theirs(db, "Dig", COMPACT, _id=1)
+    db["subtask"].insert_one(
+        {"_id": 3, "task_name": "Dig", "task_sequence": OTHER}
+    )  # stored again after a change: it goes on reading the first
     store.prepare(db)
     templates = Templates(db)
     assert templates.get("Dig").task_sequence == COMPACT
     assert [one.name for one in templates.all()] == ["Dig"]
+    assert templates.all()[0].added_at.year == 1970
     assert templates.add("Dig", TEXT).already_stored
     assert templates.add("Dig", OTHER, replace=True).replaced
     templates.remove("Dig")

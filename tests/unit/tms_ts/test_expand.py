@@ -109,6 +109,11 @@ def test_what_a_call_itself_needs_is_no_key(key: str) -> None:
     assert caught.value.what == KeyOpen(key)
 
 
+def test_a_part_without_a_colon_gives_no_value() -> None:
+    with pytest.raises(TreeError, match=r"\$b\$ has no value"):
+        value("a:1,b", "$b$")
+
+
 def test_keys_stand_in_every_attribute() -> None:
     known = texts({"T": '<Action ID="$node$" name="$n$"/>'}).get
     loaded = load(document(call("T", "node:AlwaysFailure,n:first")), templates=known)
@@ -136,6 +141,9 @@ def test_line_breaks_in_attributes_stay() -> None:
     body = f"<Sequence name='one\ntwo'>{call('T')}</Sequence>"
     loaded = load(document(body), templates=texts({"T": "<AlwaysSuccess name='three\nfour'/>"}).get)
     assert [node.name for node in loaded.nodes] == ["one\ntwo", "three\nfour"]
+    private = "\ue000 \ue001 "  # what stands for breaks while the task is read
+    loaded = load(document(body), templates=texts({"T": f"<AlwaysSuccess name='{private}'/>"}).get)
+    assert [node.name for node in loaded.nodes] == ["one\ntwo", private]
 
 
 def test_a_call_in_the_palette_or_in_a_comment_is_none() -> None:
@@ -186,6 +194,12 @@ def test_an_endless_family_of_templates_is_refused() -> None:
     wide = {f"T{n}": template(f"<Sequence>{call(f'T{n + 1}') * 10}</Sequence>") for n in range(8)}
     with pytest.raises(TreeError, match="more than 20000 nodes"):
         load(document(call("T0")), templates={**wide, "T8": template("<AlwaysSuccess/>")}.get)
+
+
+def test_templates_that_together_are_too_deep() -> None:
+    deep = {f"T{n}": template("<Inverter>" * 90 + call(f"T{n + 1}") + "</Inverter>" * 90) for n in range(3)}
+    with pytest.raises(TreeError, match="nested deeper than 200"):
+        load(document(call("T0")), templates={**deep, "T3": template("<AlwaysSuccess/>")}.get)
 
 
 def test_a_value_that_grows_without_end_is_refused() -> None:
@@ -279,10 +293,10 @@ def test_a_call_in_a_v4_document() -> None:
 
 
 def test_errors_are_told_up_to_a_limit() -> None:
-    many = "".join(f'<SetBlackboard output_key="x" value="$k{n}$"/>' for n in range(60))
-    body = f"<Sequence>{call('T') * 5}</Sequence>"
-    errors = check(document(body), templates=texts({"T": f"<Sequence>{many}</Sequence>"}).get).errors
-    assert len(errors) == 100
+    asked: list[str] = []
+    calls = "".join(call(f"T{n}") for n in range(300))
+    report = check(document(f"<Sequence>{calls}</Sequence>"), templates=asked.append)
+    assert len(report.errors) == len(asked) == 100
 
 
 def test_where_the_cpp_system_sees_no_call() -> None:
