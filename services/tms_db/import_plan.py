@@ -127,6 +127,7 @@ class _Planner:
             item.name, item.state = str(self._tasks[digest]), THERE
             return
         wanted = tree.document.get("task_id") if tree.document is not None else None
+        wanted = int(wanted) if isinstance(wanted, float) and wanted.is_integer() else wanted  # as Mongo's shell has it
         number = next(one for one in count(1) if one not in self._numbers)
         if isinstance(wanted, int) and 0 < wanted <= tasks.MAX_TASK_ID:
             if wanted in self._numbers:

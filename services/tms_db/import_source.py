@@ -4,7 +4,9 @@ Read are `*.xml` (trees), `*.yaml` (records), and `task`, `subtask` and `paramet
 (`*.bson`) or as MongoDB's tools export them (`*.json`). Uses no database.
 """
 
+import gzip
 import json
+import zlib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -18,6 +20,7 @@ from tms_config.yaml_file import read_yaml
 from tms_db import task_text
 from tms_db.reasons import (
     DocumentNotRead,
+    DocumentTooLarge,
     ImportNothing,
     NoCollectionOfTasks,
     NoFolder,
@@ -82,8 +85,9 @@ def read_folder(folder: Path) -> Source:
         raise TmsError(NoFolder(str(folder)))
     source = Source()
     for path in sorted(path for path in folder.rglob("*") if path.is_file()):
-        reader = READERS.get(path.suffix.lower())
-        if reader is None or path.name.endswith(".metadata.json") or path.name == "prelude.json":
+        name = Path(path.name.removesuffix(".gz"))  # mongodump --gzip
+        reader = READERS.get(name.suffix.lower())
+        if reader is None or name.match("*.metadata.json") or name.match("prelude.json"):
             continue
         place = str(path.relative_to(folder))
         try:
@@ -151,16 +155,22 @@ def _json(source: Source, path: Path, place: str) -> None:
 
 
 def _bytes(path: Path) -> bytes:
-    if path.stat().st_size > MAX_DUMP:
-        raise TmsError(DocumentNotRead(f"{path.stat().st_size} bytes"))
-    return path.read_bytes()
+    with gzip.open(path) if path.suffix == ".gz" else path.open("rb") as file:
+        try:
+            data = file.read(MAX_DUMP + 1)
+        except (EOFError, zlib.error, gzip.BadGzipFile) as error:
+            raise TmsError(DocumentNotRead(str(error))) from error
+    if len(data) > MAX_DUMP:
+        raise TmsError(DocumentTooLarge(MAX_DUMP / 2**20))
+    return data
 
 
 def _kind(source: Source, path: Path, place: str) -> str:
     """What the documents of a file are; the file is named after its collection, perhaps with the database before it."""
-    kind = COLLECTIONS.get(path.stem.rpartition(".")[2], "")
+    name = Path(path.name.removesuffix(".gz")).stem
+    kind = COLLECTIONS.get(name.rpartition(".")[2], "")
     if not kind:
-        source.others.append(Unusable(place, NoCollectionOfTasks(path.stem)))
+        source.others.append(Unusable(place, NoCollectionOfTasks(name)))
     return kind
 
 

@@ -130,6 +130,7 @@ class NoRecordsInFile(Reason, text="no records: neither a list of records nor in
 class NoCollectionOfTasks(Reason, text="'{name}' is neither task, subtask nor parameter; `tms db restore` takes whole "
     "databases"): name: str
 class DocumentNotRead(Reason, text="cannot be read ({problem})"): problem: str
+class DocumentTooLarge(Reason, text="is larger than {limit}: `tms db restore` takes whole databases"): limit: Megabytes
 class NoTaskText(Reason, text="the document has no task_sequence"): pass
 class NumberTaken(Reason, text="task {old} becomes task {new}, as there is another task {old}"): old: int; new: int
 class TemplateTwice(Reason, text="there are two templates '{template}' with different texts"): template: str

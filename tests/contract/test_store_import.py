@@ -1,5 +1,6 @@
 """An import takes over what a folder holds, all of it or nothing, and tells of each thing what becomes of it."""
 
+import gzip
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -142,6 +143,21 @@ def test_a_number_that_is_taken_changes(db: store.Db, put: Any) -> None:
     import_write.write(db, plan)
     assert [task.task_id for task in Tasks(db).all()] == [1, 2, 3]
     assert Tasks(db).add(TASK.format("t3")).task_id == 3
+
+
+def test_a_packed_dump(db: store.Db, put: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    packed = gzip.compress(bson.encode({"task_id": 4.0, "task_sequence": TASK.format("four")}))
+    put("rostmsdb/task.metadata.json.gz", gzip.compress(b"{}"))
+    folder = put("rostmsdb/task.bson.gz", packed)
+    assert told(planned(db, folder)) == [("task", "rostmsdb/task.bson.gz, document 1", "4", NEW)]
+    for broken in (packed[:-9], packed[:20] + b"\0" * 20, b"no"):
+        (item,) = planned(db, put("rostmsdb/task.bson.gz", broken)).items
+        assert item.state == REFUSED and "cannot be read (" in words(item.why)
+        assert "None" not in words(item.why)
+    put("rostmsdb/task.bson.gz", packed)
+    monkeypatch.setattr(import_source, "MAX_DUMP", 100)
+    (item,) = planned(db, folder).items
+    assert item.state == REFUSED and words(item.why).startswith("is larger than 0.0 MB")
 
 
 def test_exports_of_mongodb_are_lists_or_lines(db: store.Db, put: Any) -> None:
