@@ -8,7 +8,7 @@ from tms_ts.bt.control import Control
 from tms_ts.bt.convert import MISSING, UInt
 from tms_ts.bt.decorator import Decorator
 from tms_ts.bt.errors import TickError, TreeError
-from tms_ts.bt.expand import Templates, no_templates
+from tms_ts.bt.expand import Templates
 from tms_ts.bt.leaf import Condition, CoroAction, PlainAction, StatefulAction, SyncAction
 from tms_ts.bt.load import CheckReport, check, load
 from tms_ts.bt.node import Node
@@ -53,7 +53,6 @@ __all__ = [
     "check",
     "check_template",
     "load",
-    "no_templates",
     "node",
     "palette",
     "registry",

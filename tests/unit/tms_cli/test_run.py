@@ -18,7 +18,7 @@ from tms_reason.reason import Foreign
 from tms_reason.wire import to_line
 from tms_ros.goals import Outcome
 from tms_runtime.reasons import NotStored
-from tms_ts.bt import no_templates
+from tms_ts.bt.expand import no_templates
 
 XML = '<root><BehaviorTree ID="T"><AlwaysSuccess/></BehaviorTree></root>'
 

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-import pytest
+from xml.sax.saxutils import quoteattr
 
-from tms_ts.bt import SUCCESS, TreeError, check, check_template, load
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tms_ts.bt import SUCCESS, TickError, TreeError, check, check_template, load
 from tms_ts.bt.display import ascii_tree
 from tms_ts.bt.reasons import (
     CallNotSeen,
@@ -25,6 +29,7 @@ from words import words
 
 SWING = '<Action ID="LeafNodeZx200" model_name="$model_name$" record_name="$r$" subtask_name="st_zx200_swing"/>'
 MODEL = "<TreeNodesModel/>"
+text_of_xml = st.text(st.sampled_from("ab$:,\n {}<&\"'/"), max_size=20)
 
 
 def template(body: str) -> str:
@@ -273,6 +278,24 @@ def test_what_is_wrong_inside_a_template(body: str, line: int, says: str) -> Non
     (error,) = check(document(call("T")), templates=texts({"T": body}).get).errors
     assert error.line == 3
     assert f"in template T:{line}: {says}" in str(error)
+
+
+def test_what_a_node_of_a_template_throws_while_it_runs() -> None:
+    loaded = load(document(call("T")), templates=texts({"T": '\n<SetBlackboard value="1"/>'}).get)
+    with pytest.raises(TickError) as caught:
+        loaded.tick()
+    assert (caught.value.line, caught.value.path, caught.value.template) == (3, "0", "T:5")
+    assert str(caught.value).startswith("line 3, at 0: in template T:5: SetBlackboard: ")
+
+
+@given(text_of_xml, text_of_xml, text_of_xml)
+def test_no_call_and_no_template_breaks_the_check(parameters: str, attribute: str, body: str) -> None:
+    asks = f"<Action ID='ExecuteSubtask' subtask_name='T' a={quoteattr(attribute)} subtask_parameters="
+    text = template(f"<AlwaysSuccess name={quoteattr(body)}/>")
+    report = check(document(f"{asks}{quoteattr(parameters)}/>"), templates={"T": text}.get)
+    assert all(isinstance(error.what, KeyOpen) for error in report.errors)
+    cpp = check(document(f"{asks}{quoteattr(parameters)}/>"), templates={"T": text}.get, cpp=True)
+    assert cpp.ok and cpp.nodes == 1
 
 
 @pytest.mark.parametrize(
