@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from lxml import etree
 
-from tms_ts.bt import palette, registry
+from tms_ts.bt import check, palette, registry
 from tms_ts.bt.document import read
+from tms_ts.bt.reasons import PartWithoutColon
 
 PALETTE = etree.fromstring(palette())
 
 
 def test_every_custom_node_is_in_it() -> None:
     ids = [element.get("ID") for element in PALETTE.iterfind("TreeNodesModel/*[@ID]")]
-    assert ids == sorted(name for name, cls in registry().items() if not cls.builtin)
+    assert ids == sorted(["ExecuteSubtask", *(name for name, cls in registry().items() if not cls.builtin)])
     assert {"LeafNodeZx200", "KeepRunningUntilFlgup", "WaitForClick"} <= set(ids)
 
 
@@ -27,6 +28,19 @@ def test_an_entry_has_category_ports_defaults_and_texts() -> None:
     assert all(port.tag == "input_port" and port.text for port in entry)
     assert PALETTE.find("TreeNodesModel/Decorator[@ID='KeepRunningUntilFlgup']/input_port[@name='key']") is not None
     assert PALETTE.find("TreeNodesModel/Action[@ID='BlackboardValueChecker']/inout_port") is not None
+
+
+def test_a_call_of_a_template_that_groot_draws_is_one() -> None:
+    entry = PALETTE.find("TreeNodesModel/Action[@ID='ExecuteSubtask']")
+    assert entry is not None
+    drawn = "".join(f' {port.get("name")}="T"' for port in entry)  # Groot writes the ID first, then all ports
+    template = (
+        '<root><BehaviorTree ID="B"><AlwaysSuccess name="$model_name$$terminate_condition$"/></BehaviorTree></root>'
+    )
+    text = f'<root><BehaviorTree ID="M"><Action ID="ExecuteSubtask"{drawn}/></BehaviorTree>'
+    report = check(f"{text}{etree.tostring(PALETTE[0], encoding='unicode')}</root>", templates={"T": template}.get)
+    assert report.errors == []
+    assert [type(warning) for _, warning in report.warnings] == [PartWithoutColon]
 
 
 def test_every_node_is_described() -> None:
