@@ -5,12 +5,13 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from tms_config.config import Site
+from tms_machine.goal_inputs import Inputs, parted
 from tms_reason.reason import Reason
 from tms_ts.bt import Tree
 from tms_ts.bt.errors import did_you_mean, short
 from tms_ts.bt.reasons import Line, Placed
 from tms_ts.bt.tree import LeafGoal, SharedValue
-from tms_ts.nodes.leaf_node import ROS_NAME
+from tms_ts.nodes.machine_leaf import ROS_NAME
 from tms_ts.reasons import (
     BadSubtaskName,
     InputSilent,
@@ -46,9 +47,15 @@ def machines_of(tree: Tree) -> list[str]:
 def records_of(tree: Tree) -> list[str]:
     """Records that a tree names, as MODEL/RECORD; MODEL/* where the record is known only during the run."""
     shared = [(value.record, "") for value in tree.shared_values()]
-    goals = [(goal.record, goal.machine) for goal in tree.leaf_goals() if "{" not in goal.machine]
+    goals = [(name, goal.machine) for goal in tree.leaf_goals() if "{" not in goal.machine for name in _named(goal)]
     names = [f"{model}/{'*' if '{' in record else record}" for record, model in [*goals, *shared] if record]
     return list(dict.fromkeys(names))
+
+
+def _named(goal: LeafGoal) -> list[str]:
+    """The records of a goal: its own, and the one whose plan it goes on from."""
+    record, inputs = parted(goal.record)
+    return [record, str(inputs.get("previous_target_record_name", ""))]
 
 
 def processes_of(tree: Tree, site: Site) -> list[str]:
@@ -85,7 +92,7 @@ class Surroundings(Protocol):
 
     def silent(self, machine: str, record: str) -> str: ...  # the sensing input that should write it and does not
 
-    def unfit(self, machine: str, subtask: str, values: Values) -> Reason | None: ...  # why the subtask cannot use them
+    def unfit(self, machine: str, subtask: str, values: Values, inputs: Inputs) -> Reason | None: ...  # why not usable
 
     def oldest(self, machine: str, subtask: str) -> float: ...  # s that a subtask lets its record be old; 0: as it says
 
@@ -115,6 +122,8 @@ def _check_goal(found: Findings, goal: LeafGoal, site: Site, around: Surrounding
     if "{" in goal.machine or "{" in goal.subtask:
         found.warnings.append(at(goal.line, KnownAtRun()))
         return
+    if not goal.subtask:
+        return  # a fault of the node
     if not ROS_NAME.fullmatch(goal.subtask):
         found.errors.append(at(goal.line, BadSubtaskName(short(goal.subtask, 100))))
         return
@@ -123,25 +132,27 @@ def _check_goal(found: Findings, goal: LeafGoal, site: Site, around: Surrounding
         found.warnings.append(at(goal.line, ServedElsewhere(goal.subtask, goal.machine)))
     elif goal.subtask not in offered:
         found.errors.append(at(goal.line, NotOffered(goal.machine, goal.subtask, tuple(offered))))
-    elif "{" not in goal.record:
+    elif "{" not in parted(goal.record)[0]:
         _check_record(found, goal, around)
 
 
 def _check_record(found: Findings, goal: LeafGoal, around: Surroundings) -> None:
-    line, name = goal.line, f"{goal.machine}/{goal.record}"
-    stored = around.record(goal.machine, goal.record)
+    record, inputs = parted(goal.record)
+    line, name = goal.line, f"{goal.machine}/{record}"
+    stored = around.record(goal.machine, record)
     if stored is None:
-        near = did_you_mean(goal.record, around.names(goal.machine))
+        near = did_you_mean(record, around.names(goal.machine))
         found.errors.append(at(line, NoRecord(name) if near is None else NoRecordNear(name, near)))
         return
-    unfit = around.unfit(goal.machine, goal.subtask, stored.values)
+    known = {port: value for port, value in inputs.items() if "{" not in str(value)}
+    unfit = around.unfit(goal.machine, goal.subtask, stored.values, known)
     if unfit is not None:
         found.errors.append(at(line, RecordUnfit(name, goal.subtask, unfit)))
     limit = around.oldest(goal.machine, goal.subtask) or stored.max_age
     if limit > 0 and stored.type != "static" and (stored.age is None or stored.age > limit):
         old = RecordAgeUnknown(name, limit) if stored.age is None else RecordOld(name, stored.age, limit)
         found.warnings.append(at(line, old))
-    silent = around.silent(goal.machine, goal.record)
+    silent = around.silent(goal.machine, record)
     if silent:
         found.warnings.append(at(line, InputSilent(silent, name)))
 

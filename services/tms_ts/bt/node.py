@@ -36,6 +36,16 @@ class NodeSpec:
 
 
 AtOnce = tuple[bool, bool]  # may succeed, may fail
+Place = tuple[int, str]  # what identifies a key in the tree: Blackboard.place
+
+
+@dataclass(frozen=True, slots=True)
+class Keys:
+    """What the document tells of the keys of all blackboards."""
+
+    texts: Mapping[str, str] = field(default_factory=dict)  # that a SetBlackboard gives a key
+    writers: Mapping[Place, Node] = field(default_factory=dict)  # the first node that writes a key
+    kinds: Mapping[Place, tuple[Any, int]] = field(default_factory=dict)  # the first known type, and its line
 
 
 class Node:
@@ -60,6 +70,7 @@ class Node:
     ports: ClassVar[Mapping[str, Port]] = {}
     required: ClassVar[frozenset[str]] = frozenset()  # ports without which loading fails
     needs: ClassVar[tuple[str, ...]] = ()  # ports without which the node throws
+    versions: ClassVar[tuple[int, ...]] = ()  # of the C++ system that have this node
     asking: ClassVar[bool] = False  # RUNNING only because an answer has not come yet
 
     def __init__(self, birth: NodeSpec) -> None:
@@ -185,10 +196,14 @@ class Node:
         return []
 
     def written(self) -> list[tuple[str, Any]]:
-        """Keys that it writes with a type that the document determines, and that type."""
+        """Keys that it writes, as far as the document names them, with their types; Any where only the run decides."""
         outputs = [port for port in self.ports.values() if port.direction is Direction.OUTPUT and port.kind is not Any]
         bound = [(self.bindings.get(port.name), port.kind) for port in outputs]
         return [(one.key if isinstance(one, Pointer) else one, kind) for one, kind in bound if one is not None]
+
+    def number_written(self, keys: Keys, key: str) -> bool:
+        """Whether a node gives a key a number, as far as the document tells."""
+        return keys.kinds.get(self.blackboard.place(key), (Any, 0))[0] in (int, float)
 
     def synchronous_outcomes(self, children: list[AtOnce]) -> AtOnce:
         """Whether it may succeed and may fail within one tick in the library, given what its children may."""
@@ -197,8 +212,8 @@ class Node:
     def may_hang(self, children: list[AtOnce]) -> bool:
         return False
 
-    def preflight(self, texts: Mapping[str, str]) -> list[Reason]:
-        """What the author should know; `texts` are the keys that SetBlackboard gives a text."""
+    def preflight(self, keys: Keys) -> list[Reason]:
+        """What the author should know."""
         return []
 
 

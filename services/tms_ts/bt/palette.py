@@ -1,4 +1,7 @@
-"""The palette that Groot loads: every custom node with its ports, written from the classes."""
+"""The palette that Groot loads: every custom node with its ports, written from the classes.
+
+Each is marked with the versions of the C++ system that have it, unless neither has; a task may use nodes of both.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +13,7 @@ from tms_ts.bt.ports import Direction, Port
 from tms_ts.bt.registry import Registry
 from tms_ts.bt.registry import registry as all_nodes
 
+MARKS = {(5,): " (version 5)", (6,): " (version 6)", (5, 6): " (versions 5 and 6)"}  # by Node.versions
 PORT_TAGS = {Direction.INPUT: "input_port", Direction.OUTPUT: "output_port", Direction.INOUT: "inout_port"}
 
 
@@ -30,19 +34,20 @@ def summary(cls: type[Node]) -> str:
 
 
 def _entry(model: etree._Element, name: str, cls: type[Node]) -> None:
-    model.append(etree.Comment(f" {name}: {summary(cls)} ".replace("--", "-")))
+    mark = MARKS.get(cls.versions, "")
+    model.append(etree.Comment(f" {name}{mark}: {summary(cls)} ".replace("--", "-")))
     entry = etree.SubElement(model, cls.kind.name.capitalize(), {"ID": name})
     for port in cls.ports.values():
-        _port(entry, port)
+        _port(entry, port, mark)
 
 
-def _port(entry: etree._Element, port: Port) -> None:
+def _port(entry: etree._Element, port: Port, mark: str) -> None:
     element = etree.SubElement(entry, PORT_TAGS[port.direction], {"name": port.name})
     if port.kind in CPP_NAMES and CPP_NAMES[port.kind] != "void":
         element.set("type", CPP_NAMES[port.kind])
     if port.default is not MISSING:
         element.set("default", _text(port.default))
-    element.text = port.help or None
+    element.text = f"{port.help}{mark}" or None  # Groot shows this, but no comments
 
 
 def _text(value: object) -> str:

@@ -21,6 +21,7 @@ class SetLocalBlackboardWithCounter(SyncAction):
     """
 
     __slots__ = ()
+    versions = (5, 6)
     key: In[str]
     counter_key: InOut[str]
 
