@@ -10,8 +10,8 @@ from tms_config.clock import utc_now
 from tms_db.arrays import Array
 from tms_db.reasons import (
     DollarOrDot,
-    MadeByOthers,
     FieldNoArray,
+    MadeByOthers,
     NotChanged,
     OtherFields,
     OtherValue,

@@ -9,7 +9,7 @@ from tms_machine.goal_inputs import Inputs, parted
 from tms_reason.reason import Reason
 from tms_ts.bt import Tree
 from tms_ts.bt.errors import did_you_mean, short
-from tms_ts.bt.reasons import Line, Placed
+from tms_ts.bt.reasons import Line, NotPlain, Placed
 from tms_ts.bt.tree import LeafGoal, SharedValue
 from tms_ts.nodes.machine_leaf import ROS_NAME
 from tms_ts.reasons import (
@@ -167,6 +167,8 @@ def _check_shared(found: Findings, values: list[SharedValue], around: Surroundin
             found.warnings.append(at(value.line, NoSharedRecord(value.record)))
         elif not value.writes and value.field not in stored.values:
             found.warnings.append(at(value.line, NoSharedField(value.record, value.field)))
+        elif not value.writes and isinstance(stored.values[value.field], list):
+            found.warnings.append(at(value.line, NotPlain(value.record, value.field)))
         elif value.writes and stored.type == "static":
             found.warnings.append(at(value.line, SharedStatic(value.record)))
         elif value.looped and not value.writes and (value.record, value.field) not in own:

@@ -232,6 +232,7 @@ def test_shared_records_and_fields_should_be_there_and_not_static(site: Site) ->
     for inner, around, said in (
         (READ.format("FREE"), Context({}), "no shared record ROAD"),
         (READ.format("TAKEN"), Context(ROAD), "has no field 'TAKEN'"),
+        (READ.format("FREE"), Context({("", "ROAD"): StoredRecord({"FREE": [1]}, "dynamic")}), "is not a plain value"),
         (WRITE.format("FREE"), static, "is static"),
     ):
         found = preflight(flags(inner), site, around)
