@@ -191,7 +191,8 @@ def test_a_reader_of_an_array_fails_as_in_the_cpp_system() -> None:
 @pytest.mark.parametrize(("loaded", "end", "driven"), [(True, SUCCESS, 4), (False, FAILURE, 2)])
 def test_loading(loaded: bool, end: Status, driven: int) -> None:
     words = {"model_name": "mst110cr", "loading_point": "L", "swing_angle_for_loading": "S",
-             "arrival_flg_record_name": "F", "loaded_flg_record_name": "now", "swing_angle_for_runing": "R", "after_loading_point": "A"}  # fmt: skip
+             "arrival_flg_record_name": "F", "loaded_flg_record_name": "now", "swing_angle_for_runing": "R",
+             "after_loading_point": "A"}  # fmt: skip
     site = Site("subtask__CrawlerDump__Loading_Subtask_With_Run2", {("loaded_flg", "now"): loaded}, **words)
     assert site.go() is end
     assert site.records == ["L", "S", "R", "A"][:driven]
