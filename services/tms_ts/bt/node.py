@@ -71,6 +71,7 @@ class Node:
     required: ClassVar[frozenset[str]] = frozenset()  # ports without which loading fails
     needs: ClassVar[tuple[str, ...]] = ()  # ports without which the node throws
     versions: ClassVar[tuple[int, ...]] = ()  # of the C++ system that have this node
+    older_ports: ClassVar[frozenset[str]] = frozenset()  # that older tasks have; the palette leaves them out
     asking: ClassVar[bool] = False  # RUNNING only because an answer has not come yet
 
     def __init__(self, birth: NodeSpec) -> None:

@@ -38,7 +38,8 @@ def _entry(model: etree._Element, name: str, cls: type[Node]) -> None:
     model.append(etree.Comment(f" {name}{mark}: {summary(cls)} ".replace("--", "-")))
     entry = etree.SubElement(model, cls.kind.name.capitalize(), {"ID": name})
     for port in cls.ports.values():
-        _port(entry, port, mark)
+        if port.name not in cls.older_ports:
+            _port(entry, port, mark if len(cls.versions) == 1 else "")
 
 
 def _port(entry: etree._Element, port: Port, mark: str) -> None:

@@ -22,15 +22,7 @@ _generic: list[type[Node]] = []
 
 def _prepare(cls: type[Node]) -> None:
     for attribute in inspect.get_annotations(cls):
-        if hasattr(Node, attribute) and attribute not in (
-            "asking",
-            "builtin",
-            "kind",
-            "needs",
-            "ports",
-            "required",
-            "versions",
-        ):
+        if hasattr(Node, attribute) and attribute not in ("asking", "builtin", "kind", "needs", "ports", "required"):
             raise TypeError(f"{cls.__name__}.{attribute} would hide a field that every node has; rename it")
     cls.ports = declare_ports(cls)
     cls.builtin = cls.__module__.startswith("tms_ts.bt.")

@@ -11,10 +11,11 @@ class LeafNodeExcavator(PrimitiveLeaf):
 
     target_record_name: the record of parameters, as text or {key}
     previous_target_record_name: the record whose plan ends where this one begins; empty: none
-    record_name: the record, in older tasks of version 6 (its newest state does not load them)
+    record_name: the record, in older tasks of version 6, which its newest state does not load
     """
 
     __slots__ = ()
+    older_ports = frozenset({"record_name"})
     record_ports = ("target_record_name", "record_name")
     target_record_name: In[str]
     previous_target_record_name: In[str]

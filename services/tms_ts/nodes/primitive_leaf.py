@@ -27,17 +27,17 @@ class PrimitiveLeaf(MachineLeaf):
     versions = (6,)
     required = frozenset({"model_name", "primitive_name"})
     subtask_port = "primitive_name"
-    record_ports: ClassVar[tuple[str, ...]] = ("record_name",)  # the first that is given counts
+    record_ports: ClassVar[tuple[str, ...]] = ("record_name",)  # the first one that is not empty counts
     model_name: In[str]
     record_name: In[str]
     primitive_name: In[str]
 
     def record(self) -> str | None:
-        given = {port: value for port in self.record_ports if (value := self.read(port)) is not MISSING}
+        given = [value for port in self.record_ports if (value := self.read(port)) is not MISSING]
         if not given:
             self.reason = MissingParameter(self.registration_name, self.record_ports[0])
             return None
-        return joined(next(iter(given.values())), self.inputs_given())
+        return joined(next(filter(None, given), ""), self.inputs_given())  # Groot writes empty ports, too
 
     def inputs_given(self) -> dict[str, str | bool]:
         """Inputs of the goal: without those that are empty or false, which the C++ system sends as if not given."""
@@ -45,10 +45,10 @@ class PrimitiveLeaf(MachineLeaf):
         return {name: value for name, value in found.items() if value not in (MISSING, "", False)}
 
     def record_reported(self) -> str:
-        given = [port for port in self.record_ports if port in self.bindings]
+        record = next(filter(None, map(self.reported, self.record_ports)), "")
         inputs = {name: self.reported(name) for name in KINDS if name in self.ports}
         known = {name: text for name, text in inputs.items() if text not in ("", "false")}
-        return joined(self.reported((given or [*self.record_ports])[0]), known)
+        return joined(record, known)
 
     def preflight(self, keys: Keys) -> list[Reason]:
         if any(port in self.bindings for port in self.record_ports):

@@ -53,6 +53,8 @@ def test_a_halt_cancels(kind: str) -> None:
         ),
         ("Excavator", 'target_record_name="A,B,C"', "A,B,C", {}),
         ("Excavator", 'target_record_name="A" record_name="B"', "A", {}),
+        ("Excavator", 'target_record_name="" previous_target_record_name="" record_name="B"', "B", {}),
+        ("Excavator", 'target_record_name="" record_name=""', "", {}),
         ("CrawlerDump", 'record_name="A" read_direction="down"', "A", {"read_direction": "down"}),
         ("CrawlerDump", 'record_name="{r}" read_direction="{way}"', "of key", {"read_direction": "up"}),
         ("CrawlerDump", 'record_name="A" read_direction=""', "A", {}),
@@ -67,8 +69,11 @@ def test_a_halt_cancels(kind: str) -> None:
 def test_what_the_goal_gets(kind: str, ports: str, record: str, inputs: dict[str, str | bool]) -> None:
     fake = FakeWorld()
     keys = {"r": "of key", "way": "up", "yes": True}
-    tree(leaf(kind, ports), fake=fake, blackboard=keys).tick()
+    one = tree(leaf(kind, ports), fake=fake, blackboard=keys)
+    one.tick()
     assert parted(fake.machines.sent[0].record) == (record, inputs)
+    if "{" not in ports:
+        assert parted(one.leaf_goals()[0].record) == (record, inputs), "known before the run"
 
 
 @pytest.mark.parametrize("kind", KINDS)
