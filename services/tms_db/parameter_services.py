@@ -60,7 +60,7 @@ class ParameterServices:
         answering.later(SetParameter, "set_parameter", self.set)
         answering.later(UpdateParameters, "update_parameters", self.update)
         answering.quick(ChangeArray, "change_array", self.change_array)
-        answering.quick(FindRecord, "find_record", self.find)
+        answering.slow(FindRecord, "find_record", self.find)
         answering.quick(RemoveParameter, "remove_parameter", self.remove)
         answering.slow(ListParameterHistory, "list_parameter_history", self.history)
         self._batches.start()

@@ -30,6 +30,7 @@ from tms_db.records import (
     check_max_age,
     check_type,
     check_values,
+    models_of,
     title,
 )
 from tms_db.store import Db, errors
@@ -219,11 +220,11 @@ class Parameters:
         that becomes static in between is changed once more.
         """
         key = _key(model_name, record_name)
-        stored = self._records.find_one(key, {"type": 1})
+        stored = self._records.find_one(key, {"type": 1, "model_name": 1})
         if stored is None:
             return None
         if stored.get("type") == "static":
-            names = [f"{model_name}/{record_name}", f"{model_name}/*"]
+            names = [f"{model}/{name}" for model in models_of(stored) for name in (record_name, "*")]
             run = self._runs.find_one({"ended_at": None, "records": {"$in": names}}, {"run_id": 1})
             if run is not None:
                 raise _static(title(model_name, record_name), run["run_id"])

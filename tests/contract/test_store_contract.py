@@ -357,6 +357,9 @@ def test_a_record_of_several_models_is_one(db: store.Db) -> None:
     assert parameters.get("truck_1", "road")["n"] == 2
     assert [models_of(document) for document in parameters.all("truck_2")] == [["truck_1", "truck_2"]]
     assert parameters.all("zx200") == []
+    parameters.set("truck_2", "road", RecordEdit({"n": 3}, "static"))
+    History(db).write([replace(run("r1"), records=("truck_1/road",))], [])
+    assert code_of(lambda: parameters.set("truck_2", "road", RecordEdit({"n": 4}))) == "STATIC_RECORD"
 
 
 def test_eight_writers_that_swap_lose_no_update(shared_db: store.Db) -> None:

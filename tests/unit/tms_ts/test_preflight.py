@@ -185,6 +185,8 @@ def test_an_input_that_the_subtask_does_not_take_does_not_fit() -> None:
     path = {"x": [0.0], "y": [0.0], "z": [0.0], "qx": [0.0], "qy": [0.0], "qz": [0.0], "qw": [1.0]}
     down: Inputs = {"read_direction": "down"}
     assert unfit(model, "st_mst110cr_follow_waypoints", path, down) is None
+    assert unfit(model, "st_mst110cr_follow_waypoints", path | {"read_direction": 5}, {}) is not None
+    assert unfit(model, "st_mst110cr_follow_waypoints", path | {"read_direction": 5}, down) is None  # as in the run
     assert unfit(model, "st_mst110cr_swing", {"target_angle": 1.0}, down) == InputsNotTaken(("read_direction",))
     assert unfit(model, "st_mst110cr_swing_align_to_heading", {}, down) == InputsNotTaken(("read_direction",))
 
@@ -201,7 +203,7 @@ def test_a_primitive_is_a_subtask_of_the_model_and_its_inputs_are_checked(site: 
     assert around.inputs == {"previous_target_record_name": "before"}
     assert preflight(primitive(ports.format("{key}")), site, around).errors == []
     assert around.inputs == {"previous_target_record_name": "before"}  # the other one is known only during the run
-    (error,) = preflight(primitive('record_name="poze"'), site, around).errors
+    (error,) = preflight(primitive('record_name="poze" previous_target_record_name="{key}"'), site, around).errors
     assert "no record zx200/poze; did you mean 'pose'" in words(error)
 
 

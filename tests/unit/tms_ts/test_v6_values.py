@@ -125,6 +125,7 @@ class TestMongoArrayWriter:
         ("before", "value", "operation", "after"),
         [(["a"], "b", "add", ["a", "b"]), (["a"], "a", "add", ["a"]), (["a"], "a", "push", ["a", "a"]),
          (["a", "b", "a"], "a", "remove", ["b"]), (["a"], "b", "remove", ["a"]), (["a"], "", "reset", []),
+         (["a"], "\\none\\", "reset", []),
          ([1], "2", "add", [1, 2]), (["a"], "\\k\\", "add", ["a", "here"]), ([], "&quot;1&quot;", "push", ["1"])],
     )  # fmt: skip
     def test_changes(self, before: list[Any], value: str, operation: str, after: list[Any]) -> None:
@@ -289,6 +290,7 @@ class TestCalculator:
          ("{big} * {big}", r.ResultTooLarge()), ("2 ** 3", r.FormulaUnreadable()), ("7 // 2", r.FormulaUnreadable()),
          ("7 * * 2", r.FormulaUnreadable()), ("1 +", r.FormulaUnreadable()), ("", r.FormulaUnreadable()),
          ("1(2)", r.FormulaUnreadable()), ("()", r.FormulaUnreadable()), ("{n}{n}", r.FormulaUnreadable()),
+         ("{n} + {n}0" + " + {n}" * 9, r.FormulaUnreadable()),
          ("2 {n}", r.FormulaUnreadable()), ("x + 1", r.FormulaUnreadable()), ("1e3", r.FormulaUnreadable()),
          ("1, 2", r.FormulaUnreadable()), ("1.2.3", r.FormulaUnreadable()), ("1+" * 99 + "1", r.ExpressionTooLong())],
     )  # fmt: skip
