@@ -14,8 +14,8 @@ import yaml
 
 import programs
 from conftest import PROJECT, wait_until
-from control_client import ControlClient
 from programs import Program
+from tms_cli.drill.operasim import ControlPort
 from tms_config.config import load_site
 from tms_ros.node import Ros
 from tms_runtime import environment
@@ -50,7 +50,7 @@ class OperaSim:
         self.ros = Ros("operasim_test")
         self.until(lambda: "event=control" in self.log, "the control port")
         (control,) = re.findall(r"event=control port=(\d+)", self.log)
-        self._control = ControlClient(int(control), LIMIT)
+        self._control = ControlPort(int(control), LIMIT)
         self.command = self._control.command
 
     def run(self, *names: str) -> None:

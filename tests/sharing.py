@@ -1,6 +1,7 @@
 """Which tests of a run are done by the same worker of pytest-xdist, and in which order.
 
-A mesh costs six seconds to start and a tenth of a processor while it waits: only one worker has that of the test run.
+A mesh costs six seconds to start and a tenth of a processor while it waits: only two workers have that of the test
+run, one for the tests of the console in a browser and one for all others.
 """
 
 import re
@@ -12,7 +13,7 @@ from xdist.scheduler import LoadFileScheduling
 from xdist.workermanage import WorkerController
 
 TESTS = Path(__file__).resolve().parent
-MESH = "the mesh of the test run"
+MESH, BROWSER_MESH = "the mesh of the test run", "the mesh of the test run, with a browser"
 PROCESSES = ("tests/browser/", "tests/docker/", "tests/replay/test_replay", "tests/ros/", "tests/system/")
 LONGEST = ("test_several_losses", "test_power_cut", "test_receipts", "test_official_tasks", "test_every_subtask",
            "test_sensing")  # fmt: skip
@@ -21,14 +22,16 @@ OWN_MESH = re.compile(r"^def mesh\(", re.MULTILINE)
 
 
 class OneMesh(LoadFileScheduling):
-    """Hands out file by file, but all files that use the mesh of the test run at once.
+    """Hands out file by file, but files that use the mesh of the test run all at once.
 
     The last worker begins with tests of pure logic: they use the processors while the others wait for their processes.
     """
 
     def _split_scope(self, nodeid: str) -> str:
         file: str = super()._split_scope(nodeid)
-        return MESH if uses_mesh(TESTS.parent / file) else file
+        if not uses_mesh(TESTS.parent / file):
+            return file
+        return BROWSER_MESH if file.startswith("tests/browser/") else MESH
 
     def _assign_work_unit(self, node: WorkerController) -> None:
         pure = node is self.nodes[-1] and len(self.nodes) > 1
@@ -40,7 +43,7 @@ class OneMesh(LoadFileScheduling):
 
 def starts_processes(unit: str) -> bool:
     """Whether tests of a file, named from the project's folder, start processes of a mesh."""
-    return unit == MESH or unit.startswith(PROCESSES)
+    return unit in (MESH, BROWSER_MESH) or unit.startswith(PROCESSES)
 
 
 @cache

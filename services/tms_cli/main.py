@@ -93,19 +93,22 @@ def main() -> None:
 
 def entry() -> NoReturn:
     """Run `main`, then leave the ROS graph within LEAVE_LIMIT, and end without a clean-up of C++."""
-    code = 1  # exit code of a bug, whose traceback the interpreter prints
+    code = 1  # exit code of a bug
     try:
         main()
         code = 0
     except SystemExit as end:
         code = int(end.code or 0)
     finally:
+        bug = sys.exc_info()
+        if bug[0] is not None:
+            sys.excepthook(*bug)  # now: the process may end while it leaves
         with contextlib.suppress(BrokenPipeError):  # the reader of our output has ended
             sys.stdout.flush()
         signal.signal(signal.SIGINT, signal.SIG_IGN)  # the command is done
         end_after(LEAVE_LIMIT, code)
         session.leaving.close()
-    os._exit(code)
+        os._exit(code)
 
 
 if __name__ == "__main__":

@@ -117,6 +117,8 @@ class NotForDrill(Reason, text="{file}: the drill kills processes on purpose", a
 class DrillRuns(Reason, text="{site}: a drill runs already", action=DRILL_END): site: str
 class NotRunning(Reason, text="{processes} does not run", action=PROCESSES): processes: tuple[str, ...]
 class DoesNotMove(Reason, text="its run does not move it: {why}"): why: Reason
+class NoControlPort(Reason, text="the stand-in of OperaSim-PhysX does not answer at its control port",
+    action=SUPERVISORD_LOG): log: str
 class NobodySays(Reason, text="no reason was given"): pass
 class StandInsEnded(Reason, text="{processes} has ended", action=SUPERVISORD_LOG): processes: tuple[str, ...]; log: str
 class RunDoesNotEnd(Reason, text="run {run} does not end", action=RETRY): run: str

@@ -18,10 +18,7 @@ class Vigil:
         self._watching, self._until, self._from = True, None, float("-inf")
 
     def end(self, now: float | None = None, jumps: float = 0.0) -> None:
-        """End the watch, as a goal may move the machine; after a re-arm at `now`, only after SETTLED.
-
-        `jumps`: s after it in which the release of its emergency stop may move the machine a little.
-        """
+        """End the watch, as a goal may move it; after a re-arm at `now`, from `jumps` to SETTLED after it (facts)."""
         self._watching, self._since = now is not None and self._watching, None
         self._until = None if now is None else now + SETTLED
         self._from = float("-inf") if now is None else now + jumps

@@ -14,10 +14,11 @@ from std_msgs.msg import Bool
 
 from tms_config.clock import monotonic
 from tms_config.models import Border
-from tms_ros.interface_types import ActionType
+from tms_ros.interface_types import ActionType, Publisher
 from tms_ros.node import Ros
 
 CANCEL_LIMIT = 3.0  # s after which a server without an answer has lost a cancel
+PRESS_LIVES = 1.5  # s; who presses in place of the gateway repeats it every 0.5 s
 RELEASE_LIMIT = 0.5  # s for a machine to take the release of its emergency stop: that is a message without an answer
 
 
@@ -62,7 +63,8 @@ class Controls:
     def __init__(self, ros: Ros, machine: str, border: Border, keeps_emergency: bool = True) -> None:
         """`keeps_emergency`: a machine that is switched on later still receives the last `emg_stop`.
 
-        Only for the gateway, which also releases it: an old `true` of another publisher would hold the machine.
+        Only for the gateway, which also releases it: an old `true` of another publisher would hold the machine. What
+        another one says is latched, too, but for a moment: else nobody could hear both of them, and what was kept.
         """
         self._ros = ros
         self._cancels = [f"/{machine}/{getattr(border, m.field)}/_action/cancel_goal" for m in motions(border)]
@@ -73,7 +75,10 @@ class Controls:
         self._released = float("-inf")  # s, monotonic
         self._cmd_vel = ros.publisher(Twist, f"/{machine}/{border.cmd_vel}", 1) if border.cmd_vel else None
         emg_stop = f"/{machine}/{border.emg_stop}"
-        self._emg_stop = ros.publisher(Bool, emg_stop, 1, latched=keeps_emergency) if border.emg_stop else None
+        self._emg_stop: Publisher[Bool] | None = None
+        if border.emg_stop:
+            made = ros.publisher(Bool, emg_stop, 1, latched=True) if keeps_emergency else None
+            self._emg_stop = made or ros.fading_publisher(Bool, emg_stop, PRESS_LIVES)
 
     def cancel_everything(self) -> None:
         """Cancel the goals of all clients, by requests with zero id."""

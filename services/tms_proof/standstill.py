@@ -6,7 +6,7 @@ the hydraulics may move it. A channel without samples does not count as standing
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from tms_proof.channel import WORST, Limits, Place
 from tms_proof.facts import MachineFacts
@@ -54,6 +54,10 @@ class Proof:
     expected: Expected
     seconds: float  # s of standing
     immediate: bool = False  # the stop also cancels commands that are on their way
+
+    def later(self, start: float) -> "Proof":
+        """The same from a moment on."""
+        return replace(self, start=max(self.start, start), unseen=max(self.unseen, start))
 
     def after(self, other: "Proof") -> "Proof":
         """What must be seen if another stop was commanded before: the motion that it waits for may still come."""

@@ -33,7 +33,7 @@ from tms_runtime.app import App
 
 SIGNALS = 100  # messages of all stop buttons that may wait: no `false` of one may push out the `true` of another
 PRESSES = 10  # presses of the machine's own stop that may wait
-ANSWER_LIMIT = STOP_PROVEN + DISK_LIMIT + 2.0  # s; every answer comes before, or the gateway does not work any more
+ANSWER_LIMIT = STOP_PROVEN + DISK_LIMIT + 5.0  # s; every answer comes before, or the gateway does not work any more
 OLD = 3  # s; an older message of the host agent (its topic is latched) is about another press
 TOKEN = 4  # bytes
 

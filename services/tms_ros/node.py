@@ -39,6 +39,7 @@ class Ros:
         self.publisher, self.subscribe, self.subscribe_raw = topics.publisher, topics.subscribe, topics.subscribe_raw
         self.delivered, self.sample, self.sample_arrivals = topics.delivered, topics.sample, topics.sample_arrivals
         self.lease_publisher, self.lease_subscribe = topics.lease_publisher, topics.lease_subscribe
+        self.fading_publisher = topics.fading_publisher
 
         self.offer, self.offer_slow, self.prepare = services.offer, services.offer_slow, services.prepare
         self.call, self.call_async = services.call, services.call_async

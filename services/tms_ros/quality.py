@@ -25,11 +25,12 @@ def lease(seconds: float) -> QoSProfile:
     )  # fmt: skip
 
 
-def topic(depth: int, latched: bool, best_effort: bool = False) -> QoSProfile:
-    """`latched`: readers that come later get the last messages."""
+def topic(depth: int, latched: bool, best_effort: bool = False, lives: float = 0.0) -> QoSProfile:
+    """`latched`: readers that come later get the last messages, those of the last `lives` [s]; 0: however old."""
     durability = DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE
     reliability = ReliabilityPolicy.BEST_EFFORT if best_effort else ReliabilityPolicy.RELIABLE
-    return QoSProfile(depth=depth, durability=durability, reliability=reliability)
+    age = Duration(seconds=lives)
+    return QoSProfile(depth=depth, durability=durability, reliability=reliability, lifespan=age)
 
 
 def as_offered(offered: Sequence[QoSProfile]) -> QoSProfile:

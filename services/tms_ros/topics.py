@@ -112,8 +112,8 @@ class Topics:
 
         def take_new() -> list[Arrival[M]]:
             found: list[Arrival[M]] = []
-            while len(found) < depth and (arrival := _arrival(reader)) is not None:
-                found.append(arrival)
+            while len(found) < depth and (taken := take(reader)) is not None:
+                found.append(Arrival(*taken))
             return found
 
         return take_new
@@ -123,6 +123,10 @@ class Topics:
     ) -> Any:
         """Call `on_message` with each serialised message."""
         return self._subscribed(message_type, topic, on_message, qos, raw=True)
+
+    def fading_publisher(self, message_type: type[M], topic: str, seconds: float) -> Publisher[M]:
+        """A latched publisher whose message is kept for `seconds` only."""
+        return self._published(message_type, topic, quality.topic(1, True, lives=seconds))
 
     def lease_publisher(self, message_type: type[M], topic: str, seconds: float) -> Publisher[M]:
         """A latched publisher; DDS notifies its readers when it was not asserted for `seconds`."""
@@ -138,12 +142,6 @@ class Topics:
     ) -> Any:
         """Call `on_message` with messages and `on_liveliness` with DDS's reports on the assertions of publishers."""
         return self._subscribed(message_type, topic, on_message, quality.lease(seconds), liveliness=on_liveliness)
-
-
-def _arrival(subscription: Any) -> Arrival[Any] | None:
-    """The oldest waiting message, with its reception time and number."""
-    taken = take(subscription)
-    return None if taken is None else Arrival(*taken)
 
 
 def _unheard(message: Message) -> None:

@@ -59,7 +59,7 @@ class Gateways:
     def _attend(self, machine: str) -> None:
         ros, pulse = self._app.ros, self._app.pulse
         ros.prepare(StopMachine, f"/{machine}/rc/stop")
-        self._controls[machine] = Controls(ros, machine, self._app.site.border(machine))
+        self._controls[machine] = Controls(ros, machine, self._app.site.border(machine), keeps_emergency=False)
         self._permits[machine] = Permit(ros, pulse, machine, "ts", lambda: self._alive(machine))
         self._gateways[machine] = RemotePermit(
             ros, self._app.pulse, machine, "rc", lambda gateway: self._gateway_changed(machine, gateway)

@@ -22,6 +22,7 @@ from std_srvs.srv import SetBool, Trigger
 import programs
 from conftest import wait_until
 from tms_config.config import load_site
+from tms_machine.border import PRESS_LIVES, Controls
 from tms_reason.errors import RosError
 from tms_ros.node import Ros
 from tms_ros.packing import pack, unpack
@@ -55,7 +56,7 @@ class Bridge:
     """The process and a ROS node of somebody else."""
 
     def __init__(self, file: Path, port: int) -> None:
-        self.port, self._log = port, file.with_suffix(".log")
+        self.port, self.file, self._log = port, file, file.with_suffix(".log")
         env = {**os.environ, **environment.environment(load_site(str(file)))}
         self.process = programs.process("tms:if", env, self._log)
         self.ros = Ros("if_test")
@@ -196,6 +197,28 @@ def test_a_simulator_that_comes_late_is_told_that_it_is_stopped(bridge: Bridge, 
     late.until(lambda: stops(late), "the latched stop")
     assert stops(late)[0] in (b"\0\1\0\0\1", b"\0\1\0\0\1\0\0\0")  # DDS pads to four bytes
     late.close()
+
+
+def test_a_simulator_that_comes_late_is_told_so_where_a_host_agent_may_press_too(
+    bridge: Bridge, unity: Unity, stop: Callable[[], None]
+) -> None:
+    host = Ros("if_host")
+    controls = Controls(host, MACHINE, load_site(str(bridge.file)).border(MACHINE), keeps_emergency=False)
+    (info,) = host.node.get_publishers_info_by_topic(EMG_STOP)
+    assert info.qos_profile.lifespan.nanoseconds == PRESS_LIVES * 1e9, "what it presses is not kept for long"
+    hear_stops(unity)
+    bridge.until(lambda: host.node.count_subscribers(EMG_STOP) > 0, "the host agent knows the bridge")
+    controls.emergency(False)
+    unity.until(lambda: stops(unity), "what the host agent says")
+    stop()
+    unity.until(lambda: stops(unity)[-1][4] == 1, "what the gateway says")
+    late = bridge.unity()
+    hear_stops(late)
+    late.until(lambda: stops(late), "the latched stop")
+    controls.emergency(False)
+    late.until(lambda: stops(late)[-1][4] == 0, "what the host agent says is heard as well")
+    late.close()
+    host.close()
 
 
 def test_a_simulator_that_comes_early_is_told_that_it_is_stopped(

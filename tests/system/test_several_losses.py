@@ -109,10 +109,13 @@ def armed(mesh: Mesh) -> bool:
 
 
 def stopped_after(controller: Controller, goal: bytes, capsys: pytest.CaptureFixture[str]) -> None:
-    """The goal is cancelled; it would last for some seconds more."""
+    """The goal, which would last for some seconds more, is cancelled, or `emg_stop`, another topic, came first."""
     begun = time.monotonic()
     wait_until(lambda: controller.statuses[goal] not in OPEN, 60, "the goal ends", 0.005)
-    assert controller.statuses[goal] in STOPPED
+    if controller.statuses[goal] == GoalStatus.STATUS_ABORTED:
+        wait_until(lambda: controller.emergency, 30, "the stop that ended it")
+    else:
+        assert controller.statuses[goal] in STOPPED
     with capsys.disabled():
         print(f"\nloss to stop: {time.monotonic() - begun:.2f} s")
 

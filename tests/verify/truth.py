@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from control_client import ControlClient
+from tms_cli.drill.operasim import ControlPort
 
 PERIOD = 0.05  # s between samples
 LIMIT = 20.0  # s for an answer
@@ -33,7 +33,7 @@ class Truth:
     """Samples of one machine, taken by a thread until the end."""
 
     def __init__(self, port: int, machine: str) -> None:
-        self._client = ControlClient(port, LIMIT)
+        self._client = ControlPort(port, LIMIT)
         self._machine = machine
         self.samples: list[Sample] = []
         self._added, self._closing = threading.Condition(), threading.Event()

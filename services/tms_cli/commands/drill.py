@@ -14,12 +14,13 @@ import click
 
 from tms_cli import mesh, session
 from tms_cli.drill import figures as drill_figures
-from tms_cli.drill.plan import STOPS, Trial, plan, plan_only
+from tms_cli.drill.plan import OPERASIM, STAND_INS, STOPS, Trial, plan, plan_only
 from tms_cli.drill.report import markdown, text
 from tms_cli.drill.stand_ins import GROUP, StandIns
 from tms_cli.drill.verdict import Row
 from tms_cli.reasons import DrillRuns, NotForDrill, NotWritable
 from tms_config.config import Site
+from tms_config.processes import table
 from tms_host.supervisor import Supervisor
 from tms_reason.errors import ConfigError, TmsError
 
@@ -33,7 +34,8 @@ def check(site: Site) -> None:
     Raises:
         ConfigError: the site is no simulation on one PC, or has no machine.
     """
-    if site.file.backend != "sim" or site.file.pcs or not site.file.machines:
+    simulated = any(row.group == GROUP for row in table(site))
+    if not simulated or site.file.pcs or not site.file.machines:
         raise ConfigError(NotForDrill(str(site.path)))
 
 
@@ -53,7 +55,12 @@ def own_state(site: Site) -> None:
 def planned(site: Site, seed: int, rounds: int, quick: bool, only: str | None = None) -> list[list[Trial]]:
     """The trials for this site, in waves."""
     planners = {name: site.model_of(name).planner is not None for name in site.file.machines}
-    return plan(seed, planners, rounds, quick) if only is None else plan_only(seed, planners, only, rounds)
+    kinds = STAND_INS if site.file.backend == "sim" else OPERASIM
+    if only is None:
+        return plan(seed, planners, rounds, quick, kinds)
+    if only not in kinds.stops:
+        raise click.UsageError(f"this site cannot be drilled with {only!r}: {', '.join(kinds.stops)}")
+    return plan_only(seed, planners, only, rounds, kinds)
 
 
 def drill(site: Site, waves: list[list[Trial]], seconds: float) -> list[Row]:
@@ -102,6 +109,7 @@ def command(
       tms --site drill drill --json --report drill.md
       tms --site drill drill --rounds 4 --seed 7
       tms --site drill drill --only "kill rc+tms:ts+rp+subtask" --rounds 9
+      tms --site drill-physx drill --quick
     """
     if report is not None and not os.access(report.absolute().parent, os.W_OK):  # before an hour of work
         raise TmsError(NotWritable(str(report), os.strerror(errno.EACCES)), "NO_FILE")

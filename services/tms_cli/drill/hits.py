@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 import psutil
 
 from tms_cli import mesh
-from tms_cli.drill.plan import RC, RP, SUBTASK, How, StopScenario
+from tms_cli.drill.plan import MC, RC, RP, SUBTASK, How, StopScenario
 from tms_cli.drill.stand_ins import GROUP, NICE
 from tms_cli.reasons import NotRunning
 from tms_config.clock import sleep, unix_time
@@ -24,6 +24,7 @@ from tms_runtime.reasons import PortSilent, ProcessStarting
 FROZEN = 2.0  # s
 BACK_LIMIT = 40.0  # s
 CHECK_PERIOD = 0.1  # s
+OF_MACHINE = (RC, RP, MC, SUBTASK)
 
 
 class Hits:
@@ -36,9 +37,9 @@ class Hits:
 
     def names(self, stop: StopScenario, subtasks: Mapping[str, str]) -> list[str]:
         """The processes that a stop hits. `subtasks`: for each hit machine, the one of its present leaf."""
-        found = [process for process in stop.processes if process not in (RC, RP, SUBTASK)]
+        found = [process for process in stop.processes if process not in OF_MACHINE]
         for machine, subtask in subtasks.items():
-            found += [f"{machine}:{name}" for name in (RC, RP) if name in stop.processes]
+            found += [f"{machine}:{name}" for name in (RC, RP, MC) if name in stop.processes]
             found += [subtask] if SUBTASK in stop.processes else []
         return [name for name in found if name in self._there]
 

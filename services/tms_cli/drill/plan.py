@@ -1,5 +1,6 @@
 """The trials: kinds of stop x faults of the machine, dealt to the machines by a seed. Pure logic."""
 
+import math
 import random
 from collections import deque
 from collections.abc import Mapping, Sequence
@@ -7,8 +8,8 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
-RC, RP, SUBTASK = "rc", "rp", "subtask"  # of the machine that is hit
-TS = "tms:ts"
+RC, RP, MC, SUBTASK = "rc", "rp", "mc", "subtask"  # of the machine that is hit
+TS, BRIDGE = "tms:ts", "tms:if"
 BYSTANDERS = ("tms:db", "tms:sp", "tms:ur", "tms:host", "tms:store")  # no motion depends on them
 WAVES, QUICK_WAVES = 16, 2  # of stops that concern one machine, a round
 DELAY = (0.05, 1.6)  # s from the begin of a machine's goal to the hit
@@ -23,6 +24,9 @@ class How(Enum):
     KILL = "kill"
     FREEZE = "freeze"
     POWER = "power cut"
+    CUT = "connection of the simulator lost"
+    PAUSE = "simulator paused"
+    RESTART = "simulator restarted"
 
 
 @dataclass(frozen=True)
@@ -54,6 +58,7 @@ class Trial:
 
 
 BOTH = (How.KILL, How.FREEZE)
+TROUBLES = (How.CUT, How.PAUSE, How.RESTART)  # of the simulator
 SINGLE = (
     StopScenario(How.CANCEL),
     StopScenario(How.SOFTWARE, latches=True),
@@ -67,7 +72,6 @@ SHARED = (
     StopScenario(How.KILL, (RC, "tms:host"), shared=True, covered=False),
     StopScenario(How.POWER, shared=True, covered=False, latches=True),
 )
-STOPS = {stop.name: stop for stop in (*SINGLE, *(stop for stops in BESIDE for stop in stops), *SHARED)}
 NONE = "none"
 LIES: Mapping[str, Mapping[str, Any]] = {  # faults of the reports; the motion has no fault
     "zero_velocity": {"zero_velocity": True},
@@ -95,6 +99,38 @@ COASTING: Mapping[str, Mapping[str, Any]] = {  # faults that have once caused fa
 }
 FAULTS: Mapping[str, Mapping[str, Any]] = {NONE: {}, **LIES, **UNKIND, **COASTING}
 IN_ORDER = (NONE, *LIES)  # the machine moves as commanded
+
+
+@dataclass(frozen=True)
+class Kinds:
+    """What a site can be drilled with."""
+
+    single: tuple[StopScenario, ...]  # concern one machine
+    shared: tuple[StopScenario, ...]
+    faults: tuple[str, ...] = (NONE,)
+    beside: tuple[tuple[StopScenario, ...], ...] = BESIDE
+    delay: tuple[float, float] = DELAY
+
+    @property
+    def stops(self) -> dict[str, StopScenario]:
+        """All kinds of stop by name."""
+        return {
+            stop.name: stop for stop in (*self.single, *(stop for stops in self.beside for stop in stops), *self.shared)
+        }
+
+
+STAND_INS = Kinds(SINGLE, SHARED, tuple(FAULTS))
+# No gateway can stop the tracks of OperaSim-PhysX while it is not connected: they go on by their last command.
+OPERASIM = Kinds(
+    (*SINGLE, *(StopScenario(how, (MC,)) for how in BOTH)),
+    (
+        *SHARED,
+        *(StopScenario(how, shared=True, covered=False, latches=how is not How.PAUSE) for how in TROUBLES),
+        *(StopScenario(how, (BRIDGE,), shared=True, covered=False) for how in BOTH),
+    ),
+    delay=(0.05, 3.5),  # its joints begin to move after their dead time
+)
+STOPS = STAND_INS.stops | OPERASIM.stops
 OFTEN = 3  # trials of each stop without a fault, for one trial with each fault
 
 
@@ -104,23 +140,30 @@ def fault_of(name: str, joints: Sequence[str]) -> dict[str, Any]:
     return {**fault, "mute": [joints[0]]} if "mute" in fault else fault
 
 
-def plan(seed: int, planners: Mapping[str, bool], rounds: int, quick: bool) -> list[list[Trial]]:
+def plan(
+    seed: int, planners: Mapping[str, bool], rounds: int, quick: bool, kinds: Kinds = STAND_INS
+) -> list[list[Trial]]:
     """Waves of one trial a machine. `planners`: each machine and whether it has a planner (rp) of its own."""
-    dealer = _Dealer(seed, planners)
+    dealer = _Dealer(seed, planners, kinds)
+    single = max(QUICK_WAVES, math.ceil(len(kinds.single) / len(planners))) if quick else WAVES
     waves = []
     for _ in range(rounds):
-        round_ = [dealer.mixed([stop] * len(planners)) for stop in SHARED]
+        round_ = [dealer.mixed([stop] * len(planners)) for stop in kinds.shared]
         # One bystander for each machine; further machines are cancelled.
-        round_ += [dealer.mixed([*stops, *[SINGLE[0]] * len(planners)]) for stops in BESIDE]
-        round_ += [dealer.single() for _ in range(QUICK_WAVES if quick else WAVES)]
+        for stops in kinds.beside:
+            parts = [stops[at : at + len(planners)] for at in range(0, len(stops), len(planners))]
+            round_ += [dealer.mixed([*part, *[SINGLE[0]] * len(planners)]) for part in parts]
+        round_ += [dealer.single() for _ in range(single)]
         dealer.dice.shuffle(round_)
         waves += round_
     return waves
 
 
-def plan_only(seed: int, planners: Mapping[str, bool], name: str, waves: int) -> list[list[Trial]]:
+def plan_only(
+    seed: int, planners: Mapping[str, bool], name: str, waves: int, kinds: Kinds = STAND_INS
+) -> list[list[Trial]]:
     """Waves of one kind of stop; a machine without a planner of its own is cancelled where that is hit alone."""
-    dealer, stop = _Dealer(seed, planners), STOPS[name]
+    dealer, stop = _Dealer(seed, planners, kinds), kinds.stops[name]
     stops = [SINGLE[0] if stop.processes == (RP,) and not planner else stop for planner in planners.values()]
     return [dealer.mixed(stops) for _ in range(waves)]
 
@@ -128,13 +171,13 @@ def plan_only(seed: int, planners: Mapping[str, bool], name: str, waves: int) ->
 class _Dealer:
     """Two decks of pairs; each is dealt completely before it begins again."""
 
-    def __init__(self, seed: int, planners: Mapping[str, bool]) -> None:
-        self.dice, self._planners = random.Random(seed), planners
-        pairs = [(stop, fault) for stop in SINGLE for fault in [*FAULTS, *[NONE] * (OFTEN - 1)]]
+    def __init__(self, seed: int, planners: Mapping[str, bool], kinds: Kinds) -> None:
+        self.dice, self._planners, self._delay = random.Random(seed), planners, kinds.delay
+        pairs = [(stop, fault) for stop in kinds.single for fault in [*kinds.faults, *[NONE] * (OFTEN - 1)]]
         self.dice.shuffle(pairs)
         first = {stop: (stop, fault) for stop, fault in pairs}  # each stop early, for a short drill
         self._pairs = deque([*first.values(), *(pair for pair in pairs if pair not in first.values())])
-        faults = [name for name in FAULTS if name != NONE]
+        faults = [name for name in kinds.faults if name != NONE] or [NONE]
         self.dice.shuffle(faults)
         self._faults = deque(faults)
 
@@ -161,4 +204,4 @@ class _Dealer:
         return self._faults[-1]
 
     def _trial(self, machine: str, stop: StopScenario, fault: str) -> Trial:
-        return Trial(machine, stop, fault, self.dice.uniform(*AROUND), self.dice.uniform(*DELAY))
+        return Trial(machine, stop, fault, self.dice.uniform(*AROUND), self.dice.uniform(*self._delay))

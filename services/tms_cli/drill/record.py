@@ -67,6 +67,7 @@ class TrialRecording:
     goals: dict[bytes, Goal] = field(default_factory=dict)
     states: list[ReportedState] = field(default_factory=list)
     commands: list[float] = field(default_factory=list)  # times of orders to stop, when they reach the machine
+    releases: list[float] = field(default_factory=list)  # times at which its emergency stop was released
 
     def since(self, at: float) -> "TrialRecording":
         """The part after a moment, with the stops and goals that were under way then, and the last state before it."""
@@ -76,6 +77,7 @@ class TrialRecording:
             {key: one for key, one in self.goals.items() if one.ended is None or one.ended >= at},
             [*[one for one in self.states if one.at < at][-1:], *[one for one in self.states if one.at >= at]],
             [one for one in self.commands if one >= at],
+            [one for one in self.releases if one >= at],
         )
 
     def goal_after(self, at: float) -> float:

@@ -3,14 +3,18 @@
 import os
 import subprocess
 import sys
+from pathlib import Path
 from types import TracebackType
 
+from tms_cli.drill.operasim import OperaSim
 from tms_config.config import Site
+from tms_config.processes import table
 from tms_runtime import state_folder
 from tms_runtime.environment import environment
 from tms_runtime.priority import come_first, session_first
 
 GROUP = "sim"  # group of the stand-ins in the process table
+SIMULATOR = "operasim"  # stands for all machines of a site
 END_LIMIT = 5.0  # s
 NICE = -15  # above the gateways, since a machine does not wait for them
 
@@ -19,11 +23,13 @@ class StandIns:
     """Starts the stand-ins from the main thread; they end with it, whatever ends it."""
 
     def __init__(self, site: Site) -> None:
-        self._children = [self._start(site, machine) for machine in site.file.machines]
+        names = [row.name for row in table(site) if row.group == GROUP]
+        self._children = [self._start(site, name) for name in names]
+        self.operasim = OperaSim(_log_of(site, SIMULATOR)) if SIMULATOR in names else None
 
-    def _start(self, site: Site, machine: str) -> "subprocess.Popen[bytes]":
-        with state_folder.private(), (site.state / "log" / f"{GROUP}.{machine}.log").open("ab") as log:
-            words = [sys.executable, "-m", "tms_runtime.run", f"{GROUP}:{machine}"]
+    def _start(self, site: Site, name: str) -> "subprocess.Popen[bytes]":
+        with state_folder.private(), _log_of(site, name).open("ab") as log:
+            words = [sys.executable, "-m", "tms_runtime.run", f"{GROUP}:{name}"]
             env = {**os.environ, **environment(site)}
             child = subprocess.Popen(
                 words, env=env, stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT, start_new_session=True
@@ -41,6 +47,8 @@ class StandIns:
 
     def __exit__(self, _type: type[BaseException] | None, _error: BaseException | None,
                  _trace: TracebackType | None) -> None:  # fmt: skip
+        if self.operasim is not None:
+            self.operasim.close()
         for child in self._children:
             child.terminate()
         for child in self._children:
@@ -49,3 +57,7 @@ class StandIns:
             except subprocess.TimeoutExpired:
                 child.kill()
                 child.wait()
+
+
+def _log_of(site: Site, name: str) -> Path:
+    return site.state / "log" / f"{GROUP}.{name}.log"

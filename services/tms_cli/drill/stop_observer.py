@@ -9,9 +9,11 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool
 from tms_msg_rc.msg import MachineState, StopReceipt
 
-from tms_cli.drill.record import Goal, Receipt, ReportedState, TrialRecording, sample_of, time_of
+from tms_cli.drill.operasim import OperaSim
+from tms_cli.drill.record import Goal, MotionSample, Receipt, ReportedState, TrialRecording, sample_of, time_of
 from tms_config.clock import monotonic, sleep, unix_time
 from tms_config.config import Site
+from tms_config.models import Still
 from tms_machine.border import motions
 from tms_ros.node import Ros
 from tms_runtime.pulse import Pulse
@@ -26,26 +28,25 @@ WAITING = 250  # samples of the truth, ten seconds
 class StopObserver:
     """Callbacks run on the executor thread, samples in the thread of the pulse, all else in threads of the trials."""
 
-    def __init__(self, node: Ros, site: Site, machine: str) -> None:
-        border, self._still = site.border(machine), site.model_of(machine).still
+    def __init__(self, node: Ros, site: Site, machine: str, operasim: OperaSim | None) -> None:
+        border, still = site.border(machine), site.model_of(machine).still
         self._lock = threading.Lock()
         self._record = TrialRecording()
         self._forgotten = unix_time()
-        # Sampled without callbacks: 150 callbacks a second would take a tenth of a busy PC's processor.
-        self._truth = node.sample_arrivals(JointState, f"/{machine}/sim/truth", WAITING, best_effort=False)
+        self._truth = operasim.truth(machine, still) if operasim is not None else told_truth(node, machine, still)
         Pulse(node).add(self._take_truth)
         node.subscribe(StopReceipt, f"/{machine}/rc/receipts", self._on_receipt, depth=20, latched=True)
         node.subscribe(MachineState, f"/{machine}/rc/state", self._on_state, depth=10, latched=True)
         for motion in motions(border):
             topic = f"/{machine}/{getattr(border, motion.field)}/_action/status"
             node.subscribe(GoalStatusArray, topic, self._on_status, depth=10, latched=True)
-        if border.cmd_vel:
+        if border.cmd_vel and border.controller == "theirs":  # ours sends its zeros when it does nothing
             node.subscribe(Twist, f"/{machine}/{border.cmd_vel}", self._on_velocity, depth=10)
         if border.emg_stop:
             node.subscribe(Bool, f"/{machine}/{border.emg_stop}", self._on_emergency, depth=10)
 
     def _take_truth(self) -> None:
-        samples = [sample_of(arrival.message, self._still) for arrival in self._truth()]
+        samples = self._truth()
         with self._lock:
             self._record.truth += samples
             if samples and samples[-1].at - self._forgotten > ROUND:
@@ -73,6 +74,9 @@ class StopObserver:
     def _on_emergency(self, message: Bool) -> None:
         if message.data:
             self._commanded()
+            return
+        with self._lock:
+            self._record.releases.append(unix_time())
 
     def _commanded(self) -> None:
         with self._lock:
@@ -109,3 +113,12 @@ class StopObserver:
         """The begin of the open goal; None without one."""
         with self._lock:
             return max((one.began for one in self._record.goals.values() if one.ended is None), default=None)
+
+
+def told_truth(node: Ros, machine: str, still: Still) -> Callable[[], list[MotionSample]]:
+    """A function that takes what a stand-in has told since its last call.
+
+    Sampled without callbacks: 150 callbacks a second would take a tenth of a busy PC's processor.
+    """
+    arrivals = node.sample_arrivals(JointState, f"/{machine}/sim/truth", WAITING, best_effort=False)
+    return lambda: [sample_of(arrival.message, still) for arrival in arrivals()]

@@ -11,7 +11,8 @@ from tms_msg_rc.srv import StopMachine
 
 from tms_cli.drill.busy import stood_still
 from tms_cli.drill.hits import BACK_LIMIT, Hits
-from tms_cli.drill.plan import NONE, TS, How, StopScenario, Trial
+from tms_cli.drill.operasim import OperaSim
+from tms_cli.drill.plan import NONE, TROUBLES, TS, How, StopScenario, Trial
 from tms_cli.drill.record import TrialRecording
 from tms_cli.drill.stop_observer import StopObserver
 from tms_cli.drill.verdict import AFTER, BY_ITSELF, GOES_ON, HUNG, UNPROVEN, Row, TrialFacts, judge, takes_gateway
@@ -52,10 +53,10 @@ class Struck:
 class Hand:
     """Runs the trials of one machine."""
 
-    def __init__(self, node: Ros, site: Site, machine: str) -> None:
-        self._site, self.machine = site, machine
+    def __init__(self, node: Ros, site: Site, machine: str, operasim: OperaSim | None) -> None:
+        self._site, self.machine, self._operasim = site, machine, operasim
         self.model = site.file.machines[machine].model
-        self.eyes, self.work, self._node = StopObserver(node, site, machine), Work(node, site, machine), node
+        self.eyes, self.work, self._node = StopObserver(node, site, machine, operasim), Work(node, site, machine), node
         watch = StandStill(facts_of(site, machine))
         self._ends = watch.dead_time + watch.braking
         self._hits = Hits(site)
@@ -108,6 +109,10 @@ class Hand:
             struck.hit.set_result(unix_time())
             self.work.cancel() if stop.how is How.CANCEL else self._press()
             struck.back.set_result(0.0)
+        elif self._operasim is not None and stop.how in TROUBLES:
+            until(at)
+            struck.hit.set_result(unix_time())
+            struck.back.set_result(self._operasim.trouble(stop.how))
         elif stop.how is How.POWER:
             pids = self._hits.everything()
             until(at)

@@ -19,6 +19,7 @@ AFTER = 1.0  # s after a receipt in which the machine may not move either
 ASSERTED = 3.0  # s within which the gateway must stop a later motion ...
 UNPROVEN = 12.0  # s ... and for the receipt of that stop, which waits for a stand-still
 EXTRA = 3.0  # s beyond dead time and braking in which a machine without a fault may move
+JUMP = 0.5  # s from a release of its emergency stop in which a machine of OperaSim-PhysX that stands may jump
 BY_ITSELF = 1.5  # s after the hit within which a motion that reaches its goal counts as not stopped
 GOES_ON, INTERRUPTED, HUNG = "goes on", "interrupted", "hung"
 LEFT_OUT = "left out"
@@ -189,7 +190,9 @@ def _measure(row: Row, facts: TrialFacts) -> None:
     """Fill in time and travel to the true stand-still."""
     proven = min((one.at for one in facts.record.receipts), default=math.inf)
     fresh = facts.record.goal_after(proven)  # a goal before that was stopped, too
+    jumps = [(released, released + JUMP) for released in facts.record.releases]
     truth = [one for one in facts.record.truth if facts.stop <= one.at < fresh]
+    truth = [one for one in truth if not any(begin <= one.at < end for begin, end in jumps)]
     if not truth:
         return
     last = next((number for number in reversed(range(len(truth))) if moves(truth[number])), None)

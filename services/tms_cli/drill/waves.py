@@ -28,7 +28,7 @@ class Waves:
 
     def __init__(self, node: Ros, site: Site, stand_ins: StandIns) -> None:
         self._site, self._stand_ins = site, stand_ins
-        self._hands = {machine: Hand(node, site, machine) for machine in site.file.machines}
+        self._hands = {machine: Hand(node, site, machine, stand_ins.operasim) for machine in site.file.machines}
         # Raise ROS's threads, but not those that start processes: late samples of the true motion may be lost.
         come_first(NICE, others())
         session_first(os.getpid(), NICE)

@@ -41,14 +41,17 @@ class Work:
         stored = session.call(node, AddTask, "/tms/db/add_task", task_sequence=tree, description=f"drill {machine}")
         self._task = stored.task_id
         self._peer = node.peer(ExecuteTask, "/tms/execute_task")
-        self._fault = node.publisher(String, f"/{machine}/sim/fault")
+        stand_in = site.file.backend == "sim"
+        self._fault = node.publisher(String, f"/{machine}/sim/fault") if stand_in else None
         self._call: Call[ExecuteTask.Result, ExecuteTask.Feedback] | None = None
         self._run = ""
         self.lost = False  # its scheduler was lost, so that only the history has its end
         self.subtask = next(iter(self._subtasks.values()))  # the process behind the present leaf
 
     def be(self, fault: str) -> None:
-        """Set the fault of the stand-in; `none` removes it."""
+        """Set the fault of the stand-in; `none` removes it. The simulator's machines have no faults."""
+        if self._fault is None:
+            return
         joints = list(self._site.model_of(self.machine).joints)
         self._fault.publish(String(data=json.dumps(fault_of(fault, joints))))
 

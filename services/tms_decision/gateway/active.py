@@ -50,10 +50,7 @@ def _reach(gateway: Gateway, goal: Goal, now: float) -> None:
 
 
 def _hear(gateway: Gateway, goal: Goal, now: float) -> None:
-    """Send the goal once all sources are heard: else the machine would be stopped and latched as soon as it moves.
-
-    The messages of a machine that was just switched on may arrive here a moment later than at the goal's sender.
-    """
+    """Send the goal once all sources are heard, maybe later than by its sender: else its motion would be a latch."""
     silent = gateway.silent(now)
     if silent is not None and not goal.cancelled:
         if now - goal.since >= SERVER_LIMIT:

@@ -89,6 +89,7 @@ class Stop:
     stamp: float  # s since 1970
     proof: Proof
     again: float  # when its commands are repeated
+    limit: float  # when it is given up
     broken: Reason | None = None  # why it cannot be confirmed in any case: the machine had moved without a goal
     receipt: Receipt | None = None  # once it is proven, or given up
     answer: Receipt | None = None  # once the receipt is on the disk, or the disk has taken too long

@@ -37,10 +37,7 @@ def stop(
     gateway: Gateway, now: float, cause: Reason, kind: StopKind, *, run: int = 0, expected: Expected = NOTHING,
     broken: Reason | None = None,
 ) -> Stop:  # fmt: skip
-    """Stop the machine, whichever client moves it.
-
-    `expected`: see `StandStill.proof`; with a goal under way, it is worked out from that goal.
-    """
+    """Stop the machine, whoever moves it; `expected`: see `StandStill.proof`, worked out here from a goal under way."""
     active, latched = gateway.active, kind is StopKind.LATCH
     gateway.do(*commands(latched))
     if active is not None and active.sent and not active.outcome:
@@ -83,7 +80,8 @@ def _begin(gateway: Gateway, now: float, cause: Reason, latched: bool, run: int,
     if not under_way:
         gateway.watch.mark()
     gateway.numbered += 1
-    made = Stop(gateway.numbered, cause, latched, run, gateway.active, now, now + gateway.wall, proof, now + AGAIN)
+    made = Stop(gateway.numbered, cause, latched, run, gateway.active, now, now + gateway.wall, proof, now + AGAIN,
+                now + STOP_PROVEN)  # fmt: skip
     gateway.stops.append(made)
     return made
 
@@ -91,12 +89,12 @@ def _begin(gateway: Gateway, now: float, cause: Reason, latched: bool, run: int,
 def advance(gateway: Gateway, now: float) -> None:
     """Repeat the commands of stops that are not proven yet, and end those that are, or have taken too long."""
     for one in list(gateway.stops):
-        late = now - one.begun
         if one.receipt is not None:
-            if late >= STOP_PROVEN + DISK_LIMIT and not one.over:
+            if now >= one.limit + DISK_LIMIT and not one.over:
                 _over(gateway, one, replace(one.receipt, confirmed=False, latched=True, detail=r.NoEnd()))
-        elif _seen(gateway, one, now) or late >= STOP_PROVEN:
-            _end(gateway, one, now)
+        elif _seen(gateway, one, now) or now >= one.limit:
+            if not _released(gateway, one, now):
+                _end(gateway, one, now)
         elif now > one.again:
             one.again = now + AGAIN
             gateway.do(*commands(one.latched))
@@ -106,15 +104,24 @@ def _seen(gateway: Gateway, one: Stop, now: float) -> bool:
     return one.ended() and gateway.watch.proven(one.proof, now)
 
 
+def _released(gateway: Gateway, one: Stop, now: float) -> bool:
+    """Release what the host agent has pressed, once the machine stands; whether it may jump and is watched anew."""
+    latched, jumps = gateway.latch.cause is not None, gateway.facts.jumps
+    if not gateway.stood_in or latched or not gateway.recovery.reached or not _seen(gateway, one, now):
+        return False
+    gateway.stood_in = False
+    gateway.do(f.Emergency(False))
+    for other in gateway.stops if jumps else ():
+        other.proof, other.limit = other.proof.later(now + jumps), other.limit + jumps
+    return jumps > 0.0
+
+
 def _end(gateway: Gateway, one: Stop, now: float) -> None:
     """Note what a stop has shown, then keep its receipt."""
     receipt = one.receipt = _receipt(gateway, one, now)
     if not receipt.confirmed:
         gateway.latch.close(r.NotSeenToStand(one.cause, receipt.detail or r.NoEnd(), gateway.facts.name))
         gateway.do(f.Emergency(True), f.Publish())
-    elif gateway.stood_in and gateway.latch.cause is None and gateway.recovery.reached:  # else it is lost
-        gateway.stood_in = False
-        gateway.do(f.Emergency(False))
     if receipt.confirmed and gateway.run is None:  # it stands, and no run's goal moves it
         notes.hold(gateway, "", 0)
     else:
@@ -135,9 +142,7 @@ def _receipt(gateway: Gateway, one: Stop, now: float) -> f.Receipt:
 
 def stood_after(seconds: float, joint: str, angle: float, way: float, cause: Reason) -> Reason:
     """How long it took until the machine stood, and how far it went; `joint` is empty if none was seen."""
-    if not joint:
-        return r.StoodWithoutJoints(seconds, way, cause)
-    return r.Stood(seconds, angle, joint, way, cause)
+    return r.Stood(seconds, angle, joint, way, cause) if joint else r.StoodWithoutJoints(seconds, way, cause)
 
 
 def kept(gateway: Gateway, event: ReceiptKept) -> None:

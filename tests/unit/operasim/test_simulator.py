@@ -13,13 +13,13 @@ import pytest
 from click.testing import CliRunner
 
 from conftest import PROJECT, wait_until
-from control_client import ControlClient
 from fake_endpoint import FakeEndpoint, endpoint_frame, handshake
 from operasim import model
 from operasim.cdr import Writer
 from operasim.model import Unknowns
 from operasim.program import main
 from operasim.simulator import Settings, Simulator
+from tms_cli.drill.operasim import ControlPort
 
 LIMIT = 20.0  # s
 STOP = b"\0\1\0\0\1"
@@ -35,7 +35,7 @@ class Rig:
         self.simulator = Simulator(settings, self._event)
         self._thread = threading.Thread(target=self.simulator.run, daemon=True)
         self._thread.start()
-        self._control = ControlClient(self.told("control")[0]["port"], LIMIT)
+        self._control = ControlPort(self.told("control")[0]["port"], LIMIT)
         self.command = self._control.command
 
     def until(self, holds: Callable[[], bool], what: str) -> None:

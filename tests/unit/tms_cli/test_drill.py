@@ -10,7 +10,7 @@ from click.testing import CliRunner
 from tms_cli.commands import drill
 from tms_cli.drill import tasks
 from tms_cli.drill.figures import percentile, summary
-from tms_cli.drill.plan import FAULTS, NONE, RP, SINGLE, STOPS, fault_of, plan, plan_only
+from tms_cli.drill.plan import FAULTS, NONE, OPERASIM, RP, SINGLE, STAND_INS, fault_of, plan, plan_only
 from tms_cli.drill.report import line, markdown, text
 from tms_cli.drill.verdict import HUNG, LEFT_OUT, Row
 from tms_config.config import CONFIGS, load_site
@@ -19,7 +19,8 @@ from tms_ts import bt
 
 MACHINES = {"zx200": True, "zx120": True, "ic120_1": False, "mst2200_1": False, "mst110cr_2": False, "d37": False}
 SITE = str(CONFIGS / "sites" / "drill.yaml")
-EVERY_STOP = set(STOPS.values())
+EVERY_STOP = set(STAND_INS.stops.values())
+OPERASIM_MACHINES = {"zx200": True, "zx120": True, "ic120": False, "mst110cr": False}
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -29,6 +30,22 @@ def test_a_quick_drill_has_every_stop_and_every_fault(seed: int) -> None:
     assert {trial.stop for trial in trials} == EVERY_STOP
     assert {trial.fault for trial in trials} == set(FAULTS)
     assert len(waves) == 12
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_quick_drill_over_operasim_has_every_stop_of_it_and_no_fault(seed: int) -> None:
+    trials = [trial for wave in plan(seed, OPERASIM_MACHINES, 1, quick=True, kinds=OPERASIM) for trial in wave]
+    assert {trial.stop for trial in trials} == set(OPERASIM.stops.values())
+    assert {"kill mc", "freeze tms:if", "connection of the simulator lost"} <= set(OPERASIM.stops)
+    assert {trial.fault for trial in trials} == {NONE}
+
+
+def test_a_stop_that_a_site_does_not_know_is_refused(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("TMS_STATE", str(tmp_path / "state"))
+    monkeypatch.setenv("TMS_SITE", SITE)
+    refused = CliRunner().invoke(drill.command, ["--only", "simulator paused"])
+    assert refused.exit_code == 2
+    assert "this site cannot be drilled with 'simulator paused': cancel, " in refused.output
 
 
 def test_four_rounds_have_every_stop_with_every_fault() -> None:
@@ -57,13 +74,13 @@ def test_the_plan_fits_a_site_of_one_machine() -> None:
     assert all(len(wave) == 1 for wave in plan(1, {"ic120": False}, 1, quick=True))
 
 
-@pytest.mark.parametrize("name", STOPS)
+@pytest.mark.parametrize("name", STAND_INS.stops)
 def test_a_drill_of_one_stop_hits_every_machine_with_it(name: str) -> None:
     waves = plan_only(2, MACHINES, name, 9)
     assert [[trial.machine for trial in wave] for wave in waves] == [list(MACHINES)] * 9
     for trial in (trial for wave in waves for trial in wave):
-        lacks_it = STOPS[name].processes == (RP,) and not MACHINES[trial.machine]
-        assert trial.stop == (SINGLE[0] if lacks_it else STOPS[name])
+        lacks_it = STAND_INS.stops[name].processes == (RP,) and not MACHINES[trial.machine]
+        assert trial.stop == (SINGLE[0] if lacks_it else STAND_INS.stops[name])
 
 
 def test_a_quick_drill_of_one_stop_is_refused() -> None:

@@ -56,6 +56,14 @@ def test_an_honest_stop_is_measured() -> None:
     assert row.travel_m == pytest.approx(0.2, abs=0.01)
 
 
+@pytest.mark.parametrize(("until", "stood"), [(6.2, 2.0), (7.0, 7.0)])
+def test_a_jump_at_a_release_is_no_run_on_but_what_lasts_is(until: float, stood: float) -> None:
+    found = facts(truth((0.0, 2.0), (6.0, until)), receipt(seconds=8.0))
+    found.record.releases.append(HIT + 5.9)
+    row = judge(found)
+    assert row.stood_s == pytest.approx(stood, abs=0.03)
+
+
 @pytest.mark.parametrize(
     ("motion", "text"),
     [

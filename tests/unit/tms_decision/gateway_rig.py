@@ -23,7 +23,7 @@ TURN = 0.5  # rad/s of every goal
 class Rig:
     """One gateway. `run` lets time pass."""
 
-    def __init__(self, left: e.Left | None = None, *, at_once: bool = False) -> None:
+    def __init__(self, left: e.Left | None = None, *, at_once: bool = False, jumps: float = 0.0) -> None:
         self.now, self.wall = 100.0, 1e9
         self.plant, self.disk_answers, self.server_answers = Plant(at_once), True, True
         self.look = e.Beat(0.0)
@@ -32,9 +32,8 @@ class Rig:
         self.lasts: dict[int, float] = {}
         self.told = 0.0
         self.disk_problem: Reason | None = None
-        self.gateway, effects = start(
-            facts(at_once=at_once), "zx200:rc", ["swing"], left or e.Left(None), self.now, self.wall
-        )
+        machine = replace(facts(at_once=at_once), jumps=jumps)
+        self.gateway, effects = start(machine, "zx200:rc", ["swing"], left or e.Left(None), self.now, self.wall)
         self.do(effects)
         self.happens(e.StandsIn(False))  # the host agent has seen it come
 

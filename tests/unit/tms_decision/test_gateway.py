@@ -407,6 +407,15 @@ def test_a_re_arm_takes_two_steps_and_releases_the_machine() -> None:
     rig.moving(2)
 
 
+def test_the_jump_of_a_release_is_not_taken_for_a_motion_that_the_last_gateway_has_left() -> None:
+    rig = Rig(e.Left(SoftwareStop()), jumps=2.5).run(0.5)
+    assert rig.rearm().armed and rig.gateway.recovery.until > rig.now
+    rig.plant.accept(99, 0.3, 0.5, rig.now)
+    rig.run(8.0)
+    assert rig.gateway.watch.moved_at > 100.0 and rig.gateway.latch.cause is None
+    rig.moving(2)
+
+
 def test_a_re_arm_counts_only_when_its_note_is_on_the_disk() -> None:
     rig = latched()
     rig.disk_problem = FULL
@@ -470,6 +479,36 @@ def test_a_machine_with_a_goal_is_not_taken() -> None:
     rig = ready().moving()
     rig.happens(e.TakeAsked(1, "Sato", False))
     assert rig.all(f.Taken) == [f.Taken(1, StillActive("zx200"))]
+
+
+@pytest.mark.parametrize("jumps", [0.0, 2.5])
+def test_what_the_host_agent_has_pressed_is_released_before_the_receipt_that_waits_for_a_jump(jumps: float) -> None:
+    rig = ready(jumps=jumps).moving()
+    rig.happens(e.StoodIn())
+    rig.happens(e.GoalCancelled(1))
+    while f.Emergency(False) not in rig.done:
+        assert rig.now < 120.0, "it is never released"
+        assert not rig.all(f.Tell)
+        rig.run(0.05)
+    released = rig.now
+    while not rig.all(f.Tell):
+        assert rig.now < 120.0, "there is never a receipt"
+        rig.run(0.05)
+    assert rig.now - released >= jumps
+    assert rig.receipt.confirmed and not rig.receipt.latched
+    assert rig.done.count(f.Emergency(False)) == 1
+
+
+def test_a_machine_that_goes_on_after_its_release_is_latched() -> None:
+    rig = ready(jumps=2.5).moving()
+    rig.happens(e.StoodIn())
+    rig.happens(e.GoalCancelled(1))
+    while f.Emergency(False) not in rig.done:
+        rig.run(0.05)
+    rig.plant.accept(99, 60.0, 0.5, rig.now)  # a motion that no cancel ends
+    rig.plant.fault.ignore_cancel = True
+    rig.run(15.0)
+    assert not rig.receipt.confirmed and rig.gateway.latch.cause is not None
 
 
 def test_its_own_levers_stop_its_goal() -> None:

@@ -84,7 +84,7 @@ def test_it_stays_in_reach_while_others_hang(health: metrics.Health) -> None:
             began = time.monotonic()
             assert metrics.unready(ROW, seconds=2.0) == BUSY
             assert time.monotonic() - began < 2.0
-        assert threading.active_count() == threads
+        assert threading.active_count() <= threads  # those of other tests may end meanwhile
         assert everything(hanging[0]) == b""  # the oldest gave way
         hanging[-1].sendall(WHOLE)  # a young one still gets its answer, if it asks
         assert everything(hanging[-1]).endswith(b"ok\n")
