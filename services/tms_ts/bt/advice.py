@@ -11,8 +11,8 @@ from tms_reason.reason import Reason
 from tms_ts.bt.blackboard_nodes import SetBlackboard
 from tms_ts.bt.convert import CPP_NAMES, FROM_TEXT, MISSING
 from tms_ts.bt.node import AtOnce, Keys, Node, Place
-from tms_ts.bt.ports import Direction
-from tms_ts.bt.reasons import KeyOfTwoTypes, MayHang, PortType, ThrowsWithoutPort
+from tms_ts.bt.ports import Direction, Pointer
+from tms_ts.bt.reasons import KeyOfTwoTypes, MayHang, NeverWritten, PortType, ThrowsWithoutPort
 
 
 def advise(nodes: list[Node]) -> None:
@@ -25,7 +25,7 @@ def advise(nodes: list[Node]) -> None:
     for node in nodes:
         for fault in node.faults():
             node.context.faults.append((node.line, node.path, fault))
-        for note in (*literals(node), *node.preflight(keys)):
+        for note in (*literals(node), *node.preflight(keys), *(never_written(node, keys) if keys.complete else ())):
             node.warn(note)
         if node.may_hang([synchronous_outcomes[child] for child in node.children]):
             node.warn(MayHang(node.registration_name))
@@ -55,7 +55,14 @@ def known_keys(nodes: list[Node]) -> Keys:
             writers.setdefault(place, node)
             if kind is not Any:
                 kinds.setdefault(place, (kind, node.line))
-    return Keys(texts, writers, kinds)
+    complete = not any(isinstance(node.bindings.get(node.key_port), Pointer) for node in nodes)
+    return Keys(texts, writers, kinds, complete)
+
+
+def never_written(node: Node, keys: Keys) -> list[Reason]:
+    """Warnings of keys that a node needs and that nothing in the document gives a value."""
+    missing = [key for key in node.needed() if node.blackboard.place(key) not in keys.writers]
+    return [NeverWritten(key, node.registration_name) for key in missing if node.blackboard.get(key) is MISSING]
 
 
 def literals(node: Node) -> list[Reason]:

@@ -46,6 +46,7 @@ class Keys:
     texts: Mapping[str, str] = field(default_factory=dict)  # that a SetBlackboard gives a key
     writers: Mapping[Place, Node] = field(default_factory=dict)  # the first node that writes a key
     kinds: Mapping[Place, tuple[Any, int]] = field(default_factory=dict)  # the first known type, and its line
+    complete: bool = True  # whether every key that is written is known before the run
 
 
 class Node:
@@ -73,6 +74,8 @@ class Node:
     versions: ClassVar[tuple[int, ...]] = ()  # of the C++ system that have this node
     older_ports: ClassVar[frozenset[str]] = frozenset()  # that older tasks have; the palette leaves them out
     asking: ClassVar[bool] = False  # RUNNING only because an answer has not come yet
+    key_port: ClassVar[str] = ""  # an input that names a key which it writes
+    key_kind: ClassVar[Any] = Any  # the type of what it writes there; Any: only the run decides
 
     def __init__(self, birth: NodeSpec) -> None:
         self.name = birth.name
@@ -200,7 +203,13 @@ class Node:
         """Keys that it writes, as far as the document names them, with their types; Any where only the run decides."""
         outputs = [port for port in self.ports.values() if port.direction is Direction.OUTPUT and port.kind is not Any]
         bound = [(self.bindings.get(port.name), port.kind) for port in outputs]
-        return [(one.key if isinstance(one, Pointer) else one, kind) for one, kind in bound if one is not None]
+        named = self.literal(self.key_port) if self.key_port else None
+        known = [(one.key if isinstance(one, Pointer) else one, kind) for one, kind in bound if one is not None]
+        return known if named is None else [*known, (named, self.key_kind)]
+
+    def needed(self) -> list[str]:
+        """Keys without whose value it fails, as far as the document names them."""
+        return []
 
     def number_written(self, keys: Keys, key: str) -> bool:
         """Whether a node gives a key a number, as far as the document tells."""

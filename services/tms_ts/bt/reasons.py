@@ -108,6 +108,8 @@ class TextCountsAsBoolean(Reason, text="the text '{value}' of '{key}' counts as 
     "the C++ system does not know the key here"): value: str; key: str
 class TextCountsHere(Reason, text="the text '{value}' counts as a boolean or a number here; "
     "the C++ system calls the expression invalid"): value: str
+class NeverWritten(Reason, text="nothing in the task gives the key '{key}' a value, so {node} fails; "
+    "the C++ system may throw here"): key: str; node: str
 class NumberBesideText(Reason, text="{key} is a number and is compared with the text '{value}': "
     "the C++ system calls the expression invalid, this engine compares the numbers"): key: str; value: str
 class OneRoundMore(Reason, text="{key} has no value before this loop: "

@@ -23,6 +23,7 @@ class BlackboardValueReaderMongo(Asking):
 
     __slots__ = ()
     versions = (5,)
+    key_port = "output_port"
     writes: ClassVar[bool] = False
     mongo_record_name: In[str]
     mongo_param_name: In[str]
@@ -30,10 +31,6 @@ class BlackboardValueReaderMongo(Asking):
 
     def record_asked(self) -> tuple[str, str]:
         return self.reported("mongo_record_name"), self.reported("mongo_param_name")
-
-    def written(self) -> list[tuple[str, Any]]:
-        key = self.literal("output_port")
-        return [] if key is None else [(key, Any)]
 
     def ask(self) -> Pending[Any]:
         return self.world.flags.read(self.mongo_record_name, self.mongo_param_name)

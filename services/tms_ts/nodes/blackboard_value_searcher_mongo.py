@@ -10,8 +10,8 @@ from tms_ts.bt.node import Keys
 from tms_ts.bt.ports import Pointer
 from tms_ts.bt.reasons import AllBraces
 from tms_ts.bt.registry import node
-from tms_ts.nodes.mongo_value_searcher import MongoValueSearcher
-from tms_ts.nodes.shared_value import referred, typed
+from tms_ts.nodes.mongo_value_searcher import MongoValueSearcher, parts
+from tms_ts.nodes.shared_value import keys_named, referred, typed
 from tms_ts.world import Value
 
 _KEY = re.compile(r"\{(.+)\}", re.DOTALL)
@@ -33,6 +33,10 @@ class BlackboardValueSearcherMongo(MongoValueSearcher):
     def wanted(self, text: str) -> Value | Missing:
         found = referred(self, text, _KEY)
         return typed(text) if found is None else found
+
+    def needed(self) -> list[str]:
+        bound = self.bindings.get("mongo_value", "")
+        return keys_named(*parts(bound.text if isinstance(bound, Pointer) else bound), form=_KEY)
 
     def preflight(self, keys: Keys) -> list[Reason]:
         bound = self.bindings.get("mongo_value")

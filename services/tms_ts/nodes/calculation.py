@@ -41,6 +41,11 @@ def parse(formula: str) -> tuple[ast.expr, list[str]]:
         raise Invalid(FormulaUnreadable()) from error
 
 
+def keys_of(formula: str) -> list[str]:
+    """The keys of a formula, also of one that cannot be read."""
+    return _KEY.findall(formula)
+
+
 def calculate(formula: str, value: Callable[[str], float]) -> float:
     """The result of a formula; `value` gives the number at a key.
 

@@ -37,6 +37,10 @@ class Counter(SyncAction):
             self.store(self.key, str(number + 1))
         return SUCCESS
 
+    def needed(self) -> list[str]:
+        key = self.literal("key")
+        return [] if key is None else [key]
+
     def preflight(self, keys: Keys) -> list[Reason]:
         key = self.literal("key")
         return [NumberNotText(key)] if key is not None and self.number_written(keys, key) else []

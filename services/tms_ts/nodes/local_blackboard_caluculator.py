@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from tms_reason.reason import Reason
 from tms_ts.bt.leaf import SyncAction
 from tms_ts.bt.node import Keys
@@ -11,7 +9,7 @@ from tms_ts.bt.ports import In, Pointer
 from tms_ts.bt.reasons import AllBraces, AlwaysFails, HoldsNoNumber
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, SUCCESS, Status
-from tms_ts.nodes.calculation import calculate, parse
+from tms_ts.nodes.calculation import calculate, keys_of, parse
 from tms_ts.nodes.expression import WHOLE_NUMBER, Invalid
 
 
@@ -26,6 +24,7 @@ class LocalBlackboardCaluculator(SyncAction):
     __slots__ = ()
     versions = (6,)
     needs = ("calculation_formula", "output_key")
+    key_port, key_kind = "output_key", float
     calculation_formula: In[str]
     output_key: In[str]
 
@@ -55,9 +54,9 @@ class LocalBlackboardCaluculator(SyncAction):
         self.store(self.output_key, result)
         return SUCCESS
 
-    def written(self) -> list[tuple[str, Any]]:
-        key = self.literal("output_key")
-        return [] if key is None else [(key, float)]
+    def needed(self) -> list[str]:
+        bound = self.bindings.get("calculation_formula")
+        return keys_of(bound.text if isinstance(bound, Pointer) else bound or "")
 
     def preflight(self, keys: Keys) -> list[Reason]:
         bound = self.bindings.get("calculation_formula")

@@ -12,7 +12,7 @@ from tms_ts.bt.reasons import AlwaysFails, NoOperation
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import SUCCESS, Status
 from tms_ts.nodes.asking import Asking
-from tms_ts.nodes.shared_value import surprising, written
+from tms_ts.nodes.shared_value import keys_named, surprising, written
 from tms_ts.world import ARRAY_CHANGES, Pending
 
 
@@ -28,6 +28,7 @@ class MongoArrayWriter(Asking):
 
     __slots__ = ()
     versions = (6,)
+    needs = ("mongo_record_name", "mongo_param_name", "operation")
     writes: ClassVar[bool] = True
     mongo_record_name: In[str]
     mongo_param_name: In[str]
@@ -49,6 +50,9 @@ class MongoArrayWriter(Asking):
 
     def answered(self, value: Any) -> Status:
         return SUCCESS
+
+    def needed(self) -> list[str]:
+        return keys_named(self.literal("input_value"))
 
     def preflight(self, keys: Keys) -> list[Reason]:
         operation, text = self.literal("operation"), self.literal("input_value")

@@ -11,7 +11,7 @@ from tms_ts.bt.reasons import AlwaysFails, OutputNotConnected, UnevenLists
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import SUCCESS, Status
 from tms_ts.nodes.asking import Asking
-from tms_ts.nodes.shared_value import referred, typed
+from tms_ts.nodes.shared_value import keys_named, referred, typed
 from tms_ts.world import Pending, Value
 
 
@@ -60,6 +60,9 @@ class MongoValueSearcher(Asking):
         bound = self.bindings["output_port"]
         self.store(bound.key if isinstance(bound, Pointer) else bound, value)
         return SUCCESS
+
+    def needed(self) -> list[str]:
+        return keys_named(*parts(self.literal("mongo_value") or ""))
 
     def preflight(self, keys: Keys) -> list[Reason]:
         names, values = self.literal("mongo_param_name"), self.literal("mongo_value")

@@ -12,7 +12,7 @@ from tms_ts.bt.reasons import AlwaysFails
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import SUCCESS, Status
 from tms_ts.nodes.asking import Asking
-from tms_ts.nodes.shared_value import hopeless, surprising, written
+from tms_ts.nodes.shared_value import hopeless, keys_named, surprising, written
 from tms_ts.world import Pending
 
 
@@ -45,6 +45,9 @@ class MongoValueWriter(Asking):
 
     def answered(self, value: Any) -> Status:
         return SUCCESS
+
+    def needed(self) -> list[str]:
+        return keys_named(self.literal("input_value"))
 
     def preflight(self, keys: Keys) -> list[Reason]:
         text, type_ = self.literal("input_value"), self.literal("input_type") or ""

@@ -62,6 +62,11 @@ def referred(node: Node, text: str, form: re.Pattern[str] = _KEY) -> Value | Mis
     return MISSING
 
 
+def keys_named(*texts: str | None, form: re.Pattern[str] = _KEY) -> list[str]:
+    r"""The keys that texts of the form \key\ name."""
+    return [named[1] for text in texts if text is not None and (named := form.fullmatch(text)) is not None]
+
+
 def written(node: Node, text: str, type_: str) -> Value | Missing:
     """The value that a node writes for its `input_value`; MISSING fails the node, whose reason is set."""
     if type_ and type_ not in TYPES:

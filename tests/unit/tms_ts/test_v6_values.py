@@ -19,9 +19,10 @@ def stored(one: Tree) -> dict[str, Any]:
     return dict(one.blackboards[0].items())
 
 
-def notes(body: str) -> list[Reason]:
-    """What the check before a run says of a tree."""
-    report = check(document(body))
+def notes(body: str, **stored: str) -> list[Reason]:
+    """What the check before a run says of a tree whose keys get these texts before."""
+    texts = "".join(f'<SetBlackboard value="{value}" output_key="{key}"/>' for key, value in stored.items())
+    report = check(document(f"<Sequence>{texts}{body}</Sequence>" if stored else body))
     assert report.ok
     return [what for _, what in report.warnings]
 
@@ -115,7 +116,7 @@ class TestMongoValueWriter:
          ('input_value="&quot;12ab&quot;"', []), ('input_value="\\k\\"', []), ('input_value="{k}"', [])],
     )  # fmt: skip
     def test_the_check_tells_what_is_lost(self, ports: str, said: list[Reason]) -> None:
-        assert notes(f'<MongoValueWriter mongo_record_name="rec" mongo_param_name="f" {ports}/>') == said
+        assert notes(f'<MongoValueWriter mongo_record_name="rec" mongo_param_name="f" {ports}/>', k="up") == said
 
 
 class TestMongoArrayWriter:
@@ -149,6 +150,14 @@ class TestMongoArrayWriter:
     def test_the_check_names_an_unknown_operation(self) -> None:
         assert notes(self.body.format("a", "insert")) == [r.AlwaysFails(r.NoOperation("insert"), "MongoArrayWriter")]
         assert notes(self.body.format("a", "add")) == []
+
+    def test_missing_ports_are_told(self) -> None:
+        assert notes("<MongoArrayWriter/>") == [
+            r.ThrowsWithoutPort("MongoArrayWriter", port)
+            for port in ("mongo_record_name", "mongo_param_name", "operation")
+        ]
+        with pytest.raises(TickError):
+            tree("<MongoArrayWriter/>").tick()
 
     def test_it_counts_as_a_writer_of_its_record(self) -> None:
         (value,) = tree(self.body.format("a", "add")).shared_values()
@@ -221,7 +230,7 @@ class TestMongoValueSearcher:
 
     def test_the_check_tells_of_braces_at_both_ends(self) -> None:
         body = self.body.format("BlackboardValueSearcherMongo", "a,b", "{x},{y}", "k")
-        assert notes(body) == [r.AllBraces("mongo_value", "{x},{y}")]
+        assert notes(body, x="1", y="2") == [r.AllBraces("mongo_value", "{x},{y}")]
 
 
 class TestKeepRunningUntilFlgup:
@@ -310,8 +319,11 @@ class TestCalculator:
         assert stored(one) == {"n": 1.0}
 
     def test_the_check_tells_where_the_cpp_system_throws(self) -> None:
-        assert notes(self.body.format("{a} + {b}", "k")) == [r.AllBraces("calculation_formula", "{a} + {b}")]
-        assert notes(self.body.format("({a} + {b})", "k")) == notes(self.body.format("{a}", "k")) == []
+        assert notes(self.body.format("{a} + {b}", "k"), a="1", b="2") == [
+            r.AllBraces("calculation_formula", "{a} + {b}")
+        ]
+        assert notes(self.body.format("({a} + {b})", "k"), a="1", b="2") == []
+        assert notes(self.body.format("{a}", "k"), a="1") == []
         assert notes(self.body.format("1 +", "k")) == [
             r.AlwaysFails(r.FormulaUnreadable(), "LocalBlackboardCaluculator")
         ]
@@ -404,3 +416,43 @@ class TestQuotes:
         assert one.tick() is SUCCESS
         assert stored(one) == {"n": "3"}
         assert notes(body) == []
+
+
+NEED = {  # nodes that fail without a value of k, and their ports
+    "MongoValueWriter": 'mongo_record_name="r" mongo_param_name="f" input_value="\\k\\"',
+    "MongoArrayWriter": 'mongo_record_name="r" mongo_param_name="f" input_value="\\k\\" operation="add"',
+    "MongoValueSearcher": 'mongo_param_name="a,b" mongo_value="1,\\k\\" output_port="o"',
+    "BlackboardValueSearcherMongo": 'mongo_param_name="a" mongo_value="{k}" output_port="o"',
+    "LocalBlackboardCaluculator": 'calculation_formula="{k} * 2" output_key="o"',
+    "Counter": 'key="k"',
+}
+
+
+@pytest.mark.parametrize("name", NEED)
+def test_a_key_that_nothing_gives_a_value_is_told_before(name: str) -> None:
+    never, body = r.NeverWritten("k", name), f"<{name} {NEED[name]}/>"
+    assert notes(body) == [never]
+    for writer in (
+        '<SetLocalBlackboard value="a" output_key="k"/>',
+        '<SetBlackboard value="1" output_key="k"/>',
+        '<MongoValueReader mongo_record_name="r" mongo_param_name="f" output_port="k"/>',
+        '<LocalBlackboardCaluculator calculation_formula="1" output_key="k"/>',
+        '<MongoValueSearcher mongo_param_name="a" mongo_value="1" output_port="k"/>',
+        '<MongoValueReader mongo_record_name="r" mongo_param_name="f" output_port="{any}"/>',  # whichever key that is
+    ):
+        assert never not in notes(f"<Sequence>{body}{writer}</Sequence>")
+    other = '<SetLocalBlackboard value="a" output_key="other"/>'
+    assert notes(f"<Sequence>{other}{body}</Sequence>") == [never]
+
+
+def test_a_constant_of_a_subtree_is_a_value() -> None:
+    for constant, said in (('k="1"', []), ("", [r.NeverWritten("k", "Counter")])):
+        text = document(f'<SubTreePlus ID="T1" {constant}/>', '<Counter key="k"/>')
+        assert [what for _, what in check(text).warnings] == said
+
+
+def test_a_counter_that_ends_a_name_needs_both() -> None:
+    body = '<SetLocalBlackboardWithCounter key="pose" counter_key="n"/>'
+    said = [r.NeverWritten(key, "SetLocalBlackboardWithCounter") for key in ("pose", "n")]
+    assert notes(body) == said
+    assert notes(f'<Sequence><SetLocalBlackboard value="0" output_key="n"/>{body}</Sequence>') == said[:1]
