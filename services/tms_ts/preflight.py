@@ -9,7 +9,7 @@ from tms_machine.goal_inputs import Inputs, parted
 from tms_reason.reason import Reason
 from tms_ts.bt import Tree
 from tms_ts.bt.errors import did_you_mean, short
-from tms_ts.bt.reasons import Line, NotPlain, Placed
+from tms_ts.bt.reasons import Line, NotPlain, NumberTooBig, Placed
 from tms_ts.bt.tree import LeafGoal, SharedValue
 from tms_ts.nodes.machine_leaf import ROS_NAME
 from tms_ts.reasons import (
@@ -167,10 +167,18 @@ def _check_shared(found: Findings, values: list[SharedValue], around: Surroundin
             found.warnings.append(at(value.line, NoSharedRecord(value.record)))
         elif not value.writes and value.field not in stored.values:
             found.warnings.append(at(value.line, NoSharedField(value.record, value.field)))
-        elif not value.writes and isinstance(stored.values[value.field], list):
-            found.warnings.append(at(value.line, NotPlain(value.record, value.field)))
+        elif not value.writes and (note := _unread(value, stored.values[value.field])) is not None:
+            found.warnings.append(at(value.line, note))
         elif value.writes and stored.type == "static":
             found.warnings.append(at(value.line, SharedStatic(value.record)))
         elif value.looped and not value.writes and (value.record, value.field) not in own:
             if not around.written(value.record, value.field):
                 found.warnings.append(at(value.line, NobodyWrites(value.field, value.record)))
+
+
+def _unread(value: SharedValue, stored: Any) -> Reason | None:
+    """What is not read of a stored value, here or in the C++ system."""
+    if isinstance(stored, list):
+        return NotPlain(value.record, value.field)
+    large = isinstance(stored, int) and not -(2**31) <= stored < 2**31
+    return NumberTooBig(f"{value.record}.{value.field}") if large else None

@@ -201,11 +201,15 @@ class Node:
 
     def written(self) -> list[tuple[str, Any]]:
         """Keys that it writes, as far as the document names them, with their types; Any where only the run decides."""
-        outputs = [port for port in self.ports.values() if port.direction is Direction.OUTPUT and port.kind is not Any]
-        bound = [(self.bindings.get(port.name), port.kind) for port in outputs]
+        found: list[tuple[str, Any]] = []
+        for name, bound in self.bindings.items():
+            port = self.ports[name]
+            if isinstance(bound, Pointer) and port.direction is not Direction.INPUT:
+                found.append((bound.key, port.kind if port.direction is Direction.OUTPUT else Any))
+            elif isinstance(bound, str) and port.direction is Direction.OUTPUT:
+                found.append((bound, port.kind))
         named = self.literal(self.key_port) if self.key_port else None
-        known = [(one.key if isinstance(one, Pointer) else one, kind) for one, kind in bound if one is not None]
-        return known if named is None else [*known, (named, self.key_kind)]
+        return found if named is None else [*found, (named, self.key_kind)]
 
     def needed(self) -> list[str]:
         """Keys without whose value it fails, as far as the document names them."""

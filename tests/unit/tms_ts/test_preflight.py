@@ -235,6 +235,7 @@ def test_shared_records_and_fields_should_be_there_and_not_static(site: Site) ->
         (READ.format("FREE"), Context({}), "no shared record ROAD"),
         (READ.format("TAKEN"), Context(ROAD), "has no field 'TAKEN'"),
         (READ.format("FREE"), Context({("", "ROAD"): StoredRecord({"FREE": [1]}, "dynamic")}), "is not a plain value"),
+        (READ.format("FREE"), Context({("", "ROAD"): StoredRecord({"FREE": 2**40}, "dynamic")}), "too big for 32 bits"),
         (WRITE.format("FREE"), static, "is static"),
     ):
         found = preflight(flags(inner), site, around)
