@@ -2,8 +2,8 @@
 
 simpleeval evaluates them and allows only these operations. The rules are those of the C++ system: every part is
 evaluated (no short cut), a key without a value is the empty text, text compares with text and numbers with numbers
-(true is 1), and an expression that breaks this is invalid as a whole. Ours: beside a number, a text that is one counts
-as a number, since counters are kept as texts and as numbers.
+(true is 1), and an expression that breaks this is invalid as a whole. Ours: a text in quotes that is a number counts as
+one beside a number, since a counter may be kept as either.
 """
 
 from __future__ import annotations
@@ -102,6 +102,12 @@ def beside_numbers(text: str) -> dict[str, str]:
     return found
 
 
+class _Quoted(str):
+    """A text in quotes."""
+
+    __slots__ = ()
+
+
 class _Evaluator(SimpleEval):  # type: ignore[misc,unused-ignore]
     """simpleeval, reduced to comparisons and logic, with the C++ system's rules for types."""
 
@@ -121,7 +127,7 @@ class _Evaluator(SimpleEval):  # type: ignore[misc,unused-ignore]
     def constant(self, node: ast.Constant) -> Scalar:
         if not isinstance(node.value, int | float | str):
             raise Invalid(ConstantNoNumber(repr(node.value)))
-        return node.value
+        return _Quoted(node.value) if isinstance(node.value, str) else node.value
 
     def name(self, node: ast.Name) -> Scalar:
         key = node.id.removeprefix(_PREFIX)
@@ -155,13 +161,13 @@ class _Evaluator(SimpleEval):  # type: ignore[misc,unused-ignore]
         return bool(function(left, right))
 
     def as_bool(self, value: Scalar, other: Scalar) -> Scalar:
-        """Read a text as a boolean beside a boolean, as a number beside a number; if it is none, it is invalid."""
+        """Read a text as a boolean beside a boolean, one in quotes as a number beside a number; else it is invalid."""
         if not isinstance(value, str):
             return value
         if isinstance(other, bool) and value in TRUTH:
             self.warn(TextCountsHere(value))
             return TRUTH[value]
-        if not isinstance(other, bool) and WHOLE_NUMBER.fullmatch(value):
+        if isinstance(value, _Quoted) and not isinstance(other, bool) and WHOLE_NUMBER.fullmatch(value):
             self.warn(TextCountsHere(value))
             return float(value)
         raise Invalid(TextCompared(value, repr(other)) if value else KeyWithoutValue())

@@ -14,7 +14,7 @@ from tms_reason.reason import Reason
 from tms_ts.bt.errors import TickError
 from tms_ts.bt.leaf import PlainAction
 from tms_ts.bt.node import AtOnce, Keys
-from tms_ts.bt.ports import In
+from tms_ts.bt.ports import In, Pointer
 from tms_ts.bt.reasons import NameMissing, NoMachines, NoRosName, Sending, Working
 from tms_ts.bt.status import FAILURE, RUNNING, SUCCESS, Status
 from tms_ts.world import Goal
@@ -28,6 +28,7 @@ class MachineLeaf(PlainAction):
 
     __slots__ = ("goal",)
     subtask_port: ClassVar[str] = ""
+    record_ports: ClassVar[tuple[str, ...]] = ("record_name",)  # the first one that is not empty counts
     model_name: In[str]
 
     def prepare(self) -> None:
@@ -75,6 +76,10 @@ class MachineLeaf(PlainAction):
 
     def synchronous_outcomes(self, children: list[AtOnce]) -> AtOnce:
         return False, False
+
+    def needed(self) -> list[str]:
+        bound = [self.bindings.get(port) for port in ("model_name", self.subtask_port, *self.record_ports)]
+        return [one.key for one in bound if isinstance(one, Pointer)]
 
     def faults(self) -> list[Reason]:
         empty = self.literal(self.subtask_port) == ""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from tms_machine.goal_inputs import KINDS, joined
 from tms_reason.reason import Reason
 from tms_ts.bt.convert import MISSING, convert
@@ -27,7 +25,6 @@ class PrimitiveLeaf(MachineLeaf):
     versions = (6,)
     required = frozenset({"model_name", "primitive_name"})
     subtask_port = "primitive_name"
-    record_ports: ClassVar[tuple[str, ...]] = ("record_name",)  # the first one that is not empty counts
     model_name: In[str]
     record_name: In[str]
     primitive_name: In[str]
