@@ -1,13 +1,24 @@
 """Parameter records in the database: one per (model_name, record_name), changed field by field."""
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from pymongo.errors import DuplicateKeyError
 
 from tms_config.clock import utc_now
-from tms_db.reasons import MadeByOthers, NotChanged, OtherFields, OtherValue, RecordMissing, SetAndRemoved, StaticInUse
+from tms_db.arrays import Array
+from tms_db.reasons import (
+    DollarOrDot,
+    FieldNoArray,
+    MadeByOthers,
+    NotChanged,
+    OtherFields,
+    OtherValue,
+    RecordMissing,
+    SetAndRemoved,
+    StaticInUse,
+)
 from tms_db.records import (
     Document,
     Record,
@@ -19,6 +30,7 @@ from tms_db.records import (
     check_max_age,
     check_type,
     check_values,
+    models_of,
     title,
 )
 from tms_db.store import Db, errors
@@ -138,6 +150,41 @@ class Parameters:
                     return True
         raise DbError(MadeByOthers(where), "BUSY")
 
+    def change_array(self, key: tuple[str, str], name: str, change: Callable[[Array], Array], source: str) -> Array:
+        """Change the array in one field in one atomic step; a missing field is an empty array. Returns the new one.
+
+        Raises:
+            DbError: BAD_RECORD, RECORD_MISSING, or STATIC_RECORD while a run uses the record.
+        """
+        check_key(*key)
+        where = title(*key)
+        for _ in range(ATTEMPTS):
+            with errors():
+                found = self._writable(*key)
+                stored = None if found is None else (self._records.find_one(found) or {}).get(name)
+                if found is None:
+                    raise _missing(*key)
+                if not isinstance(stored, list | None):
+                    raise bad(FieldNoArray(f"{where}.{name}"))
+                array = change(stored or [])
+                edit = RecordEdit({name: array}, source=source)
+                edit.check(where)
+                if self._records.update_one({**found, name: stored}, {"$set": edit.fields()}).matched_count:
+                    return array
+        raise DbError(MadeByOthers(where), "BUSY")
+
+    def holds(self, values: Mapping[str, Value]) -> bool:
+        """Whether a record of any model has all these values.
+
+        Raises:
+            DbError: BAD_RECORD; a name that is an operator of the database.
+        """
+        for name in values:
+            if not name or name.startswith("$"):
+                raise bad(DollarOrDot("find_record", name[:40]))
+        with errors():
+            return self._records.find_one(dict(values), {"_id": 1}) is not None
+
     def remove(self, model_name: str, record_name: str) -> None:
         """Take a record away.
 
@@ -173,7 +220,7 @@ class Parameters:
         that becomes static in between is changed once more.
         """
         key = key_of(model_name, record_name)
-        stored = self._records.find_one(key, {"type": 1})
+        stored = self._records.find_one(key, {"type": 1, "model_name": 1})
         if stored is None:
             return None
         self.refuse_in_use(model_name, record_name, stored)
@@ -186,7 +233,7 @@ class Parameters:
             DbError: STATIC_RECORD.
         """
         if stored.get("type") == "static":
-            names = [f"{model_name}/{record_name}", f"{model_name}/*"]
+            names = [f"{model}/{name}" for model in models_of(stored) for name in (record_name, "*")]
             run = self._runs.find_one({"ended_at": None, "records": {"$in": names}}, {"run_id": 1})
             if run is not None:
                 raise _static(title(model_name, record_name), run["run_id"])

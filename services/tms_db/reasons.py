@@ -59,6 +59,9 @@ class DollarOrDot(Reason,
     place: str; field: str
 class BadFieldName(Reason, text="{place}: field name '{field}' {why}"):
     place: str; field: str; why: Reason
+class FieldNoArray(Reason, text="{place} is no array"): place: str
+class NoArrayChange(Reason, text="'{change}' changes no array: send add, push, remove or reset, and one value"):
+    change: str
 class MixedArray(Reason, text="{place}: the array mixes types: use numbers only, or one other type"): place: str
 class HoldsNul(Reason, text="{place}: the text holds a NUL character: remove it"): place: str
 class TooManyBits(Reason, text="{place}: {value} does not fit into 64 bits: write a smaller number"):

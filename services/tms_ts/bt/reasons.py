@@ -132,8 +132,22 @@ class NumberNotText(Reason, text="{key} holds a number, not a text; "
 class KeyIsNumber(Reason, text="{key} is a number; the C++ system does not know it in {node}"): key: str; node: str
 class TextCountsAsBoolean(Reason, text="the text '{value}' of '{key}' counts as a boolean; "
     "the C++ system does not know the key here"): value: str; key: str
-class TextCountsHere(Reason, text="the text '{value}' counts as a boolean here; "
+class TextCountsHere(Reason, text="the text '{value}' counts as a boolean or a number here; "
     "the C++ system calls the expression invalid"): value: str
+class NeverWritten(Reason, text="nothing in the task gives the key '{key}' a value, so {node} fails; "
+    "the C++ system may throw here"): key: str; node: str
+class NumberBesideText(Reason, text="{key} is a number and is compared with the text '{value}': "
+    "the C++ system calls the expression invalid, this engine compares the numbers"): key: str; value: str
+class OneRoundMore(Reason, text="{key} has no value before this loop: "
+    "version 6 of the C++ system runs the child once more after it is true"): key: str
+class BeginningWritten(Reason, text="of '{value}' only the number at its beginning, {number}, is written; "
+    "in quotes it is a text"): value: str; number: str
+class WholeWritten(Reason,
+    text="version 6 of the C++ system writes {number} for '{value}'; input_type='double' keeps it"):
+    value: str; number: str
+class AllBraces(Reason, text="{port}='{value}' begins and ends with a brace: "
+    "the C++ system takes all of it for one key and throws here"): port: str; value: str
+class NameMissing(Reason, text="{node} has nothing in '{port}'"): node: str; port: str
 class NumberTooBig(Reason, text="{key} is too big for 32 bits; "
     "the C++ system does not put such a number into an expression"): key: str
 class AlwaysFails(Reason, text="{why}, so {node} always fails"): why: Reason; node: str
@@ -173,7 +187,9 @@ class WaitsForOperator(Reason, text="waits for an operator: {question}"): questi
 class RunsUntil(Reason, text="runs until {key} is true"): key: str
 class NoValue(Reason, text="{key} or {counter} has no value"): key: str; counter: str
 class HoldsNoNumber(Reason, text="{key} holds no number"): key: str
-class TextIsNoNumber(Reason, text="'{value}' is not a number"): value: str
+class NoSuchType(Reason, text="input_type='{type}' is none of int, double, bool and string"): type: str
+class NoOperation(Reason, text="operation='{operation}' is none of add, push, remove and reset"): operation: str
+class UnevenLists(Reason, text="mongo_param_name has {names} parts and mongo_value {values}"): names: int; values: int
 class NotPlain(Reason, text="{record}.{field} is not a plain value"): record: str; field: str
 class Sending(Reason, text="sending"): pass
 class Working(Reason, text="running"): pass
@@ -190,4 +206,8 @@ class OnlyComparisons(Reason, text="only == != < > <= >= compare values"): pass
 class TextCompared(Reason, text="the text '{value}' is compared with {other}"): value: str; other: str
 class KeyWithoutValue(Reason, text="a key has no value yet"): pass
 class NotBooleanKey(Reason, text="{key} is not a boolean key"): key: str
+class FormulaUnreadable(Reason,
+    text="the formula cannot be read: only numbers, keys in braces, + - * / ( ) are allowed"): pass
+class DividesByZero(Reason, text="the formula divides by zero"): pass
+class ResultTooLarge(Reason, text="the result is too large"): pass
 class ExpressionInvalid(Reason, text="{problem}"): problem: str
