@@ -1,5 +1,6 @@
 """Functions for verbs about records: read from tms:db, write, load from a file, and show."""
 
+import json
 import os
 from collections.abc import Mapping
 from pathlib import Path
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
 
     from tms_db.records import Record
     from tms_ros.node import Ros
+
+WIDEST = 100  # letters of a document in a list
 
 
 def source() -> str:
@@ -121,12 +124,21 @@ def age(record: "Message") -> str:
 
 
 def text(value: Any) -> str:
-    """A value as people write it."""
+    """A value as people write it; documents are cut, `--json` has them whole."""
+    if _document(value):
+        whole = json.dumps(value)
+        return whole if len(whole) <= WIDEST else f"{whole[: WIDEST - 3]}..."
     return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _document(value: Any) -> bool:
+    return isinstance(value, dict) or (isinstance(value, list) and bool(value) and isinstance(value[0], dict))
 
 
 def kind(value: Any) -> str:
     """The type of a value as text."""
+    if isinstance(value, dict):
+        return say("document")
     if isinstance(value, list):
         return say("{kind} array", kind=kind(value[0])) if value else say("empty array")
     if isinstance(value, bool):

@@ -207,6 +207,8 @@ def _fitting(where: str, stored: Any, value: Value) -> Value:
 def _kind(value: Any) -> str:
     if isinstance(value, (list, tuple)):
         return "an array"
+    if isinstance(value, dict):
+        return "a document"
     if isinstance(value, bool):
         return "true/false"
     return "a number" if isinstance(value, (int, float)) else "a text"

@@ -37,8 +37,8 @@ from tms_reason.errors import DbError
 from tms_reason.reason import Reason
 
 Scalar = bool | int | float | str
-Value = Scalar | Sequence[Scalar]
 Document = dict[str, Any]
+Value = Scalar | Sequence[Scalar] | Document | Sequence[Document]
 
 # Fields that describe a record; a reader of values never sees them. `timestamps` is the C++ system's.
 RESERVED = frozenset(
@@ -47,6 +47,7 @@ RESERVED = frozenset(
 TYPES = ("static", "dynamic")
 MAX_FILE = 5 * 2**20
 INT64 = 2**63
+DEEPEST = 20  # documents inside each other
 EXPONENT = re.compile(r"[-+]?\d+[eE][-+]?\d+")
 
 
@@ -135,11 +136,7 @@ def check_values(where: str, values: Mapping[str, Any]) -> None:
     """
     for name, value in values.items():
         check_field(where, name)
-        many = isinstance(value, (list, tuple))
-        for part in value if many else [value]:
-            _check_scalar(f"{where}.{name}", part)
-        if many and len({float if type(part) is int else type(part) for part in value}) > 1:
-            raise bad(MixedArray(f"{where}.{name}"))
+        _check_value(f"{where}.{name}", value, 0)
 
 
 def check_field(where: str, name: Any) -> None:
@@ -148,14 +145,35 @@ def check_field(where: str, name: Any) -> None:
     Raises:
         DbError: BAD_RECORD.
     """
-    if not isinstance(name, str) or not name.strip():
-        raise bad(NoFieldName(where, repr(name)))
+    _check_name(where, name)
     if name in RESERVED:
         raise bad(ReservedField(where, name))
+
+
+def _check_name(where: str, name: Any) -> None:
+    if not isinstance(name, str) or not name.strip():
+        raise bad(NoFieldName(where, repr(name)))
     if name.startswith("$") or "." in name:
         raise bad(DollarOrDot(where, name[:40]))
     if (why := names.name_flaw(name)) is not None:
         raise bad(BadFieldName(where, name[:40], why))
+
+
+def _check_value(where: str, value: Any, depth: int) -> None:
+    """Check a scalar, an array of one kind of values, or a document of such; arrays of arrays only inside documents."""
+    many = isinstance(value, (list, tuple))
+    parts = list(value) if many else [value]
+    if many and len({float if type(part) is int else type(part) for part in parts}) > 1:
+        raise bad(MixedArray(where))
+    for part in parts:
+        if isinstance(part, dict) and depth < DEEPEST:
+            for name, inner in part.items():
+                _check_name(where, name)
+                _check_value(f"{where}.{name}", inner, depth + 1)
+        elif isinstance(part, (list, tuple)) and 0 < depth < DEEPEST:
+            _check_value(where, part, depth + 1)
+        else:
+            _check_scalar(where, part)
 
 
 def _check_scalar(where: str, value: Any) -> None:
@@ -181,7 +199,7 @@ def _kind(value: Any) -> str:
 
 
 def read_file(path: Path) -> list[Record]:
-    """Records of a configs/parameters file: a YAML list of flat mappings.
+    """Records of a configs/parameters file: a YAML list of mappings.
 
     Raises:
         ConfigError: it is no readable YAML.

@@ -1,11 +1,16 @@
-"""Values of records: Python on one side, rcl_interfaces/Parameter on the wire, types kept."""
+"""Values of records: Python on one side, rcl_interfaces/Parameter on the wire, types kept.
 
+A document, or an array of documents, has no type among parameters: it travels as the bytes of its JSON text.
+"""
+
+import json
 from collections.abc import Iterable, Mapping
 from typing import Any
 
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 
-Value = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
+Document = dict[str, Any]
+Value = bool | int | float | str | list[bool] | list[int] | list[float] | list[str] | Document | list[Document]
 
 # Python type -> (number of the type, field) for a value alone and for an array of it
 ALONE: dict[type, tuple[int, str]] = {
@@ -25,8 +30,10 @@ FIELD_ARRAY = dict(ARRAY.values())
 
 
 def can_travel(value: Any) -> bool:
-    """Whether a value has a type that parameters know: no nested documents, bytes or dates."""
-    return _kind_of_all(value) is not None if isinstance(value, list) else _kind(value) is not None
+    """Whether a value has a type that parameters know, or is a document that JSON knows: no bytes, no dates."""
+    plain = _kind_of_all(value) if isinstance(value, list) else _kind(value)
+    documents = value if isinstance(value, list) else [value]
+    return plain is not None or all(isinstance(one, dict) and _nested(one) for one in documents)
 
 
 def to_parameters(fields: Mapping[str, Any]) -> list[Parameter]:
@@ -39,12 +46,14 @@ def to_parameters(fields: Mapping[str, Any]) -> list[Parameter]:
 
 
 def from_parameters(parameters: Iterable[Parameter]) -> dict[str, Value]:
-    """Parameters as Python values; unset ones and bytes are left out."""
+    """Parameters as Python values; unset ones, and bytes that are no document, are left out."""
     return {parameter.name: value for parameter in parameters if (value := from_value(parameter.value)) is not None}
 
 
 def from_value(value: ParameterValue) -> Value | None:
-    """One value; None when it is not set or is bytes."""
+    """One value; None when it is not set, or is bytes that are no document."""
+    if value.type == ParameterType.PARAMETER_BYTE_ARRAY:
+        return _document(b"".join(value.byte_array_value))
     if value.type in FIELD_ALONE:
         alone: Value = getattr(value, FIELD_ALONE[value.type])
         return alone
@@ -53,6 +62,8 @@ def from_value(value: ParameterValue) -> Value | None:
 
 def _to_value(name: str, value: Any) -> ParameterValue:
     kind = _kind_of_all(value) if isinstance(value, list) else _kind(value)
+    if kind is None and can_travel(value):
+        return ParameterValue(type=ParameterType.PARAMETER_BYTE_ARRAY, byte_array_value=_json(value))
     if kind is None:
         raise TypeError(f"{name}: a {type(value).__name__} cannot travel as a parameter")
     number, field = (ARRAY if isinstance(value, list) else ALONE)[kind]
@@ -75,3 +86,22 @@ def _kind_of_all(values: list[Any]) -> type | None:
     if kinds == {int, float}:
         return float
     return kinds.pop() if len(kinds) == 1 else None
+
+
+def _nested(value: Any) -> bool:
+    """Whether JSON can hold a value as it is."""
+    if isinstance(value, dict):
+        return all(isinstance(name, str) and _nested(part) for name, part in value.items())
+    return all(map(_nested, value)) if isinstance(value, list) else _kind(value) is not None
+
+
+def _json(value: Any) -> list[bytes]:
+    return [bytes([byte]) for byte in json.dumps(value, separators=(",", ":")).encode()]
+
+
+def _document(data: bytes) -> Value | None:
+    try:
+        found = json.loads(data)
+    except ValueError:
+        return None
+    return found if isinstance(found, (dict, list)) else None

@@ -8,13 +8,14 @@ import hashlib
 import json
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 RUN = "audit"  # the entries are the journal of this run
 MAX_FAULTS = 20  # faults that a report names
 LARGEST = 2**32 - 1  # number of an entry
 
-Value = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
+Document = dict[str, Any]
+Value = bool | int | float | str | list[bool] | list[int] | list[float] | list[str] | Document | list[Document]
 
 
 @dataclass(frozen=True)

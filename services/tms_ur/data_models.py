@@ -7,7 +7,7 @@ from pydantic import Field
 
 from tms_reason.names import Name
 from tms_ur.command_models import Command
-from tms_ur.models import Model, Value
+from tms_ur.models import Model, Plain, Value
 from tms_ur.reason_view import ReasonView
 
 
@@ -60,7 +60,7 @@ class FieldGiven(Command):
 
     name: Name
     type: Literal["bool", "int", "double", "string", "bool[]", "int[]", "double[]", "string[]"]
-    value: Value
+    value: Plain
 
 
 class RecordGiven(Command):

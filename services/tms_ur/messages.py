@@ -27,6 +27,7 @@ TYPES = {
     ParameterType.PARAMETER_DOUBLE: "double", ParameterType.PARAMETER_STRING: "string",
     ParameterType.PARAMETER_BOOL_ARRAY: "bool[]", ParameterType.PARAMETER_INTEGER_ARRAY: "int[]",
     ParameterType.PARAMETER_DOUBLE_ARRAY: "double[]", ParameterType.PARAMETER_STRING_ARRAY: "string[]",
+    ParameterType.PARAMETER_BYTE_ARRAY: "document",
 }  # fmt: skip
 
 

@@ -1,13 +1,15 @@
 """Models of the API's answers, with units; ROS types are not part of the API."""
 
 from datetime import datetime
-from typing import Literal
+from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
 from tms_ur.reason_view import ReasonView
 
-Value = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
+Document = dict[str, Any]
+Plain = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
+Value = Plain | Document | list[Document]
 MachineState = Literal["moving", "standing", "not_ready", "silent"]
 INT32 = 2**31 - 1
 

@@ -35,7 +35,9 @@ def read(tmp_path: Path, text: str) -> list[records.Record]:
         ({"x": [1.0, float("inf")]}, "p.x: inf is not a finite number"),
         ({"x": 2**63}, "does not fit into 64 bits"),
         ({"x": None}, "p.x: an empty value cannot be stored"),
-        ({"x": {"y": 1}}, "a nested mapping cannot be stored"),
+        ({"x": {"y": None}}, "an empty value cannot be stored"),
+        ({"x": {"$y": 1}}, "must not start with [$]"),
+        ({"x": [{"y": 1}, 2]}, "mixes types"),
         ({"x": [[1]]}, "a nested array cannot be stored"),
         ({"x": b"1"}, "a bytes cannot be stored"),
         ({"x": ["a", 1]}, "mixes types"),
@@ -52,7 +54,18 @@ def test_values_that_are_refused(values: dict[Any, Any], says: str) -> None:
 
 def test_values_that_are_taken() -> None:
     records.check_values(
-        "r", {"i": -(2**63), "d": 1e300, "b": True, "s": "", "a": [], "m": [1, 2.5], "LOCK_FLG": False}
+        "r",
+        {
+            "o": {"a": [{"b": [1, 2.5]}], "c": [[1], [2]]},
+            "os": [{"a": 1}, {}],
+            "i": -(2**63),
+            "d": 1e300,
+            "b": True,
+            "s": "",
+            "a": [],
+            "m": [1, 2.5],
+            "LOCK_FLG": False,
+        },
     )
 
 

@@ -87,14 +87,23 @@ function listed(values, record) {
   return Object.entries(values).map(one).join(", ");
 }
 
+const LONGEST = 100; // letters of a document
+
 /** A value as it is stored. */
 function exact(value, type) {
+  if (type === "document") {
+    return JSON.stringify(value);
+  }
   const one = (number) => (type?.startsWith("double") && Number.isInteger(number) ? number.toFixed(1) : String(number));
   return Array.isArray(value) ? `[${value.map(one).join(", ")}]` : one(value);
 }
 
 /** A value for display: six digits are more precise than any machine. */
 function written(value, type) {
+  if (type === "document") {
+    const whole = JSON.stringify(value);
+    return whole.length > LONGEST ? `${whole.slice(0, LONGEST)}…` : whole;
+  }
   const one = (number) => (type?.startsWith("double") && typeof number === "number" ? Number(number.toPrecision(6)) : number);
   return exact(Array.isArray(value) ? value.map(one) : one(value), type);
 }
@@ -150,9 +159,10 @@ function fillInput(row, one) {
 const TYPES = ["double", "int", "bool", "string", "double[]", "int[]", "bool[]", "string[]"];
 const EXAMPLES = { double: "-1.05", int: "3", bool: "true", string: "", "double[]": "[1.0, -2.5]", "int[]": "[1, 2]", "bool[]": "[true]", "string[]": "[\"a\"]" };
 
+/** Documents are not edited here. */
 function openEditor(name) {
   const record = records.find((one) => nameOf(one) === name);
-  const fields = Object.keys(record.values).map((field) => {
+  const fields = Object.keys(record.values).filter((field) => record.types[field] !== "document").map((field) => {
     const input = make("input", { id: `field_${field}`, value: exact(record.values[field], record.types[field]), data: { field, type: record.types[field] } });
     input.dataset.before = input.value;
     return make("label", {}, make("span", {}, [field, record.units[field] && `[${record.units[field]}]`, `(${t(`type_${record.types[field]}`)})`].filter(Boolean).join(" ")), input);
