@@ -4,7 +4,13 @@ from collections.abc import Sequence
 from typing import Protocol, TypeVar
 
 from geometry_msgs.msg import Point, Pose
-from tms_msg_rp.action import TmsRpZx200ChangePose, TmsRpZx200ExcavateSimple, TmsRpZx200ReleaseSimple
+from tms_msg_rp.action import (
+    ExecutePlans,
+    PlanPose,
+    TmsRpZx200ChangePose,
+    TmsRpZx200ExcavateSimple,
+    TmsRpZx200ReleaseSimple,
+)
 from tms_msg_rp.msg import TmsRpZx200PositionWithAngle
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
@@ -41,8 +47,7 @@ class Digging(Acting):
         """
         goal = TmsRpZx200ChangePose.Goal()
         if joints is not None:
-            point = JointTrajectoryPoint(positions=list(joints.values()))
-            goal.trajectory = JointTrajectory(joint_names=list(joints), points=[point])
+            goal.trajectory = _angles(joints)
         if pose is not None:
             goal.pose_sequence = [pose]
         if tip is not None:
@@ -66,11 +71,41 @@ class Digging(Acting):
         goal = TmsRpZx200ReleaseSimple.Goal(target_angle=target_angle)
         self._plan(TmsRpZx200ReleaseSimple, "release_simple", goal, progress, False)
 
+    def plan_pose(
+        self,
+        progress: Progress,
+        to: dict[str, float] | tuple[float, float, float, float],
+        previous: JointTrajectory | None,
+        velocity_scale: float,
+        acceleration_scale: float,
+    ) -> JointTrajectory:
+        """A plan to joint angles [rad], or to x, y, z [m, base_link], theta_w [rad]; nothing moves.
+
+        It begins at the end of `previous`, else where the arm is. Scales are shares of the joints' limits.
+        """
+        goal = PlanPose.Goal(velocity_scale=velocity_scale, acceleration_scale=acceleration_scale)
+        if isinstance(to, dict):
+            goal.trajectory = _angles(to)
+        else:
+            goal.position_with_angle_sequence = [_tip(to[:3], to[3])]
+        if previous is not None:
+            goal.previous = previous
+        return self._plan(PlanPose, "plan_pose", goal, progress, False).plan
+
+    def execute_plans(self, progress: Progress, plans: Sequence[JointTrajectory]) -> None:
+        """Move along plans, one behind the other, as one trajectory."""
+        self._plan(ExecutePlans, "execute_plans", ExecutePlans.Goal(plans=list(plans)), progress, False)
+
     def _plan(
         self, action_type: ActionType[G, R, Telling], what: str, goal: G, progress: Progress, plan_only: bool
-    ) -> None:
+    ) -> R:
         action = f"tms_rp_{self._model_name}_{what}" + ("_plan" if plan_only else "")
-        self.act(action_type, action, goal, lambda feedback: progress(wire.of(feedback.state) or NoReason()))
+        return self.act(action_type, action, goal, lambda feedback: progress(wire.of(feedback.state) or NoReason()))
+
+
+def _angles(joints: dict[str, float]) -> JointTrajectory:
+    point = JointTrajectoryPoint(positions=list(joints.values()))
+    return JointTrajectory(joint_names=list(joints), points=[point])
 
 
 def _tip(position: Sequence[float], theta_w: float, offset: float = 0.0) -> TmsRpZx200PositionWithAngle:

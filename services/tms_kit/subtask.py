@@ -40,10 +40,16 @@ class Subtask:
     timeout: float = 60.0  # s for the whole goal
     params: type[Params] | None = None  # when given, the goal's record is checked before the goal is accepted
 
-    def __init__(self, machine: Machine, want: Any, read: Callable[[str, str, float], dict[str, Value]]) -> None:
+    def __init__(
+        self,
+        machine: Machine,
+        want: Any,
+        read: Callable[[str, str, float], dict[str, Value]],
+        write: Callable[[str, str, dict[str, Value]], None],
+    ) -> None:
         self.machine = machine
         self.want = want  # the checked record, None without `params`
-        self._read = read
+        self._read, self._write = read, write
 
     def execute(self, model_name: str, record_name: str, progress: Progress) -> None:
         """Do the work of the subtask.
@@ -72,6 +78,14 @@ class Subtask:
             SubtaskFailed: it is missing or too old, or the database does not answer.
         """
         return self._read(model_name, record_name, max_age)
+
+    def set_param_in_db(self, model_name: str, record_name: str, values: dict[str, Value]) -> None:
+        """Set fields of an existing record; the others stay.
+
+        Raises:
+            SubtaskFailed: it is missing, or static and used by this run, or the database does not answer.
+        """
+        self._write(model_name, record_name, values)
 
 
 F = TypeVar("F", bound=Callable[..., None])

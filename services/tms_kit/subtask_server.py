@@ -5,17 +5,17 @@ from collections.abc import Callable
 from typing import Any
 
 from pydantic import ValidationError
-from tms_msg_db.srv import GetParameter
+from tms_msg_db.srv import GetParameter, SetParameter
 from tms_msg_ts.action import LeafNodeBase
 
 from tms_config.clock import monotonic
 from tms_kit.machine import Machine, SubtaskCancelled
 from tms_kit.subtask import Params, Subtask, load
-from tms_machine.goal_inputs import parted
+from tms_machine.goal_inputs import KINDS, parted
 from tms_machine.permit import Permit, watch_server
 from tms_machine.reasons import BadRecord, Busy, MotionNotEnded, NoDatabase, WaitingFor
 from tms_machine.record_lock import FLAG, RecordLock
-from tms_machine.values import Value, from_parameters
+from tms_machine.values import Value, from_parameters, to_parameters
 from tms_reason.errors import RosError, SubtaskFailed
 from tms_reason.reason import Foreign, Reason
 from tms_reason.validation import explain
@@ -77,8 +77,8 @@ class _Server:
         record, given = parted(request.record_name)
         if (why := self._kind.not_taken(given)) is not None or self._kind.params is None:
             return why
-        if set(self._kind.params.model_fields) <= set(self._inputs):  # no parameter is left for a record
-            self._want = self._kind.params.model_validate(self._inputs)
+        if set(self._kind.params.model_fields) <= {*self._inputs, *KINDS}:  # no parameter is left for a record
+            self._want = self._kind.params.model_validate({**given, **self._inputs})
             return None
         wanted = GetParameter.Request(model_name=request.model_name, record_name=record, max_age=self._max_age)
         answer = await self._app.ros.call_async(GetParameter, "/tms/db/get_parameter", wanted, RECORD_LIMIT)
@@ -162,7 +162,7 @@ class _Server:
         model, limit = app.site.model_of(app.machine), self._kind.timeout
         name = app.site.file.machines[app.machine].model
         machine = Machine(app.ros, app.machine, name, model, limit, goal.uuid, self._watched())
-        subtask = self._kind(machine, self._want, self._read)
+        subtask = self._kind(machine, self._want, self._read, self._write)
 
         def cancel() -> None:
             subtask.on_cancel()
@@ -188,6 +188,14 @@ class _Server:
         if answer.error_code:
             raise SubtaskFailed(refusal(answer.error_code, answer.error_msg))
         return from_parameters(answer.record.values)
+
+    def _write(self, model_name: str, record_name: str, values: dict[str, Value]) -> None:
+        wanted = SetParameter.Request(
+            model_name=model_name, record_name=record_name, source=self._app.process.full, values=to_parameters(values)
+        )
+        answer = self._app.ros.call(SetParameter, "/tms/db/set_parameter", wanted)
+        if answer.error_code:
+            raise SubtaskFailed(refusal(answer.error_code, answer.error_msg))
 
 
 class _Feedback:

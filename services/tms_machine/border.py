@@ -11,6 +11,7 @@ from control_msgs.action import FollowJointTrajectory
 from geometry_msgs.msg import Twist
 from nav2_msgs.action import FollowPath, FollowWaypoints, NavigateThroughPoses, NavigateToPose
 from std_msgs.msg import Bool
+from tms_msg_rp.action import TmsRpBulldozerBlade
 
 from tms_config.clock import monotonic
 from tms_config.models import Border
@@ -39,6 +40,7 @@ MOTIONS = (
     MotionAction("follow_path", "follow_path", FollowPath),
     MotionAction("set_dump_angle", "set_dump_angle", SetDumpAngle),
     MotionAction("set_swing_angle", "set_swing_angle", SetSwingAngle),
+    MotionAction("set_bulldozer_blade", "set_bulldozer_blade", TmsRpBulldozerBlade),
 )
 
 

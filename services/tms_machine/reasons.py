@@ -17,6 +17,9 @@ class PathEmpty(Reason, text="the path is empty", action=RECORDS): pass
 class NoUnitLength(Reason, text="qx, qy, qz, qw have length {length}, an orientation has 1", action=RECORDS):
     length: str
 class MoreThanOneTurn(Reason, text="{degrees} deg is more than one turn", action=RECORDS): degrees: str
+class OneWaypoint(Reason, text="there are {count} waypoints, there must be one", action=RECORDS): count: int
+class NotHonoured(Reason, text="the planner can keep no {constraints}", action=RECORDS): constraints: tuple[str, ...]
+class NoPlan(Reason, text="no plan is stored in {records}", action=EDIT_TASK): records: tuple[str, ...]
 class NoFlag(Reason, text="one of {flags} must be 1", action=RECORDS): flags: tuple[str, ...]
 class BadRecord(Reason, text="record {record}: {problem}", action=RECORDS): record: str; problem: Reason
 class NoSuchJoint(Reason, text="there is no joint '{joint}' (there are {joints})"): joint: str; joints: tuple[str, ...]
@@ -36,6 +39,7 @@ class MissedWaypoints(Reason, text="{machine} did not reach waypoint {waypoints}
 class Waypoint(Reason, text="{number} ({x}, {y})"): number: int; x: Metres; y: Metres
 class NotReached(Reason, text="{machine} says that it did not reach {angle}", details="{what}"):
     machine: str; angle: Radians; what: str
+class BladeNotThere(Reason, text="{machine} says that its blade did not reach the angles"): machine: str
 class NoJointState(Reason, text="no state of {joint} of {machine} was received within {limit}", action=PROCESSES,
     details="{topic}"): joint: str; machine: str; limit: Seconds; topic: str
 class MotionNotEnded(Reason, text="{machine} did not end its motion", action=INSPECT): machine: str

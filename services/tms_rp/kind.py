@@ -4,6 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from trajectory_msgs.msg import JointTrajectory
+
 from tms_config.models import MachineModel
 from tms_reason.reason import Reason
 
@@ -16,19 +18,24 @@ class Moves:
 
     targets: tuple[Angles, ...]
     notes: tuple[Reason, ...] = ()
+    begin: Angles | None = None  # where the motion begins; None: where the arm is now
+    plans: tuple[JointTrajectory, ...] = ()  # stored plans, instead of targets
+    scales: tuple[float, float] = (1.0, 1.0)  # shares of the limits of velocity, and of acceleration and jerk
 
 
 @dataclass(frozen=True)
 class PlanningAction:
     """One served action: how its goal becomes moves, and whether they are executed.
 
-    `plan` gets the planner, the present angles and the goal; it raises SubtaskFailed with a reason.
+    `plan` gets the planner, the present angles and the goal; it raises SubtaskFailed with a reason. With `answers` the
+    result has the trajectory as its `plan`.
     """
 
     name: str
     type: Any  # all have the same result and feedback
     plan: Callable[[Any, Angles, Any], Moves]
     moves: bool
+    answers: bool = False
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from typing import Any
 from control_msgs.action import FollowJointTrajectory
 from prometheus_client import Histogram
 from sensor_msgs.msg import JointState
+from tms_msg_rp.action import ExecutePlans
 from tms_msg_rp.msg import TmsRpErrorCodes
 
 from tms_config.clock import monotonic
@@ -21,8 +22,10 @@ from tms_ros.server import AnyGoal
 from tms_rp.clearance import Clearance
 from tms_rp.kind import Angles, Moves, PlanningAction
 from tms_rp.kinds import load
+from tms_rp.messages import follow
 from tms_rp.mover import Mover
 from tms_rp.neighbours import Neighbours
+from tms_rp.plans import one_trajectory, scaled
 from tms_rp.reasons import (
     Adapted,
     GatewayAway,
@@ -42,11 +45,18 @@ JOINTS_PERIOD = 0.25  # s between samples of joint states, to know their age
 PLANNING = Histogram("tms_rp_planning_seconds", "From goal to trajectory", buckets=(0.001, 0.005, 0.02, 0.05, 0.2, 1))
 
 
+def _stored(_planner: Any, _now: Angles, request: ExecutePlans.Goal) -> Moves:
+    return Moves((), plans=tuple(request.plans))
+
+
+EXECUTE = PlanningAction("execute_plans", ExecutePlans, _stored, True)
+
+
 def start(app: App) -> None:
     """Serve `/<machine>/tms_rp_<model>_<action>`."""
     planner, model = Planner(app), app.site.file.machines[app.machine].model
     app.ros.poll_in_thread(JOINTS_PERIOD, planner.take_samples, "joints")
-    for action in planner.kind.actions:
+    for action in (*planner.kind.actions, EXECUTE):
         planner.serve(action, f"/{app.machine}/tms_rp_{model}_{action.name}")
     app.ready_when(planner.unready)
 
@@ -123,19 +133,20 @@ class Planner:
         self._app.ros.serve(action.type, name, lambda goal: self._run(action, goal), accept)
 
     def _run(self, action: PlanningAction, goal: AnyGoal) -> Ended[Any]:
-        outcome = Outcome.ABORTED
+        outcome, made = Outcome.ABORTED, None
         if action.moves:
             self._permit.hold(goal.uuid)
         try:
-            outcome = self._execute(action, goal)
+            outcome, made = self._execute(action, goal)
         finally:
             if action.moves:
                 self._permit.drop()
                 self._busy = False
         code = TmsRpErrorCodes.SUCCESS if outcome is Outcome.SUCCEEDED else TmsRpErrorCodes.FAILURE
-        return outcome, action.type.Result(error_code=TmsRpErrorCodes(val=code))
+        answer = {"plan": follow(made).trajectory} if action.answers and made is not None else {}
+        return outcome, action.type.Result(error_code=TmsRpErrorCodes(val=code), **answer)
 
-    def _execute(self, action: PlanningAction, goal: AnyGoal) -> Outcome:
+    def _execute(self, action: PlanningAction, goal: AnyGoal) -> tuple[Outcome, Trajectory | None]:
         def say(state: Reason, notes: tuple[Reason, ...] = ()) -> None:
             goal.publish(action.type.Feedback(state=wire.to_line(Adapted(state, notes) if notes else state)))
 
@@ -150,9 +161,9 @@ class Planner:
         except TmsError as error:
             self._app.log.warning("failed", action=action.name, goal=goal.id, reason=error.reason)
             say(Aborted(error.reason, action.name))
-            return Outcome.ABORTED
+            return Outcome.ABORTED, None
         say(Succeeded() if outcome is Outcome.SUCCEEDED else MotionCancelled())
-        return outcome
+        return outcome, made
 
     def _plan(self, action: PlanningAction, goal: AnyGoal) -> tuple[Trajectory, tuple[Reason, ...]]:
         """The trajectory, and the changes to the goal that it needed."""
@@ -167,7 +178,7 @@ class Planner:
             "planned",
             action=action.name,
             goal=goal.id,
-            moves=len(moves.targets),
+            moves=len(made.stops),
             duration=round(made.duration, 2),
             planning=round(seconds, 4),
             notes=[text(note, "en") for note in moves.notes],
@@ -175,10 +186,14 @@ class Planner:
         return made, moves.notes
 
     def _trajectory(self, now: Angles, moves: Moves) -> Trajectory:
-        """The trajectory through all targets; joints that no kind of goal moves (the tool frame) stay at 0."""
+        """The trajectory through all targets, or along stored plans; joints that no goal moves (the tool) stay at 0."""
 
         def all_joints(pose: Angles) -> tuple[float, ...]:
             angles = dict(zip(self.kind.joints, pose, strict=True))
             return tuple(angles.get(name, 0.0) for name in self._model.joints)
 
-        return trajectory(self._model.joints, all_joints(now), [all_joints(pose) for pose in moves.targets])
+        begin = all_joints(moves.begin or now)
+        if moves.plans:
+            return one_trajectory(self._model.joints, begin, moves.plans)
+        joints = scaled(self._model.joints, *moves.scales)
+        return trajectory(joints, begin, [all_joints(pose) for pose in moves.targets])

@@ -10,6 +10,7 @@ FURTHER = Remedy("goal", "", "Choose a point further out")
 OTHER_POINT = Remedy("goal", "", "Choose another point or another bucket angle")
 INSIDE = Remedy("goal", "", "Choose a target inside the limits")
 OTHER_TARGET = Remedy("goal", "", "Choose another target, or move away first")
+PLAN_AGAIN = Remedy("goal", "", "Plan anew from where the machine is")
 ADD_JOINTS = Remedy("edit_config", "", "Add them under joints: and geometry: of the machine file")
 
 
@@ -54,6 +55,15 @@ class Part(Reason, text="{link}"): link: str
 class PartOf(Reason, text="{link} of {machine}"): link: str; machine: str
 class NoTrajectory(Reason, text="there is no trajectory inside the limits", details="{problem}"): problem: str
 class LimitsLeft(Reason, text="{joint} would leave its limits after {seconds}"): joint: str; seconds: Moments
+
+# stored plans
+class PlanWrong(Reason, text="plan {number}: {why}", action=PLAN_AGAIN): number: int; why: Reason
+class PlanLacks(Reason, text="its joints are not those of the arm", details="missing: {joints}"):
+    joints: tuple[str, ...]
+class PlanBroken(Reason, text="it is no motion from rest to rest"): pass
+class PlanElsewhere(Reason, text="it begins with {joint} at {begin}, but the arm is at {angle} then"):
+    joint: str; begin: Radians; angle: Radians
+class PlanTooFast(Reason, text="{joint} would be faster than its limits after {seconds}"): joint: str; seconds: Moments
 
 # the machine
 class JointsUnheard(Reason, text="the joints of {machine} were not received yet: is the machine on?", action=INSPECT,

@@ -53,9 +53,14 @@ def records_of(tree: Tree) -> list[str]:
 
 
 def _named(goal: LeafGoal) -> list[str]:
-    """The records of a goal: its own, and the one whose plan it goes on from."""
+    """The records of a goal: its own, one or several, and the one whose plan it goes on from."""
     record, inputs = parted(goal.record)
-    return [record, str(inputs.get("previous_target_record_name", ""))]
+    return [*_each(record), str(inputs.get("previous_target_record_name", ""))]
+
+
+def _each(record: str) -> list[str]:
+    """The names in one, comma between: plans of several records are executed as one trajectory."""
+    return [name.strip() for name in record.split(",")]
 
 
 def processes_of(tree: Tree, site: Site) -> list[str]:
@@ -136,12 +141,14 @@ def _check_goal(found: Findings, goal: LeafGoal, site: Site, around: Surrounding
         found.warnings.append(_at_leaf(goal, ServedElsewhere(goal.subtask, goal.machine)))
     elif goal.subtask not in offered:
         found.errors.append(_at_leaf(goal, NotOffered(goal.machine, goal.subtask, tuple(offered))))
-    elif "{" not in parted(goal.record)[0]:
-        _check_record(found, goal, around)
+    else:
+        record, inputs = parted(goal.record)
+        for one in _each(record):
+            if "{" not in one:
+                _check_record(found, goal, one, inputs, around)
 
 
-def _check_record(found: Findings, goal: LeafGoal, around: Surroundings) -> None:
-    record, inputs = parted(goal.record)
+def _check_record(found: Findings, goal: LeafGoal, record: str, inputs: Inputs, around: Surroundings) -> None:
     name, stored = f"{goal.machine}/{record}", around.record(goal.machine, record)
     if stored is None:
         near = did_you_mean(record, around.names(goal.machine))

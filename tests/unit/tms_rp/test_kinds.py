@@ -2,7 +2,7 @@
 
 import pytest
 from geometry_msgs.msg import Point
-from tms_msg_rp.action import TmsRpZx200ChangePose, TmsRpZx200ExcavateSimple, TmsRpZx200ReleaseSimple
+from tms_msg_rp.action import PlanPose, TmsRpZx200ChangePose, TmsRpZx200ExcavateSimple, TmsRpZx200ReleaseSimple
 from tms_msg_rp.msg import TmsRpZx200PositionWithAngle
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
@@ -12,12 +12,12 @@ from tms_rp.kinds import load
 
 NOW = (0.3, -0.5, 1.5, 0.4)  # rad
 FACE = TmsRpZx200PositionWithAngle(position=Point(x=6.0, y=0.0, z=0.0), theta_w=2.0)
+ANGLES = JointTrajectory(
+    joint_names=["swing_joint", "boom_joint"], points=[JointTrajectoryPoint(positions=[0.5, -0.6])]
+)
 REQUESTS = {
-    TmsRpZx200ChangePose: TmsRpZx200ChangePose.Goal(
-        trajectory=JointTrajectory(
-            joint_names=["swing_joint", "boom_joint"], points=[JointTrajectoryPoint(positions=[0.5, -0.6])]
-        )
-    ),
+    TmsRpZx200ChangePose: TmsRpZx200ChangePose.Goal(trajectory=ANGLES),
+    PlanPose: PlanPose.Goal(trajectory=ANGLES, velocity_scale=1.0, acceleration_scale=1.0),
     TmsRpZx200ExcavateSimple: TmsRpZx200ExcavateSimple.Goal(position_with_angle=FACE),
     TmsRpZx200ReleaseSimple: TmsRpZx200ReleaseSimple.Goal(target_angle=0.2),
 }
@@ -29,3 +29,15 @@ def test_an_action_plans_from_plain_angles(model: MachineModel, action: Planning
     moves = action.plan(kind.planner(model), NOW, REQUESTS[action.type])
     assert moves.targets and all(len(target) == len(kind.joints) for target in moves.targets)
     assert moves.targets[-1] != NOW
+
+
+def test_a_plan_begins_where_the_one_before_ends(model: MachineModel) -> None:
+    kind = load("backhoe")
+    (plan,) = (action for action in kind.actions if action.answers)
+    before = JointTrajectory(
+        joint_names=list(kind.joints), points=[JointTrajectoryPoint(positions=[1.0, -0.4, 1.0, 0.1])]
+    )
+    goal = PlanPose.Goal(previous=before, trajectory=ANGLES, velocity_scale=0.5, acceleration_scale=0.25)
+    moves = plan.plan(kind.planner(model), NOW, goal)
+    assert moves.begin == (1.0, -0.4, 1.0, 0.1) and moves.targets == ((0.5, -0.6, 1.0, 0.1),)
+    assert moves.scales == (0.5, 0.25)

@@ -1,15 +1,24 @@
 """Excavators: an arm on an upper body that turns."""
 
-from tms_msg_rp.action import TmsRpZx200ChangePose, TmsRpZx200ExcavateSimple, TmsRpZx200ReleaseSimple
+from dataclasses import replace
+
+from tms_msg_rp.action import PlanPose, TmsRpZx200ChangePose, TmsRpZx200ExcavateSimple, TmsRpZx200ReleaseSimple
 
 from tms_rp.kind import Angles, MachineKind, Moves, PlanningAction
 from tms_rp.kinds.backhoe import messages
 from tms_rp.kinds.backhoe.linkage import ArmAngles
 from tms_rp.kinds.backhoe.planner import NAMES, Backhoe
+from tms_rp.plans import start_of
 
 
 def _change_pose(planner: Backhoe, now: Angles, request: TmsRpZx200ChangePose.Goal) -> Moves:
     return planner.change_pose(ArmAngles(*now), messages.change_pose(request))
+
+
+def _plan_pose(planner: Backhoe, now: Angles, request: PlanPose.Goal) -> Moves:
+    begin = start_of(request.previous, NAMES) or now
+    found = planner.change_pose(ArmAngles(*begin), messages.change_pose(request))
+    return replace(found, begin=begin, scales=(request.velocity_scale, request.acceleration_scale))
 
 
 def _excavate(planner: Backhoe, now: Angles, request: TmsRpZx200ExcavateSimple.Goal) -> Moves:
@@ -26,6 +35,7 @@ KIND = MachineKind(
     (
         PlanningAction("change_pose", TmsRpZx200ChangePose, _change_pose, True),
         PlanningAction("change_pose_plan", TmsRpZx200ChangePose, _change_pose, False),
+        PlanningAction("plan_pose", PlanPose, _plan_pose, False, answers=True),
         PlanningAction("excavate_simple", TmsRpZx200ExcavateSimple, _excavate, True),
         PlanningAction("excavate_simple_plan", TmsRpZx200ExcavateSimple, _excavate, False),
         PlanningAction("release_simple", TmsRpZx200ReleaseSimple, _release, True),

@@ -1,14 +1,14 @@
 """Goals for excavators, from ROS messages."""
 
 from geometry_msgs.msg import Pose
-from tms_msg_rp.action import TmsRpZx200ChangePose
+from tms_msg_rp.action import PlanPose, TmsRpZx200ChangePose
 from tms_msg_rp.msg import TmsRpZx200PositionWithAngle
 
 from tms_rp.kinds.backhoe.goals import ChangePose, LinkGoal, TipGoal, joint_goal
 
 
-def change_pose(request: TmsRpZx200ChangePose.Goal) -> ChangePose:
-    """Goal of a TmsRpZx200ChangePose request.
+def change_pose(request: TmsRpZx200ChangePose.Goal | PlanPose.Goal) -> ChangePose:
+    """Goal of a TmsRpZx200ChangePose or PlanPose request.
 
     Raises:
         SubtaskFailed: lists of the trajectory do not fit.
