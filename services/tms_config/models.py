@@ -114,6 +114,7 @@ class Border(Settings):
     follow_path: str | None = None
     set_dump_angle: str | None = None
     set_swing_angle: str | None = None
+    set_bulldozer_blade: str | None = None
     compute_path_to_pose: str | None = None  # moves nothing, so the gateway does not serve it
     # topics
     joint_states: str | None = None

@@ -9,6 +9,7 @@ from tms_machine.border import MotionAction
 from tms_machine.stamps import seconds
 from tms_rc import limits
 from tms_rc.motion_goals import numbers, point_of, poses_of
+from tms_rc.reasons import AnglesOnly
 from tms_reason.reason import Reason
 
 
@@ -30,6 +31,10 @@ class GoalCheck:
             )  # fmt: skip
         if hasattr(request, "target_angle"):
             return limits.angle_problem(self._model, motion.field, request.target_angle, present)
+        if hasattr(request, "goal_position"):
+            if request.control_type != request.POSITION:
+                return AnglesOnly()
+            return limits.problem(self._model, request.joint_name, [request.goal_position], present)
         return limits.pose_problem([numbers(stamped.pose) for stamped in poses_of(request)])
 
     def motion(self, motion: MotionAction, request: Any) -> Reference | Turn | None:

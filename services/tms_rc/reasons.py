@@ -18,6 +18,7 @@ class RestNoNumber(Reason, text="a velocity, acceleration or effort is not a num
 class TimeNotAfter(Reason, text="its time {time} is not after the one before"): time: Moments
 class TooFast(Reason, text="it would go {way} in {time}, its limit is {limit}"):
     way: Radians; time: Moments; limit: RadiansPerSecond
+class AnglesOnly(Reason, text="a blade is moved to angles only"): pass
 class NothingTurns(Reason, text="the model has no joint for {what}", action=EDIT_CONFIG): what: str
 class NoPose(Reason, text="there is no pose in the goal"): pass
 class BadQuaternion(Reason, text="its quaternion has the length {length}, not 1"): length: Number

@@ -13,6 +13,7 @@ from tms_config.site_file import Fault
 from tms_reason.validation import explain
 from tms_runtime.app import App
 from tms_sim.arm_server import trajectory_server
+from tms_sim.blade_server import blade_server
 from tms_sim.joint_commands import POSITION
 from tms_sim.machine import StandIn
 from tms_sim.nav_servers import nav_servers
@@ -54,7 +55,7 @@ def _angle_of(machine: StandIn, joint: str) -> Callable[[Float64], None]:
 
 def _handlers(machine: StandIn, border: Border) -> list[ActionHandler]:
     """The actions that this border has."""
-    found = [trajectory_server(machine.controller)]
+    found = [trajectory_server(machine.controller), blade_server(machine.controller)]
     found += [turn_server(field, machine.turner) for field in TYPES if getattr(border, field)]
     if machine.navigator is not None:
         found += nav_servers(machine, machine.navigator)
