@@ -1,10 +1,10 @@
 """Records that name places: one pose or a path, oriented by quaternions or by degrees."""
 
 import math
-from typing import Literal
+from typing import Annotated, Any, Literal
 
 from geometry_msgs.msg import Point, Pose, Quaternion
-from pydantic import model_validator
+from pydantic import BeforeValidator, model_validator
 
 from tms_kit.subtask import Params
 from tms_machine import geometry
@@ -13,6 +13,14 @@ from tms_reason.validation import Wrong
 
 Angles = Literal["quaternion", "degrees"]
 TURN = {"quaternion": ("qx", "qy", "qz", "qw"), "degrees": ("yaw",)}
+
+
+def _one_point(value: Any) -> Any:
+    """A number is a path of one point, as in the C++ system: sections of its roads are such records."""
+    return [value] if isinstance(value, (int, float)) and not isinstance(value, bool) else value
+
+
+Numbers = Annotated[list[float], BeforeValidator(_one_point)]
 
 
 class PoseRecord(Params):
@@ -43,17 +51,17 @@ class PoseRecord(Params):
 
 
 class PathRecord(Params):
-    """Poses in `map`, one list a coordinate, all of one length."""
+    """Poses in `map`, one list a coordinate, all of one length; numbers instead of lists are one pose."""
 
     angles: Angles = "quaternion"  # an input of the variant
-    x: list[float]  # m
-    y: list[float]  # m
-    z: list[float]  # m
-    qx: list[float] | None = None
-    qy: list[float] | None = None
-    qz: list[float] | None = None
-    qw: list[float] | None = None
-    yaw: list[float] | None = None  # deg
+    x: Numbers  # m
+    y: Numbers  # m
+    z: Numbers  # m
+    qx: Numbers | None = None
+    qy: Numbers | None = None
+    qz: Numbers | None = None
+    qw: Numbers | None = None
+    yaw: Numbers | None = None  # deg
     read_direction: str = ""  # down: from the last pose to the first; else from the first to the last
 
     @model_validator(mode="after")
