@@ -13,7 +13,13 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool
 from tf2_msgs.msg import TFMessage
 from tms_msg_rc.msg import MachineState
-from tms_msg_rp.action import TmsRpZx200ChangePose, TmsRpZx200ExcavateSimple, TmsRpZx200ReleaseSimple
+from tms_msg_rp.action import (
+    ExecutePlans,
+    PlanPose,
+    TmsRpZx200ChangePose,
+    TmsRpZx200ExcavateSimple,
+    TmsRpZx200ReleaseSimple,
+)
 from tms_msg_rp.msg import TmsRpErrorCodes, TmsRpZx200PositionWithAngle
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
@@ -29,7 +35,7 @@ from tms_ros.client import Call
 from tms_ros.goals import Outcome
 from tms_ros.node import Ros
 from tms_rp.kinds.backhoe.planner import NAMES as ARM
-from tms_rp.reasons import JointBroken, JointsOld, JointsUnheard, MoveOf, OtherAngle, OutOfRange
+from tms_rp.reasons import JointBroken, JointsOld, JointsUnheard, MoveOf, OtherAngle, OutOfRange, PlanElsewhere
 from tms_runtime import environment
 
 pytestmark = [
@@ -264,3 +270,31 @@ def test_without_a_machine_there_is_a_reason(rig: Rig) -> None:
     rig.said.clear()
     assert rig.end(rig.change_pose(*START, machine=MUTE)) is Outcome.ABORTED
     assert rig.reason(JointsUnheard) == JointsUnheard(MUTE, f"/{MUTE}/joint_states", ARM)
+
+
+def planned(machine: Rig, previous: JointTrajectory, *angles: float) -> JointTrajectory:
+    target = JointTrajectory(joint_names=NAMES, points=[JointTrajectoryPoint(positions=list(angles))])
+    call = machine.send(
+        PlanPose, "tms_rp_zx200_plan_pose", previous=previous, trajectory=target, velocity_scale=1.0,
+        acceleration_scale=1.0,
+    )  # fmt: skip
+    assert machine.end(call) is Outcome.SUCCEEDED
+    made: JointTrajectory = call.result.plan
+    return made
+
+
+def test_stored_plans_are_executed_one_behind_the_other_and_not_from_elsewhere(machine: Rig) -> None:
+    first = planned(machine, JointTrajectory(), 0.3, *START[1:])
+    second = planned(machine, first, 0.3, -0.6, *START[2:])
+    assert machine.states[-1].position == pytest.approx(START, abs=0.031)
+    assert list(second.points[0].positions) == pytest.approx(list(first.points[-1].positions))
+    both = machine.send(ExecutePlans, "tms_rp_zx200_execute_plans", plans=[first, second])
+    assert machine.end(both) is Outcome.SUCCEEDED
+    assert any(text.startswith("MOVE_OF number=2 count=2 ") for text in machine.said)
+    there = (0.3, -0.6, *START[2:])
+    assert machine.states[-1].position == pytest.approx(there, abs=0.031)
+    again = machine.send(ExecutePlans, "tms_rp_zx200_execute_plans", plans=[first, second])
+    assert machine.end(again) is Outcome.ABORTED
+    elsewhere = machine.reason(PlanElsewhere)
+    assert elsewhere is not None and elsewhere.joint == "swing_joint"
+    assert machine.states[-1].position == pytest.approx(there, abs=0.031)

@@ -8,7 +8,14 @@ from com3_msgs.action import SetDumpAngle
 from geometry_msgs.msg import Point, Pose
 from nav2_msgs.action import FollowWaypoints, NavigateThroughPoses, NavigateToPose
 from pydantic import ValidationError
-from tms_msg_rp.action import TmsRpZx200ChangePose, TmsRpZx200ExcavateSimple
+from tms_msg_rp.action import (
+    ExecutePlans,
+    PlanPose,
+    TmsRpBulldozerBlade,
+    TmsRpZx200ChangePose,
+    TmsRpZx200ExcavateSimple,
+)
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
@@ -117,3 +124,28 @@ def test_plan_variants_ask_the_servers_that_never_move() -> None:
         (TmsRpZx200ExcavateSimple, "tms_rp_zx120_excavate_simple_plan"),
         (TmsRpZx200ChangePose, "tms_rp_zx120_change_pose"),
     ]
+
+
+def test_a_plan_comes_from_the_planner_and_goes_back_to_it() -> None:
+    plan = JointTrajectory(joint_names=["boom_joint"], points=[JointTrajectoryPoint(positions=[-0.5])])
+    machine = Recorded("zx200", PlanPose.Result(plan=plan))
+    assert machine.plan_pose(print, {"boom_joint": -0.5}, None, 0.5, 0.25) == plan
+    machine.plan_pose(print, (4.0, 0.0, 1.0, 1.5), plan, 1.0, 1.0)
+    machine.execute_plans(print, [plan, plan])
+    (_, planned, first), (_, _, second), (kind, executed, goal) = machine.sent
+    assert (planned, executed) == ("tms_rp_zx200_plan_pose", "tms_rp_zx200_execute_plans")
+    assert (first.velocity_scale, first.acceleration_scale, list(first.previous.points)) == (0.5, 0.25, [])
+    assert list(first.trajectory.points[0].positions) == [-0.5]
+    assert second.previous == plan and second.position_with_angle_sequence[0].theta_w == 1.5
+    assert kind is ExecutePlans and list(goal.plans) == [plan, plan]
+
+
+def test_a_blade_that_says_that_it_is_not_there_is_a_failure() -> None:
+    angles = {"lift_joint": -0.3, "tilt_joint": 0.0}
+    machine = Recorded("d37pxi", TmsRpBulldozerBlade.Result(success=True), TmsRpBulldozerBlade.Feedback())
+    machine.set_blade(print, angles, hold=True)
+    ((_, action, goal),) = machine.sent
+    assert action == "rc/set_bulldozer_blade" and goal.blade_hold
+    assert (list(goal.joint_name), list(goal.goal_position)) == (["lift_joint", "tilt_joint"], [-0.3, 0.0])
+    with pytest.raises(SubtaskFailed, match="BLADE_NOT_THERE"):
+        Recorded("d37pxi", TmsRpBulldozerBlade.Result(success=False)).set_blade(print, angles, hold=False)

@@ -176,6 +176,33 @@ def test_inputs_of_a_goal_reach_the_subtask_or_refuse_it(params: type[Params] | 
     assert not taken or (server._want.x, server._want.read_direction) == (1.0, "down")
 
 
+class Previous(Params):
+    previous_target_record_name: str = ""
+
+
+def test_a_goal_whose_parameters_all_come_from_the_leaf_names_whatever_records_it_wants() -> None:
+    database = Database(1.0)
+    server, kind = served(database, plan_only=True)
+    server._inputs = {}
+    kind.params = Previous
+    goal = Goal()
+    goal.request = LeafNodeBase.Goal(model_name="zx200", record_name="A,B?previous_target_record_name=Z")
+    seen = list[Any]()
+    kind.execute = lambda self, *names: seen.append((self.want.previous_target_record_name, *names[:2]))
+    assert asyncio.run(server.accept(goal.request)) is None
+    assert server._execute(goal) is Outcome.SUCCEEDED
+    assert seen == [("Z", "zx200", "A,B")] and database.asked == []
+
+
+def test_a_subtask_writes_into_a_record() -> None:
+    database = Database(1.0)
+    server, kind = served(database, plan_only=True)
+    kind.execute = lambda self, model, record, _: self.set_param_in_db(model, record, {FLAG: False, "plan": {"a": 1}})
+    assert accepted(server) is None
+    assert server._execute(Goal()) is Outcome.SUCCEEDED
+    assert database.lock == [True, False]  # the lock, then what the subtask has written
+
+
 def test_the_database_is_asked_for_the_record_without_the_inputs() -> None:
     database, seen = Database(1.0), list[Any]()
     server, kind = served(database, plan_only=True)

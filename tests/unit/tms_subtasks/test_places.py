@@ -27,6 +27,12 @@ def test_degrees_go_where_the_quaternion_goes() -> None:
         assert 2 * math.atan2(pose.orientation.z, pose.orientation.w) == pytest.approx(math.pi / 2, abs=1e-5)
 
 
+def test_numbers_are_a_path_of_one_pose() -> None:
+    (pose,) = PathRecord.model_validate({"x": 1, "y": 2.0, "z": 0.0, **QUATERNION, "read_direction": "down"}).poses()
+    assert (pose.position.x, pose.position.y) == (1.0, 2.0)
+    assert "z" in said(PathRecord, x=1.0, y=2.0, z=True, **QUATERNION)
+
+
 @pytest.mark.parametrize("name", ["x", "y", *QUATERNION])
 def test_a_missing_field_is_named(name: str) -> None:
     fields = {"x": 1.0, "y": 2.0, **QUATERNION}

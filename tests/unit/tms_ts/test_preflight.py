@@ -40,6 +40,13 @@ def tree(*leaves: tuple[str, str, str]) -> bt.Tree:
 POSE = {"swing_joint": 0.0, "boom_joint": 0.0, "arm_joint": 0.0, "bucket_joint": 0.0, "trajectory": 1}
 
 
+def test_several_records_of_a_goal_are_looked_at_one_by_one(site: Site) -> None:
+    several = tree(("zx200", "pose, none,pose", "subtask_zx200_change_pose"))
+    assert records_of(several) == ["zx200/pose", "zx200/none"]
+    found = preflight(several, site, Context())
+    assert len(found.errors) == 1 and "zx200/none" in words(found.errors[0])
+
+
 @dataclass
 class Context:
     """The surroundings in memory."""
