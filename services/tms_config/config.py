@@ -56,7 +56,7 @@ class Site:
         """The border of a machine for this site's backend, with the machine's own name in its names."""
         border = self.model_of(machine).borders[self.file.names]
         own = {key: getattr(border, key).format(name=machine) for key in ("frame_prefix", "base_frame")}
-        theirs = {"controller": "theirs", "follow_path": None, "compute_path_to_pose": None}
+        theirs = {"controller": "theirs"}
         stand_in = theirs if self.file.backend == "sim" else {}
         return border.model_copy(update={**own, **stand_in})
 

@@ -3,11 +3,12 @@
 from collections.abc import Sequence
 
 from geometry_msgs.msg import Pose, PoseStamped
-from nav2_msgs.action import FollowWaypoints, NavigateThroughPoses, NavigateToPose
+from nav2_msgs.action import ComputePathToPose, FollowPath, FollowWaypoints, NavigateThroughPoses, NavigateToPose
+from nav_msgs.msg import Path
 
 from tms_kit.acting import Acting, Progress, missed
 from tms_machine.frames import MAP
-from tms_machine.reasons import Driving, DrivingThrough, DrivingTo, MissedWaypoints, Waypoint
+from tms_machine.reasons import Driving, DrivingThrough, DrivingTo, MissedWaypoints, NoCapability, PathEmpty, Waypoint
 from tms_reason.errors import SubtaskFailed
 
 
@@ -44,6 +45,29 @@ class Navigating(Acting):
         if lost:
             places = tuple(Waypoint(i, poses[i].position.x, poses[i].position.y) for i in lost)
             raise SubtaskFailed(MissedWaypoints(self.name, places))
+
+    def compute_path(self, progress: Progress, goal: Pose) -> list[Pose]:
+        """A path from where the machine is to a pose; nothing moves.
+
+        Raises:
+            SubtaskFailed: NoCapability, PathEmpty, or as every goal.
+        """
+        # It moves nothing, so the gateway does not serve it; its name is the same at every border that has it.
+        names = [border.compute_path_to_pose for border in self.model.borders.values() if border.compute_path_to_pose]
+        if not names:
+            raise SubtaskFailed(NoCapability(self.name, "compute_path_to_pose", self._model_name))
+        asked = ComputePathToPose.Goal(goal=self._stamped(goal))
+        found = self.act(ComputePathToPose, names[0], asked).path.poses
+        if not found:
+            raise SubtaskFailed(PathEmpty())
+        return [stamped.pose for stamped in found]
+
+    def follow_path(self, progress: Progress, poses: Sequence[Pose]) -> None:
+        """Drive along a path and stand at its end."""
+        path = Path(poses=[self._stamped(pose) for pose in poses])
+        path.header.frame_id = MAP
+        goal = FollowPath.Goal(path=path)
+        self.guarded("follow_path", FollowPath, goal, lambda f: progress(Driving(f.distance_to_goal)))
 
     def _stamped(self, pose: Pose) -> PoseStamped:
         stamped = PoseStamped(pose=pose)

@@ -45,7 +45,7 @@ class Subtask:
         machine: Machine,
         want: Any,
         read: Callable[[str, str, float], dict[str, Value]],
-        write: Callable[[str, str, dict[str, Value]], None],
+        write: Callable[[str, str, Mapping[str, Value], bool], None],
     ) -> None:
         self.machine = machine
         self.want = want  # the checked record, None without `params`
@@ -79,13 +79,15 @@ class Subtask:
         """
         return self._read(model_name, record_name, max_age)
 
-    def set_param_in_db(self, model_name: str, record_name: str, values: dict[str, Value]) -> None:
-        """Set fields of an existing record; the others stay.
+    def set_param_in_db(
+        self, model_name: str, record_name: str, values: Mapping[str, Value], create: bool = False
+    ) -> None:
+        """Set fields of a record, the others stay; with `create` a missing record is made.
 
         Raises:
             SubtaskFailed: it is missing, or static and used by this run, or the database does not answer.
         """
-        self._write(model_name, record_name, values)
+        self._write(model_name, record_name, values, create)
 
 
 F = TypeVar("F", bound=Callable[..., None])

@@ -1,7 +1,7 @@
 """Process of one subtask: the LeafNodeBase action server around one file of tms_subtasks/."""
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from pydantic import ValidationError
@@ -189,10 +189,11 @@ class _Server:
             raise SubtaskFailed(refusal(answer.error_code, answer.error_msg))
         return from_parameters(answer.record.values)
 
-    def _write(self, model_name: str, record_name: str, values: dict[str, Value]) -> None:
+    def _write(self, model_name: str, record_name: str, values: Mapping[str, Value], create: bool) -> None:
         wanted = SetParameter.Request(
-            model_name=model_name, record_name=record_name, source=self._app.process.full, values=to_parameters(values)
-        )
+            model_name=model_name, record_name=record_name, source=self._app.process.full, create=create,
+            values=to_parameters(values),
+        )  # fmt: skip
         answer = self._app.ros.call(SetParameter, "/tms/db/set_parameter", wanted)
         if answer.error_code:
             raise SubtaskFailed(refusal(answer.error_code, answer.error_msg))

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from geometry_msgs.msg import Pose, PoseStamped
-from nav2_msgs.action import FollowWaypoints, NavigateThroughPoses, NavigateToPose
+from nav2_msgs.action import FollowPath, FollowWaypoints, NavigateThroughPoses, NavigateToPose
 
 from tms_machine.frames import MAP
 from tms_machine.geometry import about, yaw_of
@@ -18,7 +18,7 @@ from tms_sim.servers import ActionHandler
 
 
 def nav_servers(machine: StandIn, navigator: Navigator) -> list[ActionHandler]:
-    """The three actions of the navigation."""
+    """The actions of the navigation that move the machine."""
 
     def handler(
         field: str, action: Any, poses: Callable[[Any], Sequence[PoseStamped]], through: bool = False
@@ -40,6 +40,7 @@ def nav_servers(machine: StandIn, navigator: Navigator) -> list[ActionHandler]:
         handler("navigate_to_pose", NavigateToPose, lambda request: [request.pose]),
         handler("navigate_through_poses", NavigateThroughPoses, lambda request: request.poses, through=True),
         handler("follow_waypoints", FollowWaypoints, lambda request: request.poses),
+        handler("follow_path", FollowPath, lambda request: request.path.poses, through=True),
     ]
 
 
@@ -63,6 +64,8 @@ def _feedback(action: Any, navigator: Navigator, trip: Trip) -> Any:
     if action is FollowWaypoints:
         return FollowWaypoints.Feedback(current_waypoint=navigator.current(trip))
     base, away = navigator.base, navigator.base.left()
+    if action is FollowPath:
+        return FollowPath.Feedback(distance_to_goal=away)
     now = PoseStamped()
     now.header.frame_id = MAP
     now.pose.position.x, now.pose.position.y = base.x, base.y

@@ -5,6 +5,7 @@ from collections.abc import Callable
 
 from com3_msgs.msg import JointCmd
 from geometry_msgs.msg import Twist
+from nav2_msgs.action import ComputePathToPose
 from pydantic import ValidationError
 from std_msgs.msg import Bool, Float64, String
 
@@ -17,6 +18,7 @@ from tms_sim.blade_server import blade_server
 from tms_sim.joint_commands import POSITION
 from tms_sim.machine import StandIn
 from tms_sim.nav_servers import nav_servers
+from tms_sim.path_server import PathServer
 from tms_sim.servers import ActionHandler, ActionServer
 from tms_sim.telemetry import STEP_PERIOD, Telemetry
 from tms_sim.turn_server import TYPES, turn_server
@@ -32,6 +34,8 @@ def start(app: App) -> None:
     for handler in _handlers(machine, border):
         server = ActionServer(app, machine, handler)
         app.ros.serve(handler.type, f"/{name}/{getattr(border, handler.field)}", server.run, server.accept)
+    if border.compute_path_to_pose and machine.navigator is not None:
+        app.ros.serve(ComputePathToPose, f"/{name}/{border.compute_path_to_pose}", PathServer(machine.navigator).run)
     if border.emg_stop:
         app.ros.subscribe(Bool, f"/{name}/{border.emg_stop}", lambda m: machine.stop(m.data), depth=10)
     if border.cmd_vel:

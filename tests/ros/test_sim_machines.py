@@ -8,7 +8,7 @@ import pytest
 from com3_msgs.action import SetDumpAngle, SetSwingAngle
 from com3_msgs.msg import JointCmd
 from geometry_msgs.msg import Twist
-from nav2_msgs.action import FollowWaypoints, NavigateThroughPoses, NavigateToPose
+from nav2_msgs.action import ComputePathToPose, FollowPath, FollowWaypoints, NavigateThroughPoses, NavigateToPose
 from std_msgs.msg import Bool
 
 from stand_in_rig import SITE, Rig, client_in, pose
@@ -62,6 +62,18 @@ def test_bed_and_body(machine: Rig) -> None:
     assert machine.said
     assert machine.end(machine.send(SetDumpAngle, "set_dump_angle", target_angle=-2.0)) is Outcome.REJECTED
     assert machine.end(machine.send(SetDumpAngle, "set_dump_angle", target_angle=0.0)) is Outcome.SUCCEEDED
+
+
+def test_it_computes_a_path_and_drives_along_it(machine: Rig) -> None:
+    begin = machine.place()
+    computed = machine.send(ComputePathToPose, "compute_path_to_pose", goal=pose(begin[0] + 3.0, begin[1] + 2.0, 0.5))
+    assert machine.end(computed) is Outcome.SUCCEEDED
+    path = computed.result.path
+    assert len(path.poses) > 5 and {one.header.frame_id for one in path.poses} == {"map"}
+    assert math.dist(machine.place(), begin) < 0.01  # a path is no motion
+    assert machine.end(machine.send(FollowPath, "follow_path", path=path)) is Outcome.SUCCEEDED
+    machine.until(lambda: math.dist(machine.place(), (begin[0] + 3.0, begin[1] + 2.0)) < 0.2, "a frame at the goal")
+    assert machine.said[0].distance_to_goal > machine.said[-1].distance_to_goal
 
 
 def test_it_drives_to_a_pose_and_through_poses(machine: Rig) -> None:

@@ -1,6 +1,7 @@
 """Records that name places: one pose or a path, oriented by quaternions or by degrees."""
 
 import math
+from collections.abc import Sequence
 from typing import Annotated, Any, Literal
 
 from geometry_msgs.msg import Point, Pose, Quaternion
@@ -90,6 +91,15 @@ class PathRecord(Params):
         if found is None:
             raise Wrong(FieldMissing(name))
         return found
+
+
+def lists(poses: Sequence[Pose]) -> dict[str, list[float]]:
+    """Poses as the fields of a PathRecord."""
+    places = [(pose.position, pose.orientation) for pose in poses]
+    return {
+        **{name: [float(getattr(at, name)) for at, _ in places] for name in ("x", "y", "z")},
+        **{f"q{name}": [float(getattr(turned, name)) for _, turned in places] for name in ("x", "y", "z", "w")},
+    }
 
 
 def turn(*numbers: float) -> Quaternion:

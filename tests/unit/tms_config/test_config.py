@@ -209,8 +209,7 @@ def test_the_backend_chooses_the_names(tmp_path: Path) -> None:
     as_physx = load_site(site(tmp_path, machines=machines, sim={"names": "physx"}))
     assert names["physx"].border("zx200").controller == "ours"
     assert any(row.full == "zx200:mc" for row in table(names["physx"]))
-    missing = {"follow_path": None, "compute_path_to_pose": None}  # no stand-in serves them
-    theirs = names["physx"].border("zx200").model_copy(update={"controller": "theirs", **missing})
+    theirs = names["physx"].border("zx200").model_copy(update={"controller": "theirs"})
     assert as_physx.border("zx200") == theirs  # a stand-in has controllers of its own
     assert not any(row.name == "mc" for row in table(as_physx))
     assert any(row.full == "sim:zx200" for row in table(as_physx))

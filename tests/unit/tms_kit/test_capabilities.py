@@ -5,8 +5,9 @@ from typing import Any
 
 import pytest
 from com3_msgs.action import SetDumpAngle
-from geometry_msgs.msg import Point, Pose
-from nav2_msgs.action import FollowWaypoints, NavigateThroughPoses, NavigateToPose
+from geometry_msgs.msg import Point, Pose, PoseStamped
+from nav2_msgs.action import ComputePathToPose, FollowWaypoints, NavigateThroughPoses, NavigateToPose
+from nav_msgs.msg import Path
 from pydantic import ValidationError
 from tms_msg_rp.action import (
     ExecutePlans,
@@ -149,3 +150,16 @@ def test_a_blade_that_says_that_it_is_not_there_is_a_failure() -> None:
     assert (list(goal.joint_name), list(goal.goal_position)) == (["lift_joint", "tilt_joint"], [-0.3, 0.0])
     with pytest.raises(SubtaskFailed, match="BLADE_NOT_THERE"):
         Recorded("d37pxi", TmsRpBulldozerBlade.Result(success=False)).set_blade(print, angles, hold=False)
+
+
+def test_a_path_comes_from_the_navigation_and_goes_through_the_gateway() -> None:
+    found = Path(poses=[PoseStamped(pose=pose) for pose in PATH])
+    machine = Recorded("mst110cr", ComputePathToPose.Result(path=found))
+    assert machine.compute_path(print, PATH[2]) == PATH
+    machine.follow_path(print, PATH)
+    assert [action for _, action, _ in machine.sent] == ["compute_path_to_pose", "rc/follow_path"]
+    assert [one.header.frame_id for one in machine.sent[1][2].path.poses] == ["map"] * 3
+    with pytest.raises(SubtaskFailed, match="PATH_EMPTY"):
+        Recorded("mst110cr", ComputePathToPose.Result()).compute_path(print, PATH[2])
+    with pytest.raises(SubtaskFailed, match="NO_CAPABILITY"):
+        Recorded("d37pxi").compute_path(print, PATH[2])

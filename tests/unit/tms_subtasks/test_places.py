@@ -1,12 +1,15 @@
 """Records of places: quaternions and degrees mean the same, and what is missing or does not fit is named."""
 
 import math
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from pydantic import ValidationError
 
 from tms_reason.validation import explain
-from tms_subtasks.records.places import PathRecord, PoseRecord
+from tms_subtasks.compute_path_to_pose import ComputePathToPose, PathGoal
+from tms_subtasks.records.places import PathRecord, PoseRecord, lists
 from words import words
 
 QUATERNION = {"qx": 0.0, "qy": 0.0, "qz": 0.70711, "qw": 0.70711}
@@ -67,3 +70,18 @@ def test_lists_of_unequal_length_are_refused_with_their_lengths() -> None:
 def test_further_fields_do_not_matter() -> None:
     fields = {**LISTS, "yaw": [0, 90], "angles": "degrees", "description": "x", "timestamps": 3}
     assert len(PathRecord.model_validate(fields).poses()) == 2
+
+
+def test_a_path_that_was_computed_is_a_record_of_a_path() -> None:
+    goal = PathGoal.model_validate({"output": "path", "goal_x": 2.0, "goal_y": 1, "goal_qx": 0.0, "goal_qy": 0.0,
+                                    "goal_qw": 1.0})  # fmt: skip
+    there = goal.place().pose()
+    assert (there.position.x, there.position.y, there.orientation.w) == (2.0, 1.0, 1.0)
+    written: list[Any] = []
+    machine: Any = SimpleNamespace(compute_path=lambda _, pose: [pose, pose])
+    ComputePathToPose(machine, goal, lambda *_: {}, lambda *all_: written.append(all_)).execute("mst", "goal", print)
+    ((model, record, fields, create),) = written
+    assert (model, record, create) == ("mst", "path", True)
+    assert fields == lists([there, there]) and PathRecord.model_validate(fields).poses() == [there, there]
+    with pytest.raises(ValidationError):
+        PathGoal.model_validate({**goal.model_dump(), "goal_qw": 0.5})

@@ -95,7 +95,7 @@ class Planned:
 
 def run(kind: Any, want: Any, record: str, records: dict[str, dict[str, Any]]) -> Planned:
     machine: Any = Planned()
-    write = lambda model, name, values: records[name].update(values)  # noqa: E731
+    write = lambda model, name, values, create: records[name].update(values)  # noqa: E731
     kind(machine, want, lambda model, name, age: records[name], write).execute("zx200", record, print)
     planned: Planned = machine
     return planned
