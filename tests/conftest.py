@@ -107,8 +107,8 @@ def tool(*names: str) -> str:
 
 
 def ports_of(domain: int) -> int:
-    """First of 100 ports that belong to a domain: below those that the system gives to outgoing connections."""
-    return 20000 + domain * 100
+    """First of 220 ports that belong to a domain: below those that the system gives to outgoing connections."""
+    return 20000 + (domain - DOMAINS.start) * 220
 
 
 @pytest.fixture(scope="session")
@@ -122,7 +122,7 @@ def site_data(domain: int, port: int, /, **changes: object) -> dict[str, object]
     data: dict[str, object] = {
         "name": "test",
         "domain": domain,
-        "ports": {"metrics": port, "console": port + 90, "store": port + 91, "groot": port + 60},
+        "ports": {"metrics": port + 100, "console": port + 90, "store": port + 91, "groot": port + 60},
         "sim": {"speed": 5.0},
         "services": {"db": {}, "ts": {}, "ur": {}, "sp": {}, "host": {}},
         "machines": {"zx200": {"model": "zx200"}},

@@ -266,8 +266,8 @@ def test_one_line_adds_a_machine(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("name", "full"),
-    [("zx200:rc", "zx200:rc"), ("change_pose", "zx200:subtask_zx200_change_pose"), ("zx200:change_pose",
-     "zx200:subtask_zx200_change_pose"), ("db", "tms:db")],
+    [("zx200:rc", "zx200:rc"), ("sample_boom", "zx200:st_zx200_sample_boom"), ("zx200:sample_boom",
+     "zx200:st_zx200_sample_boom"), ("db", "tms:db")],
 )  # fmt: skip
 def test_a_part_of_a_name_is_enough(tmp_path: Path, name: str, full: str) -> None:
     assert find(load_site(site(tmp_path)), name).full == full
@@ -275,9 +275,9 @@ def test_a_part_of_a_name_is_enough(tmp_path: Path, name: str, full: str) -> Non
 
 def test_names_that_fit_none_or_several(tmp_path: Path) -> None:
     loaded = load_site(site(tmp_path))
-    simple = ("zx200:subtask_zx200_excavate_simple", "zx200:subtask_zx200_excavate_simple_plan")
+    follow = tuple(f"zx200:{name}" for name in ("st_zx200_follow_waypoints", "st_zx200_follow_waypoints_deg"))
     for name, reason in (
-        ("simple", SeveralProcesses("simple", (*simple, "zx200:subtask_zx200_release_simple"))),
+        ("follow_way", SeveralProcesses("follow_way", (*follow, "zx200:primitive_excavator_follow_waypoints"))),
         ("zx20:rc", ProcessMeant("zx20:rc", "zx200:rc")),
         ("nothing_like_it", NoProcess("nothing_like_it")),
     ):
