@@ -3,11 +3,13 @@
 from tms_kit.subtask import Params, Progress, Subtask, SubtaskFailed
 from tms_machine.reasons import NoPlan
 from tms_subtasks.records.plans import stored
+from tms_subtasks.records.retiming import retimed
 
 
 class Given(Params):
     """What leaves give beside the records."""
 
+    retime: bool  # an input of the variant: as fast as the machine's limits allow, not as planned
     previous_target_record_name: str = ""  # counts for plans only: tasks of the C++ system give it here, too
 
 
@@ -23,4 +25,6 @@ class ExecuteFromPlan(Subtask):
         plans = [plan for plan in found if plan is not None]
         if not plans:
             raise SubtaskFailed(NoPlan(tuple(names)))
+        if self.want.retime:
+            plans = [retimed(plan, self.machine.model.joints) for plan in plans]
         self.machine.execute_plans(progress, plans)

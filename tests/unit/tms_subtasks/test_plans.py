@@ -7,14 +7,19 @@ import pytest
 from pydantic import ValidationError
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
+from tms_config.config import CONFIGS
+from tms_config.models import MachineModel
+from tms_config.yaml_file import parse
 from tms_machine.reasons import BadRecord, NoPlan
-from tms_machine.stamps import duration
+from tms_machine.stamps import duration, seconds
 from tms_reason.errors import SubtaskFailed
 from tms_subtasks.change_pose_execute_from_plan import ExecuteFromPlan
 from tms_subtasks.change_pose_plan import ChangePosePlan
 from tms_subtasks.records.plans import document, stored
+from tms_subtasks.records.retiming import retimed
 from tms_subtasks.records.waypoints import Waypoint
 
+JOINTS = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel).joints
 PLAN = JointTrajectory(
     joint_names=["boom_joint", "arm_joint"],
     points=[
@@ -82,6 +87,8 @@ class Planned:
     def __init__(self) -> None:
         self.asked: list[Any] = []
 
+    model = SimpleNamespace(joints=JOINTS)
+
     def angle_of(self, joint: str) -> float:
         return -0.5
 
@@ -113,7 +120,33 @@ def test_a_plan_is_stored_in_its_record_and_goes_on_from_the_one_before() -> Non
 
 def test_plans_of_several_records_are_executed_together() -> None:
     records = {"A": {"plan": document(PLAN)}, "B": {}, "C": {"plan": document(PLAN)}}
-    assert run(ExecuteFromPlan, SimpleNamespace(), "A, B,C", records).asked == [[PLAN, PLAN]]
+    assert run(ExecuteFromPlan, SimpleNamespace(retime=False), "A, B,C", records).asked == [[PLAN, PLAN]]
     with pytest.raises(SubtaskFailed) as caught:
-        run(ExecuteFromPlan, SimpleNamespace(), "B", records)
+        run(ExecuteFromPlan, SimpleNamespace(retime=False), "B", records)
     assert caught.value.reason == NoPlan(("B",))
+
+
+def slow(share: float) -> JointTrajectory:
+    """Two joints to and from a speed that is a share of the boom's limit, within 10 s."""
+    speed = share * JOINTS["boom_joint"].velocity
+    names, zero = ["boom_joint", "arm_joint"], [0.0, 0.0]
+    points = [([0.0, 0.0], zero), ([speed * 5, 0.0], [speed, 0.0]), ([speed * 10, 0.0], zero)]
+    made = [
+        JointTrajectoryPoint(positions=at, velocities=v, accelerations=zero, time_from_start=duration(5.0 * number))
+        for number, (at, v) in enumerate(points)
+    ]
+    return JointTrajectory(joint_names=names, points=made)
+
+
+def test_retiming_brings_a_plan_to_the_nearest_limit_on_the_same_path() -> None:
+    made = retimed(slow(0.25), JOINTS)
+    assert [seconds(point.time_from_start) for point in made.points] == pytest.approx([0.0, 1.25, 2.5])
+    assert [list(point.positions) for point in made.points] == [list(point.positions) for point in slow(0.25).points]
+    assert made.points[1].velocities[0] == pytest.approx(JOINTS["boom_joint"].velocity)
+    hard = slow(0.25)
+    hard.points[1].accelerations = [0.0, JOINTS["arm_joint"].acceleration]  # at its limit: no faster
+    assert retimed(hard, JOINTS).points[1].time_from_start == duration(5.0)
+    assert retimed(PLAN, JOINTS) == PLAN  # no velocities
+    records = {"A": {"plan": document(slow(0.25))}}
+    ((fast,),) = run(ExecuteFromPlan, SimpleNamespace(retime=True), "A", records).asked
+    assert seconds(fast.points[2].time_from_start) == pytest.approx(2.5, abs=1e-4)
