@@ -19,6 +19,8 @@ class NoUnitLength(Reason, text="qx, qy, qz, qw have length {length}, an orienta
 class MoreThanOneTurn(Reason, text="{degrees} deg is more than one turn", action=RECORDS): degrees: str
 class OneWaypoint(Reason, text="there are {count} waypoints, there must be one", action=RECORDS): count: int
 class NotHonoured(Reason, text="the planner can keep no {constraints}", action=RECORDS): constraints: tuple[str, ...]
+class PathLeavesConstraint(Reason, text="the way would bring {joint} to {angle}, the record allows {low} to {high}",
+    action=RECORDS): joint: str; angle: Radians; low: Radians; high: Radians
 class NoPlan(Reason, text="no plan is stored in {records}", action=EDIT_TASK): records: tuple[str, ...]
 class NoFlag(Reason, text="one of {flags} must be 1", action=RECORDS): flags: tuple[str, ...]
 class BadRecord(Reason, text="record {record}: {problem}", action=RECORDS): record: str; problem: Reason

@@ -2,14 +2,15 @@
 
 import math
 from collections.abc import Callable, Mapping
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
 from trajectory_msgs.msg import JointTrajectory
 
 from tms_kit.subtask import Params
-from tms_machine.reasons import MoreThanOneTurn, NotHonoured, OneWaypoint
+from tms_machine.reasons import MoreThanOneTurn, OneWaypoint
 from tms_reason.validation import Wrong
+from tms_subtasks.records.constraints import Constraints
 from tms_subtasks.records.plans import end
 
 Goal = dict[str, float] | tuple[float, float, float, float]  # joint angles [rad], or x, y, z [m], theta_w [rad]
@@ -49,7 +50,7 @@ class Waypoint(Params):
     waypoints: list[_Point]  # one
     velocity_scale: float = Field(default=SCALE, gt=0, le=1)
     acceleration_scale: float = Field(default=SCALE, gt=0, le=1)
-    constraints: dict[str, Any] = Field(default_factory=dict)
+    constraints: Constraints = Constraints()
     previous_target_record_name: str = ""  # an input of the goal: the record whose plan ends where this one begins
 
     @field_validator("waypoints")
@@ -58,15 +59,6 @@ class Waypoint(Params):
         if len(points) != 1:
             raise Wrong(OneWaypoint(len(points)))
         return points
-
-    @field_validator("constraints")
-    @classmethod
-    def _honoured(cls, constraints: dict[str, Any]) -> dict[str, Any]:
-        """Refuse constraints: our planner goes straight in joint space, and looks at limits and collisions only."""
-        given = tuple(name for name, value in constraints.items() if value)
-        if given:
-            raise Wrong(NotHonoured(given))
-        return constraints
 
     def joint_angles(self) -> Mapping[str, float]:
         point = self.waypoints[0]

@@ -10,7 +10,7 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
-from tms_machine.reasons import BadRecord, NoPlan
+from tms_machine.reasons import BadRecord, NoPlan, PathLeavesConstraint
 from tms_machine.stamps import duration, seconds
 from tms_reason.errors import SubtaskFailed
 from tms_subtasks.change_pose_execute_from_plan import ExecuteFromPlan
@@ -72,6 +72,7 @@ def test_targets() -> None:
         {"velocity_scale": 0.0},
         {"acceleration_scale": 1.01},
         {"constraints": {"joint_constraints": [{"joint_name": "arm_joint"}]}},
+        {"constraints": {"position_constraints": [{"weight": 1.0}]}},
     ],
 )
 def test_what_the_planner_cannot_keep_is_refused(wrong: dict[str, Any]) -> None:
@@ -124,6 +125,20 @@ def test_plans_of_several_records_are_executed_together() -> None:
     with pytest.raises(SubtaskFailed) as caught:
         run(ExecuteFromPlan, SimpleNamespace(retime=False), "B", records)
     assert caught.value.reason == NoPlan(("B",))
+
+
+@pytest.mark.parametrize(("position", "below", "kept"), [(-0.5, 0.1, True), (-0.5, 0.0, True), (0.0, 0.4, False),
+                                                         (999.0, 0.0, True), (0.0, 0.6, True)])  # fmt: skip
+def test_a_joint_stays_in_the_range_of_its_constraint(position: float, below: float, kept: bool) -> None:
+    limit = {"joint_name": "boom_joint", "position": position, "tolerance_above": 0.3, "tolerance_below": below}
+    fields = {**target("joint_values_absolute", boom_joint=-0.25), "constraints": {"joint_constraints": [limit]}}
+    want, records = Waypoint.model_validate(fields), {"A": dict[str, Any]()}
+    if kept:
+        run(ChangePosePlan, want, "A", records)
+        return
+    with pytest.raises(SubtaskFailed) as caught:
+        run(ChangePosePlan, want, "A", records)
+    assert isinstance(caught.value.reason, PathLeavesConstraint) and records == {"A": {}}
 
 
 def slow(share: float) -> JointTrajectory:
