@@ -106,16 +106,18 @@ def _problem(joints: Mapping[str, Joint], arm: Joints, samples: Sequence[Traject
     first = samples[0]
     if any(abs(speed) > REST for speed in (*first.velocities, *samples[-1].velocities)):
         return PlanBroken()
-    for name, begin, angle in zip(joints, first.positions, arm, strict=True):
+    for (name, joint), begin, angle in zip(joints.items(), first.positions, arm, strict=True):
         if abs(begin - angle) > START:
             return PlanElsewhere(name, begin, angle)
+        if (outside := _outside(joint, begin, angle)) is not None:
+            return JointBroken(name, outside)
     speeds, last = (0.0,) * len(joints), 0.0
     for before, now in pairwise(samples):
         if (passed := now.time - before.time) <= 0:
             return PlanBroken()
         old, speeds = speeds, tuple((b - a) / passed for a, b in zip(before.positions, now.positions, strict=True))
         for index, (name, joint) in enumerate(joints.items()):
-            if (outside := _outside(joint, now.positions[index], first.positions[index])) is not None:
+            if (outside := _outside(joint, now.positions[index], arm[index])) is not None:
                 return JointBroken(name, outside)
             gained = abs(speeds[index] - old[index]) - ROUNDED
             fast = max(abs(now.velocities[index]), abs(speeds[index])) > joint.velocity * MARGIN
@@ -126,13 +128,13 @@ def _problem(joints: Mapping[str, Joint], arm: Joints, samples: Sequence[Traject
     return None
 
 
-def _outside(joint: Joint, angle: float, begin: float) -> Reason | None:
-    """Which bound an angle [rad] breaks; a plan may begin where the joint sags beyond one, but goes no further."""
+def _outside(joint: Joint, angle: float, arm: float) -> Reason | None:
+    """Which bound an angle [rad] breaks; where the joint of the arm sags beyond one, a plan goes no further."""
     outside = joint.violation(angle)
-    if outside is None or joint.violation(begin) is None:
+    if outside is None or joint.violation(arm) is None:
         return outside
-    low, high = (begin if bound is None else bound for bound in (joint.min, joint.max))
-    return None if min(begin, low) <= angle <= max(begin, high) else outside
+    low, high = (arm if bound is None else bound for bound in (joint.min, joint.max))
+    return None if min(arm, low) <= angle <= max(arm, high) else outside
 
 
 def _later(samples: Sequence[TrajectorySample], by: float) -> list[TrajectorySample]:

@@ -56,6 +56,16 @@ def test_a_plan_that_begins_elsewhere_is_refused() -> None:
     assert second.number == 2 and isinstance(second.why, PlanElsewhere)
 
 
+def test_an_arm_that_sags_beyond_a_limit_comes_back_and_goes_no_further() -> None:
+    low = JOINTS["boom_joint"].min
+    assert low is not None
+    sagged = (A[0], low - 0.03, *A[2:])
+    made = one_trajectory(JOINTS, sagged, [plan(sagged, B)])
+    assert made.samples[-1].positions == B
+    why = refusal(plan(sagged, B), now=(A[0], low - 0.01, *A[2:])).why
+    assert isinstance(why, JointBroken) and why.joint == "boom_joint"
+
+
 def broken(change: Callable[[JointTrajectory], object]) -> PlanWrong:
     made = plan(A, B)
     change(made)
