@@ -39,7 +39,7 @@ class World:
     def at(self, when: float, step: Step) -> None:
         """Do a step at a time."""
         self._number += 1
-        heapq.heappush(self._waiting, (max(when, self.now), self._number, step))
+        heapq.heappush(self._waiting, (when if when > self.now else self.now, self._number, step))
 
     def after(self, seconds: float, step: Step) -> None:
         """Do a step later."""
@@ -47,7 +47,8 @@ class World:
 
     def send(self, topic: str, step: Step, slow: float = 0.0) -> None:
         """A message on its way: those of one topic stay in order, those of others may overtake it."""
-        delay = self.random.expovariate(1 / 0.003) + 0.001 + (self.random.random() < 0.02) * self.random.random() * 0.2
+        chance = self.random.random
+        delay = self.random.expovariate(1 / 0.003) + 0.001 + (chance() < 0.02) * chance() * 0.2
         arrives = max(self.now + delay + slow, self._lanes.get(topic, 0.0) + 1e-6)
         self._lanes[topic] = arrives
         self.at(arrives, step)
@@ -95,7 +96,7 @@ class Process:
         """Do a step in this process: now, or when it thaws; never in a later life."""
         if not self.alive:
             return
-        if self.frozen():
+        if self.world.now < self.thaws:
             self.waiting.append(step)
         else:
             step()
