@@ -77,7 +77,8 @@ class Channel:
 
     def _take(self, samples: tuple[ChannelSample, ...]) -> None:
         self._samples, self._moves, self._disagrees = samples, None, ()
-        self._recent = tuple(one for one in samples if samples[-1].received - one.received <= WORST + 1e-9)
+        newest = samples[-1].received if samples else 0.0
+        self._recent = tuple([one for one in samples if newest - one.received <= WORST + 1e-9])
 
     def moving(self) -> bool:
         """Whether any of the last samples showed a motion; unknown counts as moving."""

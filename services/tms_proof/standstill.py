@@ -86,6 +86,7 @@ class StandStill:
         self._way = 0.0
         self._quiet_since = -INFINITE  # when our last goal ended: its last commands may still be on their way
         self._motion_at = -INFINITE  # when a motion was last seen
+        self._beyond: Reason | None = None  # the joint that the last message shows beyond its limits
 
     @property
     def dead_times(self) -> dict[str, float]:
@@ -125,6 +126,8 @@ class StandStill:
         """Take one message of a source."""
         source = self.sources[name]
         source.take(sample)
+        if name == JOINTS:
+            self._beyond = self._beyond_limits()
         if source.fast:
             self._motion_at = max(self._motion_at, sample.received)
         for channel, away in source.travel(self._marks.get(name, {})).items():
@@ -167,10 +170,11 @@ class StandStill:
     def trouble(self, now: float) -> Trouble | None:
         """Why a source cannot be believed; a trouble that does not pass comes first."""
         found = [one for source in self.sources.values() if (one := source.trouble(now)) is not None]
-        found += [Trouble(beyond) for beyond in [self._beyond()] if beyond is not None]
+        if (beyond := self._beyond) is not None:
+            found.append(Trouble(beyond))
         return min(found, key=lambda one: one.passes, default=None)
 
-    def _beyond(self) -> Reason | None:
+    def _beyond_limits(self) -> Reason | None:
         for name, angle in self.positions.items():
             joint = self._facts.joints[name]
             if joint.low is not None and angle < joint.low - HARD:
