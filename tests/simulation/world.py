@@ -5,6 +5,8 @@ import random
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from mypy_extensions import mypyc_attr
+
 Step = Callable[[], None]
 
 
@@ -20,6 +22,7 @@ class Happened:
         return f"{self.at:9.3f}  {self.who:16} {self.what}"
 
 
+@mypyc_attr(native_class=False)  # an exception stays one of Python's when it is compiled (compiled.py)
 class Violation(AssertionError):
     """An invariant does not hold."""
 
