@@ -77,6 +77,14 @@ class StandStill:
 
     def __init__(self, facts: MachineFacts) -> None:
         self._facts = facts
+        answers, joints = facts.responses, facts.joint_response.values()
+        # Seconds for which a command may still be on its way ...
+        self.dead_time = max((one.dead_time for one in answers), default=0.0) / facts.speed
+        # ... and after them, until every motion has ended: from full speed, and a lag more.
+        self.braking = max((one.brakes + one.lag for one in answers), default=0.0) / facts.speed
+        # Dead time and lag of the slowest joint [s of the machine]: then it is where its reference was.
+        self.reached = max((one.dead_time for one in joints), default=0.0)
+        self.reached += max((one.lag for one in joints), default=0.0)
         self.sources: dict[str, SourceWatch] = {
             name: SourceWatch(name, source, _channels(name, facts, source.resolution))
             for name, source in facts.sources.items()
@@ -96,22 +104,6 @@ class StandStill:
     def _dead_time(self, joint: str) -> float:
         response = self._facts.joint_response.get(joint)  # a passive joint has none
         return response.dead_time / self._facts.speed if response else 0.0
-
-    @property
-    def dead_time(self) -> float:
-        """Seconds for which a command may still be on its way."""
-        return max((one.dead_time for one in self._facts.responses), default=0.0) / self._facts.speed
-
-    @property
-    def braking(self) -> float:
-        """Seconds after the dead time in which every motion has ended: from full speed, and a lag more."""
-        return max((one.brakes + one.lag for one in self._facts.responses), default=0.0) / self._facts.speed
-
-    @property
-    def reached(self) -> float:
-        """Dead time and lag of the slowest joint [s of the machine]: then it is where its reference was."""
-        response = self._facts.joint_response.values()
-        return max((one.dead_time for one in response), default=0.0) + max((one.lag for one in response), default=0.0)
 
     @property
     def unstamped(self) -> list[Reason]:
