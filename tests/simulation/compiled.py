@@ -80,7 +80,8 @@ def check(folder: Path) -> None:
 def _call(folder: Path, arguments: list[str], environment: dict[str, str]) -> str:
     done = subprocess.run([sys.executable, *arguments], cwd=folder, env=environment, capture_output=True, text=True)
     if done.returncode:
-        raise CannotCompile("\n".join((done.stdout + done.stderr).strip().splitlines()[-3:]))
+        lines = (done.stdout + done.stderr).strip().splitlines()[-3:]
+        raise CannotCompile("\n".join(line[:150] for line in lines))  # commands of compilers are longer
     return done.stdout
 
 
