@@ -8,7 +8,7 @@ from tms_config.config import Site
 from tms_machine.goal_inputs import Inputs, parted
 from tms_reason.reason import Reason
 from tms_ts.bt import Tree
-from tms_ts.bt.errors import did_you_mean, short
+from tms_ts.bt.errors import did_you_mean, short, within
 from tms_ts.bt.reasons import Line, NotPlain, NumberTooBig, Placed
 from tms_ts.bt.tree import LeafGoal, SharedValue
 from tms_ts.nodes.machine_leaf import ROS_NAME
@@ -115,46 +115,50 @@ def at(line: int, what: Reason) -> Reason:
     return Placed(Line(line), what)
 
 
+def _at_leaf(leaf: LeafGoal | SharedValue, what: Reason) -> Reason:
+    return at(leaf.line, within(leaf.template, what))
+
+
 def _check_goal(found: Findings, goal: LeafGoal, site: Site, around: Surroundings) -> None:
     if "{" not in goal.machine and goal.machine not in site.file.machines:
-        found.errors.append(at(goal.line, NoMachineOfSite(goal.machine, tuple(site.file.machines))))
+        found.errors.append(_at_leaf(goal, NoMachineOfSite(goal.machine, tuple(site.file.machines))))
         return
     if "{" in goal.machine or "{" in goal.subtask:
-        found.warnings.append(at(goal.line, KnownAtRun()))
+        found.warnings.append(_at_leaf(goal, KnownAtRun()))
         return
     if not goal.subtask:
         return  # a fault of the node
     if not ROS_NAME.fullmatch(goal.subtask):
-        found.errors.append(at(goal.line, BadSubtaskName(short(goal.subtask, 100))))
+        found.errors.append(_at_leaf(goal, BadSubtaskName(short(goal.subtask, 100))))
         return
     offered = site.model_of(goal.machine).subtasks
     if goal.subtask not in offered and around.served(goal.machine, goal.subtask):
-        found.warnings.append(at(goal.line, ServedElsewhere(goal.subtask, goal.machine)))
+        found.warnings.append(_at_leaf(goal, ServedElsewhere(goal.subtask, goal.machine)))
     elif goal.subtask not in offered:
-        found.errors.append(at(goal.line, NotOffered(goal.machine, goal.subtask, tuple(offered))))
+        found.errors.append(_at_leaf(goal, NotOffered(goal.machine, goal.subtask, tuple(offered))))
     elif "{" not in parted(goal.record)[0]:
         _check_record(found, goal, around)
 
 
 def _check_record(found: Findings, goal: LeafGoal, around: Surroundings) -> None:
     record, inputs = parted(goal.record)
-    line, name = goal.line, f"{goal.machine}/{record}"
+    name = f"{goal.machine}/{record}"
     stored = around.record(goal.machine, record)
     if stored is None:
         near = did_you_mean(record, around.names(goal.machine))
-        found.errors.append(at(line, NoRecord(name) if near is None else NoRecordNear(name, near)))
+        found.errors.append(_at_leaf(goal, NoRecord(name) if near is None else NoRecordNear(name, near)))
         return
     known = {port: value for port, value in inputs.items() if "{" not in str(value)}
     unfit = around.unfit(goal.machine, goal.subtask, stored.values, known)
     if unfit is not None:
-        found.errors.append(at(line, RecordUnfit(name, goal.subtask, unfit)))
+        found.errors.append(_at_leaf(goal, RecordUnfit(name, goal.subtask, unfit)))
     limit = around.oldest(goal.machine, goal.subtask) or stored.max_age
     if limit > 0 and stored.type != "static" and (stored.age is None or stored.age > limit):
         old = RecordAgeUnknown(name, limit) if stored.age is None else RecordOld(name, stored.age, limit)
-        found.warnings.append(at(line, old))
+        found.warnings.append(_at_leaf(goal, old))
     silent = around.silent(goal.machine, record)
     if silent:
-        found.warnings.append(at(line, InputSilent(silent, name)))
+        found.warnings.append(_at_leaf(goal, InputSilent(silent, name)))
 
 
 def _check_shared(found: Findings, values: list[SharedValue], around: Surroundings) -> None:
@@ -164,16 +168,16 @@ def _check_shared(found: Findings, values: list[SharedValue], around: Surroundin
             continue
         stored = around.record("", value.record)
         if stored is None:
-            found.warnings.append(at(value.line, NoSharedRecord(value.record)))
+            found.warnings.append(_at_leaf(value, NoSharedRecord(value.record)))
         elif not value.writes and value.field not in stored.values:
-            found.warnings.append(at(value.line, NoSharedField(value.record, value.field)))
+            found.warnings.append(_at_leaf(value, NoSharedField(value.record, value.field)))
         elif not value.writes and (note := _unread(value, stored.values[value.field])) is not None:
-            found.warnings.append(at(value.line, note))
+            found.warnings.append(_at_leaf(value, note))
         elif value.writes and stored.type == "static":
-            found.warnings.append(at(value.line, SharedStatic(value.record)))
+            found.warnings.append(_at_leaf(value, SharedStatic(value.record)))
         elif value.looped and not value.writes and (value.record, value.field) not in own:
             if not around.written(value.record, value.field):
-                found.warnings.append(at(value.line, NobodyWrites(value.field, value.record)))
+                found.warnings.append(_at_leaf(value, NobodyWrites(value.field, value.record)))
 
 
 def _unread(value: SharedValue, stored: Any) -> Reason | None:

@@ -10,6 +10,7 @@ from typing import Any
 from tms_reason.reason import Reason
 from tms_ts.bt.blackboard_nodes import SetBlackboard
 from tms_ts.bt.convert import CPP_NAMES, FROM_TEXT, MISSING
+from tms_ts.bt.errors import within
 from tms_ts.bt.node import AtOnce, Keys, Node, Place
 from tms_ts.bt.ports import Direction, Pointer
 from tms_ts.bt.reasons import KeyOfTwoTypes, MayHang, NeverWritten, PortType, ThrowsWithoutPort
@@ -24,7 +25,7 @@ def advise(nodes: list[Node]) -> None:
     type_changes(nodes, keys)
     for node in nodes:
         for fault in node.faults():
-            node.context.faults.append((node.line, node.path, fault))
+            node.context.faults.append((node.line, node.path, within(node.template, fault)))
         for note in (*literals(node), *node.preflight(keys), *(never_written(node, keys) if keys.complete else ())):
             node.warn(note)
         if node.may_hang([synchronous_outcomes[child] for child in node.children]):

@@ -15,7 +15,7 @@ from tms_reason.reason import Reason
 from tms_ts.bt.blackboard import Blackboard
 from tms_ts.bt.context import Context
 from tms_ts.bt.convert import FROM_TEXT, MISSING, convert
-from tms_ts.bt.errors import TickError
+from tms_ts.bt.errors import TickError, within
 from tms_ts.bt.ports import Direction, Pointer, Port
 from tms_ts.bt.reasons import AddPort, DoesNotFit, KeyChangesType, KeyHasNoValue, MissingParameter, OutputNotConnected
 from tms_ts.bt.status import IDLE, RUNNING, NodeType, Status
@@ -33,6 +33,7 @@ class NodeSpec:
     path: str = "0"  # child positions from the root, e.g. 0.1.2
     line: int = 0
     uid: int = 0
+    template: str = ""  # TEMPLATE:LINE where a template of ExecuteSubtask has it; `line` is then that of the call
 
 
 AtOnce = tuple[bool, bool]  # may succeed, may fail
@@ -64,6 +65,7 @@ class Node:
         "reason",
         "registration_name",
         "state",
+        "template",
         "uid",
     )
     kind: ClassVar[NodeType] = NodeType.UNDEFINED
@@ -86,6 +88,7 @@ class Node:
         self.path = birth.path
         self.line = birth.line
         self.uid = birth.uid
+        self.template = birth.template
         self.state: Status = IDLE
         self.reason: Reason | None = None  # why it is RUNNING or has failed, for the operator
         self.parent: Node | None = None
@@ -191,7 +194,7 @@ class Node:
         return [port for port in self.ports.values() if port.direction is not Direction.OUTPUT]
 
     def warn(self, what: Reason) -> None:
-        self.context.warn(self.line, what)
+        self.context.warn(self.line, within(self.template, what))
 
     # --- preflight
 

@@ -5,8 +5,11 @@ Each is marked with the versions of the C++ system that have it, unless neither 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from lxml import etree
 
+from tms_reason.xml_text import CALL
 from tms_ts.bt.convert import CPP_NAMES, MISSING
 from tms_ts.bt.node import Node
 from tms_ts.bt.ports import Direction, Port
@@ -14,16 +17,45 @@ from tms_ts.bt.registry import Registry
 from tms_ts.bt.registry import registry as all_nodes
 
 MARKS = {(5,): " (version 5)", (6,): " (version 6)", (5, 6): " (versions 5 and 6)"}  # by Node.versions
+CALL_TEXT = "The tree of a template comes in this place."
+CALL_PORTS = tuple(
+    Port(name, Direction.INPUT, str, help=text)
+    for name, text in {
+        "machine_record_name": "value of $machine_record_name$ in the template",
+        "model_name": "value of $model_name$ in the template",
+        "subtask_name": "name of the template",
+        "subtask_parameters": "values of further keys of the template, as key:value,key:value",
+        "terminate_condition": "value of $terminate_condition$ in the template",
+    }.items()
+)
 PORT_TAGS = {Direction.INPUT: "input_port", Direction.OUTPUT: "output_port", Direction.INOUT: "inout_port"}
 
 
+@dataclass(frozen=True)
+class Shown:
+    """What the palette tells of a node, or of the call of a template."""
+
+    kind: str
+    text: str
+    ports: tuple[Port, ...]
+    versions: tuple[int, ...]  # of the C++ system that have it
+    left_out: frozenset[str] = frozenset()  # ports
+
+
 def palette(registry: Registry | None = None) -> str:
-    """A document with a TreeNodesModel and nothing else; built-in nodes are left out, Groot knows them."""
+    """A document with a TreeNodesModel and nothing else; built-in nodes are left out, Groot knows them.
+
+    The call of a template, which is no node of a tree that runs, is drawn like one.
+    """
     root = etree.Element("root")
     model = etree.SubElement(root, "TreeNodesModel")
-    for name, cls in sorted((registry or all_nodes()).items()):
-        if not cls.builtin:
-            _entry(model, name, cls)
+    shown = {
+        name: Shown(cls.kind.name, summary(cls), tuple(cls.ports.values()), cls.versions, cls.older_ports)
+        for name, cls in (registry or all_nodes()).items()
+        if not cls.builtin
+    }
+    for name, entry in sorted({**shown, CALL: Shown("ACTION", CALL_TEXT, CALL_PORTS, (6,))}.items()):
+        _entry(model, name, entry)
     etree.indent(root, "    ")
     return etree.tostring(root, encoding="unicode") + "\n"
 
@@ -33,13 +65,13 @@ def summary(cls: type[Node]) -> str:
     return " ".join((cls.__doc__ or "").strip().split("\n\n")[0].split())
 
 
-def _entry(model: etree._Element, name: str, cls: type[Node]) -> None:
-    mark = MARKS.get(cls.versions, "")
-    model.append(etree.Comment(f" {name}{mark}: {summary(cls)} ".replace("--", "-")))
-    entry = etree.SubElement(model, cls.kind.name.capitalize(), {"ID": name})
-    for port in cls.ports.values():
-        if port.name not in cls.older_ports:
-            _port(entry, port, mark if len(cls.versions) == 1 else "")
+def _entry(model: etree._Element, name: str, shown: Shown) -> None:
+    mark = MARKS.get(shown.versions, "")
+    model.append(etree.Comment(f" {name}{mark}: {shown.text} ".replace("--", "-")))
+    entry = etree.SubElement(model, shown.kind.capitalize(), {"ID": name})
+    for port in shown.ports:
+        if port.name not in shown.left_out:
+            _port(entry, port, mark if len(shown.versions) == 1 else "")
 
 
 def _port(entry: etree._Element, port: Port, mark: str) -> None:

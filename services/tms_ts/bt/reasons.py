@@ -2,7 +2,7 @@
 
 from tms_reason.quantities import Seconds
 from tms_reason.reason import Reason
-from tms_reason.remedies import EDIT_TASK
+from tms_reason.remedies import EDIT_TASK, TEMPLATES
 
 
 # fmt: off
@@ -13,6 +13,7 @@ class FileLine(Line, text="{file}, line {line}"): file: str
 class FileLineAt(Line, text="{file}, line {line}, at {path}"): path: str; file: str
 class InFile(Reason, text="{file}"): file: str
 class AtNode(Reason, text="at {path}"): path: str
+class InTemplate(Reason, text="in template {place}: {what}"): place: str; what: Reason
 class Placed(Reason, text="{place}: {what}", action=EDIT_TASK): place: Reason; what: Reason
 class Hinted(Reason, text="{what} ({hint})"): what: Reason; hint: Reason
 class DidYouMean(Reason, text="did you mean '{name}'?"): name: str
@@ -52,6 +53,31 @@ class IncludeOutside(Reason, text="include '{name}' is outside the tree's folder
 class IncludeCircle(Reason, text="include '{name}' includes itself"): name: str
 class ManyIncludes(Reason, text="more than {limit} files are included"): limit: int
 class CannotInclude(Reason, text="cannot include '{name}': {why}"): name: str; why: Reason
+
+# templates: trees that ExecuteSubtask calls by name
+class NoTemplate(Reason, text="there is no template '{template}'", action=TEMPLATES): template: str
+class NoTemplateName(Reason, text="ExecuteSubtask needs 'subtask_name'"): pass
+class TemplateUnusable(Reason, text="template '{template}' cannot be used: {why}"): template: str; why: Reason
+class TemplateInItself(Reason, text="the template '{template}' calls itself ({chain})"): template: str; chain: str
+class TemplatesNested(Reason, text="more than {limit} templates call each other"): limit: int
+class TemplatesLarge(Reason, text="the templates of the task have more than {limit} nodes"): limit: int
+class CallWithChildren(Reason, text="ExecuteSubtask has no children"): pass
+class CallInV4(Reason, text="ExecuteSubtask is for documents of BehaviorTree.CPP v3"): pass
+class KeyOpen(Reason, text="${key}$ has no value"): key: str
+class KeysGiven(Reason, text="the call gives {keys}; {key}:none says that there is none"):
+    keys: tuple[str, ...]; key: str
+class NoKeysGiven(Reason, text="the call gives no values; {key}:none says that there is none"): key: str
+class ValueTooLong(Reason, text="the value of {port} has more than {limit} letters"): port: str; limit: int
+class TemplateUnseen(Reason, text="template '{template}' is not looked into, as no database answers"): template: str
+class KeyBecomesNone(Reason, text="${key}$ has no value; the C++ system writes the word none"): key: str
+class NestedCall(Reason, text="a template calls template '{template}'; the C++ system cannot load that"): template: str
+class CallNotSeen(Reason, text="the C++ system does not see this call: "
+    "it must be written <Action ID=\"ExecuteSubtask\" ...>, ID first"): pass
+class CallWithSlash(Reason, text="the C++ system does not see this call, for {port}='{value}' has a /"):
+    port: str; value: str
+class PartWithoutColon(Reason, text="subtask_parameters: '{part}' has no colon and is left out"): part: str
+class TreeNameForCpp(Reason, text="the C++ system needs main_tree_to_execute=\"BehaviorTree\", <BehaviorTree "
+    "ID=\"BehaviorTree\"> and a <TreeNodesModel> after it"): pass
 
 # trees and nodes of a document
 class OneChildInTree(Reason, text="a BehaviorTree must have exactly one child, it has {count}"): count: int

@@ -18,6 +18,7 @@ from tms_reason.reason import Foreign
 from tms_reason.wire import to_line
 from tms_ros.goals import Outcome
 from tms_runtime.reasons import NotStored
+from tms_ts.bt.expand import no_templates
 
 XML = '<root><BehaviorTree ID="T"><AlwaysSuccess/></BehaviorTree></root>'
 
@@ -256,5 +257,5 @@ def test_leaves_carry_what_they_ask_of_a_machine() -> None:
         '<root><BehaviorTree ID="T"><Sequence><Action ID="LeafNodeZx200" model_name="zx200" record_name="pose" '
         'subtask_name="change_pose"/></Sequence></BehaviorTree></root>'
     )
-    assert run._goals(xml) == [("Sequence", ""), ("LeafNodeZx200", "zx200 · change_pose · pose")]
-    assert run._goals("<root>") == []
+    assert run._goals(xml, no_templates) == [("Sequence", ""), ("LeafNodeZx200", "zx200 · change_pose · pose")]
+    assert run._goals("<root>", no_templates) == []

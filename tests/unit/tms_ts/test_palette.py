@@ -5,15 +5,16 @@ from __future__ import annotations
 import pytest
 from lxml import etree
 
-from tms_ts.bt import palette, registry
+from tms_ts.bt import check, palette, registry
 from tms_ts.bt.document import read
+from tms_ts.bt.reasons import PartWithoutColon
 
 PALETTE = etree.fromstring(palette())
 
 
 def test_every_custom_node_is_in_it() -> None:
     ids = [element.get("ID") for element in PALETTE.iterfind("TreeNodesModel/*[@ID]")]
-    assert ids == sorted(name for name, cls in registry().items() if not cls.builtin)
+    assert ids == sorted(["ExecuteSubtask", *(name for name, cls in registry().items() if not cls.builtin)])
     assert {"LeafNodeZx200", "KeepRunningUntilFlgup", "WaitForClick"} <= set(ids)
 
 
@@ -35,7 +36,7 @@ NODES = {  # of the C++ system, by the versions that have them
                     "BlackboardValueReaderMongo"},
     "(version 6)": {"LeafNodeExcavator", "LeafNodeExcavatorAssist", "LeafNodeCrawlerDump", "LeafNodeBulldozer",
                     "LeafNodeCommon", "MongoValueReader", "MongoValueSearcher", "BlackboardValueSearcherMongo",
-                    "MongoArrayWriter", "LocalBlackboardCaluculator", "WaitTimer"},
+                    "MongoArrayWriter", "LocalBlackboardCaluculator", "WaitTimer", "ExecuteSubtask"},
     "(versions 5 and 6)": {"MongoValueWriter", "ConditionalExpression", "KeepRunningUntilFlgup", "SetLocalBlackboard",
                            "SetLocalBlackboardWithCounter", "Counter", "WaitForClick"},
 }  # fmt: skip
@@ -83,6 +84,19 @@ def test_the_ports_of_version_6(name: str) -> None:
         for port in ports
     ]
     assert " ".join(sorted(found)) == PORTS[name]
+
+
+def test_a_call_of_a_template_that_groot_draws_is_one() -> None:
+    entry = PALETTE.find("TreeNodesModel/Action[@ID='ExecuteSubtask']")
+    assert entry is not None
+    drawn = "".join(f' {port.get("name")}="T"' for port in entry)  # Groot writes the ID first, then all ports
+    template = (
+        '<root><BehaviorTree ID="B"><AlwaysSuccess name="$model_name$$terminate_condition$"/></BehaviorTree></root>'
+    )
+    text = f'<root><BehaviorTree ID="M"><Action ID="ExecuteSubtask"{drawn}/></BehaviorTree>'
+    report = check(f"{text}{etree.tostring(PALETTE[0], encoding='unicode')}</root>", templates={"T": template}.get)
+    assert report.errors == []
+    assert [type(warning) for _, warning in report.warnings] == [PartWithoutColon]
 
 
 def test_every_node_is_described() -> None:

@@ -82,6 +82,25 @@ class Context:
 GOOD = ("zx200", "pose", "subtask_zx200_change_pose")
 
 
+def test_what_is_found_in_a_template_names_the_template_and_the_call(site: Site) -> None:
+    task = """<root><BehaviorTree ID="T"><Sequence>
+    <Action ID="ExecuteSubtask" subtask_name="Dig" model_name="zx200" pose="gone"/>
+    <Action ID="ExecuteSubtask" subtask_name="Look"/></Sequence></BehaviorTree></root>"""
+    templates = {
+        name: f'<root>\n<BehaviorTree ID="B">\n{body}</BehaviorTree></root>'
+        for name, body in {
+            "Dig": LEAF.format("$model_name$", "$pose$", "subtask_zx200_change_pose"),
+            "Look": '<BlackboardValueReaderMongo mongo_record_name="FLAGS" mongo_param_name="f" output_port="{x}"/>',
+        }.items()
+    }
+    found = preflight(bt.load(task, templates=templates.get), site, Context())
+    assert [words(error) for error in found.errors] == [
+        "line 2: in template Dig:3: no record zx200/gone: `tms param set zx200/gone --create FIELD=VALUE` or the "
+        "console's page Data adds it"
+    ]
+    assert any(words(one).startswith("line 3: in template Look:3: ") for one in found.warnings)
+
+
 def test_a_record_that_is_nearly_there_is_named(site: Site) -> None:
     found = preflight(tree(("zx200", "poze", "subtask_zx200_change_pose")), site, Context())
     assert words(found.errors[0]).startswith(
