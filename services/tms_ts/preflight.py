@@ -142,8 +142,7 @@ def _check_goal(found: Findings, goal: LeafGoal, site: Site, around: Surrounding
 
 def _check_record(found: Findings, goal: LeafGoal, around: Surroundings) -> None:
     record, inputs = parted(goal.record)
-    name = f"{goal.machine}/{record}"
-    stored = around.record(goal.machine, record)
+    name, stored = f"{goal.machine}/{record}", around.record(goal.machine, record)
     if stored is None:
         near = did_you_mean(record, around.names(goal.machine))
         found.errors.append(_at_leaf(goal, NoRecord(name) if near is None else NoRecordNear(name, near)))

@@ -4,15 +4,13 @@ from pathlib import Path
 
 import pytest
 
-from conftest import PROJECT
 from tms_config.config import CONFIGS
 from tms_reason import xml_text
 from tms_ts import bt
 from tms_ts.bt.check_template import check_template
 from tms_ts.bt.reasons import KeyOpen, NoTemplate
+from v6_templates import OURS, TASKS, known
 
-FILES = {path.stem: path for path in (CONFIGS / "templates").glob("*.xml")}
-TASKS = PROJECT / "tests" / "data" / "v6_tasks"  # of the C++ system; their names have __ for the / of folders
 GIVEN = {  # what tasks of the C++ system give to templates that are in none of its files that we have
     "Excavate_combined": {"excavate1", "excavate2", "excavate3"},
     "Release_combined": {"release1", "release2", "release3"},
@@ -25,20 +23,13 @@ GIVEN = {  # what tasks of the C++ system give to templates that are in none of 
 ALWAYS = {"model_name", "machine_record_name", "terminate_condition"}
 
 
-def known(name: str) -> str | None:
-    """A template of ours, or one of the tasks that were given with them."""
-    given = {path.stem.rpartition("__")[2]: path for path in TASKS.glob("*.xml")}
-    path = FILES.get(name) or given.get(name)
-    return None if path is None else path.read_text(encoding="utf-8")
-
-
 def test_there_is_one_for_each_name() -> None:
-    assert FILES.keys() == GIVEN.keys()
+    assert OURS.keys() == GIVEN.keys()
     listed = (CONFIGS / "templates" / "README.md").read_text(encoding="utf-8")
-    assert all(f"| `{name}` | " in listed for name in FILES)
+    assert all(f"| `{name}` | " in listed for name in OURS)
 
 
-@pytest.mark.parametrize("path", FILES.values(), ids=FILES)
+@pytest.mark.parametrize("path", OURS.values(), ids=OURS)
 def test_its_form_and_keys(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
     xml_text.template_top(xml_text.elements(xml_text.decode(text), comments=False))
@@ -52,7 +43,7 @@ def test_its_form_and_keys(path: Path) -> None:
     assert not report.warnings, "the C++ system takes it, too"
 
 
-@pytest.mark.parametrize("path", FILES.values(), ids=FILES)
+@pytest.mark.parametrize("path", OURS.values(), ids=OURS)
 def test_its_nodes_and_ports(path: Path) -> None:
     assert [str(error) for error in check_template(path.stem, path.read_text(encoding="utf-8"), known).errors] == []
 

@@ -16,7 +16,6 @@ from tms_ts.bt.ports import Direction, Port
 from tms_ts.bt.registry import Registry
 from tms_ts.bt.registry import registry as all_nodes
 
-MARKS = {(5,): " (version 5)", (6,): " (version 6)", (5, 6): " (versions 5 and 6)"}  # by Node.versions
 CALL_TEXT = "The tree of a template comes in this place."
 CALL_PORTS = tuple(
     Port(name, Direction.INPUT, str, help=text)
@@ -28,18 +27,18 @@ CALL_PORTS = tuple(
         "terminate_condition": "value of $terminate_condition$ in the template",
     }.items()
 )
+MARKS = {(5,): " (version 5)", (6,): " (version 6)", (5, 6): " (versions 5 and 6)"}  # by Node.versions
 PORT_TAGS = {Direction.INPUT: "input_port", Direction.OUTPUT: "output_port", Direction.INOUT: "inout_port"}
 
 
 @dataclass(frozen=True)
-class Shown:
-    """What the palette tells of a node, or of the call of a template."""
+class Drawn:
+    """What Groot draws."""
 
     kind: str
     text: str
     ports: tuple[Port, ...]
     versions: tuple[int, ...]  # of the C++ system that have it
-    left_out: frozenset[str] = frozenset()  # ports
 
 
 def palette(registry: Registry | None = None) -> str:
@@ -49,15 +48,16 @@ def palette(registry: Registry | None = None) -> str:
     """
     root = etree.Element("root")
     model = etree.SubElement(root, "TreeNodesModel")
-    shown = {
-        name: Shown(cls.kind.name, summary(cls), tuple(cls.ports.values()), cls.versions, cls.older_ports)
-        for name, cls in (registry or all_nodes()).items()
-        if not cls.builtin
-    }
-    for name, entry in sorted({**shown, CALL: Shown("ACTION", CALL_TEXT, CALL_PORTS, (6,))}.items()):
-        _entry(model, name, entry)
+    nodes = {name: _drawn(cls) for name, cls in (registry or all_nodes()).items() if not cls.builtin}
+    for name, drawn in sorted({**nodes, CALL: Drawn("ACTION", CALL_TEXT, CALL_PORTS, (6,))}.items()):
+        _entry(model, name, drawn)
     etree.indent(root, "    ")
     return etree.tostring(root, encoding="unicode") + "\n"
+
+
+def _drawn(cls: type[Node]) -> Drawn:
+    ports = tuple(port for port in cls.ports.values() if port.name not in cls.older_ports)
+    return Drawn(cls.kind.name, summary(cls), ports, cls.versions)
 
 
 def summary(cls: type[Node]) -> str:
@@ -65,13 +65,12 @@ def summary(cls: type[Node]) -> str:
     return " ".join((cls.__doc__ or "").strip().split("\n\n")[0].split())
 
 
-def _entry(model: etree._Element, name: str, shown: Shown) -> None:
-    mark = MARKS.get(shown.versions, "")
-    model.append(etree.Comment(f" {name}{mark}: {shown.text} ".replace("--", "-")))
-    entry = etree.SubElement(model, shown.kind.capitalize(), {"ID": name})
-    for port in shown.ports:
-        if port.name not in shown.left_out:
-            _port(entry, port, mark if len(shown.versions) == 1 else "")
+def _entry(model: etree._Element, name: str, drawn: Drawn) -> None:
+    mark = MARKS.get(drawn.versions, "")
+    model.append(etree.Comment(f" {name}{mark}: {drawn.text} ".replace("--", "-")))
+    entry = etree.SubElement(model, drawn.kind.capitalize(), {"ID": name})
+    for port in drawn.ports:
+        _port(entry, port, mark if len(drawn.versions) == 1 else "")
 
 
 def _port(entry: etree._Element, port: Port, mark: str) -> None:

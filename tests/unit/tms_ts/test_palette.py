@@ -31,6 +31,19 @@ def test_an_entry_has_category_ports_defaults_and_texts() -> None:
     assert PALETTE.find("TreeNodesModel/Action[@ID='BlackboardValueChecker']/inout_port") is not None
 
 
+def test_a_call_of_a_template_that_groot_draws_is_one() -> None:
+    entry = PALETTE.find("TreeNodesModel/Action[@ID='ExecuteSubtask']")
+    assert entry is not None
+    drawn = "".join(f' {port.get("name")}="T"' for port in entry)  # Groot writes the ID first, then all ports
+    template = (
+        '<root><BehaviorTree ID="B"><AlwaysSuccess name="$model_name$$terminate_condition$"/></BehaviorTree></root>'
+    )
+    text = f'<root><BehaviorTree ID="M"><Action ID="ExecuteSubtask"{drawn}/></BehaviorTree>'
+    report = check(f"{text}{etree.tostring(PALETTE[0], encoding='unicode')}</root>", templates={"T": template}.get)
+    assert report.errors == []
+    assert [type(warning) for _, warning in report.warnings] == [PartWithoutColon]
+
+
 NODES = {  # of the C++ system, by the versions that have them
     "(version 5)": {"LeafNodeZx200", "LeafNodeIc120", "LeafNodeMst110cr", "LeafNodeMst2200", "LeafNodeD37pxi",
                     "BlackboardValueReaderMongo"},
@@ -84,19 +97,6 @@ def test_the_ports_of_version_6(name: str) -> None:
         for port in ports
     ]
     assert " ".join(sorted(found)) == PORTS[name]
-
-
-def test_a_call_of_a_template_that_groot_draws_is_one() -> None:
-    entry = PALETTE.find("TreeNodesModel/Action[@ID='ExecuteSubtask']")
-    assert entry is not None
-    drawn = "".join(f' {port.get("name")}="T"' for port in entry)  # Groot writes the ID first, then all ports
-    template = (
-        '<root><BehaviorTree ID="B"><AlwaysSuccess name="$model_name$$terminate_condition$"/></BehaviorTree></root>'
-    )
-    text = f'<root><BehaviorTree ID="M"><Action ID="ExecuteSubtask"{drawn}/></BehaviorTree>'
-    report = check(f"{text}{etree.tostring(PALETTE[0], encoding='unicode')}</root>", templates={"T": template}.get)
-    assert report.errors == []
-    assert [type(warning) for _, warning in report.warnings] == [PartWithoutColon]
 
 
 def test_every_node_is_described() -> None:

@@ -1,4 +1,7 @@
-"""Tasks and templates of version 6 of the C++ system: what the check says of each, and what they do with machines."""
+"""Tasks and templates of version 6 of the C++ system: what the check says of each, and what they do with machines.
+
+A template that is run alone gets its words in `$` here, as its task gives them.
+"""
 
 from __future__ import annotations
 
@@ -9,51 +12,41 @@ from typing import Any
 import mongomock
 import pytest
 
-from tms_config.config import CONFIGS
 from tms_db.tasks import Tasks
 from tms_machine.goal_inputs import parted
 from tms_reason.wire import to_line
 from tms_ts.bt import FAILURE, RUNNING, SUCCESS, Status, check, load
 from tms_ts.bt import reasons as r
 from unit.tms_ts.fakes import FakeFlags, FakeMachines, FakeWorld
+from v6_templates import TASKS, known
 
-DATA = Path(__file__).resolve().parents[2] / "data" / "v6_tasks"
-FILES = sorted(DATA.glob("*.xml"))
-TEMPLATES = {path.stem.rpartition("__")[2]: path for path in (*FILES, *(CONFIGS / "templates").glob("*.xml"))}
-EXPECTED = [json.loads(line) for line in (DATA / "expected.jsonl").read_text(encoding="utf-8").splitlines()]
-
-
-def known(name: str) -> str | None:
-    """A template: one of the fifteen, or one that this project has made up in place of one that is not known."""
-    return TEMPLATES[name].read_text(encoding="utf-8") if name in TEMPLATES else None
-
-
-def said(file: str, **templates: Any) -> dict[str, Any]:
-    report = check(DATA / file, **templates)
-    errors = [[error.line, to_line(error.what)] for error in report.errors]
-    warnings = [[line, to_line(what)] for line, what in report.warnings]
-    return {"nodes": report.nodes, "errors": errors, "warnings": warnings}
+FILES = sorted(TASKS.glob("*.xml"))
+EXPECTED = [json.loads(line) for line in (TASKS / "expected.jsonl").read_text(encoding="utf-8").splitlines()]
 
 
 @pytest.mark.parametrize("row", EXPECTED, ids=[row["file"] for row in EXPECTED])
 def test_what_the_check_says(row: dict[str, Any]) -> None:
-    assert said(row["file"]) == row["alone"]
-    assert said(row["file"], templates=known) == row.get("with_templates", row["alone"])
+    report = check(TASKS / row["file"], templates=known)
+    errors = [[error.line, to_line(error.what)] for error in report.errors]
+    warnings = [[line, to_line(what)] for line, what in report.warnings]
+    assert (report.nodes, errors, warnings) == (row["nodes"], row["errors"], row["warnings"])
 
 
-def test_every_file_is_expected_and_what_is_missing_is_named() -> None:
+def test_every_file_is_expected_and_loads_where_it_gives_its_templates_what_they_need() -> None:
     assert [row["file"] for row in EXPECTED] == [file.name for file in FILES]
     assert len(FILES) == 15
-    codes = {line.split()[0] for row in EXPECTED for _, line in row["alone"]["errors"]}
-    assert codes == {"NO_TEMPLATE"}
-    codes = {line.split()[0] for row in EXPECTED for _, line in row.get("with_templates", {}).get("errors", [])}
-    assert codes == {"KEY_OPEN"}
+    # It calls a template and gives no values: there the C++ system writes the word none.
+    assert [row["file"] for row in EXPECTED if row["errors"]] == ["subtask__Bulldozer__leveling_task.xml"]
 
 
-def test_a_primitive_that_is_empty_is_an_error_once_its_template_is_there() -> None:
-    report = check(DATA / "subtask__Bulldozer__leveling_task.xml", templates={
-        "leveling_subtask_run_real2": (known("leveling_subtask_run_real2") or "").replace("$", "")
-    }.get)  # fmt: skip
+def test_a_template_that_nobody_has_is_named() -> None:
+    (error,) = check(TASKS / "subtask__CrawlerDump__Release_Task_With_Bull_2.xml").errors
+    assert (error.line, error.what) == (7, r.NoTemplate("Release_Subtask_With_Bull"))
+
+
+def test_a_primitive_that_is_empty_is_an_error_once_its_template_has_its_values() -> None:
+    template = (known("leveling_subtask_run_real2") or "").replace("$", "")
+    report = check(TASKS / "subtask__Bulldozer__leveling_task.xml", templates=lambda _: template)
     assert [(error.line, error.what) for error in report.errors] == [
         (10, r.NameMissing("LeafNodeBulldozer", "primitive_name"))
     ]
@@ -62,16 +55,15 @@ def test_a_primitive_that_is_empty_is_an_error_once_its_template_is_there() -> N
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.name)
 def test_its_text_comes_back_from_the_database_as_it_was(file: Path) -> None:
     tasks, text = Tasks(mongomock.MongoClient().db), file.read_text(encoding="utf-8")
-    number = tasks.add(text, "", {"zx200"}).task_id
-    assert tasks.get(number).task_sequence == text
+    assert tasks.get(tasks.add(text, "", {"zx200"}).task_id).task_sequence == text
 
 
 class Site:
-    """A run of a file whose words in `$` are filled in as its task does it; seconds go by between ticks."""
+    """A run of a file whose words in `$` are filled in; seconds go by between ticks."""
 
     def __init__(self, file: str, values: dict[tuple[str, str], Any] | None = None, **words: str) -> None:
         self.fake = FakeWorld(FakeMachines(lasts=2), flags=FakeFlags(dict(values or {})))
-        self.text = (DATA / f"{file}.xml").read_text(encoding="utf-8")
+        self.text = (TASKS / f"{file}.xml").read_text(encoding="utf-8")
         for word, value in words.items():
             self.text = self.text.replace(f"${word}$", value)
         self.tree = load(self.text, world=self.fake.world(), templates=known)
