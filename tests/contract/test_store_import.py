@@ -182,6 +182,9 @@ def test_exports_of_mongodb_are_lists_or_lines(db: store.Db, put: Any) -> None:
         ("subtask.bson", bson.encode({"task_name": "a\nb", "task_sequence": TEMPLATE}), "template name"),
         ("subtask.bson", bson.encode({"task_name": "T", "task_sequence": "<root/>"}), "there is no <BehaviorTree>"),
         ("parameter.bson", bson.encode({"n": 1}), "record_name is empty"),
+        ("r.yaml", "- {record_name: A, type: often}", "type is 'often': write static or dynamic"),
+        ("r.yaml", "- {record_name: A, description: 5}", "description is 5, not text"),
+        ("r.yaml", "- {record_name: A, type: static, max_age: 2.0}", "a static record cannot get too old"),
         ("Dig.xml", TEMPLATE.format("$r$").replace("</BehaviorTree>", "<X/></BehaviorTree>"), "exactly one node"),
     ],
 )
