@@ -14,6 +14,7 @@ from tms_control.arm_motion import ArmMotion, Tolerances
 from tms_control.machine_clock import MachineClock
 from tms_control.reference_trajectory import Knot, ReferenceTrajectory
 from tms_control.verdict import Ending, Verdict
+from tms_machine import stamps
 from tms_machine.joint_commands import JointCommands
 from tms_mc.gateway_watch import GatewayWatch
 from tms_mc.reasons import ClockSetBack, GatewayGone, JointMissing, JointsNotHeard, JointsSilent, NoCommandTopic
@@ -146,7 +147,7 @@ class Joints:
             if joint is not None and i < len(message.position) and i < len(message.velocity):
                 if math.isfinite(message.position[i]) and math.isfinite(message.velocity[i]):
                     self._positions[joint], self._velocities[joint] = message.position[i], message.velocity[i]
-        stamp = message.header.stamp.sec + message.header.stamp.nanosec * 1e-9
+        stamp = stamps.seconds(message.header.stamp)
         before = self._clock.stamp
         if not self._clock.hear(arrival.received, stamp):
             self.arm.abandon(Verdict(Ending.ABORTED, ClockSetBack()))

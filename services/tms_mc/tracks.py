@@ -15,6 +15,7 @@ from tms_control.path import Pose
 from tms_control.planner import Pace
 from tms_control.track_estimate import Command, PoseSample, TrackEstimate
 from tms_control.trip import Task, Trip
+from tms_machine import stamps
 from tms_machine.places import POSES, place_of
 from tms_mc.gateway_watch import GatewayWatch
 from tms_mc.reasons import PosesSilent, PosesUnheard
@@ -132,8 +133,7 @@ class Tracks:
         place = place_of(arrival.message)
         if place is None:
             return None
-        at = arrival.message.header.stamp
-        stamp = at.sec + at.nanosec * 1e-9
+        stamp = stamps.seconds(arrival.message.header.stamp)
         if not self._clock.hear(arrival.received, stamp):
             self._begin_anew()
         return PoseSample(stamp, Pose(*place))
