@@ -119,7 +119,7 @@ lint: setup ## ruff, mypy, import-linter
 conformance: setup ## replay behaviour-tree cases (CASES=path LEVEL=required|strict)
 	@$(PY) tests/conformance/replay_cases.py "$(or $(CASES),tests/conformance/cases.jsonl)" --level "$(or $(LEVEL),required)"
 
-drill: setup ## stop six simulated machines in every way; receipts against the truth (QUICK=1, ROUNDS=4, SEED=7, REPORT=file.md, ONLY="kill rc+tms:ts")
+drill: setup ## stop six simulated machines in every way; receipts against the truth (QUICK=1, ROUNDS=4, SEED=7, REPORT=file.md, ONLY="kill rc+tms:ts"; SITE=drill-physx: over OperaSim)
 	@$(VENV)/bin/tms --site $(or $(SITE),drill) drill $(if $(QUICK),--quick) $(if $(ROUNDS),--rounds $(ROUNDS)) $(if $(SEED),--seed $(SEED)) $(if $(LEDGER),--ledger $(LEDGER)) $(if $(ONLY),--only "$(ONLY)") $(if $(REPORT),--report $(REPORT))
 
 simulate: setup ## a site in virtual time goes wrong thousands of times; invariants against the true motion (SCHEDULES=15000 SEED=7)
@@ -149,6 +149,7 @@ nightly: setup ## what takes hours: properties with 400 examples, 100,000 schedu
 	TMS_POWER_CUTS=30 $(PY) -m pytest tests/system/test_power_cut.py
 	@$(MAKE) replay
 	@$(MAKE) drill ROUNDS=4
+	@$(MAKE) drill SITE=drill-physx ROUNDS=2
 
 bench: setup ## benchmarks with ratios to a floor of the same run (ONLY=group)
 	@sh deploy/system-packages.sh chromium

@@ -79,8 +79,8 @@ class Follower:
         return any(max(map(abs, (high - way.angles[0], low - way.angles[0]))) > SMALLEST
                    for way in self._ways.values() for low, high in [way.hull(0.0, passed)])  # fmt: skip
 
-    def on_its_way(self, now: float, dead_times: Mapping[str, float]) -> dict[str, float]:
-        """How far each joint [rad] must go after a stop: what was commanded within the joint's dead time [s].
+    def on_its_way(self, now: float, dead_times: Mapping[str, float], over: float) -> dict[str, float]:
+        """How far each joint [rad] must go after a stop: what was commanded within its dead time [s], until `over`.
 
         Some controllers command each joint at the time of its reference, others delay them so that all follow together.
         """
@@ -88,17 +88,17 @@ class Follower:
         found = {}
         for name, way in self._ways.items():
             own = dead_times[name]
-            found[name] = min(self._went(way, now, own), self._went(way, now - longest + own, own))
+            found[name] = min(self._went(way, at, own, over) for at in (now, now - longest + own))
         return found
 
     def moved(self, now: float, seconds: float) -> bool:
         """Whether the reference has moved within the last seconds, so that what is received must have changed."""
         return any(self._went(way, now, seconds) > BEHIND for way in self._ways.values())
 
-    def _went(self, way: Way, now: float, seconds: float) -> float:
-        """How far a reference went within the last seconds [rad]."""
-        passed = (now - self._begun) * self._scale
-        low, high = way.hull(passed - seconds * self._scale, passed)
+    def _went(self, way: Way, now: float, seconds: float, over: float = math.inf) -> float:
+        """How far a reference that ended when it was `over` went within the last seconds [rad]."""
+        begin, end = ((at - self._begun) * self._scale for at in (now - seconds, min(now, over)))
+        low, high = way.hull(min(begin, end), end)
         return high - low
 
     def check(self, now: float, angles: Mapping[str, float]) -> Reason | None:

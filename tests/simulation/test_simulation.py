@@ -1,6 +1,7 @@
 """The simulation of a site itself: it repeats, it finds what is wrong, and it tells it shortly."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import pytest
 
@@ -59,6 +60,14 @@ def test_what_was_found_and_mended_is_found_again_without_the_mending(monkeypatc
     assert Schedule(53).run().violation == ""
     monkeypatch.setattr(stops, "_expected", without)
     assert "truly moving" in Schedule(53).run().violation
+
+
+def test_what_a_stranger_has_cancelled_is_still_on_its_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The stop came a moment after the cancel, and the machine replayed its record while it went on."""
+    expected = stops._expected
+    assert Schedule(110677).run().violation == ""
+    monkeypatch.setattr(stops, "_expected", lambda *words: replace(expected(*words), to_come={}))
+    assert "truly moving" in Schedule(110677).run().violation
 
 
 def test_a_press_is_not_forgotten_when_its_gateway_is_killed_before_the_disk_has_the_latch() -> None:

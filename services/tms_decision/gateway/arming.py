@@ -49,7 +49,7 @@ def _arm(gateway: Gateway, now: float, one: Rearm) -> None:
     cause = gateway.latch.cause or gateway.latch.hold
     gateway.latch.open()
     gateway.watch.accept_clocks()
-    gateway.stood_in = False
+    gateway.stood_in = gateway.recovery.open = False
     gateway.vigil.end(now, gateway.facts.jumps)
     gateway.do(Emergency(False), Publish())
     gateway.log("armed", warning=False)

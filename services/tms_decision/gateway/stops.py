@@ -69,7 +69,8 @@ def _expected(gateway: Gateway, goal: Goal, over: float, now: float) -> Expected
     if follower is None:
         return Expected(goal.sent)
     since = goal.sent if follower.should_have_moved(over - goal.sent) else None
-    return Expected(since, follower.on_its_way(now, gateway.watch.dead_times) if over == now else {})
+    arrived = goal.outcome == "SUCCEEDED"
+    return Expected(since, {} if arrived else follower.on_its_way(now, gateway.watch.dead_times, over))
 
 
 def _begin(gateway: Gateway, now: float, cause: Reason, latched: bool, run: int, expected: Expected) -> Stop:

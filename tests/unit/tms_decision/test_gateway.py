@@ -407,6 +407,15 @@ def test_a_re_arm_takes_two_steps_and_releases_the_machine() -> None:
     rig.moving(2)
 
 
+def test_the_jump_of_a_release_is_not_taken_for_a_motion_that_the_last_gateway_has_left() -> None:
+    rig = Rig(e.Left(SoftwareStop()), jumps=2.5).run(0.5)
+    assert rig.rearm().armed and rig.gateway.recovery.until > rig.now
+    rig.plant.accept(99, 0.3, 0.5, rig.now)
+    rig.run(8.0)
+    assert rig.gateway.watch.moved_at > 100.0 and rig.gateway.latch.cause is None
+    rig.moving(2)
+
+
 def test_a_re_arm_counts_only_when_its_note_is_on_the_disk() -> None:
     rig = latched()
     rig.disk_problem = FULL

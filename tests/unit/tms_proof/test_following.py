@@ -74,12 +74,19 @@ def test_a_motion_is_to_be_seen_once_its_reference_has_moved() -> None:
 
 def test_what_is_on_its_way_is_a_joint_s_own_dead_time_by_either_kind_of_controller() -> None:
     follower = Follower(ways(NAMES, POINTS, START), DEAD + LAG, 100.0)
-    on_its_way = follower.on_its_way(103.0, {"swing": 0.9, "boom": 0.3})
+    on_its_way = follower.on_its_way(103.0, {"swing": 0.9, "boom": 0.3}, 103.0)
     assert on_its_way["swing"] == pytest.approx(0.0)  # it has arrived 1 s ago
     assert on_its_way["boom"] == pytest.approx(0.09)  # 0.3 rad/s
-    begins = follower.on_its_way(102.5, {"swing": 0.9, "boom": 0.3})
+    begins = follower.on_its_way(102.5, {"swing": 0.9, "boom": 0.3}, 102.5)
     assert begins["swing"] == pytest.approx(0.16)
     assert begins["boom"] == pytest.approx(0.0)  # led 0.6 s later, it has not been commanded yet
+
+
+@pytest.mark.parametrize(("now", "boom"), [(102.9, 0.09), (103.0, 0.06), (103.1, 0.03), (103.3, 0.0)])
+def test_what_was_commanded_before_a_goal_was_over_is_on_its_way_for_the_dead_time(now: float, boom: float) -> None:
+    follower = Follower(ways(NAMES, POINTS, START), DEAD + LAG, 100.0)
+    on_its_way = follower.on_its_way(now, {"swing": 0.3, "boom": 0.3}, 102.9)
+    assert on_its_way["boom"] == pytest.approx(boom)
 
 
 def test_what_is_heard_must_change_while_the_reference_moves() -> None:
