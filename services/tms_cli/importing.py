@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 SHOWN = 3  # warnings of one tree on a terminal; --json has all
 
 
-def carry_out(db: "Db", folder: Path, *, replace: bool, dry_run: bool, skip_refused: bool) -> "tuple[Plan, bool]":
-    """Import a folder; returns the report, and whether it was written.
+def carry_out(db: "Db", path: Path, *, replace: bool, dry_run: bool, skip_refused: bool) -> "tuple[Plan, bool]":
+    """Import a folder or an archive; returns the report, and whether it was written.
 
     Raises:
         TmsError: there is nothing to import, or the store is away; then nothing was written.
@@ -29,7 +29,7 @@ def carry_out(db: "Db", folder: Path, *, replace: bool, dry_run: bool, skip_refu
     from tms_db import import_plan, import_source, import_write, schema, templates
     from tms_db.task_text import MODELS
 
-    source = import_source.read_folder(folder)
+    source = import_source.read(path)
     schema.refuse_newer(f"database {db.name}", schema.stored(db))
     plan = import_plan.plan(db, source, {*MODELS, *session.site().models}, replace=replace)
 

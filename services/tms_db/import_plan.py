@@ -17,6 +17,7 @@ from tms_db.import_source import FoundRecord, Source, Tree
 from tms_db.parameters import Parameters, key_of, same
 from tms_db.reasons import (
     FieldAsItIs,
+    KeyIsNoText,
     NoTaskText,
     NumberTaken,
     RecordDiffers,
@@ -26,7 +27,18 @@ from tms_db.reasons import (
     TemplateTwice,
     TypeAsItIs,
 )
-from tms_db.records import RESERVED, TYPES, Document, check_key, check_values, title
+from tms_db.records import (
+    RESERVED,
+    TYPES,
+    Document,
+    bad,
+    check_key,
+    check_line,
+    check_max_age,
+    check_type,
+    check_values,
+    title,
+)
 from tms_db.store import Db, errors
 from tms_reason import xml_text
 from tms_reason.errors import DbError, TaskError, TmsError
@@ -176,6 +188,7 @@ class _Planner:
         fields = {key: value for key, value in found.document.items() if key not in ("model_name", "record_name")}
         if not found.dumped:
             fields = {"type": "dynamic", "description": "", **fields, "updated_at": utc_now(), "source": SOURCE}
+            _check_head(title(model, name), fields)
         new = {**({"model_name": model} if model else {}), "record_name": name, **fields}
         earlier = self._records.get((model, name))
         if earlier is not None and not _says(earlier, new):
@@ -194,6 +207,16 @@ class _Planner:
         else:
             raise DbError(RecordDiffers(title(model, name)))
         return NEW
+
+
+def _check_head(where: str, fields: Document) -> None:
+    """Refuse what a person has written wrong in a file; documents of a dump are as they are."""
+    for key in ("type", "description"):
+        if not isinstance(fields[key], str):
+            raise bad(KeyIsNoText(where, key, repr(fields[key])))
+    check_type(where, fields["type"])
+    check_line(where, "description", fields["description"])
+    check_max_age(where, fields.get("max_age", 0.0), fields["type"])
 
 
 def _text(tree: Tree) -> str:

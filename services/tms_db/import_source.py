@@ -1,12 +1,13 @@
 """What a folder of the C++ system holds: trees and records of its configuration, or the documents of a dump.
 
 Read are `*.xml` (trees), `*.yaml` (records), and `task`, `subtask` and `parameter` as mongodump writes them
-(`*.bson`) or as MongoDB's tools export them (`*.json`). Uses no database.
+(`*.bson`, or an archive) or as MongoDB's tools export them (`*.json`). Uses no database.
 """
 
 import gzip
 import json
 import zlib
+from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -17,14 +18,14 @@ from bson import json_util
 from bson.errors import BSONError
 
 from tms_config.yaml_file import read_yaml
-from tms_db import task_text
+from tms_db import archive, task_text
 from tms_db.reasons import (
     DocumentNotRead,
     DocumentTooLarge,
     ImportNothing,
     NoCollectionOfTasks,
-    NoFolder,
     NoRecordsInFile,
+    NoSuchSource,
     NoTreeInFile,
     UnreadableFile,
 )
@@ -75,15 +76,25 @@ class Source:
     others: list[Unusable] = field(default_factory=list)  # neither trees nor records
 
 
-def read_folder(folder: Path) -> Source:
-    """Read a folder and the folders in it.
+def read(path: Path) -> Source:
+    """Read a folder with the folders in it, or an archive of mongodump.
 
     Raises:
-        TmsError: there is no such folder, or nothing in it that could be imported.
+        TmsError: there is no such folder or archive, or nothing in it that could be imported.
     """
-    if not folder.is_dir():
-        raise TmsError(NoFolder(str(folder)))
     source = Source()
+    if path.is_dir():
+        _folder(source, path)
+    elif path.is_file():
+        _archive(source, path)
+    else:
+        raise TmsError(NoSuchSource(str(path)))
+    if not (source.trees or source.records or source.refused):
+        raise TmsError(ImportNothing(str(path)))
+    return source
+
+
+def _folder(source: Source, folder: Path) -> None:
     for path in sorted(path for path in folder.rglob("*") if path.is_file()):
         name = Path(path.name.removesuffix(".gz"))  # mongodump --gzip
         reader = READERS.get(name.suffix.lower())
@@ -96,9 +107,19 @@ def read_folder(folder: Path) -> Source:
             source.refused.append(Unusable(place, error.reason))
         except OSError as error:
             source.refused.append(Unusable(place, UnreadableFile(place, str(error.strerror))))
-    if not (source.trees or source.records or source.refused):
-        raise TmsError(ImportNothing(str(folder)))
-    return source
+
+
+def _archive(source: Source, path: Path) -> None:
+    numbers: Counter[str] = Counter()
+    with archive.reading(path) as reader:
+        for (database, collection), data in reader.documents():
+            place = f"{database}.{collection}"
+            numbers[place] += 1
+            kind = COLLECTIONS.get(collection)
+            if kind is not None:
+                _document(source, kind, f"{place}, document {numbers[place]}", bson.decode(data))
+            elif numbers[place] == 1:
+                source.others.append(Unusable(place, NoCollectionOfTasks(collection)))
 
 
 def _xml(source: Source, path: Path, place: str) -> None:
@@ -135,23 +156,25 @@ def _records_of(data: Any) -> Iterator[Document]:
 
 
 def _bson(source: Source, path: Path, place: str) -> None:
-    if _kind(source, path, place):
+    if kind := _kind(source, path, place):
         try:
             documents = bson.decode_all(_bytes(path))
         except BSONError as error:
             raise TmsError(DocumentNotRead(str(error)[:200])) from error
-        _documents(source, path, place, documents)
+        for number, document in enumerate(documents, 1):
+            _document(source, kind, f"{place}, document {number}", document)
 
 
 def _json(source: Source, path: Path, place: str) -> None:
-    if not _kind(source, path, place):
+    if not (kind := _kind(source, path, place)):
         return
     text = _bytes(path).decode("utf-8", "replace")
     try:
         data = json_util.loads(text) if text.lstrip().startswith("[") else list(map(json_util.loads, text.splitlines()))
     except (json.JSONDecodeError, ValueError, TypeError) as error:
         raise TmsError(DocumentNotRead(str(error)[:200])) from error
-    _documents(source, path, place, [one for one in data if isinstance(one, dict)])
+    for number, document in enumerate((one for one in data if isinstance(one, dict)), 1):
+        _document(source, kind, f"{place}, document {number}", document)
 
 
 def _bytes(path: Path) -> bytes:
@@ -174,16 +197,13 @@ def _kind(source: Source, path: Path, place: str) -> str:
     return kind
 
 
-def _documents(source: Source, path: Path, place: str, documents: list[Document]) -> None:
-    kind = _kind(source, path, place)
-    for number, document in enumerate(documents, 1):
-        document.pop("_id", None)
-        where = f"{place}, document {number}"
-        if kind == "record":
-            source.records.append(FoundRecord(where, document, dumped=True))
-            continue
-        name = str(document.get("task_name") or document.get("description") or "")
-        source.trees.append(Tree(where, str(document.get("task_sequence") or ""), name, document, kind))
+def _document(source: Source, kind: str, place: str, document: Document) -> None:
+    document.pop("_id", None)
+    if kind == "record":
+        source.records.append(FoundRecord(place, document, dumped=True))
+        return
+    name = str(document.get("task_name") or document.get("description") or "")
+    source.trees.append(Tree(place, str(document.get("task_sequence") or ""), name, document, kind))
 
 
 READERS: dict[str, Callable[[Source, Path, str], None]] = {

@@ -19,7 +19,7 @@ from tms_reason.remedies import (
     Remedy,
 )
 
-FOLDER = Remedy("file", "", "Give a folder of the C++ system, or one that mongodump wrote")
+FOLDER = Remedy("file", "", "Give a folder of the C++ system, or what mongodump wrote")
 
 
 # fmt: off
@@ -126,8 +126,8 @@ class TemplateExists(Reason, text="template '{template}' is stored with another 
     "takes this one"): template: str
 
 # an import of the C++ system's files
-class NoFolder(Reason, text="{folder}: there is no such folder", action=FOLDER): folder: str
-class ImportNothing(Reason, text="{folder}: there are no trees and records in it", action=FOLDER): folder: str
+class NoSuchSource(Reason, text="{path}: there is no such folder or file", action=FOLDER): path: str
+class ImportNothing(Reason, text="{path}: there are no trees and records in it", action=FOLDER): path: str
 class NoTreeInFile(Reason, text="no tree: there is no <BehaviorTree> in it"): pass
 class NoRecordsInFile(Reason, text="no records: neither a list of records nor initial_parameters"): pass
 class NoCollectionOfTasks(Reason, text="'{name}' is neither task, subtask nor parameter; `tms db restore` takes whole "

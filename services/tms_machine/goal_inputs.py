@@ -14,11 +14,11 @@ _BEHIND = re.compile(rf"(.*)\?((?:{'|'.join(KINDS)})=[^?]*)", re.DOTALL)
 
 
 def joined(record: str, inputs: Inputs) -> str:
-    """A record's name with the inputs of a goal; `{key}` in a value, which only the run knows, stays readable."""
+    """A record's name with the inputs of a goal; `{key}` and `$key$` in a value stay readable."""
     if not inputs:
         return record
     texts = {name: "true" if value is True else str(value) for name, value in inputs.items()}
-    return f"{record}?{urlencode(texts, safe='{},/', quote_via=quote)}"
+    return f"{record}?{urlencode(texts, safe='{},/$', quote_via=quote)}"
 
 
 def parted(text: str) -> tuple[str, dict[str, str | bool]]:

@@ -10,7 +10,7 @@ import bson
 import pytest
 from pymongo.errors import AutoReconnect
 
-from tms_db import import_plan, import_source, import_write, store
+from tms_db import backup, import_plan, import_source, import_write, store
 from tms_db.import_plan import NEW, OTHER, REFUSED, THERE, Plan
 from tms_db.parameters import Parameters, RecordEdit
 from tms_db.task_text import MODELS
@@ -42,7 +42,7 @@ def put(tmp_path: Path) -> Callable[[str, str | bytes], Path]:
 
 
 def planned(db: store.Db, folder: Path, **options: Any) -> Plan:
-    return import_plan.plan(db, import_source.read_folder(folder), MODELS, **options)
+    return import_plan.plan(db, import_source.read(folder), MODELS, **options)
 
 
 def told(plan: Plan) -> list[tuple[str, str, str, str]]:
@@ -158,10 +158,28 @@ def test_a_packed_dump(db: store.Db, put: Any, monkeypatch: pytest.MonkeyPatch) 
     assert item.state == REFUSED and words(item.why).startswith("is larger than 0.0 MB")
 
 
+def test_an_archive_of_mongodump(db: store.Db, shared_db: store.Db, put: Any, tmp_path: Path) -> None:
+    Tasks(shared_db).add(TASK.format("one"))
+    Templates(shared_db).add("Dig", TEMPLATE.format("$r$"))
+    Parameters(shared_db).set("zx200", "pose", RecordEdit({"n": 1}, "static"), create=True)
+    shared_db["run"].insert_one({"run_id": "r1"})
+    shared_db["run"].insert_one({"run_id": "r2"})
+    file = tmp_path / "site.archive"
+    backup.backup(shared_db, file, lambda _: None)
+    plan = planned(db, file)
+    assert sorted((kind, name, state) for kind, _, name, state in told(plan)) == [
+        ("", "", OTHER), ("record", "zx200/pose", NEW), ("task", "1", NEW), ("template", "Dig", NEW),
+    ]  # fmt: skip
+    import_write.write(db, plan)
+    assert Tasks(db).get(1).task_sequence == TASK.format("one")
+    with pytest.raises(DbError, match="no archive of mongodump"):
+        import_source.read(put("a.txt", "no archive of anything") / "a.txt")
+
+
 def test_exports_of_mongodb_are_lists_or_lines(db: store.Db, put: Any) -> None:
     one = {"_id": {"$oid": "0" * 24}, "record_name": "A", "n": {"$numberLong": "5"}, "type": "dynamic"}
     for text in (json.dumps([one]), f"{json.dumps(one)}\n"):
-        (record,) = import_source.read_folder(put("parameter.json", text)).records
+        (record,) = import_source.read(put("parameter.json", text)).records
         assert record.document == {"record_name": "A", "n": 5, "type": "dynamic"}
 
 
@@ -180,6 +198,9 @@ def test_exports_of_mongodb_are_lists_or_lines(db: store.Db, put: Any) -> None:
         ("subtask.bson", bson.encode({"task_name": "a\nb", "task_sequence": TEMPLATE}), "template name"),
         ("subtask.bson", bson.encode({"task_name": "T", "task_sequence": "<root/>"}), "there is no <BehaviorTree>"),
         ("parameter.bson", bson.encode({"n": 1}), "record_name is empty"),
+        ("r.yaml", "- {record_name: A, type: often}", "type is 'often': write static or dynamic"),
+        ("r.yaml", "- {record_name: A, description: 5}", "description is 5, not text"),
+        ("r.yaml", "- {record_name: A, type: static, max_age: 2.0}", "a static record cannot get too old"),
         ("Dig.xml", TEMPLATE.format("$r$").replace("</BehaviorTree>", "<X/></BehaviorTree>"), "exactly one node"),
     ],
 )
@@ -223,9 +244,9 @@ def test_a_static_record_that_a_run_uses_is_not_replaced(db: store.Db, put: Any)
 
 
 def test_a_folder_without_anything(tmp_path: Path, put: Any) -> None:
-    for folder, says in ((tmp_path / "gone", "no such folder"), (put("a.txt", ""), "no trees and records")):
+    for folder, says in ((tmp_path / "gone", "no such folder or file"), (put("a.txt", ""), "no trees and records")):
         with pytest.raises(TmsError, match=says):
-            import_source.read_folder(folder)
+            import_source.read(folder)
 
 
 # all or nothing

@@ -1,6 +1,5 @@
 """`tms task`: tasks (behaviour trees) in the database."""
 
-from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -164,15 +163,12 @@ def _picture(text: str, folder: Path | None, form: str) -> str:
     Raises:
         TreeError: it cannot be loaded.
     """
+    from tms_cli import check_task
     from tms_ts.bt import load
     from tms_ts.bt.display import ascii_tree, dot
 
-    with ExitStack() as opened:  # the mesh is needed for templates only
-
-        def template(name: str) -> str | None:
-            return templates.text_of(opened.enter_context(session.ros()), name)
-
-        tree = load(text, folder=folder, templates=template)
+    with check_task.SchedulerClient() as mesh:  # which is needed for templates only
+        tree = load(text, folder=folder, templates=lambda name: templates.text_of(mesh.node(), name))
     return (dot(tree) if form == "dot" else ascii_tree(tree)).rstrip()
 
 

@@ -1,6 +1,8 @@
 """`tms template`, and what verbs for tasks do with templates."""
 
 import json
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -8,6 +10,7 @@ from tms_msg_db.msg import Task, Template
 from tms_msg_db.srv import AddTemplate, GetTask, GetTemplate, ListTemplates, RemoveTemplate
 from tms_msg_ts.srv import CheckTask
 
+from tms_cli import session
 from tms_cli.commands import task, template
 from tms_reason.errors import DbError, TaskError, TmsError
 from tms_reason.reason import Foreign
@@ -108,6 +111,24 @@ def test_a_task_is_checked_and_drawn_with_stored_templates(mesh, tms, tmp_path: 
     assert drawn.startswith('--> LeafNodeZx200 model_name="zx200" record_name="pose_1"')
     mesh.answers["/tms/db/get_task"] = GetTask.Response(task=Task(task_id=7, task_sequence=CALLS))
     assert "pose_1" in tms(task.command, "check", "7").stdout
+
+
+def test_one_node_reads_all_templates_of_a_picture(mesh, tms, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    opened: list[None] = []
+    real = session.ros
+
+    @contextmanager
+    def counted() -> Iterator[object]:
+        opened.append(None)
+        with real() as node:
+            yield node
+
+    monkeypatch.setattr(session, "ros", counted)
+    call = CALLS.split("\n")[1]
+    (tmp_path / "t.xml").write_text(CALLS.replace(call, f"<Sequence>{call}{call.replace('Dig', 'Level')}</Sequence>"))
+    mesh.answers["/tms/db/get_template"] = lambda template_name: stored("Dig")
+    assert tms(task.command, "show", tmp_path / "t.xml", "--ascii").exit_code == 0
+    assert (len(opened), len(mesh.asked)) == (1, 2)
 
 
 def test_a_task_whose_template_nobody_has(mesh, tms, tmp_path: Path) -> None:

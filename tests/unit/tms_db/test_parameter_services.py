@@ -102,3 +102,17 @@ def test_records_are_searched(values: dict[str, Any], found: bool) -> None:
     response = FindRecord.Response()
     Stored(ROAD).services.find(FindRecord.Request(values=to_parameters(values)), response)
     assert response.found is found
+
+
+def test_searches_and_arrays_are_offered() -> None:
+    services, offered = Stored(ROAD).services, dict[str, tuple[str, Any]]()
+    thread = Message(start=lambda: None, stop=lambda: None)
+    services._batches, services._past, services._watching = thread, thread, thread
+    services._app = Message(on_stop=lambda _: None)
+
+    def serve(how: str) -> Any:
+        return lambda kind, name, _: offered.update({name: (how, kind)})
+
+    services.offer(Message(quick=serve("quick"), slow=serve("slow"), later=serve("later")))
+    assert offered["change_array"] == ("quick", ChangeArray)
+    assert offered["find_record"] == ("slow", FindRecord)  # it looks through all records

@@ -1,15 +1,18 @@
 """Tasks and templates of version 6 of the C++ system: what the check says of each, and what they do with machines.
 
-Words in `$` are filled in here as their task does it; the expansion of ExecuteSubtask itself is tested elsewhere.
+A template that is run alone gets its words in `$` here, as its task gives them.
 """
 
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from typing import Any
 
+import mongomock
 import pytest
 
+from tms_db.tasks import Tasks
 from tms_machine.goal_inputs import parted
 from tms_reason.wire import to_line
 from tms_ts.bt import FAILURE, RUNNING, SUCCESS, Status, check, load
@@ -36,6 +39,25 @@ def test_every_file_is_expected_and_loads_where_it_gives_its_templates_what_they
     assert [row["file"] for row in EXPECTED if row["errors"]] == ["subtask__Bulldozer__leveling_task.xml"]
 
 
+def test_a_template_that_nobody_has_is_named() -> None:
+    (error,) = check(TASKS / "subtask__CrawlerDump__Release_Task_With_Bull_2.xml").errors
+    assert (error.line, error.what) == (7, r.NoTemplate("Release_Subtask_With_Bull"))
+
+
+def test_a_primitive_that_is_empty_is_an_error_once_its_template_has_its_values() -> None:
+    template = (known("leveling_subtask_run_real2") or "").replace("$", "")
+    report = check(TASKS / "subtask__Bulldozer__leveling_task.xml", templates=lambda _: template)
+    assert [(error.line, error.what) for error in report.errors] == [
+        (10, r.NameMissing("LeafNodeBulldozer", "primitive_name"))
+    ]
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda file: file.name)
+def test_its_text_comes_back_from_the_database_as_it_was(file: Path) -> None:
+    tasks, text = Tasks(mongomock.MongoClient().db), file.read_text(encoding="utf-8")
+    assert tasks.get(tasks.add(text, "", {"zx200"}).task_id).task_sequence == text
+
+
 class Site:
     """A run of a file whose words in `$` are filled in; seconds go by between ticks."""
 
@@ -44,7 +66,7 @@ class Site:
         self.text = (TASKS / f"{file}.xml").read_text(encoding="utf-8")
         for word, value in words.items():
             self.text = self.text.replace(f"${word}$", value)
-        self.tree = load(self.text, world=self.fake.world())
+        self.tree = load(self.text, world=self.fake.world(), templates=known)
 
     def go(self, seconds: float = 1.0, ticks: int = 200) -> Status:
         status = RUNNING
@@ -115,12 +137,12 @@ def test_levelling_counts_its_lanes() -> None:
     assert site.records == ["tilt_1", "origin_1", "push_1", *lanes]
 
 
-ROAD = ["370", "371", "372", "373", "374"]
+ROAD = [f"372596030000{number}" for number in range(5)]
 
 
-def road(up: str, at: str) -> dict[tuple[str, str], Any]:
+def road(up: str, at: str, machine: str = "TRUCK") -> dict[tuple[str, str], Any]:
     """Five sections, one behind the other, and the record of the machine, which stands at one of them."""
-    values: dict[tuple[str, str], Any] = {("TRUCK", "CURRENT_SECTION"): at, ("TRUCK", "UP_DOWN"): up}
+    values: dict[tuple[str, str], Any] = {(machine, "CURRENT_SECTION"): at, (machine, "UP_DOWN"): up}
     for number, name in enumerate(ROAD):
         for field, other in (("up", number + 1), ("down", number - 1)):
             values[name, f"related_point_{field}_main"] = ROAD[other] if 0 <= other < len(ROAD) else ""
@@ -129,7 +151,7 @@ def road(up: str, at: str) -> dict[tuple[str, str], Any]:
     return values
 
 
-@pytest.mark.parametrize(("way", "start", "end"), [("up", "370", "373"), ("down", "373", "371")])
+@pytest.mark.parametrize(("way", "start", "end"), [("up", ROAD[0], ROAD[3]), ("down", ROAD[3], ROAD[1])])
 def test_a_truck_drives_along_a_road_section_by_section(way: str, start: str, end: str) -> None:
     words = {
         "machine_record_name": "TRUCK",
@@ -152,15 +174,15 @@ def test_a_truck_waits_before_a_section_that_another_one_is_in() -> None:
         "machine_record_name": "TRUCK",
         "model_name": "mst110cr",
         "start_status": "none",
-        "terminate_condition": "372",
+        "terminate_condition": ROAD[2],
     }
-    values = road("up", "370") | {("OTHER", "CURRENT_SECTION"): "372", ("OTHER", "UP_DOWN"): "up"}
+    values = road("up", ROAD[0]) | {("OTHER", "CURRENT_SECTION"): ROAD[2], ("OTHER", "UP_DOWN"): "up"}
     site = Site("subtask__CrawlerDump__Cruise_Subtask_1", values, **words)
     assert site.go(ticks=20) is RUNNING
-    assert site.records == ["371"]
-    site.fake.flags.values["OTHER", "CURRENT_SECTION"] = "373"
+    assert site.records == [ROAD[1]]
+    site.fake.flags.values["OTHER", "CURRENT_SECTION"] = ROAD[3]
     assert site.go() is SUCCESS
-    assert site.records == ["371", "372"]
+    assert site.records == [ROAD[1], ROAD[2]]
 
 
 def test_soil_is_released_and_the_bed_comes_down_later() -> None:
@@ -191,3 +213,30 @@ def test_loading(loaded: bool, end: Status, driven: int) -> None:
     assert site.records == ["L", "S", "R", "A"][:driven]
     assert site.goals[1][3] == {}  # an empty read_direction is none
     assert site.fake.flags.values["F", "arrival_flg"] is not loaded
+
+
+def test_a_task_digs_releases_and_moves_on() -> None:
+    site = Site("subtask__Excavator__ExcavateReleaseMove")
+    assert site.go() is SUCCESS
+    part = [f"target_{what}_pose_{number}" for what in ("excavate", "release") for number in (1, 2, 3)]
+    lists = [",".join(part[:3]), ",".join(part[3:])]
+    once = [*part[:3], lists[0], *part[3:], lists[1]]
+    assert site.records == [*once, "excavater_point1", *once, "excavater_point2"]
+    assert {machine for machine, *_ in site.goals} == {"zx200"}
+
+
+def test_a_truck_drives_up_releases_and_drives_back_again_and_again() -> None:
+    site = Site("subtask__CrawlerDump__Cruise_and_Release_Task2_nav")
+    assert site.go(seconds=10.0, ticks=30) is RUNNING
+    once = [ROAD[4], "RELEASE_ANGLE_UP", "RELEASE_ANGLE_DOWN", ROAD[0]]
+    assert site.records[:8] == once * 2
+
+
+def test_a_truck_is_loaded_drives_up_section_by_section_releases_and_drives_back() -> None:
+    values = road("up", ROAD[0], machine="SAMPLE_BLACKBOARD_mst110cr") | {("", "loaded_flg"): True}
+    site = Site("subtask__CrawlerDump__Load_and_Cruise_and_Release_Task", values)
+    assert site.go(seconds=10.0, ticks=60) is RUNNING
+    turn = [("", ""), ("", "")]  # it gives no record of an angle
+    release = [("RELEASE_ANGLE_UP", ""), ("RELEASE_ANGLE_DOWN", "")]
+    once = [*turn, *((one, "up") for one in ROAD), *release, *((one, "down") for one in ROAD[::-1]), *turn]
+    assert [(record, inputs.get("read_direction", "")) for *_, record, inputs in site.goals][: len(once)] == once
