@@ -1,13 +1,14 @@
-"""Refuses trajectories on which the machine would touch itself or another machine, and names the two.
+"""Whether a machine would touch itself or something in a scene: the one collision checker of the planner.
 
 Bodies are boxes; whether two of them touch is computed by FCL. Coal, its successor, was dropped: it brings boost,
 assimp and octomap, ten times the size, for the same boxes. Its Python binding leaks 32 bytes with every collision
-object (it frees the memory without the C++ destructor), so each body is one object for ever, which is moved.
+object (it frees the memory without the C++ destructor), so each body is one object for ever, which is moved. Most
+pairs are told apart beforehand, for all poses at once, by the extents of their bodies along the axes of base_link.
 """
 
 import threading
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from itertools import combinations
 from typing import Any
 
@@ -15,151 +16,168 @@ import fcl
 import numpy as np
 from numpy.typing import NDArray
 
-from tms_config.models import Box, MachineModel, Origin
+from tms_config.models import Box, MachineModel
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
-from tms_rp.reasons import Collision, Part
-from tms_rp.trajectory import Joints, Trajectory
+from tms_rp.links import Array, Links, Matrix, box_place, reaches
+from tms_rp.reasons import Collision, Ground, Part
+from tms_rp.scene import Obstacle, Scene
+from tms_rp.trajectory import Trajectory
 
 PADDING = 0.1  # m around the bodies that the arm moves
-STEP = 0.03  # rad, of the joint that moves most, between two checked samples
+# m that no point of the machine moves further between two checked poses: it is never further than PADDING from one.
+TRAVEL = 2 * PADDING
 
-Matrix = NDArray[np.float64]  # 4 x 4
-Body = str | Reason  # a link of this machine, or the name of an obstacle
-Pair = tuple[Body, Body]
-
-
-@dataclass(frozen=True)
-class Obstacle:
-    """A body that does not move: its name in reasons, its box, and the place of its frame in our base_link."""
-
-    name: Reason
-    box: Box
-    place: Matrix
+Mask = NDArray[np.bool_]
 
 
 class Clearance:
-    """Checks trajectories of one machine."""
+    """Looks at scenes for one machine."""
 
     def __init__(self, model: MachineModel) -> None:
-        self._model = model
-        moved = _moved_links(model)
-        self._bodies = {link: _object(box, PADDING if link in moved else 0.0) for link, box in model.shapes.items()}
-        self._inner = {link: _box_place(box) for link, box in model.shapes.items()}
-        self._others: dict[tuple[Reason, Box], Any] = {}  # bodies of other machines: as many as the site has
+        self.links = links = Links(model)
+        self._reach = reaches(model)
+        self._bodies = {
+            link: _Body(Part(link), box, PADDING if link in links.moved else 0.0) for link, box in model.shapes.items()
+        }
+        self._others: dict[tuple[Reason, Box], _Body] = {}  # bodies in scenes: as many as the site has
         self._looking = threading.Lock()  # guards the places of all bodies
-        parent = {origin.child: origin.parent for origin in model.geometry.values()}
+        # Neighbours along the arm, and links of the arm among each other, are kept apart by the joint limits.
         self._pairs = [
-            (a, b) for a, b in combinations(self._bodies, 2) if parent.get(a) != b and parent.get(b) != a
+            (a, b) for a, b in combinations(self._bodies, 2)
+            if links.parent.get(a) != b and links.parent.get(b) != a and not {a, b} <= links.moved
         ]  # fmt: skip
-        self._moved = moved
 
-    def check(self, made: Trajectory, obstacles: Sequence[Obstacle] = ()) -> None:
-        """Check the whole trajectory. Bodies that touch at its start may part, but must be apart at its end.
-
-        Raises:
-            SubtaskFailed: Collision, with the two bodies and the time.
-        """
+    @contextmanager
+    def looking(self, scene: Scene) -> Iterator["View"]:
+        """A look at a scene; others wait meanwhile."""
         with self._looking:
-            self._check(made, {one.name: self._fixed(one) for one in obstacles})
+            yield View(self, scene)
 
-    def _check(self, made: Trajectory, fixed: Mapping[Body, Any]) -> None:
-        moving = [link for link in self._bodies if link in self._moved]
-        pairs: list[tuple[str | Reason, str | Reason]] = [
-            *self._pairs,
-            *((link, name) for link in moving for name in fixed),
-        ]
-        bodies: dict[Body, Any] = {}
-        bodies.update(self._bodies)
-        bodies.update(fixed)
-        looks = _looks(made)
-        touching: set[Pair] = set()
-        for number, (seconds, positions) in enumerate(looks):
-            self._move(dict(zip(made.names, positions, strict=True)))
-            now = {pair for pair in pairs if _touch(bodies[pair[0]], bodies[pair[1]])}
-            last = number == len(looks) - 1
-            bad = now if last else now - touching if number else set()
-            if bad:
-                first, second = sorted(bad, key=str)[0]
-                raise SubtaskFailed(Collision(_part(first), _part(second), seconds))
-            touching = now if number == 0 else touching & now
+    def check(self, made: Trajectory, scene: Scene) -> None:
+        """Check a whole trajectory, as View.check."""
+        with self.looking(scene) as view:
+            view.check(made)
 
-    def _fixed(self, obstacle: Obstacle) -> Any:
+    def pairs(self, scene: Scene) -> list[tuple["_Body", "_Body"]]:
+        """What must not touch."""
+        own = [(self._bodies[a], self._bodies[b]) for a, b in self._pairs]
+        fixed = [self._fixed(one) for one in scene.obstacles]
+        return own + [(self._bodies[a], other) for a in self._bodies if a in self.links.moved for other in fixed]
+
+    def _fixed(self, obstacle: Obstacle) -> "_Body":
         key = obstacle.name, obstacle.box
         if key not in self._others:
-            self._others[key] = _object(obstacle.box, 0.0)
+            self._others[key] = _Body(obstacle.name, obstacle.box, 0.0)
         body = self._others[key]
-        _place(body, obstacle.place @ _box_place(obstacle.box))
+        body.put((obstacle.place @ body.inner)[None])
         return body
 
-    def _move(self, positions: Mapping[str, float]) -> None:
-        places = {"base_link": np.eye(4)}
-        for joint, origin in self._model.geometry.items():
-            places[origin.child] = places[origin.parent] @ _step(origin, positions.get(joint, 0.0))
+    def put(self, poses: Array) -> None:
+        """Put the machine's own bodies where they are at the poses."""
+        places = self.links.places(poses)
         for link, body in self._bodies.items():
-            _place(body, places[link] @ self._inner[link])
+            body.put(places[link] @ body.inner)
+
+    def between(self, poses: Array) -> tuple[Array, Array]:
+        """The poses, and so many on the straight lines between them that nothing moves further than TRAVEL.
+
+        With the number of each, from 0; those between have fractions.
+        """
+        counts = np.maximum(1, np.ceil(np.abs(np.diff(poses, axis=0)) @ self._reach / TRAVEL)).astype(int)
+        parts = [i + np.arange(n) / n for i, n in enumerate(counts)]
+        numbers = np.concatenate([*parts, [len(poses) - 1.0]])
+        known = np.arange(len(poses))
+        return np.stack([np.interp(numbers, known, angles) for angles in poses.T], axis=1), numbers
 
 
-def _part(body: Body) -> Reason:
-    """A body as a reason names it: of this machine, or an obstacle."""
-    return Part(body) if isinstance(body, str) else body
+class View:
+    """One look at one scene, while the bodies belong to it."""
+
+    def __init__(self, clearance: Clearance, scene: Scene) -> None:
+        self._clearance, self.scene = clearance, scene
+        self._pairs = clearance.pairs(scene)
+
+    def contacts(self, poses: Array) -> Mask:
+        """Which pairs of bodies touch at which poses [rad, N x joints]: N x pairs."""
+        self._clearance.put(poses)
+        found = np.stack([_near(a, b, len(poses)) for a, b in self._pairs], axis=1)
+        for pose, pair in np.argwhere(found):
+            a, b = self._pairs[pair]
+            found[pose, pair] = fcl.collide(a.at(pose), b.at(pose), fcl.CollisionRequest(), fcl.CollisionResult())
+        return found
+
+    def free(self, *poses: Sequence[float]) -> bool:
+        """Whether nothing touches at the poses, nor on the straight lines between them."""
+        return not self.contacts(self._clearance.between(np.array(poses))[0]).any()
+
+    def check(self, made: Trajectory) -> None:
+        """Check a whole trajectory.
+
+        What touches at its start may part, but must be apart at its end; only into the ground it may lead.
+
+        Raises:
+            SubtaskFailed: Collision, with the two bodies, the time, and where they overlap most.
+        """
+        poses, numbers = self._clearance.between(np.array([sample.positions for sample in made.samples]))
+        contacts = self.contacts(poses)
+        bad = contacts & ~_run(contacts)
+        bad[-1] = contacts[-1]
+        soil = [isinstance(b.name, Ground) for _, b in self._pairs]
+        bad[:, soil] &= ~_run(contacts[::-1])[::-1][:, soil]
+        if bad.any():
+            times = np.interp(numbers, range(len(made.samples)), [sample.time for sample in made.samples])
+            raise SubtaskFailed(self._collision(times, bad))
+
+    def _collision(self, times: Array, bad: Mask) -> Collision:
+        first = int(np.argmax(bad.any(axis=1)))
+        pair = int(np.argmax(bad[first]))
+        a, b = self._pairs[pair]
+        overlaps = [self._overlap(a, b, int(pose)) for pose in np.flatnonzero(bad[:, pair])]
+        depth, (x, y, z) = max(overlaps, key=lambda one: one[0])
+        return Collision(a.name, b.name, float(times[first]), depth, x, y, z)
+
+    @staticmethod
+    def _overlap(a: "_Body", b: "_Body", pose: int) -> tuple[float, tuple[float, float, float]]:
+        """How deep two bodies overlap [m] and where, in base_link."""
+        result = fcl.CollisionResult()
+        fcl.collide(a.at(pose), b.at(pose), fcl.CollisionRequest(num_max_contacts=8, enable_contact=True), result)
+        deepest = max(result.contacts, key=lambda one: one.penetration_depth)
+        x, y, z = map(float, deepest.pos)
+        return float(deepest.penetration_depth), (x, y, z)
 
 
-def placed(x: float, y: float, yaw: float) -> Matrix:
-    """A frame on flat ground."""
-    found = _turned("z", yaw)
-    found[:2, 3] = x, y
-    return found
+class _Body:
+    """A box, and the places where it is looked at."""
+
+    def __init__(self, name: Reason, box: Box, padding: float) -> None:
+        self.name, self.inner = name, box_place(box)
+        self._half = np.array([(high - low) / 2 + padding for low, high in zip(box.min, box.max, strict=True)])
+        self._object = fcl.CollisionObject(fcl.Box(*map(float, 2 * self._half)))
+        self._places: Matrix = self.inner[None]
+        self.extent = self._half[None]  # half of what it takes along the axes of base_link, m
+
+    def put(self, places: Matrix) -> None:
+        self._places = places
+        self.extent = np.abs(places[:, :3, :3]) @ self._half
+
+    @property
+    def centre(self) -> Array:
+        return self._places[:, :3, 3]
+
+    def at(self, pose: int) -> Any:
+        """FCL's object at one of the places; an obstacle has one for all."""
+        place = self._places[pose if len(self._places) > 1 else 0]
+        self._object.setTransform(fcl.Transform(place[:3, :3], place[:3, 3]))
+        return self._object
 
 
-def _moved_links(model: MachineModel) -> set[str]:
-    """Links that the arm moves: everything beyond the upper body."""
-    found: set[str] = set()
-    for joint, origin in model.geometry.items():
-        if origin.parent in found or (joint in model.joints and origin.axis == "y"):
-            found.add(origin.child)
-    return found
+def _near(a: _Body, b: _Body, count: int) -> Mask:
+    """At which poses two bodies are so near that they may touch."""
+    near: Mask = (np.abs(a.centre - b.centre) <= a.extent + b.extent).all(axis=1)
+    return np.broadcast_to(near, count).copy()
 
 
-def _looks(made: Trajectory) -> list[tuple[float, Joints]]:
-    """Samples far enough apart to matter, with the first and the last."""
-    looks = [(0.0, made.samples[0].positions)]
-    for sample in made.samples[1:]:
-        if max(abs(a - b) for a, b in zip(sample.positions, looks[-1][1], strict=True)) >= STEP:
-            looks.append((sample.time, sample.positions))
-    return [*looks, (made.duration, made.samples[-1].positions)]
-
-
-def _object(box: Box, padding: float) -> Any:
-    size = [high - low + 2 * padding for low, high in zip(box.min, box.max, strict=True)]
-    return fcl.CollisionObject(fcl.Box(*size))
-
-
-def _box_place(box: Box) -> Matrix:
-    """Centre of a box in the frame that it belongs to."""
-    inner = np.eye(4)
-    inner[:3, 3] = [(low + high) / 2 for low, high in zip(box.min, box.max, strict=True)]
-    return _turned("y", box.pitch) @ inner
-
-
-def _place(body: Any, place: Matrix) -> None:
-    body.setTransform(fcl.Transform(place[:3, :3], place[:3, 3]))
-
-
-def _touch(a: Any, b: Any) -> bool:
-    return bool(fcl.collide(a, b, fcl.CollisionRequest(), fcl.CollisionResult()))
-
-
-def _step(origin: Origin, angle: float) -> Matrix:
-    found = _turned("y", origin.pitch) @ _turned(origin.axis, angle)
-    found[:3, 3] = origin.xyz
-    return found
-
-
-def _turned(axis: str, angle: float) -> Matrix:
-    c, s = np.cos(angle), np.sin(angle)
-    i, j = {"x": (1, 2), "y": (2, 0), "z": (0, 1)}[axis]
-    found = np.eye(4)
-    found[i, i] = found[j, j] = c
-    found[i, j], found[j, i] = -s, s
-    return found
+def _run(contacts: Mask) -> Mask:
+    """The contacts that last since the first pose."""
+    return np.logical_and.accumulate(contacts, axis=0)

@@ -6,8 +6,9 @@ from tms_config.clock import monotonic
 from tms_machine.places import PERIOD, Places
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
-from tms_rp.clearance import Matrix, Obstacle, placed
+from tms_rp.links import Matrix, placed
 from tms_rp.reasons import PartOf, PlaceUnknown
+from tms_rp.scene import Obstacle, Scene
 from tms_runtime.app import App
 
 FRESH = 1.0  # s, an older pose may be that of a machine that has driven on
@@ -32,14 +33,14 @@ class Neighbours:
         found = self._places.place(name)
         return None if found is None else placed(found.x, found.y, found.yaw)
 
-    def obstacles(self) -> list[Obstacle]:
+    def scene(self) -> Scene:
         """Footprints of the other machines in our base_link, as far as both places are known.
 
         Raises:
             SubtaskFailed: the pose of this machine is missing.
         """
         if not self._others:
-            return []
+            return Scene()
         if missing := self.unready():
             raise SubtaskFailed(missing)
         own = self._place(self._own)
@@ -48,10 +49,12 @@ class Neighbours:
         if own is None:
             if others:
                 self._log.warning("place_unknown", target=self._own, reason=PlaceUnknown(self._own))
-            return []
+            return Scene()
         back = np.linalg.inv(own)
-        return [
-            Obstacle(PartOf(part, name), box, back @ place)
-            for name, place in others.items()
-            for part, box in self._site.model_of(name).footprint.items()
-        ]
+        return Scene(
+            tuple(
+                Obstacle(PartOf(part, name), box, back @ place)
+                for name, place in others.items()
+                for part, box in self._site.model_of(name).footprint.items()
+            )
+        )

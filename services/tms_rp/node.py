@@ -18,8 +18,7 @@ from tms_reason.reason import Reason
 from tms_reason.texts import text
 from tms_ros.goals import Ended, Outcome
 from tms_ros.server import AnyGoal
-from tms_rp.clearance import Clearance
-from tms_rp.kind import Angles, Moves, PlanningAction
+from tms_rp.kind import Angles, PlanningAction
 from tms_rp.kinds import load
 from tms_rp.mover import Mover
 from tms_rp.neighbours import Neighbours
@@ -33,7 +32,8 @@ from tms_rp.reasons import (
     Planning,
     Succeeded,
 )
-from tms_rp.trajectory import Trajectory, trajectory
+from tms_rp.trajectory import Trajectory
+from tms_rp.ways import Ways
 from tms_runtime.app import App
 
 FRESH = 1.0  # s, older joint states are no start for a motion
@@ -60,7 +60,7 @@ class Planner:
         assert self._model.planner is not None  # without it, the process table has no planner for the machine
         self.kind = load(self._model.planner)
         self._planner = self.kind.planner(self._model)
-        self._clearance, self._neighbours = Clearance(self._model), Neighbours(app)
+        self._ways, self._neighbours = Ways(self._model, self.kind), Neighbours(app)
         self._rc = app.ros.peer(FollowJointTrajectory, f"/{app.machine}/rc/follow_joint_trajectory")
         watch_server(app.ros, app.pulse, app.machine, "rc")(self._rc)
         self._permit = Permit(app.ros, app.pulse, app.machine, "rp")
@@ -159,26 +159,16 @@ class Planner:
         begun = monotonic()
         now = self.joints()
         moves = action.plan(self._planner, now, goal.request)
-        made = self._trajectory(now, moves)
-        self._clearance.check(made, self._neighbours.obstacles())
+        made, notes = self._ways.plan(now, moves, self._neighbours.scene())
         seconds = monotonic() - begun
         PLANNING.observe(seconds)
         self._app.log.info(
             "planned",
             action=action.name,
             goal=goal.id,
-            moves=len(moves.targets),
+            moves=len(made.stops),
             duration=round(made.duration, 2),
             planning=round(seconds, 4),
-            notes=[text(note, "en") for note in moves.notes],
+            notes=[text(note, "en") for note in notes],
         )
-        return made, moves.notes
-
-    def _trajectory(self, now: Angles, moves: Moves) -> Trajectory:
-        """The trajectory through all targets; joints that no kind of goal moves (the tool frame) stay at 0."""
-
-        def all_joints(pose: Angles) -> tuple[float, ...]:
-            angles = dict(zip(self.kind.joints, pose, strict=True))
-            return tuple(angles.get(name, 0.0) for name in self._model.joints)
-
-        return trajectory(self._model.joints, all_joints(now), [all_joints(pose) for pose in moves.targets])
+        return made, notes

@@ -21,6 +21,11 @@ class MoveOf(Reason, text="move {number} of {count}, {percent}"): number: int; c
 class Adapted(Reason, text="{progress} ({notes})"): progress: Reason; notes: tuple[Reason, ...]
 class OtherAngle(Reason, text="bucket angle {chosen} instead of {wanted}"): chosen: Radians; wanted: Radians
 class ClearanceCut(Reason, text="{joint} moves clear to its limit {limit} only"): joint: str; limit: Radians
+class Around(Reason, text="{way}, as {why}"): way: Reason; why: Reason
+class LiftSwingLower(Reason, text="it lifts, swings and lowers"): pass
+class FoldSwingUnfold(Reason, text="it lifts, curls in, swings and unfolds"): pass
+class OtherWayRound(Reason, text="{way}, the other way round"): way: Reason
+class Searched(Reason, text="it takes a way that was searched"): pass
 class Succeeded(Reason, text="done"): pass
 class MotionCancelled(Reason, text="cancelled"): pass
 
@@ -48,9 +53,12 @@ class OutOfRange(Reason, text="{broken}", action=INSIDE): broken: tuple[Reason, 
 class PointOutOfRange(Reason, text="{point} needs {broken}", action=OTHER_POINT):
     point: Reason; broken: tuple[Reason, ...]
 class NoAngleDigs(Reason, text="no bucket angle from 0 to pi digs there: {why}"): why: Reason
-class Collision(Reason, text="{first} would touch {second} after {seconds}", action=OTHER_TARGET):
-    first: Reason; second: Reason; seconds: Seconds
+class Collision(Reason, text="{first} would touch {second} after {seconds}, {depth} deep at ({x}, {y}, {z})",
+    action=OTHER_TARGET):
+    first: Reason; second: Reason; seconds: Seconds; depth: Metres; x: Metres; y: Metres; z: Metres
+class NoWayRound(Reason, text="{why}; no way round was found", action=OTHER_TARGET): why: Reason
 class Part(Reason, text="{link}"): link: str
+class Ground(Reason, text="the ground"): pass
 class PartOf(Reason, text="{link} of {machine}"): link: str; machine: str
 class NoTrajectory(Reason, text="there is no trajectory inside the limits", details="{problem}"): problem: str
 class LimitsLeft(Reason, text="{joint} would leave its limits after {seconds}"): joint: str; seconds: Moments

@@ -35,7 +35,7 @@ def test_a_place_that_is_told_now_and_then_is_heard_among_all_the_joints(two_nod
     app: Any = SimpleNamespace(site=site, machine="zx200", log=structlog.stdlib.get_logger("test"), ros=planner)
     neighbours = Neighbours(app)
     say = nav.publisher(TFMessage, "/tf", depth=200)
-    places = lambda: [one.place[0, 3] for one in neighbours.obstacles()]  # noqa: E731
+    places = lambda: [one.place[0, 3] for one in neighbours.scene().obstacles]  # noqa: E731
     wait_until(
         lambda: say.publish(reported("zx200/base", "ic120/base", x=0.0)) or places() == [0.0], 30, "both are heard"
     )

@@ -5,6 +5,7 @@ from tms_msg_rp.action import TmsRpZx200ChangePose, TmsRpZx200ExcavateSimple, Tm
 from tms_rp.kind import Angles, MachineKind, Moves, PlanningAction
 from tms_rp.kinds.backhoe import messages
 from tms_rp.kinds.backhoe.linkage import ArmAngles
+from tms_rp.kinds.backhoe.manners import MANNERS
 from tms_rp.kinds.backhoe.planner import NAMES, Backhoe
 
 
@@ -30,4 +31,5 @@ KIND = MachineKind(
         PlanningAction("excavate_simple_plan", TmsRpZx200ExcavateSimple, _excavate, False),
         PlanningAction("release_simple", TmsRpZx200ReleaseSimple, _release, True),
     ),
+    MANNERS,
 )
