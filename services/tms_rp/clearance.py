@@ -129,6 +129,16 @@ class View:
             times = np.interp(numbers, range(len(made.samples)), [sample.time for sample in made.samples])
             raise SubtaskFailed(self._collision(times, bad))
 
+    def check_end(self, made: Trajectory) -> None:
+        """Check the last pose alone.
+
+        Raises:
+            SubtaskFailed: Collision, after the whole time.
+        """
+        bad = self.contacts(np.array([made.samples[-1].positions]))
+        if bad.any():
+            raise SubtaskFailed(self._collision(np.array([made.duration]), bad))
+
     def _collision(self, times: Array, bad: Mask) -> Collision:
         first = int(np.argmax(bad.any(axis=1)))
         pair = int(np.argmax(bad[first]))

@@ -50,11 +50,14 @@ class Ways:
         return made, tuple(notes)
 
     def _way(self, begin: Angles, target: Angles, scene: Scene, why: Reason) -> Way:
-        """The first way of one move that is free."""
+        """The first way of one move that is free.
+
+        Raises:
+            SubtaskFailed: Collision, NoWayRound.
+        """
         straight = Way((target,))
         with self._clearance.looking(scene) as view:
-            if not view.free(self._all_joints(target)):
-                raise SubtaskFailed(why)
+            view.check_end(self._trajectory(begin, straight.targets))
             if self._free(view, begin, straight):
                 return straight
         with self._clearance.looking(scene.with_ground()) as view:
