@@ -2,8 +2,8 @@
 
 Bodies are boxes; whether two of them touch is computed by FCL. Coal, its successor, was dropped: it brings boost,
 assimp and octomap, ten times the size, for the same boxes. Its Python binding leaks 32 bytes with every collision
-object (it frees the memory without the C++ destructor), so each body is one object for ever, which is moved. Most
-pairs are told apart beforehand, for all poses at once, by the extents of their bodies along the axes of base_link.
+object (it frees the memory without the C++ destructor), so each body is one object for ever, which is moved. It is
+asked only for boxes that no face of either separates: that is found beforehand, for all poses and pairs at once.
 """
 
 import threading
@@ -28,6 +28,8 @@ PADDING = 0.1  # m around the bodies that the arm moves
 # m that no point of the machine moves further between two checked poses: it is never further than PADDING from one.
 TRAVEL = 2 * PADDING
 
+ROUNDING = 1e-9  # m
+
 Mask = NDArray[np.bool_]
 
 
@@ -35,18 +37,19 @@ class Clearance:
     """Looks at scenes for one machine."""
 
     def __init__(self, model: MachineModel) -> None:
-        self.links = links = Links(model)
+        self._links = links = Links(model)
         self._reach = reaches(model)
-        self._bodies = {
+        self._own = {
             link: _Body(Part(link), box, PADDING if link in links.moved else 0.0) for link, box in model.shapes.items()
         }
         self._others: dict[tuple[Reason, Box], _Body] = {}  # bodies in scenes: as many as the site has
         self._looking = threading.Lock()  # guards the places of all bodies
         # Neighbours along the arm, and links of the arm among each other, are kept apart by the joint limits.
         self._pairs = [
-            (a, b) for a, b in combinations(self._bodies, 2)
+            (i, j) for (i, a), (j, b) in combinations(enumerate(self._own), 2)
             if links.parent.get(a) != b and links.parent.get(b) != a and not {a, b} <= links.moved
         ]  # fmt: skip
+        self._moved = [i for i, link in enumerate(self._own) if link in links.moved]
 
     @contextmanager
     def looking(self, scene: Scene) -> Iterator["View"]:
@@ -59,25 +62,25 @@ class Clearance:
         with self.looking(scene) as view:
             view.check(made)
 
-    def pairs(self, scene: Scene) -> list[tuple["_Body", "_Body"]]:
-        """What must not touch."""
-        own = [(self._bodies[a], self._bodies[b]) for a, b in self._pairs]
-        fixed = [self._fixed(one) for one in scene.obstacles]
-        return own + [(self._bodies[a], other) for a in self._bodies if a in self.links.moved for other in fixed]
+    def bodies(self, scene: Scene) -> list["_Body"]:
+        """The machine's own, then those of a scene."""
+        return [*self._own.values(), *map(self._other, scene.obstacles)]
 
-    def _fixed(self, obstacle: Obstacle) -> "_Body":
+    def _other(self, obstacle: Obstacle) -> "_Body":
         key = obstacle.name, obstacle.box
         if key not in self._others:
             self._others[key] = _Body(obstacle.name, obstacle.box, 0.0)
-        body = self._others[key]
-        body.put((obstacle.place @ body.inner)[None])
-        return body
+        return self._others[key]
 
-    def put(self, poses: Array) -> None:
-        """Put the machine's own bodies where they are at the poses."""
-        places = self.links.places(poses)
-        for link, body in self._bodies.items():
-            body.put(places[link] @ body.inner)
+    def pairs(self, count: int) -> NDArray[np.int_]:
+        """Numbers of the bodies that must not touch, of `count` in all: pairs x 2."""
+        others = range(len(self._own), count)
+        return np.array([*self._pairs, *((moved, other) for moved in self._moved for other in others)])
+
+    def places(self, poses: Array) -> Matrix:
+        """Where the boxes of the machine's own bodies are at the poses: N x bodies x 4 x 4."""
+        places = self._links.places(poses)
+        return np.stack([places[link] @ body.inner for link, body in self._own.items()], axis=1)
 
     def between(self, poses: Array) -> tuple[Array, Array]:
         """The poses, and so many on the straight lines between them that nothing moves further than TRAVEL.
@@ -96,20 +99,16 @@ class View:
 
     def __init__(self, clearance: Clearance, scene: Scene) -> None:
         self._clearance, self.scene = clearance, scene
-        self._pairs = clearance.pairs(scene)
-
-    def contacts(self, poses: Array) -> Mask:
-        """Which pairs of bodies touch at which poses [rad, N x joints]: N x pairs."""
-        self._clearance.put(poses)
-        found = np.stack([_near(a, b, len(poses)) for a, b in self._pairs], axis=1)
-        for pose, pair in np.argwhere(found):
-            a, b = self._pairs[pair]
-            found[pose, pair] = fcl.collide(a.at(pose), b.at(pose), fcl.CollisionRequest(), fcl.CollisionResult())
-        return found
+        self._bodies = clearance.bodies(scene)
+        self._pairs = clearance.pairs(len(self._bodies))
+        self._half = np.array([body.half for body in self._bodies])
+        inner = [body.inner for body in self._bodies[-len(scene.obstacles) :]] if scene.obstacles else []
+        self._others = np.array([one.place @ box for one, box in zip(scene.obstacles, inner, strict=True)])
 
     def free(self, *poses: Sequence[float]) -> bool:
         """Whether nothing touches at the poses, nor on the straight lines between them."""
-        return not self.contacts(self._clearance.between(np.array(poses))[0]).any()
+        places = self._places(self._clearance.between(np.array(poses))[0])
+        return not any(self._touch(places, pose, pair) for pose, pair in self._near(places))
 
     def check(self, made: Trajectory) -> None:
         """Check a whole trajectory.
@@ -120,14 +119,14 @@ class View:
             SubtaskFailed: Collision, with the two bodies, the time, and where they overlap most.
         """
         poses, numbers = self._clearance.between(np.array([sample.positions for sample in made.samples]))
-        contacts = self.contacts(poses)
+        times = np.interp(numbers, range(len(made.samples)), [sample.time for sample in made.samples])
+        places = self._places(poses)
+        contacts = self._contacts(places)
         bad = contacts & ~_run(contacts)
         bad[-1] = contacts[-1]
-        soil = [isinstance(b.name, Ground) for _, b in self._pairs]
+        soil = [isinstance(self._bodies[b].name, Ground) for _, b in self._pairs]
         bad[:, soil] &= ~_run(contacts[::-1])[::-1][:, soil]
-        if bad.any():
-            times = np.interp(numbers, range(len(made.samples)), [sample.time for sample in made.samples])
-            raise SubtaskFailed(self._collision(times, bad))
+        self._refuse(places, times, bad)
 
     def check_end(self, made: Trajectory) -> None:
         """Check the last pose alone.
@@ -135,57 +134,72 @@ class View:
         Raises:
             SubtaskFailed: Collision, after the whole time.
         """
-        bad = self.contacts(np.array([made.samples[-1].positions]))
-        if bad.any():
-            raise SubtaskFailed(self._collision(np.array([made.duration]), bad))
+        places = self._places(np.array([made.samples[-1].positions]))
+        self._refuse(places, np.array([made.duration]), self._contacts(places))
 
-    def _collision(self, times: Array, bad: Mask) -> Collision:
+    def _places(self, poses: Array) -> Matrix:
+        """Where all boxes are: N x bodies x 4 x 4."""
+        own = self._clearance.places(poses)
+        if not len(self._others):
+            return own
+        return np.concatenate([own, np.broadcast_to(self._others, (len(poses), *self._others.shape))], axis=1)
+
+    def _near(self, places: Matrix) -> NDArray[np.int_]:
+        """Numbers of the poses, and the pairs that no face of either box separates there; all others are apart."""
+        turns, centres = places[..., :3, :3], places[..., :3, 3]
+        a, b = self._pairs.T
+        ways = centres[:, b] - centres[:, a]
+        far = np.linalg.norm(self._half[a], axis=1) + np.linalg.norm(self._half[b], axis=1)
+        found = np.argwhere(np.einsum("npi,npi->np", ways, ways) <= far**2)
+        poses, pairs = found.T
+        a, b, way = a[pairs], b[pairs], ways[poses, pairs][..., None]
+        turn_a, turn_b = turns[poses, a].swapaxes(1, 2), turns[poses, b].swapaxes(1, 2)  # from base_link
+        across = np.abs(turn_a @ turn_b.swapaxes(1, 2))
+        half_a, half_b = self._half[a, :, None], self._half[b, :, None]
+        over_a = np.abs(turn_a @ way) <= half_a + across @ half_b + ROUNDING
+        over_b = np.abs(turn_b @ way) <= half_b + across.swapaxes(1, 2) @ half_a + ROUNDING
+        return found[(over_a & over_b).all(axis=(1, 2))]
+
+    def _contacts(self, places: Matrix) -> Mask:
+        """Which pairs touch at which pose: N x pairs."""
+        found = np.zeros((len(places), len(self._pairs)), dtype=bool)
+        for pose, pair in self._near(places):
+            found[pose, pair] = self._touch(places, pose, pair)
+        return found
+
+    def _touch(self, places: Matrix, pose: int, pair: int) -> bool:
+        a, b = (self._bodies[i].at(places[pose, i]) for i in self._pairs[pair])
+        return bool(fcl.collide(a, b, fcl.CollisionRequest(), fcl.CollisionResult()))
+
+    def _refuse(self, places: Matrix, times: Array, bad: Mask) -> None:
+        if not bad.any():
+            return
         first = int(np.argmax(bad.any(axis=1)))
         pair = int(np.argmax(bad[first]))
-        a, b = self._pairs[pair]
-        overlaps = [self._overlap(a, b, int(pose)) for pose in np.flatnonzero(bad[:, pair])]
-        depth, (x, y, z) = max(overlaps, key=lambda one: one[0])
-        return Collision(a.name, b.name, float(times[first]), depth, x, y, z)
+        depth, (x, y, z) = max(self._overlap(places, pose, pair) for pose in np.flatnonzero(bad[:, pair]))
+        a, b = (self._bodies[i].name for i in self._pairs[pair])
+        raise SubtaskFailed(Collision(a, b, float(times[first]), depth, x, y, z))
 
-    @staticmethod
-    def _overlap(a: "_Body", b: "_Body", pose: int) -> tuple[float, tuple[float, float, float]]:
+    def _overlap(self, places: Matrix, pose: int, pair: int) -> tuple[float, tuple[float, ...]]:
         """How deep two bodies overlap [m] and where, in base_link."""
+        a, b = (self._bodies[i].at(places[pose, i]) for i in self._pairs[pair])
         result = fcl.CollisionResult()
-        fcl.collide(a.at(pose), b.at(pose), fcl.CollisionRequest(num_max_contacts=8, enable_contact=True), result)
-        deepest = max(result.contacts, key=lambda one: one.penetration_depth)
-        x, y, z = map(float, deepest.pos)
-        return float(deepest.penetration_depth), (x, y, z)
+        fcl.collide(a, b, fcl.CollisionRequest(num_max_contacts=8, enable_contact=True), result)
+        return max((float(one.penetration_depth), tuple(map(float, one.pos))) for one in result.contacts)
 
 
 class _Body:
-    """A box, and the places where it is looked at."""
+    """A box: its name in reasons, half of its size [m], and its centre in the frame that it belongs to."""
 
     def __init__(self, name: Reason, box: Box, padding: float) -> None:
         self.name, self.inner = name, box_place(box)
-        self._half = np.array([(high - low) / 2 + padding for low, high in zip(box.min, box.max, strict=True)])
-        self._object = fcl.CollisionObject(fcl.Box(*map(float, 2 * self._half)))
-        self._places: Matrix = self.inner[None]
-        self.extent = self._half[None]  # half of what it takes along the axes of base_link, m
+        self.half = np.array([(high - low) / 2 + padding for low, high in zip(box.min, box.max, strict=True)])
+        self._object = fcl.CollisionObject(fcl.Box(*map(float, 2 * self.half)))
 
-    def put(self, places: Matrix) -> None:
-        self._places = places
-        self.extent = np.abs(places[:, :3, :3]) @ self._half
-
-    @property
-    def centre(self) -> Array:
-        return self._places[:, :3, 3]
-
-    def at(self, pose: int) -> Any:
-        """FCL's object at one of the places; an obstacle has one for all."""
-        place = self._places[pose if len(self._places) > 1 else 0]
+    def at(self, place: Matrix) -> Any:
+        """FCL's object, put to a place."""
         self._object.setTransform(fcl.Transform(place[:3, :3], place[:3, 3]))
         return self._object
-
-
-def _near(a: _Body, b: _Body, count: int) -> Mask:
-    """At which poses two bodies are so near that they may touch."""
-    near: Mask = (np.abs(a.centre - b.centre) <= a.extent + b.extent).all(axis=1)
-    return np.broadcast_to(near, count).copy()
 
 
 def _run(contacts: Mask) -> Mask:
