@@ -110,6 +110,10 @@ class View:
         places = self._places(self._clearance.between(np.array(poses))[0])
         return not any(self._touch(places, pose, pair) for pose, pair in self._near(places))
 
+    def passable(self, poses: Sequence[Sequence[float]]) -> bool:
+        """Whether `check` would pass a trajectory on the straight lines between the poses."""
+        return not self._bad(self._places(self._clearance.between(np.array(poses))[0])).any()
+
     def check(self, made: Trajectory) -> None:
         """Check a whole trajectory.
 
@@ -121,12 +125,16 @@ class View:
         poses, numbers = self._clearance.between(np.array([sample.positions for sample in made.samples]))
         times = np.interp(numbers, range(len(made.samples)), [sample.time for sample in made.samples])
         places = self._places(poses)
+        self._refuse(places, times, self._bad(places))
+
+    def _bad(self, places: Matrix) -> Mask:
+        """The contacts that `check` does not allow."""
         contacts = self._contacts(places)
         bad = contacts & ~_run(contacts)
         bad[-1] = contacts[-1]
         soil = [isinstance(self._bodies[b].name, Ground) for _, b in self._pairs]
         bad[:, soil] &= ~_run(contacts[::-1])[::-1][:, soil]
-        self._refuse(places, times, bad)
+        return bad
 
     def check_end(self, made: Trajectory) -> None:
         """Check the last pose alone.

@@ -70,13 +70,8 @@ class Ways:
         raise SubtaskFailed(NoWayRound(why))
 
     def _free(self, view: View, begin: Angles, way: Way) -> bool:
-        if not all(view.free(self._all_joints(pose)) for pose in way.targets[:-1]):
-            return False  # without the cost of a trajectory
-        try:
-            view.check(self._trajectory(begin, way.targets, straight=True))
-        except SubtaskFailed:
-            return False
-        return True
+        poses = [self._all_joints(pose) for pose in (begin, *way.targets)]
+        return all(view.free(pose) for pose in poses[1:-1]) and view.passable(poses)  # the first costs little
 
     def _search(self, view: View, begin: Angles, target: Angles) -> Way | None:
         """A way that sampling finds, between the ends or poses above them."""
