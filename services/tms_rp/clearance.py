@@ -38,7 +38,7 @@ class Clearance:
 
     def __init__(self, model: MachineModel) -> None:
         self._links = links = Links(model)
-        self._reach = reaches(model)
+        self._reach = np.array(list(reaches(model).values()))
         self._own = {
             link: _Body(Part(link), box, PADDING if link in links.moved else 0.0) for link, box in model.shapes.items()
         }
@@ -166,7 +166,8 @@ class View:
         half_a, half_b = self._half[a, :, None], self._half[b, :, None]
         over_a = np.abs(turn_a @ way) <= half_a + across @ half_b + ROUNDING
         over_b = np.abs(turn_b @ way) <= half_b + across.swapaxes(1, 2) @ half_a + ROUNDING
-        return found[(over_a & over_b).all(axis=(1, 2))]
+        near: NDArray[np.int_] = found[(over_a & over_b).all(axis=(1, 2))]
+        return near
 
     def _contacts(self, places: Matrix) -> Mask:
         """Which pairs touch at which pose: N x pairs."""
@@ -184,7 +185,7 @@ class View:
             return
         first = int(np.argmax(bad.any(axis=1)))
         pair = int(np.argmax(bad[first]))
-        depth, (x, y, z) = max(self._overlap(places, pose, pair) for pose in np.flatnonzero(bad[:, pair]))
+        depth, (x, y, z) = max(self._overlap(places, int(pose), pair) for pose in np.flatnonzero(bad[:, pair]))
         a, b = (self._bodies[i].name for i in self._pairs[pair])
         raise SubtaskFailed(Collision(a, b, float(times[first]), depth, x, y, z))
 

@@ -2,12 +2,11 @@
 
 import itertools
 import math
-from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tms_config.models import Box, MachineModel, Origin
+from tms_config.models import Box, MachineModel
 
 Array = NDArray[np.float64]
 Matrix = Array  # 4 x 4, or N x 4 x 4
@@ -47,6 +46,7 @@ class Links:
         self.names = tuple(model.joints)  # order of the angles of a pose
         self.moved = _moved(model)
         self.parent = {origin.child: origin.parent for origin in model.geometry.values()}
+        self._joint = {origin.child: joint for joint, origin in model.geometry.items()}
         carrying = set(model.shapes)
         for link in model.shapes:
             while (link := self.parent.get(link, "")) in self.parent:
@@ -56,6 +56,14 @@ class Links:
 
     def _column(self, joint: str) -> int | None:
         return self.names.index(joint) if joint in self.names else None
+
+    def carriers(self, link: str) -> list[str]:
+        """The joints that move a link."""
+        found = []
+        while link in self._joint:
+            found.append(self._joint[link])
+            link = self.parent[link]
+        return [joint for joint in found if joint in self.names]
 
     def places(self, poses: Array) -> dict[str, Matrix]:
         """The place of every such link in base_link (N x 4 x 4) at N poses [rad, N x joints]."""
@@ -78,19 +86,21 @@ def _moved(model: MachineModel) -> frozenset[str]:
     return frozenset(found)
 
 
-def reaches(model: MachineModel) -> Array:
+def reaches(model: MachineModel) -> dict[str, float]:
     """By joint: how far [m] a point of a body beyond it can be from its axis at most, in any pose."""
-    children: dict[str, list[Origin]] = {}
-    for origin in model.geometry.values():
-        children.setdefault(origin.parent, []).append(origin)
-    return np.array([_beyond(model.geometry[name].child, model.shapes, children) for name in model.joints])
+    return {name: _beyond(model.geometry[name].child, model) for name in model.joints}
 
 
-def _beyond(link: str, shapes: Mapping[str, Box], children: Mapping[str, Sequence[Origin]]) -> float:
+def reach(model: MachineModel) -> float:
+    """How far [m] a point of a body can be from the origin of base_link at most, in any pose."""
+    return _beyond("base_link", model)
+
+
+def _beyond(link: str, model: MachineModel) -> float:
     """Farthest point of a body from the origin of a link that carries it, in any pose [m]; 0 without bodies."""
-    own = max((math.hypot(*corner) for corner in _corners(shapes.get(link))), default=0.0)
-    for origin in children.get(link, ()):
-        if (further := _beyond(origin.child, shapes, children)) > 0:
+    own = max((math.hypot(*corner) for corner in _corners(model.shapes.get(link))), default=0.0)
+    for origin in model.geometry.values():
+        if origin.parent == link and (further := _beyond(origin.child, model)) > 0:
             own = max(own, math.hypot(*origin.xyz) + further)
     return own
 

@@ -1,11 +1,9 @@
 """Process `<machine>:rp`: plans motions and has the machine's gateway execute them."""
 
-import math
 from typing import Any
 
 from control_msgs.action import FollowJointTrajectory
 from prometheus_client import Histogram
-from sensor_msgs.msg import JointState
 from tms_msg_rp.msg import TmsRpErrorCodes
 
 from tms_config.clock import monotonic
@@ -18,6 +16,7 @@ from tms_reason.reason import Reason
 from tms_reason.texts import text
 from tms_ros.goals import Ended, Outcome
 from tms_ros.server import AnyGoal
+from tms_rp.joint_states import JointStates
 from tms_rp.kind import Angles, PlanningAction
 from tms_rp.kinds import load
 from tms_rp.mover import Mover
@@ -45,7 +44,7 @@ PLANNING = Histogram("tms_rp_planning_seconds", "From goal to trajectory", bucke
 def start(app: App) -> None:
     """Serve `/<machine>/tms_rp_<model>_<action>`."""
     planner, model = Planner(app), app.site.file.machines[app.machine].model
-    app.ros.poll_in_thread(JOINTS_PERIOD, planner.take_samples, "joints")
+    app.ros.poll_in_thread(JOINTS_PERIOD, planner.take_joints, "joints")
     for action in planner.kind.actions:
         planner.serve(action, f"/{app.machine}/tms_rp_{model}_{action.name}")
     app.ready_when(planner.unready)
@@ -65,23 +64,12 @@ class Planner:
         watch_server(app.ros, app.pulse, app.machine, "rc")(self._rc)
         self._permit = Permit(app.ros, app.pulse, app.machine, "rp")
         self._mover = Mover(self._rc)
-        self._renamed = app.site.border(app.machine).joints
         self._busy = False  # set on the executor thread, which accepts one goal after another
-        self._now: tuple[float, Angles] | None = None  # monotonic time [s], joints
-        self._samples = app.ros.sample(JointState, f"/{app.machine}/{app.site.border(app.machine).joint_states}")
+        self._joints = JointStates(app.ros, app.machine, app.site.border(app.machine), self.kind.joints)
 
-    def take_samples(self) -> None:
+    def take_joints(self) -> None:
         """Take the newest joint state."""
-        for message in self._samples():
-            self._received(message)
-
-    def _received(self, message: JointState) -> None:
-        """Joint states are matched by name: backends order them differently."""
-        found = dict(zip(message.name, message.position, strict=False))
-        found.update({name: found[own] for name, own in self._renamed.items() if own in found})
-        angles = [found.get(name, math.nan) for name in self.kind.joints]
-        if all(map(math.isfinite, angles)):
-            self._now = (monotonic(), tuple(angles))
+        self._joints.take()
 
     def unready(self) -> Reason | None:
         """Why no motion can be planned and executed now."""
@@ -99,9 +87,8 @@ class Planner:
         Raises:
             SubtaskFailed: JointsUnheard, JointsOld.
         """
-        self.take_samples()
-        last = self._now
-        topic = f"/{self._app.machine}/{self._app.site.border(self._app.machine).joint_states}"
+        self._joints.take()
+        last, topic = self._joints.last, self._joints.topic
         if last is None:
             raise SubtaskFailed(JointsUnheard(self._app.machine, topic, self.kind.joints))
         age = monotonic() - last[0]

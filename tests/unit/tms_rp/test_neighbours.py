@@ -9,13 +9,19 @@ from geometry_msgs.msg import PoseStamped, TransformStamped
 from tf2_msgs.msg import TFMessage
 
 from tms_config.clock import monotonic
-from tms_config.models import Border, Source
+from tms_config.config import CONFIGS
+from tms_config.models import Border, Box, MachineModel, Source
+from tms_config.yaml_file import parse
 from tms_proof.reasons import Old, Pose, Unheard
 from tms_reason.errors import SubtaskFailed
 from tms_ros.topics import Arrival
 from tms_rp.neighbours import Neighbours
 from tms_rp.reasons import PartOf
 
+BODY = Box(min=(-3.0, -1.3, 0.0), max=(2.0, 1.3, 3.0))
+TRUCK = parse(CONFIGS / "machines" / "ic120.yaml", MachineModel).model_copy(
+    update={"footprint": {"body": BODY}, "shapes": {}}
+)
 BASES = {"zx200": "base_link", "ic120": "ic120_tf/base_link"}
 POSE = Border(
     pose="base_link/pose",
@@ -42,7 +48,7 @@ def neighbours(
     site: Any = SimpleNamespace(
         border=borders.__getitem__,
         file=SimpleNamespace(machines=borders),
-        model_of=lambda _: SimpleNamespace(footprint={"body": object()}),
+        model_of=lambda _: TRUCK,
     )
     ros = SimpleNamespace(
         sample=lambda *_: lambda: [TFMessage(transforms=list(reported))],
