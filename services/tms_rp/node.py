@@ -31,6 +31,8 @@ from tms_rp.reasons import (
     Planning,
     Succeeded,
 )
+from tms_rp.scene import Scene
+from tms_rp.told_scene import ToldScene
 from tms_rp.trajectory import Trajectory
 from tms_rp.ways import Ways
 from tms_runtime.app import App
@@ -60,6 +62,7 @@ class Planner:
         self.kind = load(self._model.planner)
         self._planner = self.kind.planner(self._model)
         self._ways, self._neighbours = Ways(self._model, self.kind), Neighbours(app)
+        self._told = ToldScene(app)
         self._rc = app.ros.peer(FollowJointTrajectory, f"/{app.machine}/rc/follow_joint_trajectory")
         watch_server(app.ros, app.pulse, app.machine, "rc")(self._rc)
         self._permit = Permit(app.ros, app.pulse, app.machine, "rp")
@@ -141,12 +144,20 @@ class Planner:
         say(Succeeded() if outcome is Outcome.SUCCEEDED else MotionCancelled())
         return outcome
 
+    def _scene(self) -> Scene:
+        """All that stands around the machine now.
+
+        Raises:
+            SubtaskFailed: something of it is not known.
+        """
+        return Scene((*self._neighbours.scene().obstacles, *self._told.obstacles()))
+
     def _plan(self, action: PlanningAction, goal: AnyGoal) -> tuple[Trajectory, tuple[Reason, ...]]:
         """The trajectory, and the changes to the goal that it needed."""
         begun = monotonic()
         now = self.joints()
         moves = action.plan(self._planner, now, goal.request)
-        made, notes = self._ways.plan(now, moves, self._neighbours.scene())
+        made, notes = self._ways.plan(now, moves, self._scene())
         seconds = monotonic() - begun
         PLANNING.observe(seconds)
         self._app.log.info(

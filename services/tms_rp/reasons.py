@@ -2,7 +2,7 @@
 
 from tms_reason.quantities import Metres, Moments, Number, Percent, Radians, Seconds
 from tms_reason.reason import Reason
-from tms_reason.remedies import INSPECT, PROCESSES, Remedy
+from tms_reason.remedies import INSPECT, PROCESSES, RECORDS, Remedy
 
 ONE_TARGET = Remedy("goal", "", "Give exactly one of the three")
 NEARER = Remedy("goal", "", "Choose a nearer point")
@@ -73,6 +73,11 @@ class MotionLate(Reason, text="{machine} was not done {seconds} after the end of
     machine: str; seconds: Seconds
 class MotionFailed(Reason, text="{why}", details="{name} {outcome}"): why: Reason; name: str; outcome: str
 
+class Told(Reason, text="{record}"): record: str
+class NoShape(Reason, text="it has no dimensions, and there is no machine '{named}'"): named: str
+class SceneRecordOld(Reason, text="record {record} is {age} old: nobody knows what stands there now", action=RECORDS):
+    record: str; age: Seconds
+class SceneUnread(Reason, text="the scene records are as they were read last: {why}"): why: Reason
 class PlaceUnknown(Reason, text="it is not known where {machine} stands: the other machines are left out",
     details="nothing on /tf"): machine: str
 
