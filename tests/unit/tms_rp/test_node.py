@@ -102,19 +102,19 @@ def wall(y: float) -> Record:
 
 
 def test_nothing_in_the_way(monkeypatch: pytest.MonkeyPatch) -> None:
-    outcome, said = planned(monkeypatch, 1.571, FAR)
+    outcome, said = planned(monkeypatch, 1.5, FAR)
     assert outcome is Outcome.SUCCEEDED and isinstance(said, Planned)
 
 
 def test_around_a_truck_and_people_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    outcome, said = planned(monkeypatch, 1.571, AHEAD)
+    outcome, said = planned(monkeypatch, 1.5, AHEAD)
     around = said.find(Around)
     assert outcome is Outcome.SUCCEEDED and around is not None
     assert around.why.find(PartOf).machine == "ic120"
 
 
 def test_around_what_a_record_tells(monkeypatch: pytest.MonkeyPatch) -> None:
-    outcome, said = planned(monkeypatch, 1.571, FAR, wall(0.0))
+    outcome, said = planned(monkeypatch, 1.5, FAR, wall(0.0))
     assert outcome is Outcome.SUCCEEDED and said.find(Around).why.find(Told) == Told("collision_object_wall")
 
 
