@@ -24,7 +24,7 @@ from tms_rp.reasons import Collision, Ground, Part
 from tms_rp.scene import Obstacle, Scene
 from tms_rp.trajectory import Trajectory
 
-PADDING = 0.1  # m around the bodies that the arm moves
+PADDING = 0.1  # m, usual
 # m that no point of the machine moves further between two checked poses: it is never further than PADDING from one.
 TRAVEL = 2 * PADDING
 
@@ -34,13 +34,13 @@ Mask = NDArray[np.bool_]
 
 
 class Clearance:
-    """Looks at scenes for one machine."""
+    """Looks at scenes for one machine; `padding`: m around the bodies that the arm moves."""
 
-    def __init__(self, model: MachineModel) -> None:
+    def __init__(self, model: MachineModel, padding: float = PADDING) -> None:
         self._links = links = Links(model)
         self._reach = np.array(list(reaches(model).values()))
         self._own = {
-            link: _Body(Part(link), box, PADDING if link in links.moved else 0.0) for link, box in model.shapes.items()
+            link: _Body(Part(link), box, padding if link in links.moved else 0.0) for link, box in model.shapes.items()
         }
         self._others: dict[tuple[Reason, Box], _Body] = {}  # bodies in scenes: as many as the site has
         self._looking = threading.Lock()  # guards the places of all bodies
@@ -135,6 +135,19 @@ class View:
         soil = [isinstance(self._bodies[b].name, Ground) for _, b in self._pairs]
         bad[:, soil] &= ~_run(contacts[::-1])[::-1][:, soil]
         return bad
+
+    def check_part(self, made: Trajectory, begin: float, end: float) -> None:
+        """Check a trajectory that runs between two times [s]; what touches since its start may go on.
+
+        Raises:
+            SubtaskFailed: Collision.
+        """
+        samples = [sample for sample in made.samples if sample.time <= end]
+        poses, numbers = self._clearance.between(np.array([sample.positions for sample in samples]))
+        times = np.interp(numbers, range(len(samples)), [sample.time for sample in samples])
+        places = self._places(poses)
+        contacts = self._contacts(places)
+        self._refuse(places, times, contacts & ~_run(contacts) & (times >= begin)[:, None])
 
     def check_end(self, made: Trajectory) -> None:
         """Check the last pose alone.

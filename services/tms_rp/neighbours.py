@@ -47,8 +47,10 @@ class Neighbours:
         """Why it is not known where this machine stands, if its pose should tell it and others may be near."""
         return self._places.missing(self._own, monotonic(), FRESH) if self._others else None
 
-    def scene(self) -> Scene:
+    def scene(self, as_told: bool = False) -> Scene:
         """The other machines in our base_link, as far as both places are known.
+
+        `as_told`: nothing is grown for its age.
 
         Raises:
             SubtaskFailed: the pose of this machine is missing.
@@ -65,11 +67,15 @@ class Neighbours:
             return Scene()
         back, now = np.linalg.inv(placed(*own[:3])), monotonic()
         found = [
-            self._bodies[name].obstacles(back @ placed(*place[:3]), now - place.received, self._posture(name, now))
+            self._bodies[name].obstacles(
+                back @ placed(*place[:3]), 0.0 if as_told else now - place.received, self._posture(name, now, as_told)
+            )
             for name, place in places.items()
         ]
         return Scene(tuple(itertools.chain.from_iterable(found)))
 
-    def _posture(self, name: str, now: float) -> Posture | None:
+    def _posture(self, name: str, now: float, as_told: bool) -> Posture | None:
         last = self._joints[name].last if name in self._joints else None
-        return Posture(dict(zip(self._moving[name], last[1], strict=True)), now - last[0]) if last else None
+        if last is None:
+            return None
+        return Posture(dict(zip(self._moving[name], last[1], strict=True)), 0.0 if as_told else now - last[0])

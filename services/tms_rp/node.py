@@ -136,13 +136,23 @@ class Planner:
                 say(Planned(made.duration), notes)
                 outcome = Outcome.SUCCEEDED
             else:
-                outcome = self._mover.move(goal, made, lambda progress: say(progress, notes))
+                outcome = self._mover.move(
+                    goal, made, lambda progress: say(progress, notes), lambda seconds: self._blocked(made, seconds)
+                )
         except TmsError as error:
             self._app.log.warning("failed", action=action.name, goal=goal.id, reason=error.reason)
             say(Aborted(error.reason, action.name))
             return Outcome.ABORTED
         say(Succeeded() if outcome is Outcome.SUCCEEDED else MotionCancelled())
         return outcome
+
+    def _blocked(self, made: Trajectory, seconds: float) -> Reason | None:
+        """What has come into the way of a motion; without this machine's own place nobody knows, and it goes on."""
+        try:
+            scene = self._neighbours.scene(as_told=True)
+        except SubtaskFailed:
+            return None
+        return self._ways.blocked(made, seconds, scene)
 
     def _scene(self) -> Scene:
         """All that stands around the machine now.

@@ -56,6 +56,7 @@ class NoAngleDigs(Reason, text="no bucket angle from 0 to pi digs there: {why}")
 class Collision(Reason, text="{first} would touch {second} after {seconds}, {depth} deep at ({x}, {y}, {z})",
     action=OTHER_TARGET):
     first: Reason; second: Reason; seconds: Seconds; depth: Metres; x: Metres; y: Metres; z: Metres
+class PathBlocked(Reason, text="{by} has come into the way: {why}", action=INSPECT): by: Reason; why: Reason
 class NoWayRound(Reason, text="{why}; no way round was found", action=OTHER_TARGET): why: Reason
 class Part(Reason, text="{link}"): link: str
 class Ground(Reason, text="the ground"): pass

@@ -7,7 +7,7 @@ from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
 from tms_rp.clearance import Clearance, View
 from tms_rp.kind import Angles, MachineKind, Moves, Way
-from tms_rp.reasons import Around, NoWayRound, Searched
+from tms_rp.reasons import Around, Collision, NoWayRound, PathBlocked, Searched
 from tms_rp.sampling import search
 from tms_rp.scene import Scene
 from tms_rp.trajectory import Joints, Trajectory, trajectory
@@ -19,6 +19,11 @@ class Ways:
     def __init__(self, model: MachineModel, kind: MachineKind) -> None:
         self._model, self._kind = model, kind
         self._clearance = Clearance(model)
+        # While it moves, only what is really in the way: places that are told are some centimetres apart each time.
+        self._touching = Clearance(model, padding=0.0)
+        moved = [(model.joints[name], model.response[name]) for name in kind.joints]
+        self._late = max(answer.dead_time + answer.lag for _, answer in moved)  # s behind the trajectory
+        self._stopping = max(joint.velocity / joint.acceleration for joint, _ in moved)  # s to brake
 
     def plan(self, now: Angles, moves: Moves, scene: Scene) -> tuple[Trajectory, tuple[Reason, ...]]:
         """The trajectory over all targets of `moves`, and what people should know of it.
@@ -35,6 +40,17 @@ class Ways:
         except SubtaskFailed as error:
             return self._around(now, moves, scene, error.reason)
         return straight, moves.notes
+
+    def blocked(self, made: Trajectory, seconds: float, scene: Scene) -> Reason | None:
+        """What has come into the way of a trajectory that runs since `seconds`, so near that it must stop now."""
+        with self._touching.looking(scene) as view:
+            try:
+                begin = min(seconds - self._late, made.duration)
+                view.check_part(made, begin, seconds + self._late + self._stopping)
+            except SubtaskFailed as error:
+                why = error.reason
+                return PathBlocked(why.second, why) if isinstance(why, Collision) else why
+        return None
 
     def _around(self, now: Angles, moves: Moves, scene: Scene, why: Reason) -> tuple[Trajectory, tuple[Reason, ...]]:
         targets, notes = [now], list(moves.notes)

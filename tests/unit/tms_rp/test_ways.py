@@ -25,6 +25,7 @@ from tms_rp.reasons import (
     NoWayRound,
     OtherWayRound,
     PartOf,
+    PathBlocked,
     Searched,
 )
 from tms_rp.scene import Obstacle, Scene
@@ -155,3 +156,33 @@ def test_the_bucket_never_opens_further_than_at_both_ends() -> None:
     ):
         made, notes = plan(scene, now, target)
         assert notes and min(sample.positions[3] for sample in made.samples) >= min(now[3], target[3]) - 1e-6
+
+
+def test_what_comes_into_the_way_blocks_it_before_it_is_reached_and_not_behind() -> None:
+    made, _ = plan(Scene(), LOW_RIGHT, (1.5, *LOW_RIGHT[1:]))
+    assert WAYS.blocked(made, 0.0, truck(20.0, 0.0)) is None
+    come = truck(6.0, 0.0)
+    reached = refusal(come, LOW_RIGHT, (0.0, *LOW_RIGHT[1:])).find(Collision)
+    assert reached is not None
+    for seconds, found in ((0.0, True), (reached.seconds, True), (made.duration, False)):
+        said = WAYS.blocked(made, seconds, come)
+        assert (said is not None and said.find(PathBlocked) is not None) == found, seconds
+    late = Scene((box("late", (-1.0, 7.5, 0.0), (1.0, 9.0, 3.0)),))
+    assert WAYS.blocked(made, 0.0, late) is None  # there is time to stop later
+    assert WAYS.blocked(made, 2.0, late) is not None
+
+
+def test_what_drives_into_the_arm_blocks_it_too() -> None:
+    made, _ = plan(Scene(), LOW_RIGHT, (1.5, *LOW_RIGHT[1:]))
+    at = next(sample for sample in made.samples if sample.positions[0] >= 0)
+    assert WAYS.blocked(made, at.time, truck(6.0, 0.0)) is not None
+
+
+def test_a_place_that_is_told_some_centimetres_nearer_blocks_nothing() -> None:
+    scene = truck(6.0, 0.0)
+    made, _ = plan(scene, LOW_RIGHT, (1.5, *LOW_RIGHT[1:]))
+    nearer = Scene(tuple(Obstacle(one.name, one.box, one.place.copy())
+                         for one in scene.obstacles))  # fmt: skip
+    for one in nearer.obstacles:
+        one.place[2, 3] += 0.08
+    assert all(WAYS.blocked(made, seconds, nearer) is None for seconds in np.arange(0.0, made.duration, 0.5))
