@@ -22,7 +22,8 @@ from tms_machine.values import to_parameters
 from tms_reason import wire
 from tms_ros.goals import Outcome
 from tms_rp import node
-from tms_rp.reasons import Around, Collision, PartOf, Planned, Told
+from tms_rp.reasons import Around, Collision, PartOf, PathBlocked, Planned, Told
+from tms_rp.trajectory import trajectory
 
 RIGHT = (-1.571, -0.3, 1.4, 0.5)
 MODELS = {name: parse(CONFIGS / "machines" / f"{name}.yaml", MachineModel) for name in ("zx200", "ic120")}
@@ -68,10 +69,10 @@ class FakeRos:
     prepare = subscribe
 
 
-def planned(
-    monkeypatch: pytest.MonkeyPatch, swing: float, truck: tuple[float, float, float], *records: Record
-) -> tuple[Outcome, Any]:
-    """Outcome of a goal that only plans a swing, and what was said of it before `done`."""
+def planner_beside(
+    monkeypatch: pytest.MonkeyPatch, truck: tuple[float, float, float], *records: Record
+) -> node.Planner:
+    """The planner of a zx200 with an ic120 at a place: x [m], y [m], yaw [rad]."""
     monkeypatch.setattr(node, "Permit", lambda *_: None)
     monkeypatch.setattr(node, "watch_server", lambda *_: lambda _: None)
     site = SimpleNamespace(
@@ -83,7 +84,14 @@ def planned(
     )  # fmt: skip
     log = structlog.stdlib.get_logger("test")
     app: Any = SimpleNamespace(site=site, machine="zx200", ros=FakeRos(truck, list(records)), pulse=None, log=log)
-    planner = node.Planner(app)
+    return node.Planner(app)
+
+
+def planned(
+    monkeypatch: pytest.MonkeyPatch, swing: float, truck: tuple[float, float, float], *records: Record
+) -> tuple[Outcome, Any]:
+    """Outcome of a goal that only plans a swing, and what was said of it before `done`."""
+    planner = planner_beside(monkeypatch, truck, *records)
     (action,) = (one for one in planner.kind.actions if one.name == "change_pose_plan")
     point = JointTrajectoryPoint(positions=[swing])
     request = TmsRpZx200ChangePose.Goal(trajectory=JointTrajectory(joint_names=["swing_joint"], points=[point]))
@@ -121,3 +129,10 @@ def test_around_what_a_record_tells(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_into_a_truck_it_does_not_plan(monkeypatch: pytest.MonkeyPatch) -> None:
     outcome, said = planned(monkeypatch, 0.0, AHEAD)
     assert outcome is Outcome.ABORTED and said.find(Collision).second.machine == "ic120"
+
+
+def test_a_truck_that_comes_into_the_way_of_a_motion(monkeypatch: pytest.MonkeyPatch) -> None:
+    alone = trajectory(MODELS["zx200"].joints, (*RIGHT, 0.0), [(1.5, *RIGHT[1:], 0.0)])
+    assert planner_beside(monkeypatch, FAR)._blocked(alone, 0.0) is None
+    blocked = planner_beside(monkeypatch, AHEAD)._blocked(alone, 0.0)
+    assert isinstance(blocked, PathBlocked) and blocked.by == PartOf("vessel", "ic120")
