@@ -1,11 +1,13 @@
 """An excavator goes straight where it can, else around; it refuses only what it cannot reach."""
 
+import json
 import math
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
+from conftest import PROJECT
 from tms_config.config import CONFIGS
 from tms_config.models import Box, MachineModel
 from tms_config.yaml_file import parse
@@ -186,3 +188,22 @@ def test_a_place_that_is_told_some_centimetres_nearer_blocks_nothing() -> None:
     for one in nearer.obstacles:
         one.place[2, 3] += 0.08
     assert all(WAYS.blocked(made, seconds, nearer) is None for seconds in np.arange(0.0, made.duration, 0.5))
+
+
+@pytest.mark.parametrize("number", [66, 68, 86, 90])
+def test_a_searched_way_keeps_above_the_ground_and_the_soil_in_the_bucket(number: int) -> None:
+    """Recorded scenes in which a search without these two bounds breaks them."""
+    recorded = json.loads(
+        (PROJECT / "tests/data/planning_scenes.jsonl").read_text(encoding="utf-8").splitlines()[number]
+    )
+    scene = Scene(
+        tuple(
+            Obstacle(PartOf(one["name"], "site"), Box(min=one["min"], max=one["max"]), placed(*one["place"]))
+            for one in recorded["obstacles"]
+        )
+    )
+    now, target = tuple(recorded["now"]), tuple(recorded["target"])
+    made, notes = plan(scene, now, target)
+    assert name_of(notes) == Searched()
+    Clearance(MODEL).check(made, scene.with_ground())
+    assert min(sample.positions[3] for sample in made.samples) >= min(now[3], target[3]) - 1e-6
