@@ -113,6 +113,7 @@ lint: setup ## ruff, mypy, import-linter
 	$(VENV)/bin/ruff format --check .
 	$(VENV)/bin/mypy services
 	MYPYPATH=tests $(VENV)/bin/mypy tests/operasim
+	MYPYPATH=tests $(VENV)/bin/mypy tests/simulation  # make simulate compiles it
 	cd services && ../$(VENV)/bin/lint-imports --config ../pyproject.toml
 
 conformance: setup ## replay behaviour-tree cases (CASES=path LEVEL=required|strict)
@@ -122,7 +123,8 @@ drill: setup ## stop six simulated machines in every way; receipts against the t
 	@$(VENV)/bin/tms --site $(or $(SITE),drill) drill $(if $(QUICK),--quick) $(if $(ROUNDS),--rounds $(ROUNDS)) $(if $(SEED),--seed $(SEED)) $(if $(LEDGER),--ledger $(LEDGER)) $(if $(ONLY),--only "$(ONLY)") $(if $(REPORT),--report $(REPORT))
 
 simulate: setup ## a site in virtual time goes wrong thousands of times; invariants against the true motion (SCHEDULES=15000 SEED=7)
-	@cd tests && $(abspath $(PY)) -m simulation.run $(if $(SCHEDULES),--schedules $(SCHEDULES)) $(if $(SEED),--seed $(SEED)) $(if $(LEDGER),--ledger $(LEDGER))
+	@where=$$(cd tests && $(abspath $(PY)) -m simulation.compiled $(abspath $(VENV))/simulation $(if $(SCHEDULES),--schedules $(SCHEDULES))) && \
+	  cd "$$where" && PYTHONPATH=$(abspath tests) $(abspath $(PY)) -m simulation.run $(if $(SCHEDULES),--schedules $(SCHEDULES)) $(if $(SEED),--seed $(SEED)) $(if $(LEDGER),--ledger $(abspath $(LEDGER)))
 
 model: setup ## stop, permit, fence and latch in all their states (ONLY=check; DEFECTS=1: each planted defect must be found)
 	@sh deploy/system-packages.sh spin

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 import click
 
 from tms_cli import session
-from tms_cli.check_task import CheckedTask
+from tms_cli.check_task import CheckedTask, CheckedTemplate
 from tms_cli.words import say
 
 
@@ -34,6 +34,23 @@ def goal_table(found: CheckedTask) -> list[str]:
     return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
 
 
+def show_template(found: CheckedTemplate, *, as_json: bool) -> bool:
+    """Show the findings about a template; returns whether it has no errors."""
+    if as_json:
+        session.show_json({
+            "ok": not found.errors, "keys": found.keys, "errors": found.errors, "warnings": found.warnings,
+        })  # fmt: skip
+        return not found.errors
+    if found.keys:
+        click.echo(say("keys: {keys}", keys=", ".join(found.keys)))
+    for word, lines in ((say("error"), found.errors), (say("warning"), found.warnings)):
+        for line in lines:
+            click.echo(f"{found.what}: {word}: {line}")
+    if not found.errors:
+        click.echo(f"{found.what}: {say('its structure is right')}")
+    return not found.errors
+
+
 def show_folder(files: Iterable[CheckedTask], *, as_json: bool) -> bool:
     """Show the files of a folder, each as soon as it is checked; returns whether none has errors."""
     done = []
@@ -56,7 +73,7 @@ def show_folder(files: Iterable[CheckedTask], *, as_json: bool) -> bool:
 
 def report_unchecked(done: list[CheckedTask]) -> None:
     """Print on stderr that no scheduler has checked these files."""
-    if any(found.by != "scheduler" and not found.errors and not found.no_task for found in done):
+    if any(found.by == "structure" and not found.errors and not found.no_task for found in done):
         click.echo(say("no scheduler answers: records and subtasks are unchecked"), err=True)
-    elif any(found.by != "scheduler" and found.errors and not found.no_task for found in done):
+    elif any(found.by == "structure" and found.errors and not found.no_task for found in done):
         click.echo(say("records and subtasks are unchecked where the structure is wrong"), err=True)

@@ -1,18 +1,17 @@
 """The checks of `tms task check`: structure here, records and subtasks by the scheduler of a running mesh."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, ExitStack
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
-from tms_msg_db.srv import GetTask
+from tms_msg_db.srv import GetTask, GetTemplate
 from tms_msg_ts.srv import CheckTask
 
-from tms_cli import session
-from tms_cli.reasons import NoXmlFiles, NoXmlHere
-from tms_cli.task_file import read
+from tms_cli import session, templates
+from tms_cli.task_file import read, xml_files
 from tms_cli.words import reason, say, sentence
 from tms_config.clock import monotonic
 from tms_reason.errors import RosError, TaskError, TmsError
@@ -23,6 +22,7 @@ from tms_ts.bt.source import parse
 if TYPE_CHECKING:
     from tms_ros.node import Ros
 
+R = TypeVar("R")
 PROGRESS = 2.0  # s between two lines about the progress of a folder
 
 
@@ -36,7 +36,7 @@ class CheckedTask:
     errors: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     no_task: str = ""  # why it is no task
-    by: str = "structure"  # what has checked it: structure or scheduler
+    by: str = "structure"  # what has checked it: structure, scheduler, or cpp: the structure as the C++ system sees it
 
     def as_dict(self) -> dict[str, Any]:
         return {
@@ -63,13 +63,27 @@ class CheckedTask:
         return (", ".join(counts) or say("ok")) + first
 
 
-class SchedulerClient(AbstractContextManager["SchedulerClient"]):
-    """The scheduler of the mesh; when it does not answer, it is not called a second time."""
+@dataclass
+class CheckedTemplate:
+    """One template; errors and warnings are lines that begin with their place."""
 
-    def __init__(self) -> None:
+    what: str
+    keys: list[str]
+    errors: list[str]
+    warnings: list[str]
+
+
+class SchedulerClient(AbstractContextManager["SchedulerClient"]):
+    """Scheduler and database of the mesh; one that does not answer is not called a second time.
+
+    cpp: checks are for the C++ system, and the scheduler is not asked
+    """
+
+    def __init__(self, *, cpp: bool = False) -> None:
+        self.cpp = cpp
         self._open = ExitStack()
         self._node: Ros | None = None
-        self._absent = False
+        self._absent = self._no_database = False
 
     def __exit__(self, *_: object) -> None:
         self._open.close()
@@ -81,7 +95,9 @@ class SchedulerClient(AbstractContextManager["SchedulerClient"]):
 
     def ask_scheduler(self, found: CheckedTask, **task: Any) -> None:
         """Have the scheduler check a task whose structure has no errors."""
-        if self._absent or found.errors:
+        if self.cpp:
+            found.by = "cpp"
+        if self.cpp or self._absent or found.errors:
             return
         try:
             answer = session.call(self.node(), CheckTask, "/tms/check_task", **task)
@@ -97,20 +113,32 @@ class SchedulerClient(AbstractContextManager["SchedulerClient"]):
             found.warnings = list(map(reason, answer.warnings))
         found.by = "scheduler"
 
+    def with_templates(self, check: Callable[[bt.Templates | None], R]) -> R:
+        """Do a check with the templates of the database; with None for them where no database answers."""
+        if not self._no_database:
+            try:
+                return check(lambda name: templates.text_of(self.node(), name))
+            except RosError:
+                self._no_database = True
+        return check(None)
 
-def structure(what: str, text: str, folder: Path | None = None) -> CheckedTask:
+
+def structure(client: SchedulerClient, what: str, text: str, folder: Path | None = None) -> CheckedTask:
     """Check the structure of a tree, without a site."""
-    report = bt.check(text, folder=folder)
+    report = client.with_templates(lambda known: bt.check(text, folder=folder, templates=known, cpp=client.cpp))
     warnings = [sentence(Placed(Line(line), warning)) for line, warning in report.warnings]
     if report.ok and "<include" in text:
-        warnings += [f"it cannot be stored as a task: {sentence(error.reason)}" for error in bt.check(text).errors]
+        warnings += [
+            f"it cannot be stored as a task: {sentence(error.reason)}"
+            for error in bt.check(text, templates=None).errors
+        ]
     return CheckedTask(what, report.nodes, report.goals, [sentence(error.reason) for error in report.errors], warnings)
 
 
 def stored(scheduler: SchedulerClient, task_id: int) -> CheckedTask:
     """Have the scheduler check a stored task, and find its lines."""
     task = session.call(scheduler.node(), GetTask, "/tms/db/get_task", task_id=task_id).task
-    found = structure(str(task_id), task.task_sequence)
+    found = structure(scheduler, str(task_id), task.task_sequence)
     scheduler.ask_scheduler(found, task_id=task_id)
     return found
 
@@ -124,9 +152,27 @@ def file(scheduler: SchedulerClient, path: Path) -> CheckedTask:
     text = read(str(path))
     why = no_task(text)
     found = CheckedTask(str(path), errors=[f"this is no task: {why}"], no_task=why) if why else None
-    found = found or structure(str(path), text, path.parent)
+    found = found or structure(scheduler, str(path), text, path.parent)
     scheduler.ask_scheduler(found, xml=text)
     return found
+
+
+def template(client: SchedulerClient, what: str) -> CheckedTemplate:
+    """Check a template: a file, or a stored one by its name.
+
+    Raises:
+        TmsError: the file cannot be read, or there is no template of this name.
+    """
+    path = Path(what)
+    is_file = path.exists() or path.suffix.lower() == ".xml"
+    name, text = (path.stem, read(what)) if is_file else (what, _stored_template(client, what))
+    report = client.with_templates(lambda known: bt.check_template(name, text, known, cpp=client.cpp))
+    warnings = [sentence(Placed(Line(line), warning)) for line, warning in report.warnings]
+    return CheckedTemplate(what, report.keys, [sentence(error.reason) for error in report.errors], warnings)
+
+
+def _stored_template(client: SchedulerClient, name: str) -> str:
+    return session.call(client.node(), GetTemplate, "/tms/db/get_template", template_name=name).stored.task_sequence
 
 
 def no_task(text: str) -> str:
@@ -149,10 +195,7 @@ def folder(scheduler: SchedulerClient, path: Path, *, recursive: bool) -> Iterat
     Raises:
         TaskError: there are none.
     """
-    names = path.rglob("*") if recursive else path.iterdir()
-    files = sorted(name for name in names if name.suffix.lower() == ".xml" and not name.is_dir())
-    if not files:
-        raise TaskError(NoXmlFiles(str(path)) if recursive else NoXmlHere(str(path)), TaskError.code)
+    files = xml_files(path, recursive=recursive)
     reported = monotonic()
     for count, name in enumerate(files):
         if monotonic() - reported >= PROGRESS:

@@ -22,17 +22,26 @@ click.Context.formatter_class = words.Formatter  # of every verb's help page
 
 
 class Verbs(words.Group):
-    """Verbs are the modules of tms_cli.commands; each has a click command called `command`."""
+    """Verbs are the modules of tms_cli.commands; each has a click command called `command`.
+
+    A verb that is a word of Python has an underscore after its module's name.
+    """
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        return sorted(found.name.replace("_", "-") for found in pkgutil.iter_modules(commands.__path__))
+        return sorted(_modules())
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
-        if name not in self.list_commands(ctx):
+        if name not in _modules():
             return None
-        module = importlib.import_module(f"tms_cli.commands.{name.replace('-', '_')}")
+        module = importlib.import_module(f"tms_cli.commands.{_modules()[name]}")
         verb: click.Command = module.command
         return verb
+
+
+def _modules() -> dict[str, str]:
+    """The modules of the verbs."""
+    names = [found.name for found in pkgutil.iter_modules(commands.__path__)]
+    return {name.rstrip("_").replace("_", "-"): name for name in names}
 
 
 @click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})

@@ -98,6 +98,8 @@ class NoUser(Reason, text="{file}: there is no user '{name}'", action=USERS): fi
 class NoUsersKey(Reason, text="{file}: console.users names no file", action=ADD_USERS): file: str
 class NoHostPort(Reason, text="where alerts go is no HOST:PORT: '{address}'", action=HOST_AND_PORT): address: str
 
+class CannotRun(Reason, text="it cannot run as it is: {why}"): why: Reason
+
 # sensing and its recordings
 class SensingSilent(Reason, text="the sensing module says nothing", action=SENSING_RUNS): pass
 class NothingToPlay(Reason, text="nothing to play: {topics}"): topics: tuple[str, ...]

@@ -1,8 +1,8 @@
-"""The files that `tms task` reads."""
+"""The files that `tms task` and `tms template` read."""
 
 from pathlib import Path
 
-from tms_cli.reasons import NoTaskFile
+from tms_cli.reasons import NoTaskFile, NoXmlFiles, NoXmlHere
 from tms_reason.errors import TaskError
 
 
@@ -18,3 +18,16 @@ def read(file: str) -> str:
     if path.exists() and not path.is_file():
         raise TaskError(NoTaskFile(file), TaskError.code)
     return task_text.read_file(path)
+
+
+def xml_files(folder: Path | str, *, recursive: bool = False) -> list[Path]:
+    """The XML files of a folder, in the order of their names.
+
+    Raises:
+        TaskError: there are none.
+    """
+    names = Path(folder).rglob("*") if recursive else Path(folder).iterdir()
+    files = sorted(name for name in names if name.suffix.lower() == ".xml" and not name.is_dir())
+    if not files:
+        raise TaskError(NoXmlFiles(str(folder)) if recursive else NoXmlHere(str(folder)), TaskError.code)
+    return files

@@ -8,12 +8,21 @@ from tms_db.history import Event, Run
 from tms_db.machine_states import envelope
 from tms_db.records import Document
 from tms_db.tasks import Task
+from tms_db.templates import Template
 from tms_db.values import from_parameters, from_time, to_parameters, to_time
 
 
 def task(task: Task) -> msg.Task:
     """A stored task as a message."""
     return msg.Task(**{**vars(task), "added_at": to_time(task.added_at)})
+
+
+def template(template: Template) -> msg.Template:
+    """A stored template as a message."""
+    texts = {"model_name": template.model_name, "description": template.description}
+    return msg.Template(
+        **texts, template_name=template.name, task_sequence=template.task_sequence, added_at=to_time(template.added_at)
+    )
 
 
 def record(document: Document) -> tuple[msg.Record, list[str]]:

@@ -21,6 +21,7 @@ from tms_db.parameter_services import ParameterServices
 from tms_db.retention import Retention
 from tms_db.task_text import MODELS
 from tms_db.tasks import Tasks
+from tms_db.template_services import TemplateServices
 from tms_db.terrain_services import TerrainServices
 from tms_runtime.app import App
 
@@ -88,6 +89,7 @@ def start(app: App) -> None:
     app.on_stop(connection.stop)
     answering = Answering(app, connection)
     TaskServices(app, db).offer(answering)
+    TemplateServices(app, db).offer(answering)
     ParameterServices(app, db, connection).offer(answering)
     CppServices(app, db, connection).offer()
     TerrainServices(app, db, connection).offer()

@@ -9,6 +9,8 @@ from datetime import datetime, timedelta
 
 from tms_msg_db.msg import Record, RecordChanges, RecordUpdate, Refusal
 from tms_msg_db.srv import (
+    ChangeArray,
+    FindRecord,
     GetParameter,
     ListParameterHistory,
     ListParameters,
@@ -20,13 +22,14 @@ from tms_msg_db.srv import (
 from tms_config.clock import unix_time, utc_now
 from tms_db import freshness, messages
 from tms_db.answering import Answering
+from tms_db.arrays import changed
 from tms_db.batches import Batches, Update
 from tms_db.connection import StoreConnection
 from tms_db.parameter_history import ParameterHistory
 from tms_db.parameters import Parameters, RecordEdit
 from tms_db.reasons import RecordLocked
 from tms_db.record_cache import Key, RecordCache
-from tms_db.records import Document, check_values, title
+from tms_db.records import Document, check_values, models_of, title
 from tms_db.store import Db
 from tms_db.values import from_parameters
 from tms_db.watching import Watching
@@ -56,6 +59,8 @@ class ParameterServices:
         answering.slow(ListParameters, "list_parameters", self.list)
         answering.later(SetParameter, "set_parameter", self.set)
         answering.later(UpdateParameters, "update_parameters", self.update)
+        answering.quick(ChangeArray, "change_array", self.change_array)
+        answering.slow(FindRecord, "find_record", self.find)
         answering.quick(RemoveParameter, "remove_parameter", self.remove)
         answering.slow(ListParameterHistory, "list_parameter_history", self.history)
         self._batches.start()
@@ -69,12 +74,16 @@ class ParameterServices:
         key = (request.model_name, request.record_name)
         document = self._heads.document(key)
         freshness.check(document, request.max_age)
-        response.record = self._record(document)
+        response.record = self._record({**document, "model_name": request.model_name})
 
     def list(self, request: ListParameters.Request, response: ListParameters.Response) -> None:
         response.records = [
-            self._record({**document, **self._batches.newest(_key(document))})
+            self._record(
+                {**document, **self._batches.newest((model, str(document.get("record_name")))), "model_name": model}
+            )
             for document in self._parameters.all(request.model_name)
+            for model in models_of(document)
+            if request.model_name in ("", model)
         ]
 
     async def set(self, request: SetParameter.Request, response: SetParameter.Response) -> None:
@@ -109,6 +118,19 @@ class ParameterServices:
                 response.refused.append(Refusal(index=index, code=error.code, text=to_line(error.reason)))
         if taken:
             await self._put(taken, hurry=False)
+
+    def change_array(self, request: ChangeArray.Request, _: ChangeArray.Response) -> None:
+        key = (request.model_name, request.record_name)
+        values = from_parameters(title(*key), [request.value])
+        self._batches.settle(key)
+        ((name, value),) = values.items()
+        array = self._parameters.change_array(key, name, changed(request.change, value), request.source)
+        self._heads.forget()
+        self._past.note(key, _now(), request.source, {name: array})
+        self._report([key])
+
+    def find(self, request: FindRecord.Request, response: FindRecord.Response) -> None:
+        response.found = self._parameters.holds(from_parameters("find_record", request.values))
 
     def remove(self, request: RemoveParameter.Request, _: RemoveParameter.Response) -> None:
         key = (request.model_name, request.record_name)
@@ -190,10 +212,6 @@ class ParameterServices:
             where = title(message.model_name, message.record_name)
             self._app.log.warning("left_out", record=where, fields=left_out, reason="no ROS type for them")
         return message
-
-
-def _key(document: Document) -> Key:
-    return str(document.get("model_name") or ""), str(document.get("record_name"))
 
 
 def _now() -> datetime:

@@ -1,13 +1,24 @@
 """Parameter records in the database: one per (model_name, record_name), changed field by field."""
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from pymongo.errors import DuplicateKeyError
 
 from tms_config.clock import utc_now
-from tms_db.reasons import MadeByOthers, NotChanged, OtherFields, OtherValue, RecordMissing, SetAndRemoved, StaticInUse
+from tms_db.arrays import Array
+from tms_db.reasons import (
+    DollarOrDot,
+    FieldNoArray,
+    MadeByOthers,
+    NotChanged,
+    OtherFields,
+    OtherValue,
+    RecordMissing,
+    SetAndRemoved,
+    StaticInUse,
+)
 from tms_db.records import (
     Document,
     Record,
@@ -19,6 +30,7 @@ from tms_db.records import (
     check_max_age,
     check_type,
     check_values,
+    models_of,
     title,
 )
 from tms_db.store import Db, errors
@@ -91,7 +103,7 @@ class Parameters:
             DbError: RECORD_MISSING.
         """
         with errors():
-            document: Document | None = self._records.find_one(_key(model_name, record_name))
+            document: Document | None = self._records.find_one(key_of(model_name, record_name))
         if document is None:
             raise _missing(model_name, record_name)
         return document
@@ -138,6 +150,41 @@ class Parameters:
                     return True
         raise DbError(MadeByOthers(where), "BUSY")
 
+    def change_array(self, key: tuple[str, str], name: str, change: Callable[[Array], Array], source: str) -> Array:
+        """Change the array in one field in one atomic step; a missing field is an empty array. Returns the new one.
+
+        Raises:
+            DbError: BAD_RECORD, RECORD_MISSING, or STATIC_RECORD while a run uses the record.
+        """
+        check_key(*key)
+        where = title(*key)
+        for _ in range(ATTEMPTS):
+            with errors():
+                found = self._writable(*key)
+                stored = None if found is None else (self._records.find_one(found) or {}).get(name)
+                if found is None:
+                    raise _missing(*key)
+                if not isinstance(stored, list | None):
+                    raise bad(FieldNoArray(f"{where}.{name}"))
+                array = change(stored or [])
+                edit = RecordEdit({name: array}, source=source)
+                edit.check(where)
+                if self._records.update_one({**found, name: stored}, {"$set": edit.fields()}).matched_count:
+                    return array
+        raise DbError(MadeByOthers(where), "BUSY")
+
+    def holds(self, values: Mapping[str, Value]) -> bool:
+        """Whether a record of any model has all these values.
+
+        Raises:
+            DbError: BAD_RECORD; a name that is an operator of the database.
+        """
+        for name in values:
+            if not name or name.startswith("$"):
+                raise bad(DollarOrDot("find_record", name[:40]))
+        with errors():
+            return self._records.find_one(dict(values), {"_id": 1}) is not None
+
     def remove(self, model_name: str, record_name: str) -> None:
         """Take a record away.
 
@@ -172,35 +219,43 @@ class Parameters:
         Two steps, since the embedded store scans the collection when a filter holds more than the key; a record
         that becomes static in between is changed once more.
         """
-        key = _key(model_name, record_name)
-        stored = self._records.find_one(key, {"type": 1})
+        key = key_of(model_name, record_name)
+        stored = self._records.find_one(key, {"type": 1, "model_name": 1})
         if stored is None:
             return None
+        self.refuse_in_use(model_name, record_name, stored)
+        return key
+
+    def refuse_in_use(self, model_name: str, record_name: str, stored: Document) -> None:
+        """Refuse to change a static record while a run uses it.
+
+        Raises:
+            DbError: STATIC_RECORD.
+        """
         if stored.get("type") == "static":
-            names = [f"{model_name}/{record_name}", f"{model_name}/*"]
+            names = [f"{model}/{name}" for model in models_of(stored) for name in (record_name, "*")]
             run = self._runs.find_one({"ended_at": None, "records": {"$in": names}}, {"run_id": 1})
             if run is not None:
                 raise _static(title(model_name, record_name), run["run_id"])
-        return key
 
     def _conflict(self, key: Document, where: str, expected: Mapping[str, Value]) -> DbError:
         stored = self._records.find_one(key) or {}
         other: list[Reason] = [
             OtherValue(name, repr(stored.get(name)), repr(want))
             for name, want in expected.items()
-            if not _same(stored.get(name), want)
+            if not same(stored.get(name), want)
         ]
         return DbError(NotChanged(where, tuple(other) or (OtherFields(),)))
 
     def _says(self, record: Record) -> bool:
         with errors():
-            stored = self._records.find_one(_key(record.model_name, record.record_name)) or {}
+            stored = self._records.find_one(key_of(record.model_name, record.record_name)) or {}
         wanted = {**record.values, "type": record.type}
         if record.description:
             wanted["description"] = record.description
         if record.max_age:
             wanted["max_age"] = record.max_age
-        return all(_same(stored.get(name), value) for name, value in wanted.items())
+        return all(same(stored.get(name), value) for name, value in wanted.items())
 
     def _insert(self, model_name: str, record_name: str, fields: Document) -> bool:
         head = {"model_name": model_name} if model_name else {}
@@ -212,15 +267,16 @@ class Parameters:
         return True
 
 
-def _key(model_name: str, record_name: str) -> Document:
+def key_of(model_name: str, record_name: str) -> Document:
+    """The filter that finds a record."""
     # Shared records of the C++ system have no field model_name.
     return {"model_name": model_name if model_name else {"$in": [None, ""]}, "record_name": record_name}
 
 
-def _same(stored: Any, wanted: Any) -> bool:
+def same(stored: Any, wanted: Any) -> bool:
     """Equal in value and type: 1, 1.0 and true are three different things to a reader."""
     if isinstance(wanted, list):
-        return isinstance(stored, list) and len(stored) == len(wanted) and all(map(_same, stored, wanted))
+        return isinstance(stored, list) and len(stored) == len(wanted) and all(map(same, stored, wanted))
     return (
         bool(stored == wanted)
         and isinstance(stored, float) == isinstance(wanted, float)

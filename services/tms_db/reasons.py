@@ -5,7 +5,21 @@
 
 from tms_reason.quantities import Megabytes, Seconds
 from tms_reason.reason import Reason
-from tms_reason.remedies import CANCEL, EDIT_CONFIG, EDIT_TASK, LOGS, PROCESSES, RECORDS, RETRY, RUNS, TASKS
+from tms_reason.remedies import (
+    CANCEL,
+    EDIT_CONFIG,
+    EDIT_TASK,
+    LOGS,
+    PROCESSES,
+    RECORDS,
+    RETRY,
+    RUNS,
+    TASKS,
+    TEMPLATES,
+    Remedy,
+)
+
+FOLDER = Remedy("file", "", "Give a folder of the C++ system, or what mongodump wrote")
 
 
 # fmt: off
@@ -45,6 +59,9 @@ class DollarOrDot(Reason,
     place: str; field: str
 class BadFieldName(Reason, text="{place}: field name '{field}' {why}"):
     place: str; field: str; why: Reason
+class FieldNoArray(Reason, text="{place} is no array"): place: str
+class NoArrayChange(Reason, text="'{change}' changes no array: send add, push, remove or reset, and one value"):
+    change: str
 class MixedArray(Reason, text="{place}: the array mixes types: use numbers only, or one other type"): place: str
 class HoldsNul(Reason, text="{place}: the text holds a NUL character: remove it"): place: str
 class TooManyBits(Reason, text="{place}: {value} does not fit into 64 bits: write a smaller number"):
@@ -101,6 +118,31 @@ class NoTreeInRoot(Reason, text="line {line}: there is no <BehaviorTree> with no
 class NoFileGiven(Reason, text="no file is given: add --ros-args -p bt_tree_xml_file_name:=NAME"): pass
 class NoSuchFile(Reason, text="no file '{name}' here and no '{name}.xml' in {folder}: check bt_tree_xml_file_name"):
     name: str; folder: str
+
+# templates
+class TemplateMissing(Reason, text="there is no template '{template}'", action=TEMPLATES): template: str
+class BadTemplateName(Reason, text="template name '{name}' {why}"): name: str; why: Reason
+class TemplateExists(Reason, text="template '{template}' is stored with another text: `tms template add --replace` "
+    "takes this one"): template: str
+
+# an import of the C++ system's files
+class NoSuchSource(Reason, text="{path}: there is no such folder or file", action=FOLDER): path: str
+class ImportNothing(Reason, text="{path}: there are no trees and records in it", action=FOLDER): path: str
+class NoTreeInFile(Reason, text="no tree: there is no <BehaviorTree> in it"): pass
+class NoRecordsInFile(Reason, text="no records: neither a list of records nor initial_parameters"): pass
+class NoCollectionOfTasks(Reason, text="'{name}' is neither task, subtask nor parameter; `tms db restore` takes whole "
+    "databases"): name: str
+class DocumentNotRead(Reason, text="cannot be read ({problem})"): problem: str
+class DocumentTooLarge(Reason, text="is larger than {limit}: `tms db restore` takes whole databases"): limit: Megabytes
+class NoTaskText(Reason, text="the document has no task_sequence"): pass
+class NumberTaken(Reason, text="task {old} becomes task {new}, as there is another task {old}"): old: int; new: int
+class TemplateTwice(Reason, text="there are two templates '{template}' with different texts"): template: str
+class RecordDiffers(Reason, text="record {record} is there with other values: --replace takes these"): record: str
+class RecordSplit(Reason, text="one record for each of {models}"): models: tuple[str, ...]
+class FieldAsItIs(Reason, text="kept, but nothing here reads it: {why}"): why: Reason
+class TypeAsItIs(Reason, text="type '{type}' counts as dynamic"): type: str
+class ImportedInPart(Reason, text="{why}; what had been imported could not be taken back: import the same folder "
+    "again"): why: Reason
 
 # terrain
 class TerrainMissing(Reason, text="there is no terrain '{name}': `tms terrain list` shows what is stored"): name: str

@@ -112,6 +112,8 @@ class RecordCache:
         self._ros.on_executor(lambda: self.forget() if identity is None else self._drop(identity))
 
     def _keep(self, key: Key, head: Head) -> None:
+        if isinstance(head.document.get("model_name"), list):  # a change under another model's name would be missed
+            return
         self._heads[key] = head
         self._keys[head.id] = key
 

@@ -71,6 +71,12 @@ def title(model_name: str, record_name: str) -> str:
     return f"{model_name}/{record_name}"
 
 
+def models_of(document: Document) -> list[str]:
+    """The models of a record: the C++ system's version 6 has records that several machines share."""
+    stored = document.get("model_name")
+    return [str(model) for model in stored] if isinstance(stored, list) else [str(stored or "")]
+
+
 def bad(what: Reason) -> DbError:
     """The error for a record, or a value of one, that is refused."""
     return DbError(what, "BAD_RECORD")

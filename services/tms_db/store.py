@@ -67,6 +67,7 @@ INDEXES: dict[str, list[tuple[list[tuple[str, int]], dict[str, Any]]]] = {
         ([("task_id", ASCENDING)], {"unique": True}),
         ([("text_sha256", ASCENDING)], {"unique": True, "sparse": True}),
     ],
+    "subtask": [([("task_name", ASCENDING)], {})],  # not unique: the C++ system stores changed texts beside old ones
     "parameter": [
         ([("model_name", ASCENDING), ("record_name", ASCENDING)], {"unique": True}),
         ([("record_name", ASCENDING)], {}),  # the C++ system's reader asks without a model

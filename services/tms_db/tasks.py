@@ -169,6 +169,15 @@ class Tasks:
             raise _missing(task_id)
 
 
+def document(text: str, description: str, models: Collection[str]) -> dict[str, Any]:
+    """The document of a task without its number, with its fields checked.
+
+    Raises:
+        TaskError, TmsError: as `Tasks.add`.
+    """
+    return _wish(text, description, models).document
+
+
 def _wish(text: str, description: str, models: Collection[str]) -> _Wish:
     check_text("description", description)
     essence = task_text.essence(text)

@@ -8,15 +8,20 @@ from typing import Any, TypeVar, get_type_hints
 from pydantic import BaseModel, ConfigDict
 
 from tms_kit.machine import Machine, Progress, SubtaskCancelled
-from tms_machine.reasons import OneSubtask
+from tms_machine.goal_inputs import Inputs
+from tms_machine.reasons import InputsNotTaken, OneSubtask
 from tms_machine.values import Value
 from tms_reason.errors import ConfigError, SubtaskFailed
+from tms_reason.reason import Reason
 
 __all__ = ["Machine", "Params", "Progress", "Subtask", "SubtaskCancelled", "SubtaskFailed", "load", "subtask"]
 
 
 class Params(BaseModel):
-    """A record as the subtask needs it. Further fields of the record are ignored, missing ones refuse the goal."""
+    """A record as the subtask needs it. Further fields of the record are ignored, missing ones refuse the goal.
+
+    An input of the goal (tms_machine.goal_inputs) counts instead of the record's field of that name.
+    """
 
     model_config = ConfigDict(frozen=True, strict=True, allow_inf_nan=False, extra="ignore")
 
@@ -47,6 +52,13 @@ class Subtask:
             SubtaskFailed: the machine cannot; the code and text reach the leaf node.
         """
         raise NotImplementedError
+
+    @classmethod
+    def not_taken(cls, inputs: Inputs) -> Reason | None:
+        """Why a goal with these inputs is refused: an input that no field of `params` takes would be lost."""
+        fields = cls.params.model_fields if cls.params is not None else {}
+        lost = tuple(name for name in inputs if name not in fields)
+        return InputsNotTaken(lost) if lost else None
 
     def on_cancel(self) -> None:
         """Called before the motion is stopped, twice if the cancel comes at the begin; must return at once."""

@@ -11,6 +11,7 @@ from tms_msg_ts.action import LeafNodeBase
 from tms_config.clock import monotonic
 from tms_kit.machine import Machine, SubtaskCancelled
 from tms_kit.subtask import Params, Subtask, load
+from tms_machine.goal_inputs import parted
 from tms_machine.permit import Permit, watch_server
 from tms_machine.reasons import BadRecord, Busy, MotionNotEnded, NoDatabase, WaitingFor
 from tms_machine.record_lock import FLAG, RecordLock
@@ -73,14 +74,13 @@ class _Server:
 
     async def _check(self, request: LeafNodeBase.Goal) -> Reason | None:
         self._want = self._lock = None
-        if self._kind.params is None:
-            return None
+        record, given = parted(request.record_name)
+        if (why := self._kind.not_taken(given)) is not None or self._kind.params is None:
+            return why
         if set(self._kind.params.model_fields) <= set(self._inputs):  # no parameter is left for a record
             self._want = self._kind.params.model_validate(self._inputs)
             return None
-        wanted = GetParameter.Request(
-            model_name=request.model_name, record_name=request.record_name, max_age=self._max_age
-        )
+        wanted = GetParameter.Request(model_name=request.model_name, record_name=record, max_age=self._max_age)
         answer = await self._app.ros.call_async(GetParameter, "/tms/db/get_parameter", wanted, RECORD_LIMIT)
         if answer is None:
             return NoDatabase("tms:db")
@@ -88,7 +88,7 @@ class _Server:
             return refusal(answer.error_code, answer.error_msg)
         fields = from_parameters(answer.record.values)
         if FLAG in fields and answer.record.type == "dynamic" and "plan_only" in self._inputs:
-            self._lock = RecordLock(self._app.ros, self._app.process.full, request.model_name, request.record_name)
+            self._lock = RecordLock(self._app.ros, self._app.process.full, request.model_name, record)
         try:
             self._want = self._checked(request, fields)
         except SubtaskFailed as error:
@@ -104,10 +104,11 @@ class _Server:
             SubtaskFailed: BadRecord, with what is wrong.
         """
         assert self._kind.params is not None
+        record, given = parted(request.record_name)
         try:
-            return self._kind.params.model_validate({**fields, **self._inputs})
+            return self._kind.params.model_validate({**fields, **given, **self._inputs})
         except ValidationError as error:
-            name = f"{request.model_name}/{request.record_name}"
+            name = f"{request.model_name}/{record}"
             raise SubtaskFailed(BadRecord(name, explain(error))) from None
 
     def run(self, goal: LeafGoal) -> Ended[LeafNodeBase.Result]:
@@ -123,6 +124,7 @@ class _Server:
     def _execute(self, goal: LeafGoal) -> Outcome:
         """Run the subtask; when this returns, its motion has ended in any case."""
         request, lock = goal.request, self._lock
+        record, _ = parted(request.record_name)
         machine, subtask = self._begin(goal)
         say = _Feedback(goal)
         failure: SubtaskFailed | None = None
@@ -131,8 +133,8 @@ class _Server:
             if lock is not None and self._plans:
                 lock.take()
                 # Sensing may have written between the goal's check and the lock; the plan must use the locked record.
-                subtask.want = self._checked(request, self._read(request.model_name, request.record_name, 0.0))
-            subtask.execute(request.model_name, request.record_name, say)
+                subtask.want = self._checked(request, self._read(request.model_name, record, 0.0))
+            subtask.execute(request.model_name, record, say)
             finished = True
         except SubtaskCancelled:
             pass

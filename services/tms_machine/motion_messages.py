@@ -3,21 +3,18 @@
 from collections.abc import Sequence
 from typing import Any
 
-from builtin_interfaces.msg import Duration
 from nav2_msgs.action import FollowWaypoints
 from trajectory_msgs.msg import JointTrajectory
 
 from tms_control.reference_trajectory import Knot
+from tms_machine import stamps
 
 MISSED = 601  # error code of a waypoint that was not reached
 
 
 def knots(trajectory: JointTrajectory) -> list[Knot]:
     """The points of a trajectory."""
-    return [
-        Knot(p.time_from_start.sec + p.time_from_start.nanosec * 1e-9, tuple(p.positions), tuple(p.velocities))
-        for p in trajectory.points
-    ]
+    return [Knot(stamps.seconds(p.time_from_start), tuple(p.positions), tuple(p.velocities)) for p in trajectory.points]
 
 
 def missed_waypoints(numbers: Sequence[int]) -> Any:
@@ -27,8 +24,3 @@ def missed_waypoints(numbers: Sequence[int]) -> Any:
     from nav2_msgs.msg import MissedWaypoint  # Humble has no such message
 
     return [MissedWaypoint(index=number, error_code=MISSED) for number in numbers]
-
-
-def duration(seconds: float) -> Duration:
-    """A time as a message."""
-    return Duration(sec=int(seconds), nanosec=int(seconds % 1 * 1e9))

@@ -2,7 +2,7 @@
 
 from tms_reason.quantities import Metres, Radians, Seconds
 from tms_reason.reason import Reason
-from tms_reason.remedies import EDIT_CONFIG, INSPECT, PROCESSES, RECORDS
+from tms_reason.remedies import EDIT_CONFIG, EDIT_TASK, INSPECT, PROCESSES, RECORDS
 
 
 # fmt: off
@@ -10,6 +10,7 @@ from tms_reason.remedies import EDIT_CONFIG, INSPECT, PROCESSES, RECORDS
 class Busy(Reason, text="{process} is still at its last goal"): process: str
 class NoDatabase(Reason, text="{process} did not answer", action=PROCESSES): process: str
 class OneSubtask(Reason, text="{file}: {count} subtasks in it, there must be one"): file: str; count: int
+class InputsNotTaken(Reason, text="the subtask takes no {inputs}", action=EDIT_TASK): inputs: tuple[str, ...]
 class FieldMissing(Reason, text="field '{field}' is missing", action=RECORDS): field: str
 class ListsDiffer(Reason, text="the lists differ in length: {lengths}", action=RECORDS): lengths: str
 class PathEmpty(Reason, text="the path is empty", action=RECORDS): pass

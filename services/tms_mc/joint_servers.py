@@ -15,7 +15,9 @@ from tms_control.arm_motion import ArmMotion, Tolerances
 from tms_control.reference_trajectory import refusal
 from tms_control.turning import turning
 from tms_control.verdict import Ending
-from tms_machine.motion_messages import duration, knots
+from tms_machine import stamps
+from tms_machine.motion_messages import knots
+from tms_machine.stamps import duration
 from tms_mc.guard import Guard
 from tms_mc.joints import Joints
 from tms_mc.reasons import JointLimit, NoAngle, Stopped
@@ -120,12 +122,11 @@ class JointServers:
 
 
 def _tolerances(request: FollowJointTrajectory.Goal) -> Tolerances:
-    late = request.goal_time_tolerance
     return Tolerances(
         _positions(request.path_tolerance),
         _positions(request.goal_tolerance),
         {one.name: one.velocity for one in request.goal_tolerance},
-        late.sec + late.nanosec * 1e-9,
+        stamps.seconds(request.goal_time_tolerance),
     )
 
 

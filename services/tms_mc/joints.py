@@ -14,9 +14,19 @@ from tms_control.arm_motion import ArmMotion, Tolerances
 from tms_control.machine_clock import MachineClock
 from tms_control.reference_trajectory import Knot, ReferenceTrajectory
 from tms_control.verdict import Ending, Verdict
+from tms_decision.permit_link import LEASE
+from tms_machine import stamps
 from tms_machine.joint_commands import JointCommands
 from tms_mc.gateway_watch import GatewayWatch
-from tms_mc.reasons import ClockSetBack, GatewayGone, JointMissing, JointsNotHeard, JointsSilent, NoCommandTopic
+from tms_mc.reasons import (
+    ClockSetBack,
+    ControllerStood,
+    GatewayGone,
+    JointMissing,
+    JointsNotHeard,
+    JointsSilent,
+    NoCommandTopic,
+)
 from tms_mc.turns import Turns
 from tms_reason.reason import Reason
 from tms_ros.topics import Arrival
@@ -107,14 +117,17 @@ class Joints:
         """The machine's time [s]; only after it was heard of."""
         return self._clock.time(monotonic())
 
-    def _step(self) -> bool:
-        """Take what was heard, and command what is due; whether a goal is open."""
+    def _step(self, gap: float) -> bool:
+        """Take what was heard, and command what is due, `gap` [s] after the last time; whether a goal is open."""
         with self._lock:
             for arrival in self._heard():
                 self._measured(arrival)
             if not self.arm.busy:
                 return False
-            if (lost := self._lost()) is not None:
+            if gap > LEASE:  # by now the gateway has stopped the machine
+                self._app.log.warning("stopping", reason=ControllerStood(gap))
+                self.arm.silence(self._time(), Verdict(Ending.ABORTED, ControllerStood(gap)))
+            elif (lost := self._lost()) is not None:
                 self.arm.cancel(self._time(), Verdict(Ending.ABORTED, lost))
             angles = self.arm.step(self._time())
             if angles:
@@ -146,7 +159,7 @@ class Joints:
             if joint is not None and i < len(message.position) and i < len(message.velocity):
                 if math.isfinite(message.position[i]) and math.isfinite(message.velocity[i]):
                     self._positions[joint], self._velocities[joint] = message.position[i], message.velocity[i]
-        stamp = message.header.stamp.sec + message.header.stamp.nanosec * 1e-9
+        stamp = stamps.seconds(message.header.stamp)
         before = self._clock.stamp
         if not self._clock.hear(arrival.received, stamp):
             self.arm.abandon(Verdict(Ending.ABORTED, ClockSetBack()))

@@ -2,13 +2,13 @@
 
 from typing import Any
 
-from builtin_interfaces.msg import Duration
 from nav2_msgs.action import ComputePathToPose
 from nav_msgs.msg import Path
 
 from tms_config.clock import monotonic
 from tms_control.path import Pose
 from tms_control.planner import Goal, plan
+from tms_machine import stamps
 from tms_machine.frames import MAP
 from tms_mc.goal_poses import in_map, pose_of, wrong
 from tms_mc.tracks import Tracks
@@ -42,8 +42,7 @@ class PathServer:
             return Outcome.ABORTED, result
         start = pose_of(request.start) if request.use_start else self._tracks.pose
         path = self._path(start, pose_of(request.goal))
-        seconds = monotonic() - begun
-        took = Duration(sec=int(seconds), nanosec=int(seconds % 1 * 1e9))
+        took = stamps.duration(monotonic() - begun)
         return Outcome.SUCCEEDED, ComputePathToPose.Result(path=path, planning_time=took)
 
     def _path(self, start: Pose, goal: Pose) -> Path:

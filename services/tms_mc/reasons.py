@@ -28,6 +28,8 @@ class PoseUnfit(Reason, text="pose {number} holds no orientation, or a value tha
 
 # the end of a goal
 class GatewayGone(Reason, text="the gateway was lost while the machine moved"): pass
+class ControllerStood(Reason, text="the motion controller did not run for {seconds}", action=PROCESSES):
+    seconds: Seconds
 class ClockSetBack(Reason, text="the clock of the machine was set back: its simulator was started again"): pass
 class EmergencyStopped(Reason, text="the emergency stop was pressed"): pass
 class Stopped(Reason, text="stopped on request"): pass

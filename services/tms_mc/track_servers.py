@@ -9,7 +9,8 @@ from tms_config.clock import sleep
 from tms_control.path import told as told_path
 from tms_control.trip import Feedback, Missed, Task, Trip
 from tms_control.verdict import Verdict
-from tms_machine.motion_messages import duration, missed_waypoints
+from tms_machine.motion_messages import missed_waypoints
+from tms_machine.stamps import duration
 from tms_mc.goal_poses import in_map, pose_of
 from tms_mc.guard import Guard
 from tms_mc.tracks import Tracks

@@ -15,9 +15,11 @@ from tms_control.path import Pose
 from tms_control.planner import Pace
 from tms_control.track_estimate import Command, PoseSample, TrackEstimate
 from tms_control.trip import Task, Trip
+from tms_decision.permit_link import LEASE
+from tms_machine import stamps
 from tms_machine.places import POSES, place_of
 from tms_mc.gateway_watch import GatewayWatch
-from tms_mc.reasons import PosesSilent, PosesUnheard
+from tms_mc.reasons import ControllerStood, PosesSilent, PosesUnheard
 from tms_mc.turns import Turns
 from tms_reason.reason import Reason
 from tms_ros.topics import Arrival
@@ -104,14 +106,18 @@ class Tracks:
         """The machine's time [s]; only after it was heard of."""
         return self._clock.time(monotonic())
 
-    def _step(self) -> bool:
-        """Take what was heard, and command what is due; whether a goal is open."""
+    def _step(self, gap: float) -> bool:
+        """Take what was heard, and command what is due, `gap` [s] after the last time; whether a goal is open."""
         with self._lock:
             samples = [sample for arrival in self._heard() if (sample := self._sample(arrival)) is not None]
             trip = self._trip
             if trip is None or trip.verdict is not None:
                 for sample in samples:
                     self._estimate.measured(sample)
+                return False
+            if gap > LEASE:  # by now the gateway has stopped the machine
+                self._app.log.warning("stopping", reason=ControllerStood(gap))
+                trip.silence(self._time())
                 return False
             if not self._gateway.alive:
                 trip.cancel()
@@ -132,8 +138,7 @@ class Tracks:
         place = place_of(arrival.message)
         if place is None:
             return None
-        at = arrival.message.header.stamp
-        stamp = at.sec + at.nanosec * 1e-9
+        stamp = stamps.seconds(arrival.message.header.stamp)
         if not self._clock.hear(arrival.received, stamp):
             self._begin_anew()
         return PoseSample(stamp, Pose(*place))

@@ -3,16 +3,16 @@
 import threading
 from collections.abc import Callable
 
-from tms_config.clock import sleep
+from tms_config.clock import monotonic, sleep
 from tms_ros.node import Ros
 
 IDLE = 0.1  # s between looks while nothing moves the machine
 
 
 class Turns:
-    """`step` says whether a goal is open."""
+    """`step` gets the time [s] since the last one, 0 while no goal was open, and says whether one is open."""
 
-    def __init__(self, ros: Ros, step: Callable[[], bool], period: float, name: str) -> None:
+    def __init__(self, ros: Ros, step: Callable[[float], bool], period: float, name: str) -> None:
         """`period` [s] between steps while a goal is open."""
         self._ros, self._step, self._period = ros, step, period
         self._woken = threading.Event()
@@ -23,9 +23,13 @@ class Turns:
         self._woken.set()
 
     def _run(self) -> None:
+        last: float | None = None
         while not self._ros.closing:
-            if self._step():
+            now = monotonic()
+            if self._step(0.0 if last is None else now - last):
+                last = now
                 sleep(self._period)
             else:
+                last = None
                 self._woken.wait(IDLE)
                 self._woken.clear()

@@ -77,7 +77,8 @@ class Channel:
 
     def _take(self, samples: tuple[ChannelSample, ...]) -> None:
         self._samples, self._moves, self._disagrees = samples, None, ()
-        self._recent = tuple(one for one in samples if samples[-1].received - one.received <= WORST + 1e-9)
+        newest = samples[-1].received if samples else 0.0
+        self._recent = tuple([one for one in samples if newest - one.received <= WORST + 1e-9])
 
     def moving(self) -> bool:
         """Whether any of the last samples showed a motion; unknown counts as moving."""
@@ -150,7 +151,7 @@ class Channel:
         """Whether no motion leads from one sample to the next."""
         limits, way = self._limits, self._distance(before.place, place)
         seconds, spare = seconds * limits.scale, limits.resolution + BETWEEN
-        spare += JITTER * limits.scale * max(abs(one or 0.0) for one in (speed, before.speed))
+        spare += JITTER * limits.scale * max(abs(speed or 0.0), abs(before.speed or 0.0))
         if way > SPEED_MARGIN * limits.top * seconds + spare:
             return True
         if speed is None or before.speed is None or seconds > WORST / 2 * limits.scale:

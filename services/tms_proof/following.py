@@ -116,10 +116,11 @@ class Follower:
         seen.append((now, angle))
         while len(seen) > 1 and now - seen[1][0] >= QUIET:
             seen.popleft()
+        if now - seen[0][0] < QUIET:
+            return None
         passed, past = (now - self._begun) * self._scale, [at for _, at in seen]
         low, high = way.hull(passed - self._reached, passed + AHEAD * self._scale)  # not every controller runs behind
-        there = low - BEHIND <= angle <= high + BEHIND
-        if there or now - seen[0][0] < QUIET or max(past) - min(past) > QUIET_ANGLE:
+        if low - BEHIND <= angle <= high + BEHIND or max(past) - min(past) > QUIET_ANGLE:
             return None
         due = min(low, high, key=lambda bound: abs(bound - angle))
         return Stalled(name, angle, due)

@@ -54,6 +54,7 @@ class SourceWatch:
 
     def __init__(self, name: str, source: SourceFacts, channels: Mapping[str, Limits]) -> None:
         self.label, self.source = LABELS[name], source
+        self.longest = max(PERIODS * source.period, SHORTEST)  # s without a new stamp; then it is no proof any more
         self.channels = {key: Channel(limits) for key, limits in channels.items()}
         self._limits = dict(channels)
         self._clock = StampClock(source.stamps)
@@ -67,11 +68,6 @@ class SourceWatch:
         self._places: dict[str, Place] | None = None  # see `places`
         self._values: object = None
         self.changed = float("-inf")  # when its values last changed in any bit
-
-    @property
-    def longest(self) -> float:
-        """Seconds without a new stamp after which the source no longer counts as proof."""
-        return max(PERIODS * self.source.period, SHORTEST)
 
     def take(self, sample: SourceSample) -> None:
         """Take one message."""

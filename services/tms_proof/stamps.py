@@ -69,8 +69,9 @@ class StampClock:
             self._delay = min(self._delay, delay)
 
     def _offset(self) -> float | None:
-        found = [one for one in (self._delay, self._delay_before) if one is not None]
-        return min(found) if found else None
+        if self._delay is None or self._delay_before is None:
+            return self._delay
+        return min(self._delay, self._delay_before)
 
     def _known(self) -> float:
         known = self._offset()

@@ -77,6 +77,14 @@ class StandStill:
 
     def __init__(self, facts: MachineFacts) -> None:
         self._facts = facts
+        answers, joints = facts.responses, facts.joint_response.values()
+        # Seconds for which a command may still be on its way ...
+        self.dead_time = max((one.dead_time for one in answers), default=0.0) / facts.speed
+        # ... and after them, until every motion has ended: from full speed, and a lag more.
+        self.braking = max((one.brakes + one.lag for one in answers), default=0.0) / facts.speed
+        # Dead time and lag of the slowest joint [s of the machine]: then it is where its reference was.
+        self.reached = max((one.dead_time for one in joints), default=0.0)
+        self.reached += max((one.lag for one in joints), default=0.0)
         self.sources: dict[str, SourceWatch] = {
             name: SourceWatch(name, source, _channels(name, facts, source.resolution))
             for name, source in facts.sources.items()
@@ -86,6 +94,7 @@ class StandStill:
         self._way = 0.0
         self._quiet_since = -INFINITE  # when our last goal ended: its last commands may still be on their way
         self._motion_at = -INFINITE  # when a motion was last seen
+        self._beyond: Reason | None = None  # the joint that the last message shows beyond its limits
 
     @property
     def dead_times(self) -> dict[str, float]:
@@ -95,22 +104,6 @@ class StandStill:
     def _dead_time(self, joint: str) -> float:
         response = self._facts.joint_response.get(joint)  # a passive joint has none
         return response.dead_time / self._facts.speed if response else 0.0
-
-    @property
-    def dead_time(self) -> float:
-        """Seconds for which a command may still be on its way."""
-        return max((one.dead_time for one in self._facts.responses), default=0.0) / self._facts.speed
-
-    @property
-    def braking(self) -> float:
-        """Seconds after the dead time in which every motion has ended: from full speed, and a lag more."""
-        return max((one.brakes + one.lag for one in self._facts.responses), default=0.0) / self._facts.speed
-
-    @property
-    def reached(self) -> float:
-        """Dead time and lag of the slowest joint [s of the machine]: then it is where its reference was."""
-        response = self._facts.joint_response.values()
-        return max((one.dead_time for one in response), default=0.0) + max((one.lag for one in response), default=0.0)
 
     @property
     def unstamped(self) -> list[Reason]:
@@ -125,6 +118,8 @@ class StandStill:
         """Take one message of a source."""
         source = self.sources[name]
         source.take(sample)
+        if name == JOINTS:
+            self._beyond = self._beyond_limits()
         if source.fast:
             self._motion_at = max(self._motion_at, sample.received)
         for channel, away in source.travel(self._marks.get(name, {})).items():
@@ -167,10 +162,11 @@ class StandStill:
     def trouble(self, now: float) -> Trouble | None:
         """Why a source cannot be believed; a trouble that does not pass comes first."""
         found = [one for source in self.sources.values() if (one := source.trouble(now)) is not None]
-        found += [Trouble(beyond) for beyond in [self._beyond()] if beyond is not None]
+        if (beyond := self._beyond) is not None:
+            found.append(Trouble(beyond))
         return min(found, key=lambda one: one.passes, default=None)
 
-    def _beyond(self) -> Reason | None:
+    def _beyond_limits(self) -> Reason | None:
         for name, angle in self.positions.items():
             joint = self._facts.joints[name]
             if joint.low is not None and angle < joint.low - HARD:

@@ -6,8 +6,9 @@ from tms_config.config import Site
 from tms_decision.gateway.events import Reference, Turn
 from tms_decision.gateway.state import Gateway
 from tms_machine.border import MotionAction
+from tms_machine.stamps import seconds
 from tms_rc import limits
-from tms_rc.motion_goals import numbers, point_of, poses_of, seconds
+from tms_rc.motion_goals import numbers, point_of, poses_of
 from tms_reason.reason import Reason
 
 

@@ -11,6 +11,7 @@ from sensor_msgs.msg import Imu, JointState
 from tms_config.clock import monotonic
 from tms_config.models import Border
 from tms_decision.gateway.events import Event, Published, Sampled
+from tms_machine import stamps
 from tms_machine.geometry import yaw_of
 from tms_machine.places import POSES, pose_of
 from tms_proof.channel import Place
@@ -109,8 +110,8 @@ def _full_name(kind: Any) -> str:
 
 
 def _sample(arrival: Arrival[Any], places: Mapping[str, Place], speeds: Mapping[str, float]) -> SourceSample:
-    stamp = arrival.message.header.stamp
-    return SourceSample(arrival.received, stamp.sec + stamp.nanosec * 1e-9, arrival.number, places, speeds)
+    stamp = stamps.seconds(arrival.message.header.stamp)
+    return SourceSample(arrival.received, stamp, arrival.number, places, speeds)
 
 
 def _numbers(known: list[tuple[int, str]], values: Sequence[float]) -> dict[str, float]:

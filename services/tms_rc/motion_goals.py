@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from typing import Any
 
-from builtin_interfaces.msg import Duration
 from geometry_msgs.msg import Pose, PoseStamped
 from trajectory_msgs.msg import JointTrajectoryPoint
 
 from tms_machine.border import MotionAction
+from tms_machine.stamps import seconds
 from tms_rc.limits import TrajectoryPoint
 from tms_reason.reason import Reason
 from tms_reason.wire import to_line
@@ -28,11 +28,6 @@ def numbers(pose: Pose) -> tuple[float, ...]:
     """Position [m] and quaternion."""
     at, turn = pose.position, pose.orientation
     return at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w
-
-
-def seconds(duration: Duration) -> float:
-    """A duration [s]."""
-    return float(duration.sec + duration.nanosec * 1e-9)
 
 
 def point_of(point: JointTrajectoryPoint) -> TrajectoryPoint:

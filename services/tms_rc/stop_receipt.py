@@ -1,10 +1,10 @@
 """Receipts of stops as messages: kept ones first, then each when it is told."""
 
-from builtin_interfaces.msg import Time
 from prometheus_client import Counter, Histogram
 from tms_msg_rc.msg import StopReceipt
 
 from tms_decision.gateway.effects import Receipt, Tell
+from tms_machine import stamps
 from tms_rc.receipts import Receipts
 from tms_rc.shell import Shell
 from tms_reason.wire import to_line
@@ -21,11 +21,10 @@ STOP_SECONDS = Histogram(
 
 def message_of(receipt: Receipt, machine: str) -> StopReceipt:
     """A receipt as a message."""
-    stamp = Time(sec=int(receipt.stamp), nanosec=int(receipt.stamp % 1 * 1e9))
     return StopReceipt(
         machine=machine, confirmed=receipt.confirmed, seconds=receipt.seconds, cause=to_line(receipt.cause),
         travel_joint=receipt.joint, travel_rad=receipt.angle, travel_m=receipt.way, detail=to_line(receipt.detail),
-        stamp=stamp, latched=receipt.latched, run=receipt.run, evidence=to_line(receipt.evidence),
+        stamp=stamps.time(receipt.stamp), latched=receipt.latched, run=receipt.run, evidence=to_line(receipt.evidence),
     )  # fmt: skip
 
 

@@ -56,6 +56,11 @@ class ExportFromGroot(Reason, text="export it from Groot; it begins with <root m
 class RemoveThem(Reason, text="remove them"): pass
 class CorrectThere(Reason, text="correct it there"): pass
 class SplitTask(Reason, text="split the task into subtrees"): pass
+class TemplateOuter(Reason, text="the outermost element of a template is <root>, here it is <{tag}>"): tag: str
+class TemplateTrees(Reason, text="a template has exactly one <BehaviorTree>, here are {count}"): count: int
+class TemplateNodes(Reason, text="the tree of a template has exactly one node at its top, here are {count}"): count: int
+class TemplateVersion(Reason, text="a template has the form of BehaviorTree.CPP v3, as Groot 1 writes it"): pass
+class TemplateInclude(Reason, text="a template includes no other file"): pass
 class XmlLine(Reason, text="line {line}: {what}", action=EDIT_TASK): line: int; what: Reason
 class XmlHint(Reason, text="{what}: {hint}"): what: Reason; hint: Reason
 # fmt: on

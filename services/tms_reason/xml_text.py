@@ -26,6 +26,11 @@ from tms_reason.reasons import (
     SplitTask,
     TaskEmpty,
     TaskTooLarge,
+    TemplateInclude,
+    TemplateNodes,
+    TemplateOuter,
+    TemplateTrees,
+    TemplateVersion,
     TextNotUtf8,
     WordTooLong,
     XmlHint,
@@ -36,6 +41,9 @@ MAX_BYTES = 5_000_000
 MAX_TAGS = 200_000  # "<" in the text; bounds the memory that the parser takes
 MAX_DEPTH = 200  # trees drawn by people have a tenth of it
 MAX_EQUALS = 5000  # "=" in one tag; the parser compares attribute names pairwise
+
+CALL = "ExecuteSubtask"  # an action that calls a template
+OPEN_KEY = re.compile(r"\$(\w+)\$", re.ASCII)  # what a call of a template gives a value to
 
 _PROLOG = re.compile(r"\s+|<\?.*?\?>|<!--.*?-->", re.DOTALL)
 _DECLARATION = re.compile(r"<\?xml\s.*?\?>", re.DOTALL)
@@ -98,6 +106,37 @@ def elements(text: str, comments: bool) -> etree._Element:
     return root
 
 
+def template_top(root: etree._Element) -> etree._Element:
+    """The node at the top of a template's only tree: what its callers get in the place of their call.
+
+    Raises:
+        XmlRefused: it has not the form of a template; with the line.
+    """
+    if root.tag != "root":
+        raise XmlRefused(TemplateOuter(str(root.tag)), _line_of(root))
+    if str(root.get("BTCPP_format", "")).strip().startswith("4"):
+        raise XmlRefused(TemplateVersion(), _line_of(root))
+    if (include := root.find("include")) is not None:
+        raise XmlRefused(TemplateInclude(), _line_of(include))
+    trees = root.findall("BehaviorTree")
+    if len(trees) != 1:
+        raise XmlRefused(TemplateTrees(len(trees)), _line_of(root))
+    nodes = [child for child in trees[0] if isinstance(child.tag, str)]
+    if len(nodes) != 1:
+        raise XmlRefused(TemplateNodes(len(nodes)), _line_of(trees[0]))
+    return nodes[0]
+
+
+def is_call(element: etree._Element) -> bool:
+    """Whether an element calls a template."""
+    return element.tag == CALL or (element.tag == "Action" and element.get("ID") == CALL)
+
+
+def _line_of(element: etree._Element) -> int:
+    line: object = element.sourceline
+    return line if isinstance(line, int) else 1
+
+
 def _parser(comments: bool) -> etree.XMLParser:
     return etree.XMLParser(
         encoding="utf-8", resolve_entities=False, load_dtd=False, no_network=True, huge_tree=False,
@@ -129,8 +168,7 @@ def _check_depth(root: etree._Element) -> None:
     for event, element in etree.iterwalk(root, events=("start", "end")):
         depth += 1 if event == "start" else -1
         if depth > MAX_DEPTH:
-            line: object = element.sourceline
-            raise _too_deep(line if isinstance(line, int) else 1)
+            raise _too_deep(_line_of(element))
 
 
 def _too_deep(line: int) -> XmlRefused:

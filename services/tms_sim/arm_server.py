@@ -3,7 +3,9 @@
 from control_msgs.action import FollowJointTrajectory
 from trajectory_msgs.msg import JointTrajectoryPoint
 
-from tms_machine.motion_messages import duration, knots
+from tms_machine import stamps
+from tms_machine.motion_messages import knots
+from tms_machine.stamps import duration
 from tms_sim.controller import Controller, TrajectoryMotion
 from tms_sim.motion import MotionVerdict
 from tms_sim.servers import ActionHandler
@@ -13,8 +15,8 @@ def trajectory_server(controller: Controller) -> ActionHandler:
     """FollowJointTrajectory on a controller."""
 
     def begin(request: FollowJointTrajectory.Goal) -> TrajectoryMotion:
-        wanted, late = request.trajectory, request.goal_time_tolerance
-        return controller.begin(list(wanted.joint_names), knots(wanted), late.sec + late.nanosec * 1e-9)
+        wanted, late = request.trajectory, stamps.seconds(request.goal_time_tolerance)
+        return controller.begin(list(wanted.joint_names), knots(wanted), late)
 
     def refusal(request: FollowJointTrajectory.Goal) -> tuple[int, str] | None:
         return controller.refusal(list(request.trajectory.joint_names), knots(request.trajectory))

@@ -8,7 +8,8 @@ from nav2_msgs.action import FollowWaypoints, NavigateThroughPoses, NavigateToPo
 
 from tms_machine.frames import MAP
 from tms_machine.geometry import about, yaw_of
-from tms_machine.motion_messages import duration, missed_waypoints
+from tms_machine.motion_messages import missed_waypoints
+from tms_machine.stamps import duration
 from tms_sim.base import Leg
 from tms_sim.machine import StandIn
 from tms_sim.motion import MotionVerdict

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from tms_config.sensing import FieldRule, Input
+from tms_machine import stamps
 from tms_reason.errors import TmsError
 from tms_reason.validation import Wrong
 from tms_sp.field_types import NAMES, PART, PLAIN, STAMPS, VALUES, Fields, FieldsOf, FieldTypes
@@ -173,7 +174,7 @@ def _scaled(value: Any, factor: float) -> Any:
 
 
 def _seconds(stamp: Any) -> float:
-    seconds = float(stamp) if isinstance(stamp, (int, float)) else float(stamp.sec + stamp.nanosec * 1e-9)
+    seconds = float(stamp) if isinstance(stamp, (int, float)) else stamps.seconds(stamp)
     if not math.isfinite(seconds):
         raise MessageRefused(StampNotFinite(str(seconds)))
     return seconds

@@ -148,13 +148,13 @@ class Execution:
     def _execute(self, run: Run, goal: TaskGoal, past: InterruptedRun | None) -> Ended[ExecuteTask.Result]:
         parts, facts = self._parts, run.facts
         goal.publish(ExecuteTask.Feedback(run_id=facts.run_id, state=facts.state))  # so that it can be cancelled
-        xml = self._xml(facts, past)
+        xml, templates = self._xml(facts, past)
         replay = Replay(past.ended if past is not None else [])
         identity = Identity(facts.number, parts.app.site.file.on_loss.retries, run.record, replay)
         machines = Machines(self._ros, parts.hosts, parts.gateways, run.wake.set, run.log_event, identity)
         run.flags = Flags(self._ros, parts.shared, run.wake.set, facts.run_id)
         clicks = Clicks(parts.publisher.questions, facts.run_id, run.wake.set, run.log_event)
-        tree = bt.load(xml, world=World(machines, run.flags, clicks))
+        tree = bt.load(xml, world=World(machines, run.flags, clicks), templates=templates)
         replay.beside = tree.beside
         self._begin(run, tree, xml, resumed=past is not None)
         parts.check.refuse_latched(facts.machines)
@@ -165,13 +165,13 @@ class Execution:
             run.execute(tree, machines, _RunPermits(parts, run, machines))
         return _ended(facts) if run.refused is None else _refused(facts.run_id, not_free(run.refused))
 
-    def _xml(self, facts: Facts, past: InterruptedRun | None) -> str:
-        """The text of the stored task; of a resumed run, as it was at its start."""
+    def _xml(self, facts: Facts, past: InterruptedRun | None) -> tuple[str, bt.Templates]:
+        """The text of the stored task and the stored templates; of a resumed run, as they were at its start."""
         if past is not None and past.header is not None:
-            return past.header.xml
+            return past.header.xml, past.header.templates.get
         task = self._parts.check.task(facts.task_id)
         facts.description = task.description
-        return task.task_sequence
+        return task.task_sequence, self._parts.check.template
 
     def _begin(self, run: Run, tree: bt.Tree, xml: str, resumed: bool) -> None:
         """Enter the run into the history, check it, and take its machines."""
@@ -180,7 +180,7 @@ class Execution:
         facts.writes = {(value.record, value.field) for value in tree.shared_values() if value.writes}
         started = (facts.started.sec, facts.started.nanosec)
         known = (facts.run_id, facts.number, facts.task_id, facts.description, facts.machines, xml, started)
-        run.record.begin(Header(*known, facts.records, facts.values))
+        run.record.begin(Header(*known, facts.records, facts.values, tree.templates))
         run.enter("preparing", Resumed() if resumed else None)
         run.publish_tree(tree)
         _refuse_errors(run, self._parts.check.before_run(tree))

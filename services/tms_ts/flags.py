@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from typing import Any, Generic, TypeVar
 
-from tms_msg_db.srv import GetParameter, SetParameter
+from tms_msg_db.srv import ChangeArray, FindRecord, GetParameter, SetParameter
 
 from tms_machine.reasons import NoDatabase
 from tms_machine.values import from_parameters, to_parameters
@@ -79,6 +79,26 @@ class Flags:
             answer.settle(None)
 
         self._ask(answer, SetParameter, "/tms/db/set_parameter", request, settle)
+        return answer
+
+    def change_array(self, record: str, field: str, change: str, value: Value) -> Answer[None]:
+        """Change an array in one field of an existing record in one atomic step."""
+        answer: Answer[None] = Answer()
+        values = to_parameters({field: value})
+        request = ChangeArray.Request(record_name=record, source=self._source, change=change, value=values[0])
+
+        def settle(_: ChangeArray.Response) -> None:
+            self._records.forget(record)
+            answer.settle(None)
+
+        self._ask(answer, ChangeArray, "/tms/db/change_array", request, settle)
+        return answer
+
+    def find(self, values: Mapping[str, Value]) -> Answer[bool]:
+        """Whether a record has all these values."""
+        answer: Answer[bool] = Answer()
+        request = FindRecord.Request(values=to_parameters(values))
+        self._ask(answer, FindRecord, "/tms/db/find_record", request, lambda found: answer.settle(found.found))
         return answer
 
     def _ask(

@@ -11,6 +11,7 @@ from tms_msg_ts.srv import CancelRun, ResumePlan
 from tms_config.clock import monotonic
 from tms_decision.leaf.events import Key
 from tms_decision.past import CLOSE_LIMIT, Stop, all_told, stops_of, what_was_seen
+from tms_machine import stamps
 from tms_machine.values import to_parameters
 from tms_reason import wire
 from tms_reason.errors import TaskError
@@ -94,7 +95,7 @@ class Interrupted:
 
     def _complete(self, past: InterruptedRun, header: Header, over: Over) -> None:
         """Report the end of a run that had ended before the power went: that report may be lost, or comes twice."""
-        stamp = Time(sec=int(past.last_time), nanosec=int(past.last_time % 1 * 1e9))
+        stamp = stamps.time(past.last_time)
         why = wire.of(over.reason)
         text = to_line(entered(over.outcome, why))
         self._journal.put(Event(run_id=header.run_id, number=over.event, stamp=stamp, kind="run", text=text))

@@ -23,6 +23,7 @@ class Header:
     started: tuple[int, int]  # s, ns
     records: list[str] = field(default_factory=list)  # that the tree names; none in checkpoints of earlier versions
     values: dict[str, Any] = field(default_factory=dict)  # more fields of the run that are known by then
+    templates: dict[str, str] = field(default_factory=dict)  # name -> text of those that the tree was made with
 
 
 @dataclass(frozen=True)

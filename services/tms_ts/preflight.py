@@ -5,12 +5,13 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from tms_config.config import Site
+from tms_machine.goal_inputs import Inputs, parted
 from tms_reason.reason import Reason
 from tms_ts.bt import Tree
-from tms_ts.bt.errors import did_you_mean, short
-from tms_ts.bt.reasons import Line, Placed
+from tms_ts.bt.errors import did_you_mean, short, within
+from tms_ts.bt.reasons import Line, NotPlain, NumberTooBig, Placed
 from tms_ts.bt.tree import LeafGoal, SharedValue
-from tms_ts.nodes.leaf_node import ROS_NAME
+from tms_ts.nodes.machine_leaf import ROS_NAME
 from tms_ts.reasons import (
     BadSubtaskName,
     InputSilent,
@@ -46,9 +47,15 @@ def machines_of(tree: Tree) -> list[str]:
 def records_of(tree: Tree) -> list[str]:
     """Records that a tree names, as MODEL/RECORD; MODEL/* where the record is known only during the run."""
     shared = [(value.record, "") for value in tree.shared_values()]
-    goals = [(goal.record, goal.machine) for goal in tree.leaf_goals() if "{" not in goal.machine]
+    goals = [(name, goal.machine) for goal in tree.leaf_goals() if "{" not in goal.machine for name in _named(goal)]
     names = [f"{model}/{'*' if '{' in record else record}" for record, model in [*goals, *shared] if record]
     return list(dict.fromkeys(names))
+
+
+def _named(goal: LeafGoal) -> list[str]:
+    """The records of a goal: its own, and the one whose plan it goes on from."""
+    record, inputs = parted(goal.record)
+    return [record, str(inputs.get("previous_target_record_name", ""))]
 
 
 def processes_of(tree: Tree, site: Site) -> list[str]:
@@ -85,7 +92,7 @@ class Surroundings(Protocol):
 
     def silent(self, machine: str, record: str) -> str: ...  # the sensing input that should write it and does not
 
-    def unfit(self, machine: str, subtask: str, values: Values) -> Reason | None: ...  # why the subtask cannot use them
+    def unfit(self, machine: str, subtask: str, values: Values, inputs: Inputs) -> Reason | None: ...  # why not usable
 
     def oldest(self, machine: str, subtask: str) -> float: ...  # s that a subtask lets its record be old; 0: as it says
 
@@ -108,42 +115,49 @@ def at(line: int, what: Reason) -> Reason:
     return Placed(Line(line), what)
 
 
+def _at_leaf(leaf: LeafGoal | SharedValue, what: Reason) -> Reason:
+    return at(leaf.line, within(leaf.template, what))
+
+
 def _check_goal(found: Findings, goal: LeafGoal, site: Site, around: Surroundings) -> None:
     if "{" not in goal.machine and goal.machine not in site.file.machines:
-        found.errors.append(at(goal.line, NoMachineOfSite(goal.machine, tuple(site.file.machines))))
+        found.errors.append(_at_leaf(goal, NoMachineOfSite(goal.machine, tuple(site.file.machines))))
         return
     if "{" in goal.machine or "{" in goal.subtask:
-        found.warnings.append(at(goal.line, KnownAtRun()))
+        found.warnings.append(_at_leaf(goal, KnownAtRun()))
         return
+    if not goal.subtask:
+        return  # a fault of the node
     if not ROS_NAME.fullmatch(goal.subtask):
-        found.errors.append(at(goal.line, BadSubtaskName(short(goal.subtask, 100))))
+        found.errors.append(_at_leaf(goal, BadSubtaskName(short(goal.subtask, 100))))
         return
     offered = site.model_of(goal.machine).subtasks
     if goal.subtask not in offered and around.served(goal.machine, goal.subtask):
-        found.warnings.append(at(goal.line, ServedElsewhere(goal.subtask, goal.machine)))
+        found.warnings.append(_at_leaf(goal, ServedElsewhere(goal.subtask, goal.machine)))
     elif goal.subtask not in offered:
-        found.errors.append(at(goal.line, NotOffered(goal.machine, goal.subtask, tuple(offered))))
-    elif "{" not in goal.record:
+        found.errors.append(_at_leaf(goal, NotOffered(goal.machine, goal.subtask, tuple(offered))))
+    elif "{" not in parted(goal.record)[0]:
         _check_record(found, goal, around)
 
 
 def _check_record(found: Findings, goal: LeafGoal, around: Surroundings) -> None:
-    line, name = goal.line, f"{goal.machine}/{goal.record}"
-    stored = around.record(goal.machine, goal.record)
+    record, inputs = parted(goal.record)
+    name, stored = f"{goal.machine}/{record}", around.record(goal.machine, record)
     if stored is None:
-        near = did_you_mean(goal.record, around.names(goal.machine))
-        found.errors.append(at(line, NoRecord(name) if near is None else NoRecordNear(name, near)))
+        near = did_you_mean(record, around.names(goal.machine))
+        found.errors.append(_at_leaf(goal, NoRecord(name) if near is None else NoRecordNear(name, near)))
         return
-    unfit = around.unfit(goal.machine, goal.subtask, stored.values)
+    known = {port: value for port, value in inputs.items() if "{" not in str(value)}
+    unfit = around.unfit(goal.machine, goal.subtask, stored.values, known)
     if unfit is not None:
-        found.errors.append(at(line, RecordUnfit(name, goal.subtask, unfit)))
+        found.errors.append(_at_leaf(goal, RecordUnfit(name, goal.subtask, unfit)))
     limit = around.oldest(goal.machine, goal.subtask) or stored.max_age
     if limit > 0 and stored.type != "static" and (stored.age is None or stored.age > limit):
         old = RecordAgeUnknown(name, limit) if stored.age is None else RecordOld(name, stored.age, limit)
-        found.warnings.append(at(line, old))
-    silent = around.silent(goal.machine, goal.record)
+        found.warnings.append(_at_leaf(goal, old))
+    silent = around.silent(goal.machine, record)
     if silent:
-        found.warnings.append(at(line, InputSilent(silent, name)))
+        found.warnings.append(_at_leaf(goal, InputSilent(silent, name)))
 
 
 def _check_shared(found: Findings, values: list[SharedValue], around: Surroundings) -> None:
@@ -153,11 +167,21 @@ def _check_shared(found: Findings, values: list[SharedValue], around: Surroundin
             continue
         stored = around.record("", value.record)
         if stored is None:
-            found.warnings.append(at(value.line, NoSharedRecord(value.record)))
+            found.warnings.append(_at_leaf(value, NoSharedRecord(value.record)))
         elif not value.writes and value.field not in stored.values:
-            found.warnings.append(at(value.line, NoSharedField(value.record, value.field)))
+            found.warnings.append(_at_leaf(value, NoSharedField(value.record, value.field)))
+        elif not value.writes and (note := _unread(value, stored.values[value.field])) is not None:
+            found.warnings.append(_at_leaf(value, note))
         elif value.writes and stored.type == "static":
-            found.warnings.append(at(value.line, SharedStatic(value.record)))
+            found.warnings.append(_at_leaf(value, SharedStatic(value.record)))
         elif value.looped and not value.writes and (value.record, value.field) not in own:
             if not around.written(value.record, value.field):
-                found.warnings.append(at(value.line, NobodyWrites(value.field, value.record)))
+                found.warnings.append(_at_leaf(value, NobodyWrites(value.field, value.record)))
+
+
+def _unread(value: SharedValue, stored: Any) -> Reason | None:
+    """What is not read of a stored value, here or in the C++ system."""
+    if isinstance(stored, list):
+        return NotPlain(value.record, value.field)
+    large = isinstance(stored, int) and not -(2**31) <= stored < 2**31
+    return NumberTooBig(f"{value.record}.{value.field}") if large else None

@@ -67,7 +67,7 @@ class NoMachineOfSite(Reason, text="the site has no machine '{machine}' (there: 
     machine: str; machines: tuple[str, ...]
 class KnownAtRun(Reason, text="machine or subtask is known only when the leaf starts"): pass
 class BadSubtaskName(Reason,
-    text="subtask_name='{name}' can be no ROS name: at most 200 letters, digits and _, no blanks"): name: str
+    text="'{name}' can be no ROS name: at most 200 letters, digits and _, no blanks"): name: str
 class ServedElsewhere(Reason, text="'{subtask}' of {machine} is served by another system: its record is not checked"):
     subtask: str; machine: str
 class NotOffered(Reason, text="{machine} offers no '{subtask}' (there: {subtasks})"):

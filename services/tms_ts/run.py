@@ -158,6 +158,8 @@ class Run:
             "kinds": [node.kind.name.lower() for node in nodes],
             "ports": [" ".join(f'{port}="{text}"' for port, text in node.assigned().items()) for node in nodes],
         }
+        if any(node.template for node in nodes):
+            values["templates"] = [node.template for node in nodes]
         self.log_event("tree", "", TreeOf(len(nodes)), values)
 
     def _report_to_client(self, tree: Tree, last: bool = False) -> None:

@@ -11,6 +11,7 @@ from tms_msg_sp.msg import InputState, InputStates
 from tms_config.clock import monotonic, sleep, unix_time
 from tms_config.models import MachineModel
 from tms_kit.subtask import load
+from tms_machine.goal_inputs import Inputs
 from tms_machine.values import from_parameters
 from tms_reason.errors import RosError
 from tms_reason.reason import Reason
@@ -86,21 +87,21 @@ class PreflightContext:
     def silent(self, machine: str, record: str) -> str:
         return self._sensing.silent(f"{machine}/{record}")
 
-    def unfit(self, machine: str, subtask: str, values: Mapping[str, Any]) -> Reason | None:
-        return unfit(self._app.site.model_of(machine), subtask, values)
+    def unfit(self, machine: str, subtask: str, values: Mapping[str, Any], inputs: Inputs) -> Reason | None:
+        return unfit(self._app.site.model_of(machine), subtask, values, inputs)
 
     def oldest(self, machine: str, subtask: str) -> float:
         return self._app.site.model_of(machine).subtask(subtask).max_age
 
 
-def unfit(model: MachineModel, subtask: str, values: Mapping[str, Any]) -> Reason | None:
-    """Why a subtask of a machine cannot use a record: a field, or an angle beyond the limit of its joint."""
+def unfit(model: MachineModel, subtask: str, values: Mapping[str, Any], inputs: Inputs) -> Reason | None:
+    """Why a subtask cannot use a record and the inputs of a goal: a field, or an angle beyond its joint's limit."""
     use = model.subtask(subtask)
-    params = load(use.run).params
-    if params is None:
-        return None
+    kind = load(use.run)
+    if (why := kind.not_taken(inputs)) is not None or kind.params is None:
+        return why
     try:
-        angles = params.model_validate({**values, **use.inputs}).joint_angles()
+        angles = kind.params.model_validate({**values, **inputs, **use.inputs}).joint_angles()
     except ValidationError as error:
         return explain(error)
     broken = ((name, model.joints[name].violation(angle)) for name, angle in angles.items() if name in model.joints)

@@ -1,7 +1,7 @@
 """Runs the preflight of a stored task, of XML, and of a run before it begins."""
 
 from tms_msg_db.msg import Task
-from tms_msg_db.srv import GetTask
+from tms_msg_db.srv import GetTask, GetTemplate
 from tms_msg_ts.srv import CheckTask
 
 from tms_decision.reasons import MachineLatched
@@ -30,9 +30,9 @@ class TaskCheck:
         """Preflight of a stored task or of XML, without running."""
         try:
             xml = request.xml if request.task_id == 0 else self.task(request.task_id).task_sequence
-            report = bt.check(xml)
+            report = bt.check(xml, templates=self.template)
             if report.ok:
-                found = self._preflight(bt.load(xml, world=None), present=True)
+                found = self._preflight(bt.load(xml, world=None, templates=self.template), present=True)
                 response.errors = list(map(to_line, found.errors))
                 response.warnings = list(map(to_line, found.warnings))
             else:
@@ -53,6 +53,21 @@ class TaskCheck:
         if answer.error_code:
             raise TaskError(refusal(answer.error_code, answer.error_msg), answer.error_code)
         return answer.task
+
+    def template(self, name: str) -> str | None:
+        """The text of a stored template; None if there is none of this name.
+
+        Raises:
+            TaskError: it cannot be read.
+            RosError: the database does not answer.
+        """
+        request = GetTemplate.Request(template_name=name)
+        answer = self._app.ros.call(GetTemplate, "/tms/db/get_template", request, DB_LIMIT)
+        if answer.error_code == "TEMPLATE_MISSING":
+            return None
+        if answer.error_code:
+            raise TaskError(refusal(answer.error_code, answer.error_msg), answer.error_code)
+        return answer.stored.task_sequence
 
     def before_run(self, tree: bt.Tree) -> Findings:
         """Preflight of a run that is about to begin; whether its machines may move now is checked later."""

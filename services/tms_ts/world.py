@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol, TypeVar
 
@@ -11,6 +11,7 @@ from tms_decision.leaf.state import GoalState
 from tms_reason.reason import Reason
 
 Value = str | bool | int | float
+ARRAY_CHANGES = ("add", "push", "remove", "reset")  # words of SharedFlags.change_array
 T_co = TypeVar("T_co", covariant=True)
 
 
@@ -33,7 +34,10 @@ class Machines(Protocol):
     """What a tree asks of machines."""
 
     def send(self, machine: str, subtask: str, record: str, node: str) -> Goal:
-        """Send a goal; `node` is the node's path, for the journal."""
+        """Send a goal; `node` is the node's path, for the journal.
+
+        `record` is the record's name, with the goal's inputs behind it (tms_machine.goal_inputs).
+        """
         ...
 
 
@@ -57,6 +61,14 @@ class SharedFlags(Protocol):
 
     def write(self, record: str, field: str, value: Value, expected: Value | None = None) -> Pending[None]:
         """`expected`: the field must hold this value, or nothing is written and the answer is an error."""
+        ...
+
+    def change_array(self, record: str, field: str, change: str, value: Value) -> Pending[None]:
+        """`change`: one of ARRAY_CHANGES; adds the value unless it is there, puts it last, takes it out, or empties."""
+        ...
+
+    def find(self, values: Mapping[str, Value]) -> Pending[bool]:
+        """Whether a record of any machine, or a shared one, has all these values."""
         ...
 
 

@@ -11,6 +11,7 @@ from tms_msg_rc import msg as rc
 from tms_msg_sp import msg as sp
 from tms_msg_ts import msg as ts
 
+from tms_machine import stamps
 from tms_machine.values import from_parameters
 from tms_reason import wire
 from tms_reason.reason import Foreign
@@ -33,7 +34,7 @@ def when(stamp: Time) -> datetime | None:
     """A time as a date; None for zero, which means never."""
     if not stamp.sec and not stamp.nanosec:
         return None
-    return datetime.fromtimestamp(stamp.sec + stamp.nanosec * 1e-9, timezone.utc)
+    return datetime.fromtimestamp(stamps.seconds(stamp), timezone.utc)
 
 
 def machine(message: rc.MachineState) -> Machine:

@@ -169,6 +169,9 @@ class Tree(Model):
     types: list[str]
     kinds: list[str] = Field(description="control, decorator, subtree, action or condition")
     ports: list[str] = Field(description="as written")
+    templates: list[str] = Field(
+        default=[], description="TEMPLATE:LINE of nodes that come from a template; empty where none does"
+    )
 
 
 class Receipt(Model):

@@ -19,13 +19,14 @@ from pymongo.errors import AutoReconnect
 from stores import Server
 from tms_config.clock import utc_now
 from tms_db import freshness, store
+from tms_db.arrays import changed
 from tms_db.batches import Batches, Update
 from tms_db.connection import StoreConnection
 from tms_db.history import Event, History, Run
 from tms_db.parameter_history import ParameterHistory
 from tms_db.parameters import Parameters, RecordEdit
 from tms_db.record_cache import Head
-from tms_db.records import Record, Value
+from tms_db.records import Record, Value, models_of
 from tms_db.tasks import Tasks
 from tms_reason.errors import DbError, TaskError, TmsError
 
@@ -293,6 +294,72 @@ def test_a_change_may_expect_what_is_there(db: store.Db) -> None:
     assert parameters.get("", "ROAD")["BY"] == "ic120_1"
     edit = RecordEdit({"a": 1}, expected={"a": 0})
     assert code_of(lambda: parameters.set("", "X", edit, create=True)) == "RECORD_MISSING"
+
+
+@pytest.mark.parametrize(
+    ("before", "change", "value", "after"),
+    [
+        (["a"], "add", "b", ["a", "b"]), (["a"], "add", "a", ["a"]), (["a"], "push", "a", ["a", "a"]),
+        (["a", "b", "a"], "remove", "a", ["b"]), (["a"], "reset", "", []), ([], "add", 1, [1]),
+        (None, "push", 2.5, [2.5]), (None, "remove", "a", []),
+    ],
+)  # fmt: skip
+def test_an_array_is_changed(db: store.Db, before: list[Any] | None, change: str, value: Any, after: list[Any]) -> None:
+    parameters = Parameters(db)
+    fields = {"x": 1} if before is None else {"x": 1, "blocks": before}
+    parameters.set("", "AREA", RecordEdit(fields, "dynamic"), create=True)
+    assert parameters.change_array(("", "AREA"), "blocks", changed(change, value), "test") == after
+    assert (parameters.get("", "AREA")["blocks"], parameters.get("", "AREA")["x"]) == (after, 1)
+
+
+def test_what_is_no_array_is_not_changed(db: store.Db) -> None:
+    parameters = Parameters(db)
+    parameters.set("", "AREA", RecordEdit({"x": 1, "blocks": ["a"]}, "dynamic"), create=True)
+    push = partial(parameters.change_array, change=changed("push", 1), source="test")
+    assert code_of(lambda: push(("", "AREA"), "x")) == "BAD_RECORD"
+    assert code_of(lambda: push(("", "AREA"), "blocks")) == "BAD_RECORD"  # a number among texts
+    assert code_of(lambda: push(("", "AREA"), "type")) == "BAD_RECORD"
+    assert code_of(lambda: push(("", "none"), "blocks")) == "RECORD_MISSING"
+    assert code_of(lambda: changed("insert", 1)) == "BAD_RECORD"
+    assert code_of(lambda: changed("push", [1])) == "BAD_RECORD"
+    assert parameters.get("", "AREA")["blocks"] == ["a"]
+
+
+def test_writers_of_one_array_lose_nothing(shared_db: store.Db) -> None:
+    parameters = Parameters(shared_db)
+    parameters.set("", "AREA", RecordEdit({"x": 1}, "dynamic"), create=True)
+    with ThreadPoolExecutor(4) as pool:
+        for one in [pool.submit(parameters.change_array, ("", "AREA"), "n", changed("push", i), "") for i in range(12)]:
+            one.result()
+    assert sorted(parameters.get("", "AREA")["n"]) == list(range(12))
+
+
+def test_records_are_searched_by_value(db: store.Db) -> None:
+    parameters = Parameters(db)
+    parameters.set("", "TRUCK", RecordEdit({"section": "12", "way": "up", "n": 3, "free": True}), create=True)
+    parameters.set("zx200", "p", RecordEdit({"blocks": ["a", "b"]}), create=True)
+    there: list[dict[str, Any]] = [{"section": "12"}, {"section": "12", "way": "up"}, {"n": 3}, {"n": 3.0},
+                                   {"free": True}, {"blocks": "b"},
+                                   {"record_name": "p", "model_name": "zx200"}]  # fmt: skip
+    absent: list[dict[str, Any]] = [{"section": 12}, {"section": "12", "way": "down"}, {"section": "12", "blocks": "a"},
+                                    {"none": "x"}]  # fmt: skip
+    assert [parameters.holds(one) for one in there] == [True] * len(there)
+    assert [parameters.holds(one) for one in absent] == [False] * len(absent)
+    assert code_of(lambda: parameters.holds({"$where": "true"})) == "BAD_RECORD"
+    assert code_of(lambda: parameters.holds({"": "true"})) == "BAD_RECORD"
+
+
+def test_a_record_of_several_models_is_one(db: store.Db) -> None:
+    parameters = Parameters(db)
+    db["parameter"].insert_one({"model_name": ["truck_1", "truck_2"], "record_name": "road", "type": "dynamic", "n": 1})
+    assert parameters.get("truck_1", "road")["n"] == 1
+    parameters.set("truck_2", "road", RecordEdit({"n": 2}))
+    assert parameters.get("truck_1", "road")["n"] == 2
+    assert [models_of(document) for document in parameters.all("truck_2")] == [["truck_1", "truck_2"]]
+    assert parameters.all("zx200") == []
+    parameters.set("truck_2", "road", RecordEdit({"n": 3}, "static"))
+    History(db).write([replace(run("r1"), records=("truck_1/road",))], [])
+    assert code_of(lambda: parameters.set("truck_2", "road", RecordEdit({"n": 4}))) == "STATIC_RECORD"
 
 
 def test_eight_writers_that_swap_lose_no_update(shared_db: store.Db) -> None:

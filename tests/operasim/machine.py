@@ -27,6 +27,7 @@ class Machine:
         self.front = Front(
             {name: None if one is None else one + unknowns.dead_time for name, one in delays.items()}, self._aim
         )
+        self.turning = 0.0  # rad/s of the base in the last step, by its tracks and by the kick of its swing
         self.stopped = False
         self._held = False  # the drives aim at where the joints were in the first step of the stop
 
@@ -74,7 +75,7 @@ class Machine:
 
     def physics(self, seconds: float) -> None:
         """What the engine does in a step."""
-        swing = self.joints.get(SWING)
+        swing, yaw = self.joints.get(SWING), self.base.yaw
         before = swing.velocity if swing is not None else 0.0
         for joint in self.joints.values():
             if joint is not None:
@@ -83,6 +84,7 @@ class Machine:
         self.base.drive(self.tracks.forward, self.tracks.turn * self._unknowns.yaw_gain, seconds)
         if swing is not None:
             self.base.react(before, swing.velocity, self._unknowns.kick)
+        self.turning = (self.base.yaw - yaw) / seconds
 
     def _hold(self) -> None:
         self.tracks.stop()

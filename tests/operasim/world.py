@@ -108,5 +108,6 @@ def _truth(machine: Machine) -> dict[str, Any]:
     tracks = {"left": machine.tracks.left.speed, "right": machine.tracks.right.speed}
     return {
         "joints": joints, "tracks": tracks, "place": [base.x, base.y, base.z], "yaw": base.yaw,
+        "speed": machine.tracks.forward, "turning": machine.turning,
         "stopped": machine.stopped, "queued": machine.front.queued,
     }  # fmt: skip

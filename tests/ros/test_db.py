@@ -16,14 +16,18 @@ from sensor_msgs.msg import PointCloud2
 from tms_msg_db.msg import Event, Run, TmsdbGridFS
 from tms_msg_db.srv import (
     AddTask,
+    AddTemplate,
     GetParameter,
     GetTask,
+    GetTemplate,
     ListEvents,
     ListParameters,
     ListRuns,
     ListTasks,
+    ListTemplates,
     RemoveParameter,
     RemoveTask,
+    RemoveTemplate,
     SetParameter,
     TerrainStaticSrv,
     TmsdbGetData,
@@ -79,6 +83,7 @@ VALUES = [Parameter(name=name, value=value) for name, value in KINDS.items()]
 
 def test_tasks_records_and_history_through_ros(mesh: Mesh) -> None:
     tasks(mesh)
+    templates(mesh)
     records(mesh)
     history(mesh)
     cpp_names(mesh)
@@ -155,6 +160,35 @@ def tasks(mesh: Mesh) -> None:
         assert call.error_msg
         assert "\n" not in call.error_msg
     assert mesh.db(RemoveTask, "remove_task", task_id=1).error_code == ""
+
+
+def templates(mesh: Mesh) -> None:
+    """Stored over ROS; an import of a running mesh is seen at once."""
+    text = TREE.replace("say", "r").replace("a&#10;b", "$r$")
+    added = mesh.db(AddTemplate, "add_template", template_name="Dig", task_sequence=text)
+    assert (added.error_code, added.model_name, added.already_stored) == ("", "zx200", False)
+    assert mesh.db(AddTemplate, "add_template", template_name="Dig", task_sequence=text).already_stored
+    other = {"template_name": "Dig", "task_sequence": text.replace("$r$", "$s$")}
+    assert mesh.db(AddTemplate, "add_template", **other).error_code == "TEMPLATE_EXISTS"
+    assert mesh.db(AddTemplate, "add_template", **other, replace=True).replaced
+    assert mesh.db(AddTemplate, "add_template", template_name="No", task_sequence="<root/>").error_code == "BAD_TASK"
+    stored = mesh.db(GetTemplate, "get_template", template_name="Dig").stored
+    assert (stored.task_sequence, stored.description) == (other["task_sequence"], "Dig.xml")
+    assert stored.added_at.sec > 0
+    folder = mesh.log.with_name("from")
+    folder.mkdir()
+    (folder / "Level.xml").write_text(text)
+    (folder / "calls.xml").write_text(TREE.replace('ID="X"', 'ID="ExecuteSubtask" subtask_name="Level" r="1"'))
+    done = programs.tms(("--site", str(mesh.site.path), "import", str(folder), "--json"), mesh.environment, 60)
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["imported"]
+    listed = mesh.db(ListTemplates, "list_templates").templates
+    assert [(one.template_name, one.task_sequence) for one in listed] == [("Dig", ""), ("Level", "")]
+    (task,) = mesh.db(ListTasks, "list_tasks").tasks
+    assert task.description == "calls.xml"
+    mesh.db(RemoveTask, "remove_task", task_id=task.task_id)
+    assert mesh.db(RemoveTemplate, "remove_template", template_name="Dig").error_code == ""
+    assert mesh.db(GetTemplate, "get_template", template_name="Dig").error_code == "TEMPLATE_MISSING"
 
 
 def records(mesh: Mesh) -> None:

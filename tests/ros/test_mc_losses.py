@@ -1,5 +1,7 @@
 """A simulator that is lost, paused or started again while our controller moves its machine."""
 
+import os
+import signal
 from collections.abc import Iterator
 from typing import Any
 
@@ -66,3 +68,18 @@ def test_a_simulator_that_is_started_again_is_not_moved_on(site: OperaSim) -> No
     armed(site)
     _, call = send(site, {"swing_joint": 0.3})
     assert ended(site, call) is Outcome.SUCCEEDED, call.result
+
+
+def test_a_controller_that_did_not_run_moves_nothing_when_it_goes_on(site: OperaSim) -> None:
+    """It was stopped meanwhile: where its trajectory would be by now is far from where the machine is held."""
+    call, _, _ = swinging(site)
+    controller = site.process(f"{MACHINE}:mc")
+    os.kill(controller.pid, signal.SIGSTOP)
+    site.until(site.stands, "it was stopped")
+    held = site.joint("swing_joint")["target"]
+    os.kill(controller.pid, signal.SIGCONT)
+    ended(site, call)
+    begun, away = site.command("state")["time"], 0.0
+    while site.command("state")["time"] < begun + 2.0:  # a last command would come after its dead time
+        away = max(away, abs(site.joint("swing_joint")["target"] - held))
+    assert away < 0.03

@@ -36,7 +36,7 @@ TICK = 0.1  # s
 RETRIES = 2
 STORED = 5.0  # s for the facts of a run to be on the disk
 RECEIPT = 13.0  # s for the receipt of a stop
-STOPPING, SETTLING = 14.0, 18.0  # s that these phases take at most
+LIMITS = {Phase.STOPPING: 14.0, Phase.SETTLING: 18.0}  # s that these phases take at most
 WAITS = 10.5  # s that a goal waits for its server at most
 
 
@@ -110,8 +110,7 @@ class Execution:
     def in_time(self, now: float) -> None:
         """Raises Violation: it takes too long to end."""
         took, works = now - self.core.since, self.scheduler.worked_for()
-        limit = {Phase.STOPPING: STOPPING, Phase.SETTLING: SETTLING}.get(self.core.phase, float("inf"))
-        if min(took, works) > limit:
+        if min(took, works) > LIMITS.get(self.core.phase, float("inf")):
             raise Violation(f"{self.run_id} {self.core.phase.value} for {took:.1f} s")
         for goal in self.goals.open:
             waits = min(now - max(goal.begun, goal.not_before, self.hangs), works)

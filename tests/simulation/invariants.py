@@ -86,11 +86,11 @@ def _left(unit: Unit, now: float) -> None:
     unit.latched_since = unit.latched_since if core is not None and core.latch.cause is not None else now
     begun = max(begun, unit.lies_since)
     if (
-        plant.fault != Fault()
-        or not begun + STOP_IN_TIME < now < ends
+        not begun + STOP_IN_TIME < now < ends
         or unit.latched_since > begun
         or plant.speed == 0.0
         or unit.driven
+        or plant.fault != Fault()
     ):
         return
     if unit.machine.ordered_to_stop < begun and unit.gateway.worked_for() > now - begun:

@@ -28,8 +28,9 @@ class Machine:
         self._tell(self.plant.tell(now, self.clock))
         self._tell(self.plant.other(now, self.clock))
         done = self.plant.done(now)
-        self.succeeded.update([done] if done is not None else [])
-        self._ends(done, "SUCCEEDED")
+        if done is not None:
+            self.succeeded.add(done)
+            self._ends(done, "SUCCEEDED")
         self.world.after(PERIOD, self._beat)
 
     def _tell(self, sample: SourceSample | None) -> None:

@@ -1,5 +1,6 @@
 """A machine of one joint: its true motion, its server, and what it tells of itself. Pure; times are its own seconds."""
 
+from collections import deque
 from dataclasses import dataclass, field
 
 from tms_proof.facts import JointFacts, MachineFacts, ResponseFacts, SourceFacts, StillFacts
@@ -10,6 +11,7 @@ JOINT, PASSIVE = "boom", "bucket"
 PLACE = 0.5  # rad, where the passive joint is
 DEAD_TIME, LAG, TOP = 0.3, 0.1, 0.5  # s, s, rad/s
 PERIOD = 0.1  # s between messages
+RECORD = 20  # messages that it can tell again
 
 
 def facts(name: str = "zx200", at_once: bool = False, passive: bool = False) -> MachineFacts:
@@ -55,7 +57,7 @@ class Plant:
     turned: float = float("-inf")  # when a person last began to move it
     number: int = 0  # of its messages
     others: int = 0  # messages of a second publisher
-    told: list[tuple[float, float, float]] = field(default_factory=list)  # stamp, angle, speed
+    told: deque[tuple[float, float, float]] = field(default_factory=lambda: deque(maxlen=RECORD))  # stamp, angle, speed
     frozen: tuple[float, float, float] | None = None  # what it repeats
 
     def advance(self, now: float) -> None:
@@ -114,10 +116,10 @@ class Plant:
         if self.fault.mute:
             return None
         stamp, angle, speed = now, self.angle, 0.0 if self.fault.zero_velocity else self.speed
-        if self.fault.replay and len(self.told) >= 20:
-            _, angle, speed = self.told[self.number % 20]
+        if self.fault.replay and len(self.told) == RECORD:
+            _, angle, speed = self.told[self.number % RECORD]
         else:
-            self.told = [*self.told, (stamp, angle, speed)][-20:]
+            self.told.append((stamp, angle, speed))
         self.frozen = (self.frozen or (stamp, angle, speed)) if self.fault.frozen_stamp else None
         stamp, angle, speed = self.frozen or (stamp, angle, speed)
         self.number += 1

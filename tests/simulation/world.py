@@ -5,6 +5,8 @@ import random
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from mypy_extensions import mypyc_attr
+
 Step = Callable[[], None]
 
 
@@ -20,6 +22,7 @@ class Happened:
         return f"{self.at:9.3f}  {self.who:16} {self.what}"
 
 
+@mypyc_attr(native_class=False)  # an exception stays one of Python's when it is compiled (compiled.py)
 class Violation(AssertionError):
     """An invariant does not hold."""
 
@@ -39,7 +42,7 @@ class World:
     def at(self, when: float, step: Step) -> None:
         """Do a step at a time."""
         self._number += 1
-        heapq.heappush(self._waiting, (max(when, self.now), self._number, step))
+        heapq.heappush(self._waiting, (when if when > self.now else self.now, self._number, step))
 
     def after(self, seconds: float, step: Step) -> None:
         """Do a step later."""
@@ -47,7 +50,8 @@ class World:
 
     def send(self, topic: str, step: Step, slow: float = 0.0) -> None:
         """A message on its way: those of one topic stay in order, those of others may overtake it."""
-        delay = self.random.expovariate(1 / 0.003) + 0.001 + (self.random.random() < 0.02) * self.random.random() * 0.2
+        chance = self.random.random
+        delay = self.random.expovariate(1 / 0.003) + 0.001 + (chance() < 0.02) * chance() * 0.2
         arrives = max(self.now + delay + slow, self._lanes.get(topic, 0.0) + 1e-6)
         self._lanes[topic] = arrives
         self.at(arrives, step)
@@ -95,7 +99,7 @@ class Process:
         """Do a step in this process: now, or when it thaws; never in a later life."""
         if not self.alive:
             return
-        if self.frozen():
+        if self.world.now < self.thaws:
             self.waiting.append(step)
         else:
             step()

@@ -33,13 +33,13 @@ def journal(node: "Ros", run_id: str, after: int = 0) -> Iterator["Event"]:
 
 def _follow(node: "Ros", run_id: str) -> None:
     """Show events as they come until the run has ended."""
-    after = 0
+    after, places = 0, dict[str, str]()
     while True:
         # Read before the events, since the end of a run is stored after its last event.
         run = recent(node, run_id)
         ended = run is None or has_ended(run)
         for event in journal(node, run_id, after):
-            click.echo(_line(event))
+            click.echo(_line(event, places))
             after = event.number
         if ended:
             return
@@ -60,16 +60,24 @@ def _as_dict(event: "Event") -> dict[str, Any]:
     }
 
 
-def _line(event: "Event") -> str:
+def _line(event: "Event", places: dict[str, str]) -> str:
+    """A line for people; `places` keeps which node comes from which template, as the event `tree` tells."""
     from tms_machine.values import from_parameters
 
     when = live.moment(event.stamp)
     clock = when.strftime("%H:%M:%S.") + f"{when.microsecond // 1000:03}" if when else "-" * 12
     kind = click.style(f"{event.kind:<6}", fg=COLOURS.get(event.kind))
-    values = "  ".join(f"{name}={value}" for name, value in from_parameters(event.values).items())
-    return "  ".join(
-        part for part in (f"{event.number:>5} {clock} {kind}", event.node, words.reason(event.text), values) if part
-    )
+    found = from_parameters(event.values)
+    if event.kind == "tree":
+        places.update(zip(_texts(found.get("paths")), _texts(found.get("templates")), strict=False))
+    place = f"({template})" if (template := places.get(event.node)) else ""
+    values = "  ".join(f"{name}={value}" for name, value in found.items())
+    parts = (f"{event.number:>5} {clock} {kind}", event.node, place, words.reason(event.text), values)
+    return "  ".join(part for part in parts if part)
+
+
+def _texts(value: object) -> list[str]:
+    return value if isinstance(value, list) else []
 
 
 @click.command()
@@ -97,5 +105,6 @@ def command(run: str, follow: bool, as_json: bool) -> None:
     if as_json:
         session.show_json([_as_dict(event) for event in events])
         return
+    places: dict[str, str] = {}
     for event in events:
-        click.echo(_line(event))
+        click.echo(_line(event, places))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tms_cli import live, session, words
+from tms_cli import live, session, templates, words
 from tms_cli.commands.runs import has_ended, recent
 from tms_cli.reasons import SchedulerForgot, SchedulerQuiet
 from tms_cli.words import say, state
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from tms_msg_ts.msg import RunStates
 
     from tms_ros.node import Ros
+    from tms_ts.bt import Templates
 
 ACTION = "/tms/execute_task"
 SERVER_LIMIT = 5.0  # s
@@ -29,6 +30,7 @@ CHECK_PERIOD = 0.1  # s between checks
 SILENT = 10.0  # s without a message of the scheduler, which publishes its runs twice a second
 FORGOTTEN = 5.0  # s of lists without this run, after which another scheduler process must have begun it
 INTERRUPTED = 130
+BETWEEN = " · "  # machine, subtask and record of a goal
 
 
 @dataclass(frozen=True)
@@ -176,23 +178,25 @@ def _view(node: "Ros", task_id: int) -> live.View:
     from tms_msg_rc.msg import MachineState
 
     task = session.call(node, GetTask, "/tms/db/get_task", task_id=task_id).task
-    view = live.View(task_id, task.description, _goals(task.task_sequence))
+    goals = _goals(task.task_sequence, lambda name: templates.text_of(node, name))
+    view = live.View(task_id, task.description, goals)
+    named = {goal.partition(BETWEEN)[0] for _, goal in goals}  # also by templates
     for machine in session.site().file.machines:
-        if f'"{machine}"' in task.task_sequence:
+        if machine in named or f'"{machine}"' in task.task_sequence:
             node.subscribe(MachineState, f"/{machine}/rc/state", view.machine_received, latched=True)
     return view
 
 
-def _goals(text: str) -> list[tuple[str, str]]:
+def _goals(text: str, stored: "Templates") -> list[tuple[str, str]]:
     """(node type, goal) of every node in document order; nothing for a tree that does not load here."""
     from tms_ts.bt import TreeError, load
     from tms_ts.bt.tree import SendsGoal
 
     try:
-        nodes = load(text).nodes
+        nodes = load(text, templates=stored).nodes
     except TreeError:
         return []  # the scheduler refuses it and gives the reason
-    return [(n.registration_name, " · ".join(n.goal_asked()) if isinstance(n, SendsGoal) else "") for n in nodes]
+    return [(n.registration_name, BETWEEN.join(n.goal_asked()) if isinstance(n, SendsGoal) else "") for n in nodes]
 
 
 def report(end: End, as_json: bool) -> None:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from tms_cli import live, session
+from tms_cli import live, session, templates
 from tms_cli.reasons import InTaskFile, TaskUnknown
 from tms_cli.task_file import read
 from tms_cli.words import Group, say
@@ -163,10 +163,12 @@ def _picture(text: str, folder: Path | None, form: str) -> str:
     Raises:
         TreeError: it cannot be loaded.
     """
+    from tms_cli import check_task
     from tms_ts.bt import load
     from tms_ts.bt.display import ascii_tree, dot
 
-    tree = load(text, folder=folder)
+    with check_task.SchedulerClient() as mesh:  # which is needed for templates only
+        tree = load(text, folder=folder, templates=lambda name: templates.text_of(mesh.node(), name))
     return (dot(tree) if form == "dot" else ascii_tree(tree)).rstrip()
 
 
@@ -188,14 +190,15 @@ def rm(task_id: int, as_json: bool) -> None:
 @command.command()
 @click.argument("what", metavar="WHAT")
 @click.option("--recursive", is_flag=True, help="Also the folders inside a folder.")
+@click.option("--cpp", is_flag=True, help="As the C++ system does: a $key$ without a value becomes the word none.")
 @session.json_option
 @click.pass_context
-def check(ctx: click.Context, what: str, recursive: bool, as_json: bool) -> None:
+def check(ctx: click.Context, what: str, recursive: bool, cpp: bool, as_json: bool) -> None:
     """Check a file, a stored task (its number) or a folder of files, without running; exit code 1 if there are errors.
 
     Lists every goal that a leaf would send to a machine, errors and warnings with their lines; of a folder one line
-    a file. The scheduler also looks for the records and subtasks that a task names. While no mesh runs, the
-    structure alone is checked, and the output says so.
+    a file. The scheduler also looks for the records and subtasks that a task names, and the templates that it calls
+    come from the database. While no mesh runs, and with --cpp, the structure alone is checked.
 
     \b
     Examples:
@@ -208,7 +211,7 @@ def check(ctx: click.Context, what: str, recursive: bool, as_json: bool) -> None
     folder = Path(what).is_dir()
     if recursive and not folder:
         raise click.UsageError(f"--recursive is for folders, and {what} is none")
-    with check_task.SchedulerClient() as scheduler:
+    with check_task.SchedulerClient(cpp=cpp) as scheduler:
         if folder:
             right = check_report.show_folder(
                 check_task.folder(scheduler, Path(what), recursive=recursive), as_json=as_json

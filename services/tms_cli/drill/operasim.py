@@ -1,12 +1,12 @@
 """Our stand-in of OperaSim-PhysX in the drill: the true motion of its machines, and its own troubles."""
 
 import json
-import math
 import re
 import socket
 import threading
 from collections import defaultdict, deque
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -24,6 +24,15 @@ PERIOD = 0.04  # s between samples, as the stand-ins of our own tell them
 WAITING = 250  # samples of a machine, ten seconds
 CHECK_PERIOD = 0.1  # s
 CUT, PAUSE, RESTART = 2.0, 1.5, 1.0  # s of the troubles
+
+
+@dataclass(frozen=True)
+class Told:
+    """What the simulator has told of a machine."""
+
+    at: float  # s since 1970
+    time: float  # s of the simulator
+    machine: Mapping[str, Any]
 
 
 class ControlPort:
@@ -57,9 +66,7 @@ class OperaSim:
         """
         port = _port(log)
         self._hand, self._eye = ControlPort(port, ANSWER_LIMIT), ControlPort(port, ANSWER_LIMIT)
-        self._samples: dict[str, deque[tuple[float, float, dict[str, Any]]]] = defaultdict(
-            lambda: deque(maxlen=WAITING)
-        )
+        self._samples: dict[str, deque[Told]] = defaultdict(lambda: deque(maxlen=WAITING))
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._sample, name="truth", daemon=True)
         self._thread.start()
@@ -67,12 +74,12 @@ class OperaSim:
     def truth(self, machine: str, still: Still) -> Callable[[], list[MotionSample]]:
         """A function that takes the samples since its last call."""
         waiting = self._samples[machine]
-        last: list[tuple[float, float, dict[str, Any]]] = []
+        last: list[Told] = []
 
         def take() -> list[MotionSample]:
             new = [*last, *(waiting.popleft() for _ in range(len(waiting)))]
             last[:] = new[-1:]
-            return [sample_between(before, after, still) for before, after in pairwise(new)]
+            return [sample_of(after, still, paused=after.time <= before.time) for before, after in pairwise(new)]
 
         return take
 
@@ -107,7 +114,7 @@ class OperaSim:
             except (OSError, ValueError):
                 return  # it has ended; the drill looks after its children
             for name, machine in state["machines"].items():
-                self._samples[name].append((unix_time(), float(state["time"]), machine))
+                self._samples[name].append(Told(unix_time(), float(state["time"]), machine))
 
 
 def _port(log: Path) -> int:
@@ -119,20 +126,11 @@ def _port(log: Path) -> int:
     return int(found[-1])
 
 
-def sample_between(
-    before: tuple[float, float, Mapping[str, Any]], after: tuple[float, float, Mapping[str, Any]], still: Still
-) -> MotionSample:
-    """The true motion at a state: (s since 1970, s of the simulator, its truth of a machine), and the one before it.
-
-    Velocities of places come from both states; nothing moves while the time of the simulator stands still.
-    """
-    (_, old, was), (at, now, here) = before, after
-    joints = {name: float(joint["position"]) for name, joint in here["joints"].items()}
-    (x, y, *_), yaw = here["place"], float(here["yaw"])
-    angles, seconds = {**joints, "heading": yaw}, now - old
-    if seconds <= 0.0:  # paused, or begun anew
-        return MotionSample(at, 0.0, angles, (x, y))
-    way = math.hypot(x - was["place"][0], y - was["place"][1]) / seconds / still.linear
-    turn = abs(yaw - float(was["yaw"])) / seconds / still.angular
-    speed = max((abs(float(joint["velocity"])) for joint in here["joints"].values()), default=0.0) / still.velocity
-    return MotionSample(at, max(way, turn, speed), angles, (x, y))
+def sample_of(told: Told, still: Still, paused: bool) -> MotionSample:
+    """The true motion; `paused`: the time of the simulator stands still, or it has begun anew."""
+    machine = told.machine
+    joints = {name: float(joint["position"]) for name, joint in machine["joints"].items()}
+    (x, y, *_), angles = machine["place"], {**joints, "heading": float(machine["yaw"])}
+    joint = max((abs(float(joint["velocity"])) for joint in machine["joints"].values()), default=0.0)
+    way, turn = abs(machine["speed"]) / still.linear, abs(machine["turning"]) / still.angular
+    return MotionSample(told.at, 0.0 if paused else max(joint / still.velocity, way, turn), angles, (x, y))

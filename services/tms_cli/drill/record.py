@@ -80,6 +80,11 @@ class TrialRecording:
             [one for one in self.releases if one >= at],
         )
 
+    def close_goals(self, at: float) -> None:
+        """End all open goals."""
+        for goal in self.goals.values():
+            goal.ended = at if goal.ended is None else goal.ended
+
     def goal_after(self, at: float) -> float:
         """The begin of the first goal after a moment; infinite if there is none."""
         return min((goal.began for goal in self.goals.values() if goal.began > at), default=math.inf)

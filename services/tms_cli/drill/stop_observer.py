@@ -109,6 +109,11 @@ class StopObserver:
             sleep(CHECK_PERIOD)
         return True
 
+    def forget_open_goals(self) -> None:
+        """Take goals for ended that a run before has left open: their server was killed and cannot tell."""
+        with self._lock:
+            self._record.close_goals(unix_time())
+
     def open_since(self) -> float | None:
         """The begin of the open goal; None without one."""
         with self._lock:

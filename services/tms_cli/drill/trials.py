@@ -71,6 +71,7 @@ class Hand:
             TmsError: it does not move, even after a stop and a re-arm by hand.
         """
         for last in (False, True):
+            self.eyes.forget_open_goals()
             self.work.begin()
             begun = unix_time()
             self.eyes.wait(lambda _: self.eyes.open_since() is not None or self.work.ended(), begun, MOVES_LIMIT)

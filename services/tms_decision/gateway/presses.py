@@ -36,9 +36,8 @@ def stands_in(gateway: Gateway, now: float, event: StandsIn) -> None:
 
 def advance(gateway: Gateway, now: float) -> None:
     """Judge presses after their time of doubt."""
-    due = [doubt for doubt in gateway.doubts if now >= doubt.until]
-    gateway.doubts = [doubt for doubt in gateway.doubts if now < doubt.until]
-    for doubt in due:
+    for doubt in [doubt for doubt in gateway.doubts if now >= doubt.until]:
+        gateway.doubts.remove(doubt)
         if gateway.stood_in_at < doubt.since and gateway.latch.cause is None:
             stops.stop(gateway, now, PressedByOthers(), StopKind.LATCH)
 

@@ -199,8 +199,8 @@ class Gateway:
 
     def held(self, now: float) -> dict[str, Owner]:
         """The living processes, and what each stands behind."""
-        found = {name: parse(link.goal) for name, link in self.links.items() if link.alive(now)}
-        return {name: owner for name, owner in found.items() if owner is not None}
+        links = self.links.items()
+        return {name: owner for name, link in links if link.alive(now) and (owner := parse(link.goal)) is not None}
 
     def holder(self, now: float) -> str:
         """The name of the run that holds the machine, for people."""

@@ -54,6 +54,7 @@ class PathRecord(Params):
     qz: list[float] | None = None
     qw: list[float] | None = None
     yaw: list[float] | None = None  # deg
+    read_direction: str = ""  # down: from the last pose to the first; else from the first to the last
 
     @model_validator(mode="after")
     def _fits(self) -> "PathRecord":
@@ -70,10 +71,11 @@ class PathRecord(Params):
         """The poses as ROS messages."""
         places = zip(self.x, self.y, self.z, strict=True)
         turns = zip(*(self._list(name) for name in TURN[self.angles]), strict=True)
-        return [
+        poses = [
             Pose(position=Point(x=x, y=y, z=z), orientation=turn(*numbers))
             for (x, y, z), numbers in zip(places, turns, strict=True)
         ]
+        return poses[::-1] if self.read_direction == "down" else poses
 
     def _list(self, name: str) -> list[float]:
         found: list[float] | None = getattr(self, name)

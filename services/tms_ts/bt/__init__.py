@@ -3,10 +3,12 @@
 It knows no ROS, no database and no machine: leaf nodes reach those through `tms_ts.world`.
 """
 
+from tms_ts.bt.check_template import TemplateReport, check_template
 from tms_ts.bt.control import Control
 from tms_ts.bt.convert import MISSING, UInt
 from tms_ts.bt.decorator import Decorator
 from tms_ts.bt.errors import TickError, TreeError
+from tms_ts.bt.expand import Templates
 from tms_ts.bt.leaf import Condition, CoroAction, PlainAction, StatefulAction, SyncAction
 from tms_ts.bt.load import CheckReport, check, load
 from tms_ts.bt.node import Node
@@ -42,11 +44,14 @@ __all__ = [
     "StatefulAction",
     "Status",
     "SyncAction",
+    "TemplateReport",
+    "Templates",
     "TickError",
     "Tree",
     "TreeError",
     "UInt",
     "check",
+    "check_template",
     "load",
     "node",
     "palette",

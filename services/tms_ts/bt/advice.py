@@ -5,14 +5,15 @@ Most of it concerns trees that run here, but hang or throw in the C++ system.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 from tms_reason.reason import Reason
 from tms_ts.bt.blackboard_nodes import SetBlackboard
 from tms_ts.bt.convert import CPP_NAMES, FROM_TEXT, MISSING
-from tms_ts.bt.node import AtOnce, Node
-from tms_ts.bt.reasons import KeyOfTwoTypes, MayHang, PortType, ThrowsWithoutPort
+from tms_ts.bt.errors import within
+from tms_ts.bt.node import AtOnce, Keys, Node, Place
+from tms_ts.bt.ports import Direction, Pointer
+from tms_ts.bt.reasons import KeyOfTwoTypes, MayHang, NeverWritten, PortType, ThrowsWithoutPort
 
 
 def advise(nodes: list[Node]) -> None:
@@ -20,36 +21,49 @@ def advise(nodes: list[Node]) -> None:
     synchronous_outcomes: dict[Node, AtOnce] = {}
     for node in reversed(nodes):  # children before their parents
         synchronous_outcomes[node] = node.synchronous_outcomes([synchronous_outcomes[child] for child in node.children])
-    texts = text_keys(nodes)
-    type_changes(nodes)
+    keys = known_keys(nodes)
+    type_changes(nodes, keys)
     for node in nodes:
         for fault in node.faults():
-            node.context.faults.append((node.line, node.path, fault))
-        for note in (*literals(node), *node.preflight(texts)):
+            node.context.faults.append((node.line, node.path, within(node.template, fault)))
+        for note in (*literals(node), *node.preflight(keys), *(never_written(node, keys) if keys.complete else ())):
             node.warn(note)
         if node.may_hang([synchronous_outcomes[child] for child in node.children]):
             node.warn(MayHang(node.registration_name))
 
 
-def type_changes(nodes: list[Node]) -> None:
+def type_changes(nodes: list[Node], keys: Keys) -> None:
     """Warn of keys that nodes write with different types; a text that comes first leaves the type open."""
-    first: dict[tuple[int, str], tuple[Any, int]] = {}
     for node in nodes:
         for key, kind in node.written():
-            known, line = first.setdefault(node.blackboard.place(key), (kind, node.line))
-            if known is not str and kind is not known:
+            known, line = keys.kinds.get(node.blackboard.place(key), (kind, node.line))
+            if known is not str and kind not in (known, Any):
                 node.warn(KeyOfTwoTypes(key, CPP_NAMES[known], line, CPP_NAMES[kind]))
 
 
-def text_keys(nodes: list[Node]) -> Mapping[str, str]:
-    """Keys that a SetBlackboard gives a text, with the text."""
-    found: dict[str, str] = {}
+def known_keys(nodes: list[Node]) -> Keys:
+    """What the nodes write, in document order."""
+    texts: dict[str, str] = {}
+    writers: dict[Place, Node] = {}
+    kinds: dict[Place, tuple[Any, int]] = {}
     for node in nodes:
         if isinstance(node, SetBlackboard):
             key, value = node.literal("output_key"), node.literal("value")
             if key is not None and value is not None:
-                found[key] = value
-    return found
+                texts[key] = value
+        for key, kind in node.written():
+            place = node.blackboard.place(key)
+            writers.setdefault(place, node)
+            if kind is not Any:
+                kinds.setdefault(place, (kind, node.line))
+    complete = not any(isinstance(node.bindings.get(node.key_port), Pointer) for node in nodes)
+    return Keys(texts, writers, kinds, complete)
+
+
+def never_written(node: Node, keys: Keys) -> list[Reason]:
+    """Warnings of keys that a node needs and that nothing in the document gives a value."""
+    missing = [key for key in node.needed() if node.blackboard.place(key) not in keys.writers]
+    return [NeverWritten(key, node.registration_name) for key in missing if node.blackboard.get(key) is MISSING]
 
 
 def literals(node: Node) -> list[Reason]:
@@ -60,7 +74,7 @@ def literals(node: Node) -> list[Reason]:
         if port not in node.bindings and node.ports[port].default is MISSING
     ]
     for port, bound in node.bindings.items():
-        kind = node.ports[port].kind
-        if isinstance(bound, str) and FROM_TEXT[kind](bound) is MISSING:
+        kind, direction = node.ports[port].kind, node.ports[port].direction
+        if direction is not Direction.OUTPUT and isinstance(bound, str) and FROM_TEXT[kind](bound) is MISSING:
             notes.append(PortType(port, bound, node.registration_name, CPP_NAMES[kind]))
     return notes

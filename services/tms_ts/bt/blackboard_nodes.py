@@ -53,6 +53,7 @@ class SetBlackboard(SyncAction):
 
     __slots__ = ()
     needs = ("value", "output_key")
+    key_port = "output_key"
     value: In[Any]
     output_key: InOut[Any]
 

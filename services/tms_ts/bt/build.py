@@ -59,18 +59,20 @@ class Builder:
 
     def node(self, element: etree._Element, tree: TreeElement, blackboard: Blackboard, path: str) -> Node:
         line = line_of(element)
+        template = self.document.places.get(element, "")
         if len(self.nodes) >= MAX_NODES:
-            raise TreeError(ManyNodes(MAX_NODES), line=line, path=path)
+            raise TreeError(ManyNodes(MAX_NODES), line=line, path=path, template=template)
         if path.count(".") >= MAX_DEPTH:
-            raise TreeError(TreeTooDeep(MAX_DEPTH), line=line, path=path)
+            raise TreeError(TreeTooDeep(MAX_DEPTH), line=line, path=path, template=template)
         use = self.rules.use(element, tree)
         if use.subtree:
             return self.subtree(use, element, tree, blackboard, path)
         assert use.cls is not None  # verified
         bindings = {k: bind(k, v, v4=tree.v4) for k, v in use.attributes.items() if k not in RESERVED}
-        self.declare(use.cls, bindings, blackboard, line, path)
         name = use.attributes.get("name", use.id)
-        node = use.cls(NodeSpec(use.id, name, self.context, blackboard, bindings, path, line))
+        spec = NodeSpec(use.id, name, self.context, blackboard, bindings, path, line, template=template)
+        self.declare(use.cls, spec)
+        node = use.cls(spec)
         if use.id in self.rules.adopted:
             node.warn(AdoptedLeaf(use.id))
         self.nodes.append(node)
@@ -84,31 +86,29 @@ class Builder:
         parent.children.append(child)
 
     @staticmethod
-    def declare(
-        cls: type[Node], bindings: dict[str, Pointer | str], blackboard: Blackboard, line: int, path: str
-    ) -> None:
-        for port, bound in bindings.items():
+    def declare(cls: type[Node], spec: NodeSpec) -> None:
+        for port, bound in spec.bindings.items():
             if isinstance(bound, Pointer):
                 try:
-                    blackboard.declare(bound.key, cls.ports[port].kind)
+                    spec.blackboard.declare(bound.key, cls.ports[port].kind)
                 except TreeError as error:
-                    error.place(line, path)
+                    error.place(spec.line, spec.path, spec.template)
                     raise
 
     # --- subtrees
 
     def subtree(self, use: Use, element: etree._Element, tree: TreeElement, blackboard: Blackboard, path: str) -> Node:
-        line = line_of(element)
+        line, template = line_of(element), self.document.places.get(element, "")
         if use.id not in self.trees:
-            raise TreeError(NoTreeOfId(use.id), line=line, path=path)
+            raise TreeError(NoTreeOfId(use.id), line=line, path=path, template=template)
         cls = self.rules.registry[use.subtree]
         name = use.attributes.get("name", use.id) if tree.v4 else use.id
-        node = cls(NodeSpec(use.subtree, name, self.context, blackboard, {}, path, line))
+        node = cls(NodeSpec(use.subtree, name, self.context, blackboard, {}, path, line, template=template))
         self.nodes.append(node)
         try:
             inner = self.inner_blackboard(use, blackboard, v4=tree.v4)
         except TreeError as error:
-            error.place(line, path)
+            error.place(line, path, template)
             raise
         self.attach(self.tree(self.trees[use.id], inner, f"{path}.0", element), node)
         return node

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -10,7 +10,7 @@ from lxml import etree
 
 from tms_reason.reason import Reason
 from tms_reason.xml_text import MAX_BYTES, MAX_DEPTH
-from tms_ts.bt.errors import MAX_WARNINGS, TreeError, shortened
+from tms_ts.bt.errors import MAX_WARNINGS, TreeError, shortened, within
 from tms_ts.bt.reasons import (
     CannotInclude,
     IncludeCircle,
@@ -51,6 +51,9 @@ class Document:
     trees: list[TreeElement] = field(default_factory=list)  # all trees, in order of registration
     models: dict[str, frozenset[str]] = field(default_factory=dict)  # ID -> ports, by TreeNodesModel
     warnings: list[tuple[int, Reason]] = field(default_factory=list)
+    errors: list[TreeError] = field(default_factory=list)  # of calls of templates
+    places: dict[etree._Element, str] = field(default_factory=dict)  # of elements from templates: TEMPLATE:LINE
+    templates: dict[str, str] = field(default_factory=dict)  # name -> text of those that it calls
 
     @property
     def warns(self) -> bool:
@@ -61,15 +64,15 @@ class Document:
         if self.warns:
             self.warnings.append((line, shortened(what)))
 
+    def warn_at(self, element: etree._Element, what: Reason) -> None:
+        """Warn of an element, which may come from a template."""
+        self.warn(line_of(element), within(self.places.get(element, ""), what))
+
     def by_id(self) -> dict[str, TreeElement]:
         found: dict[str, TreeElement] = {}
         for tree in self.trees:
             found.setdefault(tree.id, tree)
         return found
-
-    @property
-    def text(self) -> str:
-        return self.sources[0].text
 
     @property
     def main(self) -> str:
@@ -87,6 +90,14 @@ class Document:
 def children(element: etree._Element) -> Iterator[etree._Element]:
     """The child elements, without comments and processing instructions."""
     return (child for child in element if isinstance(child.tag, str))
+
+
+def described(palette: Iterable[etree._Element]) -> Iterator[tuple[str, frozenset[str]]]:
+    """The IDs and ports that a TreeNodesModel describes."""
+    for element in palette:
+        if isinstance(element.tag, str) and (name := element.get("ID")):
+            ports = [port.get("name") for port in children(element) if str(port.tag).endswith("_port")]
+            yield name, frozenset(str(port).strip() for port in ports if port)
 
 
 def read(data: bytes | str, *, folder: Path | None = None, file: str = "", limit: int = MAX_BYTES) -> Document:
@@ -134,10 +145,8 @@ class _DocumentReader:
         models = [child for child in children(source.root) if child.tag == "TreeNodesModel"]
         if len(models) > 1:
             raise TreeError(TwoPalettes(), line=line_of(models[1]), file=source.file)
-        for element in models[0] if models else ():
-            if isinstance(element.tag, str) and (name := element.get("ID")):
-                ports = [port.get("name") for port in children(element) if str(port.tag).endswith("_port")]
-                self.document.models.setdefault(name, frozenset(str(port).strip() for port in ports if port))
+        for name, ports in described(models[0] if models else ()):
+            self.document.models.setdefault(name, ports)
 
     def include(self, element: etree._Element, source: ParsedXml, here: Path | None) -> None:
         given = source.attributes(element)

@@ -13,7 +13,18 @@ from typing import Any, TypeVar
 from tms_reason.errors import TaskError
 from tms_reason.reason import Reason
 from tms_reason.texts import text
-from tms_ts.bt.reasons import AtNode, DidYouMean, FileLine, FileLineAt, Hinted, InFile, Line, LineAt, Placed
+from tms_ts.bt.reasons import (
+    AtNode,
+    DidYouMean,
+    FileLine,
+    FileLineAt,
+    Hinted,
+    InFile,
+    InTemplate,
+    Line,
+    LineAt,
+    Placed,
+)
 
 R = TypeVar("R", bound=Reason)
 MAX_WARNINGS = 500  # of one tree; more are no help to the author
@@ -32,18 +43,20 @@ class TreeError(TaskError):
         path: str = "",
         hint: Reason | None = None,
         file: str = "",
+        template: str = "",
     ) -> None:
         super().__init__(what, self.code)
         self.what, self.hint, self.file = shortened(what), hint if hint is None else shortened(hint), file
         self.line: int | None = None
-        self.path = ""
-        self.place(line, path)
+        self.path = self.template = ""
+        self.place(line, path, template)
 
-    def place(self, line: int | None, path: str) -> None:
-        """Set line and path of the error."""
-        self.line, self.path = line, path
+    def place(self, line: int | None, path: str, template: str = "") -> None:
+        """Set where it is: line of the task, path of the node, and the place in a template that the task calls."""
+        self.line, self.path, self.template = line, path, template
         where = _place(self.file, line, short(path, 120))
-        placed = self.what if where is None else Placed(where, self.what)
+        what = within(template, self.what)
+        placed = what if where is None else Placed(where, what)
         self.reason = placed if self.hint is None else Hinted(placed, self.hint)
 
     def __str__(self) -> str:
@@ -52,6 +65,11 @@ class TreeError(TaskError):
 
 class TickError(TreeError):
     """A node that raised; the caller halts the tree."""
+
+
+def within(template: str, what: Reason) -> Reason:
+    """A reason about a node; `template`: where it stands in a template (TEMPLATE:LINE), empty in the task itself."""
+    return InTemplate(template, what) if template else what
 
 
 def short(text: str, length: int = 400) -> str:

@@ -16,6 +16,7 @@ from tms_ts.bt.build import Builder
 from tms_ts.bt.context import Context
 from tms_ts.bt.document import Document, read
 from tms_ts.bt.errors import TreeError
+from tms_ts.bt.expand import Templates, expand, no_templates
 from tms_ts.bt.node import Node
 from tms_ts.bt.registry import Registry
 from tms_ts.bt.registry import registry as all_nodes
@@ -34,6 +35,7 @@ def load(
     world: World | None = None,
     blackboard: Mapping[str, Any] | None = None,
     folder: Path | None = None,
+    templates: Templates = no_templates,
     clock: Callable[[], float] | None = None,
     quirks: bool = False,
     limit: int = MAX_BYTES,
@@ -41,9 +43,11 @@ def load(
     """Make a tree from text, or from a file if `tree` is a Path; the first error of the document is raised.
 
     folder: includes are looked for here and nowhere else (default: the file's own folder; none for text)
+    templates: text by name of the templates that ExecuteSubtask calls
     quirks: copy the known defects of the C library too (a halted Timeout forgets to clear its timer)
     """
     document = _read(tree, folder, limit)
+    expand(document, templates)
     rules = Rules(document, registry or all_nodes())
     error = next(rules.errors(), None)
     if error is not None:
@@ -66,7 +70,7 @@ def _build(document: Document, rules: Rules, context: Context[Node], values: Map
     advise(builder.nodes)
     for line, what in document.warnings:  # last: warnings of unused trees must leave room for those of used ones
         context.warn(line, what)
-    return Tree(root, builder.nodes, builder.blackboards, context, document.text, document.main)
+    return Tree(root, builder.nodes, builder.blackboards, context, document)
 
 
 @dataclass(slots=True)
@@ -84,12 +88,23 @@ class CheckReport:
 
 
 def check(
-    tree: str | bytes | Path, *, registry: Registry | None = None, folder: Path | None = None, limit: int = MAX_BYTES
+    tree: str | bytes | Path,
+    *,
+    registry: Registry | None = None,
+    folder: Path | None = None,
+    templates: Templates | None = no_templates,
+    cpp: bool = False,
+    limit: int = MAX_BYTES,
 ) -> CheckReport:
-    """Load without running: leaf goals, warnings and all errors with their lines."""
+    """Load without running: leaf goals, warnings and all errors with their lines.
+
+    templates: None where nobody can be asked for them; calls are then not looked into
+    cpp: a $key$ of a template that has no value becomes the word none, with a warning
+    """
     report = CheckReport()
     try:
         document = _read(tree, folder, limit)
+        expand(document, templates, cpp=cpp)
         rules = Rules(document, registry or all_nodes())
         report.errors.extend(islice(rules.errors(), MAX_ERRORS))
         report.warnings = list(document.warnings)

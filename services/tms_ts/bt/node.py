@@ -15,7 +15,7 @@ from tms_reason.reason import Reason
 from tms_ts.bt.blackboard import Blackboard
 from tms_ts.bt.context import Context
 from tms_ts.bt.convert import FROM_TEXT, MISSING, convert
-from tms_ts.bt.errors import TickError
+from tms_ts.bt.errors import TickError, within
 from tms_ts.bt.ports import Direction, Pointer, Port
 from tms_ts.bt.reasons import AddPort, DoesNotFit, KeyChangesType, KeyHasNoValue, MissingParameter, OutputNotConnected
 from tms_ts.bt.status import IDLE, RUNNING, NodeType, Status
@@ -33,9 +33,21 @@ class NodeSpec:
     path: str = "0"  # child positions from the root, e.g. 0.1.2
     line: int = 0
     uid: int = 0
+    template: str = ""  # TEMPLATE:LINE where a template of ExecuteSubtask has it; `line` is then that of the call
 
 
 AtOnce = tuple[bool, bool]  # may succeed, may fail
+Place = tuple[int, str]  # what identifies a key in the tree: Blackboard.place
+
+
+@dataclass(frozen=True, slots=True)
+class Keys:
+    """What the document tells of the keys of all blackboards."""
+
+    texts: Mapping[str, str] = field(default_factory=dict)  # that a SetBlackboard gives a key
+    writers: Mapping[Place, Node] = field(default_factory=dict)  # the first node that writes a key
+    kinds: Mapping[Place, tuple[Any, int]] = field(default_factory=dict)  # the first known type, and its line
+    complete: bool = True  # whether every key that is written is known before the run
 
 
 class Node:
@@ -53,6 +65,7 @@ class Node:
         "reason",
         "registration_name",
         "state",
+        "template",
         "uid",
     )
     kind: ClassVar[NodeType] = NodeType.UNDEFINED
@@ -60,7 +73,11 @@ class Node:
     ports: ClassVar[Mapping[str, Port]] = {}
     required: ClassVar[frozenset[str]] = frozenset()  # ports without which loading fails
     needs: ClassVar[tuple[str, ...]] = ()  # ports without which the node throws
+    versions: ClassVar[tuple[int, ...]] = ()  # of the C++ system that have this node
+    older_ports: ClassVar[frozenset[str]] = frozenset()  # that older tasks have; the palette leaves them out
     asking: ClassVar[bool] = False  # RUNNING only because an answer has not come yet
+    key_port: ClassVar[str] = ""  # an input that names a key which it writes
+    key_kind: ClassVar[Any] = Any  # the type of what it writes there; Any: only the run decides
 
     def __init__(self, birth: NodeSpec) -> None:
         self.name = birth.name
@@ -71,6 +88,7 @@ class Node:
         self.path = birth.path
         self.line = birth.line
         self.uid = birth.uid
+        self.template = birth.template
         self.state: Status = IDLE
         self.reason: Reason | None = None  # why it is RUNNING or has failed, for the operator
         self.parent: Node | None = None
@@ -176,7 +194,7 @@ class Node:
         return [port for port in self.ports.values() if port.direction is not Direction.OUTPUT]
 
     def warn(self, what: Reason) -> None:
-        self.context.warn(self.line, what)
+        self.context.warn(self.line, within(self.template, what))
 
     # --- preflight
 
@@ -185,10 +203,24 @@ class Node:
         return []
 
     def written(self) -> list[tuple[str, Any]]:
-        """Keys that it writes with a type that the document determines, and that type."""
-        outputs = [port for port in self.ports.values() if port.direction is Direction.OUTPUT and port.kind is not Any]
-        bound = [(self.bindings.get(port.name), port.kind) for port in outputs]
-        return [(one.key if isinstance(one, Pointer) else one, kind) for one, kind in bound if one is not None]
+        """Keys that it writes, as far as the document names them, with their types; Any where only the run decides."""
+        found: list[tuple[str, Any]] = []
+        for name, bound in self.bindings.items():
+            port = self.ports[name]
+            if isinstance(bound, Pointer) and port.direction is not Direction.INPUT:
+                found.append((bound.key, port.kind if port.direction is Direction.OUTPUT else Any))
+            elif isinstance(bound, str) and port.direction is Direction.OUTPUT:
+                found.append((bound, port.kind))
+        named = self.literal(self.key_port) if self.key_port else None
+        return found if named is None else [*found, (named, self.key_kind)]
+
+    def needed(self) -> list[str]:
+        """Keys without whose value it fails, as far as the document names them."""
+        return []
+
+    def number_written(self, keys: Keys, key: str) -> bool:
+        """Whether a node gives a key a number, as far as the document tells."""
+        return keys.kinds.get(self.blackboard.place(key), (Any, 0))[0] in (int, float)
 
     def synchronous_outcomes(self, children: list[AtOnce]) -> AtOnce:
         """Whether it may succeed and may fail within one tick in the library, given what its children may."""
@@ -197,8 +229,8 @@ class Node:
     def may_hang(self, children: list[AtOnce]) -> bool:
         return False
 
-    def preflight(self, texts: Mapping[str, str]) -> list[Reason]:
-        """What the author should know; `texts` are the keys that SetBlackboard gives a text."""
+    def preflight(self, keys: Keys) -> list[Reason]:
+        """What the author should know."""
         return []
 
 

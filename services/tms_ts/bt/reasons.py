@@ -2,7 +2,7 @@
 
 from tms_reason.quantities import Seconds
 from tms_reason.reason import Reason
-from tms_reason.remedies import EDIT_TASK
+from tms_reason.remedies import EDIT_TASK, TEMPLATES
 
 
 # fmt: off
@@ -13,6 +13,7 @@ class FileLine(Line, text="{file}, line {line}"): file: str
 class FileLineAt(Line, text="{file}, line {line}, at {path}"): path: str; file: str
 class InFile(Reason, text="{file}"): file: str
 class AtNode(Reason, text="at {path}"): path: str
+class InTemplate(Reason, text="in template {place}: {what}"): place: str; what: Reason
 class Placed(Reason, text="{place}: {what}", action=EDIT_TASK): place: Reason; what: Reason
 class Hinted(Reason, text="{what} ({hint})"): what: Reason; hint: Reason
 class DidYouMean(Reason, text="did you mean '{name}'?"): name: str
@@ -52,6 +53,31 @@ class IncludeOutside(Reason, text="include '{name}' is outside the tree's folder
 class IncludeCircle(Reason, text="include '{name}' includes itself"): name: str
 class ManyIncludes(Reason, text="more than {limit} files are included"): limit: int
 class CannotInclude(Reason, text="cannot include '{name}': {why}"): name: str; why: Reason
+
+# templates: trees that ExecuteSubtask calls by name
+class NoTemplate(Reason, text="there is no template '{template}'", action=TEMPLATES): template: str
+class NoTemplateName(Reason, text="ExecuteSubtask needs 'subtask_name'"): pass
+class TemplateUnusable(Reason, text="template '{template}' cannot be used: {why}"): template: str; why: Reason
+class TemplateInItself(Reason, text="the template '{template}' calls itself ({chain})"): template: str; chain: str
+class TemplatesNested(Reason, text="more than {limit} templates call each other"): limit: int
+class TemplatesLarge(Reason, text="the templates of the task have more than {limit} nodes"): limit: int
+class CallWithChildren(Reason, text="ExecuteSubtask has no children"): pass
+class CallInV4(Reason, text="ExecuteSubtask is for documents of BehaviorTree.CPP v3"): pass
+class KeyOpen(Reason, text="${key}$ has no value"): key: str
+class KeysGiven(Reason, text="the call gives {keys}; {key}:none says that there is none"):
+    keys: tuple[str, ...]; key: str
+class NoKeysGiven(Reason, text="the call gives no values; {key}:none says that there is none"): key: str
+class ValueTooLong(Reason, text="the value of {port} has more than {limit} letters"): port: str; limit: int
+class TemplateUnseen(Reason, text="template '{template}' is not looked into, as no database answers"): template: str
+class KeyBecomesNone(Reason, text="${key}$ has no value; the C++ system writes the word none"): key: str
+class NestedCall(Reason, text="a template calls template '{template}'; the C++ system cannot load that"): template: str
+class CallNotSeen(Reason, text="the C++ system does not see this call: "
+    "it must be written <Action ID=\"ExecuteSubtask\" ...>, ID first"): pass
+class CallWithSlash(Reason, text="the C++ system does not see this call, for {port}='{value}' has a /"):
+    port: str; value: str
+class PartWithoutColon(Reason, text="subtask_parameters: '{part}' has no colon and is left out"): part: str
+class TreeNameForCpp(Reason, text="the C++ system needs main_tree_to_execute=\"BehaviorTree\", <BehaviorTree "
+    "ID=\"BehaviorTree\"> and a <TreeNodesModel> after it"): pass
 
 # trees and nodes of a document
 class OneChildInTree(Reason, text="a BehaviorTree must have exactly one child, it has {count}"): count: int
@@ -106,8 +132,22 @@ class NumberNotText(Reason, text="{key} holds a number, not a text; "
 class KeyIsNumber(Reason, text="{key} is a number; the C++ system does not know it in {node}"): key: str; node: str
 class TextCountsAsBoolean(Reason, text="the text '{value}' of '{key}' counts as a boolean; "
     "the C++ system does not know the key here"): value: str; key: str
-class TextCountsHere(Reason, text="the text '{value}' counts as a boolean here; "
+class TextCountsHere(Reason, text="the text '{value}' counts as a boolean or a number here; "
     "the C++ system calls the expression invalid"): value: str
+class NeverWritten(Reason, text="nothing in the task gives the key '{key}' a value, so {node} fails; "
+    "the C++ system may throw here"): key: str; node: str
+class NumberBesideText(Reason, text="{key} is a number and is compared with the text '{value}': "
+    "the C++ system calls the expression invalid, this engine compares the numbers"): key: str; value: str
+class OneRoundMore(Reason, text="{key} has no value before this loop: "
+    "version 6 of the C++ system runs the child once more after it is true"): key: str
+class BeginningWritten(Reason, text="of '{value}' only the number at its beginning, {number}, is written; "
+    "in quotes it is a text"): value: str; number: str
+class WholeWritten(Reason,
+    text="version 6 of the C++ system writes {number} for '{value}'; input_type='double' keeps it"):
+    value: str; number: str
+class AllBraces(Reason, text="{port}='{value}' begins and ends with a brace: "
+    "the C++ system takes all of it for one key and throws here"): port: str; value: str
+class NameMissing(Reason, text="{node} has nothing in '{port}'"): node: str; port: str
 class NumberTooBig(Reason, text="{key} is too big for 32 bits; "
     "the C++ system does not put such a number into an expression"): key: str
 class AlwaysFails(Reason, text="{why}, so {node} always fails"): why: Reason; node: str
@@ -147,7 +187,9 @@ class WaitsForOperator(Reason, text="waits for an operator: {question}"): questi
 class RunsUntil(Reason, text="runs until {key} is true"): key: str
 class NoValue(Reason, text="{key} or {counter} has no value"): key: str; counter: str
 class HoldsNoNumber(Reason, text="{key} holds no number"): key: str
-class TextIsNoNumber(Reason, text="'{value}' is not a number"): value: str
+class NoSuchType(Reason, text="input_type='{type}' is none of int, double, bool and string"): type: str
+class NoOperation(Reason, text="operation='{operation}' is none of add, push, remove and reset"): operation: str
+class UnevenLists(Reason, text="mongo_param_name has {names} parts and mongo_value {values}"): names: int; values: int
 class NotPlain(Reason, text="{record}.{field} is not a plain value"): record: str; field: str
 class Sending(Reason, text="sending"): pass
 class Working(Reason, text="running"): pass
@@ -164,4 +206,8 @@ class OnlyComparisons(Reason, text="only == != < > <= >= compare values"): pass
 class TextCompared(Reason, text="the text '{value}' is compared with {other}"): value: str; other: str
 class KeyWithoutValue(Reason, text="a key has no value yet"): pass
 class NotBooleanKey(Reason, text="{key} is not a boolean key"): key: str
+class FormulaUnreadable(Reason,
+    text="the formula cannot be read: only numbers, keys in braces, + - * / ( ) are allowed"): pass
+class DividesByZero(Reason, text="the formula divides by zero"): pass
+class ResultTooLarge(Reason, text="the result is too large"): pass
 class ExpressionInvalid(Reason, text="{problem}"): problem: str

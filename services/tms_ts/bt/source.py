@@ -6,7 +6,7 @@ Attribute values keep their line breaks, as in the library's parser (an XML pars
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from lxml import etree
@@ -41,6 +41,20 @@ class ParsedXml:
             for key, value in found.items():
                 found[key] = value.replace(line_break + " ", "\n").replace(tab + " ", "\t")
         return found
+
+
+def settled(source: ParsedXml) -> ParsedXml:
+    """The document with its line breaks in the elements themselves, so that elements of others fit into it."""
+    if source.marks[0]:
+        for element in source.root.iter("*"):
+            for key, value in source.attributes(element).items():
+                element.set(key, value)
+    return replace(source, marks=("", ""))
+
+
+def set_line(element: etree._Element, line: int) -> None:
+    """Say in which line an element begins."""
+    setattr(element, "sourceline", min(line, LAST_LINE))  # noqa: B010 - the stubs call it read-only
 
 
 def line_of(element: etree._Element) -> int:
@@ -92,7 +106,7 @@ def _set_lines(root: etree._Element, text: str) -> None:
     for element, found in zip(root.iter("*"), tags, strict=False):
         line += text.count("\n", position, found.start())
         position = found.start()
-        setattr(element, "sourceline", min(line, LAST_LINE))  # noqa: B010 - the stubs call it read-only
+        set_line(element, line)
 
 
 def parse(data: bytes | str, *, file: str = "", limit: int = MAX_BYTES) -> ParsedXml:

@@ -11,6 +11,7 @@ from typing import ClassVar, Protocol, runtime_checkable
 from tms_reason.reason import Reason
 from tms_ts.bt.blackboard import Blackboard
 from tms_ts.bt.context import Context
+from tms_ts.bt.document import Document
 from tms_ts.bt.errors import TickError, TreeError
 from tms_ts.bt.node import Node, Observer
 from tms_ts.bt.parallel import Parallel
@@ -32,6 +33,7 @@ class LeafGoal:
     record: str
     path: str
     line: int
+    template: str = ""  # TEMPLATE:LINE, empty for a leaf of the task itself
 
 
 @runtime_checkable
@@ -60,6 +62,7 @@ class SharedValue:
     path: str
     line: int
     looped: bool  # whether the leaf is repeated in an endless loop
+    template: str = ""  # TEMPLATE:LINE, empty for a leaf of the task itself
 
 
 class Tree:
@@ -71,15 +74,14 @@ class Tree:
         nodes: list[Node],
         blackboards: list[Blackboard],
         context: Context[Node],
-        xml: str,
-        name: str = "",
+        document: Document,
     ) -> None:
-        self.name = name  # ID of the main tree
+        self.name = document.main  # ID of the main tree
         self.root = root
         self.nodes = nodes  # pre-order
         self.blackboards = blackboards  # in creation order, the root's first
         self.context = context
-        self.xml = xml
+        self.templates = document.templates  # name -> text of those that it was made with
         self._parallels = {node.path for node in nodes if isinstance(node, Parallel)}
         with _uid_lock:
             for node in nodes:
@@ -152,12 +154,14 @@ class Tree:
 
     def leaf_goals(self) -> list[LeafGoal]:
         return [
-            LeafGoal(*node.goal_asked(), node.path, node.line) for node in self.nodes if isinstance(node, SendsGoal)
+            LeafGoal(*node.goal_asked(), node.path, node.line, node.template)
+            for node in self.nodes
+            if isinstance(node, SendsGoal)
         ]
 
     def shared_values(self) -> list[SharedValue]:
         return [
-            SharedValue(*node.record_asked(), node.writes, node.path, node.line, _looped(node))
+            SharedValue(*node.record_asked(), node.writes, node.path, node.line, _looped(node), node.template)
             for node in self.nodes
             if isinstance(node, UsesRecord)
         ]
@@ -190,5 +194,5 @@ def _place(error: TreeError) -> TreeError:
             thrower = owner
         trace = trace.tb_next
     if thrower is not None and not error.path:
-        error.place(thrower.line, thrower.path)
+        error.place(thrower.line, thrower.path, thrower.template)
     return error

@@ -105,6 +105,7 @@ class Rules:
 
         As in the library, a tree that the main tree does not use must be well formed, but its nodes need not be known.
         """
+        yield from self.document.errors
         used = self.used_trees()
         for tree in self.document.trees:
             count = sum(1 for _ in children(tree.element))
@@ -137,7 +138,7 @@ class Rules:
                 yield self.error(tree, element, *problem)
             else:
                 why = problem[0]
-                self.document.warn(line_of(element), InSubTreePlus(why) if inside else NotUsed(tree.id, why))
+                self.document.warn_at(element, InSubTreePlus(why) if inside else NotUsed(tree.id, why))
 
     def used_trees(self) -> set[int]:
         """The `id` of the trees that the main tree leads to; of all trees if there is no main tree."""
@@ -161,7 +162,8 @@ class Rules:
     def error(self, tree: TreeElement, element: etree._Element, what: Reason, hint: Reason | None = None) -> TreeError:
         names = [str(element.tag)] + [str(above.tag) for above in element.iterancestors()]
         path = "/".join([tree.id, *reversed(names[: max(len(names) - 2, 0)])])
-        return TreeError(what, line=line_of(element), path=path, hint=hint, file=tree.source.file)
+        template = self.document.places.get(element, "")
+        return TreeError(what, line=line_of(element), path=path, hint=hint, file=tree.source.file, template=template)
 
     def broken_form(self, use: Use, count: int, tree: TreeElement) -> Problem | None:
         """The error that the library finds in every tree of a document, also in an unused one."""

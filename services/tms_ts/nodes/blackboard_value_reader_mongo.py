@@ -22,6 +22,8 @@ class BlackboardValueReaderMongo(Asking):
     """
 
     __slots__ = ()
+    versions = (5,)
+    key_port = "output_port"
     writes: ClassVar[bool] = False
     mongo_record_name: In[str]
     mongo_param_name: In[str]

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import ClassVar
 
 from tms_reason.reason import Reason
 from tms_ts.bt.convert import MISSING
 from tms_ts.bt.leaf import SyncAction
+from tms_ts.bt.node import Keys
 from tms_ts.bt.ports import In
-from tms_ts.bt.reasons import AlwaysFails, NoExpression, NumberTooBig, StoredTextFails
+from tms_ts.bt.reasons import AlwaysFails, NoExpression, NumberBesideText, NumberTooBig, StoredTextFails
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, SUCCESS, Status
-from tms_ts.nodes.expression import TRUTH, Invalid, Scalar, evaluate, names
+from tms_ts.nodes.expression import TRUTH, Invalid, Scalar, beside_numbers, evaluate, names
 
 
 class Deciding(SyncAction):
@@ -37,25 +37,30 @@ class Deciding(SyncAction):
             self.reason = error.why
             return FAILURE
 
-    def preflight(self, texts: Mapping[str, str]) -> list[Reason]:
+    def preflight(self, keys: Keys) -> list[Reason]:
         text = self.literal(self.text_port)
         if text is None:
             return []
         try:
-            keys = names(text)
+            read, numbers = names(text), beside_numbers(text)
         except Invalid as error:
             return [AlwaysFails(error.why, self.registration_name)]
-        return [StoredTextFails(texts[key], key) for key in sorted(keys & texts.keys()) if texts[key] in TRUTH]
+        texts = keys.texts
+        return [
+            *(StoredTextFails(texts[key], key) for key in sorted(read & texts.keys()) if texts[key] in TRUTH),
+            *(NumberBesideText(key, value) for key, value in numbers.items() if self.number_written(keys, key)),
+        ]
 
 
 @node
 class ConditionalExpression(Deciding):
     """Succeed while an expression over blackboard keys is true; fail if it is false or cannot be evaluated.
 
-    conditional_expression: e.g. (ARRIVAL_FLG == true or LOADED_FLG == true) and CURRENT_LOCATION == 2
+    conditional_expression: e.g. (ARRIVAL_FLG == true or LOADED_FLG == true) and CURRENT_LOCATION == 2 and UP == "up"
     """
 
     __slots__ = ()
+    versions = (5, 6)
     text_port = "conditional_expression"
     needs = ("conditional_expression",)
     conditional_expression: In[str]

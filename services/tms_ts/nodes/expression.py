@@ -1,8 +1,9 @@
-"""Expressions over blackboard values: identifiers, numbers, true, false, == != < > <= >=, and, or, parentheses.
+"""Expressions over blackboard values: names, numbers, "texts", true, false, == != < > <= >=, and, or, parentheses.
 
 simpleeval evaluates them and allows only these operations. The rules are those of the C++ system: every part is
 evaluated (no short cut), a key without a value is the empty text, text compares with text and numbers with numbers
-(true is 1), and an expression that breaks this is invalid as a whole.
+(true is 1), and an expression that breaks this is invalid as a whole. Ours: a text in quotes that is a number counts as
+one beside a number, since a counter may be kept as either.
 """
 
 from __future__ import annotations
@@ -38,6 +39,7 @@ MAX_NESTING = 60
 _ALLOWED = re.compile(r"[\w\s()=!<>.\-]*", re.ASCII)
 _IDENTIFIER = re.compile(r"(?<![\w.])[A-Za-z_]\w*", re.ASCII)
 _NUMBER = re.compile(r"(?<![\w.])0*(?!0[0-9])([0-9]+(?:\.[0-9]*)?(?:[eE]-?[0-9]+)?)(and|or|)(?![\w.])", re.ASCII)
+WHOLE_NUMBER = re.compile(r"-?[0-9]{1,15}(?:\.[0-9]{1,15})?", re.ASCII)
 _NO_NUMBER = re.compile(r"(?<![\w.])[0-9][0-9.]*(?![eE]-?[0-9]+(?![\w.]))[A-Za-z_]", re.ASCII)
 _WORDS = frozenset({"and", "or"})
 _PREFIX = "k_"  # a prefix, so that no key is a word of Python
@@ -62,23 +64,48 @@ def parse(text: str) -> ast.expr:
     """The syntax tree of an expression; Invalid if it is none."""
     if len(text) > MAX_LENGTH or text.count("(") > MAX_NESTING or text.count("-") > MAX_NESTING:
         raise Invalid(ExpressionTooLong())
-    if not _ALLOWED.fullmatch(text):
+    parts = text.split('"')  # every second one is a text in quotes
+    if len(parts) % 2 == 0:
         raise Invalid(ExpressionSigns())
-    flat = _NUMBER.sub(r"\1 \2", " ".join(text.split()))  # 01 is 1, and "1and" is two words, as in C++
-    if _NO_NUMBER.search(flat):
-        raise Invalid(NameBeginsWithDigit())
-    named = _IDENTIFIER.sub(lambda word: word[0] if word[0] in _WORDS else _PREFIX + word[0], flat)
+    python = "".join(f"({part!r})" if number % 2 else _python(part) for number, part in enumerate(parts))
     try:
-        body = ast.parse(named, mode="eval").body
+        body = ast.parse(python.strip(), mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         raise Invalid(ExpressionUnreadable()) from error
     return body
+
+
+def _python(part: str) -> str:
+    """An expression, or a part of one between texts, as Python writes it."""
+    if not _ALLOWED.fullmatch(part):
+        raise Invalid(ExpressionSigns())
+    flat = _NUMBER.sub(r"\1 \2", " ".join(part.split()))  # 01 is 1, and "1and" is two words, as in C++
+    if _NO_NUMBER.search(flat):
+        raise Invalid(NameBeginsWithDigit())
+    return _IDENTIFIER.sub(lambda word: word[0] if word[0] in _WORDS else _PREFIX + word[0], flat)
 
 
 def names(text: str) -> frozenset[str]:
     """The keys that an expression reads; Invalid if it is none."""
     found = {node.id.removeprefix(_PREFIX) for node in ast.walk(parse(text)) if isinstance(node, ast.Name)}
     return frozenset(found - TRUTH.keys())
+
+
+def beside_numbers(text: str) -> dict[str, str]:
+    """Keys that an expression compares with a text in quotes that is a number, and that text."""
+    found: dict[str, str] = {}
+    for node in ast.walk(parse(text)):
+        sides = [node.left, *node.comparators] if isinstance(node, ast.Compare) else []
+        texts = [one.value for one in sides if isinstance(one, ast.Constant) and isinstance(one.value, str)]
+        for number in filter(WHOLE_NUMBER.fullmatch, texts):
+            found.update((one.id.removeprefix(_PREFIX), number) for one in sides if isinstance(one, ast.Name))
+    return found
+
+
+class _Quoted(str):
+    """A text in quotes."""
+
+    __slots__ = ()
 
 
 class _Evaluator(SimpleEval):  # type: ignore[misc,unused-ignore]
@@ -98,9 +125,9 @@ class _Evaluator(SimpleEval):  # type: ignore[misc,unused-ignore]
         }
 
     def constant(self, node: ast.Constant) -> Scalar:
-        if not isinstance(node.value, int | float):
+        if not isinstance(node.value, int | float | str):
             raise Invalid(ConstantNoNumber(repr(node.value)))
-        return node.value
+        return _Quoted(node.value) if isinstance(node.value, str) else node.value
 
     def name(self, node: ast.Name) -> Scalar:
         key = node.id.removeprefix(_PREFIX)
@@ -134,12 +161,15 @@ class _Evaluator(SimpleEval):  # type: ignore[misc,unused-ignore]
         return bool(function(left, right))
 
     def as_bool(self, value: Scalar, other: Scalar) -> Scalar:
-        """Read a text true or false as a boolean beside a boolean; any other text beside a number is invalid."""
+        """Read a text as a boolean beside a boolean, one in quotes as a number beside a number; else it is invalid."""
         if not isinstance(value, str):
             return value
         if isinstance(other, bool) and value in TRUTH:
             self.warn(TextCountsHere(value))
             return TRUTH[value]
+        if isinstance(value, _Quoted) and not isinstance(other, bool) and WHOLE_NUMBER.fullmatch(value):
+            self.warn(TextCountsHere(value))
+            return float(value)
         raise Invalid(TextCompared(value, repr(other)) if value else KeyWithoutValue())
 
     def truth(self, value: Scalar) -> bool:

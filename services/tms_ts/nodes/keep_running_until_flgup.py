@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 from tms_reason.reason import Reason
 from tms_ts.bt.convert import FALSE_WORDS, MISSING, TRUE_WORDS
 from tms_ts.bt.decorator import Decorator
 from tms_ts.bt.errors import TickError
+from tms_ts.bt.node import Keys, Node
 from tms_ts.bt.ports import In
-from tms_ts.bt.reasons import KeyNotBoolean, RunsUntil, StoredTextThrows, TextAsBoolean
+from tms_ts.bt.reasons import KeyNotBoolean, OneRoundMore, RunsUntil, StoredTextThrows, TextAsBoolean
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, IDLE, RUNNING, SUCCESS, Status
+
+WHILE = ("While", "while")
 
 
 @node
@@ -19,10 +20,13 @@ class KeepRunningUntilFlgup(Decorator):
     """Run the child again and again until a key is true; fail when the child fails.
 
     key: the name of the key
+    while_or_dowhile: (version 6) While or while: look at the key before the child, too; else after it only
     """
 
     __slots__ = ()
+    versions = (5, 6)
     key: In[str]
+    while_or_dowhile: In[str]
 
     def endless(self) -> bool:
         return True
@@ -30,6 +34,9 @@ class KeepRunningUntilFlgup(Decorator):
     def tick(self) -> Status:
         key: str = self.key
         self.set_state(RUNNING)
+        if self.read("while_or_dowhile") in WHILE and self.flag(key):
+            self.child.reset()
+            return SUCCESS
         status = self.child.execute_tick()
         if status is IDLE:
             raise self.never_idle()
@@ -41,11 +48,20 @@ class KeepRunningUntilFlgup(Decorator):
         self.reason = RunsUntil(key)
         return SUCCESS if self.flag(key) else RUNNING
 
-    def preflight(self, texts: Mapping[str, str]) -> list[Reason]:
-        key = self.literal("key")
-        if key is None or key not in texts:
+    def preflight(self, keys: Keys) -> list[Reason]:
+        key, mode = self.literal("key"), self.literal("while_or_dowhile")
+        if key is None:
             return []
-        return [StoredTextThrows(texts[key], key)]
+        writer = keys.writers.get(self.blackboard.place(key))
+        late = mode is not None and mode not in WHILE and writer is not None and self.is_above(writer)
+        notes: list[Reason] = [OneRoundMore(key)] if late else []
+        return [*notes, StoredTextThrows(keys.texts[key], key)] if key in keys.texts else notes
+
+    def is_above(self, node: Node) -> bool:
+        above = node.parent
+        while above is not None and above is not self:
+            above = above.parent
+        return above is self
 
     def flag(self, key: str) -> bool:
         value = self.blackboard.get(key)

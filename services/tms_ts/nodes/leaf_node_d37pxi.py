@@ -10,4 +10,5 @@ class LeafNodeD37pxi(LeafNode):
     """Let d37pxi do a subtask with the parameters of a record."""
 
     __slots__ = ()
+    versions = (5,)
     model_name: In[str] = "d37pxi"

@@ -10,4 +10,5 @@ class LeafNodeIc120(LeafNode):
     """Let ic120 do a subtask with the parameters of a record."""
 
     __slots__ = ()
+    versions = (5,)
     model_name: In[str] = "ic120"

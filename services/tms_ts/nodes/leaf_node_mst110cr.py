@@ -10,4 +10,5 @@ class LeafNodeMst110cr(LeafNode):
     """Let mst110cr do a subtask with the parameters of a record."""
 
     __slots__ = ()
+    versions = (5,)
     model_name: In[str] = "mst110cr"

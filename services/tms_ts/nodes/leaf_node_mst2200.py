@@ -10,4 +10,5 @@ class LeafNodeMst2200(LeafNode):
     """Let mst2200 do a subtask with the parameters of a record."""
 
     __slots__ = ()
+    versions = (5,)
     model_name: In[str] = "mst2200"

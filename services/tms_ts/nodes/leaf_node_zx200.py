@@ -10,4 +10,5 @@ class LeafNodeZx200(LeafNode):
     """Let zx200 do a subtask with the parameters of a record."""
 
     __slots__ = ()
+    versions = (5,)
     model_name: In[str] = "zx200"

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
-from tms_ts.bt.convert import Missing
 from tms_ts.bt.ports import In
-from tms_ts.bt.reasons import TextIsNoNumber
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import SUCCESS, Status
 from tms_ts.nodes.asking import Asking
-from tms_ts.nodes.mongo_value_writer import typed
+from tms_ts.nodes.shared_value import typed
 from tms_ts.world import Pending
 
 
@@ -38,13 +36,8 @@ class MongoValueSwap(Asking):
     def record_asked(self) -> tuple[str, str]:
         return self.reported("mongo_record_name"), self.reported("mongo_param_name")
 
-    def ask(self) -> Pending[Any] | None:
+    def ask(self) -> Pending[Any]:
         expected, value = typed(self.expected_value), typed(self.input_value)
-        for given, text in ((expected, self.expected_value), (value, self.input_value)):
-            if isinstance(given, Missing):
-                self.reason = TextIsNoNumber(text)
-                return None
-        assert not isinstance(expected, Missing) and not isinstance(value, Missing)
         return self.world.flags.write(self.mongo_record_name, self.mongo_param_name, value, expected)
 
     def answered(self, value: Any) -> Status:

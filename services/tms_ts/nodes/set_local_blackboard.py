@@ -32,6 +32,7 @@ class SetLocalBlackboard(SyncAction):
     """
 
     __slots__ = ()
+    versions = (5, 6)
     value: In[Any]
     output_key: InOut[Any]
 

@@ -21,6 +21,7 @@ class SetLocalBlackboardWithCounter(SyncAction):
     """
 
     __slots__ = ()
+    versions = (5, 6)
     key: In[str]
     counter_key: InOut[str]
 
@@ -32,3 +33,7 @@ class SetLocalBlackboardWithCounter(SyncAction):
             return FAILURE
         self.store(self.key, re.sub(r"[0-9]+\Z", lambda _: counter, text))
         return SUCCESS
+
+    def needed(self) -> list[str]:
+        keys = (self.literal("key"), self.literal("counter_key"))
+        return [key for key in keys if key is not None]

@@ -20,6 +20,7 @@ class WaitForClick(Asking):
     """
 
     __slots__ = ()
+    versions = (5, 6)
     window_title: In[str] = ""
     button_info: In[str] = ""
 

@@ -22,6 +22,11 @@ function labelOf(tree, index) {
   return tree.names[index] === tree.types[index] ? goal ?? tree.ports[index] : tree.names[index];
 }
 
+/** The template that a node comes from, and the line in it; "" for a node of the task itself. */
+export function templateOf(tree, index) {
+  return tree.templates?.[index] ?? ""; // journals of releases without templates have no such list
+}
+
 export class TreeView {
   constructor(box) {
     this.box = box;
@@ -44,7 +49,7 @@ export class TreeView {
     this.nodes = new Map();
     tree.paths.forEach((path, index) => {
       this.nodes.set(path, { path, index, name: tree.names[index], type: tree.types[index], kind: tree.kinds[index],
-        ports: tree.ports[index], label: labelOf(tree, index), children: [] });
+        ports: tree.ports[index], template: templateOf(tree, index), label: labelOf(tree, index), children: [] });
     });
     for (const node of this.nodes.values()) {
       this.nodes.get(node.path.slice(0, node.path.lastIndexOf(".")))?.children.push(node);
@@ -91,8 +96,10 @@ export class TreeView {
     const hidden = this.closed.has(node.path) ? ` (+${node.children.length})` : "";
     const group = draw("g", { transform: `translate(${node.x} ${node.y})`, role: inner ? "button" : "img", tabindex: inner ? 0 : -1 },
       draw("rect", { width: WIDTH, height: HEIGHT, rx: node.kind === "control" ? 2 : 10 }),
+      ...(node.template ? [draw("rect", { width: 6, height: HEIGHT, class: "template" })] : []),
       draw("text", { x: 10, y: 23, class: "type" }, shortened(node.type + hidden, 19)),
-      draw("text", { x: 10, y: 44 }, shortened(node.label, 21)), mark, draw("title", {}, `${node.type} ${node.name} ${node.ports}`));
+      draw("text", { x: 10, y: 44 }, shortened(node.label, 21)), mark,
+      draw("title", {}, `${node.type} ${node.name} ${node.ports}${node.template && ` (${t("from_template", { name: node.template })})`}`));
     if (inner) {
       group.addEventListener("click", () => this.toggle(node));
       group.addEventListener("keydown", (event) => {

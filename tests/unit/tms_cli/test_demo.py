@@ -3,11 +3,11 @@
 from typing import Any
 
 import pytest
-from tms_msg_db.srv import AddTask
+from tms_msg_db.srv import AddTask, AddTemplate
 
 from tms_cli import stored_records
 from tms_cli.commands import demo, run
-from tms_reason.errors import TmsError
+from tms_reason.errors import DbError, TmsError
 from tms_reason.reason import Foreign
 
 
@@ -29,6 +29,9 @@ def steps(mesh, monkeypatch: pytest.MonkeyPatch) -> list[str]:
         stored_records, "load_file", step("records", {"created": [], "changed": [], "unchanged": ["a"]})
     )
     mesh.answers["/tms/db/add_task"] = lambda **_: step("task")() or AddTask.Response(task_id=4, already_stored=True)
+    mesh.answers["/tms/db/add_template"] = lambda template_name, **_: (
+        step(f"template {template_name}")() or AddTemplate.Response()
+    )
     return done
 
 
@@ -48,11 +51,22 @@ def test_the_steps_and_the_exit_code(steps, tms, monkeypatch, outcome: str, code
     monkeypatch.setattr(Ran, "outcome", outcome)
     monkeypatch.setattr(run, "Runner", Ran)
     end = tms(demo.command)
-    assert steps == ["up", "ready", "records", "task"]
+    templates = [f"template {path.stem}" for path in sorted(demo.TEMPLATES.glob("*.xml"))]
+    assert templates
+    assert steps == ["up", "ready", "records", *templates, "task"]
     assert end.exit_code == code
     assert "tms events r1" in end.stdout
     assert "http://127.0.0.1:8080" in end.stderr
     assert "make down" in end.stderr
+
+
+def test_a_template_of_somebody_elses_stays(steps, mesh, tms, monkeypatch) -> None:
+    monkeypatch.setattr(run, "Runner", Ran)
+    mesh.answers["/tms/db/add_template"] = DbError(Foreign("another text"), "TEMPLATE_EXISTS")
+    assert tms(demo.command).exit_code == 0
+    assert not [one for one in mesh.asked if one[1].get("replace")]
+    mesh.answers["/tms/db/add_template"] = DbError(Foreign("the store is away"), "STORE_DOWN")
+    assert isinstance(tms(demo.command).exception, DbError)
 
 
 def test_a_mesh_that_does_not_come_up_ends_the_demo(steps, tms, monkeypatch) -> None:
@@ -67,3 +81,4 @@ def test_a_mesh_that_does_not_come_up_ends_the_demo(steps, tms, monkeypatch) -> 
 def test_the_files_of_the_demo_exist() -> None:
     assert demo.PARAMETERS.is_file()
     assert demo.TASK.is_file()
+    assert demo.TEMPLATES.is_dir()

@@ -56,6 +56,12 @@ def test_an_honest_stop_is_measured() -> None:
     assert row.travel_m == pytest.approx(0.2, abs=0.01)
 
 
+def test_goals_whose_server_was_killed_end_before_the_next_run() -> None:
+    record = TrialRecording(goals={b"1": Goal(HIT), b"2": Goal(HIT, HIT + 1.0)})
+    record.close_goals(HIT + 5.0)
+    assert [one.ended for one in record.goals.values()] == [HIT + 5.0, HIT + 1.0]
+
+
 @pytest.mark.parametrize(("until", "stood"), [(6.2, 2.0), (7.0, 7.0)])
 def test_a_jump_at_a_release_is_no_run_on_but_what_lasts_is(until: float, stood: float) -> None:
     found = facts(truth((0.0, 2.0), (6.0, until)), receipt(seconds=8.0))

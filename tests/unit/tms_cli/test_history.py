@@ -95,6 +95,19 @@ def test_follow_shows_all_and_returns_when_the_run_has_ended(mesh, tms) -> None:
     assert "0.1  a -> b  x=1.5" in end.stdout
 
 
+@pytest.mark.parametrize("follow", [[], ["--follow"]])
+def test_events_of_nodes_name_the_template_that_they_come_from(mesh, tms, follow: list[str]) -> None:
+    shape = to_parameters({"paths": ["0", "0.0"], "templates": ["", "Dig:5"]})
+    mesh.answers["/tms/db/list_runs"] = ListRuns.Response(runs=[NEWEST])
+    entries = [
+        Event(run_id=NEWEST.run_id, number=n, kind=kind, node=node, text="a -> b", values=shape if n == 1 else [])
+        for n, kind, node in ((1, "tree", ""), (2, "node", "0"), (3, "node", "0.0"))
+    ]
+    mesh.answers["/tms/db/list_events"] = lambda after, **_: ListEvents.Response(events=entries[after:])
+    lines = tms(events.command, "last", *follow).stdout.splitlines()
+    assert lines[1].endswith("0  a -> b") and lines[2].endswith("0.0  (Dig:5)  a -> b")
+
+
 def test_follow_is_no_single_document(mesh, tms) -> None:
     assert tms(events.command, "last", "--follow", "--json").exit_code == 2
 

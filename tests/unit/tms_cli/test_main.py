@@ -12,8 +12,8 @@ import pytest
 from tms_cli import main
 
 VERBS = (
-    "abandon", "answer", "cancel", "check", "completion", "db", "demo", "drill", "events", "logs", "palette", "panel",
-    "param", "rearm", "resume", "run", "runs", "stop", "task", "terrain", "user",
+    "abandon", "answer", "cancel", "check", "completion", "db", "demo", "drill", "events", "import", "logs", "palette",
+    "panel", "param", "rearm", "resume", "run", "runs", "stop", "task", "template", "terrain", "user",
 )  # fmt: skip
 
 

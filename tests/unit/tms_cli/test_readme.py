@@ -13,7 +13,7 @@ import pytest
 from tms_cli.main import tms
 from tms_config.config import PROJECT
 from tms_kit.subtask import Subtask
-from tms_ts.bt import Registry, Status, load, palette
+from tms_ts.bt import Registry, Status, load, palette, registry
 
 PAGES = {name: (PROJECT / name).read_text(encoding="utf-8") for name in (
     "README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "deploy/CONSOLE.md", "deploy/OPERASIM.md",
@@ -84,6 +84,7 @@ def test_the_subtask_of_the_guide_is_one(tmp_path: Path, monkeypatch: pytest.Mon
 
 
 def test_the_behaviour_of_py_trees_of_the_guide_is_a_node(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    registry()  # else the nodes that are imported for the first time below would be forgotten with this test
     nodes = sys.modules[Registry.__module__]
     monkeypatch.setattr(nodes, "_recorded", dict(nodes._recorded))  # it is a node of this test only
     made(BEHAVIOUR, tmp_path, monkeypatch)

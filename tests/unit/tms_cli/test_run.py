@@ -4,10 +4,11 @@ import json
 from collections.abc import Callable
 from typing import Any
 
+import click
 import pytest
 from builtin_interfaces.msg import Time
-from tms_msg_db.msg import Run, Task
-from tms_msg_db.srv import GetTask, ListRuns
+from tms_msg_db.msg import Run, Task, Template
+from tms_msg_db.srv import GetTask, GetTemplate, ListRuns
 from tms_msg_ts.action import ExecuteTask
 from tms_msg_ts.msg import NodeStatus, RunState, RunStates
 from tms_msg_ts.srv import CancelRun
@@ -18,6 +19,7 @@ from tms_reason.reason import Foreign
 from tms_reason.wire import to_line
 from tms_ros.goals import Outcome
 from tms_runtime.reasons import NotStored
+from tms_ts.bt.expand import no_templates
 
 XML = '<root><BehaviorTree ID="T"><AlwaysSuccess/></BehaviorTree></root>'
 
@@ -256,5 +258,17 @@ def test_leaves_carry_what_they_ask_of_a_machine() -> None:
         '<root><BehaviorTree ID="T"><Sequence><Action ID="LeafNodeZx200" model_name="zx200" record_name="pose" '
         'subtask_name="change_pose"/></Sequence></BehaviorTree></root>'
     )
-    assert run._goals(xml) == [("Sequence", ""), ("LeafNodeZx200", "zx200 · change_pose · pose")]
-    assert run._goals("<root>") == []
+    assert run._goals(xml, no_templates) == [("Sequence", ""), ("LeafNodeZx200", "zx200 · change_pose · pose")]
+    assert run._goals("<root>", no_templates) == []
+
+
+def test_leaves_of_templates_and_their_machines_are_shown(mesh, tms) -> None:
+    calls = '<root><BehaviorTree ID="T"><Action ID="ExecuteSubtask" subtask_name="Dig"/></BehaviorTree></root>'
+    leaf = '<LeafNodeZx200 model_name="zx200" record_name="pose" subtask_name="change_pose"/>'
+    text = f'<root><BehaviorTree ID="B">{leaf}</BehaviorTree></root>'
+    mesh.answers["/tms/db/get_task"] = GetTask.Response(task=Task(task_id=1, task_sequence=calls))
+    mesh.answers["/tms/db/get_template"] = GetTemplate.Response(stored=Template(task_sequence=text))
+    with click.Context(click.Command("tms")):
+        view = run._view(mesh, 1)
+    assert view.goals == [("LeafNodeZx200", "zx200 · change_pose · pose")]
+    assert "/zx200/rc/state" in mesh.received

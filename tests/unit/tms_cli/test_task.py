@@ -139,7 +139,7 @@ def test_check_lists_goals_and_says_that_only_the_structure_was_checked(mesh, tm
     assert "unchecked" in end.stderr
     document = json.loads(tms(task.command, "check", file, "--json").stdout)
     assert document["goals"] == [
-        {"machine": "zx200", "subtask": "st_zx200_swing", "record": "{next}", "path": "0.0", "line": 3}
+        {"machine": "zx200", "subtask": "st_zx200_swing", "record": "{next}", "path": "0.0", "line": 3, "template": ""}
     ]
     assert (document["ok"], document["checked_by"], document["nodes"]) == (True, "structure", 2)
 

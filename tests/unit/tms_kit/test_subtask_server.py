@@ -13,7 +13,7 @@ from tms_msg_ts.action import LeafNodeBase
 
 from tms_kit.subtask import Params, Progress, Subtask
 from tms_kit.subtask_server import _Server
-from tms_machine.reasons import BadRecord
+from tms_machine.reasons import BadRecord, InputsNotTaken
 from tms_machine.record_lock import FLAG
 from tms_machine.values import from_parameters, to_parameters
 from tms_reason.errors import SubtaskFailed
@@ -60,17 +60,20 @@ class Database:
     def __init__(self, x: Any, *following: Any) -> None:
         self.x, self.next = x, list(following)
         self.lock: list[bool] = []
+        self.asked: list[Any] = []  # machine and record of each reading
 
     def _answer(self) -> Any:
         record = Record(type="dynamic", values=to_parameters({"x": self.x, FLAG: False}))
         self.x = self.next.pop(0) if self.next else self.x
         return GetParameter.Response(record=record)
 
-    async def call_async(self, *_: Any) -> Any:
+    async def call_async(self, service: Any, _name: str, request: Any, *_limit: Any) -> Any:
+        self.asked.append((request.model_name, request.record_name))
         return self._answer()
 
     def call(self, service: Any, _name: str, request: Any, *_limit: Any) -> Any:
         if service is GetParameter:
+            self.asked.append((request.model_name, request.record_name))
             return self._answer()
         self.lock.append(bool(from_parameters(request.values)[FLAG]))
         return SetParameter.Response()
@@ -157,6 +160,33 @@ def test_a_motion_that_is_refused_for_its_record_frees_it(plan_only: bool, freed
     assert refusal.find(MustBeNumber) is not None and refusal.problem.args["key"] == "x"
     assert database.lock == freed
     assert not server._reserved
+
+
+class Way(Place):
+    read_direction: str = ""
+
+
+@pytest.mark.parametrize(("params", "taken"), [(Place, False), (Way, True), (None, False)])
+def test_inputs_of_a_goal_reach_the_subtask_or_refuse_it(params: type[Params] | None, taken: bool) -> None:
+    server, kind = served(Database(1.0), plan_only=False)
+    kind.params = params
+    request = LeafNodeBase.Goal(model_name="zx200", record_name="p?read_direction=down")
+    refusal = asyncio.run(server.accept(request))
+    assert refusal == (None if taken else InputsNotTaken(("read_direction",)))
+    assert not taken or (server._want.x, server._want.read_direction) == (1.0, "down")
+
+
+def test_the_database_is_asked_for_the_record_without_the_inputs() -> None:
+    database, seen = Database(1.0), list[Any]()
+    server, kind = served(database, plan_only=True)
+    kind.params = Way
+    kind.execute = lambda _, *names: seen.append(names[:2])
+    database.asked = seen
+    goal = Goal()
+    goal.request = LeafNodeBase.Goal(model_name="zx200", record_name="p?read_direction=down")
+    assert asyncio.run(server.accept(goal.request)) is None
+    assert server._execute(goal) is Outcome.SUCCEEDED
+    assert seen == [("zx200", "p"), ("zx200", "p"), ("zx200", "p")]  # before the goal, under the lock, the subtask
 
 
 def test_a_cancel_that_came_first_reaches_the_subtask() -> None:

@@ -9,7 +9,14 @@ from tms_kit.subtask import load
 from tms_reason.units import unit
 
 WITHOUT = {"trajectory", "pose", "position_with_angle", "qx", "qy", "qz", "qw"}  # flags, quaternions
-TEXTS = {"angles", "joint", "field", "plan_only", "angle"}  # inputs of variants, and what is picked from another field
+TEXTS = {
+    "angles",
+    "joint",
+    "field",
+    "plan_only",
+    "angle",
+    "read_direction",
+}  # inputs, and what is picked from another field
 MODELS = sorted(path.stem for path in (CONFIGS / "machines").glob("*.yaml"))
 
 

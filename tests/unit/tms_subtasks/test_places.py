@@ -40,6 +40,14 @@ def test_a_record_in_the_other_notation_is_refused() -> None:
     assert said(PathRecord, **LISTS, angles="degrees") == "field 'yaw' is missing"
 
 
+@pytest.mark.parametrize(("way", "places"), [("down", [2.0, 1.0]), ("up", [1.0, 2.0]), ("", [1.0, 2.0])])
+def test_a_path_is_read_up_or_down(way: str, places: list[float]) -> None:
+    fields = {**LISTS, "yaw": [0.0, 90.0], "angles": "degrees", "read_direction": way}
+    poses = PathRecord.model_validate(fields).poses()
+    assert [pose.position.x for pose in poses] == places
+    assert [bool(pose.orientation.z) for pose in poses] == [one == 2.0 for one in places]
+
+
 def test_no_quaternion() -> None:
     assert "length 0.000" in said(PoseRecord, x=1.0, y=2.0, qx=0.0, qy=0.0, qz=0.0, qw=0.0)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Generic, TypeVar
 
@@ -66,6 +67,7 @@ class FakeFlags:
     missing: set[str] = field(default_factory=set)  # records that are not there
     open: list[Answer[Any]] = field(default_factory=list)
     reads: int = 0
+    searches: list[dict[str, Value]] = field(default_factory=list)
 
     def read(self, record: str, field: str) -> Answer[Any]:
         self.reads += 1
@@ -79,6 +81,24 @@ class FakeFlags:
             self.writes.append((record, field, value))
         return self._answer(record, None)
 
+    def change_array(self, record: str, field: str, change: str, value: Value) -> Answer[None]:
+        array = self.values.get((record, field), [])
+        if not isinstance(array, list):
+            return Answer(error=Foreign("the field is no array"))
+        changes = {
+            "add": [*array, *([] if value in array else [value])],
+            "push": [*array, value],
+            "remove": [one for one in array if one != value],
+            "reset": [],
+        }
+        return self.write(record, field, changes[change])
+
+    def find(self, values: Mapping[str, Value]) -> Answer[bool]:
+        self.searches.append(dict(values))
+        records = {record for record, _ in self.values} - self.missing
+        found = [one for one in records if all(_same(self.values.get((one, name)), values[name]) for name in values)]
+        return self._answer("", bool(found))
+
     def _answer(self, record: str, value: Any) -> Answer[Any]:
         answer: Answer[Any] = Answer(value, done=not self.slow)
         if record in self.missing:
@@ -91,6 +111,11 @@ class FakeFlags:
         for answer in self.open:
             answer.done = True
         self.open.clear()
+
+
+def _same(stored: Any, wanted: Value) -> bool:
+    """As the store compares: true is not 1, but 1 is 1.0."""
+    return bool(stored == wanted) and isinstance(stored, bool) == isinstance(wanted, bool)
 
 
 @dataclass

@@ -1,9 +1,11 @@
 """What the check finds in a tree before anything runs: wrong numbers of children, keys of two types."""
 
+from typing import Any
+
 import pytest
 
-from tms_ts.bt import load
-from tms_ts.bt.reasons import IfThenElseChildren, KeyOfTwoTypes, SwitchChildren, WhileDoElseChildren
+from tms_ts.bt import SUCCESS, InOut, Out, Status, SyncAction, load, registry
+from tms_ts.bt.reasons import IfThenElseChildren, KeyOfTwoTypes, NeverWritten, SwitchChildren, WhileDoElseChildren
 from unit.tms_ts.trees import document
 
 OK = "<AlwaysSuccess/>"
@@ -49,3 +51,26 @@ def test_a_key_that_is_written_with_two_types_is_warned_about_at_the_second() ->
 
 def test_a_text_that_comes_first_leaves_the_type_open() -> None:
     assert warned(NUMBER, NUMBER) == warned(TEXT, NUMBER) == []
+
+
+class Measure(SyncAction):
+    """Writes its ports, as a node of somebody else may."""
+
+    __slots__ = ()
+    anything: Out[Any]
+    total: InOut[int]
+
+    def tick(self) -> Status:
+        return SUCCESS
+
+
+@pytest.mark.parametrize(
+    ("ports", "missing"),
+    [('anything="k"', False), ('anything="{k}"', False), ('total="{k}"', False), ('total="k"', True), ("", True)],
+)
+def test_an_output_of_any_node_counts_as_written(ports: str, missing: bool) -> None:
+    text = document(f'<Sequence><Counter key="k"/><Measure {ports}/></Sequence>')
+    loaded = load(text, registry=registry().extended(Measure))
+    assert [what for _, what in loaded.warnings if isinstance(what, NeverWritten)] == (
+        [NeverWritten("k", "Counter")] if missing else []
+    )

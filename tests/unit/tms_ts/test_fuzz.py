@@ -11,8 +11,8 @@ from tms_ts.bt import TreeError, load
 from unit.tms_ts.fakes import FakeWorld
 from words import words
 
-DATA = Path(__file__).resolve().parents[2] / "data" / "field_tasks"
-FILES = [path.read_bytes() for path in sorted(DATA.glob("*.xml"))]
+DATA = Path(__file__).resolve().parents[2] / "data"
+FILES = [path.read_bytes() for path in sorted(DATA.glob("*_tasks/*.xml"))]
 SNIPPETS = [
     b"<", b">", b'"', b"'", b"/", b"&", b"&amp;", b"\0", b"\xff", b"<!--", b"-->", b"<![CDATA[", b"{", b"}", b"=",
     b"<Sequence>", b"</Sequence>", b"<AlwaysSuccess/>", b' ID="Sequence"', b"<!DOCTYPE r>",

@@ -92,6 +92,19 @@ def test_our_reply_says_the_same_of_the_same_tree() -> None:
         }, theirs["registration_name"]
 
 
+def test_both_groots_see_the_nodes_of_templates() -> None:
+    calls = '<root><BehaviorTree ID="M"><Action ID="ExecuteSubtask" subtask_name="T" a="7"/></BehaviorTree></root>'
+    template = '<root><BehaviorTree ID="B"><Delay delay_msec="$a$"><AlwaysSuccess/></Delay></BehaviorTree></root>'
+    one = load(calls, templates={"T": template}.get)
+    nodes = groot_client.tree(groot1.tree_reply(one, {}))["nodes"]
+    assert [(node["registration_name"], node["port_remaps"]) for node in nodes] == [
+        ("Delay", [["delay_msec", "7"]]), ("AlwaysSuccess", []),
+    ]  # fmt: skip
+    _, document = Groot2(one).answer([struct.pack("<BBI", 2, ord("T"), 1)], {}, {})
+    (delay,) = etree.fromstring(document).find("BehaviorTree")
+    assert (delay.tag, delay.get("delay_msec"), [child.tag for child in delay]) == ("Delay", "7", ["AlwaysSuccess"])
+
+
 @pytest.mark.parametrize("golden", GOLDEN["messages"])
 def test_messages_are_the_golden_bytes(golden: dict[str, Any]) -> None:
     data, reported = bytes.fromhex(golden["hex"]), golden["decoded"]

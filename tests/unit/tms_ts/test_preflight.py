@@ -11,6 +11,8 @@ from tms_config.config import CONFIGS, Site, load_site
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
 from tms_decision.reasons import MachineLatched, SoftwareStop
+from tms_machine.goal_inputs import Inputs
+from tms_machine.reasons import InputsNotTaken
 from tms_reason.reason import Foreign, Reason
 from tms_ts import bt
 from tms_ts.preflight import StoredRecord, Values, at, machines_of, preflight, processes_of, records_of
@@ -49,6 +51,7 @@ class Context:
     problems: dict[str, Reason] = field(default_factory=dict)
     silent_input: str = ""
     misfit: Reason | None = None
+    inputs: dict[str, str | bool] = field(default_factory=dict)  # that were looked at
 
     def record(self, machine: str, record: str) -> StoredRecord | None:
         return self.records.get((machine, record))
@@ -68,7 +71,8 @@ class Context:
     def silent(self, machine: str, record: str) -> str:
         return self.silent_input
 
-    def unfit(self, machine: str, subtask: str, values: Values) -> Reason | None:
+    def unfit(self, machine: str, subtask: str, values: Values, inputs: Inputs) -> Reason | None:
+        self.inputs.update(inputs)
         return self.misfit
 
     def oldest(self, machine: str, subtask: str) -> float:
@@ -76,6 +80,25 @@ class Context:
 
 
 GOOD = ("zx200", "pose", "subtask_zx200_change_pose")
+
+
+def test_what_is_found_in_a_template_names_the_template_and_the_call(site: Site) -> None:
+    task = """<root><BehaviorTree ID="T"><Sequence>
+    <Action ID="ExecuteSubtask" subtask_name="Dig" model_name="zx200" pose="gone"/>
+    <Action ID="ExecuteSubtask" subtask_name="Look"/></Sequence></BehaviorTree></root>"""
+    templates = {
+        name: f'<root>\n<BehaviorTree ID="B">\n{body}</BehaviorTree></root>'
+        for name, body in {
+            "Dig": LEAF.format("$model_name$", "$pose$", "subtask_zx200_change_pose"),
+            "Look": '<BlackboardValueReaderMongo mongo_record_name="FLAGS" mongo_param_name="f" output_port="{x}"/>',
+        }.items()
+    }
+    found = preflight(bt.load(task, templates=templates.get), site, Context())
+    assert [words(error) for error in found.errors] == [
+        "line 2: in template Dig:3: no record zx200/gone: `tms param set zx200/gone --create FIELD=VALUE` or the "
+        "console's page Data adds it"
+    ]
+    assert any(words(one).startswith("line 3: in template Look:3: ") for one in found.warnings)
 
 
 def test_a_record_that_is_nearly_there_is_named(site: Site) -> None:
@@ -169,11 +192,48 @@ ROAD = {("", "ROAD"): StoredRecord({"FREE": False}, "dynamic")}
 def test_an_angle_beyond_the_limit_of_its_joint_does_not_fit(
     site: Site, machine: str, subtask: str, values: dict[str, float], said: str
 ) -> None:
-    found = unfit(parse(CONFIGS / "machines" / f"{machine}.yaml", MachineModel), subtask, values)
+    found = unfit(parse(CONFIGS / "machines" / f"{machine}.yaml", MachineModel), subtask, values, {})
     assert said in words(found)
     assert bool(said) == (found is not None)
     errors = preflight(tree(GOOD), site, Context(misfit=found)).errors
     assert len(errors) == bool(said)
+
+
+def test_an_input_that_the_subtask_does_not_take_does_not_fit() -> None:
+    model = parse(CONFIGS / "machines" / "mst110cr.yaml", MachineModel)
+    path = {"x": [0.0], "y": [0.0], "z": [0.0], "qx": [0.0], "qy": [0.0], "qz": [0.0], "qw": [1.0]}
+    down: Inputs = {"read_direction": "down"}
+    assert unfit(model, "st_mst110cr_follow_waypoints", path, down) is None
+    assert unfit(model, "st_mst110cr_follow_waypoints", path | {"read_direction": 5}, {}) is not None
+    assert unfit(model, "st_mst110cr_follow_waypoints", path | {"read_direction": 5}, down) is None  # as in the run
+    assert unfit(model, "st_mst110cr_swing", {"target_angle": 1.0}, down) == InputsNotTaken(("read_direction",))
+    assert unfit(model, "st_mst110cr_swing_align_to_heading", {}, down) == InputsNotTaken(("read_direction",))
+
+
+def primitive(ports: str) -> bt.Tree:
+    text = f'\n<Action ID="LeafNodeExcavator" model_name="zx200" primitive_name="subtask_zx200_change_pose" {ports}/>'
+    return bt.load(f'<root main_tree_to_execute="T"><BehaviorTree ID="T">{text}</BehaviorTree></root>', world=None)
+
+
+def test_a_primitive_is_a_subtask_of_the_model_and_its_inputs_are_checked(site: Site) -> None:
+    around = Context()
+    ports = 'target_record_name="pose" previous_target_record_name="{}"'
+    assert preflight(primitive(ports.format("before")), site, around).errors == []
+    assert around.inputs == {"previous_target_record_name": "before"}
+    assert preflight(primitive(ports.format("{key}")), site, around).errors == []
+    assert around.inputs == {"previous_target_record_name": "before"}  # the other one is known only during the run
+    (error,) = preflight(primitive('record_name="poze" previous_target_record_name="{key}"'), site, around).errors
+    assert "no record zx200/poze; did you mean 'pose'" in words(error)
+
+
+@pytest.mark.parametrize(
+    ("name", "said"), [("primitive_fly", "zx200 offers no 'primitive_fly'"), ("", "has nothing in")]
+)
+def test_a_primitive_that_is_not_there(site: Site, name: str, said: str) -> None:
+    body = f'<Action ID="LeafNodeCommon" model_name="zx200" primitive_name="{name}" record_name="pose"/>'
+    text = f'<root main_tree_to_execute="T"><BehaviorTree ID="T">{body}</BehaviorTree></root>'
+    (error,) = preflight(bt.load(text, world=None), site, Context()).errors
+    assert said in words(error)
 
 
 def test_a_flag_that_is_waited_for_and_that_nobody_writes_is_a_warning(site: Site) -> None:
@@ -193,6 +253,8 @@ def test_shared_records_and_fields_should_be_there_and_not_static(site: Site) ->
     for inner, around, said in (
         (READ.format("FREE"), Context({}), "no shared record ROAD"),
         (READ.format("TAKEN"), Context(ROAD), "has no field 'TAKEN'"),
+        (READ.format("FREE"), Context({("", "ROAD"): StoredRecord({"FREE": [1]}, "dynamic")}), "is not a plain value"),
+        (READ.format("FREE"), Context({("", "ROAD"): StoredRecord({"FREE": 2**40}, "dynamic")}), "too big for 32 bits"),
         (WRITE.format("FREE"), static, "is static"),
     ):
         found = preflight(flags(inner), site, around)
@@ -206,7 +268,7 @@ def test_the_records_that_a_tree_names(site: Site) -> None:
     assert records_of(flags(READ.format("FREE"))) == ["/ROAD"]
 
 
-@pytest.mark.parametrize("name", ["st_zx200_dig ", "st-zx200", "", "st/", "1st", "掘る", "s" * 201])
+@pytest.mark.parametrize("name", ["st_zx200_dig ", "st-zx200", "st/", "1st", "掘る", "s" * 201])
 def test_a_subtask_that_can_be_no_ros_name_is_refused_before_ros_is_asked(site: Site, name: str) -> None:
     class Asked(Context):
         def served(self, machine: str, subtask: str) -> bool:
@@ -214,7 +276,7 @@ def test_a_subtask_that_can_be_no_ros_name_is_refused_before_ros_is_asked(site: 
 
     found = preflight(tree(("zx200", "pose", name)), site, Asked())
     (error,) = found.errors
-    assert words(error).startswith(f"line 2: subtask_name='{name[:90]}")
+    assert words(error).startswith(f"line 2: '{name[:90]}")
     assert words(error).endswith(" can be no ROS name: at most 200 letters, digits and _, no blanks")
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from tms_ts.bt import Tree, load
+from tms_reason.reason import Reason
+from tms_ts.bt import Status, Tree, load
 from unit.tms_ts.fakes import FakeWorld
 
 
@@ -19,3 +20,11 @@ def tree(body: str, *others: str, fake: FakeWorld | None = None, **options: Any)
 
 def leaf(record: str = "R", model: str = "Zx200") -> str:
     return f'<Action ID="LeafNode{model}" model_name="zx200" record_name="{record}" subtask_name="st_zx200_swing"/>'
+
+
+def ticked(one: Tree) -> tuple[Status, Reason | None]:
+    """The status of one tick, and the root's reason when it came to that; the root is IDLE and has none afterwards."""
+    reasons: list[Reason | None] = [one.root.reason]
+    one.observers.append(lambda node, old, new: reasons.append(node.reason) if node is one.root and new else None)
+    status = one.tick()
+    return status, one.root.reason or reasons[-1]

@@ -234,7 +234,12 @@ def test_processes(client: Client, site_client: FakeSiteClient) -> None:
 
 
 def test_tree_of_a_run(client: Client, site_client: FakeSiteClient) -> None:
-    assert client.get("/api/runs/r-1/tree").json()["names"] == ["all"]
+    tree = client.get("/api/runs/r-1/tree").json()
+    assert (tree["names"], tree["templates"]) == (["all"], []), "journals of earlier releases know no templates"
+    (_, shape) = site_client.events("r-1", 0, 2)
+    shape.values["templates"] = ["Dig:5"]
+    site_client.events = lambda *_: [shape]  # type: ignore[method-assign]
+    assert client.get("/api/runs/r-1/tree").json()["templates"] == ["Dig:5"]
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@ import { at, button, duration, heading, keep, make, part, parts, setBadge, setTe
 import { fillReason, showError } from "../reasons.js";
 import { ask } from "../server.js";
 import { clock, fieldName, said, t, when } from "../strings.js";
-import { TreeView } from "../treeview.js";
+import { TreeView, templateOf } from "../treeview.js";
 import { zoomBar } from "./tree.js";
 
 const PAGE = 1000;
@@ -151,11 +151,13 @@ function changeOf(event) {
 function replay(index) {
   const event = journal[index];
   setText(at("moment"), event === undefined ? "" : `${clock(event.stamp)} ${event.node} ${textOf(event)}`);
+  const templates = new Map(view.tree?.paths.map((path, number) => [path, templateOf(view.tree, number)]));
   const nearby = journal.slice(Math.max(0, index - 100), index + 1).filter((one) => one.kind !== "tree").reverse();
   keep(at("list_events"), nearby, (one) => one.number, () => make("tr", {}, ...parts("td", ["time", "kind", "node", "text"])), (row, one) => {
     setText(part(row, "time"), clock(one.stamp));
     setText(part(row, "kind"), one.kind);
-    setText(part(row, "node"), one.node);
+    const template = templates.get(one.node);
+    setText(part(row, "node"), template ? `${one.node} (${t("from_template", { name: template })})` : one.node);
     setText(part(row, "text"), textOf(one));
   });
   if (view.tree === null) {
