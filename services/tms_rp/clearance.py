@@ -1,13 +1,14 @@
-"""Refuses trajectories on which the machine would touch itself or another machine, and names the two.
+"""Whether a machine would touch itself or something in a scene: the one collision checker of the planner.
 
 Bodies are boxes; whether two of them touch is computed by FCL. Coal, its successor, was dropped: it brings boost,
 assimp and octomap, ten times the size, for the same boxes. Its Python binding leaks 32 bytes with every collision
-object (it frees the memory without the C++ destructor), so each body is one object for ever, which is moved.
+object (it frees the memory without the C++ destructor), so each body is one object for ever, which is moved. It is
+asked only for boxes that no face of either separates: that is found beforehand, for all poses and pairs at once.
 """
 
 import threading
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from itertools import combinations
 from typing import Any
 
@@ -15,151 +16,214 @@ import fcl
 import numpy as np
 from numpy.typing import NDArray
 
-from tms_config.models import Box, MachineModel, Origin
+from tms_config.models import Box, MachineModel
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
-from tms_rp.reasons import Collision, Part
-from tms_rp.trajectory import Joints, Trajectory
+from tms_rp.links import Array, Links, Matrix, box_place, reaches
+from tms_rp.reasons import Collision, Ground, Part
+from tms_rp.scene import Obstacle, Scene
+from tms_rp.trajectory import Trajectory
 
-PADDING = 0.1  # m around the bodies that the arm moves
-STEP = 0.03  # rad, of the joint that moves most, between two checked samples
+PADDING = 0.1  # m, usual
+# m that no point of the machine moves further between two checked poses: it is never further than PADDING from one.
+TRAVEL = 2 * PADDING
 
-Matrix = NDArray[np.float64]  # 4 x 4
-Body = str | Reason  # a link of this machine, or the name of an obstacle
-Pair = tuple[Body, Body]
+ROUNDING = 1e-9  # m
 
-
-@dataclass(frozen=True)
-class Obstacle:
-    """A body that does not move: its name in reasons, its box, and the place of its frame in our base_link."""
-
-    name: Reason
-    box: Box
-    place: Matrix
+Mask = NDArray[np.bool_]
 
 
 class Clearance:
-    """Checks trajectories of one machine."""
+    """Looks at scenes for one machine; `padding`: m around the bodies that the arm moves."""
 
-    def __init__(self, model: MachineModel) -> None:
-        self._model = model
-        moved = _moved_links(model)
-        self._bodies = {link: _object(box, PADDING if link in moved else 0.0) for link, box in model.shapes.items()}
-        self._inner = {link: _box_place(box) for link, box in model.shapes.items()}
-        self._others: dict[tuple[Reason, Box], Any] = {}  # bodies of other machines: as many as the site has
+    def __init__(self, model: MachineModel, padding: float = PADDING) -> None:
+        self._links = links = Links(model)
+        self._reach = np.array(list(reaches(model).values()))
+        self._own = {
+            link: _Body(Part(link), box, padding if link in links.moved else 0.0) for link, box in model.shapes.items()
+        }
+        self._others: dict[tuple[Reason, Box], _Body] = {}  # bodies in scenes: as many as the site has
         self._looking = threading.Lock()  # guards the places of all bodies
-        parent = {origin.child: origin.parent for origin in model.geometry.values()}
+        # Neighbours along the arm, and links of the arm among each other, are kept apart by the joint limits.
         self._pairs = [
-            (a, b) for a, b in combinations(self._bodies, 2) if parent.get(a) != b and parent.get(b) != a
+            (i, j) for (i, a), (j, b) in combinations(enumerate(self._own), 2)
+            if links.parent.get(a) != b and links.parent.get(b) != a and not {a, b} <= links.moved
         ]  # fmt: skip
-        self._moved = moved
+        self._moved = [i for i, link in enumerate(self._own) if link in links.moved]
 
-    def check(self, made: Trajectory, obstacles: Sequence[Obstacle] = ()) -> None:
-        """Check the whole trajectory. Bodies that touch at its start may part, but must be apart at its end.
-
-        Raises:
-            SubtaskFailed: Collision, with the two bodies and the time.
-        """
+    @contextmanager
+    def looking(self, scene: Scene) -> Iterator["View"]:
+        """A look at a scene; others wait meanwhile."""
         with self._looking:
-            self._check(made, {one.name: self._fixed(one) for one in obstacles})
+            yield View(self, scene)
 
-    def _check(self, made: Trajectory, fixed: Mapping[Body, Any]) -> None:
-        moving = [link for link in self._bodies if link in self._moved]
-        pairs: list[tuple[str | Reason, str | Reason]] = [
-            *self._pairs,
-            *((link, name) for link in moving for name in fixed),
-        ]
-        bodies: dict[Body, Any] = {}
-        bodies.update(self._bodies)
-        bodies.update(fixed)
-        looks = _looks(made)
-        touching: set[Pair] = set()
-        for number, (seconds, positions) in enumerate(looks):
-            self._move(dict(zip(made.names, positions, strict=True)))
-            now = {pair for pair in pairs if _touch(bodies[pair[0]], bodies[pair[1]])}
-            last = number == len(looks) - 1
-            bad = now if last else now - touching if number else set()
-            if bad:
-                first, second = sorted(bad, key=str)[0]
-                raise SubtaskFailed(Collision(_part(first), _part(second), seconds))
-            touching = now if number == 0 else touching & now
+    def check(self, made: Trajectory, scene: Scene) -> None:
+        """Check a whole trajectory, as View.check."""
+        with self.looking(scene) as view:
+            view.check(made)
 
-    def _fixed(self, obstacle: Obstacle) -> Any:
+    def bodies(self, scene: Scene) -> list["_Body"]:
+        """The machine's own, then those of a scene."""
+        return [*self._own.values(), *map(self._other, scene.obstacles)]
+
+    def _other(self, obstacle: Obstacle) -> "_Body":
         key = obstacle.name, obstacle.box
         if key not in self._others:
-            self._others[key] = _object(obstacle.box, 0.0)
-        body = self._others[key]
-        _place(body, obstacle.place @ _box_place(obstacle.box))
-        return body
+            self._others[key] = _Body(obstacle.name, obstacle.box, 0.0)
+        return self._others[key]
 
-    def _move(self, positions: Mapping[str, float]) -> None:
-        places = {"base_link": np.eye(4)}
-        for joint, origin in self._model.geometry.items():
-            places[origin.child] = places[origin.parent] @ _step(origin, positions.get(joint, 0.0))
-        for link, body in self._bodies.items():
-            _place(body, places[link] @ self._inner[link])
+    def pairs(self, count: int) -> NDArray[np.int_]:
+        """Numbers of the bodies that must not touch, of `count` in all: pairs x 2."""
+        others = range(len(self._own), count)
+        return np.array([*self._pairs, *((moved, other) for moved in self._moved for other in others)])
 
+    def places(self, poses: Array) -> Matrix:
+        """Where the boxes of the machine's own bodies are at the poses: N x bodies x 4 x 4."""
+        places = self._links.places(poses)
+        return np.stack([places[link] @ body.inner for link, body in self._own.items()], axis=1)
 
-def _part(body: Body) -> Reason:
-    """A body as a reason names it: of this machine, or an obstacle."""
-    return Part(body) if isinstance(body, str) else body
+    def between(self, poses: Array) -> tuple[Array, Array]:
+        """The poses, and so many on the straight lines between them that nothing moves further than TRAVEL.
 
-
-def placed(x: float, y: float, yaw: float) -> Matrix:
-    """A frame on flat ground."""
-    found = _turned("z", yaw)
-    found[:2, 3] = x, y
-    return found
-
-
-def _moved_links(model: MachineModel) -> set[str]:
-    """Links that the arm moves: everything beyond the upper body."""
-    found: set[str] = set()
-    for joint, origin in model.geometry.items():
-        if origin.parent in found or (joint in model.joints and origin.axis == "y"):
-            found.add(origin.child)
-    return found
+        With the number of each, from 0; those between have fractions.
+        """
+        counts = np.maximum(1, np.ceil(np.abs(np.diff(poses, axis=0)) @ self._reach / TRAVEL)).astype(int)
+        parts = [i + np.arange(n) / n for i, n in enumerate(counts)]
+        numbers = np.concatenate([*parts, [len(poses) - 1.0]])
+        known = np.arange(len(poses))
+        return np.stack([np.interp(numbers, known, angles) for angles in poses.T], axis=1), numbers
 
 
-def _looks(made: Trajectory) -> list[tuple[float, Joints]]:
-    """Samples far enough apart to matter, with the first and the last."""
-    looks = [(0.0, made.samples[0].positions)]
-    for sample in made.samples[1:]:
-        if max(abs(a - b) for a, b in zip(sample.positions, looks[-1][1], strict=True)) >= STEP:
-            looks.append((sample.time, sample.positions))
-    return [*looks, (made.duration, made.samples[-1].positions)]
+class View:
+    """One look at one scene, while the bodies belong to it."""
+
+    def __init__(self, clearance: Clearance, scene: Scene) -> None:
+        self._clearance, self.scene = clearance, scene
+        self._bodies = clearance.bodies(scene)
+        self._pairs = clearance.pairs(len(self._bodies))
+        self._half = np.array([body.half for body in self._bodies])
+        inner = [body.inner for body in self._bodies[-len(scene.obstacles) :]] if scene.obstacles else []
+        self._others = np.array([one.place @ box for one, box in zip(scene.obstacles, inner, strict=True)])
+
+    def free(self, *poses: Sequence[float]) -> bool:
+        """Whether nothing touches at the poses, nor on the straight lines between them."""
+        places = self._places(self._clearance.between(np.array(poses))[0])
+        return not any(self._touch(places, pose, pair) for pose, pair in self._near(places))
+
+    def passable(self, poses: Sequence[Sequence[float]]) -> bool:
+        """Whether `check` would pass a trajectory on the straight lines between the poses."""
+        return not self._bad(self._places(self._clearance.between(np.array(poses))[0])).any()
+
+    def check(self, made: Trajectory) -> None:
+        """Check a whole trajectory.
+
+        What touches at its start may part, but must be apart at its end; only into the ground it may lead.
+
+        Raises:
+            SubtaskFailed: Collision, with the two bodies, the time, and where they overlap most.
+        """
+        poses, numbers = self._clearance.between(np.array([sample.positions for sample in made.samples]))
+        times = np.interp(numbers, range(len(made.samples)), [sample.time for sample in made.samples])
+        places = self._places(poses)
+        self._refuse(places, times, self._bad(places))
+
+    def _bad(self, places: Matrix) -> Mask:
+        """The contacts that `check` does not allow."""
+        contacts = self._contacts(places)
+        bad = contacts & ~_run(contacts)
+        bad[-1] = contacts[-1]
+        soil = [isinstance(self._bodies[b].name, Ground) for _, b in self._pairs]
+        bad[:, soil] &= ~_run(contacts[::-1])[::-1][:, soil]
+        return bad
+
+    def check_part(self, made: Trajectory, begin: float, end: float) -> None:
+        """Check a trajectory that runs between two times [s]; what touches since its start may go on.
+
+        Raises:
+            SubtaskFailed: Collision.
+        """
+        samples = [sample for sample in made.samples if sample.time <= end]
+        poses, numbers = self._clearance.between(np.array([sample.positions for sample in samples]))
+        times = np.interp(numbers, range(len(samples)), [sample.time for sample in samples])
+        places = self._places(poses)
+        contacts = self._contacts(places)
+        self._refuse(places, times, contacts & ~_run(contacts) & (times >= begin)[:, None])
+
+    def check_end(self, made: Trajectory) -> None:
+        """Check the last pose alone.
+
+        Raises:
+            SubtaskFailed: Collision, after the whole time.
+        """
+        places = self._places(np.array([made.samples[-1].positions]))
+        self._refuse(places, np.array([made.duration]), self._contacts(places))
+
+    def _places(self, poses: Array) -> Matrix:
+        """Where all boxes are: N x bodies x 4 x 4."""
+        own = self._clearance.places(poses)
+        if not len(self._others):
+            return own
+        return np.concatenate([own, np.broadcast_to(self._others, (len(poses), *self._others.shape))], axis=1)
+
+    def _near(self, places: Matrix) -> NDArray[np.int_]:
+        """Numbers of the poses, and the pairs that no face of either box separates there; all others are apart."""
+        turns, centres = places[..., :3, :3], places[..., :3, 3]
+        a, b = self._pairs.T
+        ways = centres[:, b] - centres[:, a]
+        far = np.linalg.norm(self._half[a], axis=1) + np.linalg.norm(self._half[b], axis=1)
+        found = np.argwhere(np.einsum("npi,npi->np", ways, ways) <= far**2)
+        poses, pairs = found.T
+        a, b, way = a[pairs], b[pairs], ways[poses, pairs][..., None]
+        turn_a, turn_b = turns[poses, a].swapaxes(1, 2), turns[poses, b].swapaxes(1, 2)  # from base_link
+        across = np.abs(turn_a @ turn_b.swapaxes(1, 2))
+        half_a, half_b = self._half[a, :, None], self._half[b, :, None]
+        over_a = np.abs(turn_a @ way) <= half_a + across @ half_b + ROUNDING
+        over_b = np.abs(turn_b @ way) <= half_b + across.swapaxes(1, 2) @ half_a + ROUNDING
+        near: NDArray[np.int_] = found[(over_a & over_b).all(axis=(1, 2))]
+        return near
+
+    def _contacts(self, places: Matrix) -> Mask:
+        """Which pairs touch at which pose: N x pairs."""
+        found = np.zeros((len(places), len(self._pairs)), dtype=bool)
+        for pose, pair in self._near(places):
+            found[pose, pair] = self._touch(places, pose, pair)
+        return found
+
+    def _touch(self, places: Matrix, pose: int, pair: int) -> bool:
+        a, b = (self._bodies[i].at(places[pose, i]) for i in self._pairs[pair])
+        return bool(fcl.collide(a, b, fcl.CollisionRequest(), fcl.CollisionResult()))
+
+    def _refuse(self, places: Matrix, times: Array, bad: Mask) -> None:
+        if not bad.any():
+            return
+        first = int(np.argmax(bad.any(axis=1)))
+        pair = int(np.argmax(bad[first]))
+        depth, (x, y, z) = max(self._overlap(places, int(pose), pair) for pose in np.flatnonzero(bad[:, pair]))
+        a, b = (self._bodies[i].name for i in self._pairs[pair])
+        raise SubtaskFailed(Collision(a, b, float(times[first]), depth, x, y, z))
+
+    def _overlap(self, places: Matrix, pose: int, pair: int) -> tuple[float, tuple[float, ...]]:
+        """How deep two bodies overlap [m] and where, in base_link."""
+        a, b = (self._bodies[i].at(places[pose, i]) for i in self._pairs[pair])
+        result = fcl.CollisionResult()
+        fcl.collide(a, b, fcl.CollisionRequest(num_max_contacts=8, enable_contact=True), result)
+        return max((float(one.penetration_depth), tuple(map(float, one.pos))) for one in result.contacts)
 
 
-def _object(box: Box, padding: float) -> Any:
-    size = [high - low + 2 * padding for low, high in zip(box.min, box.max, strict=True)]
-    return fcl.CollisionObject(fcl.Box(*size))
+class _Body:
+    """A box: its name in reasons, half of its size [m], and its centre in the frame that it belongs to."""
+
+    def __init__(self, name: Reason, box: Box, padding: float) -> None:
+        self.name, self.inner = name, box_place(box)
+        self.half = np.array([(high - low) / 2 + padding for low, high in zip(box.min, box.max, strict=True)])
+        self._object = fcl.CollisionObject(fcl.Box(*map(float, 2 * self.half)))
+
+    def at(self, place: Matrix) -> Any:
+        """FCL's object, put to a place."""
+        self._object.setTransform(fcl.Transform(place[:3, :3], place[:3, 3]))
+        return self._object
 
 
-def _box_place(box: Box) -> Matrix:
-    """Centre of a box in the frame that it belongs to."""
-    inner = np.eye(4)
-    inner[:3, 3] = [(low + high) / 2 for low, high in zip(box.min, box.max, strict=True)]
-    return _turned("y", box.pitch) @ inner
-
-
-def _place(body: Any, place: Matrix) -> None:
-    body.setTransform(fcl.Transform(place[:3, :3], place[:3, 3]))
-
-
-def _touch(a: Any, b: Any) -> bool:
-    return bool(fcl.collide(a, b, fcl.CollisionRequest(), fcl.CollisionResult()))
-
-
-def _step(origin: Origin, angle: float) -> Matrix:
-    found = _turned("y", origin.pitch) @ _turned(origin.axis, angle)
-    found[:3, 3] = origin.xyz
-    return found
-
-
-def _turned(axis: str, angle: float) -> Matrix:
-    c, s = np.cos(angle), np.sin(angle)
-    i, j = {"x": (1, 2), "y": (2, 0), "z": (0, 1)}[axis]
-    found = np.eye(4)
-    found[i, i] = found[j, j] = c
-    found[i, j], found[j, i] = -s, s
-    return found
+def _run(contacts: Mask) -> Mask:
+    """The contacts that last since the first pose."""
+    return np.logical_and.accumulate(contacts, axis=0)

@@ -1,6 +1,6 @@
 """The parts with which a kind of machine makes its motions plannable; each folder of `kinds` has one as its KIND."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,6 +21,25 @@ class Moves:
     begin: Angles | None = None  # where the motion begins; None: where the arm is now
     plans: tuple[JointTrajectory, ...] = ()  # stored plans, instead of targets
     scales: tuple[float, float] = (1.0, 1.0)  # shares of the limits of velocity, and of acceleration and jerk
+
+
+@dataclass(frozen=True)
+class Way:
+    """Joint targets one after another up to the one that a goal asks for, and how people call that; None: straight."""
+
+    targets: tuple[Angles, ...]
+    name: Reason | None = None
+
+
+@dataclass(frozen=True)
+class Manners:
+    """How a kind of machine gets around something. All poses are angles of the joints of the kind, all bounds rad."""
+
+    ways: Callable[[MachineModel, Angles, Angles], Iterable[Way]]  # from a pose to a target, the best first
+    lifts: Callable[[MachineModel, Angles], Iterable[Angles]]  # the pose and others above it, each higher
+    targets: Callable[[MachineModel, Angles, Angles], Sequence[Angles]]  # the target, and poses that are as good
+    # For a search between poses: least and most of each joint.
+    bounds: Callable[[MachineModel, Sequence[Angles]], Sequence[tuple[float, float]]]
 
 
 @dataclass(frozen=True)
@@ -45,3 +64,4 @@ class MachineKind:
     joints: tuple[str, ...]  # joints that goals move
     planner: Callable[[MachineModel], Any]  # raises ConfigError: the model is not of this kind
     actions: tuple[PlanningAction, ...]
+    manners: Manners

@@ -25,7 +25,7 @@ SERVER_LIMIT = 3.0  # s for the gateway to be there
 ACCEPT_LIMIT = 5.0  # s for the gateway to answer; it does so without calls of its own
 OVERRUN = 20.0  # s beyond the trajectory's own duration: the gateway gives up after 10 s and needs 5 s to stop
 MOTION_END_LIMIT = STOP_PROVEN + 2.0  # s for a cancelled motion to have ended
-GATEWAY_CHECK_PERIOD = 0.5  # s between checks whether the gateway is still there
+CHECK_PERIOD = 0.5  # s between checks whether the gateway is still there, and whether the way is still free
 
 Gateway = Peer[FollowJointTrajectory.Goal, FollowJointTrajectory.Result, FollowJointTrajectory.Feedback]
 TrajectoryCall = Call[FollowJointTrajectory.Result, FollowJointTrajectory.Feedback]
@@ -38,8 +38,12 @@ class Mover:
         self._peer, self._process = peer, process_of(peer.name)
         self._machine = self._process.split(":")[0]
 
-    def move(self, goal: AnyGoal, made: Trajectory, say: Callable[[Reason], None]) -> Outcome:
+    def move(
+        self, goal: AnyGoal, made: Trajectory, say: Callable[[Reason], None], blocked: Callable[[float], Reason | None]
+    ) -> Outcome:
         """Execute `made` for `goal` and report the progress; SUCCEEDED, or CANCELED once the machine has stopped.
+
+        `blocked` tells why it must not go on, so many seconds after its begin; it is asked again and again.
 
         Raises:
             SubtaskFailed, RosError: anything else, with the reason; the motion was cancelled then.
@@ -54,21 +58,25 @@ class Mover:
         if not call.accepted and not _over(goal, call):
             self._stop(call)
             raise SubtaskFailed(NoAnswer(self._process, self._peer.name, ACCEPT_LIMIT))
-        lost = self._watch(goal, call, monotonic() + made.duration + OVERRUN)
+        lost = self._watch(goal, call, monotonic() + made.duration + OVERRUN, lambda: blocked(progress.seconds))
         if call.outcome is None:
             self._stop(call)
         if lost is not None:
             raise SubtaskFailed(lost)
         return _verdict(goal, call, self._peer.name)
 
-    def _watch(self, goal: AnyGoal, call: TrajectoryCall, deadline: float) -> Reason | None:
+    def _watch(
+        self, goal: AnyGoal, call: TrajectoryCall, deadline: float, blocked: Callable[[], Reason | None]
+    ) -> Reason | None:
         """Wait for the end of the motion or for a cancel; the reason when neither came."""
         while not _over(goal, call):
             if monotonic() > deadline:
                 return MotionLate(self._machine, OVERRUN)
             if self._peer.left():
                 self._peer.mark_lost()  # it ended in order, but without a result
-            call.wait_for(lambda: _over(goal, call), min(GATEWAY_CHECK_PERIOD, deadline - monotonic()))
+            if why := blocked():
+                return why
+            call.wait_for(lambda: _over(goal, call), min(CHECK_PERIOD, deadline - monotonic()))
         return None
 
     def _stop(self, call: TrajectoryCall) -> None:
@@ -85,11 +93,13 @@ class _Progress:
         self._made, self._say = made, say
         self._said: Reason | None = None
         self._begun = monotonic()
+        self.seconds = 0.0  # since the begin of the trajectory, as far as the controller has told
 
     def __call__(self, feedback: FollowJointTrajectory.Feedback) -> None:
         at = feedback.desired.time_from_start
         # Not every controller fills in its time; else the clock gives it.
         seconds = at.sec + at.nanosec * 1e-9 or monotonic() - self._begun
+        self.seconds = seconds
         number, percent = self._made.progress(seconds)
         progress = MoveOf(number, len(self._made.stops), percent)
         if progress != self._said:

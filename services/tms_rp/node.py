@@ -1,11 +1,9 @@
 """Process `<machine>:rp`: plans motions and has the machine's gateway execute them."""
 
-import math
 from typing import Any
 
 from control_msgs.action import FollowJointTrajectory
 from prometheus_client import Histogram
-from sensor_msgs.msg import JointState
 from tms_msg_rp.action import ExecutePlans
 from tms_msg_rp.msg import TmsRpErrorCodes
 
@@ -19,13 +17,12 @@ from tms_reason.reason import Reason
 from tms_reason.texts import text
 from tms_ros.goals import Ended, Outcome
 from tms_ros.server import AnyGoal
-from tms_rp.clearance import Clearance
+from tms_rp.joint_states import JointStates
 from tms_rp.kind import Angles, Moves, PlanningAction
 from tms_rp.kinds import load
 from tms_rp.messages import follow
 from tms_rp.mover import Mover
 from tms_rp.neighbours import Neighbours
-from tms_rp.plans import one_trajectory, scaled
 from tms_rp.reasons import (
     Adapted,
     GatewayAway,
@@ -36,7 +33,10 @@ from tms_rp.reasons import (
     Planning,
     Succeeded,
 )
-from tms_rp.trajectory import Trajectory, trajectory
+from tms_rp.scene import Scene
+from tms_rp.told_scene import ToldScene
+from tms_rp.trajectory import Trajectory
+from tms_rp.ways import Ways
 from tms_runtime.app import App
 
 FRESH = 1.0  # s, older joint states are no start for a motion
@@ -55,7 +55,7 @@ EXECUTE = PlanningAction("execute_plans", ExecutePlans, _stored, True)
 def start(app: App) -> None:
     """Serve `/<machine>/tms_rp_<model>_<action>`."""
     planner, model = Planner(app), app.site.file.machines[app.machine].model
-    app.ros.poll_in_thread(JOINTS_PERIOD, planner.take_samples, "joints")
+    app.ros.poll_in_thread(JOINTS_PERIOD, planner.take_joints, "joints")
     for action in (*planner.kind.actions, EXECUTE):
         planner.serve(action, f"/{app.machine}/tms_rp_{model}_{action.name}")
     app.ready_when(planner.unready)
@@ -70,28 +70,18 @@ class Planner:
         assert self._model.planner is not None  # without it, the process table has no planner for the machine
         self.kind = load(self._model.planner)
         self._planner = self.kind.planner(self._model)
-        self._clearance, self._neighbours = Clearance(self._model), Neighbours(app)
+        self._ways, self._neighbours = Ways(self._model, self.kind), Neighbours(app)
+        self._told = ToldScene(app)
         self._rc = app.ros.peer(FollowJointTrajectory, f"/{app.machine}/rc/follow_joint_trajectory")
         watch_server(app.ros, app.pulse, app.machine, "rc")(self._rc)
         self._permit = Permit(app.ros, app.pulse, app.machine, "rp")
         self._mover = Mover(self._rc)
-        self._renamed = app.site.border(app.machine).joints
         self._busy = False  # set on the executor thread, which accepts one goal after another
-        self._now: tuple[float, Angles] | None = None  # monotonic time [s], joints
-        self._samples = app.ros.sample(JointState, f"/{app.machine}/{app.site.border(app.machine).joint_states}")
+        self._joints = JointStates(app.ros, app.machine, app.site.border(app.machine), self.kind.joints)
 
-    def take_samples(self) -> None:
+    def take_joints(self) -> None:
         """Take the newest joint state."""
-        for message in self._samples():
-            self._received(message)
-
-    def _received(self, message: JointState) -> None:
-        """Joint states are matched by name: backends order them differently."""
-        found = dict(zip(message.name, message.position, strict=False))
-        found.update({name: found[own] for name, own in self._renamed.items() if own in found})
-        angles = [found.get(name, math.nan) for name in self.kind.joints]
-        if all(map(math.isfinite, angles)):
-            self._now = (monotonic(), tuple(angles))
+        self._joints.take()
 
     def unready(self) -> Reason | None:
         """Why no motion can be planned and executed now."""
@@ -109,9 +99,8 @@ class Planner:
         Raises:
             SubtaskFailed: JointsUnheard, JointsOld.
         """
-        self.take_samples()
-        last = self._now
-        topic = f"/{self._app.machine}/{self._app.site.border(self._app.machine).joint_states}"
+        self._joints.take()
+        last, topic = self._joints.last, self._joints.topic
         if last is None:
             raise SubtaskFailed(JointsUnheard(self._app.machine, topic, self.kind.joints))
         age = monotonic() - last[0]
@@ -157,7 +146,9 @@ class Planner:
                 say(Planned(made.duration), notes)
                 outcome = Outcome.SUCCEEDED
             else:
-                outcome = self._mover.move(goal, made, lambda progress: say(progress, notes))
+                outcome = self._mover.move(
+                    goal, made, lambda progress: say(progress, notes), lambda seconds: self._blocked(made, seconds)
+                )
         except TmsError as error:
             self._app.log.warning("failed", action=action.name, goal=goal.id, reason=error.reason)
             say(Aborted(error.reason, action.name))
@@ -165,13 +156,28 @@ class Planner:
         say(Succeeded() if outcome is Outcome.SUCCEEDED else MotionCancelled())
         return outcome, made
 
+    def _blocked(self, made: Trajectory, seconds: float) -> Reason | None:
+        """What has come into the way of a motion; without this machine's own place nobody knows, and it goes on."""
+        try:
+            scene = self._neighbours.scene(as_told=True)
+        except SubtaskFailed:
+            return None
+        return self._ways.blocked(made, seconds, scene)
+
+    def _scene(self) -> Scene:
+        """All that stands around the machine now.
+
+        Raises:
+            SubtaskFailed: something of it is not known.
+        """
+        return Scene((*self._neighbours.scene().obstacles, *self._told.obstacles()))
+
     def _plan(self, action: PlanningAction, goal: AnyGoal) -> tuple[Trajectory, tuple[Reason, ...]]:
         """The trajectory, and the changes to the goal that it needed."""
         begun = monotonic()
         now = self.joints()
         moves = action.plan(self._planner, now, goal.request)
-        made = self._trajectory(now, moves)
-        self._clearance.check(made, self._neighbours.obstacles())
+        made, notes = self._ways.plan(now, moves, self._scene())
         seconds = monotonic() - begun
         PLANNING.observe(seconds)
         self._app.log.info(
@@ -181,19 +187,6 @@ class Planner:
             moves=len(made.stops),
             duration=round(made.duration, 2),
             planning=round(seconds, 4),
-            notes=[text(note, "en") for note in moves.notes],
+            notes=[text(note, "en") for note in notes],
         )
-        return made, moves.notes
-
-    def _trajectory(self, now: Angles, moves: Moves) -> Trajectory:
-        """The trajectory through all targets, or along stored plans; joints that no goal moves (the tool) stay at 0."""
-
-        def all_joints(pose: Angles) -> tuple[float, ...]:
-            angles = dict(zip(self.kind.joints, pose, strict=True))
-            return tuple(angles.get(name, 0.0) for name in self._model.joints)
-
-        begin = all_joints(moves.begin or now)
-        if moves.plans:
-            return one_trajectory(self._model.joints, begin, moves.plans)
-        joints = scaled(self._model.joints, *moves.scales)
-        return trajectory(joints, begin, [all_joints(pose) for pose in moves.targets])
+        return made, notes

@@ -2,7 +2,7 @@
 
 from tms_reason.quantities import Metres, Moments, Number, Percent, Radians, Seconds
 from tms_reason.reason import Reason
-from tms_reason.remedies import INSPECT, PROCESSES, Remedy
+from tms_reason.remedies import INSPECT, PROCESSES, RECORDS, Remedy
 
 ONE_TARGET = Remedy("goal", "", "Give exactly one of the three")
 NEARER = Remedy("goal", "", "Choose a nearer point")
@@ -22,6 +22,11 @@ class MoveOf(Reason, text="move {number} of {count}, {percent}"): number: int; c
 class Adapted(Reason, text="{progress} ({notes})"): progress: Reason; notes: tuple[Reason, ...]
 class OtherAngle(Reason, text="bucket angle {chosen} instead of {wanted}"): chosen: Radians; wanted: Radians
 class ClearanceCut(Reason, text="{joint} moves clear to its limit {limit} only"): joint: str; limit: Radians
+class Around(Reason, text="{way}, as {why}"): way: Reason; why: Reason
+class LiftSwingLower(Reason, text="it lifts, swings and lowers"): pass
+class FoldSwingUnfold(Reason, text="it lifts, curls in, swings and unfolds"): pass
+class OtherWayRound(Reason, text="{way}, the other way round"): way: Reason
+class Searched(Reason, text="it takes a way that was searched"): pass
 class Succeeded(Reason, text="done"): pass
 class MotionCancelled(Reason, text="cancelled"): pass
 
@@ -49,9 +54,13 @@ class OutOfRange(Reason, text="{broken}", action=INSIDE): broken: tuple[Reason, 
 class PointOutOfRange(Reason, text="{point} needs {broken}", action=OTHER_POINT):
     point: Reason; broken: tuple[Reason, ...]
 class NoAngleDigs(Reason, text="no bucket angle from 0 to pi digs there: {why}"): why: Reason
-class Collision(Reason, text="{first} would touch {second} after {seconds}", action=OTHER_TARGET):
-    first: Reason; second: Reason; seconds: Seconds
+class Collision(Reason, text="{first} would touch {second} after {seconds}, {depth} deep at ({x}, {y}, {z})",
+    action=OTHER_TARGET):
+    first: Reason; second: Reason; seconds: Seconds; depth: Metres; x: Metres; y: Metres; z: Metres
+class PathBlocked(Reason, text="{by} has come into the way: {why}", action=INSPECT): by: Reason; why: Reason
+class NoWayRound(Reason, text="{why}; no way round was found", action=OTHER_TARGET): why: Reason
 class Part(Reason, text="{link}"): link: str
+class Ground(Reason, text="the ground"): pass
 class PartOf(Reason, text="{link} of {machine}"): link: str; machine: str
 class NoTrajectory(Reason, text="there is no trajectory inside the limits", details="{problem}"): problem: str
 class LimitsLeft(Reason, text="{joint} would leave its limits after {seconds}"): joint: str; seconds: Moments
@@ -75,6 +84,11 @@ class MotionLate(Reason, text="{machine} was not done {seconds} after the end of
     machine: str; seconds: Seconds
 class MotionFailed(Reason, text="{why}", details="{name} {outcome}"): why: Reason; name: str; outcome: str
 
+class Told(Reason, text="{record}"): record: str
+class NoShape(Reason, text="it has no dimensions, and there is no machine '{named}'"): named: str
+class SceneRecordOld(Reason, text="record {record} is {age} old: nobody knows what stands there now", action=RECORDS):
+    record: str; age: Seconds
+class SceneUnread(Reason, text="the scene records are as they were read last: {why}"): why: Reason
 class PlaceUnknown(Reason, text="it is not known where {machine} stands: the other machines are left out",
     details="nothing on /tf"): machine: str
 

@@ -56,12 +56,17 @@ class Trajectory:
 
 
 def trajectory(
-    joints: dict[str, Joint], start: Sequence[float], targets: Sequence[Sequence[float]], step: float = STEP
+    joints: dict[str, Joint],
+    start: Sequence[float],
+    targets: Sequence[Sequence[float]],
+    step: float = STEP,
+    straight: bool = False,
 ) -> Trajectory:
     """The trajectory from `start` [rad] over `targets` [rad], at rest in each; joint order is that of `joints`.
 
-    A move between equal poses takes no time. A start outside its limits is allowed, so that a joint that sags past
-    its bound can come back; it never gets further out.
+    `straight`: each move is a straight line in joint space, also where that costs time. A move between equal poses
+    takes no time. A start outside its limits is allowed, so that a joint that sags past its bound can come back; it
+    never gets further out.
 
     Raises:
         SubtaskFailed: NoTrajectory, LimitsLeft: no trajectory keeps the limits.
@@ -70,7 +75,7 @@ def trajectory(
     samples = [_rest(0.0, tuple(start))]
     stops = []
     for target in targets:
-        samples += _move(limits, samples[-1], tuple(target), step)
+        samples += _move(limits, samples[-1], tuple(target), step, straight)
         stops.append(samples[-1].time)
     if len(samples) == 1:  # no joint moves: a controller still needs a second point
         samples.append(_rest(step, samples[0].positions))
@@ -83,11 +88,14 @@ def _rest(time: float, positions: Joints) -> TrajectorySample:
     return TrajectorySample(time, positions, still, still)
 
 
-def _move(limits: Sequence[Joint], begin: TrajectorySample, target: Joints, step: float) -> list[TrajectorySample]:
+def _move(
+    limits: Sequence[Joint], begin: TrajectorySample, target: Joints, step: float, straight: bool
+) -> list[TrajectorySample]:
     """Samples after `begin` up to the rest in `target`."""
     if all(abs(a - b) < 1e-9 for a, b in zip(begin.positions, target, strict=True)):
         return []
-    profile = _profile(limits, begin.positions, target)
+    slowed = _in_proportion(limits, begin.positions, target) if straight else limits
+    profile = _profile(slowed, begin.positions, target)
     count = math.ceil(profile.duration / step)
     samples = []
     for i in range(1, count):
@@ -95,6 +103,20 @@ def _move(limits: Sequence[Joint], begin: TrajectorySample, target: Joints, step
         p, v, a = profile.at_time(seconds)
         samples.append(TrajectorySample(begin.time + seconds, tuple(p), tuple(v), tuple(a)))
     return [*samples, _rest(begin.time + profile.duration, target)]
+
+
+def _in_proportion(limits: Sequence[Joint], start: Joints, target: Joints) -> Sequence[Joint]:
+    """Limits in the proportion of the ways of the joints: with them all joints have the same profile."""
+    ways = [abs(b - a) for a, b in zip(start, target, strict=True)]
+
+    def shared(limit: str) -> float:
+        return min(float(getattr(joint, limit)) / way for joint, way in zip(limits, ways, strict=True) if way > 0)
+
+    most = {limit: shared(limit) for limit in ("velocity", "acceleration", "jerk")}
+    return [
+        joint.model_copy(update={limit: value * way for limit, value in most.items()}) if way > 0 else joint
+        for joint, way in zip(limits, ways, strict=True)
+    ]
 
 
 def _profile(limits: Sequence[Joint], start: Joints, target: Joints) -> Profile:

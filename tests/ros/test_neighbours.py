@@ -9,11 +9,17 @@ from geometry_msgs.msg import TransformStamped
 from tf2_msgs.msg import TFMessage
 
 from conftest import wait_until
-from tms_config.models import Border
+from tms_config.config import CONFIGS
+from tms_config.models import Border, Box, MachineModel
+from tms_config.yaml_file import parse
 from tms_ros.node import Ros
 from tms_rp.neighbours import Neighbours
 
 pytestmark = pytest.mark.ros
+BODY = Box(min=(-3.0, -1.3, 0.0), max=(2.0, 1.3, 3.0))
+TRUCK = parse(CONFIGS / "machines" / "ic120.yaml", MachineModel).model_copy(
+    update={"footprint": {"body": BODY}, "shapes": {}}
+)
 MACHINES = ("zx200", "ic120")
 
 
@@ -30,12 +36,12 @@ def test_a_place_that_is_told_now_and_then_is_heard_among_all_the_joints(two_nod
     site: Any = SimpleNamespace(
         border=lambda name: Border(base_frame=f"{name}/base"),
         file=SimpleNamespace(machines=MACHINES),
-        model_of=lambda _: SimpleNamespace(footprint={"body": object()}),
+        model_of=lambda _: TRUCK,
     )
     app: Any = SimpleNamespace(site=site, machine="zx200", log=structlog.stdlib.get_logger("test"), ros=planner)
     neighbours = Neighbours(app)
     say = nav.publisher(TFMessage, "/tf", depth=200)
-    places = lambda: [one.place[0, 3] for one in neighbours.obstacles()]  # noqa: E731
+    places = lambda: [one.place[0, 3] for one in neighbours.scene().obstacles]  # noqa: E731
     wait_until(
         lambda: say.publish(reported("zx200/base", "ic120/base", x=0.0)) or places() == [0.0], 30, "both are heard"
     )

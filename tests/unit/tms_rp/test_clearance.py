@@ -8,8 +8,10 @@ from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
 from tms_reason.errors import SubtaskFailed
-from tms_rp.clearance import Clearance, Obstacle, placed
+from tms_rp.clearance import Clearance
+from tms_rp.links import placed
 from tms_rp.reasons import Collision, Part, PartOf
+from tms_rp.scene import Obstacle, Scene
 from tms_rp.trajectory import Trajectory, trajectory
 
 MODEL = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel)
@@ -20,25 +22,25 @@ LOW_RIGHT = (-1.571, -0.3, 1.4, 0.5, 0.0)
 LOW_FRONT = (0.0, -0.3, 1.4, 0.5, 0.0)
 
 
-def truck(x: float, y: float) -> list[Obstacle]:
+def truck(x: float, y: float) -> Scene:
     """An ic120 across the front, the middle of its vessel at (x, y)."""
     place = placed(x, y + 1.44, math.pi / 2)
-    return [Obstacle(PartOf(part, "ic120"), box, place) for part, box in TRUCK.footprint.items()]
+    return Scene(tuple(Obstacle(PartOf(part, "ic120"), box, place) for part, box in TRUCK.footprint.items()))
 
 
 def move(*poses: tuple[float, ...]) -> Trajectory:
     return trajectory(MODEL.joints, poses[0], poses[1:])
 
 
-def refusal(made: Trajectory, obstacles: list[Obstacle]) -> Collision:
+def refusal(made: Trajectory, scene: Scene) -> Collision:
     with pytest.raises(SubtaskFailed) as caught:
-        Clearance(MODEL).check(made, obstacles)
+        Clearance(MODEL).check(made, scene)
     assert isinstance(caught.value.reason, Collision)
     return caught.value.reason
 
 
 def test_without_anything_in_the_way_it_passes() -> None:
-    Clearance(MODEL).check(move(RIGHT, FRONT))
+    Clearance(MODEL).check(move(RIGHT, FRONT), Scene())
     Clearance(MODEL).check(move(RIGHT, FRONT), truck(20.0, 0.0))
 
 
@@ -62,7 +64,7 @@ def test_over_the_vessel_it_passes() -> None:
 
 
 def test_the_bucket_against_the_own_tracks() -> None:
-    said = refusal(move((0.0, -0.3, 2.2, 0.5, 0.0), (0.0, -0.12, 2.687, 0.5, 0.0)), [])
+    said = refusal(move((0.0, -0.3, 2.2, 0.5, 0.0), (0.0, -0.12, 2.687, 0.5, 0.0)), Scene())
     assert Part("track_link") in (said.first, said.second)
 
 

@@ -7,6 +7,7 @@ from tms_msg_rp.action import PlanPose, TmsRpZx200ChangePose, TmsRpZx200Excavate
 from tms_rp.kind import Angles, MachineKind, Moves, PlanningAction
 from tms_rp.kinds.backhoe import messages
 from tms_rp.kinds.backhoe.linkage import ArmAngles
+from tms_rp.kinds.backhoe.manners import MANNERS
 from tms_rp.kinds.backhoe.planner import NAMES, Backhoe
 from tms_rp.plans import start_of
 
@@ -40,4 +41,5 @@ KIND = MachineKind(
         PlanningAction("excavate_simple_plan", TmsRpZx200ExcavateSimple, _excavate, False),
         PlanningAction("release_simple", TmsRpZx200ReleaseSimple, _release, True),
     ),
+    MANNERS,
 )

@@ -1,0 +1,125 @@
+"""A way to each target of a goal: the straight one if it is free, else around what is in the way."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from tms_config.models import MachineModel
+from tms_reason.errors import SubtaskFailed
+from tms_reason.reason import Reason
+from tms_rp.clearance import Clearance, View
+from tms_rp.kind import Angles, MachineKind, Moves, Way
+from tms_rp.plans import one_trajectory, scaled
+from tms_rp.reasons import Around, Collision, NoWayRound, PathBlocked, Searched
+from tms_rp.sampling import search
+from tms_rp.scene import Scene
+from tms_rp.trajectory import Joints, Trajectory, trajectory
+
+
+class Ways:
+    """Plans for one machine."""
+
+    def __init__(self, model: MachineModel, kind: MachineKind) -> None:
+        self._model, self._kind = model, kind
+        self._clearance = Clearance(model)
+        # While it moves, only what is really in the way: places that are told are some centimetres apart each time.
+        self._touching = Clearance(model, padding=0.0)
+        moved = [(model.joints[name], model.response[name]) for name in kind.joints]
+        self._late = max(answer.dead_time + answer.lag for _, answer in moved)  # s behind the trajectory
+        self._stopping = max(joint.velocity / joint.acceleration for joint, _ in moved)  # s to brake
+
+    def plan(self, now: Angles, moves: Moves, scene: Scene) -> tuple[Trajectory, tuple[Reason, ...]]:
+        """The trajectory over all targets of `moves`, and what people should know of it.
+
+        It goes straight from target to target as long as it touches nothing, however low that leads. A way around
+        stays above the ground, but for its ends. Stored plans are kept as they are, or refused.
+
+        Raises:
+            SubtaskFailed: Collision: a target itself is not free. NoWayRound. NoTrajectory, LimitsLeft. PlanWrong.
+        """
+        now = moves.begin or now
+        if moves.plans:
+            made = one_trajectory(self._model.joints, self._all_joints(now), moves.plans)
+            self._clearance.check(made, scene)
+            return made, moves.notes
+        straight = self._trajectory(now, moves)
+        try:
+            self._clearance.check(straight, scene)
+        except SubtaskFailed as error:
+            return self._around(now, moves, scene, error.reason)
+        return straight, moves.notes
+
+    def blocked(self, made: Trajectory, seconds: float, scene: Scene) -> Reason | None:
+        """What has come into the way of a trajectory that runs since `seconds`, so near that it must stop now."""
+        with self._touching.looking(scene) as view:
+            try:
+                begin = min(seconds - self._late, made.duration)
+                view.check_part(made, begin, seconds + self._late + self._stopping)
+            except SubtaskFailed as error:
+                why = error.reason
+                return PathBlocked(why.second, why) if isinstance(why, Collision) else why
+        return None
+
+    def _around(self, now: Angles, moves: Moves, scene: Scene, why: Reason) -> tuple[Trajectory, tuple[Reason, ...]]:
+        targets, notes = [now], list(moves.notes)
+        turned = (0.0,) * len(now)  # rad by which a way has ended elsewhere than the goal asks: whole turns
+        for target in moves.targets:
+            wanted = tuple(a + b for a, b in zip(target, turned, strict=True))
+            way = self._way(targets[-1], wanted, scene, why)
+            targets += way.targets
+            turned = tuple(a - b for a, b in zip(way.targets[-1], target, strict=True))
+            notes += [Around(way.name, why)] if way.name else []
+        made = self._trajectory(now, replace(moves, targets=tuple(targets[1:])), straight=True)
+        self._clearance.check(made, scene)
+        return made, tuple(notes)
+
+    def _way(self, begin: Angles, target: Angles, scene: Scene, why: Reason) -> Way:
+        """The first way of one move that is free.
+
+        Raises:
+            SubtaskFailed: Collision, NoWayRound.
+        """
+        straight = Way((target,))
+        with self._clearance.looking(scene) as view:
+            view.check_end(self._trajectory(begin, Moves(straight.targets)))
+            if self._free(view, begin, straight):
+                return straight
+        with self._clearance.looking(scene.with_ground()) as view:
+            for way in self._kind.manners.ways(self._model, begin, target):
+                if self._free(view, begin, way):
+                    return way
+            searched = self._search(view, begin, target)
+            if searched is not None and self._free(view, begin, searched):
+                return searched
+        raise SubtaskFailed(NoWayRound(why))
+
+    def _free(self, view: View, begin: Angles, way: Way) -> bool:
+        poses = [self._all_joints(pose) for pose in (begin, *way.targets)]
+        return all(view.free(pose) for pose in poses[1:-1]) and view.passable(poses)  # the first costs little
+
+    def _search(self, view: View, begin: Angles, target: Angles) -> Way | None:
+        """A way that sampling finds, between the ends or poses above them."""
+        manners = self._kind.manners
+
+        def free(poses: Sequence[Angles]) -> bool:
+            return view.free(*map(self._all_joints, poses))
+
+        def lifted(pose: Angles) -> Angles | None:
+            return next((one for one in manners.lifts(self._model, pose) if free([one])), None)
+
+        above = lifted(begin)
+        ends = {high: end for end in manners.targets(self._model, begin, target) if (high := lifted(end))}
+        if above is None or not ends:
+            return None
+        bounds = manners.bounds(self._model, [above, *ends])
+        found = search(above, list(ends), bounds, free, view.scene.fingerprint())
+        return Way((above, *found, ends[found[-1]]), Searched()) if found else None
+
+    def _all_joints(self, pose: Angles) -> Joints:
+        """Joints that no kind of goal moves (the tool frame) stay at 0."""
+        angles = dict(zip(self._kind.joints, pose, strict=True))
+        return tuple(angles.get(name, 0.0) for name in self._model.joints)
+
+    def _trajectory(self, now: Angles, moves: Moves, straight: bool = False) -> Trajectory:
+        targets = [self._all_joints(pose) for pose in moves.targets]
+        joints = scaled(self._model.joints, *moves.scales)
+        return trajectory(joints, self._all_joints(now), targets, straight=straight)

@@ -1,0 +1,155 @@
+"""In random scenes no way touches anything, by a second implementation that shares no code with the first.
+
+The second one multiplies the frames of the URDF pose by pose, and compares boxes by all their 15 separating axes.
+"""
+
+import math
+import random
+from itertools import pairwise
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from tms_config.config import CONFIGS
+from tms_config.models import Box, MachineModel
+from tms_config.yaml_file import parse
+from tms_reason.errors import SubtaskFailed
+from tms_rp.kind import Angles, Moves
+from tms_rp.kinds import load
+from tms_rp.links import placed
+from tms_rp.reasons import Collision, NoWayRound, PartOf
+from tms_rp.scene import Obstacle, Scene
+from tms_rp.trajectory import Trajectory
+from tms_rp.ways import Ways
+
+MODEL = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel)
+WAYS = Ways(MODEL, load("backhoe"))
+SCENES = settings.default.max_examples * 2 // 5 if settings.default else 20
+DENSE = 0.005  # rad
+GROUND = Box(min=(-20.0, -20.0, -1.0), max=(20.0, 20.0, 0.0))
+ARM = ("boom_link", "arm_link", "bucket_link")
+OWN = (("track_link", "boom_link"), ("track_link", "arm_link"), ("track_link", "bucket_link"),
+       ("body_link", "arm_link"), ("body_link", "bucket_link"))  # fmt: skip
+Array = NDArray[np.float64]
+Placed = tuple[Array, Array, Array]  # axes as columns (N x 3 x 3), centre (N x 3), half sizes
+
+
+def rotation(axis: str, angles: Array) -> Array:
+    """Rodrigues' formula."""
+    x, y, z = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}[axis]
+    k = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]], dtype=float)
+    turn = angles[:, None, None]
+    return np.eye(3) + np.sin(turn) * k + (1 - np.cos(turn)) * (k @ k)
+
+
+def of_box(box: Box, turn: Array, at: Array) -> Placed:
+    low, high = np.array(box.min), np.array(box.max)
+    axes = turn @ rotation("y", np.array([box.pitch]))
+    return axes, at + axes @ ((low + high) / 2), (high - low) / 2
+
+
+def bodies(poses: Array) -> dict[str, Placed]:
+    frames = {"base_link": (np.tile(np.eye(3), (len(poses), 1, 1)), np.zeros((len(poses), 3)))}
+    columns = list(MODEL.joints)
+    for joint, origin in MODEL.geometry.items():
+        turn, at = frames[origin.parent]
+        angles = poses[:, columns.index(joint)] if joint in columns else np.zeros(len(poses))
+        pitched = turn @ rotation("y", np.full(len(poses), origin.pitch))
+        frames[origin.child] = pitched @ rotation(origin.axis, angles), at + turn @ np.array(origin.xyz)
+    return {link: of_box(box, *frames[link]) for link, box in MODEL.shapes.items()}
+
+
+def touch(a: Placed, b: Placed) -> bool:
+    """Whether two boxes overlap in any pose: there is no separating axis."""
+    (axes_a, at_a, half_a), (axes_b, at_b, half_b) = a, b
+    way = at_b - at_a
+    count = len(way)
+    columns_a = [np.broadcast_to(axes_a[:, :, i], (count, 3)) for i in range(3)]
+    columns_b = [np.broadcast_to(axes_b[:, :, i], (count, 3)) for i in range(3)]
+    crossed = [np.cross(p, q) for p in columns_a for q in columns_b]
+    apart = np.zeros(count, dtype=bool)
+    for axis in (*columns_a, *columns_b, *crossed):
+        size = sum(h * np.abs((axis * c).sum(1)) for half, cs in ((half_a, columns_a), (half_b, columns_b))
+                   for h, c in zip(half, cs, strict=True))  # fmt: skip
+        apart |= np.abs((axis * way).sum(1)) > size + 1e-9
+    return not apart.all()
+
+
+def touched(scene: Scene, poses: Array) -> list[tuple[str, str]]:
+    found = bodies(poses)
+    pairs = [(a, b, found[a], found[b]) for a, b in OWN]
+    for one in scene.obstacles:
+        fixed = of_box(one.box, one.place[None, :3, :3], one.place[None, :3, 3])
+        pairs += [(link, str(one.name), found[link], fixed) for link in ARM]
+    return [(a, b) for a, b, first, second in pairs if touch(first, second)]
+
+
+def dense(made: Trajectory) -> Array:
+    poses = [np.array(made.samples[0].positions)[None]]
+    for before, now in pairwise(made.samples):
+        a, b = np.array(before.positions), np.array(now.positions)
+        count = max(1, math.ceil(np.abs(b - a).max() / DENSE))
+        poses.append(a + (b - a) * (np.arange(1, count + 1) / count)[:, None])
+    return np.concatenate(poses)
+
+
+def random_box(rng: random.Random, number: int) -> Obstacle:
+    away, turn = rng.uniform(4.5, 9), rng.uniform(-math.pi, math.pi)
+    x, y, z = rng.uniform(0.2, 1.5), rng.uniform(0.2, 2), rng.choice((0, 0, rng.uniform(2.5, 5)))
+    box = Box(min=(-x, -y, z), max=(x, y, z + rng.uniform(1, 6)))
+    return Obstacle(PartOf(f"box_{number}", "site"), box, placed(away * math.cos(turn), away * math.sin(turn), turn))
+
+
+def random_scene(rng: random.Random) -> Scene:
+    boxes = tuple(random_box(rng, number) for number in range(rng.randint(1, 5)))
+    if rng.random() < 0.5:
+        return Scene(boxes)
+    height = rng.uniform(5.5, 6.5)
+    roof = Box(min=(-12.0, -12.0, height), max=(12.0, 12.0, height + 0.3))
+    return Scene((*boxes, Obstacle(PartOf("roof", "site"), roof, np.eye(4))))
+
+
+def free_pose(rng: random.Random, scene: Scene) -> Angles:
+    """A pose that touches nothing and stands above the ground."""
+    with_ground = Scene((*scene.obstacles, Obstacle(PartOf("ground", "site"), GROUND, np.eye(4))))
+    while True:
+        pose = (rng.uniform(-3, 3), rng.uniform(-1.1, -0.1), rng.uniform(0.6, 2.6), rng.uniform(-0.6, 2.3))
+        if not touched(with_ground, np.array([(*pose, 0.0)])):
+            return pose
+
+
+def beyond_limits(made: Trajectory) -> list[str]:
+    found = []
+    for index, (name, joint) in enumerate(MODEL.joints.items()):
+        positions, speeds, forces = (
+            np.array([getattr(sample, what)[index] for sample in made.samples])
+            for what in ("positions", "velocities", "accelerations")
+        )
+        jerks = np.diff(forces) / np.diff([sample.time for sample in made.samples])
+        inside = (positions >= (joint.min or -math.inf) - 1e-6) & (positions <= (joint.max or math.inf) + 1e-6)
+        small = [
+            inside.all(), np.abs(speeds).max() <= joint.velocity * 1.000001,
+            np.abs(forces).max() <= joint.acceleration * 1.000001, np.abs(jerks).max() <= joint.jerk * 1.001,
+        ]  # fmt: skip
+        found += [name] * (not all(small))
+    return found
+
+
+@settings(max_examples=SCENES)
+@given(st.integers(0, 10**9))
+def test_no_way_touches_anything_or_leaves_the_limits(seed: int) -> None:
+    rng = random.Random(seed)
+    scene = random_scene(rng)
+    now, target = free_pose(rng, scene), free_pose(rng, scene)
+    try:
+        made, notes = WAYS.plan(now, Moves((target,)), scene)
+    except SubtaskFailed as error:
+        assert isinstance(error.reason, (Collision, NoWayRound))
+        return
+    around = Obstacle(PartOf("ground", "site"), GROUND, np.eye(4))
+    assert touched(Scene((*scene.obstacles, around)) if notes else scene, dense(made)) == []
+    assert beyond_limits(made) == []
+    assert made.samples[0].positions[:4] == now
+    assert np.cos(np.array(made.samples[-1].positions[:4]) - target).min() > 1 - 1e-9
