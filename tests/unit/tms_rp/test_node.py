@@ -97,7 +97,7 @@ def planned(
     request = TmsRpZx200ChangePose.Goal(trajectory=JointTrajectory(joint_names=["swing_joint"], points=[point]))
     said: list[Any] = []
     goal: Any = SimpleNamespace(id="1", request=request, publish=lambda feedback: said.append(feedback.state))
-    outcome = planner._execute(action, goal)
+    outcome, _ = planner._execute(action, goal)
     return outcome, wire.known(said[-2 if outcome is Outcome.SUCCEEDED else -1])
 
 
