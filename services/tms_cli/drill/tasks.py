@@ -14,6 +14,12 @@ TURN = 70.0  # deg to each side, for a single joint
 LIFT = 0.3  # rad
 WAY = 15.0  # m
 TIPPED = -0.9  # rad
+BLADE = [-0.35, 0.1, 0.35]  # rad, of lift, tilt and angle
+TURNS: tuple[tuple[str, str, Any, Any], ...] = (  # subtask, field of its record, there and back
+    ("release_soil", "target_angle", TIPPED, 0.0),
+    ("swing", "target_angle", SWING, -SWING),
+    ("blade_control", "goal_position", BLADE, [-angle / 3 for angle in BLADE]),
+)
 
 Records = dict[str, dict[str, Any]]
 Leaves = list[tuple[str, str]]  # subtask, record
@@ -60,9 +66,9 @@ def _tracks(site: Site, machine: str, model: MachineModel) -> tuple[Leaves, Reco
         "drill_near": _place(x, y, yaw + math.pi),
     }
     leaves = [(drive, "drill_far"), (drive, "drill_near")]
-    for run, there, back in (("release_soil", TIPPED, 0.0), ("swing", SWING, -SWING)):
+    for run, field, there, back in TURNS:
         if any(model.subtask(name).run == run for name in model.subtasks):
-            records |= {f"drill_{run}": {"target_angle": there}, f"drill_{run}_back": {"target_angle": back}}
+            records |= {f"drill_{run}": {field: there}, f"drill_{run}_back": {field: back}}
             leaves += [(_subtask(model, run), f"drill_{run}"), (_subtask(model, run), f"drill_{run}_back")]
     return leaves, records
 
