@@ -1,6 +1,10 @@
 """Units of the fields of records, by the fields' names, which mean the same in every record."""
 
-NAMES = {"x": "m", "y": "m", "z": "m", "offset": "m", "theta_w": "rad", "target_angle": "rad", "yaw": "deg"}
+NAMES = {
+    **dict.fromkeys(("x", "y", "z", "goal_x", "goal_y", "goal_z", "offset"), "m"),
+    **dict.fromkeys(("theta_w", "target_angle", "goal_position"), "rad"),
+    "yaw": "deg",
+}
 ENDINGS = {"_joint": "rad", "_goal_pos": "deg"}  # angles of joints; the joint samples of the C++ system use degrees
 
 

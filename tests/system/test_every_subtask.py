@@ -29,15 +29,26 @@ def trees(model: str, machine: str) -> list[str]:
     """Trees that together hold one leaf for each subtask of the model."""
     uses = parse(CONFIGS / "machines" / f"{model}.yaml", MachineModel)
     leaves = [
-        f'<Action ID="LeafNode{model.capitalize()}" model_name="{machine}" subtask_name="{action}" '
-        f'record_name="{uses.subtask(action).example}"/>'
+        f'<Action ID="LeafNode{model.capitalize()}" model_name="{machine}" subtask_name="{name}" '
+        f'record_name="{record}"/>'
         for action in uses.subtasks
+        for name, record in (*before(uses, action), (action, uses.subtask(action).example))
     ]
     parts = ["".join(leaves[i : i + AT_ONCE]) for i in range(0, len(leaves), AT_ONCE)]
     return [
         f'<root main_tree_to_execute="T"><BehaviorTree ID="T"><Sequence>{part}</Sequence></BehaviorTree></root>'
         for part in parts
     ]
+
+
+def before(uses: MachineModel, action: str) -> list[tuple[str, str]]:
+    """What must be done first, as subtasks and records: a stored plan begins where the arm was when it was made."""
+    if uses.subtask(action).run != "change_pose_execute_from_plan":
+        return []
+    known = [(name, uses.subtask(name)) for name in uses.subtasks]
+    move = next(name for name, use in known if use.run == "change_pose" and not use.inputs["plan_only"])
+    plan = next(name for name, use in known if use.run == "change_pose_plan")
+    return [(move, "initial_pose"), (plan, uses.subtask(action).example)]
 
 
 @pytest.fixture(params=MODELS)

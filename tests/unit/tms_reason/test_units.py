@@ -8,7 +8,10 @@ from tms_config.yaml_file import parse
 from tms_kit.subtask import load
 from tms_reason.units import unit
 
-WITHOUT = {"trajectory", "pose", "position_with_angle", "qx", "qy", "qz", "qw"}  # flags, quaternions
+WITHOUT = {  # flags, quaternions, shares, and what holds fields of its own
+    "trajectory", "pose", "position_with_angle", "qx", "qy", "qz", "qw", "goal_qx", "goal_qy", "goal_qz", "goal_qw",
+    "velocity_scale", "acceleration_scale", "constraints", "waypoints",
+}  # fmt: skip
 TEXTS = {
     "angles",
     "joint",
@@ -16,6 +19,11 @@ TEXTS = {
     "plan_only",
     "angle",
     "read_direction",
+    "planning_group",
+    "previous_target_record_name",
+    "retime",
+    "output",
+    "blade_hold",
 }  # inputs, and what is picked from another field
 MODELS = sorted(path.stem for path in (CONFIGS / "machines").glob("*.yaml"))
 
