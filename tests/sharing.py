@@ -16,7 +16,7 @@ TESTS = Path(__file__).resolve().parent
 MESH, BROWSER_MESH = "the mesh of the test run", "the mesh of the test run, with a browser"
 PROCESSES = ("tests/browser/", "tests/docker/", "tests/replay/test_replay", "tests/ros/", "tests/system/")
 LONGEST = ("test_several_losses", "test_power_cut", "test_receipts", "test_official_tasks", "test_every_subtask",
-           "test_sensing")  # fmt: skip
+           "test_v6_tasks", "test_sensing")  # fmt: skip
 USES_MESH = re.compile(r"^def test_\w+\([^)]*\b(mesh|idle): Mesh", re.MULTILINE)
 OWN_MESH = re.compile(r"^def mesh\(", re.MULTILINE)
 
