@@ -17,6 +17,7 @@ from tms_if.hearing import Hearing
 from tms_if.interfaces import interface, short_name
 from tms_if.names import Allowed
 from tms_if.on_executor import do
+from tms_machine import stamps
 from tms_reason.errors import RosError
 from tms_ros.node import Ros
 from tms_ros.packing import pack, unpack
@@ -184,7 +185,7 @@ class ClientEndpoints:
         publisher, kind = self._published[name]
         read = _read(payload, kind, topic)
         if hasattr(read, "header"):
-            self._fresh.told(read.header.stamp.sec + read.header.stamp.nanosec * 1e-9, monotonic())
+            self._fresh.told(stamps.seconds(read.header.stamp), monotonic())
         publisher.publish(payload)
 
     def request(self, topic: str, payload: bytes, number: int) -> None:

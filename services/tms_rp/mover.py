@@ -8,6 +8,7 @@ from tms_config.clock import monotonic
 from tms_config.naming import process_of
 from tms_decision.gateway.stops import STOP_PROVEN
 from tms_decision.reasons import ProcessLost
+from tms_machine import stamps
 from tms_machine.reasons import MotionNotEnded, NoReason
 from tms_reason import wire
 from tms_reason.errors import SubtaskFailed
@@ -98,7 +99,7 @@ class _Progress:
     def __call__(self, feedback: FollowJointTrajectory.Feedback) -> None:
         at = feedback.desired.time_from_start
         # Not every controller fills in its time; else the clock gives it.
-        seconds = at.sec + at.nanosec * 1e-9 or monotonic() - self._begun
+        seconds = stamps.seconds(at) or monotonic() - self._begun
         self.seconds = seconds
         number, percent = self._made.progress(seconds)
         progress = MoveOf(number, len(self._made.stops), percent)

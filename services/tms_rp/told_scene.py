@@ -4,6 +4,7 @@ from tms_msg_db.msg import Record
 from tms_msg_db.srv import ListParameters
 
 from tms_config.clock import unix_time
+from tms_machine import stamps
 from tms_machine.values import from_parameters
 from tms_reason.errors import RosError
 from tms_reason.reason import Reason
@@ -54,6 +55,6 @@ class ToldScene:
 
 
 def _record(message: Record, now: float) -> SceneRecord:
-    age = now - (message.updated_at.sec + message.updated_at.nanosec * 1e-9)
+    age = now - stamps.seconds(message.updated_at)
     values = from_parameters(message.values)
     return SceneRecord(message.record_name, values, age, message.max_age, message.type == "dynamic")

@@ -51,7 +51,7 @@ class Interrupted:
 
     def receipt(self, receipt: StopReceipt) -> None:
         """Receive the receipt of a stop that belongs to no active run."""
-        at, what = _seconds(receipt.stamp), reported_by(receipt)
+        at, what = stamps.seconds(receipt.stamp), reported_by(receipt)
         with self._lock:
             self._receipts.append(Stop(receipt.machine, receipt.run, at, receipt.confirmed, receipt.latched, what))
 
@@ -159,10 +159,6 @@ class Interrupted:
 def _words(key: Key) -> str:
     node, machine, subtask, record = key
     return f"{node}: /{machine}/{subtask}, record {record}"
-
-
-def _seconds(stamp: Time) -> float:
-    return float(stamp.sec + stamp.nanosec * 1e-9)
 
 
 def _row(header: Header, state: str, reason: Reason | None, ended: Time) -> Run:

@@ -11,6 +11,7 @@ from tms_msg_sp.msg import InputState, InputStates
 from tms_config.clock import monotonic, sleep, unix_time
 from tms_config.models import MachineModel
 from tms_kit.subtask import load
+from tms_machine import stamps
 from tms_machine.goal_inputs import Inputs
 from tms_machine.values import from_parameters
 from tms_reason.errors import RosError
@@ -110,5 +111,5 @@ def unfit(model: MachineModel, subtask: str, values: Mapping[str, Any], inputs: 
 
 def _stored(record: Record, now: float) -> StoredRecord:
     stamp = record.updated_at
-    age = now - stamp.sec - stamp.nanosec * 1e-9 if stamp.sec else None
+    age = now - stamps.seconds(stamp) if stamp.sec else None
     return StoredRecord(from_parameters(record.values), record.type, age, record.max_age)
