@@ -88,6 +88,10 @@ class RemotePermit:
         """Whether the process works for `goal` now."""
         return self._link.alive(monotonic())
 
+    def lost(self, goal: bytes) -> bool:
+        """Whether the process was lost while it worked for `goal`: its successor may take the next one unheard."""
+        return self.goal == goal and not self.alive
+
     def _on_message(self, message: Message) -> None:
         self._link.heard(bytes(message.goal), message.holder, monotonic())
         self._changed(self)

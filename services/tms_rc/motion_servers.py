@@ -16,7 +16,6 @@ from tms_decision.gateway.events import (
 )
 from tms_decision.gateway.state import Gateway
 from tms_decision.owner import parse
-from tms_decision.permit_link import NOBODY
 from tms_machine.border import MotionAction
 from tms_machine.permit import RemotePermit
 from tms_rc.goal_check import GoalCheck
@@ -74,14 +73,12 @@ class MotionServers:
         served = self._served.get(active.number) if active is not None else None
         if active is None or served is None:
             return True, False, None
-        taken = served.call is not None and served.call.accepted
-        gone = taken and (served.peer.left() or self._controller_lost())
+        gone = served.call is not None and served.call.accepted and self._lost(served.peer, served.call)
         return served.peer.ready(), gone, self._check.escaped(gateway, active.start)
 
-    def _controller_lost(self) -> bool:
-        """Whether our own controller was lost while it moved the machine; discovery notices that seconds later."""
-        permit = self._controller
-        return permit is not None and permit.goal != NOBODY and not permit.alive
+    def _lost(self, peer: AnyPeer, call: AnyCall) -> bool:
+        """Whether the server of a call is gone; our own controller says so seconds before discovery does."""
+        return peer.left() or (self._controller is not None and self._controller.lost(call.id))
 
     def _run(self, motion: MotionAction, peer: AnyPeer, goal: AnyGoal) -> Ended[Any]:
         served = Served(next(self._numbers), motion, goal, peer)

@@ -70,6 +70,15 @@ def test_it_does_not_wait_for_ever(dds: Dds, permit: tuple[RemotePermit, list[bo
     assert not permit[0].alive and permit[1][-1] is False
 
 
+def test_a_process_is_lost_for_the_goal_that_it_worked_for_alone(
+    dds: Dds, permit: tuple[RemotePermit, list[bool]]
+) -> None:
+    assert not permit[0].lost(bytes(GOAL))
+    dds.alive(0, 1)
+    assert permit[0].lost(bytes(GOAL))
+    assert not permit[0].lost(bytes([8] * 16)), "its successor has taken this one, and its permit is still on its way"
+
+
 @pytest.mark.parametrize("stale_writers", [0, 1])  # of predecessors
 def test_who_takes_leave_leaves_no_stale_writer(
     dds: Dds, permit: tuple[RemotePermit, list[bool]], stale_writers: int
