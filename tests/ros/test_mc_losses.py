@@ -42,10 +42,13 @@ def test_a_lost_connection_latches_and_stops_before_anything_else(site: OperaSim
     site.command("cut 3")
     assert ended(site, call) is Outcome.ABORTED
     site.until(lambda: states[-1].latch, "it is latched")
+    site.until(lambda: receipts, "what is known at once")
+    assert not receipts[0].confirmed and receipts[0].latched
+    assert receipts[0].seconds == 0.0, "it is told without waiting for the simulator"
     back = site.log.index("time=2", site.log.index("reason=cut"))
     heard = site.log[back:].split("event=hears")[0]
     assert "emg_stop" in heard, "its stop comes before anything else"
-    site.until(lambda: receipts, "the receipt")
+    site.until(lambda: len(receipts) > 1, "the second receipt, of what was seen when it was back")
     assert receipts[-1].latched
     site.until(site.stands, "it stands")
 

@@ -33,6 +33,8 @@ def watch(gateway: Gateway, now: float, since: float) -> None:
         gateway.do(Lose(goal.number))
     elif (wrong := _wrong(gateway, goal, now)) is not None:
         stops.stop(gateway, now, *wrong)
+        if (silent := gateway.silent(now)) is not None:  # nothing shows now what it does: this is told at once
+            stops.stop(gateway, now, *wrong, broken=silent).limit = now
     elif goal.phase is Phase.MOVING and now - goal.since > goal.asked.lasts + OVERRUN:
         stops.stop(gateway, now, r.TooLong(), StopKind.PLAIN)
 

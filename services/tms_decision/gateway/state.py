@@ -16,7 +16,7 @@ from tms_proof.standstill import Proof, StandStill
 from tms_reason.reason import Reason
 
 SCHEDULER = "ts"  # the scheduler's permit
-FRESH = 1.0  # s; with older messages the machine is not ready
+FRESH = 0.8  # s; with older messages the machine is not ready, and a motion is stopped within a second
 
 
 class Phase(Enum):

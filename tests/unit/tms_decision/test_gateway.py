@@ -45,6 +45,7 @@ from tms_decision.reasons import (
     TooLong,
     WhileMoving,
 )
+from tms_proof.reasons import Old
 from tms_reason.reason import Foreign, Reason
 from unit.tms_decision.gateway_rig import GOAL, LEAF, RUN, SERVER, Rig, latched, ready, rearming
 
@@ -314,8 +315,14 @@ def test_a_machine_that_falls_silent_while_it_moves_is_stopped_and_latched() -> 
     rig = ready()
     rig.ask(1, motion=None)  # with a reference, joints that stand still are found even sooner
     rig.run(1.0).plant.fault.mute = True
-    rig.run(1.5)
+    rig.run(1.0)
     assert isinstance(rig.gateway.latch.cause, WhileMoving)
+    assert not rig.receipt.confirmed and isinstance(rig.receipt.detail, Old), "nothing shows that it stands"
+    assert not rig.all(f.End), "its goal ends when it was seen to stand"
+    rig.plant.fault.mute = False
+    rig.run(4.0)
+    assert rig.receipt.confirmed and rig.receipt.latched and rig.receipt.cause == rig.gateway.latch.cause
+    assert len(rig.all(f.Tell)) == 2 and rig.end.outcome == "ABORTED"
 
 
 def test_a_joint_beyond_its_limits_is_stopped_and_latched() -> None:
