@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 PROJECT = Path(__file__).resolve().parents[1]
 SPOILED = pytest.StashKey[bool]()
+RUNNING = pytest.StashKey["Mesh"]()
 DOMAINS = range(43, 101)  # 42 is the demo's
 CLI = 0.2  # s between two calls of `tms` that wait for something: each costs 0.05 s of a processor
 WARNINGS = 40  # lines shown of a failed test's mesh
@@ -130,6 +131,7 @@ def site_data(domain: int, port: int, /, **changes: object) -> dict[str, object]
     return {**data, **changes}
 
 
+NO_CONSOLE: dict[str, object] = {"services": {"db": {}, "ts": {}, "host": {}}}  # changes of a site that only runs tasks
 GATEWAYS_ONLY: dict[str, object] = {  # changes of a site: machines without scheduler, database and console
     "services": {"host": {}},
     "store": {"kind": "mongodb", "uri": "mongodb://127.0.0.1:1"},
@@ -197,7 +199,9 @@ def mesh_apart(folder: Path, **changes: object) -> Iterator[Mesh]:
 
 
 @pytest.fixture(scope="session")
-def mesh(domain: int, first_port: int, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Mesh]:
+def mesh(
+    request: pytest.FixtureRequest, domain: int, first_port: int, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[Mesh]:
     """A running mesh with a simulated zx200, its records and three tasks; one for the whole test run.
 
     Tasks: 1 one loading cycle, 2 four of them, 3 long swings to and fro, 4 a few of these, 5 one move.
@@ -212,7 +216,17 @@ def mesh(domain: int, first_port: int, tmp_path_factory: pytest.TempPathFactory)
         made.tms("param", "load", str(PROJECT / "tests" / "data" / "swings.yaml"))
         for name in ("swings", "few_swings", "one_move"):
             made.tms("task", "add", str(PROJECT / "tests" / "data" / f"{name}.xml"))
+        request.session.stash[RUNNING] = made
         yield made
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> None:
+    """End the mesh of the test run after its last test: while it waits, others go on slower."""
+    last = nextitem is None or not sharing.uses_mesh(nextitem.path)
+    if last and (made := item.session.stash.get(RUNNING, None)) is not None:
+        del item.session.stash[RUNNING]
+        made.tms("down")
 
 
 @pytest.hookimpl(wrapper=True)

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from conftest import PROJECT, Mesh, ports_of, running, site_data
+from conftest import NO_CONSOLE, PROJECT, Mesh, ports_of, running, site_data
 from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse, read_yaml
@@ -60,7 +60,9 @@ def model(request: pytest.FixtureRequest) -> str:
 def machine_mesh(model: str, own_domain: int, tmp_path: Path) -> Iterator[Mesh]:
     """A mesh with one machine of the model."""
     machines = {instance(model): {"model": model}}
-    data = site_data(own_domain, ports_of(own_domain), name="every", machines=machines, sim={"speed": SPEED})
+    data = site_data(
+        own_domain, ports_of(own_domain), name="every", machines=machines, sim={"speed": SPEED}, **NO_CONSOLE
+    )
     (tmp_path / "site.yaml").write_text(yaml.safe_dump(data))
     with running(Mesh(tmp_path / "site.yaml", tmp_path / "state")) as mesh:
         yield mesh

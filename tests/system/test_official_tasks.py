@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from conftest import PROJECT, Mesh, claimed_domain, ports_of, running, site_data
+from conftest import NO_CONSOLE, PROJECT, Mesh, claimed_domain, ports_of, running, site_data
 
 pytestmark = [pytest.mark.system, pytest.mark.timeout(300)]
 TASKS = PROJECT / "configs" / "tasks"
@@ -24,7 +24,7 @@ def yard(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Mesh]:
     machines: dict[str, dict[str, object]] = {name: {"model": model} for name, model in MACHINES.items()}
     machines["zx120"]["start"] = [-14.31, 15.0, 0.0]  # its place in SimpleScene is in reach of a zx200 that has turned
     with claimed_domain() as number:
-        data = site_data(number, ports_of(number), name="yard", machines=machines, sim={"speed": SPEED})
+        data = site_data(number, ports_of(number), name="yard", machines=machines, sim={"speed": SPEED}, **NO_CONSOLE)
         (folder / "site.yaml").write_text(yaml.safe_dump(data))
         with running(Mesh(folder / "site.yaml", folder / "state")) as mesh:
             for name in ("shared", *MACHINES.values()):

@@ -20,7 +20,7 @@ from test_stop import rearm, state_of
 from tms_msg_rc.msg import MachineState
 from tms_msg_ts.srv import CancelRun
 
-from conftest import CLI, PROJECT, Mesh, claimed_domain, node_in, ports_of, running, site_data, wait_until
+from conftest import CLI, NO_CONSOLE, PROJECT, Mesh, claimed_domain, node_in, ports_of, running, site_data, wait_until
 from power_cut import Disk, family, own_disk
 from programs import Program, running_tms
 from tms_ros.node import Ros
@@ -43,7 +43,7 @@ def mesh(disk: Disk) -> Iterator[Mesh]:
     """A mesh whose state is on the disk; the site file is not."""
     with claimed_domain() as domain:
         site = disk.folder.parent / "site.yaml"
-        site.write_text(yaml.safe_dump(site_data(domain, ports_of(domain))))
+        site.write_text(yaml.safe_dump(site_data(domain, ports_of(domain), **NO_CONSOLE)))
         state, logs = disk.folder / "state", disk.folder.parent / "ros"
         for folder in (state, logs):
             folder.mkdir()

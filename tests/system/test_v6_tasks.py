@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 import yaml
 
-from conftest import CLI, PROJECT, Mesh, claimed_domain, ports_of, running, site_data, wait_until
+from conftest import CLI, NO_CONSOLE, PROJECT, Mesh, claimed_domain, ports_of, running, site_data, wait_until
 from v6_site import MACHINES, RECORDS, filled
 from v6_templates import TASKS
 
@@ -35,7 +35,7 @@ def yard(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Mesh]:
     for file in TASKS.glob("subtask__*.xml"):
         (folder / "given" / f"{file.stem.rpartition('__')[2]}.xml").write_bytes(file.read_bytes())
     with claimed_domain() as number:
-        data = site_data(number, ports_of(number), name="yard", machines=machines, sim={"speed": SPEED})
+        data = site_data(number, ports_of(number), name="yard", machines=machines, sim={"speed": SPEED}, **NO_CONSOLE)
         (folder / "site.yaml").write_text(yaml.safe_dump(data))
         with running(Mesh(folder / "site.yaml", folder / "state")) as mesh:
             for name in RECORDS:
