@@ -31,6 +31,7 @@ help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
 
 setup: $(VENV)/.ready $(VENV)-store/.ready ## everything that the other targets need (they call it)
+	@$(PY) -m compileall -q services tests  # where Python itself may not write it, each process would compile anew
 
 system:
 	@sh deploy/system-packages.sh
@@ -40,17 +41,17 @@ $(UV): | system
 	$(VENV)/bin/pip install -q --disable-pip-version-check uv==0.13.8
 
 $(VENV)/.requirements: $(LOCKS)/requirements.lock $(LOCKS)/requirements-dev.lock | $(UV)
-	$(UV) pip install -q -p $(PY) --require-hashes -r $(LOCKS)/$(LOCK)
+	$(UV) pip install -q --compile-bytecode -p $(PY) --require-hashes -r $(LOCKS)/$(LOCK)
 	@touch $@
 
 $(VENV)-store/.ready: $(LOCKS)/requirements-store.lock | $(UV)
 	$(PYTHON) -m venv $(VENV)-store
-	$(UV) pip install -q -p $(VENV)-store/bin/python --require-hashes -r $(LOCKS)/requirements-store.lock
+	$(UV) pip install -q --compile-bytecode -p $(VENV)-store/bin/python --require-hashes -r $(LOCKS)/requirements-store.lock
 	@touch $@
 
 $(VENV)/.interfaces-$(NAV2_DISTRO): $(VENV)/.requirements $(LOCKS)/build.lock $(LOCKS)/interfaces.txt $(shell find services/interfaces -type f)
 	@echo "building the ROS interface packages (about a minute)"
-	$(UV) pip install -q -p $(PY) --no-deps --build-constraints $(LOCKS)/build.lock -r $(LOCKS)/interfaces.txt
+	$(UV) pip install -q --compile-bytecode -p $(PY) --no-deps --build-constraints $(LOCKS)/build.lock -r $(LOCKS)/interfaces.txt
 	$(PY) services/interfaces/_wheel/stubs.py
 	@rm -f $(VENV)/.interfaces-*
 	@touch $@
