@@ -16,8 +16,8 @@ from tms_cli.words import reason, say, sentence
 from tms_config.clock import monotonic
 from tms_reason.errors import RosError, TaskError, TmsError
 from tms_ts import bt
-from tms_ts.bt.reasons import Line, Placed
 from tms_ts.bt.source import parse
+from tms_ts.tree_reasons import Line, Placed
 
 if TYPE_CHECKING:
     from tms_ros.node import Ros

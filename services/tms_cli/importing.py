@@ -53,7 +53,7 @@ def judge(plan: "Plan", stored: Callable[[str], str | None]) -> None:
     """Check the trees that are to be stored; `stored` gives the text of a template that is in the database."""
     from tms_db.import_plan import NEW, REFUSED
     from tms_ts import bt
-    from tms_ts.bt.reasons import Line, Placed
+    from tms_ts.tree_reasons import Line, Placed
 
     own = {item.name: item.text for item in plan.items if item.kind == "template" and item.state != REFUSED}
 

@@ -7,7 +7,7 @@ The class name gives the code (`GATEWAY_LOST`), the annotations its arguments, w
 quantities.py); an argument may be a reason itself, or a tuple of reasons or texts. `text` is the English text and the
 key of the Japanese one (locale/ja/*.po). `details` is shown only on request:
 names of topics, errors of a system. No argument is called text, code, details, remedy, parameters or args.
-Every package declares its reasons in a module `reasons.py`, one line a reason.
+Every package declares its reasons in a module `reasons.py`, one line a reason; those of trees are in tree_reasons.py.
 """
 
 import inspect

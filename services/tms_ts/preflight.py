@@ -9,7 +9,6 @@ from tms_machine.goal_inputs import Inputs, parted
 from tms_reason.reason import Reason
 from tms_ts.bt import Tree
 from tms_ts.bt.errors import did_you_mean, short, within
-from tms_ts.bt.reasons import Line, NotPlain, NumberTooBig, Placed
 from tms_ts.bt.tree import LeafGoal, SharedValue
 from tms_ts.nodes.machine_leaf import ROS_NAME
 from tms_ts.reasons import (
@@ -29,6 +28,7 @@ from tms_ts.reasons import (
     ServedElsewhere,
     SharedStatic,
 )
+from tms_ts.tree_reasons import Line, NotPlain, NumberTooBig, Placed
 
 
 @dataclass

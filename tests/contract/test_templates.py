@@ -8,7 +8,7 @@ from tms_config.config import CONFIGS
 from tms_reason import xml_text
 from tms_ts import bt
 from tms_ts.bt.check_template import check_template
-from tms_ts.bt.reasons import KeyOpen, NoTemplate
+from tms_ts.tree_reasons import KeyOpen, NoTemplate
 from v6_templates import OURS, TASKS, known
 
 GIVEN = {  # what tasks of the C++ system give to templates that are in none of its files that we have

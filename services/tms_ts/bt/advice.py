@@ -13,7 +13,7 @@ from tms_ts.bt.convert import CPP_NAMES, FROM_TEXT, MISSING
 from tms_ts.bt.errors import within
 from tms_ts.bt.node import AtOnce, Keys, Node, Place
 from tms_ts.bt.ports import Direction, Pointer
-from tms_ts.bt.reasons import KeyOfTwoTypes, MayHang, NeverWritten, PortType, ThrowsWithoutPort
+from tms_ts.tree_reasons import KeyOfTwoTypes, MayHang, NeverWritten, PortType, ThrowsWithoutPort
 
 
 def advise(nodes: list[Node]) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 
 from tms_ts.bt.convert import CPP_NAMES, FROM_TEXT, MISSING, Missing, kind_of
 from tms_ts.bt.errors import TickError, TreeError
-from tms_ts.bt.reasons import KeyCannotBecome, KeyOfAnotherType, KeysKeepTypes, TextDoesNotFitKey, UseAnotherKey
+from tms_ts.tree_reasons import KeyCannotBecome, KeyOfAnotherType, KeysKeepTypes, TextDoesNotFitKey, UseAnotherKey
 
 
 class Entry:

@@ -10,9 +10,9 @@ from tms_ts.bt.errors import TickError
 from tms_ts.bt.leaf import SyncAction
 from tms_ts.bt.node import AtOnce
 from tms_ts.bt.ports import In, InOut, Pointer
-from tms_ts.bt.reasons import MissingParameter
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, RUNNING, SUCCESS, Status
+from tms_ts.tree_reasons import MissingParameter
 
 EPSILON = 1.1920929e-07  # of a C float
 

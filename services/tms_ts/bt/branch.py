@@ -10,9 +10,9 @@ from tms_ts.bt.convert import MISSING
 from tms_ts.bt.errors import TickError
 from tms_ts.bt.node import AtOnce
 from tms_ts.bt.ports import In
-from tms_ts.bt.reasons import IfThenElseChildren, SwitchChildren, WhileDoElseChildren
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, IDLE, RUNNING, SUCCESS, Status
+from tms_ts.tree_reasons import IfThenElseChildren, SwitchChildren, WhileDoElseChildren
 
 
 def chosen_synchronously(children: list[AtOnce]) -> AtOnce:

@@ -12,9 +12,9 @@ from tms_ts.bt.document import Document, TreeElement, children
 from tms_ts.bt.errors import TreeError
 from tms_ts.bt.node import Node, NodeSpec
 from tms_ts.bt.ports import RESERVED, Direction, Pointer, bind
-from tms_ts.bt.reasons import AdoptedLeaf, ManyNodes, NoTreeOfId, NotTrueOrFalse, TreeInItself, TreeTooDeep
 from tms_ts.bt.source import line_of
 from tms_ts.bt.verify import Rules, Use
+from tms_ts.tree_reasons import AdoptedLeaf, ManyNodes, NoTreeOfId, NotTrueOrFalse, TreeInItself, TreeTooDeep
 
 MAX_NODES = 20_000
 

@@ -16,10 +16,10 @@ from tms_reason.xml_text import OPEN_KEY
 from tms_ts.bt.document import Document, read
 from tms_ts.bt.errors import TreeError
 from tms_ts.bt.expand import MAX_ERRORS, Templates, expand, filled
-from tms_ts.bt.reasons import TreeNameForCpp
 from tms_ts.bt.registry import registry
 from tms_ts.bt.source import line_of
 from tms_ts.bt.verify import Rules
+from tms_ts.tree_reasons import TreeNameForCpp
 
 TREE_OF_CPP = "BehaviorTree"  # the C++ system finds the nodes of a template by this name
 

@@ -6,9 +6,9 @@ from typing import ClassVar
 
 from tms_ts.bt.errors import TickError
 from tms_ts.bt.node import AtOnce, Node
-from tms_ts.bt.reasons import ChildIdle
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, IDLE, RUNNING, SUCCESS, NodeType, Status
+from tms_ts.tree_reasons import ChildIdle
 
 
 class Decorator(Node):

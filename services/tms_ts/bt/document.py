@@ -11,7 +11,8 @@ from lxml import etree
 from tms_reason.reason import Reason
 from tms_reason.xml_text import MAX_BYTES, MAX_DEPTH
 from tms_ts.bt.errors import MAX_WARNINGS, TreeError, shortened, within
-from tms_ts.bt.reasons import (
+from tms_ts.bt.source import ParsedXml, line_of, parse, read_file
+from tms_ts.tree_reasons import (
     CannotInclude,
     IncludeCircle,
     IncludeNeedsPath,
@@ -28,7 +29,6 @@ from tms_ts.bt.reasons import (
     TwoTrees,
     UsePath,
 )
-from tms_ts.bt.source import ParsedXml, line_of, parse, read_file
 
 MAX_FILES = 50
 

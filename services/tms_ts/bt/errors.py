@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 from tms_reason.errors import TaskError
 from tms_reason.reason import Reason
 from tms_reason.texts import text
-from tms_ts.bt.reasons import (
+from tms_ts.tree_reasons import (
     AtNode,
     DidYouMean,
     FileLine,

@@ -26,7 +26,8 @@ from tms_reason.reason import Reason
 from tms_reason.xml_text import CALL, OPEN_KEY, is_call
 from tms_ts.bt.document import Document, TreeElement, check_depth, children, described
 from tms_ts.bt.errors import TreeError
-from tms_ts.bt.reasons import (
+from tms_ts.bt.source import ParsedXml, line_of, parse, set_line, settled
+from tms_ts.tree_reasons import (
     CallInV4,
     CallNotSeen,
     CallWithChildren,
@@ -46,7 +47,6 @@ from tms_ts.bt.reasons import (
     TemplateUnusable,
     ValueTooLong,
 )
-from tms_ts.bt.source import ParsedXml, line_of, parse, set_line, settled
 
 NO_KEYS = frozenset({"ID", "subtask_name", "subtask_parameters"})
 MAX_CHAIN = 50  # templates that call each other

@@ -10,8 +10,8 @@ from tms_ts.bt.convert import MISSING
 from tms_ts.bt.errors import TickError
 from tms_ts.bt.node import AtOnce, Node
 from tms_ts.bt.ports import Pointer
-from tms_ts.bt.reasons import ActionIdle, SyncRunning
 from tms_ts.bt.status import FAILURE, IDLE, RUNNING, SUCCESS, NodeType, Status
+from tms_ts.tree_reasons import ActionIdle, SyncRunning
 
 
 class Leaf(Node):

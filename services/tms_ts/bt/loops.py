@@ -12,9 +12,9 @@ from tms_ts.bt.convert import text_to_int
 from tms_ts.bt.decorator import Decorator
 from tms_ts.bt.node import AtOnce, Node
 from tms_ts.bt.ports import In
-from tms_ts.bt.reasons import LoopedInTick
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, IDLE, RUNNING, SUCCESS, Status
+from tms_ts.tree_reasons import LoopedInTick
 
 
 class Loop(Decorator):

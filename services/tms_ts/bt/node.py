@@ -17,8 +17,8 @@ from tms_ts.bt.context import Context
 from tms_ts.bt.convert import FROM_TEXT, MISSING, convert
 from tms_ts.bt.errors import TickError, within
 from tms_ts.bt.ports import Direction, Pointer, Port
-from tms_ts.bt.reasons import AddPort, DoesNotFit, KeyChangesType, KeyHasNoValue, MissingParameter, OutputNotConnected
 from tms_ts.bt.status import IDLE, RUNNING, NodeType, Status
+from tms_ts.tree_reasons import AddPort, DoesNotFit, KeyChangesType, KeyHasNoValue, MissingParameter, OutputNotConnected
 
 
 @dataclass(slots=True)

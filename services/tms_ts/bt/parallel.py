@@ -7,9 +7,9 @@ from tms_ts.bt.control import Control
 from tms_ts.bt.errors import TickError
 from tms_ts.bt.node import AtOnce
 from tms_ts.bt.ports import In
-from tms_ts.bt.reasons import Fail, FewChildren, Succeed
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, IDLE, RUNNING, SUCCESS, Status
+from tms_ts.tree_reasons import Fail, FewChildren, Succeed
 
 
 @node

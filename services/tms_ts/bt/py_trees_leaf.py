@@ -26,8 +26,8 @@ from tms_reason.reason import Foreign
 from tms_ts.bt.errors import TickError
 from tms_ts.bt.leaf import StatefulAction
 from tms_ts.bt.node import AtOnce
-from tms_ts.bt.reasons import PyTreesBlackboard, UsePorts, WaitsForWorkers
 from tms_ts.bt.status import FROM_PY_TREES, RUNNING, Status
+from tms_ts.tree_reasons import PyTreesBlackboard, UsePorts, WaitsForWorkers
 
 Worker = Thread | BaseProcess
 

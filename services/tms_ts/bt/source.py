@@ -14,7 +14,7 @@ from lxml import etree
 from tms_reason import xml_text
 from tms_reason.xml_text import MAX_BYTES
 from tms_ts.bt.errors import TreeError
-from tms_ts.bt.reasons import ChooseGrootFile, FileTooLarge, NoFile, NotXml, TaskFilesAreSmall
+from tms_ts.tree_reasons import ChooseGrootFile, FileTooLarge, NoFile, NotXml, TaskFilesAreSmall
 
 _MARKUP = re.compile(
     r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>|<(?:[^<>\"']|\"[^\"]*\"|'[^']*')*>", re.DOTALL

@@ -6,9 +6,9 @@ from tms_ts.bt.convert import UInt
 from tms_ts.bt.decorator import Decorator
 from tms_ts.bt.node import AtOnce
 from tms_ts.bt.ports import In
-from tms_ts.bt.reasons import Waits
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, IDLE, RUNNING, Status
+from tms_ts.tree_reasons import Waits
 
 
 class Timed(Decorator):

@@ -16,8 +16,8 @@ from tms_ts.bt.errors import TickError, TreeError
 from tms_ts.bt.node import Node, Observer
 from tms_ts.bt.parallel import Parallel
 from tms_ts.bt.py_trees_leaf import PyTreesLeaf, Worker
-from tms_ts.bt.reasons import NodeError
 from tms_ts.bt.status import IDLE, Status
+from tms_ts.tree_reasons import NodeError
 
 MAX_UID = 65_535  # 16 bit on Groot's wire
 _next_uid = itertools.count()

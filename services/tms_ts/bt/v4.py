@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tms_reason.reason import Reason
-from tms_ts.bt.reasons import V4Json, V4Node, V4RootBlackboard, V4Script, V4SharedBlackboard
+from tms_ts.tree_reasons import V4Json, V4Node, V4RootBlackboard, V4Script, V4SharedBlackboard
 
 SCRIPTS = frozenset({"_skipIf", "_failureIf", "_successIf", "_while", "_onSuccess", "_onFailure", "_onHalted", "_post"})
 V4_NODES = frozenset({

@@ -14,7 +14,10 @@ from tms_ts.bt.document import Document, TreeElement, children
 from tms_ts.bt.errors import TreeError, did_you_mean
 from tms_ts.bt.node import Node
 from tms_ts.bt.ports import RESERVED
-from tms_ts.bt.reasons import (
+from tms_ts.bt.registry import Registry
+from tms_ts.bt.source import line_of
+from tms_ts.bt.status import NodeType
+from tms_ts.tree_reasons import (
     AddThirdChild,
     InSubTreePlus,
     ItsPorts,
@@ -40,9 +43,6 @@ from tms_ts.bt.reasons import (
     UnknownMainTree,
     WriteSubTree,
 )
-from tms_ts.bt.registry import Registry
-from tms_ts.bt.source import line_of
-from tms_ts.bt.status import NodeType
 
 CATEGORIES = frozenset({"Action", "Condition", "Control", "Decorator"})
 SUBTREES = frozenset({"SubTree", "SubTreePlus"})

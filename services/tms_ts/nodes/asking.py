@@ -10,8 +10,8 @@ from typing import Any, ClassVar
 
 from tms_ts.bt.errors import TickError
 from tms_ts.bt.leaf import PlainAction
-from tms_ts.bt.reasons import NoWorld, WaitsForAnswer
 from tms_ts.bt.status import FAILURE, RUNNING, Status
+from tms_ts.tree_reasons import NoWorld, WaitsForAnswer
 from tms_ts.world import Pending, World
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any, ClassVar
 
 from tms_ts.bt.ports import In
-from tms_ts.bt.reasons import NotPlain
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, SUCCESS, Status
 from tms_ts.nodes.asking import Asking
+from tms_ts.tree_reasons import NotPlain
 from tms_ts.world import Pending
 
 

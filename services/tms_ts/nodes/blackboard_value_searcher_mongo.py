@@ -8,10 +8,10 @@ from tms_reason.reason import Reason
 from tms_ts.bt.convert import Missing
 from tms_ts.bt.node import Keys
 from tms_ts.bt.ports import Pointer
-from tms_ts.bt.reasons import AllBraces
 from tms_ts.bt.registry import node
 from tms_ts.nodes.mongo_value_searcher import MongoValueSearcher, parts
 from tms_ts.nodes.shared_value import keys_named, referred, typed
+from tms_ts.tree_reasons import AllBraces
 from tms_ts.world import Value
 
 _KEY = re.compile(r"\{(.+)\}", re.DOTALL)

@@ -11,8 +11,8 @@ from typing import Any
 
 from simpleeval import InvalidExpression, SimpleEval  # type: ignore[import-untyped,unused-ignore]
 
-from tms_ts.bt.reasons import DividesByZero, ExpressionTooLong, FormulaUnreadable, ResultTooLarge
 from tms_ts.nodes.expression import MAX_LENGTH, MAX_NESTING, Invalid
+from tms_ts.tree_reasons import DividesByZero, ExpressionTooLong, FormulaUnreadable, ResultTooLarge
 
 _KEY = re.compile(r"\{([^{}]+)\}")
 _ALLOWED = re.compile(r"[0-9.\s+*/()-]*", re.ASCII)

@@ -9,10 +9,10 @@ from tms_ts.bt.convert import MISSING
 from tms_ts.bt.leaf import SyncAction
 from tms_ts.bt.node import Keys
 from tms_ts.bt.ports import In
-from tms_ts.bt.reasons import AlwaysFails, NoExpression, NumberBesideText, NumberTooBig, StoredTextFails
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, SUCCESS, Status
 from tms_ts.nodes.expression import TRUTH, Invalid, Scalar, beside_numbers, evaluate, names
+from tms_ts.tree_reasons import AlwaysFails, NoExpression, NumberBesideText, NumberTooBig, StoredTextFails
 
 
 class Deciding(SyncAction):

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from tms_ts.bt.ports import In
-from tms_ts.bt.reasons import KeyIsNumber, NotBooleanKey, TextCountsAsBoolean
 from tms_ts.bt.registry import node
 from tms_ts.nodes.conditional_expression import Deciding
 from tms_ts.nodes.expression import TRUTH, Invalid, Scalar
+from tms_ts.tree_reasons import KeyIsNumber, NotBooleanKey, TextCountsAsBoolean
 
 
 @node

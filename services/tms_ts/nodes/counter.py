@@ -7,9 +7,9 @@ from tms_ts.bt.convert import Missing, text_to_int, to_text
 from tms_ts.bt.leaf import SyncAction
 from tms_ts.bt.node import Keys
 from tms_ts.bt.ports import In
-from tms_ts.bt.reasons import HoldsNoNumber, NumberNotText
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, SUCCESS, Status
+from tms_ts.tree_reasons import HoldsNoNumber, NumberNotText
 
 
 @node

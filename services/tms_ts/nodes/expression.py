@@ -20,7 +20,7 @@ from simpleeval import InvalidExpression, SimpleEval  # type: ignore[import-unty
 
 from tms_reason.reason import Reason
 from tms_reason.texts import text
-from tms_ts.bt.reasons import (
+from tms_ts.tree_reasons import (
     ConstantNoNumber,
     ExpressionInvalid,
     ExpressionSigns,

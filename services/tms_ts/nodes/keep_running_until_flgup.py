@@ -8,9 +8,9 @@ from tms_ts.bt.decorator import Decorator
 from tms_ts.bt.errors import TickError
 from tms_ts.bt.node import Keys, Node
 from tms_ts.bt.ports import In
-from tms_ts.bt.reasons import KeyNotBoolean, OneRoundMore, RunsUntil, StoredTextThrows, TextAsBoolean
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, IDLE, RUNNING, SUCCESS, Status
+from tms_ts.tree_reasons import KeyNotBoolean, OneRoundMore, RunsUntil, StoredTextThrows, TextAsBoolean
 
 WHILE = ("While", "while")
 

@@ -6,11 +6,11 @@ from tms_reason.reason import Reason
 from tms_ts.bt.leaf import SyncAction
 from tms_ts.bt.node import Keys
 from tms_ts.bt.ports import In, Pointer
-from tms_ts.bt.reasons import AllBraces, AlwaysFails, HoldsNoNumber
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, SUCCESS, Status
 from tms_ts.nodes.calculation import calculate, keys_of, parse
 from tms_ts.nodes.expression import WHOLE_NUMBER, Invalid
+from tms_ts.tree_reasons import AllBraces, AlwaysFails, HoldsNoNumber
 
 
 @node

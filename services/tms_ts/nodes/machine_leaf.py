@@ -15,8 +15,8 @@ from tms_ts.bt.errors import TickError
 from tms_ts.bt.leaf import PlainAction
 from tms_ts.bt.node import AtOnce, Keys
 from tms_ts.bt.ports import In, Pointer
-from tms_ts.bt.reasons import NameMissing, NoMachines, NoRosName, Sending, Working
 from tms_ts.bt.status import FAILURE, RUNNING, SUCCESS, Status
+from tms_ts.tree_reasons import NameMissing, NoMachines, NoRosName, Sending, Working
 from tms_ts.world import Goal
 
 # Names that ROS accepts: a topic may have 247 letters, including the machine's name and the endings of an action.

@@ -7,11 +7,11 @@ from tms_ts.bt.convert import Missing
 from tms_ts.bt.errors import TickError
 from tms_ts.bt.node import Keys
 from tms_ts.bt.ports import In, Out, Pointer
-from tms_ts.bt.reasons import AlwaysFails, OutputNotConnected, UnevenLists
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import SUCCESS, Status
 from tms_ts.nodes.asking import Asking
 from tms_ts.nodes.shared_value import keys_named, referred, typed
+from tms_ts.tree_reasons import AlwaysFails, OutputNotConnected, UnevenLists
 from tms_ts.world import Pending, Value
 
 

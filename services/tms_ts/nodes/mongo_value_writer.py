@@ -8,11 +8,11 @@ from tms_reason.reason import Reason
 from tms_ts.bt.convert import Missing
 from tms_ts.bt.node import Keys
 from tms_ts.bt.ports import In
-from tms_ts.bt.reasons import AlwaysFails
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import SUCCESS, Status
 from tms_ts.nodes.asking import Asking
 from tms_ts.nodes.shared_value import hopeless, keys_named, surprising, written
+from tms_ts.tree_reasons import AlwaysFails
 from tms_ts.world import Pending
 
 

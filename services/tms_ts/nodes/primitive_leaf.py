@@ -7,9 +7,9 @@ from tms_reason.reason import Reason
 from tms_ts.bt.convert import MISSING, convert
 from tms_ts.bt.node import Keys
 from tms_ts.bt.ports import In
-from tms_ts.bt.reasons import AlwaysFails, MissingParameter
 from tms_ts.bt.registry import generic
 from tms_ts.nodes.machine_leaf import MachineLeaf
+from tms_ts.tree_reasons import AlwaysFails, MissingParameter
 
 
 @generic

@@ -9,9 +9,9 @@ from tms_ts.bt.convert import MISSING, kind_of
 from tms_ts.bt.errors import TickError
 from tms_ts.bt.leaf import SyncAction
 from tms_ts.bt.ports import In, InOut, Pointer
-from tms_ts.bt.reasons import MissingParameter
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import SUCCESS, Status
+from tms_ts.tree_reasons import MissingParameter
 
 
 def typed(text: str) -> str | bool | int | float:

@@ -7,9 +7,9 @@ import re
 from tms_ts.bt.convert import Missing, to_text
 from tms_ts.bt.leaf import SyncAction
 from tms_ts.bt.ports import In, InOut
-from tms_ts.bt.reasons import NoValue
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, SUCCESS, Status
+from tms_ts.tree_reasons import NoValue
 
 
 @node

@@ -7,7 +7,7 @@ import re
 from tms_reason.reason import Reason
 from tms_ts.bt.convert import MISSING, Missing, convert, text_to_double, text_to_int, text_to_integer, to_text
 from tms_ts.bt.node import Node
-from tms_ts.bt.reasons import BeginningWritten, KeyHasNoValue, NoSuchType, PortType, WholeWritten
+from tms_ts.tree_reasons import BeginningWritten, KeyHasNoValue, NoSuchType, PortType, WholeWritten
 from tms_ts.world import Value
 
 ANY_INTEGER = 10**400

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from tms_ts.bt.ports import In
-from tms_ts.bt.reasons import WaitsForOperator
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import FAILURE, SUCCESS, Status
 from tms_ts.bt.timers import Timeout
 from tms_ts.nodes.asking import Asking
+from tms_ts.tree_reasons import WaitsForOperator
 from tms_ts.world import Pending
 
 

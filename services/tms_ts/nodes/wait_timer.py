@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from tms_ts.bt.leaf import StatefulAction
 from tms_ts.bt.ports import In
-from tms_ts.bt.reasons import Waits
 from tms_ts.bt.registry import node
 from tms_ts.bt.status import RUNNING, SUCCESS, Status
+from tms_ts.tree_reasons import Waits
 
 
 @node

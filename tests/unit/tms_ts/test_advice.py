@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from tms_ts.bt import SUCCESS, InOut, Out, Status, SyncAction, load, registry
-from tms_ts.bt.reasons import IfThenElseChildren, KeyOfTwoTypes, NeverWritten, SwitchChildren, WhileDoElseChildren
+from tms_ts.tree_reasons import IfThenElseChildren, KeyOfTwoTypes, NeverWritten, SwitchChildren, WhileDoElseChildren
 from unit.tms_ts.trees import document
 
 OK = "<AlwaysSuccess/>"

@@ -27,7 +27,7 @@ from tms_ts.bt import (
     node,
     registry,
 )
-from tms_ts.bt.reasons import MayHang, Waits
+from tms_ts.tree_reasons import MayHang, Waits
 from unit.tms_ts.fakes import Clock, FakeGoal, FakeMachines, FakeWorld
 from unit.tms_ts.trees import document, leaf, tree
 from words import words

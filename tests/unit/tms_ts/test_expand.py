@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from tms_ts.bt import SUCCESS, TickError, TreeError, check, check_template, load
 from tms_ts.bt.display import ascii_tree
-from tms_ts.bt.reasons import (
+from tms_ts.tree_reasons import (
     CallNotSeen,
     CallWithSlash,
     InTemplate,

@@ -10,7 +10,7 @@ import pytest
 
 from tms_ts.bt import TreeError, check, load
 from tms_ts.bt.errors import MAX_NAMES, MAX_WARNINGS, did_you_mean
-from tms_ts.bt.reasons import DidYouMean, MayHang
+from tms_ts.tree_reasons import DidYouMean, MayHang
 from unit.tms_ts.trees import document
 from words import words
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tms_ts.bt import SUCCESS, In, SyncAction, TreeError, check, load, registry
-from tms_ts.bt.reasons import AdoptedLeaf, InSubTreePlus, NotUsed, TwoTrees
+from tms_ts.tree_reasons import AdoptedLeaf, InSubTreePlus, NotUsed, TwoTrees
 from unit.tms_ts.trees import document, leaf, tree
 from words import words
 

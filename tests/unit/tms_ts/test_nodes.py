@@ -9,9 +9,9 @@ import pytest
 
 from tms_reason.reason import Foreign
 from tms_ts.bt import FAILURE, RUNNING, SUCCESS, Status, TickError
-from tms_ts.bt.reasons import AlwaysFails, KeyChangesType, KeyIsNumber, NoRosName, NumberTooBig
 from tms_ts.nodes.expression import _NUMBER, Invalid, evaluate, names
 from tms_ts.nodes.shared_value import typed as written_as
+from tms_ts.tree_reasons import AlwaysFails, KeyChangesType, KeyIsNumber, NoRosName, NumberTooBig
 from tms_ts.world import GoalState
 from unit.tms_ts.fakes import FakeClicks, FakeFlags, FakeMachines, FakeWorld
 from unit.tms_ts.trees import leaf, tree

@@ -7,7 +7,7 @@ from lxml import etree
 
 from tms_ts.bt import check, palette, registry
 from tms_ts.bt.document import read
-from tms_ts.bt.reasons import PartWithoutColon
+from tms_ts.tree_reasons import PartWithoutColon
 
 PALETTE = etree.fromstring(palette())
 

@@ -19,8 +19,8 @@ from tms_reason.reason import Foreign
 from tms_ts.bt import FAILURE, IDLE, RUNNING, SUCCESS, In, Out, PyTreesLeaf, TickError, Tree, load, palette, registry
 from tms_ts.bt.display import ascii_tree, dot, twin
 from tms_ts.bt.leaf import SyncAction
-from tms_ts.bt.reasons import ActionIdle, NodeError, PyTreesBlackboard, UsePorts, WaitsForWorkers
 from tms_ts.bt.status import Status
+from tms_ts.tree_reasons import ActionIdle, NodeError, PyTreesBlackboard, UsePorts, WaitsForWorkers
 from unit.tms_ts.fakes import FakeMachines, FakeWorld
 from unit.tms_ts.trees import document, leaf, tree
 

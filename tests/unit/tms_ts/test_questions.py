@@ -7,9 +7,9 @@ from builtin_interfaces.msg import Time
 
 from tms_reason.reason import Foreign
 from tms_ts.bt import FAILURE, RUNNING
-from tms_ts.bt.reasons import WaitsForOperator
 from tms_ts.questions import Clicks, Questions
 from tms_ts.reasons import AnsweredNo, AnsweredYes
+from tms_ts.tree_reasons import WaitsForOperator
 from unit.tms_ts.fakes import FakeClicks, FakeWorld
 from unit.tms_ts.trees import tree
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from tms_machine.goal_inputs import parted
+from tms_ts import tree_reasons as r
 from tms_ts.bt import FAILURE, RUNNING, SUCCESS, Status, TickError, TreeError, check
-from tms_ts.bt import reasons as r
 from tms_ts.preflight import records_of
 from tms_ts.world import GoalState
 from unit.tms_ts.fakes import FakeMachines, FakeWorld

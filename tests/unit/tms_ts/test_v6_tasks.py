@@ -15,8 +15,8 @@ import pytest
 from tms_db.tasks import Tasks
 from tms_machine.goal_inputs import parted
 from tms_reason.wire import to_line
+from tms_ts import tree_reasons as r
 from tms_ts.bt import FAILURE, RUNNING, SUCCESS, Status, check, load
-from tms_ts.bt import reasons as r
 from unit.tms_ts.fakes import FakeFlags, FakeMachines, FakeWorld
 from v6_templates import TASKS, known
 

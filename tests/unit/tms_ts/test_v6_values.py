@@ -7,8 +7,8 @@ from typing import Any, ClassVar
 import pytest
 
 from tms_reason.reason import Reason
+from tms_ts import tree_reasons as r
 from tms_ts.bt import FAILURE, RUNNING, SUCCESS, Status, TickError, Tree, check
-from tms_ts.bt import reasons as r
 from tms_ts.nodes.calculation import calculate
 from tms_ts.nodes.expression import Invalid, evaluate, names
 from unit.tms_ts.fakes import FakeFlags, FakeWorld
