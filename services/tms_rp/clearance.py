@@ -28,6 +28,8 @@ PADDING = 0.1  # m, usual
 # m that no point of the machine moves further between two checked poses: it is never further than PADDING from one.
 TRAVEL = 2 * PADDING
 
+NEARER = 0.9  # of a distance at the start: what is less is nearer
+FINEST = 0.002  # m that a point moves between two looks at bodies which are nearer than the padding
 ROUNDING = 1e-9  # m
 
 Mask = NDArray[np.bool_]
@@ -82,12 +84,12 @@ class Clearance:
         places = self._links.places(poses)
         return np.stack([places[link] @ body.inner for link, body in self._own.items()], axis=1)
 
-    def between(self, poses: Array) -> tuple[Array, Array]:
-        """The poses, and so many on the straight lines between them that nothing moves further than TRAVEL.
+    def between(self, poses: Array, travel: float = TRAVEL) -> tuple[Array, Array]:
+        """The poses, and so many on the straight lines between them that nothing moves further than `travel` [m].
 
         With the number of each, from 0; those between have fractions.
         """
-        counts = np.maximum(1, np.ceil(np.abs(np.diff(poses, axis=0)) @ self._reach / TRAVEL)).astype(int)
+        counts = np.maximum(1, np.ceil(np.abs(np.diff(poses, axis=0)) @ self._reach / travel)).astype(int)
         parts = [i + np.arange(n) / n for i, n in enumerate(counts)]
         numbers = np.concatenate([*parts, [len(poses) - 1.0]])
         known = np.arange(len(poses))
@@ -112,12 +114,14 @@ class View:
 
     def passable(self, poses: Sequence[Sequence[float]]) -> bool:
         """Whether `check` would pass a trajectory on the straight lines between the poses."""
-        return not self._bad(self._places(self._clearance.between(np.array(poses))[0])).any()
+        between, _ = self._clearance.between(np.array(poses))
+        return not self._bad(between, self._places(between)).any()
 
     def check(self, made: Trajectory) -> None:
         """Check a whole trajectory.
 
-        What touches at its start may part, but must be apart at its end; only into the ground it may lead.
+        What touches at its start may part, but must be apart at its end; only into the ground it may lead. What is
+        nearer than the padding at its start may not come nearer.
 
         Raises:
             SubtaskFailed: Collision, with the two bodies, the time, and where they overlap most.
@@ -125,16 +129,33 @@ class View:
         poses, numbers = self._clearance.between(np.array([sample.positions for sample in made.samples]))
         times = np.interp(numbers, range(len(made.samples)), [sample.time for sample in made.samples])
         places = self._places(poses)
-        self._refuse(places, times, self._bad(places))
+        self._refuse(places, times, self._bad(poses, places))
 
-    def _bad(self, places: Matrix) -> Mask:
+    def _bad(self, poses: Array, places: Matrix) -> Mask:
         """The contacts that `check` does not allow."""
         contacts = self._contacts(places)
-        bad = contacts & ~_run(contacts)
+        since_start = _run(contacts)
+        bad = contacts & ~since_start
         bad[-1] = contacts[-1]
-        soil = [isinstance(self._bodies[b].name, Ground) for _, b in self._pairs]
+        soil = np.array([isinstance(self._bodies[b].name, Ground) for _, b in self._pairs])
         bad[:, soil] &= ~_run(contacts[::-1])[::-1][:, soil]
+        for pair in np.flatnonzero(contacts[0] & ~soil):
+            near = since_start[:, pair]
+            bad[near, pair] |= self._comes_nearer(poses[: near.sum() + 1], int(pair))
         return bad
+
+    def _comes_nearer(self, poses: Array, pair: int) -> bool:
+        """Whether two bodies that are apart at the start, by less than the padding, come nearer."""
+        apart = self._apart(self._places(poses[:1])[0], pair)
+        if apart <= 0.0:
+            return False
+        between = self._places(self._clearance.between(poses, max(apart / 2, FINEST))[0])
+        return min(self._apart(places, pair) for places in between) < NEARER * apart
+
+    def _apart(self, places: Matrix, pair: int) -> float:
+        """How far two bodies are apart without any padding [m]; 0 or less if they touch."""
+        a, b = (self._bodies[i].bare_at(places[i]) for i in self._pairs[pair])
+        return float(fcl.distance(a, b, fcl.DistanceRequest(), fcl.DistanceResult()))
 
     def check_part(self, made: Trajectory, begin: float, end: float) -> None:
         """Check a trajectory that runs between two times [s]; what touches since its start may go on.
@@ -215,13 +236,22 @@ class _Body:
 
     def __init__(self, name: Reason, box: Box, padding: float) -> None:
         self.name, self.inner = name, box_place(box)
-        self.half = np.array([(high - low) / 2 + padding for low, high in zip(box.min, box.max, strict=True)])
-        self._object = fcl.CollisionObject(fcl.Box(*map(float, 2 * self.half)))
+        bare = np.array([(high - low) / 2 for low, high in zip(box.min, box.max, strict=True)])
+        self.half = bare + padding
+        self._object, self._bare = (fcl.CollisionObject(fcl.Box(*map(float, 2 * half))) for half in (self.half, bare))
 
     def at(self, place: Matrix) -> Any:
         """FCL's object, put to a place."""
-        self._object.setTransform(fcl.Transform(place[:3, :3], place[:3, 3]))
-        return self._object
+        return _put(self._object, place)
+
+    def bare_at(self, place: Matrix) -> Any:
+        """The same without padding."""
+        return _put(self._bare, place)
+
+
+def _put(body: Any, place: Matrix) -> Any:
+    body.setTransform(fcl.Transform(place[:3, :3], place[:3, 3]))
+    return body
 
 
 def _run(contacts: Mask) -> Mask:
