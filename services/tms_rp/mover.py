@@ -18,7 +18,7 @@ from tms_ros.goals import Outcome
 from tms_ros.reasons import LostMeanwhile, NoAnswer
 from tms_ros.server import AnyGoal
 from tms_rp.messages import follow
-from tms_rp.reasons import MotionFailed, MotionLate, MoveOf
+from tms_rp.reasons import MotionFailed, MotionLate, MoveOf, PathBlocked
 from tms_rp.trajectory import Trajectory
 from tms_runtime.fence import derived
 
@@ -30,6 +30,17 @@ CHECK_PERIOD = 0.5  # s between checks whether the gateway is still there, and w
 
 Gateway = Peer[FollowJointTrajectory.Goal, FollowJointTrajectory.Result, FollowJointTrajectory.Feedback]
 TrajectoryCall = Call[FollowJointTrajectory.Result, FollowJointTrajectory.Feedback]
+
+
+class WayBlocked(SubtaskFailed):
+    """Something has come into the way of a motion; the machine was seen to stand since.
+
+    `seconds`: how far the motion was, from its begin.
+    """
+
+    def __init__(self, reason: Reason, seconds: float) -> None:
+        super().__init__(reason)
+        self.seconds = seconds
 
 
 class Mover:
@@ -47,6 +58,7 @@ class Mover:
         `blocked` tells why it must not go on, so many seconds after its begin; it is asked again and again.
 
         Raises:
+            WayBlocked: for the reason that `blocked` has told.
             SubtaskFailed, RosError: anything else, with the reason; the motion was cancelled then.
         """
         self._peer.wait_ready(SERVER_LIMIT)
@@ -62,6 +74,8 @@ class Mover:
         lost = self._watch(goal, call, monotonic() + made.duration + OVERRUN, lambda: blocked(progress.seconds))
         if call.outcome is None:
             self._stop(call)
+        if lost is not None and lost.find(PathBlocked) is not None and call.outcome is Outcome.CANCELED:
+            raise WayBlocked(lost, progress.seconds)
         if lost is not None:
             raise SubtaskFailed(lost)
         return _verdict(goal, call, self._peer.name)

@@ -17,6 +17,7 @@ from tms_reason.reason import Reason
 from tms_reason.texts import text
 from tms_ros.goals import Ended, Outcome
 from tms_ros.server import AnyGoal
+from tms_rp.interventions import Interventions
 from tms_rp.joint_states import JointStates
 from tms_rp.kind import Angles, Moves, PlanningAction
 from tms_rp.kinds import load
@@ -33,10 +34,11 @@ from tms_rp.reasons import (
     Planning,
     Succeeded,
 )
+from tms_rp.resuming import Resuming
 from tms_rp.scene import Scene
 from tms_rp.told_scene import ToldScene
 from tms_rp.trajectory import Trajectory
-from tms_rp.ways import Ways
+from tms_rp.ways import Plan, Ways
 from tms_runtime.app import App
 
 FRESH = 1.0  # s, older joint states are no start for a motion
@@ -75,7 +77,7 @@ class Planner:
         self._rc = app.ros.peer(FollowJointTrajectory, f"/{app.machine}/rc/follow_joint_trajectory")
         watch_server(app.ros, app.pulse, app.machine, "rc")(self._rc)
         self._permit = Permit(app.ros, app.pulse, app.machine, "rp")
-        self._mover = Mover(self._rc)
+        self._resuming = Resuming(Mover(self._rc), Interventions(app.ros, app.machine), self._blocked, self._ways.late)
         self._busy = False  # set on the executor thread, which accepts one goal after another
         self._joints = JointStates(app.ros, app.machine, app.site.border(app.machine), self.kind.joints)
 
@@ -122,39 +124,41 @@ class Planner:
         self._app.ros.serve(action.type, name, lambda goal: self._run(action, goal), accept)
 
     def _run(self, action: PlanningAction, goal: AnyGoal) -> Ended[Any]:
-        outcome, made = Outcome.ABORTED, None
+        outcome, plan = Outcome.ABORTED, None
         if action.moves:
             self._permit.hold(goal.uuid)
         try:
-            outcome, made = self._execute(action, goal)
+            outcome, plan = self._execute(action, goal)
         finally:
             if action.moves:
                 self._permit.drop()
                 self._busy = False
         code = TmsRpErrorCodes.SUCCESS if outcome is Outcome.SUCCEEDED else TmsRpErrorCodes.FAILURE
-        answer = {"plan": follow(made).trajectory} if action.answers and made is not None else {}
+        answer = {"plan": follow(plan.made).trajectory} if action.answers and plan is not None else {}
         return outcome, action.type.Result(error_code=TmsRpErrorCodes(val=code), **answer)
 
-    def _execute(self, action: PlanningAction, goal: AnyGoal) -> tuple[Outcome, Trajectory | None]:
+    def _execute(self, action: PlanningAction, goal: AnyGoal) -> tuple[Outcome, Plan | None]:
         def say(state: Reason, notes: tuple[Reason, ...] = ()) -> None:
             goal.publish(action.type.Feedback(state=wire.to_line(Adapted(state, notes) if notes else state)))
 
+        def again(moves: Moves) -> Plan:
+            return self._plan(action, goal, self.joints(), moves)
+
         say(Planning())
         try:
-            made, notes = self._plan(action, goal)
+            now = self.joints()
+            plan = self._plan(action, goal, now, action.plan(self._planner, now, goal.request))
             if not action.moves:
-                say(Planned(made.duration), notes)
+                say(Planned(plan.made.duration), plan.notes)
                 outcome = Outcome.SUCCEEDED
             else:
-                outcome = self._mover.move(
-                    goal, made, lambda progress: say(progress, notes), lambda seconds: self._blocked(made, seconds)
-                )
+                outcome = self._resuming.move(goal, plan, again, say)
         except TmsError as error:
             self._app.log.warning("failed", action=action.name, goal=goal.id, reason=error.reason)
             say(Aborted(error.reason, action.name))
             return Outcome.ABORTED, None
         say(Succeeded() if outcome is Outcome.SUCCEEDED else MotionCancelled())
-        return outcome, made
+        return outcome, plan
 
     def _blocked(self, made: Trajectory, seconds: float) -> Reason | None:
         """What has come into the way of a motion; without this machine's own place nobody knows, and it goes on."""
@@ -172,21 +176,19 @@ class Planner:
         """
         return Scene((*self._neighbours.scene().obstacles, *self._told.obstacles()))
 
-    def _plan(self, action: PlanningAction, goal: AnyGoal) -> tuple[Trajectory, tuple[Reason, ...]]:
-        """The trajectory, and the changes to the goal that it needed."""
+    def _plan(self, action: PlanningAction, goal: AnyGoal, now: Angles, moves: Moves) -> Plan:
+        """A plan in the scene as it is now."""
         begun = monotonic()
-        now = self.joints()
-        moves = action.plan(self._planner, now, goal.request)
-        made, notes = self._ways.plan(now, moves, self._scene())
+        plan = self._ways.plan(now, moves, self._scene())
         seconds = monotonic() - begun
         PLANNING.observe(seconds)
         self._app.log.info(
             "planned",
             action=action.name,
             goal=goal.id,
-            moves=len(made.stops),
-            duration=round(made.duration, 2),
+            moves=len(plan.made.stops),
+            duration=round(plan.made.duration, 2),
             planning=round(seconds, 4),
-            notes=[text(note, "en") for note in notes],
+            notes=[text(note, "en") for note in plan.notes],
         )
-        return made, notes
+        return plan

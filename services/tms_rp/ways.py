@@ -1,7 +1,7 @@
 """A way to each target of a goal: the straight one if it is free, else around what is in the way."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from tms_config.models import MachineModel
 from tms_reason.errors import SubtaskFailed
@@ -15,6 +15,30 @@ from tms_rp.scene import Scene
 from tms_rp.trajectory import Joints, Trajectory, trajectory
 
 
+@dataclass(frozen=True)
+class Plan:
+    """A checked trajectory, what people should know of it, and the goal that it serves.
+
+    `reached`: when [s] the trajectory is at each target of `moves`; empty for stored plans. A way around may end whole
+    turns away from the target that the goal has asked for; the targets here are those that it goes to.
+    """
+
+    made: Trajectory
+    notes: tuple[Reason, ...]
+    moves: Moves
+    reached: tuple[float, ...] = ()
+
+    def rest(self, seconds: float) -> Moves | None:
+        """What is left of the goal so many seconds after the begin; None for stored plans, which are kept as they are.
+
+        It ends in the last target, also when the arm was there already: it may have been stopped a little before.
+        """
+        if not self.reached:
+            return None
+        left = [target for target, at in zip(self.moves.targets, self.reached, strict=True) if at > seconds]
+        return replace(self.moves, targets=tuple(left) or self.moves.targets[-1:], begin=None)
+
+
 class Ways:
     """Plans for one machine."""
 
@@ -24,11 +48,11 @@ class Ways:
         # While it moves, only what is really in the way: places that are told are some centimetres apart each time.
         self._touching = Clearance(model, padding=0.0)
         moved = [(model.joints[name], model.response[name]) for name in kind.joints]
-        self._late = max(answer.dead_time + answer.lag for _, answer in moved)  # s behind the trajectory
+        self.late = max(answer.dead_time + answer.lag for _, answer in moved)  # s behind the trajectory
         self._stopping = max(joint.velocity / joint.acceleration for joint, _ in moved)  # s to brake
 
-    def plan(self, now: Angles, moves: Moves, scene: Scene) -> tuple[Trajectory, tuple[Reason, ...]]:
-        """The trajectory over all targets of `moves`, and what people should know of it.
+    def plan(self, now: Angles, moves: Moves, scene: Scene) -> Plan:
+        """The trajectory over all targets of `moves`.
 
         It goes straight from target to target as long as it touches nothing, however low that leads. A way around
         stays above the ground, but for its ends. Stored plans are kept as they are, or refused.
@@ -40,37 +64,39 @@ class Ways:
         if moves.plans:
             made = one_trajectory(self._model.joints, self._all_joints(now), moves.plans)
             self._clearance.check(made, scene)
-            return made, moves.notes
+            return Plan(made, moves.notes, moves)
         straight = self._trajectory(now, moves)
         try:
             self._clearance.check(straight, scene)
         except SubtaskFailed as error:
             return self._around(now, moves, scene, error.reason)
-        return straight, moves.notes
+        return Plan(straight, moves.notes, moves, straight.stops)
 
     def blocked(self, made: Trajectory, seconds: float, scene: Scene) -> Reason | None:
         """What has come into the way of a trajectory that runs since `seconds`, so near that it must stop now."""
         with self._touching.looking(scene) as view:
             try:
-                begin = min(seconds - self._late, made.duration)
-                view.check_part(made, begin, seconds + self._late + self._stopping)
+                begin = min(seconds - self.late, made.duration)
+                view.check_part(made, begin, seconds + self.late + self._stopping)
             except SubtaskFailed as error:
                 why = error.reason
                 return PathBlocked(why.second, why) if isinstance(why, Collision) else why
         return None
 
-    def _around(self, now: Angles, moves: Moves, scene: Scene, why: Reason) -> tuple[Trajectory, tuple[Reason, ...]]:
-        targets, notes = [now], list(moves.notes)
+    def _around(self, now: Angles, moves: Moves, scene: Scene, why: Reason) -> Plan:
+        poses, notes, ends = [now], list(moves.notes), list[int]()
         turned = (0.0,) * len(now)  # rad by which a way has ended elsewhere than the goal asks: whole turns
         for target in moves.targets:
             wanted = tuple(a + b for a, b in zip(target, turned, strict=True))
-            way = self._way(targets[-1], wanted, scene, why)
-            targets += way.targets
+            way = self._way(poses[-1], wanted, scene, why)
+            poses += way.targets
+            ends.append(len(poses) - 1)
             turned = tuple(a - b for a, b in zip(way.targets[-1], target, strict=True))
             notes += [Around(way.name, why)] if way.name else []
-        made = self._trajectory(now, replace(moves, targets=tuple(targets[1:])), straight=True)
+        made = self._trajectory(now, replace(moves, targets=tuple(poses[1:])), straight=True)
         self._clearance.check(made, scene)
-        return made, tuple(notes)
+        targets, reached = tuple(poses[end] for end in ends), tuple(made.stops[end - 1] for end in ends)
+        return Plan(made, tuple(notes), replace(moves, targets=targets), reached)
 
     def _way(self, begin: Angles, target: Angles, scene: Scene, why: Reason) -> Way:
         """The first way of one move that is free.

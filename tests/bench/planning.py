@@ -86,8 +86,8 @@ def plan_all() -> tuple[list[float], list[float]]:
         kinematics = clock(lambda goal=goal: backhoe.excavate(NOW, goal))
         begun = time.perf_counter()
         with contextlib.suppress(SubtaskFailed):  # out of reach, or in a truck
-            _, notes = ways.plan(NOW, backhoe.excavate(NOW, goal), scene)
-            if not any(isinstance(note, Around) for note in notes):
+            plan = ways.plan(NOW, backhoe.excavate(NOW, goal), scene)
+            if not any(isinstance(note, Around) for note in plan.notes):
                 floors.append(kinematics)
                 times.append((time.perf_counter() - begun) * 1000)
     return times, floors
@@ -103,11 +103,11 @@ def plan_around() -> tuple[list[float], list[float], list[float]]:
         now, target = tuple(recorded["now"]), tuple(recorded["target"])
         floors.append(clock(lambda now=now, target=target: trajectory(model.joints, (*now, 0.0), [(*target, 0.0)])))
         scene = recorded_scene(recorded)
-        _, notes = ways.plan(now, Moves((target,)), scene)
+        plan = ways.plan(now, Moves((target,)), scene)
         # The same work each time: what it takes longer now and then, other programs take.
         taken = min(clock(lambda now=now, target=target, scene=scene: ways.plan(now, Moves((target,)), scene))
                     for _ in range(ROUNDS))  # fmt: skip
-        for note in notes:
+        for note in plan.notes:
             (searches if note == Around(Searched(), note.why) else manners).append(taken)
     return manners, searches, floors
 

@@ -1,5 +1,6 @@
 """Planner, gateway and stand-in machine as real processes: motion, cancel, refusal, emergency stop."""
 
+import math
 import os
 from collections import deque
 from collections.abc import Callable, Iterator
@@ -8,7 +9,7 @@ from typing import Any
 
 import pytest
 from control_msgs.action import FollowJointTrajectory
-from geometry_msgs.msg import Point
+from geometry_msgs.msg import Point, TransformStamped
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool
 from tf2_msgs.msg import TFMessage
@@ -25,8 +26,10 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 import programs
 from conftest import rearm, wait_until
-from tms_config.config import load_site
+from tms_config.config import CONFIGS, load_site
+from tms_config.models import MachineModel
 from tms_config.reasons import AboveLimit
+from tms_config.yaml_file import parse
 from tms_decision.reasons import MachineLatched, PressedByOthers
 from tms_rc.latch_file import LatchFile
 from tms_reason import wire
@@ -35,7 +38,17 @@ from tms_ros.client import Call
 from tms_ros.goals import Outcome
 from tms_ros.node import Ros
 from tms_rp.kinds.backhoe.planner import NAMES as ARM
-from tms_rp.reasons import JointBroken, JointsOld, JointsUnheard, MoveOf, OtherAngle, OutOfRange, PlanElsewhere
+from tms_rp.reasons import (
+    JointBroken,
+    JointsOld,
+    JointsUnheard,
+    MoveOf,
+    OtherAngle,
+    OutOfRange,
+    PathBlocked,
+    PlanElsewhere,
+    PlannedAnew,
+)
 from tms_runtime import environment
 
 pytestmark = [
@@ -55,6 +68,7 @@ machines: {{{machine}: {{model: zx200}}, {mute}: {{model: zx200}}}}
 MACHINE, MUTE = "zx200_7", "zx200_8"  # names of their own: other tests may have a zx200 in the same domain
 NAMES = ["swing_joint", "boom_joint", "arm_joint", "bucket_joint", "bucket_end_joint"]
 START = (0.0, -0.8029, 1.9897, 0.8029, 0.0)
+PLACE = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel).start
 
 
 class Rig:
@@ -237,6 +251,37 @@ def test_a_plan_never_moves_and_bad_goals_are_refused(machine: Rig) -> None:
     controller = "upper_arm_controller/follow_joint_trajectory"
     assert machine.end(machine.send(FollowJointTrajectory, controller, trajectory=wrong)) is Outcome.REJECTED
     assert "code=-2 reason='the trajectory is for the joints swing_joint" in machine.log.read_text()
+
+
+def at(away: float, bearing: float) -> TFMessage:
+    """The other machine at a place: so far [m] from the machine, in a direction [rad]."""
+    x, y, _ = PLACE
+    frame = TransformStamped(child_frame_id=f"{MUTE}/base_link")
+    frame.header.frame_id = "map"
+    frame.transform.translation.x = x + away * math.cos(bearing)
+    frame.transform.translation.y = y + away * math.sin(bearing)
+    frame.transform.rotation.w = 1.0
+    return TFMessage(transforms=[frame])
+
+
+def test_what_comes_into_the_way_is_waited_for_and_the_motion_goes_on(machine: Rig) -> None:
+    frames = machine.ros.publisher(TFMessage, "/tf", depth=10)
+
+    def told(where: TFMessage, there: Callable[[], bool]) -> Callable[[], bool]:
+        return lambda: bool(frames.publish(where)) or there()
+
+    def waits() -> bool:
+        return any(wire.known(said).find(PlannedAnew) is not None for said in machine.said)
+
+    call = machine.change_pose(2.4, *START[1:])
+    machine.until(machine.moving, "motion")
+    machine.until(told(at(7.0, 1.8), waits), "a way that is blocked")
+    (said, *_) = [known for said in machine.said if (known := wire.known(said)).find(PlannedAnew)]
+    assert said.find(PathBlocked) is not None and not machine.moving()
+    assert call.outcome is None and machine.states[-1].position[0] < 1.8
+    machine.until(told(at(60.0, 1.8), lambda: call.outcome is not None), "end of the goal")
+    assert call.outcome is Outcome.SUCCEEDED
+    assert machine.states[-1].position[0] == pytest.approx(2.4, abs=0.031)
 
 
 def test_emergency_stop_ends_a_motion_until_it_is_released(machine: Rig) -> None:

@@ -59,7 +59,8 @@ UNDER_ROOF: tuple[Angles, Angles] = ((0.573, -0.419, 2.321, 2.164), (-1.86, -0.5
 
 
 def plan(scene: Scene, now: Angles, *targets: Angles) -> tuple[Trajectory, tuple[Reason, ...]]:
-    return WAYS.plan(now, Moves(targets), scene)
+    found = WAYS.plan(now, Moves(targets), scene)
+    return found.made, found.notes
 
 
 def refusal(scene: Scene, now: Angles, *targets: Angles) -> Reason:

@@ -145,10 +145,11 @@ def test_no_way_touches_anything_or_leaves_the_limits(seed: int) -> None:
     scene = random_scene(rng)
     now, target = free_pose(rng, scene), free_pose(rng, scene)
     try:
-        made, notes = WAYS.plan(now, Moves((target,)), scene)
+        found = WAYS.plan(now, Moves((target,)), scene)
     except SubtaskFailed as error:
         assert isinstance(error.reason, (Collision, NoWayRound))
         return
+    made, notes = found.made, found.notes
     around = Obstacle(PartOf("ground", "site"), GROUND, np.eye(4))
     assert touched(Scene((*scene.obstacles, around)) if notes else scene, dense(made)) == []
     assert beyond_limits(made) == []
