@@ -11,7 +11,8 @@ import pytest
 from conftest import PROJECT
 
 INTERFACES = PROJECT / "services" / "interfaces"
-PACKAGES = sorted(path.parent for path in INTERFACES.glob("*/package.xml"))
+FORMS = INTERFACES / "_forms"  # packages of the same names, each form in a prefix of its own
+PACKAGES = sorted(path.parent for folder in (INTERFACES, FORMS) for path in folder.glob("*/package.xml"))
 
 # Hashes of the definitions as published; a peer with other hashes would misread our data.
 KNOWN = {
@@ -31,10 +32,18 @@ KNOWN = {
     "control_msgs/action/FollowJointTrajectory": "738ebcb7a2d7cfa42f9f1001cc99ce3a4383d1cfe508015d9be8485e4b1c66f6",
 }
 
+# The forms of version 6, by their definitions as read; without a peer of theirs to compare them with.
+KNOWN_FORMS = {
+    ("v6a", "tms_msg_ts/action/LeafNodeBase"): "cb6b24b5c49884d4464bf769ba1c45fb583556275ec0c03cc342db9e63122559",
+    ("v6b", "tms_msg_ts/action/LeafNodeBase"): "dfc42e8bd08861795e637231ba18ab99dcefc262ae113b0ced99f48cc42547ed",
+    ("v6a", "tms_msg_db/srv/TmsdbGetTask"): "dd546b6a3bb1944f0ca404d5855507421c5ce02584c56243474424b12cbc330d",
+    ("v6b", "tms_msg_db/srv/TmsdbGetTask"): "dd546b6a3bb1944f0ca404d5855507421c5ce02584c56243474424b12cbc330d",
+}
 
-def built_hash(name: str) -> str:
+
+def built_hash(name: str, prefix: Path = Path(sys.prefix)) -> str:
     package, kind, _ = name.split("/")
-    file = Path(sys.prefix) / "share" / package / kind / f"{name.split('/')[2]}.json"
+    file = prefix / "share" / package / kind / f"{name.split('/')[2]}.json"
     hashes = {row["type_name"]: row["hash_string"] for row in json.loads(file.read_text())["type_hashes"]}
     return hashes[name].removeprefix("RIHS01_")
 
@@ -44,10 +53,17 @@ def test_type_hash(name: str) -> None:
     assert built_hash(name) == KNOWN[name]
 
 
-@pytest.mark.parametrize("package", PACKAGES, ids=lambda path: path.name)
+@pytest.mark.parametrize(("form", "name"), sorted(KNOWN_FORMS))
+def test_type_hash_of_another_form(form: str, name: str) -> None:
+    assert built_hash(name, Path(sys.prefix) / "share" / "tms_forms" / form) == KNOWN_FORMS[form, name]
+
+
+@pytest.mark.parametrize("package", PACKAGES, ids=lambda path: f"{path.parent.name}/{path.name}")
 def test_every_definition_is_built(package: Path) -> None:
-    listed = set(re.findall(r'"(?:\$\{CMAKE_CURRENT_SOURCE_DIR\}/(\w+):)?(\w+/\w+\.\w+)"',
-                            (package / "CMakeLists.txt").read_text()))  # fmt: skip
+    text = (package / "CMakeLists.txt").read_text()
+    forms = ["v6a", "v6b"] if "${FORM}" in text else [""]
+    built = "".join(text.replace("${FORM}", form) for form in forms)
+    listed = set(re.findall(r'"(?:\$\{CMAKE_CURRENT_SOURCE_DIR\}/(\w+):)?(\w+/\w+\.\w+)"', built))
     there = {path.relative_to(package) for kind in ("msg", "srv", "action") for path in package.rglob(f"*.{kind}")}
     assert {f"{base}/{file}" if base else file for base, file in listed} == {str(path) for path in there}
 
