@@ -31,7 +31,7 @@ help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
 
 setup: $(VENV)/.ready $(VENV)-store/.ready ## everything that the other targets need (they call it)
-	@$(PY) -m compileall -q services tests  # where Python itself may not write it, each process would compile anew
+	@$(PY) -m compileall -q -x 'services/interfaces' services tests  # where Python itself may not write it, each process would compile anew
 
 system:
 	@sh deploy/system-packages.sh
@@ -49,7 +49,7 @@ $(VENV)-store/.ready: $(LOCKS)/requirements-store.lock | $(UV)
 	$(UV) pip install -q --compile-bytecode -p $(VENV)-store/bin/python --require-hashes -r $(LOCKS)/requirements-store.lock
 	@touch $@
 
-$(VENV)/.interfaces-$(NAV2_DISTRO): $(VENV)/.requirements $(LOCKS)/build.lock $(LOCKS)/interfaces.txt $(shell find services/interfaces -type f)
+$(VENV)/.interfaces-$(NAV2_DISTRO): $(VENV)/.requirements $(LOCKS)/build.lock $(LOCKS)/interfaces.txt $(shell find services/interfaces -type f -not -name '*.pyc')
 	@echo "building the ROS interface packages (about a minute)"
 	$(UV) pip install -q --compile-bytecode -p $(PY) --no-deps --build-constraints $(LOCKS)/build.lock -r $(LOCKS)/interfaces.txt
 	$(PY) services/interfaces/_wheel/stubs.py

@@ -28,7 +28,7 @@ PROJECT = Path(__file__).resolve().parents[1]
 SPOILED = pytest.StashKey[bool]()
 RUNNING = pytest.StashKey["Mesh"]()
 DOMAINS = range(43, 101)  # 42 is the demo's
-CLI = 0.2  # s between two calls of `tms` that wait for something: each costs 0.05 s of a processor
+CLI = 0.4  # s between two calls of `tms` that wait for something: each costs 0.05 s of a processor
 WARNINGS = 40  # lines shown of a failed test's mesh
 
 # Found by `--hypothesis-profile=thorough`. No deadline: a busy machine would flip the test.

@@ -145,11 +145,11 @@ class EventLoop:
         """Poll `there` until it holds.
 
         Raises:
-            RosError: `otherwise`, when it did not hold within `seconds`.
+            RosError: `otherwise`, when it did not hold within `seconds`, or this node has ended meanwhile.
         """
         deadline = monotonic() + seconds
-        while not there():
-            if monotonic() > deadline:
+        while self.closing or not there():
+            if self.closing or monotonic() > deadline:
                 raise RosError(otherwise)
             sleep(POLL)
 
