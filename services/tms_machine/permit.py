@@ -84,6 +84,11 @@ class RemotePermit:
         return self._link.stale_writers
 
     @property
+    def asserted(self) -> int:
+        """How many processes assert it: more than one is a mistake, or the first moment after a restart."""
+        return self._link.asserted
+
+    @property
     def alive(self) -> bool:
         """Whether the process works for `goal` now."""
         return self._link.alive(monotonic())

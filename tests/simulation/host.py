@@ -46,7 +46,7 @@ class Standby:
 
     def beat(self, now: float) -> None:
         """Command what is due."""
-        if self.press.due(now, self._gateway.alive(now), self._latched if self._reported else None):
+        if self.press.due(now, alone(self._gateway, now), self._latched if self._reported else None):
             self._host.world.tell("tms:host", f"hands a press on to {self._unit.name}:rc")
             self._host.world.send(f"{self._unit.name} calls", lambda: self._unit.gateway.call(_press, lambda _: None))
         act = self._duty.check(now, self._status(now))
@@ -75,6 +75,11 @@ class Standby:
         if self._duty.lost_since is not None:
             self._acts = True
             unit.stands_in(True)
+
+
+def alone(gateway: PermitLink, now: float) -> bool:
+    """Whether one gateway lives: of two, nobody knows which shows its latch."""
+    return gateway.alive(now) and gateway.asserted < 2
 
 
 def _press(number: int) -> e.Event:

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 
+from simulation import host
 from simulation.plan import Planned, Press, Trapped, machines, plan
 from simulation.schedule import Schedule, shorter
 from tms_decision.gateway import motion, stops
@@ -68,6 +69,13 @@ def test_what_a_stranger_has_cancelled_is_still_on_its_way(monkeypatch: pytest.M
     assert Schedule(110677).run().violation == ""
     monkeypatch.setattr(stops, "_expected", lambda *words: replace(expected(*words), to_come={}))
     assert "truly moving" in Schedule(110677).run().violation
+
+
+def test_a_press_that_a_second_gateway_took_along_is_handed_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It was there for a second, showed its latch, and ended; the right one had started meanwhile."""
+    assert Schedule(557426936).run().violation == ""
+    monkeypatch.setattr(host, "alone", lambda gateway, now: gateway.alive(now))
+    assert "before a re-arm" in Schedule(557426936).run().violation
 
 
 def test_a_press_is_not_forgotten_when_its_gateway_is_killed_before_the_disk_has_the_latch() -> None:
