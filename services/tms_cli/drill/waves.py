@@ -139,5 +139,5 @@ class Waves:
         return empty(trial, self._site.file.machines[trial.machine].model)
 
     def close(self) -> None:
-        """Free the threads."""
-        self._pool.shutdown(cancel_futures=True)
+        """Free the threads; after an interrupt they end by themselves, once the mesh is down."""
+        self._pool.shutdown(wait=False, cancel_futures=True)
