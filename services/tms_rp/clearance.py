@@ -9,6 +9,7 @@ asked only for boxes that no face of either separates: that is found beforehand,
 import threading
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
 
@@ -31,6 +32,16 @@ TRAVEL = 2 * PADDING
 ROUNDING = 1e-9  # m
 
 Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Nearest:
+    """The two bodies that come nearest to each other, how near [m], and when [s]."""
+
+    first: Reason
+    second: Reason
+    distance: float
+    seconds: float
 
 
 class Clearance:
@@ -157,6 +168,26 @@ class View:
         """
         places = self._places(np.array([made.samples[-1].positions]))
         self._refuse(places, np.array([made.duration]), self._contacts(places))
+
+    def nearest(self, made: Trajectory) -> Nearest | None:
+        """Where a trajectory comes nearest to something, among its samples; None if there is nothing."""
+        places = self._places(np.array([sample.positions for sample in made.samples]))
+        centres, radii = places[..., :3, 3], np.linalg.norm(self._half, axis=1)
+        a, b = self._pairs.T
+        least = np.linalg.norm(centres[:, b] - centres[:, a], axis=2) - radii[a] - radii[b]  # by their spheres
+        found: Nearest | None = None
+        for pose, pair in zip(*np.unravel_index(np.argsort(least, axis=None), least.shape), strict=True):
+            if found is not None and least[pose, pair] >= found.distance:
+                break
+            distance = self._distance(places, pose, pair)
+            if found is None or distance < found.distance:
+                first, second = (self._bodies[i].name for i in self._pairs[pair])
+                found = Nearest(first, second, distance, made.samples[pose].time)
+        return found
+
+    def _distance(self, places: Matrix, pose: int, pair: int) -> float:
+        a, b = (self._bodies[i].at(places[pose, i]) for i in self._pairs[pair])
+        return max(0.0, float(fcl.distance(a, b, fcl.DistanceRequest(), fcl.DistanceResult())))
 
     def _places(self, poses: Array) -> Matrix:
         """Where all boxes are: N x bodies x 4 x 4."""

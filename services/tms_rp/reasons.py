@@ -66,6 +66,11 @@ class PartOf(Reason, text="{link} of {machine}"): link: str; machine: str
 class NoTrajectory(Reason, text="there is no trajectory inside the limits", details="{problem}"): problem: str
 class LimitsLeft(Reason, text="{joint} would leave its limits after {seconds}"): joint: str; seconds: Moments
 
+class Between(Reason, text="{first} and {second}"): first: Reason; second: Reason
+class NoSuchAction(Reason, text="the planner has no action '{action}' (there are {actions})"):
+    action: str; actions: tuple[str, ...]
+class GoalUnreadable(Reason, text="this is no goal of {action}"): action: str
+
 # stored plans
 class PlanWrong(Reason, text="plan {number}: {why}", action=PLAN_AGAIN): number: int; why: Reason
 class PlanLacks(Reason, text="its joints are not those of the arm", details="missing: {joints}"):

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from tms_config.models import MachineModel
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
-from tms_rp.clearance import Clearance, View
+from tms_rp.clearance import Clearance, Nearest, View
 from tms_rp.kind import Angles, MachineKind, Moves, Way
 from tms_rp.plans import one_trajectory, scaled
 from tms_rp.reasons import Around, Collision, NoWayRound, PathBlocked, Searched
@@ -82,6 +82,11 @@ class Ways:
                 why = error.reason
                 return PathBlocked(why.second, why) if isinstance(why, Collision) else why
         return None
+
+    def nearest(self, made: Trajectory, scene: Scene) -> Nearest | None:
+        """Where a trajectory comes nearest to something, without padding."""
+        with self._touching.looking(scene) as view:
+            return view.nearest(made)
 
     def _around(self, now: Angles, moves: Moves, scene: Scene, why: Reason) -> Plan:
         poses, notes, ends = [now], list(moves.notes), list[int]()
