@@ -21,7 +21,7 @@ from tms_config.models import Box, MachineModel
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
 from tms_rp.links import Array, Links, Matrix, box_place, reaches
-from tms_rp.reasons import Collision, Ground, Part
+from tms_rp.reasons import Between, Collision, Ground, Part
 from tms_rp.scene import Obstacle, Scene
 from tms_rp.trajectory import Trajectory
 
@@ -30,6 +30,10 @@ PADDING = 0.1  # m, usual
 TRAVEL = 2 * PADDING
 
 ROUNDING = 1e-9  # m
+# Bodies of which only the padding touches at the start are looked at without it, in steps of FINE [m], to keep NEAR [m]
+# apart, or as far as they are then. Those that overlap may part on any way: how deep they do is no measure of how far.
+FINE = 0.02
+NEAR = 0.02
 
 Mask = NDArray[np.bool_]
 
@@ -93,12 +97,12 @@ class Clearance:
         places = self._links.places(poses)
         return np.stack([places[link] @ body.inner for link, body in self._own.items()], axis=1)
 
-    def between(self, poses: Array) -> tuple[Array, Array]:
-        """The poses, and so many on the straight lines between them that nothing moves further than TRAVEL.
+    def between(self, poses: Array, travel: float = TRAVEL) -> tuple[Array, Array]:
+        """The poses, and so many on the straight lines between them that nothing moves further than `travel` [m].
 
         With the number of each, from 0; those between have fractions.
         """
-        counts = np.maximum(1, np.ceil(np.abs(np.diff(poses, axis=0)) @ self._reach / TRAVEL)).astype(int)
+        counts = np.maximum(1, np.ceil(np.abs(np.diff(poses, axis=0)) @ self._reach / travel)).astype(int)
         parts = [i + np.arange(n) / n for i, n in enumerate(counts)]
         numbers = np.concatenate([*parts, [len(poses) - 1.0]])
         known = np.arange(len(poses))
@@ -123,7 +127,8 @@ class View:
 
     def passable(self, poses: Sequence[Sequence[float]]) -> bool:
         """Whether `check` would pass a trajectory on the straight lines between the poses."""
-        return not self._bad(self._places(self._clearance.between(np.array(poses))[0])).any()
+        between, _ = self._clearance.between(np.array(poses))
+        return not self._bad(between, self._places(between)).any()
 
     def check(self, made: Trajectory) -> None:
         """Check a whole trajectory.
@@ -136,16 +141,41 @@ class View:
         poses, numbers = self._clearance.between(np.array([sample.positions for sample in made.samples]))
         times = np.interp(numbers, range(len(made.samples)), [sample.time for sample in made.samples])
         places = self._places(poses)
-        self._refuse(places, times, self._bad(places))
+        self._refuse(places, times, self._bad(poses, places))
 
-    def _bad(self, places: Matrix) -> Mask:
+    def _bad(self, poses: Array, places: Matrix) -> Mask:
         """The contacts that `check` does not allow."""
         contacts = self._contacts(places)
-        bad = contacts & ~_run(contacts)
+        since = _run(contacts)
+        bad = contacts & ~since
         bad[-1] = contacts[-1]
-        soil = [isinstance(self._bodies[b].name, Ground) for _, b in self._pairs]
+        soil = np.array([isinstance(self._bodies[b].name, Ground) for _, b in self._pairs])
         bad[:, soil] &= ~_run(contacts[::-1])[::-1][:, soil]
+        for pair in np.flatnonzero(contacts[0] & ~soil):
+            bad[: since[:, pair].sum(), pair] |= self._nearer(poses[since[:, pair]], int(pair))
         return bad
+
+    def _nearer(self, poses: Array, pair: int) -> Mask:
+        """At which poses, or before the next one, bodies come too near of which the padding touches at the first."""
+        fine, numbers = self._clearance.between(poses, FINE)
+        places, found = self._places(fine), np.zeros(len(poses), dtype=bool)
+        least = min(self._gap(places, 0, pair), NEAR) - ROUNDING
+        if least <= 0:
+            return found
+        gaps = np.array([self._gap(places, pose, pair) for pose in range(len(fine))])
+        found[numbers[gaps < least].astype(int)] = True
+        return found
+
+    def _gap(self, places: Matrix, pose: int, pair: int) -> float:
+        """How far two bodies are apart [m], without padding; 0 where they overlap."""
+        a, b = (self._bodies[i].at(places[pose, i], padded=False) for i in self._pairs[pair])
+        return max(0.0, float(fcl.distance(a, b, fcl.DistanceRequest(), fcl.DistanceResult())))
+
+    def overlap(self, pose: Sequence[float]) -> Reason | None:
+        """Two bodies that touch at a pose."""
+        for _, pair in np.argwhere(self._contacts(self._places(np.array([pose])))):
+            return Between(*(self._bodies[i].name for i in self._pairs[pair]))
+        return None
 
     def check_part(self, made: Trajectory, begin: float, end: float) -> None:
         """Check a trajectory that runs between two times [s]; what touches since its start may go on.
@@ -179,15 +209,11 @@ class View:
         for pose, pair in zip(*np.unravel_index(np.argsort(least, axis=None), least.shape), strict=True):
             if found is not None and least[pose, pair] >= found.distance:
                 break
-            distance = self._distance(places, pose, pair)
+            distance = self._gap(places, pose, pair)
             if found is None or distance < found.distance:
                 first, second = (self._bodies[i].name for i in self._pairs[pair])
                 found = Nearest(first, second, distance, made.samples[pose].time)
         return found
-
-    def _distance(self, places: Matrix, pose: int, pair: int) -> float:
-        a, b = (self._bodies[i].at(places[pose, i]) for i in self._pairs[pair])
-        return max(0.0, float(fcl.distance(a, b, fcl.DistanceRequest(), fcl.DistanceResult())))
 
     def _places(self, poses: Array) -> Matrix:
         """Where all boxes are: N x bodies x 4 x 4."""
@@ -229,30 +255,41 @@ class View:
             return
         first = int(np.argmax(bad.any(axis=1)))
         pair = int(np.argmax(bad[first]))
-        depth, (x, y, z) = max(self._overlap(places, int(pose), pair) for pose in np.flatnonzero(bad[:, pair]))
-        a, b = (self._bodies[i].name for i in self._pairs[pair])
-        raise SubtaskFailed(Collision(a, b, float(times[first]), depth, x, y, z))
-
-    def _overlap(self, places: Matrix, pose: int, pair: int) -> tuple[float, tuple[float, ...]]:
-        """How deep two bodies overlap [m] and where, in base_link."""
-        a, b = (self._bodies[i].at(places[pose, i]) for i in self._pairs[pair])
-        result = fcl.CollisionResult()
-        fcl.collide(a, b, fcl.CollisionRequest(num_max_contacts=8, enable_contact=True), result)
-        return max((float(one.penetration_depth), tuple(map(float, one.pos))) for one in result.contacts)
+        a, b = (self._bodies[i] for i in self._pairs[pair])
+        i, j = self._pairs[pair]
+        depth, (x, y, z) = max(
+            _overlap(a.at(places[pose, i]), b.at(places[pose, j])) for pose in np.flatnonzero(bad[:, pair])
+        )
+        raise SubtaskFailed(Collision(a.name, b.name, float(times[first]), depth, x, y, z))
 
 
 class _Body:
-    """A box: its name in reasons, half of its size [m], and its centre in the frame that it belongs to."""
+    """A box: its name in reasons, half of its size with padding [m], its centre in the frame that it belongs to."""
 
     def __init__(self, name: Reason, box: Box, padding: float) -> None:
         self.name, self.inner = name, box_place(box)
-        self.half = np.array([(high - low) / 2 + padding for low, high in zip(box.min, box.max, strict=True)])
-        self._object = fcl.CollisionObject(fcl.Box(*map(float, 2 * self.half)))
+        bare = np.array([(high - low) / 2 for low, high in zip(box.min, box.max, strict=True)])
+        self.half = bare + padding
+        self._padded = _object(self.half)
+        self._bare = _object(bare) if padding > 0 else self._padded
 
-    def at(self, place: Matrix) -> Any:
+    def at(self, place: Matrix, padded: bool = True) -> Any:
         """FCL's object, put to a place."""
-        self._object.setTransform(fcl.Transform(place[:3, :3], place[:3, 3]))
-        return self._object
+        found = self._padded if padded else self._bare
+        found.setTransform(fcl.Transform(place[:3, :3], place[:3, 3]))
+        return found
+
+
+def _object(half: Array) -> Any:
+    return fcl.CollisionObject(fcl.Box(*map(float, 2 * half)))
+
+
+def _overlap(a: Any, b: Any) -> tuple[float, tuple[float, ...]]:
+    """How deep two of FCL's objects overlap [m] and where, in base_link."""
+    result = fcl.CollisionResult()
+    fcl.collide(a, b, fcl.CollisionRequest(num_max_contacts=8, enable_contact=True), result)
+    found = ((float(one.penetration_depth), tuple(map(float, one.pos))) for one in result.contacts)
+    return max(found, default=(0.0, (0.0, 0.0, 0.0)))
 
 
 def _run(contacts: Mask) -> Mask:

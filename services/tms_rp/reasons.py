@@ -27,6 +27,7 @@ class LiftSwingLower(Reason, text="it lifts, swings and lowers"): pass
 class FoldSwingUnfold(Reason, text="it lifts, curls in, swings and unfolds"): pass
 class OtherWayRound(Reason, text="{way}, the other way round"): way: Reason
 class Searched(Reason, text="it takes a way that was searched"): pass
+class SlowlyOut(Reason, text="it moves slowly, as {bodies} seem to overlap at the start"): bodies: Reason
 class PlannedAnew(Reason, text="{why}; the rest is planned anew after {pause}"): why: Reason; pause: Seconds
 class Succeeded(Reason, text="done"): pass
 class MotionCancelled(Reason, text="cancelled"): pass

@@ -26,7 +26,7 @@ from tms_rp.ways import Ways
 
 MODEL = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel)
 WAYS = Ways(MODEL, load("backhoe"))
-SCENES = settings.default.max_examples * 2 // 5 if settings.default else 20
+SCENES = 200 if settings.default is None or settings.default.max_examples <= 50 else 5000
 DENSE = 0.005  # rad
 GROUND = Box(min=(-20.0, -20.0, -1.0), max=(20.0, 20.0, 0.0))
 ARM = ("boom_link", "arm_link", "bucket_link")
