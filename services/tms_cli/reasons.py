@@ -2,7 +2,7 @@
 
 from tms_reason.quantities import Megabytes, Seconds
 from tms_reason.reason import Reason
-from tms_reason.remedies import LOGS, PROCESSES, RETRY, RUNS, STATUS, TASKS, Remedy
+from tms_reason.remedies import LOGS, PROCESSES, RECORDS, RETRY, RUNS, STATUS, TASKS, Remedy
 
 QUESTIONS = Remedy("questions", "tms answer", "See which questions are open")
 CHOOSE = Remedy("questions", "tms answer --question ID", "Choose one of them")
@@ -32,6 +32,7 @@ FINITE = Remedy("value", "", "Write a number, or '\"{value}\"' if text is meant"
 EMPTY_TEXT = Remedy("value", "", "Write \"''\" for an empty text, or use --remove")
 OTHER_TOPICS = Remedy("topics", "", "Stop that, or choose others with --topics")
 SAME_SENSING = Remedy("processes", "tms ps", "See whether tms:sp runs, with this sensing.yaml")
+GIVE_SUBTASK = Remedy("subtask", "", "Give one of them: --subtask NAME")
 KEEP_STAMPS = Remedy("stamps", "", "Play with --keep-stamps")
 
 
@@ -97,6 +98,13 @@ class ShortPassword(Reason, text="a password has {least} characters at least"): 
 class NoUser(Reason, text="{file}: there is no user '{name}'", action=USERS): file: str; name: str
 class NoUsersKey(Reason, text="{file}: console.users names no file", action=ADD_USERS): file: str
 class NoHostPort(Reason, text="where alerts go is no HOST:PORT: '{address}'", action=HOST_AND_PORT): address: str
+
+class NoPlannedArm(Reason, text="{machine} has no arm whose motions are planned"): machine: str
+class WhichSubtask(Reason, text="record {record}: for which subtask is it ({subtasks})?", action=GIVE_SUBTASK):
+    record: str; subtasks: tuple[str, ...]
+class RecordUnfitFor(Reason, text="record {record} does not fit {subtask}: {why}", action=RECORDS):
+    record: str; subtask: str; why: Reason
+class ForNoArm(Reason, text="record {record} is for no subtask that moves the arm", action=RECORDS): record: str
 
 class CannotRun(Reason, text="it cannot run as it is: {why}"): why: Reason
 

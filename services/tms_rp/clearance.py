@@ -9,6 +9,7 @@ asked only for boxes that no face of either separates: that is found beforehand,
 import threading
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
 
@@ -20,7 +21,7 @@ from tms_config.models import Box, MachineModel
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
 from tms_rp.links import Array, Links, Matrix, box_place, reaches
-from tms_rp.reasons import Collision, Ground, Part
+from tms_rp.reasons import Between, Collision, Ground, Part
 from tms_rp.scene import Obstacle, Scene
 from tms_rp.trajectory import Trajectory
 
@@ -28,11 +29,23 @@ PADDING = 0.1  # m, usual
 # m that no point of the machine moves further between two checked poses: it is never further than PADDING from one.
 TRAVEL = 2 * PADDING
 
-NEARER = 0.9  # of a distance at the start: what is less is nearer
-FINEST = 0.002  # m that a point moves between two looks at bodies which are nearer than the padding
 ROUNDING = 1e-9  # m
+# Bodies of which only the padding touches at the start are looked at without it, in steps of FINE [m], to keep NEAR [m]
+# apart, or as far as they are then. Those that overlap may part on any way: how deep they do is no measure of how far.
+FINE = 0.02
+NEAR = 0.02
 
 Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Nearest:
+    """The two bodies that come nearest to each other, how near [m], and when [s]."""
+
+    first: Reason
+    second: Reason
+    distance: float
+    seconds: float
 
 
 class Clearance:
@@ -120,8 +133,7 @@ class View:
     def check(self, made: Trajectory) -> None:
         """Check a whole trajectory.
 
-        What touches at its start may part, but must be apart at its end; only into the ground it may lead. What is
-        nearer than the padding at its start may not come nearer.
+        What touches at its start may part, but must be apart at its end; only into the ground it may lead.
 
         Raises:
             SubtaskFailed: Collision, with the two bodies, the time, and where they overlap most.
@@ -134,28 +146,36 @@ class View:
     def _bad(self, poses: Array, places: Matrix) -> Mask:
         """The contacts that `check` does not allow."""
         contacts = self._contacts(places)
-        since_start = _run(contacts)
-        bad = contacts & ~since_start
+        since = _run(contacts)
+        bad = contacts & ~since
         bad[-1] = contacts[-1]
         soil = np.array([isinstance(self._bodies[b].name, Ground) for _, b in self._pairs])
         bad[:, soil] &= ~_run(contacts[::-1])[::-1][:, soil]
         for pair in np.flatnonzero(contacts[0] & ~soil):
-            near = since_start[:, pair]
-            bad[near, pair] |= self._comes_nearer(poses[: near.sum() + 1], int(pair))
+            bad[: since[:, pair].sum(), pair] |= self._nearer(poses[since[:, pair]], int(pair))
         return bad
 
-    def _comes_nearer(self, poses: Array, pair: int) -> bool:
-        """Whether two bodies that are apart at the start, by less than the padding, come nearer."""
-        apart = self._apart(self._places(poses[:1])[0], pair)
-        if apart <= 0.0:
-            return False
-        between = self._places(self._clearance.between(poses, max(apart / 2, FINEST))[0])
-        return min(self._apart(places, pair) for places in between) < NEARER * apart
+    def _nearer(self, poses: Array, pair: int) -> Mask:
+        """At which poses, or before the next one, bodies come too near of which the padding touches at the first."""
+        fine, numbers = self._clearance.between(poses, FINE)
+        places, found = self._places(fine), np.zeros(len(poses), dtype=bool)
+        least = min(self._gap(places, 0, pair), NEAR) - ROUNDING
+        if least <= 0:
+            return found
+        gaps = np.array([self._gap(places, pose, pair) for pose in range(len(fine))])
+        found[numbers[gaps < least].astype(int)] = True
+        return found
 
-    def _apart(self, places: Matrix, pair: int) -> float:
-        """How far two bodies are apart without any padding [m]; 0 or less if they touch."""
-        a, b = (self._bodies[i].bare_at(places[i]) for i in self._pairs[pair])
-        return float(fcl.distance(a, b, fcl.DistanceRequest(), fcl.DistanceResult()))
+    def _gap(self, places: Matrix, pose: int, pair: int) -> float:
+        """How far two bodies are apart [m], without padding; 0 where they overlap."""
+        a, b = (self._bodies[i].at(places[pose, i], padded=False) for i in self._pairs[pair])
+        return max(0.0, float(fcl.distance(a, b, fcl.DistanceRequest(), fcl.DistanceResult())))
+
+    def overlap(self, pose: Sequence[float]) -> Reason | None:
+        """Two bodies that touch at a pose."""
+        for _, pair in np.argwhere(self._contacts(self._places(np.array([pose])))):
+            return Between(*(self._bodies[i].name for i in self._pairs[pair]))
+        return None
 
     def check_part(self, made: Trajectory, begin: float, end: float) -> None:
         """Check a trajectory that runs between two times [s]; what touches since its start may go on.
@@ -178,6 +198,22 @@ class View:
         """
         places = self._places(np.array([made.samples[-1].positions]))
         self._refuse(places, np.array([made.duration]), self._contacts(places))
+
+    def nearest(self, made: Trajectory) -> Nearest | None:
+        """Where a trajectory comes nearest to something, among its samples; None if there is nothing."""
+        places = self._places(np.array([sample.positions for sample in made.samples]))
+        centres, radii = places[..., :3, 3], np.linalg.norm(self._half, axis=1)
+        a, b = self._pairs.T
+        least = np.linalg.norm(centres[:, b] - centres[:, a], axis=2) - radii[a] - radii[b]  # by their spheres
+        found: Nearest | None = None
+        for pose, pair in zip(*np.unravel_index(np.argsort(least, axis=None), least.shape), strict=True):
+            if found is not None and least[pose, pair] >= found.distance:
+                break
+            distance = self._gap(places, pose, pair)
+            if found is None or distance < found.distance:
+                first, second = (self._bodies[i].name for i in self._pairs[pair])
+                found = Nearest(first, second, distance, made.samples[pose].time)
+        return found
 
     def _places(self, poses: Array) -> Matrix:
         """Where all boxes are: N x bodies x 4 x 4."""
@@ -219,39 +255,41 @@ class View:
             return
         first = int(np.argmax(bad.any(axis=1)))
         pair = int(np.argmax(bad[first]))
-        depth, (x, y, z) = max(self._overlap(places, int(pose), pair) for pose in np.flatnonzero(bad[:, pair]))
-        a, b = (self._bodies[i].name for i in self._pairs[pair])
-        raise SubtaskFailed(Collision(a, b, float(times[first]), depth, x, y, z))
-
-    def _overlap(self, places: Matrix, pose: int, pair: int) -> tuple[float, tuple[float, ...]]:
-        """How deep two bodies overlap [m] and where, in base_link."""
-        a, b = (self._bodies[i].at(places[pose, i]) for i in self._pairs[pair])
-        result = fcl.CollisionResult()
-        fcl.collide(a, b, fcl.CollisionRequest(num_max_contacts=8, enable_contact=True), result)
-        return max((float(one.penetration_depth), tuple(map(float, one.pos))) for one in result.contacts)
+        a, b = (self._bodies[i] for i in self._pairs[pair])
+        i, j = self._pairs[pair]
+        depth, (x, y, z) = max(
+            _overlap(a.at(places[pose, i]), b.at(places[pose, j])) for pose in np.flatnonzero(bad[:, pair])
+        )
+        raise SubtaskFailed(Collision(a.name, b.name, float(times[first]), depth, x, y, z))
 
 
 class _Body:
-    """A box: its name in reasons, half of its size [m], and its centre in the frame that it belongs to."""
+    """A box: its name in reasons, half of its size with padding [m], its centre in the frame that it belongs to."""
 
     def __init__(self, name: Reason, box: Box, padding: float) -> None:
         self.name, self.inner = name, box_place(box)
         bare = np.array([(high - low) / 2 for low, high in zip(box.min, box.max, strict=True)])
         self.half = bare + padding
-        self._object, self._bare = (fcl.CollisionObject(fcl.Box(*map(float, 2 * half))) for half in (self.half, bare))
+        self._padded = _object(self.half)
+        self._bare = _object(bare) if padding > 0 else self._padded
 
-    def at(self, place: Matrix) -> Any:
+    def at(self, place: Matrix, padded: bool = True) -> Any:
         """FCL's object, put to a place."""
-        return _put(self._object, place)
-
-    def bare_at(self, place: Matrix) -> Any:
-        """The same without padding."""
-        return _put(self._bare, place)
+        found = self._padded if padded else self._bare
+        found.setTransform(fcl.Transform(place[:3, :3], place[:3, 3]))
+        return found
 
 
-def _put(body: Any, place: Matrix) -> Any:
-    body.setTransform(fcl.Transform(place[:3, :3], place[:3, 3]))
-    return body
+def _object(half: Array) -> Any:
+    return fcl.CollisionObject(fcl.Box(*map(float, 2 * half)))
+
+
+def _overlap(a: Any, b: Any) -> tuple[float, tuple[float, ...]]:
+    """How deep two of FCL's objects overlap [m] and where, in base_link."""
+    result = fcl.CollisionResult()
+    fcl.collide(a, b, fcl.CollisionRequest(num_max_contacts=8, enable_contact=True), result)
+    found = ((float(one.penetration_depth), tuple(map(float, one.pos))) for one in result.contacts)
+    return max(found, default=(0.0, (0.0, 0.0, 0.0)))
 
 
 def _run(contacts: Mask) -> Mask:

@@ -6,6 +6,7 @@ from control_msgs.action import FollowJointTrajectory
 from prometheus_client import Histogram
 from tms_msg_rp.action import ExecutePlans
 from tms_msg_rp.msg import TmsRpErrorCodes
+from tms_msg_rp.srv import CheckMotion
 
 from tms_config.clock import monotonic
 from tms_config.naming import process_of
@@ -17,6 +18,8 @@ from tms_reason.reason import Reason
 from tms_reason.texts import text
 from tms_ros.goals import Ended, Outcome
 from tms_ros.server import AnyGoal
+from tms_rp.checks import MotionChecks
+from tms_rp.clearance import Nearest
 from tms_rp.interventions import Interventions
 from tms_rp.joint_states import JointStates
 from tms_rp.kind import Angles, Moves, PlanningAction
@@ -58,8 +61,11 @@ def start(app: App) -> None:
     """Serve `/<machine>/tms_rp_<model>_<action>`."""
     planner, model = Planner(app), app.site.file.machines[app.machine].model
     app.ros.poll_in_thread(JOINTS_PERIOD, planner.take_joints, "joints")
-    for action in (*planner.kind.actions, EXECUTE):
+    actions = {action.name: action for action in (*planner.kind.actions, EXECUTE)}
+    for action in actions.values():
         planner.serve(action, f"/{app.machine}/tms_rp_{model}_{action.name}")
+    checks = MotionChecks(actions, planner.kind.joints, planner.joints, planner.planned, planner.nearest)
+    app.ros.offer_slow(CheckMotion, f"/{app.machine}/rp/check_motion", checks.answer)
     app.ready_when(planner.unready)
 
 
@@ -142,12 +148,11 @@ class Planner:
             goal.publish(action.type.Feedback(state=wire.to_line(Adapted(state, notes) if notes else state)))
 
         def again(moves: Moves) -> Plan:
-            return self._plan(action, goal, self.joints(), moves)
+            return self._plan(action, self.joints(), moves)
 
         say(Planning())
         try:
-            now = self.joints()
-            plan = self._plan(action, goal, now, action.plan(self._planner, now, goal.request))
+            plan = self.planned(action, self.joints(), goal.request)
             if not action.moves:
                 say(Planned(plan.made.duration), plan.notes)
                 outcome = Outcome.SUCCEEDED
@@ -176,7 +181,15 @@ class Planner:
         """
         return Scene((*self._neighbours.scene().obstacles, *self._told.obstacles()))
 
-    def _plan(self, action: PlanningAction, goal: AnyGoal, now: Angles, moves: Moves) -> Plan:
+    def planned(self, action: PlanningAction, now: Angles, request: Any) -> Plan:
+        """A plan for a goal of an action, from angles of the arm [rad]."""
+        return self._plan(action, now, action.plan(self._planner, now, request))
+
+    def nearest(self, plan: Plan) -> Nearest | None:
+        """Where a plan comes nearest to something in the scene as it is now."""
+        return self._ways.nearest(plan.made, self._scene())
+
+    def _plan(self, action: PlanningAction, now: Angles, moves: Moves) -> Plan:
         """A plan in the scene as it is now."""
         begun = monotonic()
         plan = self._ways.plan(now, moves, self._scene())
@@ -185,7 +198,6 @@ class Planner:
         self._app.log.info(
             "planned",
             action=action.name,
-            goal=goal.id,
             moves=len(plan.made.stops),
             duration=round(plan.made.duration, 2),
             planning=round(seconds, 4),

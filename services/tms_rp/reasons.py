@@ -27,6 +27,7 @@ class LiftSwingLower(Reason, text="it lifts, swings and lowers"): pass
 class FoldSwingUnfold(Reason, text="it lifts, curls in, swings and unfolds"): pass
 class OtherWayRound(Reason, text="{way}, the other way round"): way: Reason
 class Searched(Reason, text="it takes a way that was searched"): pass
+class SlowlyOut(Reason, text="it moves slowly, as {bodies} seem to overlap at the start"): bodies: Reason
 class PlannedAnew(Reason, text="{why}; the rest is planned anew after {pause}"): why: Reason; pause: Seconds
 class Succeeded(Reason, text="done"): pass
 class MotionCancelled(Reason, text="cancelled"): pass
@@ -65,6 +66,11 @@ class Ground(Reason, text="the ground"): pass
 class PartOf(Reason, text="{link} of {machine}"): link: str; machine: str
 class NoTrajectory(Reason, text="there is no trajectory inside the limits", details="{problem}"): problem: str
 class LimitsLeft(Reason, text="{joint} would leave its limits after {seconds}"): joint: str; seconds: Moments
+
+class Between(Reason, text="{first} and {second}"): first: Reason; second: Reason
+class NoSuchAction(Reason, text="the planner has no action '{action}' (there are {actions})"):
+    action: str; actions: tuple[str, ...]
+class GoalUnreadable(Reason, text="this is no goal of {action}"): action: str
 
 # stored plans
 class PlanWrong(Reason, text="plan {number}: {why}", action=PLAN_AGAIN): number: int; why: Reason

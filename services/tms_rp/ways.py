@@ -6,13 +6,15 @@ from dataclasses import dataclass, replace
 from tms_config.models import MachineModel
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
-from tms_rp.clearance import Clearance, View
+from tms_rp.clearance import Clearance, Nearest, View
 from tms_rp.kind import Angles, MachineKind, Moves, Way
 from tms_rp.plans import one_trajectory, scaled
-from tms_rp.reasons import Around, Collision, NoWayRound, PathBlocked, Searched
+from tms_rp.reasons import Around, Collision, NoWayRound, PathBlocked, Searched, SlowlyOut
 from tms_rp.sampling import search
 from tms_rp.scene import Scene
 from tms_rp.trajectory import Joints, Trajectory, trajectory
+
+SLOW = 0.25  # share of the limits with which an arm comes out of something
 
 
 @dataclass(frozen=True)
@@ -65,12 +67,22 @@ class Ways:
             made = one_trajectory(self._model.joints, self._all_joints(now), moves.plans)
             self._clearance.check(made, scene)
             return Plan(made, moves.notes, moves)
+        moves = self._out(now, moves, scene)
         straight = self._trajectory(now, moves)
         try:
             self._clearance.check(straight, scene)
         except SubtaskFailed as error:
             return self._around(now, moves, scene, error.reason)
         return Plan(straight, moves.notes, moves, straight.stops)
+
+    def _out(self, now: Angles, moves: Moves, scene: Scene) -> Moves:
+        """The same, slow if the arm seems to be in something: then nobody knows how things really stand."""
+        with self._touching.looking(scene) as view:
+            inside = view.overlap(self._all_joints(now))
+        if inside is None:
+            return moves
+        velocity, acceleration = (min(SLOW, scale) for scale in moves.scales)
+        return replace(moves, scales=(velocity, acceleration), notes=(*moves.notes, SlowlyOut(inside)))
 
     def blocked(self, made: Trajectory, seconds: float, scene: Scene) -> Reason | None:
         """What has come into the way of a trajectory that runs since `seconds`, so near that it must stop now."""
@@ -82,6 +94,11 @@ class Ways:
                 why = error.reason
                 return PathBlocked(why.second, why) if isinstance(why, Collision) else why
         return None
+
+    def nearest(self, made: Trajectory, scene: Scene) -> Nearest | None:
+        """Where a trajectory comes nearest to something, without padding."""
+        with self._touching.looking(scene) as view:
+            return view.nearest(made)
 
     def _around(self, now: Angles, moves: Moves, scene: Scene, why: Reason) -> Plan:
         poses, notes, ends = [now], list(moves.notes), list[int]()

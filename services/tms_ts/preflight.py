@@ -15,6 +15,8 @@ from tms_ts.reasons import (
     BadSubtaskName,
     InputSilent,
     KnownAtRun,
+    MotionRefused,
+    MotionRefusedNow,
     NobodyWrites,
     NoMachineOfSite,
     NoRecord,
@@ -82,6 +84,14 @@ class StoredRecord:
     max_age: float = 0.0  # s; 0: it never gets too old
 
 
+@dataclass(frozen=True)
+class Refusal:
+    """Why a planner would refuse a goal; `lasting`: for the machine's limits or its own body."""
+
+    why: Reason
+    lasting: bool
+
+
 class Surroundings(Protocol):
     """What preflight asks about the system around a tree."""
 
@@ -101,6 +111,10 @@ class Surroundings(Protocol):
 
     def oldest(self, machine: str, subtask: str) -> float: ...  # s that a subtask lets its record be old; 0: as it says
 
+    def refusal(self, machine: str, subtask: str, record: str, inputs: Inputs) -> Refusal | None: ...  # in this order
+
+    def unplanned(self) -> list[Reason]: ...  # why the planners were not asked about some of the goals
+
 
 def preflight(tree: Tree, site: Site, around: Surroundings) -> Findings:
     """Check every leaf of a tree against the site, the database and the running processes."""
@@ -112,6 +126,7 @@ def preflight(tree: Tree, site: Site, around: Surroundings) -> Findings:
         problem = around.problem(machine) if machine in site.file.machines else None
         if problem is not None:
             found.warnings.append(problem)
+    found.warnings += around.unplanned()
     return Findings(list(dict.fromkeys(found.errors)), list(dict.fromkeys(found.warnings)))
 
 
@@ -143,9 +158,25 @@ def _check_goal(found: Findings, goal: LeafGoal, site: Site, around: Surrounding
         found.errors.append(_at_leaf(goal, NotOffered(goal.machine, goal.subtask, tuple(offered))))
     else:
         record, inputs = parted(goal.record)
+        wrong = len(found.errors)
         for one in _each(record):
             if "{" not in one:
                 _check_record(found, goal, one, inputs, around)
+        if len(found.errors) == wrong and "{" not in goal.record:
+            _check_motion(found, goal, record, inputs, around)
+
+
+def _check_motion(found: Findings, goal: LeafGoal, record: str, inputs: Inputs, around: Surroundings) -> None:
+    """Plan a goal from the pose that the goals before it, in the document, leave the arm in."""
+    refusal = around.refusal(goal.machine, goal.subtask, record, inputs)
+    if refusal is None:
+        return
+    stored = [around.record(goal.machine, one) for one in _each(record)]
+    name = f"{goal.machine}/{record}"
+    if refusal.lasting and all(one is not None and one.type == "static" for one in stored):
+        found.errors.append(_at_leaf(goal, MotionRefused(name, goal.subtask, refusal.why)))
+    else:
+        found.warnings.append(_at_leaf(goal, MotionRefusedNow(name, goal.subtask, refusal.why)))
 
 
 def _check_record(found: Findings, goal: LeafGoal, record: str, inputs: Inputs, around: Surroundings) -> None:

@@ -78,6 +78,12 @@ class NoRecordNear(Reason, text="no record {record}; {near}: `tms param set {rec
     "console's page Data adds it", action=RECORDS): record: str; near: Reason
 class RecordUnfit(Reason, text="record {record} does not fit {subtask}: {why}; correct it with `tms param set`"):
     record: str; subtask: str; why: Reason
+class MotionRefused(Reason, text="{subtask} with record {record}: the planner would refuse it: {why}"):
+    record: str; subtask: str; why: Reason
+class MotionRefusedNow(Reason,
+    text="{subtask} with record {record}: as the site is now, the planner would refuse it: {why}"):
+    record: str; subtask: str; why: Reason
+class MotionsUnplanned(Reason, text="motions of the arm that were not planned beforehand: {count}"): count: int
 class JointUnfit(Reason, text="{joint}: {why}"): joint: str; why: Reason
 class RecordOld(Reason,
     text="record {record} is {age} old, allowed are {limit}: the leaf fails unless sensing writes it"):

@@ -19,8 +19,9 @@ from tms_reason.reason import Reason
 from tms_reason.validation import explain
 from tms_reason.wire import refusal
 from tms_runtime.app import App
-from tms_ts.preflight import StoredRecord
+from tms_ts.preflight import Refusal, StoredRecord
 from tms_ts.reasons import JointUnfit
+from tms_ts.rehearsals import Rehearsals
 
 DB_LIMIT = 5.0  # s
 DISCOVERY_LIMIT = 1.5  # s, for one preflight as a whole
@@ -68,6 +69,7 @@ class PreflightContext:
         now = unix_time()
         self._found_by = monotonic() + DISCOVERY_LIMIT
         self._records = {(record.model_name, record.record_name): _stored(record, now) for record in answer.records}
+        self._rehearsals = Rehearsals(app, lambda *name: self._records[name].values if name in self._records else {})
 
     def record(self, machine: str, record: str) -> StoredRecord | None:
         return self._records.get((machine, record))
@@ -93,6 +95,12 @@ class PreflightContext:
 
     def oldest(self, machine: str, subtask: str) -> float:
         return self._app.site.model_of(machine).subtask(subtask).max_age
+
+    def refusal(self, machine: str, subtask: str, record: str, inputs: Inputs) -> Refusal | None:
+        return self._rehearsals.refusal(machine, subtask, record, inputs)
+
+    def unplanned(self) -> list[Reason]:
+        return self._rehearsals.unplanned()
 
 
 def unfit(model: MachineModel, subtask: str, values: Mapping[str, Any], inputs: Inputs) -> Reason | None:

@@ -2,9 +2,11 @@
 
 from tms_msg_db.msg import Task
 from tms_msg_db.srv import GetTask, GetTemplate
+from tms_msg_rp.srv import CheckMotion
 from tms_msg_ts.srv import CheckTask
 
 from tms_decision.reasons import MachineLatched
+from tms_kit.rehearsal import service_of
 from tms_reason.errors import TaskError, TmsError
 from tms_reason.reason import Reason
 from tms_reason.wire import refusal, to_line
@@ -25,6 +27,9 @@ class TaskCheck:
     def __init__(self, app: App, runs: ActiveRuns, gateways: Gateways) -> None:
         self._app, self._runs, self._gateways = app, runs, gateways
         self._sensing = SensingInputs(app)
+        for machine in app.site.file.machines:
+            if app.site.model_of(machine).planner is not None:
+                app.ros.prepare(CheckMotion, service_of(machine))
 
     def check(self, request: CheckTask.Request, response: CheckTask.Response) -> CheckTask.Response:
         """Preflight of a stored task or of XML, without running."""

@@ -22,6 +22,7 @@ from tms_msg_rp.action import (
     TmsRpZx200ReleaseSimple,
 )
 from tms_msg_rp.msg import TmsRpErrorCodes, TmsRpZx200PositionWithAngle
+from tms_msg_rp.srv import CheckMotion
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 import programs
@@ -37,6 +38,7 @@ from tms_reason.reason import R
 from tms_ros.client import Call
 from tms_ros.goals import Outcome
 from tms_ros.node import Ros
+from tms_ros.packing import pack
 from tms_rp.kinds.backhoe.planner import NAMES as ARM
 from tms_rp.reasons import (
     JointBroken,
@@ -343,3 +345,19 @@ def test_stored_plans_are_executed_one_behind_the_other_and_not_from_elsewhere(m
     elsewhere = machine.reason(PlanElsewhere)
     assert elsewhere is not None and elsewhere.joint == "swing_joint"
     assert machine.states[-1].position == pytest.approx(there, abs=0.031)
+
+
+def test_a_check_plans_without_a_motion_and_while_another_goal_moves(machine: Rig) -> None:
+    def answer(*angles: float) -> CheckMotion.Response:
+        points = [JointTrajectoryPoint(positions=list(angles))]
+        goal = TmsRpZx200ChangePose.Goal(trajectory=JointTrajectory(joint_names=NAMES, points=points))
+        request = CheckMotion.Request(action="change_pose", goal=pack(goal))
+        return machine.ros.call(CheckMotion, f"/{MACHINE}/rp/check_motion", request, LIMIT)
+
+    call = machine.change_pose(2.5, *START[1:])
+    machine.until(machine.moving, "motion")
+    free, refused = answer(0.5, *START[1:]), answer(0.5, 0.5, *START[2:])
+    assert not free.error_code and free.plan.points[-1].positions[0] == pytest.approx(0.5) and free.clearance > 0
+    assert wire.known(refused.error_msg).find(OutOfRange) is not None and refused.lasting
+    machine.cancel(call)
+    assert machine.end(call) is Outcome.CANCELED

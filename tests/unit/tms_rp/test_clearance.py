@@ -1,15 +1,18 @@
 """A motion through a truck or through the machine itself is refused with both names; others pass."""
 
+import itertools
 import math
+from collections.abc import Iterator
 
+import numpy as np
 import pytest
 
 from tms_config.config import CONFIGS
-from tms_config.models import MachineModel
+from tms_config.models import Box, MachineModel
 from tms_config.yaml_file import parse
 from tms_reason.errors import SubtaskFailed
 from tms_rp.clearance import Clearance
-from tms_rp.links import placed
+from tms_rp.links import Links, placed
 from tms_rp.reasons import Collision, Part, PartOf
 from tms_rp.scene import Obstacle, Scene
 from tms_rp.trajectory import Trajectory, trajectory
@@ -73,6 +76,23 @@ def test_what_touches_at_the_start_may_part_but_not_stay() -> None:
     away = (-1.571, *LOW_FRONT[1:])
     Clearance(MODEL).check(move(inside, away), truck(6.0, 0.0))
     refusal(move(inside, (0.1, *LOW_FRONT[1:])), truck(6.0, 0.0))
+
+
+@pytest.mark.parametrize("gap", [0.005, 0.05, 0.09])
+def test_what_only_the_padding_touches_at_the_start_is_not_gone_through(gap: float) -> None:
+    """A thin wall beside the bucket: on its other side nothing touches any more."""
+    edge = max(corner[1] for corner in corners("bucket_link", LOW_FRONT))
+    wall = Box(min=(4.0, edge + gap, 0.0), max=(12.0, edge + gap + 0.1, 8.0))
+    scene = Scene((Obstacle(PartOf("wall", "site"), wall, np.eye(4)),))
+    said = refusal(move(LOW_FRONT, (1.571, *LOW_FRONT[1:])), scene)
+    assert said.second == PartOf("wall", "site")
+    Clearance(MODEL).check(move(LOW_FRONT, LOW_RIGHT), scene)
+
+
+def corners(link: str, pose: tuple[float, ...]) -> Iterator[tuple[float, ...]]:
+    shape, place = MODEL.shapes[link], Links(MODEL).places(np.array([pose]))[link][0]
+    for corner in itertools.product(*zip(shape.min, shape.max, strict=True)):
+        yield tuple(map(float, place[:3, :3] @ corner + place[:3, 3]))
 
 
 def test_looking_again_makes_no_new_bodies(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -29,6 +29,7 @@ from tms_rp.reasons import (
     PartOf,
     PathBlocked,
     Searched,
+    SlowlyOut,
 )
 from tms_rp.scene import Obstacle, Scene
 from tms_rp.trajectory import Trajectory
@@ -159,6 +160,21 @@ def test_the_bucket_never_opens_further_than_at_both_ends() -> None:
     ):
         made, notes = plan(scene, now, target)
         assert notes and min(sample.positions[3] for sample in made.samples) >= min(now[3], target[3]) - 1e-6
+
+
+def test_out_of_something_it_moves_slowly_and_says_why() -> None:
+    inside, beside = truck(6.0, 0.0), truck(20.0, 0.0)
+    front: Angles = (0.0, *LOW_RIGHT[1:])
+    slow, fast = (WAYS.plan(front, Moves((LOW_RIGHT,)), scene) for scene in (inside, beside))
+    said = next(note for note in slow.notes if note.find(SlowlyOut) is not None)
+    assert said.find(PartOf) is not None and fast.notes == ()
+    assert fastest(slow.made) <= 0.25 * MODEL.joints["swing_joint"].velocity < fastest(fast.made)
+    stuck = refusal(inside, front, (0.1, *LOW_RIGHT[1:]))
+    assert stuck.find(Collision) is not None
+
+
+def fastest(made: Trajectory) -> float:
+    return max(abs(sample.velocities[0]) for sample in made.samples)
 
 
 def test_what_comes_into_the_way_blocks_it_before_it_is_reached_and_not_behind() -> None:

@@ -26,7 +26,7 @@ from tms_rp.ways import Ways
 
 MODEL = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel)
 WAYS = Ways(MODEL, load("backhoe"))
-SCENES = settings.default.max_examples * 2 // 5 if settings.default else 20
+SCENES = 200 if settings.default is None or settings.default.max_examples <= 50 else 5000
 DENSE = 0.005  # rad
 GROUND = Box(min=(-20.0, -20.0, -1.0), max=(20.0, 20.0, 0.0))
 ARM = ("boom_link", "arm_link", "bucket_link")
@@ -65,9 +65,11 @@ def touch(a: Placed, b: Placed) -> bool:
     """Whether two boxes overlap in any pose: there is no separating axis."""
     (axes_a, at_a, half_a), (axes_b, at_b, half_b) = a, b
     way = at_b - at_a
-    count = len(way)
-    columns_a = [np.broadcast_to(axes_a[:, :, i], (count, 3)) for i in range(3)]
-    columns_b = [np.broadcast_to(axes_b[:, :, i], (count, 3)) for i in range(3)]
+    near = np.linalg.norm(way, axis=1) <= np.linalg.norm(half_a) + np.linalg.norm(half_b)  # of the spheres around them
+    way, count = way[near], int(near.sum())
+    columns_a, columns_b = (
+        [np.broadcast_to(axes[:, :, i], (len(near), 3))[near] for i in range(3)] for axes in (axes_a, axes_b)
+    )
     crossed = [np.cross(p, q) for p in columns_a for q in columns_b]
     apart = np.zeros(count, dtype=bool)
     for axis in (*columns_a, *columns_b, *crossed):

@@ -15,8 +15,8 @@ from tms_machine.goal_inputs import Inputs
 from tms_machine.reasons import InputsNotTaken
 from tms_reason.reason import Foreign, Reason
 from tms_ts import bt
-from tms_ts.preflight import StoredRecord, Values, at, machines_of, preflight, processes_of, records_of
-from tms_ts.reasons import NobodyWrites, RecordUnfit
+from tms_ts.preflight import Refusal, StoredRecord, Values, at, machines_of, preflight, processes_of, records_of
+from tms_ts.reasons import MotionRefused, MotionRefusedNow, NobodyWrites, RecordUnfit
 from tms_ts.surroundings import unfit
 from words import words
 
@@ -59,6 +59,8 @@ class Context:
     silent_input: str = ""
     misfit: Reason | None = None
     inputs: dict[str, str | bool] = field(default_factory=dict)  # that were looked at
+    refusals: dict[str, Refusal] = field(default_factory=dict)  # of a planner, by record
+    rehearsed: list[tuple[str, str]] = field(default_factory=list)
 
     def record(self, machine: str, record: str) -> StoredRecord | None:
         return self.records.get((machine, record))
@@ -84,6 +86,13 @@ class Context:
 
     def oldest(self, machine: str, subtask: str) -> float:
         return 0.0
+
+    def refusal(self, machine: str, subtask: str, record: str, inputs: Inputs) -> Refusal | None:
+        self.rehearsed.append((machine, record))
+        return self.refusals.get(record)
+
+    def unplanned(self) -> list[Reason]:
+        return []
 
 
 GOOD = ("zx200", "pose", "subtask_zx200_change_pose")
@@ -322,3 +331,24 @@ def test_a_constant_that_a_node_may_write_is_known_only_to_the_run(site: Site, w
     assert machines_of(loaded) == ["zx200"]
     assert records_of(loaded)[0] == "zx200/*"
     assert preflight(loaded, site, Context()).errors == []
+
+
+@pytest.mark.parametrize(
+    ("lasting", "type_", "error"), [(True, "static", True), (False, "static", False), (True, "dynamic", False)]
+)
+def test_what_a_planner_would_refuse_is_an_error_only_if_nothing_can_change_it(
+    site: Site, lasting: bool, type_: str, error: bool
+) -> None:
+    around = Context({GOOD[:2]: StoredRecord(POSE, type_, 0.0)}, refusals={"pose": Refusal(Foreign("no"), lasting)})
+    found = preflight(tree(GOOD), site, around)
+    kind = MotionRefused if error else MotionRefusedNow
+    said = found.errors if error else found.warnings
+    assert [one.find(kind) for one in said] == [kind("zx200/pose", GOOD[2], Foreign("no"))]
+    assert not (found.warnings if error else found.errors)
+
+
+def test_motions_are_planned_in_the_order_of_the_task_and_only_of_records_that_are_right(site: Site) -> None:
+    around = Context({GOOD[:2]: StoredRecord(POSE), ("zx200", "other"): StoredRecord(POSE)})
+    leaves = (GOOD, ("zx200", "none", GOOD[2]), ("zx200", "{r}", GOOD[2]), ("zx200", "other", GOOD[2]), GOOD)
+    preflight(tree(*leaves), site, around)
+    assert around.rehearsed == [("zx200", "pose"), ("zx200", "other"), ("zx200", "pose")]

@@ -68,6 +68,12 @@ class Around:
     def oldest(self, machine: str, subtask: str) -> float:
         return 0.0
 
+    def refusal(self, machine: str, subtask: str, record: str, inputs: Inputs) -> None:
+        return None
+
+    def unplanned(self) -> list[Reason]:
+        return []
+
 
 def errors(file: str, site: Site) -> list[str]:
     tree = load(filled(file), world=None, templates=known)
