@@ -49,9 +49,7 @@ class Ports(Settings):
     metrics: int = Field(ge=1024, le=65000, default=9410)
     console: int = Field(ge=1024, le=65535, default=8080)
     store: int = Field(ge=1024, le=65535, default=27117)
-    groot: int = Field(
-        ge=1024, le=65000, default=1666
-    )  # of the first run: Groot 1 here and +1, Groot 2 +2; next run +10
+    groot: int = Field(ge=1024, le=65000, default=1666)  # first run: Groot 1 here and +1, Groot 2 +2; next run +10
 
 
 def _holds_password(uri: str) -> bool:
@@ -170,6 +168,13 @@ class Pc(Settings):
     machines: tuple[str, ...] = ()  # whose processes run here; default: machines that no other PC with that role has
 
 
+class Peer(Settings):
+    """Nodes of the C++ system that share the names of a machine."""
+
+    # Their form of LeafNodeBase: version 5; 6 with previous_target_record_name only; 6 with all three inputs.
+    leaf: Literal["v5", "v6a", "v6b"]
+
+
 class Network(Settings):
     """Discovery between processes of different PCs."""
 
@@ -203,6 +208,7 @@ class SiteFile(Settings):
     sensing: str | None = None  # file of the sensing inputs, beside this one; default: configs/sensing.yaml
     services: dict[str, Service]
     machines: dict[Annotated[str, Field(pattern=NAME)], MachineUse] = Field(default_factory=dict)
+    peers: dict[str, Peer] = Field(default_factory=dict)  # machine -> nodes of the C++ system beside ours
 
     @field_validator("services", mode="before")
     @classmethod

@@ -1,0 +1,92 @@
+"""Peers that speak LeafNodeBase as version 6 does: their leaves drive our subtasks, their servers serve our trees."""
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from conftest import NO_CONSOLE, Mesh, mesh_apart, running, wait_until
+from upstream_peers import ABORTED, SUCCEEDED, ask, foreign_server
+
+pytestmark = pytest.mark.system
+MACHINES = {"mst110cr": "v6a", "mst110cr_2": "v6b"}
+SITE = {
+    "machines": {name: {"model": "mst110cr", "start": [10.0, 9.0 * row, 0.0]} for row, name in enumerate(MACHINES)},
+    "peers": {name: {"leaf": form} for name, form in MACHINES.items()},
+}
+SWING = "primitive_crawlerdump_swing"
+TREE = (
+    '<root main_tree_to_execute="T"><BehaviorTree ID="T"><Action ID="{node}" model_name="{machine}" '
+    'primitive_name="{name}" {ports}/></BehaviorTree></root>'
+)
+LIMIT = 30.0  # s
+
+
+@pytest.fixture(scope="module")
+def mesh(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Mesh]:
+    with mesh_apart(tmp_path_factory.mktemp("forms"), **NO_CONSOLE, **SITE) as made, running(made):
+        for name in MACHINES:
+            made.tms("param", "set", f"{name}/LEFT", "target_angle=0.6", "--create")
+            made.tms("start", f"{name}:{SWING}")
+        yield made
+
+
+@pytest.mark.parametrize(
+    ("machine", "further"), [("mst110cr", "previous_target_record_name=x"), ("mst110cr_2", "read_direction=down")]
+)
+def test_their_leaf_drives_our_subtask_with_its_inputs(mesh: Mesh, machine: str, further: str) -> None:
+    form, words = MACHINES[machine], ("leaf", machine, SWING, "LEFT")
+    assert ask(mesh, *words, form=form)[:2] == [SUCCEEDED, "True"]
+    refused = ask(mesh, *words, further, form=form)  # a swing knows no direction
+    assert (
+        refused[:2] == [ABORTED, "False"] and refused[2] == "INPUTS_NOT_TAKEN" and further.split("=")[0] in refused[3]
+    )
+
+
+@pytest.mark.parametrize(
+    ("machine", "node", "ports", "told"),
+    [
+        ("mst110cr", "LeafNodeExcavator", 'target_record_name="a" previous_target_record_name="b"', "mst110cr a b\n"),
+        ("mst110cr_2", "LeafNodeCrawlerDump", 'record_name="a" read_direction="down"', "mst110cr_2 a down False \n"),
+    ],
+)
+def test_their_server_serves_our_tree(
+    mesh: Mesh, tmp_path: Path, machine: str, node: str, ports: str, told: str
+) -> None:
+    number = stored(mesh, tmp_path, machine, node, ports)
+    with foreign_server(mesh, machine, "primitive_of_theirs", MACHINES[machine]) as server:
+        wait_until(lambda: succeeds(mesh, number), LIMIT, "the border has found their server")
+        assert server.stdout is not None and server.stdout.readline() == told
+
+
+def test_an_input_that_their_form_has_no_field_for_refuses_the_goal(mesh: Mesh, tmp_path: Path) -> None:
+    ports = 'record_name="a" read_direction="down"'
+    number = stored(mesh, tmp_path, "mst110cr", "LeafNodeCrawlerDump", ports)
+    with foreign_server(mesh, "mst110cr", "primitive_of_theirs", "v6a"):
+        wait_until(
+            lambda: "takes no read_direction" in outcome(mesh, number), LIMIT, "the border has found their server"
+        )
+
+
+def test_a_server_in_another_form_than_declared_refuses_the_run(mesh: Mesh, tmp_path: Path) -> None:
+    number = stored(mesh, tmp_path, "mst110cr_2", "LeafNodeCrawlerDump", 'record_name="a"', "primitive_of_others")
+    with foreign_server(mesh, "mst110cr_2", "primitive_of_others", "v6a"):
+        wait_until(
+            lambda: "speaks LeafNodeBase as v6a" in outcome(mesh, number), LIMIT, "the border has found their server"
+        )
+
+
+def stored(mesh: Mesh, folder: Path, machine: str, node: str, ports: str, name: str = "primitive_of_theirs") -> str:
+    file = folder / "tree.xml"
+    file.write_text(TREE.format(machine=machine, node=node, ports=ports, name=name))
+    return str(json.loads(mesh.tms("task", "add", str(file), "--json").stdout)["task_id"])
+
+
+def outcome(mesh: Mesh, number: str) -> str:
+    done = mesh.tms("run", number, "--wait", "--json", "--ignore-warnings", expect=None)
+    return done.stdout + done.stderr
+
+
+def succeeds(mesh: Mesh, number: str) -> bool:
+    return '"success"' in outcome(mesh, number)
