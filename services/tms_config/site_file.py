@@ -143,6 +143,9 @@ class Console(Settings):
 
     users: Path | None = None  # file that `tms user` writes; absent: only this PC, without login
     tls: Files | None = None
+    # Tasks that nodes of the C++ system's version 6 see in /permissionrequest. With any, they may start trees:
+    # /urpermission starts these, /task_sequence the trees that it brings. ROS does not tell who asks.
+    buttons: tuple[Annotated[int, Field(ge=1)], ...] = ()
     names: tuple[str, ...] = ()  # further names under which browsers reach it, e.g. site-pc.example
 
 
