@@ -117,11 +117,7 @@ def _check_machines(path: Path, file: SiteFile, models: dict[str, MachineModel])
 
 
 def _check_pcs(path: Path, file: SiteFile) -> None:
-    """Refuse PCs without a role.
-
-    Raises:
-        ConfigError: names the file and the key.
-    """
+    """Refuse PCs without a role."""
     for name, pc in file.pcs.items():
         if not roles(name, pc):
             raise ConfigError(located(path, reasons.NoRole(ROLES), "pcs", name))

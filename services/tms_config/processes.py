@@ -23,6 +23,7 @@ PURPOSES = {  # what they and the other processes are for; `tms ps` shows it in 
     "sim": "stand-in for {machine}",
     "operasim": "stand-in for OperaSim-PhysX",
     "rc": "gateway: every motion passes it",
+    "templates": "templates for the C++ system's version 6",
     "peers": "passes goals of the C++ system's version 6 on",
     "mc": "moves joints and tracks",
     "rp": "plans motions",
@@ -130,6 +131,9 @@ def _services(site: Site) -> list[Process]:
         rows.append(Process("tms", "store", "cps", "tms_host.store", 0, PURPOSES["store"], ours=False))
     if pcs.discovery_server(site) is not None:
         rows.append(Process("tms", "discovery", "cps", "tms_host.discovery", 0, PURPOSES["discovery"], ours=False))
+    if any(map(site.other_form, site.file.peers)):  # its schedulers read templates; both forms of theirs are one here
+        row = Process("tms", "if_templates", "cps", "tms_if.template_border", 0, PURPOSES["templates"], form="v6b")
+        rows.append(row)
     for name, service in site.file.services.items():
         if name not in SERVICES:
             raise ConfigError(located(site.path, reasons.NoService(name, SERVICES), "services", name))

@@ -176,6 +176,7 @@ class Peer(Settings):
 
     # Their form of LeafNodeBase: version 5; 6 with previous_target_record_name only; 6 with all three inputs.
     leaf: Literal["v5", "v6a", "v6b"]
+    motions: bool = False  # with version 6: the gateway's motions also under the names that its primitives call
 
 
 class Network(Settings):

@@ -13,12 +13,16 @@ from typing import Any
 from tms_msg_if.action import LeafGoal
 from tms_msg_ts.action import LeafNodeBase  # in the form of the peers
 
-from tms_if.leaf_relay import Relay
+from tms_if import motion_border
+from tms_if.relay import Relay
 from tms_machine.goal_inputs import joined, parted
 from tms_machine.leaf_forms import misfit, own_action
 from tms_machine.permit import Permit
 from tms_machine.reasons import InputsNotTaken
 from tms_reason.reason import Reason
+from tms_ros.client import AnyPeer
+from tms_ros.goals import Ended, Outcome
+from tms_ros.server import AnyGoal
 from tms_runtime.app import App
 
 SEND_GOAL = "tms_msg_ts/action/LeafNodeBase_SendGoal"
@@ -31,6 +35,8 @@ def start(app: App) -> None:
     border = LeafBorder(app)
     for subtask in app.site.model_of(app.machine).subtasks:
         border.serve_ours(subtask)
+    if app.site.file.peers[app.machine].motions:
+        motion_border.serve(app)
     app.ros.poll_in_thread(LOOK_PERIOD, border.look, "peers")
     app.ready_when(lambda: None)
     app.log.info("serving", form=app.process.form)
@@ -48,11 +54,7 @@ class LeafBorder:
     def serve_ours(self, subtask: str) -> None:
         """Serve one of our subtasks to peers."""
         kind, name = own_action(self._app.site, self._machine, subtask)
-        permit = Permit(self._ros, self._app.pulse, self._machine, f"if_{subtask}")
-        relay = Relay(
-            self._ros, self._machine, THEIRS, self._ros.peer(kind, name), to_ours,
-            lambda _: self._misfit(subtask, servers=False), permit,
-        )  # fmt: skip
+        relay = ToOurs(self._app, subtask, self._ros.peer(kind, name))
         self._ros.serve(THEIRS, f"/{self._machine}/{subtask}", relay.run, relay.accept)
 
     def look(self) -> None:
@@ -69,18 +71,58 @@ class LeafBorder:
 
     def _serve_theirs(self, subtask: str) -> None:
         peer = self._ros.peer(THEIRS, f"/{self._machine}/{subtask}")
-        relay = Relay(
-            self._ros, self._machine, LeafGoal, peer, to_theirs, partial(self._refused, subtask)
-        )  # fmt: skip
+        relay = ToTheirs(self._app, subtask, peer)
         self._ros.serve(LeafGoal, own_action(self._app.site, self._machine, subtask)[1], relay.run, relay.accept)
-        self._app.log.info("peer_found", subtask=subtask, reason=self._misfit(subtask, servers=True))
+        self._app.log.info("peer_found", subtask=subtask, reason=relay.misfit())
 
-    def _refused(self, subtask: str, request: LeafGoal.Goal) -> Reason | None:
+
+class ToOurs(Relay):
+    """Goals of a peer for one of our subtasks, which its permit tells that the client of the goal can be heard."""
+
+    def __init__(self, app: App, subtask: str, peer: AnyPeer) -> None:
+        super().__init__(app.machine, THEIRS, peer)
+        self._misfit = partial(misfit, app.ros, app.site, app.machine, subtask, servers=False)
+        self._permit = Permit(app.ros, app.pulse, app.machine, f"if_{subtask}")
+
+    def accept(self, request: Any) -> Reason | None:
+        return super().accept(request) or self._misfit()
+
+    def run(self, goal: AnyGoal) -> Ended[Any]:
+        self._permit.hold(goal.uuid)
+        try:
+            return super().run(goal)
+        finally:
+            self._permit.drop()
+
+    def request(self, request: Any) -> LeafGoal.Goal:
+        return to_ours(request)
+
+    def feedback(self, feedback: Any) -> Any:
+        return THEIRS.Feedback(status=feedback.status)
+
+    def result(self, outcome: Outcome, result: Any) -> Any:
+        return THEIRS.Result(result=outcome is Outcome.SUCCEEDED)
+
+
+class ToTheirs(Relay):
+    """Goals of our scheduler for a subtask of a peer."""
+
+    def __init__(self, app: App, subtask: str, peer: AnyPeer) -> None:
+        super().__init__(app.machine, LeafGoal, peer)
+        self.misfit = partial(misfit, app.ros, app.site, app.machine, subtask, servers=True)
+
+    def accept(self, request: LeafGoal.Goal) -> Reason | None:
         lost = tuple(name for name in parted(request.record_name)[1] if name not in fields())
-        return InputsNotTaken(lost) if lost else self._misfit(subtask, servers=True)
+        return super().accept(request) or (InputsNotTaken(lost) if lost else self.misfit())
 
-    def _misfit(self, subtask: str, servers: bool) -> Reason | None:
-        return misfit(self._ros, self._app.site, self._machine, subtask, servers=servers)
+    def request(self, request: LeafGoal.Goal) -> Any:
+        return to_theirs(request)
+
+    def feedback(self, feedback: Any) -> LeafGoal.Feedback:
+        return LeafGoal.Feedback(status=feedback.status)
+
+    def result(self, outcome: Outcome, result: Any) -> LeafGoal.Result:
+        return LeafGoal.Result(result=outcome is Outcome.SUCCEEDED)
 
 
 def fields() -> set[str]:

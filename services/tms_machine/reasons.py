@@ -55,6 +55,8 @@ class NoJointState(Reason, text="no state of {joint} of {machine} was received w
 class MotionNotEnded(Reason, text="{machine} did not end its motion", action=INSPECT): machine: str
 class NotInMap(Reason, text="the pose is told in the frame '{frame}', not in 'map'", action=INSPECT, details="{topic}"):
     frame: str; topic: str
+class WaitsForPerson(Reason, text="waits for a person: {question}"): question: str
+class PersonSaysNo(Reason, text="a person has said no: {question}"): question: str
 class WaitingFor(Reason, text="waiting for {process}", action=PROCESSES): process: str
 
 # progress

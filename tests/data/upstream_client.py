@@ -4,6 +4,7 @@ usage: upstream_client.py leaf MACHINE SUBTASK RECORD [FIELD=TEXT...]
                                                            one LeafNodeBase goal; prints `<status> <result>`, and the
                                                            last feedback where there was one
        upstream_client.py rp NAMESPACE ACTION X Y Z THETA  one TmsRpZx200ChangePose goal; prints `<status> <error code>`
+       upstream_client.py template NAME                    asks tms_db_reader_subtask; prints the text
        upstream_client.py serve MACHINE SUBTASK            serves LeafNodeBase until it is ended; prints each goal
 
 It speaks the form of LeafNodeBase that stands first on its paths.
@@ -14,6 +15,7 @@ import time
 
 import rclpy
 from rclpy.action import ActionClient, ActionServer
+from tms_msg_db.srv import TmsdbGetTask
 from tms_msg_rp.action import TmsRpZx200ChangePose
 from tms_msg_rp.msg import TmsRpZx200PositionWithAngle
 from tms_msg_ts.action import LeafNodeBase
@@ -52,6 +54,15 @@ def rp(node, namespace, action, x, y, z, theta_w):
     print(status, result.error_code.val if result else None)
 
 
+def template(node, name):
+    client = node.create_client(TmsdbGetTask, "tms_db_reader_subtask")
+    if not client.wait_for_service(LIMIT):
+        sys.exit("tms_db_reader_subtask is not there")
+    asked = client.call_async(TmsdbGetTask.Request(task_name=name))
+    rclpy.spin_until_future_complete(node, asked, timeout_sec=LIMIT)
+    print(asked.result().task)
+
+
 def serve(node, machine, subtask):
     def execute(handle):
         handle.publish_feedback(LeafNodeBase.Feedback(status="foreign server at work"))
@@ -68,4 +79,6 @@ def serve(node, machine, subtask):
 
 if __name__ == "__main__":
     rclpy.init()
-    {"leaf": leaf, "rp": rp, "serve": serve}[sys.argv[1]](rclpy.create_node("upstream"), *sys.argv[2:])
+    {"leaf": leaf, "rp": rp, "template": template, "serve": serve}[sys.argv[1]](
+        rclpy.create_node("upstream"), *sys.argv[2:]
+    )

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from conftest import NO_CONSOLE, Mesh, mesh_apart, running, wait_until
+from conftest import NO_CONSOLE, PROJECT, Mesh, mesh_apart, running, wait_until
 from upstream_peers import ABORTED, SUCCEEDED, ask, foreign_server
 
 pytestmark = pytest.mark.system
@@ -58,6 +58,13 @@ def test_their_server_serves_our_tree(
     with foreign_server(mesh, machine, "primitive_of_theirs", MACHINES[machine]) as server:
         wait_until(lambda: succeeds(mesh, number), LIMIT, "the border has found their server")
         assert server.stdout is not None and server.stdout.readline() == told
+
+
+def test_their_scheduler_reads_our_templates(mesh: Mesh) -> None:
+    file = PROJECT / "configs" / "templates" / "Excavate_combined.xml"
+    mesh.tms("template", "add", str(file))
+    assert ask(mesh, "template", "Excavate_combined", form="v6a") == file.read_text(encoding="utf-8").split()
+    assert ask(mesh, "template", "nobody_has_it", form="v6b") == []
 
 
 def test_an_input_that_their_form_has_no_field_for_refuses_the_goal(mesh: Mesh, tmp_path: Path) -> None:

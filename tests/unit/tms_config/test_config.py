@@ -236,7 +236,7 @@ def test_peers_of_version_6_get_a_border_on_the_pc_of_their_machine(tmp_path: Pa
     borders = {
         row.full: row.form for row in table(load_site(site(tmp_path, machines=machines, peers=peers))) if row.form
     }
-    assert borders == {"early:if": "v6a", "new:if": "v6b"}
+    assert borders == {"early:if": "v6a", "new:if": "v6b", "tms:if_templates": "v6b"}
 
 
 def test_a_model_without_the_border_of_the_site(tmp_path: Path) -> None:

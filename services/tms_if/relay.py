@@ -1,18 +1,15 @@
 """Passes the goals of one action on to another one with the same UUID, and feedback, cancel and end back."""
 
-from collections.abc import Callable
 from typing import Any
 
 from tms_config.clock import monotonic
 from tms_config.naming import process_of
 from tms_decision.gateway.stops import STOP_PROVEN
 from tms_decision.reasons import ProcessLost
-from tms_machine.permit import Permit
 from tms_machine.reasons import MotionNotEnded
 from tms_reason.reason import Reason
 from tms_ros.client import AnyCall, AnyPeer
 from tms_ros.goals import Ended, Outcome
-from tms_ros.node import Ros
 from tms_ros.reasons import LostMeanwhile, NoAnswer, NoServer
 from tms_ros.server import AnyGoal
 
@@ -23,53 +20,42 @@ ANSWERED = {Outcome.SUCCEEDED: Outcome.SUCCEEDED, Outcome.CANCELED: Outcome.CANC
 
 
 class Relay:
-    """One action that this process serves in place of another one."""
+    """One action that this process serves in place of another one of the same type."""
 
-    def __init__(
-        self,
-        ros: Ros,
-        machine: str,
-        served: Any,
-        peer: AnyPeer,
-        translated: Callable[[Any], Any],
-        refused: Callable[[Any], Reason | None],
-        permit: Permit | None = None,
-    ) -> None:
-        """`served`: type of the action served here; `permit` tells the subtask that its client can be heard."""
-        self._ros, self._machine, self._served, self._peer = ros, machine, served, peer
-        self._translated, self._refused, self._permit = translated, refused, permit
+    def __init__(self, machine: str, served: Any, peer: AnyPeer) -> None:
+        """`served`: type of the action served here."""
+        self._machine, self._served, self._peer = machine, served, peer
 
     def accept(self, request: Any) -> Reason | None:
         """Why a goal is refused here; the other server may still refuse it, which then aborts the goal."""
-        if not self._peer.ready():
-            return NoServer(process_of(self._peer.name), self._peer.name, 0.0)
-        return self._refused(request)
+        return None if self._peer.ready() else NoServer(process_of(self._peer.name), self._peer.name, 0.0)
 
     def run(self, goal: AnyGoal) -> Ended[Any]:
         """Have the other server do a goal."""
-        if self._permit is not None:
-            self._permit.hold(goal.uuid)
-        try:
-            outcome = self._passed_on(goal)
-        finally:
-            if self._permit is not None:
-                self._permit.drop()
-        return outcome, self._served.Result(result=outcome is Outcome.SUCCEEDED)
-
-    def _passed_on(self, goal: AnyGoal) -> Outcome:
         peer = self._peer
-
-        def heard(feedback: Any) -> None:
-            goal.publish(self._served.Feedback(status=feedback.status))
-
-        call = peer.send(self._translated(goal.request), goal_id=goal.uuid, on_feedback=heard)
+        call = peer.send(
+            self.request(goal.request), goal_id=goal.uuid, on_feedback=lambda told: goal.publish(self.feedback(told))
+        )
         goal.on_cancel = lambda: peer.cancel(call)
         if goal.cancelled.is_set():
             peer.cancel(call)
         why = self._waited_for(goal, call)
         if why is not None:
             goal.say(why)
-        return ANSWERED.get(call.outcome or Outcome.ABORTED, Outcome.ABORTED)
+        outcome = ANSWERED.get(call.outcome or Outcome.ABORTED, Outcome.ABORTED)
+        return outcome, self.result(outcome, call.result)
+
+    def request(self, request: Any) -> Any:
+        """A goal as the other server takes it."""
+        return request
+
+    def feedback(self, feedback: Any) -> Any:
+        """Its feedback as this action has it."""
+        return feedback
+
+    def result(self, outcome: Outcome, result: Any) -> Any:
+        """Its result as this action has it; None where it gave none."""
+        return self._served.Result() if result is None else result
 
     def _waited_for(self, goal: AnyGoal, call: AnyCall) -> Reason | None:
         """Wait for the end of a goal; why it has none, or none that its server told."""
