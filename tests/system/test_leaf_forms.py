@@ -1,25 +1,32 @@
 """Peers that speak LeafNodeBase as version 6 does: their leaves drive our subtasks, their servers serve our trees."""
 
 import json
+import os
+import signal
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from nav2_msgs.action import NavigateToPose
+from tms_msg_rc.msg import MachineState
 
-from conftest import NO_CONSOLE, PROJECT, Mesh, mesh_apart, running, wait_until
-from upstream_peers import ABORTED, SUCCEEDED, ask, foreign_server
+from conftest import NO_CONSOLE, PROJECT, Mesh, mesh_apart, node_in, running, wait_until
+from tms_ros.goals import Outcome
+from upstream_peers import ABORTED, SUCCEEDED, ask, asking, foreign_server
 
 pytestmark = pytest.mark.system
 MACHINES = {"mst110cr": "v6a", "mst110cr_2": "v6b"}
 SITE = {
     "machines": {name: {"model": "mst110cr", "start": [10.0, 9.0 * row, 0.0]} for row, name in enumerate(MACHINES)},
-    "peers": {name: {"leaf": form} for name, form in MACHINES.items()},
+    "peers": {name: {"leaf": form, "motions": True} for name, form in MACHINES.items()},
 }
 SWING = "primitive_crawlerdump_swing"
 TREE = (
     '<root main_tree_to_execute="T"><BehaviorTree ID="T"><Action ID="{node}" model_name="{machine}" '
     'primitive_name="{name}" {ports}/></BehaviorTree></root>'
 )
+DRIVE = "primitive_crawlerdump_navigate_anywhere"
+AWAY = ("x=2000.0", "y=9.0", "qx=0.0", "qy=0.0", "qz=0.0", "qw=1.0")  # m: a minute at five times its speed
 LIMIT = 30.0  # s
 
 
@@ -42,6 +49,32 @@ def test_their_leaf_drives_our_subtask_with_its_inputs(mesh: Mesh, machine: str,
     assert (
         refused[:2] == [ABORTED, "False"] and refused[2] == "INPUTS_NOT_TAKEN" and further.split("=")[0] in refused[3]
     )
+
+
+def test_a_goal_ends_with_the_border_that_has_passed_it_on(mesh: Mesh) -> None:
+    """Nobody could bring its cancel any more."""
+    mesh.tms("param", "set", "mst110cr_2/AWAY", *AWAY, "--create")
+    mesh.tms("start", f"mst110cr_2:{DRIVE}")
+    goals: list[str] = []
+    with node_in(mesh) as node, asking(mesh, "leaf", "mst110cr_2", DRIVE, "AWAY", form="v6b"):
+        node.subscribe(MachineState, "/mst110cr_2/rc/state", lambda state: goals.append(state.goal), latched=True)
+        wait_until(lambda: bool(goals and goals[-1]), LIMIT, "the truck drives")
+        rows = json.loads(mesh.tms("ps", "--json").stdout)
+        os.kill(next(row["pid"] for row in rows if row["name"] == "mst110cr_2:if"), signal.SIGKILL)
+        wait_until(lambda: not goals[-1], LIMIT, "the truck has no goal any more")
+    mesh.wait_ready()
+
+
+def test_their_primitive_drives_through_our_gateway(mesh: Mesh) -> None:
+    goal = NavigateToPose.Goal()
+    goal.pose.header.frame_id = "map"
+    goal.pose.pose.position.x, goal.pose.pose.position.y, goal.pose.pose.orientation.w = 13.0, 0.0, 1.0
+    with node_in(mesh) as node:
+        peer = node.peer(NavigateToPose, "/mst110cr/tms_rp_navigate_anywhere")
+        peer.wait_ready(LIMIT)
+        call = peer.send(goal)
+        wait_until(lambda: call.outcome is not None, LIMIT, "the truck is there")
+    assert call.outcome is Outcome.SUCCEEDED
 
 
 @pytest.mark.parametrize(

@@ -36,6 +36,17 @@ def ask(mesh: Mesh, *words: str, form: str = "v5") -> list[str]:
 
 
 @contextmanager
+def asking(mesh: Mesh, *words: str, form: str = "v5") -> Iterator[None]:
+    """One goal of theirs that is at work meanwhile."""
+    command, environ = [sys.executable, SCRIPT, *words], their_environment(mesh, form)
+    with subprocess.Popen(command, env=environ, stdout=subprocess.DEVNULL, cwd="/") as client:
+        try:
+            yield
+        finally:
+            client.send_signal(signal.SIGKILL)
+
+
+@contextmanager
 def foreign_server(mesh: Mesh, machine: str, subtask: str, form: str = "v5") -> Iterator["subprocess.Popen[str]"]:
     """A server of theirs, which prints the fields of each goal."""
     command = [sys.executable, SCRIPT, "serve", machine, subtask]
