@@ -60,6 +60,11 @@ class Site:
         stand_in = theirs if self.file.backend == "sim" else {}
         return border.model_copy(update={**own, **stand_in})
 
+    def other_form(self, machine: str) -> str:
+        """The form of version 6 that peers speak on a machine's names; empty where those names are version 5's."""
+        peer = self.file.peers.get(machine)
+        return "" if peer is None or peer.leaf == "v5" else peer.leaf
+
     def start_of(self, machine: str) -> tuple[float, float, float]:
         """Start place of a stand-in: x [m], y [m], yaw [rad] in map."""
         return self.file.machines[machine].start or self.model_of(machine).start
@@ -96,34 +101,26 @@ def load_site(chosen: str | None = None) -> Site:
 
 
 def _check_machines(path: Path, file: SiteFile, models: dict[str, MachineModel]) -> None:
-    """Refuse two machines in one frame, and faults of machines that the site does not have."""
+    """Refuse two machines in one frame; and faults, peers and PCs of machines that the site does not have."""
     frames: dict[str, str] = {}
     for machine, use in file.machines.items():
         prefix = models[use.model].borders[file.names].frame_prefix.format(name=machine)
         if prefix in frames:
             raise ConfigError(located(path, reasons.SharedFrames(frames[prefix], machine, prefix), "machines", machine))
         frames[prefix] = machine
-    for machine in file.sim.faults:
+    named: list[tuple[str, tuple[str, ...]]] = [(name, ("sim", "faults", name)) for name in file.sim.faults]
+    named += [(name, ("peers", name)) for name in file.peers]
+    named += [(name, ("pcs", pc, "machines")) for pc, facts in file.pcs.items() for name in facts.machines]
+    for machine, keys in named:
         if machine not in file.machines:
-            raise ConfigError(
-                located(path, reasons.NotUnderMachines(machine, tuple(file.machines)), "sim", "faults", machine)
-            )
+            raise ConfigError(located(path, reasons.NotUnderMachines(machine, tuple(file.machines)), *keys))
 
 
 def _check_pcs(path: Path, file: SiteFile) -> None:
-    """Refuse PCs without a role, roles without a PC, and machines that two PCs or none would run.
-
-    Raises:
-        ConfigError: names the file and the key.
-    """
+    """Refuse PCs without a role."""
     for name, pc in file.pcs.items():
         if not roles(name, pc):
             raise ConfigError(located(path, reasons.NoRole(ROLES), "pcs", name))
-        for machine in pc.machines:
-            if machine not in file.machines:
-                raise ConfigError(
-                    located(path, reasons.NotUnderMachines(machine, tuple(file.machines)), "pcs", name, "machines")
-                )
 
 
 def _chosen_pc(path: Path, file: SiteFile, state: Path) -> str | None:

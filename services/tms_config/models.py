@@ -160,9 +160,7 @@ class MachineModel(Settings):
     """A type of machine: configs/machines/<model>.yaml."""
 
     kind: Kind
-    planner: str | None = Field(
-        default=None, pattern=NAME
-    )  # a folder of services/tms_rp/kinds; absent: plans no motions
+    planner: str | None = Field(default=None, pattern=NAME)  # folder of services/tms_rp/kinds; absent: plans nothing
     joints: dict[str, Joint]
     geometry: dict[str, Origin]
     footprint: dict[str, Box] = {}  # boxes that other machines must not touch, base_link

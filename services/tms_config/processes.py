@@ -3,20 +3,9 @@
 import difflib
 from dataclasses import dataclass, replace
 
-from tms_config import pcs
+from tms_config import pcs, reasons
 from tms_config.config import CONFIGS, Site
 from tms_config.models import MachineModel
-from tms_config.reasons import (
-    BadFile,
-    ManyPcsFor,
-    NoCodeFile,
-    NoPcFor,
-    NoProcess,
-    NoService,
-    ProcessMeant,
-    SameName,
-    SeveralProcesses,
-)
 from tms_config.site_file import Bridge, Role, roles
 from tms_config.yaml_file import located
 from tms_reason.errors import ConfigError
@@ -34,6 +23,8 @@ PURPOSES = {  # what they and the other processes are for; `tms ps` shows it in 
     "sim": "stand-in for {machine}",
     "operasim": "stand-in for OperaSim-PhysX",
     "rc": "gateway: every motion passes it",
+    "templates": "templates for the C++ system's version 6",
+    "peers": "passes goals of the C++ system's version 6 on",
     "mc": "moves joints and tracks",
     "rp": "plans motions",
     "subtask": "subtask {file}",
@@ -55,6 +46,7 @@ class Process:
     autostart: bool = True
     pc: str = ""  # which PC of the site runs it; empty when there is one only
     address: str = "127.0.0.1"  # where its port is
+    form: str = ""  # form of the interface packages that it speaks in place of the usual one: v6a, v6b
     ours: bool = True  # has metrics and health, which foreign programs do not have
 
     @property
@@ -74,7 +66,7 @@ def table(site: Site) -> tuple[Process, ...]:
     numbered = tuple(_placed(site, replace(row, port=base + i)) for i, row in enumerate(rows))
     for row in numbered:
         if sum(other.full == row.full for other in numbered) > 1:
-            raise ConfigError(BadFile(str(site.path), SameName(row.full)))
+            raise ConfigError(reasons.BadFile(str(site.path), reasons.SameName(row.full)))
     return numbered
 
 
@@ -105,9 +97,9 @@ def find(site: Site, name: str) -> Process:
     if len(hits) == 1:
         return hits[0]
     if hits:
-        raise ConfigError(SeveralProcesses(name, tuple(row.full for row in hits)))
+        raise ConfigError(reasons.SeveralProcesses(name, tuple(row.full for row in hits)))
     close = difflib.get_close_matches(name, [row.full for row in rows], 1, 0.5)
-    raise ConfigError(ProcessMeant(name, close[0]) if close else NoProcess(name))
+    raise ConfigError(reasons.ProcessMeant(name, close[0]) if close else reasons.NoProcess(name))
 
 
 def _placed(site: Site, row: Process) -> Process:
@@ -128,7 +120,7 @@ def _place(site: Site, row: Process) -> str:
     if not known:
         return ""
     if len(fit) != 1:
-        problem = ManyPcsFor(tuple(fit), row.full, row.role) if fit else NoPcFor(row.full, row.role)
+        problem = reasons.ManyPcsFor(tuple(fit), row.full, row.role) if fit else reasons.NoPcFor(row.full, row.role)
         raise ConfigError(located(site.path, problem, "pcs"))
     return fit[0]
 
@@ -139,9 +131,12 @@ def _services(site: Site) -> list[Process]:
         rows.append(Process("tms", "store", "cps", "tms_host.store", 0, PURPOSES["store"], ours=False))
     if pcs.discovery_server(site) is not None:
         rows.append(Process("tms", "discovery", "cps", "tms_host.discovery", 0, PURPOSES["discovery"], ours=False))
+    if any(map(site.other_form, site.file.peers)):  # its schedulers read templates; both forms of theirs are one here
+        row = Process("tms", "if_templates", "cps", "tms_if.template_border", 0, PURPOSES["templates"], form="v6b")
+        rows.append(row)
     for name, service in site.file.services.items():
         if name not in SERVICES:
-            raise ConfigError(located(site.path, NoService(name, SERVICES), "services", name))
+            raise ConfigError(located(site.path, reasons.NoService(name, SERVICES), "services", name))
         row = Process("tms", name, service.role, f"tms_{name}.node", 0, PURPOSES[name])
         several = site.file.pcs.items() if name == "host" else ()
         if isinstance(service, Bridge) and service.trial:
@@ -156,6 +151,8 @@ def _machine(site: Site, machine: str) -> list[Process]:
     if site.file.backend == "sim":
         rows.append(Process("sim", machine, "sim", "tms_sim.node", 0, PURPOSES["sim"], machine))
     rows.append(Process(machine, "rc", use.role, "tms_rc.node", 0, PURPOSES["rc"], machine))
+    if form := site.other_form(machine):
+        rows.append(Process(machine, "if", use.role, "tms_if.leaf_border", 0, PURPOSES["peers"], machine, form=form))
     if site.border(machine).controller == "ours":
         rows.append(Process(machine, "mc", use.role, "tms_mc.node", 0, PURPOSES["mc"], machine))
     if model.planner is not None:
@@ -178,4 +175,4 @@ def _require(site: Site, machine: str, path: str, *keys: str) -> None:
     """Refuse a machine file that names a file of ours which does not exist."""
     if not (CONFIGS.parent / "services" / path).exists():
         where = CONFIGS / "machines" / f"{site.file.machines[machine].model}.yaml"
-        raise ConfigError(located(where, NoCodeFile(path), *keys))
+        raise ConfigError(located(where, reasons.NoCodeFile(path), *keys))

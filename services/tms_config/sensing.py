@@ -62,13 +62,9 @@ class Input(Settings):
     record: Name = "$record_name"
     # Empty: every field of the message goes into the record's field of the same name in any case, if there is one.
     fields: dict[Name, Annotated[FieldRule, BeforeValidator(_short)]] = Field(default_factory=dict)
-    range: dict[str, Limits] = Field(
-        default_factory=dict
-    )  # field of the record (in lower case without `fields`) -> least, most
+    range: dict[str, Limits] = Field(default_factory=dict)  # field (lower case without `fields`) -> least, most
     keep: str | None = None  # field of the message with a list of the record's fields that must stay
-    only_if: dict[str, bool | int | float | str] = Field(
-        default_factory=dict
-    )  # fields of the record that must hold these values
+    only_if: dict[str, bool | int | float | str] = Field(default_factory=dict)  # fields that must hold these values
     stamp: str | None = None  # path of the time of measurement; a header's stamp needs no path
     hz: float = Field(ge=0, default=0.0)  # expected rate; 0: no rate is expected
     max_hz: float | None = Field(gt=0, default=None)  # faster messages of one record are left out
@@ -103,9 +99,7 @@ class MachineState(Settings):
 class SensingFile(Settings):
     """The content of sensing.yaml."""
 
-    clock_limit: float = Field(
-        gt=0, default=0.5
-    )  # s that a source's clock may be off; stamps further in the future are refused
+    clock_limit: float = Field(gt=0, default=0.5)  # s that a source's clock may be ahead; later stamps are refused
     machine_state: MachineState = MachineState()
     inputs: dict[Annotated[str, Field(pattern=NAME)], Input] = Field(default_factory=dict)
 

@@ -49,9 +49,7 @@ class Ports(Settings):
     metrics: int = Field(ge=1024, le=65000, default=9410)
     console: int = Field(ge=1024, le=65535, default=8080)
     store: int = Field(ge=1024, le=65535, default=27117)
-    groot: int = Field(
-        ge=1024, le=65000, default=1666
-    )  # of the first run: Groot 1 here and +1, Groot 2 +2; next run +10
+    groot: int = Field(ge=1024, le=65000, default=1666)  # first run: Groot 1 here and +1, Groot 2 +2; next run +10
 
 
 def _holds_password(uri: str) -> bool:
@@ -145,6 +143,9 @@ class Console(Settings):
 
     users: Path | None = None  # file that `tms user` writes; absent: only this PC, without login
     tls: Files | None = None
+    # Tasks that nodes of the C++ system's version 6 see in /permissionrequest. With any, they may start trees:
+    # /urpermission starts these, /task_sequence the trees that it brings. ROS does not tell who asks.
+    buttons: tuple[Annotated[int, Field(ge=1)], ...] = ()
     names: tuple[str, ...] = ()  # further names under which browsers reach it, e.g. site-pc.example
 
 
@@ -168,6 +169,14 @@ class Pc(Settings):
     address: str = Field(min_length=1)  # IP address or name, for the other PCs
     roles: tuple[Role, ...] = ()  # default: the role that is the PC's name
     machines: tuple[str, ...] = ()  # whose processes run here; default: machines that no other PC with that role has
+
+
+class Peer(Settings):
+    """Nodes of the C++ system that share the names of a machine."""
+
+    # Their form of LeafNodeBase: version 5; 6 with previous_target_record_name only; 6 with all three inputs.
+    leaf: Literal["v5", "v6a", "v6b"]
+    motions: bool = False  # with version 6: the gateway's motions also under the names that its primitives call
 
 
 class Network(Settings):
@@ -203,6 +212,7 @@ class SiteFile(Settings):
     sensing: str | None = None  # file of the sensing inputs, beside this one; default: configs/sensing.yaml
     services: dict[str, Service]
     machines: dict[Annotated[str, Field(pattern=NAME)], MachineUse] = Field(default_factory=dict)
+    peers: dict[str, Peer] = Field(default_factory=dict)  # machine -> nodes of the C++ system beside ours
 
     @field_validator("services", mode="before")
     @classmethod

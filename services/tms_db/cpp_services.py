@@ -4,12 +4,14 @@ import json
 
 from tms_msg_db.msg import Tmsdb
 from tms_msg_db.srv import TmsdbGetData, TmsdbGetTask
+from tms_msg_if.srv import ReadTemplate
 
 from tms_db import store
 from tms_db.connection import StoreConnection
 from tms_db.parameters import Parameters
 from tms_db.records import Document
 from tms_db.tasks import Tasks
+from tms_db.templates import Templates
 from tms_reason.errors import TmsError
 from tms_runtime.app import App
 
@@ -22,11 +24,12 @@ class CppServices:
 
     def __init__(self, app: App, db: store.Db, connection: StoreConnection) -> None:
         self._app, self._connection = app, connection
-        self._tasks, self._parameters = Tasks(db), Parameters(db)
+        self._tasks, self._parameters, self._templates = Tasks(db), Parameters(db), Templates(db)
 
     def offer(self) -> None:
         self._app.ros.offer(TmsdbGetTask, "tms_db_reader_task", self.get_task)
         self._app.ros.offer(TmsdbGetData, "tms_db_param_reader", self.get_data)
+        self._app.ros.offer(ReadTemplate, "/tms/db/read_template", self.read_template)
 
     def get_task(self, request: TmsdbGetTask.Request, response: TmsdbGetTask.Response) -> TmsdbGetTask.Response:
         """The task's text, "" if there is none."""
@@ -35,6 +38,15 @@ class CppServices:
                 response.task = self._tasks.get(request.task_id).task_sequence
         except TmsError as error:
             self._app.log.warning("refused", service="tms_db_reader_task", code=error.code, reason=error.reason)
+        return response
+
+    def read_template(self, request: ReadTemplate.Request, response: ReadTemplate.Response) -> ReadTemplate.Response:
+        """The template's text for `tms:if_templates`, "" if there is none."""
+        try:
+            with self._connection.use():
+                response.task_sequence = self._templates.get(request.template_name).task_sequence
+        except TmsError as error:
+            self._app.log.warning("refused", service="read_template", code=error.code, reason=error.reason)
         return response
 
     def get_data(self, request: TmsdbGetData.Request, response: TmsdbGetData.Response) -> TmsdbGetData.Response:

@@ -1,4 +1,4 @@
-"""Process of one subtask: the LeafNodeBase action server around one file of tms_subtasks/."""
+"""Process of one subtask: the action server for its leaf goals around one file of tms_subtasks/."""
 
 import threading
 from collections.abc import Callable, Mapping
@@ -9,9 +9,11 @@ from tms_msg_db.srv import GetParameter, SetParameter
 from tms_msg_ts.action import LeafNodeBase
 
 from tms_config.clock import monotonic
+from tms_kit.foreign_goals import ForeignGoals
 from tms_kit.machine import Machine, SubtaskCancelled
 from tms_kit.subtask import Params, Subtask, load
 from tms_machine.goal_inputs import KINDS, parted
+from tms_machine.leaf_forms import own_action
 from tms_machine.permit import Permit, watch_server
 from tms_machine.reasons import BadRecord, Busy, MotionNotEnded, NoDatabase, WaitingFor
 from tms_machine.record_lock import FLAG, RecordLock
@@ -19,7 +21,7 @@ from tms_machine.values import Value, from_parameters, to_parameters
 from tms_reason.errors import RosError, SubtaskFailed
 from tms_reason.reason import Foreign, Reason
 from tms_reason.validation import explain
-from tms_reason.wire import refusal, to_line
+from tms_reason.wire import refusal
 from tms_ros.client import AnyPeer
 from tms_ros.goals import Ended, Outcome
 from tms_ros.reasons import Internal
@@ -48,6 +50,8 @@ class _Server:
         self._app, self._kind, self._inputs, self._max_age = app, kind, inputs, max_age
         self._permit = Permit(app.ros, app.pulse, app.machine, str(app.process.action))
         self._watches: dict[str, Callable[[AnyPeer], None]] = {}
+        self._foreign = ForeignGoals(app)
+        self._action = own_action(app.site, app.machine, str(app.process.action))  # its type and its name
         self._reserved = False
         self._want: Params | None = None
         self._lock: RecordLock | None = None
@@ -59,7 +63,7 @@ class _Server:
         app, deadline = self._app, monotonic() + DB_LIMIT
         while not app.ros.has_service(GetParameter, "/tms/db/get_parameter") and monotonic() < deadline:
             app.stopping.wait(0.02)
-        app.ros.serve(LeafNodeBase, f"/{app.machine}/{app.process.action}", self.run, self.accept)
+        app.ros.serve(*self._action, self.run, self.accept)
         self.offered = True
 
     async def accept(self, request: LeafNodeBase.Goal) -> Reason | None:
@@ -114,12 +118,20 @@ class _Server:
     def run(self, goal: LeafGoal) -> Ended[LeafNodeBase.Result]:
         outcome = Outcome.ABORTED
         self._permit.hold(goal.uuid)
+        self._foreign.watch(goal)
         try:
-            outcome = self._execute(goal)
+            if (why := self._foreign.refusal(goal)) is None:
+                outcome = self._execute(goal)
+            else:
+                self._app.log.warning("rejected", goal=goal.id, reason=why)
+                _Feedback(goal).last(why)
         finally:
+            self._foreign.watch(None)
             self._permit.drop()
             self._reserved = False
-        return outcome, LeafNodeBase.Result(result=outcome is Outcome.SUCCEEDED)
+        result = self._action[0].Result()
+        result.result = outcome is Outcome.SUCCEEDED
+        return outcome, result
 
     def _execute(self, goal: LeafGoal) -> Outcome:
         """Run the subtask; when this returns, its motion has ended in any case."""
@@ -214,12 +226,9 @@ class _Feedback:
         with self._saying:
             if monotonic() >= self._next:
                 self._next = monotonic() + FEEDBACK_GAP
-                self._publish(Foreign(now) if isinstance(now, str) else now)
+                self._goal.say(Foreign(now) if isinstance(now, str) else now)
 
     def last(self, reason: Reason) -> None:
         with self._saying:
             self._next = float("inf")
-            self._publish(reason)
-
-    def _publish(self, reason: Reason) -> None:
-        self._goal.publish(LeafNodeBase.Feedback(status=to_line(reason)))
+            self._goal.say(reason)

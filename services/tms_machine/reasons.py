@@ -2,7 +2,9 @@
 
 from tms_reason.quantities import Metres, Radians, Seconds
 from tms_reason.reason import Reason
-from tms_reason.remedies import EDIT_CONFIG, EDIT_TASK, INSPECT, PROCESSES, RECORDS
+from tms_reason.remedies import EDIT_CONFIG, EDIT_TASK, INSPECT, PROCESSES, RECORDS, Remedy
+
+DECLARE_FORM = Remedy("edit_config", "", "Say it for {machine} under peers: of the site file")
 
 
 # fmt: off
@@ -11,6 +13,12 @@ class Busy(Reason, text="{process} is still at its last goal"): process: str
 class NoDatabase(Reason, text="{process} did not answer", action=PROCESSES): process: str
 class OneSubtask(Reason, text="{file}: {count} subtasks in it, there must be one"): file: str; count: int
 class InputsNotTaken(Reason, text="the subtask takes no {inputs}", action=EDIT_TASK): inputs: tuple[str, ...]
+class FormUnknown(Reason, text="{node} does not tell which form of LeafNodeBase it speaks", action=DECLARE_FORM):
+    node: str; machine: str
+class FormContradicted(Reason, text="{node} speaks LeafNodeBase as {told}, and {declared} is expected for {machine}",
+    action=DECLARE_FORM): node: str; told: str; declared: str; machine: str
+class BorderLost(Reason, text="{process}, which could have passed a cancel on, was lost", action=PROCESSES):
+    process: str
 class FieldMissing(Reason, text="field '{field}' is missing", action=RECORDS): field: str
 class ListsDiffer(Reason, text="the lists differ in length: {lengths}", action=RECORDS): lengths: str
 class PathEmpty(Reason, text="the path is empty", action=RECORDS): pass
@@ -47,6 +55,8 @@ class NoJointState(Reason, text="no state of {joint} of {machine} was received w
 class MotionNotEnded(Reason, text="{machine} did not end its motion", action=INSPECT): machine: str
 class NotInMap(Reason, text="the pose is told in the frame '{frame}', not in 'map'", action=INSPECT, details="{topic}"):
     frame: str; topic: str
+class WaitsForPerson(Reason, text="waits for a person: {question}"): question: str
+class PersonSaysNo(Reason, text="a person has said no: {question}"): question: str
 class WaitingFor(Reason, text="waiting for {process}", action=PROCESSES): process: str
 
 # progress

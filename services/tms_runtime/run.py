@@ -15,7 +15,7 @@ from tms_config.config import Site, load_site
 from tms_config.processes import Process, find
 from tms_reason import wire
 from tms_reason.errors import ConfigError
-from tms_runtime import environment, log, metrics, state_folder
+from tms_runtime import environment, log, metrics, state_folder, wire_form
 from tms_runtime.last_resort import LEAVE_LIMIT, end_after
 from tms_runtime.log import Logger
 from tms_runtime.metrics import Health
@@ -51,6 +51,8 @@ def main(name: str) -> int:
             row = find(site, name)
             if not row.ours:
                 importlib.import_module(row.module).exec_program(site)
+            if row.form:
+                wire_form.enter(row.form)
             environment.enter(site)
             return _serve(site, row, leaving)
         except ConfigError as error:

@@ -151,14 +151,15 @@ class Execution:
         xml, templates = self._xml(facts, past)
         replay = Replay(past.ended if past is not None else [])
         identity = Identity(facts.number, parts.app.site.file.on_loss.retries, run.record, replay)
-        machines = Machines(self._ros, parts.hosts, parts.gateways, run.wake.set, run.log_event, identity)
+        site, gateways = parts.app.site, parts.gateways
+        machines = Machines(self._ros, site, parts.hosts, gateways, run.wake.set, run.log_event, identity)
         run.flags = Flags(self._ros, parts.shared, run.wake.set, facts.run_id)
         clicks = Clicks(parts.publisher.questions, facts.run_id, run.wake.set, run.log_event)
         tree = bt.load(xml, world=World(machines, run.flags, clicks), templates=templates)
         replay.beside = tree.beside
         self._begin(run, tree, xml, resumed=past is not None)
         parts.check.refuse_latched(facts.machines)
-        self._prepare(run, processes_of(tree, parts.app.site), machines)
+        self._prepare(run, processes_of(tree, site), machines)
         if not parts.disk.wait(BEGIN_STORED):
             raise no_disk(parts.disk)
         with parts.monitors.watch(facts.run_id, tree):

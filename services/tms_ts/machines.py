@@ -10,12 +10,14 @@ from prometheus_client import Histogram
 from tms_msg_ts.action import LeafNodeBase
 
 from tms_config.clock import monotonic
+from tms_config.config import Site
 from tms_decision.leaf import effects as f
 from tms_decision.leaf import events as e
 from tms_decision.leaf.replay import Replay
 from tms_decision.leaf.state import ACCEPT_LIMIT, LeafGoals
 from tms_decision.leaf.step import ask, step
 from tms_decision.reasons import NoPermit, ProcessLost
+from tms_machine.leaf_forms import own_action
 from tms_machine.reasons import NoDatabase, NoJointState, NoReason, Rejected
 from tms_reason.reason import Reason
 from tms_ros.client import Call, Peer
@@ -58,13 +60,14 @@ class Machines:
     def __init__(
         self,
         ros: Ros,
+        site: Site,
         hosts: Hosts,
         gateways: Gateways,
         wake: Callable[[], None],
         log_event: LogEvent,
         identity: Identity,
     ) -> None:
-        self._ros, self._hosts, self._gateways, self._wake = ros, hosts, gateways, wake
+        self._ros, self._site, self._hosts, self._gateways, self._wake = ros, site, hosts, gateways, wake
         self.stops = MachineStops(ros, gateways, log_event)
         self._goals = LeafGoals(identity.number, identity.retries, identity.replay)
         self._lock = threading.RLock()  # guards the goals; held for moments only
@@ -84,7 +87,7 @@ class Machines:
 
     def peer(self, machine: str, subtask: str) -> LeafPeer:
         """A subtask's action server; asking early lets discovery happen before the first goal."""
-        return self._ros.peer(LeafNodeBase, f"/{machine}/{subtask}")
+        return self._ros.peer(*own_action(self._site, machine, subtask))
 
     def send(self, machine: str, subtask: str, record: str, node: str) -> SentGoal:
         """Begin a goal; it is sent at once if the machine is free and the server is there."""
@@ -154,7 +157,8 @@ class Machines:
     def _send(self, effect: f.Send) -> None:
         _, machine, subtask, record = effect.key
         peer, number = self.peer(machine, subtask), effect.call
-        request = LeafNodeBase.Goal(model_name=machine, record_name=record)
+        request = own_action(self._site, machine, subtask)[0].Goal()
+        request.model_name, request.record_name = machine, record
         call = peer.send(request, goal_id=goal_id(effect.owner), on_change=lambda call: self._changed(number, call))
         self._sent[number] = peer, call
 

@@ -18,6 +18,7 @@ from tms_ts.hosts import Hosts
 from tms_ts.interrupted import Interrupted
 from tms_ts.journal import Journal
 from tms_ts.numbers import Numbers
+from tms_ts.permissions import Permissions
 from tms_ts.reasons import NoQuestion, NoRun, SchedulerStopped
 from tms_ts.run_checkpoint import Records
 from tms_ts.runs_publisher import RunsPublisher
@@ -38,6 +39,7 @@ def start(app: App) -> None:
     app.ros.offer_slow(ResumePlan, "/tms/resume_plan", parts.interrupted.plan)
     app.ros.offer_slow(CancelRun, "/tms/abandon_run", parts.interrupted.abandon)
     app.ros.offer(AnswerQuestion, "/tms/answer", scheduler.answer)
+    Permissions(parts.runs, parts.publisher.questions).serve(app)
     app.ros.every(MEASURE, scheduler.measure)
     app.on_stop(scheduler.close)
     app.ready_when(scheduler.unready)

@@ -101,6 +101,8 @@ class Surroundings(Protocol):
 
     def served(self, machine: str, subtask: str) -> bool: ...  # whether another system serves its action
 
+    def misread(self, machine: str, subtask: str) -> Reason | None: ...  # why a goal to that server would be misread
+
     def problem(self, machine: str) -> Reason | None: ...  # why the machine could not move now
 
     def written(self, record: str, field: str) -> bool: ...  # whether an active run or sensing writes a shared value
@@ -154,6 +156,8 @@ def _check_goal(found: Findings, goal: LeafGoal, site: Site, around: Surrounding
     offered = site.model_of(goal.machine).subtasks
     if goal.subtask not in offered and around.served(goal.machine, goal.subtask):
         found.warnings.append(_at_leaf(goal, ServedElsewhere(goal.subtask, goal.machine)))
+        if (why := around.misread(goal.machine, goal.subtask)) is not None:
+            found.errors.append(_at_leaf(goal, why))
     elif goal.subtask not in offered:
         found.errors.append(_at_leaf(goal, NotOffered(goal.machine, goal.subtask, tuple(offered))))
     else:

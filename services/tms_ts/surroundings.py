@@ -13,6 +13,7 @@ from tms_config.models import MachineModel
 from tms_kit.subtask import load
 from tms_machine import stamps
 from tms_machine.goal_inputs import Inputs
+from tms_machine.leaf_forms import misfit, own_action
 from tms_machine.values import from_parameters
 from tms_reason.errors import RosError
 from tms_reason.reason import Reason
@@ -79,10 +80,14 @@ class PreflightContext:
 
     def served(self, machine: str, subtask: str) -> bool:
         """Whether the ROS graph has an action server of that name, of any system; waits for one that has just begun."""
-        status, count = f"/{machine}/{subtask}/_action/status", self._app.ros.node.count_publishers
+        _, name = own_action(self._app.site, machine, subtask)  # which `<machine>:if` serves for peers of version 6
+        status, count = f"{name}/_action/status", self._app.ros.node.count_publishers
         while not (found := count(status)) and monotonic() < self._found_by:
             sleep(CHECK_PERIOD)
         return bool(found)
+
+    def misread(self, machine: str, subtask: str) -> Reason | None:
+        return misfit(self._app.ros, self._app.site, machine, subtask, servers=True)
 
     def written(self, record: str, field: str) -> bool:
         return self._writers(record, field) or self._sensing.writes(f"/{record}")

@@ -10,6 +10,7 @@ from tms_ur import address
 from tms_ur.access import Access
 from tms_ur.api import create_app
 from tms_ur.audit import Audit
+from tms_ur.buttons import Buttons
 from tms_ur.connections import SENT, Listener
 from tms_ur.reasons import CannotListen
 from tms_ur.security import is_loopback
@@ -24,6 +25,8 @@ def start(app: App) -> None:
     access = Access(address.users(app.site))
     listener = _listen(app.site)
     client, audit = SiteClient(app.ros, app.site), Audit(app.ros, app.site.state / "audit.db")
+    if app.site.file.console.buttons:
+        Buttons(app.ros, client, audit, app.site.file.console.buttons)
     server = Server(create_app(client, audit, app.site, access), listener, tls)
     app.on_stop(audit.close)
     app.on_stop(server.stop)

@@ -74,4 +74,5 @@ class NoUsersFile(Reason, text="{file}: the users file of console.users is not t
 class UnreadableUsers(Reason, text="{file}: the users file of console.users cannot be read ({problem})",
     action=CHECK): file: str; problem: str
 class UsersForAll(Reason, text="{file}: all users of this PC may read it: `chmod 600 {file}`", action=CHECK): file: str
+class NoTaskSequence(Reason, text="the message on /task_sequence holds no tasks"): pass
 # fmt: on

@@ -222,11 +222,21 @@ def test_the_backend_chooses_the_names(tmp_path: Path) -> None:
          SharedFrames("a", "b", "")),
         ({"sim": {"faults": {"ic120": {"late": 1}}}}, "sim.faults.ic120", NotUnderMachines("ic120", ("zx200",))),
         ({"sim": {"faults": {"zx200": {"lat": 1}}}}, "sim.faults.zx200.lat", UnknownKey()),
+        ({"peers": {"ic120": {"leaf": "v5"}}}, "peers.ic120", NotUnderMachines("ic120", ("zx200",))),
     ],
 )  # fmt: skip
 def test_machines_that_do_not_fit(tmp_path: Path, changes: dict[str, object], key: str, problem: Reason) -> None:
     found = refused(site(tmp_path, **changes))
     assert isinstance(found, BadKey) and (found.key, found.problem) == (key, problem)
+
+
+def test_peers_of_version_6_get_a_border_on_the_pc_of_their_machine(tmp_path: Path) -> None:
+    machines = {name: {"model": "zx200"} for name in ("old", "early", "new", "alone")}
+    peers = {"old": {"leaf": "v5"}, "early": {"leaf": "v6a"}, "new": {"leaf": "v6b"}}
+    borders = {
+        row.full: row.form for row in table(load_site(site(tmp_path, machines=machines, peers=peers))) if row.form
+    }
+    assert borders == {"early:if": "v6a", "new:if": "v6b", "tms:if_templates": "v6b"}
 
 
 def test_a_model_without_the_border_of_the_site(tmp_path: Path) -> None:

@@ -16,6 +16,7 @@ from tms_msg_rp.action import (
     TmsRpZx200ChangePose,
     TmsRpZx200ExcavateSimple,
 )
+from tms_msg_ur.action import NextStepPermission
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from tms_config.config import CONFIGS
@@ -23,7 +24,7 @@ from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
 from tms_kit.acting import missed
 from tms_kit.machine import Machine
-from tms_machine.reasons import DrivingThrough, DrivingTo
+from tms_machine.reasons import Aborted, DrivingThrough, DrivingTo, NoReason, PersonSaysNo, Rejected
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
 from tms_ros.client import Call
@@ -163,3 +164,24 @@ def test_a_path_comes_from_the_navigation_and_goes_through_the_gateway() -> None
         Recorded("mst110cr", ComputePathToPose.Result()).compute_path(print, PATH[2])
     with pytest.raises(SubtaskFailed, match="NO_CAPABILITY"):
         Recorded("d37pxi").compute_path(print, PATH[2])
+
+
+def test_a_person_is_asked_for_the_machine_by_the_name_of_the_record() -> None:
+    machine = Recorded("ic120")
+    machine.ask_person(print, "next_step")
+    goal = NextStepPermission.Goal(machinename="ic120_1,next_step")
+    assert machine.sent == [(NextStepPermission, "request_wait_ur", goal)]
+
+
+@pytest.mark.parametrize(
+    ("end", "told"),
+    [(Aborted(NoReason(), "/x"), PersonSaysNo("next_step")), (Rejected(NoReason(), "/x"), Rejected(NoReason(), "/x"))],
+)
+def test_a_no_is_told_as_one(end: Reason, told: Reason) -> None:
+    class Answered(Recorded):
+        def act(self, *_: Any, **__: Any) -> Any:
+            raise SubtaskFailed(end)
+
+    with pytest.raises(SubtaskFailed) as failed:
+        Answered("ic120").ask_person(print, "next_step")
+    assert failed.value.reason == told

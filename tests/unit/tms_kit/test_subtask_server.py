@@ -17,7 +17,9 @@ from tms_machine.reasons import BadRecord, InputsNotTaken
 from tms_machine.record_lock import FLAG
 from tms_machine.values import from_parameters, to_parameters
 from tms_reason.errors import SubtaskFailed
+from tms_reason.reason import Reason
 from tms_reason.reasons import MustBeNumber
+from tms_reason.wire import to_line
 from tms_ros.goals import Outcome
 
 REQUEST = LeafNodeBase.Goal(model_name="zx200", record_name="p")
@@ -50,8 +52,8 @@ class Goal:
         if cancelled:
             self.cancelled.set()
 
-    def publish(self, feedback: Any) -> None:
-        self.said.append(feedback.status)
+    def say(self, reason: Reason) -> None:
+        self.said.append(to_line(reason))
 
 
 class Database:
@@ -88,7 +90,9 @@ def served(database: Database, plan_only: bool) -> Any:
     ros: Any = SimpleNamespace(**vars(nothing), call_async=database.call_async, call=database.call)
     ros.call_unanswered = database.call_unanswered
     site = SimpleNamespace(
-        file=SimpleNamespace(machines={"zx200": SimpleNamespace(model="zx200")}), model_of=lambda _: None
+        file=SimpleNamespace(machines={"zx200": SimpleNamespace(model="zx200")}),
+        model_of=lambda _: None,
+        other_form=lambda _: "",
     )
     app: Any = SimpleNamespace(
         ros=ros, pulse=None, machine="zx200", site=site, log=structlog.stdlib.get_logger("test"),

@@ -62,6 +62,7 @@ class Site:
         )
         self.machines = Machines(
             SimpleNamespace(peer=lambda *_: self.peer),  # type: ignore[arg-type]
+            SimpleNamespace(other_form=lambda _: ""),  # type: ignore[arg-type]
             hosts,  # type: ignore[arg-type]
             gateways,  # type: ignore[arg-type]
             lambda: None,

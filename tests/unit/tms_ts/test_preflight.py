@@ -68,6 +68,9 @@ class Context:
     def names(self, machine: str) -> list[str]:
         return [record for of, record in self.records if of == machine]
 
+    def misread(self, machine: str, subtask: str) -> Reason | None:
+        return None
+
     def served(self, machine: str, subtask: str) -> bool:
         return False
 

@@ -50,6 +50,9 @@ class Around:
     def names(self, machine: str) -> list[str]:
         return [record for of, record in self._records if of == machine]
 
+    def misread(self, machine: str, subtask: str) -> Reason | None:
+        return None
+
     def served(self, machine: str, subtask: str) -> bool:
         return False
 
