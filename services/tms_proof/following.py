@@ -35,8 +35,7 @@ class Way:
             return self.angles[0]
         if i == len(self.times):
             return self.angles[-1]
-        gap = self.times[i] - self.times[i - 1]
-        share = (time - self.times[i - 1]) / gap if gap > 0 else 1.0
+        share = (time - self.times[i - 1]) / (self.times[i] - self.times[i - 1])  # the search finds no gap of 0 s
         return self.angles[i - 1] + (self.angles[i] - self.angles[i - 1]) * share
 
     def hull(self, begin: float, end: float) -> tuple[float, float]:

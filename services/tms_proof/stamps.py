@@ -50,7 +50,7 @@ class StampClock:
         if self._last is not None and stamp < self._last - BACK:
             return self._begin(received, stamp, ClockBack(CLOCKS[self.kind], self._last - stamp))
         if self._last is not None and stamp <= self._last:
-            return Judged(StampVerdict.REPEATED, self._last + (known or 0.0))
+            return Judged(StampVerdict.REPEATED, self._last + self._known())
         self._last = stamp
         self._learn(received, delay)
         return Judged(StampVerdict.NEW, stamp + self._known())

@@ -283,7 +283,7 @@ def _channels(name: str, facts: MachineFacts, resolution: float) -> dict[str, Li
             for joint, limits in facts.joints.items()
         }
     if name == IMU:
-        return {TURNING: Limits(still.angular, INFINITE, scale=speed)}
+        return {TURNING: Limits(still.angular)}  # it tells no positions: top speed and scale do not count
     return {
         PLACE: Limits(still.linear, facts.drive_velocity, resolution, scale=speed),
         HEADING: Limits(still.angular, facts.turn_velocity, resolution, True, speed),

@@ -4,7 +4,16 @@ import pytest
 
 from tms_decision.latch import ANY_LEAF, TOKEN_SECONDS, UNKNOWN_RUN, Latch
 from tms_decision.owner import Owner
-from tms_decision.reasons import MachineLatched, NoNote, ProcessesLost, ProcessLost, SoftwareStop, ThenSchedulerLost
+from tms_decision.reasons import (
+    Held,
+    MachineLatched,
+    NoNote,
+    ProcessesLost,
+    ProcessLost,
+    SoftwareStop,
+    ThenSchedulerLost,
+    TokenOld,
+)
 
 STOP, GONE = SoftwareStop(), ProcessLost(ProcessesLost(("zx200:rp",)))
 LOST = Owner(5, 1, 2)  # the goal during which a process was lost
@@ -94,3 +103,24 @@ def test_a_token_is_good_once_for_a_minute_and_for_this_stop(spoil: str) -> None
     when = TOKEN_SECONDS + 1 if spoil == "late" else 2.0
     assert latch.confirm("x" if spoil == "wrong" else token, when) is not None
     assert latch.cause
+
+
+def test_each_closing_is_counted() -> None:
+    latch = Latch("zx200")
+    for count in (1, 2):
+        latch.close(STOP)
+        assert latch.closings == count
+
+
+def test_a_held_machine_says_what_it_is_held_for() -> None:
+    latch = Latch("zx200")
+    latch.keep(GONE, LOST)
+    assert latch.refusal(None) == Held(GONE)
+
+
+def test_a_token_is_good_until_its_time_is_over() -> None:
+    latch = Latch("zx200")
+    latch.request("token", 0.0)
+    assert latch.confirm("token", TOKEN_SECONDS) is None
+    latch.request("token", 0.0)
+    assert latch.confirm("token", TOKEN_SECONDS + 0.1) == TokenOld(TOKEN_SECONDS)

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import pytest
 
-from tms_proof.following import Follower, Way, ways
+from tms_proof.following import BEHIND, OFF_PATH, QUIET, QUIET_ANGLE, SMALLEST, Follower, Way, ways
 from tms_proof.reasons import OffPath, Stalled
 from tms_reason.reason import Reason
 
@@ -104,3 +104,105 @@ def test_a_joint_that_is_not_told_is_not_judged() -> None:
     made = ways(["boom", "unknown"], [(1.0, [0.5, 0.5])], {"boom": 0.0})
     assert list(made) == ["boom"]
     assert Follower(made, 0.1, 0.0).check(10.0, {"arm": 0.0}) is None
+
+
+# a reference
+
+
+def test_a_reference_that_steps_has_both_angles_at_this_moment() -> None:
+    steps = Way([0.0, 1.0, 1.0, 2.0], [0.0, 0.0, 1.0, 1.0])
+    assert (steps.at(0.5), steps.at(1.0)) == (0.0, 1.0)
+    assert steps.hull(1.0, 2.0) == (0.0, 1.0)
+
+
+def test_a_reference_has_passed_where_it_turned_back() -> None:
+    assert Way([0.0, 1.0, 2.0], [0.0, 1.0, 0.0]).hull(0.0, 2.0) == (0.0, 1.0)
+
+
+def test_joints_that_are_not_known_hide_no_others() -> None:
+    assert list(ways(["unknown", "boom"], [(1.0, [0.5, 0.5])], {"boom": 0.0})) == ["boom"]
+    follower = Follower({"arm": ONE, "boom": ONE}, 0.0, 0.0)
+    assert follower.check(0.0, {"boom": 5.0}) == OffPath("boom", 5.0, 1.0, 1.0)
+
+
+def test_a_turn_is_added_to_where_the_joint_was() -> None:
+    assert ways(["swing"], [(0.0, (-2.78,)), (1.0, (-2.0,))], {"swing": 3.5})["swing"].angles[-1] > 4.0
+
+
+# a motion at its bounds
+
+
+ONE = Way([0.0, 100.0], [1.0, 1.0])  # stays at 1 rad
+
+
+def test_a_reference_that_hardly_moves_need_not_show() -> None:
+    assert not Follower({"boom": Way([0.0, 1.0], [0.0, SMALLEST])}, 0.0, 0.0).should_have_moved(1.0)
+    assert not Follower({"boom": Way([0.0, 1.0], [0.0, BEHIND])}, 0.0, 0.0).moved(1.0, 1.0)
+
+
+def test_nothing_is_on_its_way_to_no_joint() -> None:
+    assert Follower({}, 0.0, 0.0).on_its_way(1.0, {}, 1.0) == {}
+
+
+def quiet(way: Way, *angles: float, reached: float = 0.0, now: float = 0.0, scale: float = 1.0) -> Reason | None:
+    """What is said of a joint that was at these angles for as long as a joint must not be quiet, until `now`."""
+    follower, wrong = Follower({"boom": way}, reached, 0.0, scale), None
+    for angle, at in zip(angles, (now - QUIET, now), strict=True):
+        wrong = follower.check(at, {"boom": angle})
+    return wrong
+
+
+@pytest.mark.parametrize("off", [-BEHIND, BEHIND])
+def test_a_joint_that_is_a_little_off_may_stand(off: float) -> None:
+    assert quiet(ONE, 1.0 + off, 1.0 + off, now=QUIET) is None
+    assert quiet(ONE, 1.0 + 1.1 * off, 1.0 + 1.1 * off, now=QUIET) == Stalled("boom", 1.0 + 1.1 * off, 1.0)
+
+
+@pytest.mark.parametrize("off", [-OFF_PATH, OFF_PATH])
+def test_a_joint_may_be_off_its_path_up_to_a_limit(off: float) -> None:
+    assert Follower({"boom": ONE}, 0.0, 0.0).check(0.0, {"boom": 1.0 + off}) is None
+    assert Follower({"boom": ONE}, 0.0, 0.0).check(0.0, {"boom": 1.0 + 1.1 * off}) is not None
+
+
+def test_a_joint_that_stands_may_jitter() -> None:
+    assert isinstance(quiet(ONE, 0.0, QUIET_ANGLE, now=QUIET), Stalled)
+    assert isinstance(quiet(ONE, 0.5, 0.6, now=QUIET), OffPath)
+
+
+def test_what_a_joint_did_before_it_was_quiet_does_not_count() -> None:
+    follower = Follower({"boom": ONE}, 0.0, 0.0)
+    for at, angle in ((-0.5, 0.85), (0.0, 0.9)):
+        assert follower.check(at, {"boom": angle}) is None
+    assert isinstance(follower.check(QUIET, {"boom": 0.9}), Stalled)
+
+
+@pytest.mark.parametrize(("angle", "due"), [(2.0, 1.0), (-2.0, -1.0)])
+def test_a_stalled_joint_should_have_passed_the_nearest_angle_of_its_reference(angle: float, due: float) -> None:
+    turns = Way([0.0, 1.0, 3.0], [-1.0, -1.0, 1.0])
+    assert quiet(turns, angle, angle, reached=1.0, now=2.0) == Stalled("boom", angle, due)
+
+
+def test_a_controller_may_run_ahead_of_its_reference() -> None:
+    ahead = 0.55  # rad, where the reference is at 0.4
+    assert quiet(Way([0.0, 10.0], [0.0, 2.0]), ahead, ahead, reached=0.5, now=2.0) is None
+
+
+def test_where_a_joint_should_not_be_yet_is_off_its_path() -> None:
+    early = Follower({"boom": Way([0.0, 10.0], [0.0, 2.0])}, 0.0, 100.0)
+    assert early.check(100.0, {"boom": 2.0}) == OffPath("boom", 2.0, 0.0, pytest.approx(0.2))
+
+
+# a stand-in, four times as fast
+
+
+def test_a_reference_of_a_stand_in_passes_in_its_own_time() -> None:
+    follower = Follower({"boom": Way([0.0, 1.0, 4.0, 8.0], [0.0, 0.0, 0.0, 1.0])}, 0.0, 0.0, 4.0)
+    assert follower.moved(2.0, 1.0) and not follower.moved(1.0, 1.0)
+    assert follower.should_have_moved(1.5) and not follower.should_have_moved(1.0)
+
+
+def test_a_stand_in_is_stalled_and_off_its_path_in_its_own_time() -> None:
+    steady = Way([0.0, 40.0], [0.0, 8.0])  # 0.8 rad in a second of ours
+    assert isinstance(quiet(steady, 0.0, 0.0, now=1.0, scale=4.0), Stalled)
+    assert quiet(steady, 2.3, 2.3, now=2.0, scale=4.0) is None
+    assert Follower({"boom": steady}, 0.0, 0.0, 4.0).check(1.0, {"boom": 1.7}) is None
