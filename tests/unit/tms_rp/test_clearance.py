@@ -81,8 +81,9 @@ def test_what_touches_at_the_start_may_part_but_not_stay() -> None:
 @pytest.mark.parametrize("gap", [0.005, 0.05, 0.09])
 def test_what_only_the_padding_touches_at_the_start_is_not_gone_through(gap: float) -> None:
     """A thin wall beside the bucket: on its other side nothing touches any more."""
+    lowest = min(corners("bucket_link", LOW_FRONT), key=lambda corner: corner[2])
     edge = max(corner[1] for corner in corners("bucket_link", LOW_FRONT))
-    wall = Box(min=(4.0, edge + gap, 0.0), max=(12.0, edge + gap + 0.1, 8.0))
+    wall = Box(min=(lowest[0] - 0.3, edge + gap, lowest[2]), max=(lowest[0] + 0.3, edge + gap + 0.1, lowest[2] + 0.3))
     scene = Scene((Obstacle(PartOf("wall", "site"), wall, np.eye(4)),))
     said = refusal(move(LOW_FRONT, (1.571, *LOW_FRONT[1:])), scene)
     assert said.second == PartOf("wall", "site")

@@ -8,17 +8,18 @@ import random
 from itertools import pairwise
 
 import numpy as np
+import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from random_scenes import random_pose, random_scene
 from tms_config.config import CONFIGS
 from tms_config.models import Box, MachineModel
 from tms_config.yaml_file import parse
 from tms_reason.errors import SubtaskFailed
 from tms_rp.kind import Angles, Moves
 from tms_rp.kinds import load
-from tms_rp.links import placed
 from tms_rp.reasons import Collision, NoWayRound, PartOf
 from tms_rp.scene import Obstacle, Scene
 from tms_rp.trajectory import Trajectory
@@ -66,9 +67,11 @@ def touch(a: Placed, b: Placed) -> bool:
     (axes_a, at_a, half_a), (axes_b, at_b, half_b) = a, b
     way = at_b - at_a
     near = np.linalg.norm(way, axis=1) <= np.linalg.norm(half_a) + np.linalg.norm(half_b)  # of the spheres around them
+    if not near.any():
+        return False
     way, count = way[near], int(near.sum())
     columns_a, columns_b = (
-        [np.broadcast_to(axes[:, :, i], (len(near), 3))[near] for i in range(3)] for axes in (axes_a, axes_b)
+        [(axes[near] if len(axes) > 1 else axes)[:, :, i] for i in range(3)] for axes in (axes_a, axes_b)
     )
     crossed = [np.cross(p, q) for p in columns_a for q in columns_b]
     apart = np.zeros(count, dtype=bool)
@@ -97,29 +100,12 @@ def dense(made: Trajectory) -> Array:
     return np.concatenate(poses)
 
 
-def random_box(rng: random.Random, number: int) -> Obstacle:
-    away, turn = rng.uniform(4.5, 9), rng.uniform(-math.pi, math.pi)
-    x, y, z = rng.uniform(0.2, 1.5), rng.uniform(0.2, 2), rng.choice((0, 0, rng.uniform(2.5, 5)))
-    box = Box(min=(-x, -y, z), max=(x, y, z + rng.uniform(1, 6)))
-    return Obstacle(PartOf(f"box_{number}", "site"), box, placed(away * math.cos(turn), away * math.sin(turn), turn))
-
-
-def random_scene(rng: random.Random) -> Scene:
-    boxes = tuple(random_box(rng, number) for number in range(rng.randint(1, 5)))
-    if rng.random() < 0.5:
-        return Scene(boxes)
-    height = rng.uniform(5.5, 6.5)
-    roof = Box(min=(-12.0, -12.0, height), max=(12.0, 12.0, height + 0.3))
-    return Scene((*boxes, Obstacle(PartOf("roof", "site"), roof, np.eye(4))))
-
-
 def free_pose(rng: random.Random, scene: Scene) -> Angles:
-    """A pose that touches nothing and stands above the ground."""
+    """A pose that touches nothing and stands above the ground, by this implementation."""
     with_ground = Scene((*scene.obstacles, Obstacle(PartOf("ground", "site"), GROUND, np.eye(4))))
-    while True:
-        pose = (rng.uniform(-3, 3), rng.uniform(-1.1, -0.1), rng.uniform(0.6, 2.6), rng.uniform(-0.6, 2.3))
-        if not touched(with_ground, np.array([(*pose, 0.0)])):
-            return pose
+    while touched(with_ground, np.array([(*(pose := random_pose(rng)), 0.0)])):
+        pass
+    return pose
 
 
 def beyond_limits(made: Trajectory) -> list[str]:
@@ -139,6 +125,7 @@ def beyond_limits(made: Trajectory) -> list[str]:
     return found
 
 
+@pytest.mark.timeout(3600)  # `make nightly` looks at 5,000
 @settings(max_examples=SCENES)
 @example(17317)  # it begins a few centimetres beside a box
 @given(st.integers(0, 10**9))

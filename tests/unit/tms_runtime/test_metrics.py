@@ -1,5 +1,6 @@
 """The health port of a process."""
 
+import os
 import re
 import socket
 import threading
@@ -17,7 +18,7 @@ from tms_reason import wire
 from tms_reason.errors import ConfigError
 from tms_runtime import metrics
 
-ADDRESS, PORT = "127.0.0.7", 29411
+ADDRESS, PORT = f"127.7.{os.getpid() // 250 % 250}.{os.getpid() % 250 + 1}", 29411  # of this test run alone
 ROW = Process("tms", "ts", "cps", "m", PORT, "", address=ADDRESS)
 BUSY = Busy("tms:ts")
 WHOLE = b"GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n"
