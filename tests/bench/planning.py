@@ -35,7 +35,7 @@ from tms_rp.ways import Ways
 
 GOALS = 500
 AROUND = 1000  # scenes
-IN_MEMORY = 200  # scenes for the memory
+IN_MEMORY = 50  # scenes for the memory
 ROUNDS = 2  # for each scene with a way around; the best counts
 TRAJECTORY = 1.0  # ms for a straight trajectory on a usual PC
 NOW = ArmAngles(0.0, -0.8029, 1.9897, 0.8029)
