@@ -25,7 +25,7 @@ TMS := $(VENV)/bin/tms $(if $(SITE),--site $(SITE))
 # A sourced ROS installation would mix its libraries into the venv's.
 unexport PYTHONPATH LD_LIBRARY_PATH AMENT_PREFIX_PATH CMAKE_PREFIX_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE
 .DEFAULT_GOAL := help
-.PHONY: help setup interfaces locks demo test test-fast up down status logs restart lint conformance bench verify pictures soak drill simulate replay model mutants coverage nightly test-docker system containers clean
+.PHONY: help setup interfaces locks demo test test-fast up down status logs restart lint conformance bench verify pictures soak drill simulate replay model mutants mutmut coverage nightly test-docker system containers clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -134,6 +134,9 @@ model: setup ## stop, permit, fence and latch in all their states (ONLY=check; D
 mutants: setup ## defects planted in the decisions one at a time; the simulation must find each (SLICE=20 ONLY=name SCHEDULES=5000 TURN=3 LIST=1)
 	@cd tests && $(abspath $(PY)) -m mutants.run $(if $(ONLY),--only $(ONLY)) $(if $(SLICE),--slice $(SLICE)) $(if $(TURN),--turn $(TURN)) $(if $(SCHEDULES),--schedules $(SCHEDULES)) $(if $(LEDGER),--ledger $(LEDGER)) $(if $(filter-out auto,$(WORKERS)),--workers $(WORKERS)) $(if $(LIST),--list)
 
+mutmut: setup ## hundreds of small changes of proof and latch; the unit tests must fail for 9 of 10, and the others be judged
+	@cd tests && $(abspath $(PY)) -m mutants.mutmut_run $(abspath $(VENV))/mutmut $(if $(filter-out auto,$(WORKERS)),--workers $(WORKERS))
+
 replay: setup ## twenty simulated plans on real processes, as root: both tell the same history (ONLY="gateway and killed": words of their names)
 	@DOCKER=$(DOCKER) sh deploy/system-packages.sh test
 	TMS_REPLAY=1 $(PY) -m pytest -p no:randomly tests/replay/test_replay.py $(if $(ONLY),-k "$(ONLY)")
@@ -142,11 +145,12 @@ coverage: setup ## unit tests take every branch of the decisions and proofs
 	$(PY) -m coverage run --data-file=$(VENV)/coverage --branch --source tms_decision,tms_proof -m pytest -q tests/unit/tms_decision tests/unit/tms_proof tests/unit/tms_ts/test_interrupted.py
 	$(PY) -m coverage report --data-file=$(VENV)/coverage --show-missing --skip-covered --fail-under=100
 
-nightly: setup ## what takes hours: properties with 400 examples, 100,000 schedules, all mutants, replays and 30 power cuts (as root), a long drill
+nightly: setup ## what takes hours: properties with 400 examples, 100,000 schedules, all mutants, mutmut, replays and 30 power cuts (as root), a long drill
 	$(PY) -m pytest -q -n $(WORKERS) --hypothesis-profile=thorough tests/unit
 	@$(MAKE) coverage
 	@$(MAKE) simulate SCHEDULES=100000
 	@$(MAKE) mutants
+	@$(MAKE) mutmut
 	TMS_POWER_CUTS=30 $(PY) -m pytest tests/system/test_power_cut.py
 	@$(MAKE) replay
 	@$(MAKE) drill ROUNDS=4

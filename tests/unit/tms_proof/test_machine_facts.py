@@ -134,6 +134,16 @@ def test_half_the_way_of_each_joint_that_was_commanded_must_be_seen() -> None:
     assert not proven(Expected(None, {"arm": 0.2}), 0.1)
 
 
+def test_a_way_that_nobody_could_measure_was_not_seen() -> None:
+    """The joints were heard for the first time after the mark."""
+    watch = machine()
+    watch.mark()
+    for i in range(30):
+        joints(watch, PERIOD * i)
+    assert not watch.proven(Proof(0.0, 100.0, Expected(None, {"boom": 0.2}), 0.2), 29 * PERIOD)
+    assert watch.proven(Proof(0.0, 100.0, NOTHING, 0.2), 29 * PERIOD)
+
+
 def test_the_expected_motion_must_be_seen_after_it_was_commanded() -> None:
     assert proven(Expected(-0.1), 0.1)
     assert not proven(Expected(0.0), 0.1)
