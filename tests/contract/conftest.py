@@ -13,6 +13,7 @@ from stores import PROGRAM, MongoDb, Server
 from tms_db import store
 
 names = count(1)
+PATIENT = 30_000  # ms that threads which keep a busy PC busy wait for an answer
 
 
 @pytest.fixture(scope="module")
@@ -58,12 +59,13 @@ def db(request: pytest.FixtureRequest) -> Iterator[store.Db]:
 
 
 @pytest.fixture
-def shared_db(server: Server | MongoDb) -> Iterator[store.Db]:
-    """For several threads at once: the in-memory store is made for one."""
-    yield from _fresh(server)
+def shared_db(server: Server | MongoDb, monkeypatch: pytest.MonkeyPatch) -> Iterator[store.Db]:
+    """For several threads at once: the in-memory store is made for one. Its answers may take long on a busy PC."""
+    monkeypatch.setattr(store, "FIND_SERVER_MS", PATIENT)
+    yield from _fresh(server, PATIENT)
 
 
-def _fresh(server: Server | MongoDb) -> Iterator[store.Db]:
-    db = server.open(f"test{next(names)}")
+def _fresh(server: Server | MongoDb, answer_ms: int = store.ANSWER_MS) -> Iterator[store.Db]:
+    db = server.open(f"test{next(names)}", answer_ms)
     yield db
     server.forget(db)

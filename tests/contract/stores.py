@@ -50,8 +50,8 @@ class Server:
             self.process.terminate()
         self.process.wait(10)
 
-    def open(self, database: str = "rostmsdb") -> store.Db:
-        db = store.connect(self.uri, database)
+    def open(self, database: str = "rostmsdb", answer_ms: int = store.ANSWER_MS) -> store.Db:
+        db = store.connect(self.uri, database, answer_ms)
         store.prepare(db)
         return db
 
@@ -66,8 +66,8 @@ class MongoDb:
     def __init__(self, uri: str) -> None:
         self.uri = uri
 
-    def open(self, database: str) -> store.Db:
-        db = store.connect(self.uri, PREFIX + database)
+    def open(self, database: str, answer_ms: int = store.ANSWER_MS) -> store.Db:
+        db = store.connect(self.uri, PREFIX + database, answer_ms)
         db.client.drop_database(db)
         store.prepare(db)
         return db

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 from contextlib import closing, suppress
 from pathlib import Path
@@ -58,8 +59,10 @@ def test_a_process_that_ends_again_and_again_fails_its_leaf_and_nothing_else(mes
         out = client.output(150)
     answer = json.loads(out)
     assert answer["outcome"] == "failure"
-    assert f"process {CHANGE_POSE} is FATAL" in answer["error_msg"]
-    assert any(row["kind"] == "alarm" and "FATAL" in row["text"] for row in events(mesh, answer["run_id"]))
+    said = re.search(rf"process {CHANGE_POSE} is (FATAL|BACKOFF, for)", answer["error_msg"])
+    assert said, answer["error_msg"]  # on a busy PC it is away for 10 s before supervisord has given it up
+    alarms = [row["text"] for row in events(mesh, answer["run_id"]) if row["kind"] == "alarm"]
+    assert said[1] != "FATAL" or any("FATAL" in text for text in alarms)
     assert CHANGE_POSE in mesh.tms("status", expect=1).stdout
     assert {name: row["pid"] for name, row in processes(mesh).items() if name != CHANGE_POSE} == others
     mesh.tms("restart", CHANGE_POSE)
