@@ -1,6 +1,7 @@
 """The C++ system's services under their names, for its nodes and tools; their types have no error codes."""
 
 import json
+from collections.abc import Callable
 
 from tms_msg_db.msg import Tmsdb
 from tms_msg_db.srv import TmsdbGetData, TmsdbGetTask
@@ -33,31 +34,39 @@ class CppServices:
 
     def get_task(self, request: TmsdbGetTask.Request, response: TmsdbGetTask.Response) -> TmsdbGetTask.Response:
         """The task's text, "" if there is none."""
-        try:
-            with self._connection.use():
-                response.task = self._tasks.get(request.task_id).task_sequence
-        except TmsError as error:
-            self._app.log.warning("refused", service="tms_db_reader_task", code=error.code, reason=error.reason)
+
+        def read() -> None:
+            response.task = self._tasks.get(request.task_id).task_sequence
+
+        self._try("tms_db_reader_task", read)
         return response
 
     def read_template(self, request: ReadTemplate.Request, response: ReadTemplate.Response) -> ReadTemplate.Response:
         """The template's text for `tms:if_templates`, "" if there is none."""
-        try:
-            with self._connection.use():
-                response.task_sequence = self._templates.get(request.template_name).task_sequence
-        except TmsError as error:
-            self._app.log.warning("refused", service="read_template", code=error.code, reason=error.reason)
+
+        def read() -> None:
+            response.task_sequence = self._templates.get(request.template_name).task_sequence
+
+        self._try("read_template", read)
         return response
 
     def get_data(self, request: TmsdbGetData.Request, response: TmsdbGetData.Response) -> TmsdbGetData.Response:
         """Records by name as JSON; those that are not there are left out."""
+
+        def read() -> None:
+            for name in [request.name] if request.name else request.recordnames:
+                response.tmsdbs += self._found(name, request.flgorparam)
+
+        self._try("tms_db_param_reader", read)
+        return response
+
+    def _try(self, service: str, read: Callable[[], None]) -> None:
+        """Read for a service; what goes wrong is logged, since its answer has no place for it."""
         try:
             with self._connection.use():
-                for name in [request.name] if request.name else request.recordnames:
-                    response.tmsdbs += self._found(name, request.flgorparam)
+                read()
         except TmsError as error:
-            self._app.log.warning("refused", service="tms_db_param_reader", code=error.code, reason=error.reason)
-        return response
+            self._app.log.warning("refused", service=service, code=error.code, reason=error.reason)
 
     def _found(self, name: str, what: str) -> list[Tmsdb]:
         documents = self._parameters.named(name)

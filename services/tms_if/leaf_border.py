@@ -76,7 +76,17 @@ class LeafBorder:
         self._app.log.info("peer_found", subtask=subtask, reason=relay.misfit())
 
 
-class ToOurs(Relay):
+class LeafRelay(Relay):
+    """Leaf goals between two types: of feedback and result, both have the same fields."""
+
+    def feedback(self, feedback: Any) -> Any:
+        return self._served.Feedback(status=feedback.status)
+
+    def result(self, outcome: Outcome, result: Any) -> Any:
+        return self._served.Result(result=outcome is Outcome.SUCCEEDED)
+
+
+class ToOurs(LeafRelay):
     """Goals of a peer for one of our subtasks, which its permit tells that the client of the goal can be heard."""
 
     def __init__(self, app: App, subtask: str, peer: AnyPeer) -> None:
@@ -97,14 +107,8 @@ class ToOurs(Relay):
     def request(self, request: Any) -> LeafGoal.Goal:
         return to_ours(request)
 
-    def feedback(self, feedback: Any) -> Any:
-        return THEIRS.Feedback(status=feedback.status)
 
-    def result(self, outcome: Outcome, result: Any) -> Any:
-        return THEIRS.Result(result=outcome is Outcome.SUCCEEDED)
-
-
-class ToTheirs(Relay):
+class ToTheirs(LeafRelay):
     """Goals of our scheduler for a subtask of a peer."""
 
     def __init__(self, app: App, subtask: str, peer: AnyPeer) -> None:
@@ -117,12 +121,6 @@ class ToTheirs(Relay):
 
     def request(self, request: LeafGoal.Goal) -> Any:
         return to_theirs(request)
-
-    def feedback(self, feedback: Any) -> LeafGoal.Feedback:
-        return LeafGoal.Feedback(status=feedback.status)
-
-    def result(self, outcome: Outcome, result: Any) -> LeafGoal.Result:
-        return LeafGoal.Result(result=outcome is Outcome.SUCCEEDED)
 
 
 def fields() -> set[str]:

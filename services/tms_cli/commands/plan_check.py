@@ -77,7 +77,9 @@ def _path(plan: "JointTrajectory") -> list[str]:
 
 
 def _at(point: Any) -> float:
-    return float(point.time_from_start.sec + point.time_from_start.nanosec * 1e-9)
+    from tms_machine.stamps import seconds  # here: it loads libraries of ROS, which a list of the verbs does not need
+
+    return seconds(point.time_from_start)
 
 
 def _seconds(plan: "JointTrajectory") -> float:
