@@ -10,7 +10,8 @@ from tms_config.yaml_file import parse
 from tms_rp.clearance import Clearance
 from tms_rp.kind import Moves
 from tms_rp.kinds import load
-from tms_rp.kinds.backhoe.goals import TipGoal
+from tms_rp.kinds.backhoe.digging import excavate
+from tms_rp.kinds.backhoe.goals import Dig, TipGoal
 from tms_rp.kinds.backhoe.linkage import ArmAngles, Tip
 from tms_rp.kinds.backhoe.planner import Backhoe
 from tms_rp.links import placed
@@ -54,7 +55,7 @@ def test_from_six_places(excavator: str, truck: str) -> None:
             tuple(Neighbour(truck, other).obstacles(stands, 0.0, Posture(dict.fromkeys(other.joints, 0.0), 0.0)))
         )
         dig = TipGoal(5 * math.cos(bearing + BESIDE), 5 * math.sin(bearing + BESIDE), 0.5, 1.2)
-        dug = ArmAngles(*backhoe.excavate(start, dig).targets[-1])
+        dug = ArmAngles(*excavate(backhoe, start, Dig(dig, depth=0.5, drag=0.5, lift=0.5)).targets[-1])
         over = backhoe.reach(Tip(x, y, edge + ABOVE, ANGLE))
         near = over._replace(swing=dug.swing + math.remainder(over.swing - dug.swing, math.tau))
         plan = ways.plan(dug, Moves((near,)), scene)
