@@ -128,7 +128,13 @@ class Ways:
 
     def _free(self, view: View, begin: Angles, way: Way) -> bool:
         poses = [self._all_joints(pose) for pose in (begin, *way.targets)]
-        return all(view.free(pose) for pose in poses[1:-1]) and view.passable(poses)  # the first costs little
+        if not (all(view.free(pose) for pose in poses[1:-1]) and view.passable(poses)):  # the first costs little
+            return False
+        try:  # what grazes the padding may be seen at the samples of the motion only
+            view.check(self._trajectory(begin, Moves(way.targets), straight=True))
+        except SubtaskFailed:
+            return False
+        return True
 
     def _search(self, view: View, begin: Angles, target: Angles) -> Way | None:
         """A way that sampling finds, between the ends or poses above them."""

@@ -39,10 +39,11 @@ class Body:
         return float(self.corners(pose)[:, 2].min())
 
     def near(self, pose: ArmAngles, box: Box, gap: float) -> bool:
-        """Whether a corner of it is in a box of base_link, or nearer to it than a gap [m]."""
+        """Whether it may be nearer to a box of base_link than a gap [m], by its extents along the axes."""
         corners = self.corners(pose)
-        inside = (corners > np.array(box.min) - gap) & (corners < np.array(box.max) + gap)
-        return bool(inside.all(axis=1).any())
+        above = corners.max(axis=0) > np.array(box.min) - gap
+        below = corners.min(axis=0) < np.array(box.max) + gap
+        return bool((above & below).all())
 
 
 def tilt(pose: ArmAngles) -> float:

@@ -24,9 +24,10 @@ STEP = 0.25  # m between two poses of a drag
 ROLL = 0.1  # rad by which the bucket may have to turn between them; more is no drag any more
 BOOM_STEP = 0.02  # rad
 SPARE = 0.1  # m between padded bodies and what they must not touch: the motion is rounded between the poses
+CURLING = (0.0, 0.25, 0.5, 0.75, 1.0)  # shares of the curl at which the tracks are looked at
 ASIDE = 0.2  # m that the bucket may be beside its plane while it is in the ground
 ROUND = 0.3  # m that it may be beyond the poses of the dig there
-CALM = 0.7  # s over the place before it opens: the upper body comes to rest meanwhile
+CALM = 1.2  # s over the place before it opens: the upper body comes to rest meanwhile
 CLEAR_ARM = 0.1  # rad, the arm curls in by this much when the bucket opens
 CLEAR_BOOM = -0.15  # rad, the boom rises by this much when the bucket opens
 
@@ -72,14 +73,12 @@ def release(arm: Backhoe, now: ArmAngles, goal: Emptying) -> Moves:
     finite("target_angle", goal.angle)
     notes: list[Reason] = []
     over = now if goal.over is None else _place(arm, now, tip_of(goal.over), notes)
-    half = over._replace(bucket=(over.bucket + goal.angle) / 2)
     curled = arm.clip("arm_joint", over.arm + CLEAR_ARM, notes)
     up = arm.clip("boom_joint", over.boom + CLEAR_BOOM, notes)
     end = arm.allowed(over, ArmAngles(over.swing, up, curled, goal.angle))
     if goal.over is None:
-        return Moves((half, end), tuple(notes), through=Through((0.0, 0.0), free=False))
-    through = Through((0.0, CALM, 0.0, 0.0), held=arm.held)
-    return Moves((over, over, half, end), tuple(notes), through=through)
+        return Moves((end,), tuple(notes), through=Through((0.0,), free=False))
+    return Moves((over, over, end), tuple(notes), through=Through((0.0, CALM, 0.0), held=arm.held))
 
 
 def raised(arm: Backhoe, pose: ArmAngles, height: float, level: bool = False) -> ArmAngles:
@@ -98,17 +97,23 @@ def _fits(arm: Backhoe, ground: float, pose: ArmAngles) -> bool:
     gap = PADDING + SPARE
     if arm.arm.lowest(pose) < ground + gap:
         return False
-    return arm.tracks is None or not any(arm.bucket.near(one, arm.tracks, gap) for one in (pose, arm.level(pose)))
+    curl = arm.level(pose).bucket - pose.bucket
+    curling = (pose._replace(bucket=pose.bucket + share * curl) for share in CURLING)
+    return arm.tracks is None or not any(arm.bucket.near(one, arm.tracks, gap) for one in curling)
 
 
 def _dragged(
     arm: Backhoe, reach: ArmAngles, dig: Tip, drag: float, fits: Callable[[ArmAngles], bool], notes: list[Reason]
 ) -> Sequence[ArmAngles]:
-    """Poses on the straight line towards the machine, as far as the arm gets with about the same bucket angle."""
+    """Poses on the straight line towards the machine, as far as the arm gets with about the same bucket angle.
+
+    A bucket that points outward turns on the way until it points down: curling from there goes no deeper.
+    """
     found: list[ArmAngles] = []
     steps, theta_w = math.ceil(drag / STEP), dig.theta_w
     for number in range(1, steps + 1):
         way = drag * number / steps
+        theta_w += min(ROLL, max(0.0, math.pi / 2 - theta_w))
         tip = Tip(dig.x - way * math.cos(reach.swing), dig.y - way * math.sin(reach.swing), dig.z, theta_w)
         try:
             pose, turned = arm.search(tip, fits)
