@@ -71,10 +71,10 @@ class Flow:
         if not through.free:
             return
         for way in self._kind.manners.flowing(self._model, begin[-1], moves.targets[0]):
-            between = way.targets[:-1] if through.held is None else tuple(map(through.held, way.targets[:-1]))
+            between = _held(way.targets[:-1], through)
             with self._clearance.looking(scene) as view:
                 free = all(view.free(self._whole(pose)) for pose in between)  # costs little
-            if free:
+            if free and len(between) == len(way.targets) - 1:
                 found = _course(begin[1:], (*between, way.targets[-1]), moves, through)
                 yield replace(found, name=way.name)
 
@@ -84,8 +84,7 @@ class Flow:
             if not through.free or view.free(self._whole(now)):
                 return ()
             found = (one for one in self._kind.manners.lifts(self._model, now) if view.free(self._whole(one)))
-            up = next(found, now)
-        return (up if through.held is None else through.held(up),)
+            return _held([next(found, now)], through)
 
     def _timed(self, poses: Sequence[Angles], least: Sequence[float], moves: Moves) -> Trajectory:
         return blended(scaled(self._model.joints, *moves.scales), [self._whole(pose) for pose in poses], least)
@@ -143,6 +142,12 @@ def _notes(moves: Moves, name: Reason | None, why: Reason | None) -> tuple[Reaso
     if name is None or why is None or why.find(Ground) is not None:
         return moves.notes
     return (*moves.notes, Around(name, why))
+
+
+def _held(poses: Sequence[Angles], through: Through) -> tuple[Angles, ...]:
+    """The poses without spilling what the tool carries; those are left out in which it would."""
+    held = map(through.held, poses) if through.held is not None else poses
+    return tuple(pose for pose in held if pose is not None)
 
 
 def _course(up: Sequence[Angles], way: Sequence[Angles], moves: Moves, through: Through) -> _Course:

@@ -20,13 +20,14 @@ class Through:
     `least`: how long [s] the line to each takes at least. `free`: the first target may be reached by any way; the lines
     to all others are part of the goal. `trench`: where the tool digs; elsewhere, and without it, nothing touches the
     ground.
-    `held`: what a pose on a way becomes so that the tool spills nothing; None: it carries nothing.
+    `held`: what a pose on a way becomes so that the tool spills nothing, None if it would; without it, it carries
+    nothing.
     """
 
     least: tuple[float, ...]
     free: bool = True
     trench: Trench | None = None
-    held: Callable[[Angles], Angles] | None = None
+    held: Callable[[Angles], Angles | None] | None = None
 
     def last(self, count: int) -> "Through":
         """For the last so many targets alone."""

@@ -80,7 +80,8 @@ def _lifted(begin: ArmAngles, end: ArmAngles, boom: float) -> Way:
 def _while_swinging(begin: ArmAngles, end: ArmAngles, boom: float, rising: float, sinking: float) -> Way:
     turn = end.swing - begin.swing
     up = begin._replace(swing=begin.swing + rising * turn, boom=boom)
-    over = end._replace(swing=end.swing - sinking * turn, boom=boom, bucket=max(begin.bucket, end.bucket))
+    arm, bucket = max(begin.arm, end.arm), max(begin.bucket, end.bucket)
+    over = ArmAngles(end.swing - sinking * turn, boom, arm, bucket)
     return Way((up, over, end), LiftSwingLower())
 
 

@@ -96,9 +96,10 @@ class Backhoe:
         """The pose with the bucket level, or as near to it as the bucket gets."""
         return pose._replace(bucket=self.clip("bucket_joint", LEVEL - pose.boom - pose.arm, []))
 
-    def held(self, pose: Angles) -> Angles:
-        """A pose on a way, with the bucket level."""
-        return self.level(ArmAngles(*pose))
+    def held(self, pose: Angles) -> Angles | None:
+        """A pose on a way, with the bucket level; None where it cannot hold its soil."""
+        level = self.level(ArmAngles(*pose))
+        return level if abs(tilt(level)) <= TILT else None
 
     def search(self, tip: Tip, fits: Callable[[ArmAngles], bool]) -> tuple[ArmAngles, float]:
         """Joints for the point with the possible theta_w nearest to the asked one, and that theta_w [rad].
