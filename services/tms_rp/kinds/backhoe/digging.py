@@ -56,8 +56,8 @@ def excavate(arm: Backhoe, now: ArmAngles, goal: Dig) -> Moves:
     over = raised(arm, reach, surface + OVER)
     curled = arm.level((reach, *dragged)[-1])
     lifted = raised(arm, curled, surface + goal.lift, level=True)
-    ways = [math.dist(arm.linkage.tip(a)[:3], arm.linkage.tip(b)[:3]) for a, b in pairwise((reach, *dragged))]
-    least = (0.0, goal.depth / SPEED, *(way / SPEED for way in ways), 0.0, 0.0)
+    tips = [arm.linkage.tip(pose)[:3] for pose in (over, reach, *dragged)]
+    least = (0.0, *(math.dist(a, b) / SPEED for a, b in pairwise(tips)), 0.0, 0.0)
     targets = (over, reach, *dragged, curled, lifted)
     return Moves(targets, tuple(notes), through=Through(least, trench=_trench(arm, targets, at.z)))
 
@@ -65,18 +65,23 @@ def excavate(arm: Backhoe, now: ArmAngles, goal: Dig) -> Moves:
 def release(arm: Backhoe, now: ArmAngles, goal: Emptying) -> Moves:
     """Over the place with the bucket level, if there is one; then it opens, while arm and boom come up for clearance.
 
+    Where an open bucket would hang into the ground, the boom rises first.
+
     Raises:
         SubtaskFailed: FieldNotFinite, NoAngleDigs, OutOfRange, WouldSpill.
     """
     finite("target_angle", goal.angle)
     notes: list[Reason] = []
     over = now if goal.over is None else _place(arm, now, tip_of(goal.over), notes)
+    hanging = over._replace(bucket=arm.clip("bucket_joint", math.pi / 2 - over.boom - over.arm, []))
+    risen = over._replace(boom=raised(arm, hanging, OVER).boom)
     curled = arm.clip("arm_joint", over.arm + CLEAR_ARM, notes)
-    up = arm.clip("boom_joint", over.boom + CLEAR_BOOM, notes)
+    up = min(risen.boom, arm.clip("boom_joint", over.boom + CLEAR_BOOM, notes))
     end = arm.allowed(over, ArmAngles(over.swing, up, curled, goal.angle))
-    if goal.over is None:
-        return Moves((end,), tuple(notes), through=Through((0.0,), free=False))
-    return Moves((over, over, end), tuple(notes), through=Through((0.0, CALM, 0.0), held=arm.held))
+    if goal.over is not None:
+        return Moves((over, over, end), tuple(notes), through=Through((0.0, CALM, 0.0), held=arm.held))
+    targets = (end,) if risen == over else (risen, end)
+    return Moves(targets, tuple(notes), through=Through((0.0,) * len(targets), free=False))
 
 
 def raised(arm: Backhoe, pose: ArmAngles, height: float, level: bool = False) -> ArmAngles:
