@@ -77,6 +77,11 @@ def test_it_digs_as_deep_and_drags_as_far_as_it_is_told() -> None:
     assert min(tip.z for tip in longer) == pytest.approx(-0.3, abs=0.06) and max(deep) - min(deep) > 2.2
 
 
+def test_a_bucket_that_points_outward_turns_down_in_the_drag_and_curls_no_deeper() -> None:
+    flat = Dig(TipGoal(7.0, 0.0, 0.0, 1.15), depth=0.5, drag=1.5, lift=0.5)
+    assert min(BACKHOE.linkage.tip(pose).z for pose in poses(dug(flat))) > -0.58
+
+
 def test_the_offset_is_along_the_line_from_base_link() -> None:
     moves = excavate(BACKHOE, NOW, Dig(TipGoal(3.3, 4.4, 0.0, 1.6, offset=1.0), 0.5, 0.0, 0.5))
     assert BACKHOE.linkage.tip(ArmAngles(*moves.targets[1]))[:3] == pytest.approx((3.9, 5.2, -0.5))
