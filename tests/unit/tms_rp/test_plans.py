@@ -141,7 +141,7 @@ def test_plans_whose_ends_meet_run_without_a_stop_as_fast_as_they_are() -> None:
     made = one_trajectory(JOINTS, A, [slow, fast])
     found = without_stops(JOINTS, made)
     assert found.samples[0].positions == A and found.samples[-1].positions == pytest.approx(C, abs=1e-6)
-    assert found.duration < made.duration and len(found.stops) == 2 and found.stops[-1] == found.duration
+    assert len(found.stops) == 2 and found.stops[-1] == found.duration
     inner = [sample for sample in found.samples if 0.6 < sample.time < found.duration - 0.6]
     assert min(max(map(abs, sample.velocities)) for sample in inner) > 0.02
     for index, joint in enumerate(JOINTS.values()):
@@ -156,6 +156,7 @@ def test_plans_whose_ends_meet_run_without_a_stop_as_fast_as_they_are() -> None:
 def test_the_path_of_plans_stays_near_them_away_from_their_ends() -> None:
     made = one_trajectory(JOINTS, A, [plan(A, B), plan(B, C)])
     found = without_stops(JOINTS, made)
+    assert found.duration < made.duration
     corner = np.array([sample.positions for sample in found.samples])
     assert np.abs(corner - np.array(B)).max(axis=1).min() < 0.15
     path = np.array([sample.positions for sample in made.samples])
