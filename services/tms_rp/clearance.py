@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tms_config.models import Box, MachineModel
+from tms_control.links import Array, Links, Matrix, box_place, reaches
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
-from tms_rp.links import Array, Links, Matrix, box_place, reaches
 from tms_rp.reasons import Between, Collision, Ground, Part
 from tms_rp.scene import Obstacle, Scene
 from tms_rp.trajectory import Trajectory

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from tms_config.models import DRIVE, Box, MachineModel
+from tms_control.links import Links, Matrix, reach, reaches
 from tms_decision.permit_link import LEASE
-from tms_rp.links import Links, Matrix, reach, reaches
 from tms_rp.reasons import PartOf
 from tms_rp.scene import Obstacle
 

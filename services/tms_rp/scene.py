@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tms_config.models import Box
+from tms_control.links import Matrix
 from tms_reason.reason import Reason
-from tms_rp.links import Matrix
 from tms_rp.reasons import Ground
 
 GROWTH_STEP = 0.25  # m; sizes of grown bodies differ by this much, as each new size costs a body for ever

@@ -6,7 +6,7 @@ from tms_cli import session
 from tms_cli.words import say
 from tms_config.config import load_site
 from tms_config.processes import table
-from tms_config.sensing import load_sensing
+from tms_machine.sensing import load_sensing
 from tms_ur.address import certificate, users
 
 
