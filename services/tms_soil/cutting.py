@@ -7,12 +7,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tms_soil.grid import AREA, BANK, COMPACTED, FINE, LOOSE, Grid, Window
+from tms_soil.grid import AREA, BANK, COMPACTED, FINE, LOOSE, Grid, Indices, Window
 from tms_soil.surface import Array, Bounds
-
-Indices = NDArray[np.intp]
 
 
 class Swept(NamedTuple):
@@ -54,7 +51,7 @@ def _side(window: Window, edge: Array) -> Array:
 def cut(window: Window, cells: Swept) -> Array:
     """Take what is above the edge, loose soil first; the mass [kg] by index of the grid's soils."""
     rows, columns, level = cells
-    layers, thickness = window.layers[:, rows, columns], window.thickness[:, rows, columns]
+    layers, thickness = window.of(rows, columns)
     # Nothing is taken where the height is unknown.
     depth = np.fmax(window.datum + (layers * thickness).sum(axis=0) - level, 0.0)
     taken = np.zeros(depth.shape)
@@ -66,7 +63,7 @@ def cut(window: Window, cells: Swept) -> Array:
         depth = np.fmax(depth - part * thickness[layer], 0.0)
         taken += part
     window.layers[:, rows, columns] = layers
-    return np.bincount(window.soil[rows, columns], taken * AREA, window.kinds).astype(np.float64)
+    return window.by_soil(rows, columns, taken * AREA)
 
 
 def put_down(grid: Grid, edge: Array, along: Array, mass: float) -> Bounds:
@@ -108,12 +105,4 @@ def depths(window: Window, edge: Array, ahead: Array) -> Array:
     """How deep [m] places along an edge are below the ground a cell ahead of it (unit vector, x and y)."""
     count = max(2, math.ceil(float(np.hypot(*(edge[1, :2] - edge[0, :2]))) / FINE))
     points = edge[0] + ((np.arange(count) + 0.5) / count)[:, None] * (edge[1] - edge[0])
-    return below(window, points + FINE * np.append(ahead, 0.0))
-
-
-def below(window: Window, points: Array) -> Array:
-    """How deep [m] points of map are below the ground; 0 above it, and where its height is unknown."""
-    rows, columns = window.cells(points[:, 0], points[:, 1])
-    heights = window.datum + (window.layers[:, rows, columns] * window.thickness[:, rows, columns]).sum(axis=0)
-    deep: Array = np.fmax(heights - points[:, 2], 0.0)
-    return deep
+    return window.below(points + FINE * np.append(ahead, 0.0))

@@ -8,7 +8,7 @@ import numpy as np
 from tms_config.models import Bucket
 from tms_control.links import Matrix
 from tms_soil.capacity import Capacity, tilt_of
-from tms_soil.cutting import around, below, cut, depths, put_down, square_to, swept
+from tms_soil.cutting import around, cut, depths, put_down, square_to, swept
 from tms_soil.grid import Grid, Window
 from tms_soil.hauling import Hauler
 from tms_soil.resistance import GRAVITY, force
@@ -46,11 +46,12 @@ class Digger:
         old, new = (self._points @ place[:3, :3].T + place[:3, 3] for place in (before, after))
         way = new[:2].mean(axis=0) - old[:2].mean(axis=0)
         changed, covered, self.resistance = [], 0.0, 0.0
-        window = self._grid.window(around(np.concatenate((old, new)), REACH))
+        bounds, low = around(np.concatenate((old, new)), REACH), min(float(old[:4, 2].min()), float(new[:4, 2].min()))
+        window = self._grid.window(bounds) if low < self._grid.top(bounds) else None
         if window is not None:
             changed += self._dig(window, old, new, way)
             opening = new[2:4].mean(axis=0) + OPENING * (new[:2].mean(axis=0) - new[2:4].mean(axis=0))
-            covered = float(np.count_nonzero(below(window, opening))) / len(OPENING)
+            covered = float(np.count_nonzero(window.below(opening))) / len(OPENING)
         surplus = self._surplus(after, covered)
         if surplus > 0.0 and covered > 0.0:
             pushed = float(self._take(surplus).sum())

@@ -14,6 +14,7 @@ from tms_soil.surface import Array, Bounds
 PLACES = np.linspace(0.0, 1.0, 5)  # along a track, at which the ground is looked at
 PRESSES = 0.1  # m, way after which tracks press anew: a cell
 WINDROW = 0.4  # m, depth of the strip on which a blade leaves what it pushes
+RAKE = math.radians(60)  # rad, of a blade: ours
 STANDS = 1e-4  # m, motion of an edge that has no direction
 
 
@@ -93,14 +94,16 @@ class Grader:
         old, new = (self._edge @ place[:3, :3].T + place[:3, 3] for place in (before, after))
         way = (new - old).mean(axis=0)
         self.resistance = 0.0
-        window = self._grid.window(around(np.concatenate((old, new)), 2 * FINE))
-        if window is None or math.hypot(way[0], way[1]) < STANDS:
+        bounds = around(np.concatenate((old, new)), 2 * FINE)
+        if math.hypot(way[0], way[1]) < STANDS or float(new[:, 2].min()) > self._grid.top(bounds):
+            return []
+        window = self._grid.window(bounds)
+        if window is None:
             return []
         ahead = square_to(new, way)
         deep = depths(window, new, ahead)
-        if not deep.any():
-            return []
-        self.resistance = force(window.soils[0], math.pi / 3, self._blade.width, deep)
+        if deep.any():
+            self.resistance = force(window.soils[0], RAKE, self._blade.width, deep)
         cells = swept(window, old, new)
         taken = float(cut(window, cells).sum()) if cells.rows.size else 0.0
         if taken == 0.0:

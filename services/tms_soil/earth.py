@@ -14,7 +14,7 @@ from tms_soil.digging import Digger
 from tms_soil.driving import Grader, Rolling
 from tms_soil.grid import Grid
 from tms_soil.hauling import Hauler
-from tms_soil.slumping import MARGIN, SWEEPS, settle
+from tms_soil.slumping import MARGIN, settle
 from tms_soil.surface import Array, Bounds
 
 STEP = 0.02  # s, longest step: a report after a longer time is taken in parts, straight from place to place
@@ -100,7 +100,7 @@ class Earth:
         for k in range(count):
             here, there = (_between(before, now, one / count) for one in (k, k + 1))
             found = body.step(here, there, min(max(seconds, 0.0), GAP) / count, self._haulers)
-            body.rests = still and not found
+            body.rests = still and not found and seconds > 0.0
             body.running = self._settle(body.running + found)
             changed += found + body.running
         return changed
@@ -116,7 +116,7 @@ class Earth:
         for x0, y0, x1, y1 in _apart(places):
             window = self.grid.window((x0 - MARGIN, y0 - MARGIN, x1 + MARGIN, y1 + MARGIN))
             if window is not None:
-                if (still := settle(window, SWEEPS)) is not None:
+                if (still := settle(window)) is not None:
                     found.append(still)
                 self.grid.store(window)
         return found

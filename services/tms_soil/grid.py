@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 from tms_soil.soils import Soil
 from tms_soil.surface import Array, Bounds, Heights
 
+Indices = NDArray[np.intp]
+
 FINE, COARSE = 0.1, 0.2  # m, sides of cells where machines work, and elsewhere
 AREA = FINE * FINE  # m2
 CELLS = 128  # fine cells along a tile's side
@@ -37,27 +39,35 @@ class _Piece:
 class Window:
     """A rectangle of fine cells, copied out of the grid; `store` of the grid takes it back."""
 
-    def __init__(self, corner: tuple[float, float], layers: Array, grid: "Grid", pieces: list[_Piece]) -> None:
-        """`corner`: x and y of the lower left corner [m]."""
+    def __init__(self, rows: slice, columns: slice, layers: Array, grid: "Grid", pieces: list[_Piece]) -> None:
+        """`rows`, `columns`: which fine cells of the grid."""
         self.layers, self.pieces = layers, pieces
-        self.datum, self.kinds = grid.datum, len(grid.soils)
-        self.x0, self.y0 = corner
-        shape = layers.shape[1:]
-        self.x: Array = self.x0 + FINE * (np.arange(shape[1], dtype=np.float64) + 0.5)  # m, middles of the columns
-        self.y: Array = self.y0 + FINE * (
-            np.arange(shape[0], dtype=np.float64)[:, None] + 0.5
-        )  # m, of the rows
-        kinds = {int(grid.soil_of[piece.tile]) for piece in pieces}
-        self.soils = [grid.soils[kind] for kind in sorted(kinds)]  # those that it holds
-        if len(kinds) == 1:
-            kind = kinds.pop()
-            self.soil: NDArray[np.intp] = np.broadcast_to(np.intp(kind), shape)  # index of the grid's soils by cell
-            self.thickness: Array = np.broadcast_to(grid.thickness[kind][:, None, None], layers.shape)  # m3/kg
-        else:
-            self.soil = np.empty(shape, dtype=np.intp)
+        self.datum = grid.datum
+        self.x, self.y = grid.x[columns], grid.y[rows, None]  # m, middles of the columns and of the rows
+        kinds = sorted({int(grid.soil_of[piece.tile]) for piece in pieces})
+        self.soils = [grid.soils[kind] for kind in kinds]  # those that it holds
+        self._kinds, self._kind = len(grid.soils), kinds[0]
+        self.thickness: Array = grid.thickness[kinds[0]][:, None, None]  # m3/kg by layer
+        self._soil: NDArray[np.intp] | None = None  # index of the grid's soils by cell, if there are several
+        if len(kinds) > 1:
+            self._soil = np.empty(layers.shape[1:], dtype=np.intp)
             for piece in pieces:
-                self.soil[piece.here[1:]] = grid.soil_of[piece.tile]
-            self.thickness = np.moveaxis(grid.thickness[self.soil], -1, 0)
+                self._soil[piece.here[1:]] = grid.soil_of[piece.tile]
+            self.thickness = np.moveaxis(grid.thickness[self._soil], -1, 0)
+
+    def of(self, rows: Indices, columns: Indices) -> tuple[Array, Array]:
+        """Layers [kg/m2] of some cells, a copy, and their thickness [m3/kg]; both layer by layer."""
+        layers: Array = self.layers[:, rows, columns]
+        return layers, self.thickness[:, :, 0] if self._soil is None else self.thickness[:, rows, columns]
+
+    def by_soil(self, rows: Indices, columns: Indices, masses: Array) -> Array:
+        """Sum of what was in some cells, by index of the grid's soils."""
+        found = np.zeros(self._kinds)
+        if self._soil is None:
+            found[self._kind] = masses.sum()
+        else:
+            np.add.at(found, self._soil[rows, columns], masses)
+        return found
 
     def solid(self) -> Array:
         """Heights below the loose soil [m of map]; NaN where they are unknown."""
@@ -70,11 +80,18 @@ class Window:
         heights: Array = self.solid() + self.layers[LOOSE] * self.thickness[LOOSE]
         return heights
 
-    def cells(self, x: Array, y: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-        """Rows and columns of points of map [m]; points outside get the nearest cell."""
-        rows, columns = self.layers.shape[1:]
-        row = np.clip(((y - self.y0) / FINE).astype(np.intp), 0, rows - 1)
-        return row, np.clip(((x - self.x0) / FINE).astype(np.intp), 0, columns - 1)
+    def below(self, points: Array) -> Array:
+        """How deep [m] points of map (N x 3) are below the ground; 0 above it, and where its height is unknown.
+
+        Of points beside the window the nearest cell counts.
+        """
+        at = ((points[:, :2] - (self.x[0], self.y[0, 0])) / FINE + 0.5).astype(np.intp)
+        rows, columns = (
+            np.minimum(np.maximum(at[:, k], 0), size - 1) for k, size in zip((1, 0), self.layers.shape[1:], strict=True)
+        )
+        layers, thickness = self.of(rows, columns)
+        deep: Array = np.fmax((layers * thickness).sum(axis=0) + self.datum - points[:, 2], 0.0)
+        return deep
 
 
 class Grid:
@@ -89,8 +106,11 @@ class Grid:
         self.thickness: Array = np.array([[1 / one.bank, 1 / one.compacted, 1 / one.loose] for one in soils])  # m3/kg
         self.loose: Array = np.array([one.loose for one in soils])  # kg/m3
         self.outside = 0.0  # kg that has fallen outside the site
+        self.x: Array = self.x0 + FINE * (np.arange(soil_of.shape[1] * CELLS, dtype=np.float64) + 0.5)  # m, fine cells
+        self.y: Array = self.y0 + FINE * (np.arange(soil_of.shape[0] * CELLS, dtype=np.float64) + 0.5)  # m, fine cells
         self._tiles = tiles  # row and column -> layers, rows, columns
-        self._size = soil_of.shape[0] * CELLS, soil_of.shape[1] * CELLS  # rows and columns of fine cells
+        self._size = len(self.y), len(self.x)  # rows and columns of fine cells
+        self._top = {tile: _highest(self._coarse(tile)) for tile in tiles}  # m of map, at least
 
     @classmethod
     def from_heights(cls, heights: Heights, soils: Sequence[Soil], soil_of: NDArray[np.uint8] | None = None) -> "Grid":
@@ -123,12 +143,20 @@ class Grid:
         layers, pieces = np.empty((3, i1 - i0, j1 - j0)), list(_pieces(i0, i1, j0, j1))
         for piece in pieces:
             layers[piece.here] = self._fine(piece.tile)[piece.there]
-        return Window((self.x0 + j0 * FINE, self.y0 + i0 * FINE), layers, self, pieces)
+        return Window(slice(i0, i1), slice(j0, j1), layers, self, pieces)
 
     def store(self, window: Window) -> None:
         """Take the cells of a window back."""
+        top = _highest(window.heights())
         for piece in window.pieces:
             self._tiles[piece.tile][piece.there] = window.layers[piece.here]
+            self._top[piece.tile] = max(self._top[piece.tile], top)
+
+    def top(self, bounds: Bounds) -> float:
+        """A height [m of map] that the ground in and near a rectangle nowhere exceeds."""
+        i0, i1, j0, j1 = self._cells(bounds)
+        tiles = np.ndindex(-(-i1 // CELLS) - i0 // CELLS, -(-j1 // CELLS) - j0 // CELLS)
+        return max((self._top[i0 // CELLS + i, j0 // CELLS + j] for i, j in tiles), default=-math.inf)
 
     def heights(self, bounds: Bounds | None = None) -> Heights:
         """Heights [m of map] in cells of COARSE, for maps; NaN where unknown.
@@ -171,8 +199,7 @@ class Grid:
     def _fine(self, tile: tuple[int, int]) -> Array:
         layers = self._tiles[tile]
         if layers.shape[1] < CELLS:
-            times = CELLS // layers.shape[1]
-            layers = self._tiles[tile] = layers.repeat(times, axis=1).repeat(times, axis=2)
+            layers = self._tiles[tile] = _finer(layers)
         return layers
 
     def _coarse(self, tile: tuple[int, int]) -> Array:
@@ -187,6 +214,20 @@ class Grid:
         """Least row, row behind the last, and the same of columns, of the cells of the site that touch a rectangle."""
         columns = _range(bounds[0] - self.x0, bounds[2] - self.x0, self._size[1])
         return *_range(bounds[1] - self.y0, bounds[3] - self.y0, self._size[0]), *columns
+
+
+def _finer(layers: Array) -> Array:
+    """A coarse tile in fine cells: bank goes on with the slope of its coarse cells, so that a hillside has no steps."""
+    found = layers.repeat(SIDE, axis=1).repeat(SIDE, axis=2)
+    rise = (np.nan_to_num(slope).repeat(SIDE, axis=0).repeat(SIDE, axis=1) for slope in np.gradient(layers[BANK]))
+    middles = np.tile((np.arange(SIDE) + 0.5) / SIDE - 0.5, layers.shape[1])  # of fine cells, in coarse ones
+    for slope, place in zip(rise, (middles[:, None], middles), strict=True):
+        found[BANK] += slope * place
+    return found
+
+
+def _highest(heights: Array) -> float:
+    return float(np.fmax.reduce(heights, axis=None, initial=-math.inf))
 
 
 def _range(least: float, most: float, size: int) -> tuple[int, int]:

@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 from tms_soil.grid import BANK, COMPACTED, FINE, LOOSE, Window
 from tms_soil.surface import Array, Bounds
 
-SWEEPS = 10  # in a step of 20 ms
+SWEEPS = 10  # at most, in a step of 20 ms
+CELLS = 40_000  # in all sweeps of a step at most, but for one sweep: bounds the time of a step
+MIDDLE = 0.985  # of the slope of repose, at which soil rests: some places stay half a degree steeper
 RATE = 0.25  # of what is too high, between two cells in a sweep: the largest that is stable
 FEW = 0.1  # kg/m2: less does not run; a slope is then steeper than its repose by an eighth of a degree at most
 EDGE = 0.005  # m, of a face that is too high and stands
@@ -18,16 +20,16 @@ MARGIN = 3 * FINE  # m around soil that runs, into which it may run
 TINY = 1e-12
 
 
-def settle(window: Window, sweeps: int) -> Bounds | None:
-    """Let slopes give way for so many sweeps; returns where soil still runs [m of map]."""
+def settle(window: Window) -> Bounds | None:
+    """Let slopes give way for a step; returns where soil still runs [m of map]."""
     if min(window.layers.shape[1:]) < 3:
         return None  # in the corner of a site
     crumbled = _crumble(window)
     solid, loose, thickness = window.solid(), window.layers[LOOSE], window.thickness[LOOSE]
-    run = min(soil.repose_slope for soil in window.soils) * FINE  # m from cell to cell
+    run = MIDDLE * min(soil.repose_slope for soil in window.soils) * FINE  # m from cell to cell
     pace = RATE / float(thickness[0, 0])  # kg/m2 for a metre; that of one of the soils is near enough
     unknown = bool(np.isnan(solid).any())
-    for _ in range(sweeps):
+    for _ in range(min(SWEEPS, max(1, CELLS // loose.size))):
         flows = _flows(solid + loose * thickness, loose, run, pace)
         if unknown:
             flows = np.nan_to_num(flows[0], copy=False), np.nan_to_num(flows[1], copy=False)
@@ -74,7 +76,7 @@ def _crumble(window: Window) -> tuple[NDArray[np.bool_], NDArray[np.bool_]] | No
         return None
     depth = 0.5 * over[rows, columns]
     rows, columns = rows + 1, columns + 1
-    layers, thickness = window.layers[:, rows, columns], window.thickness[:, rows, columns]
+    layers, thickness = window.of(rows, columns)
     compacted = np.minimum(layers[COMPACTED], depth / thickness[COMPACTED])
     bank = (depth - compacted * thickness[COMPACTED]) / thickness[BANK]
     layers[COMPACTED] -= compacted
