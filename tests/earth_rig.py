@@ -30,6 +30,29 @@ ABOVE = ArmAngles(0.0, -0.85, 1.65, 2.19)  # release_pose
 OPEN = ArmAngles(0.0, -1.0, 1.55, -0.34)
 
 
+# The fundamental earthmoving equation, computed from the published formulas: density kg/m3, cohesion Pa, friction deg,
+# steel deg; failure plane deg at a rake of 45 deg, factors of weight and cohesion.
+VECTORS = {
+    "earth of OperaSim-AGX": (1474, 2100, 40, 24, 29.3, 1.96, 2.35),
+    "dry sand": (1500, 0, 34, 22, 31.9, 1.62, 2.14),
+    "sandy loam": (1600, 5000, 30, 20, 33.8, 1.44, 2.00),
+    "stiff clay": (1900, 40000, 15, 10, 42.3, 0.95, 1.55),
+}
+WIDTH = 1.05  # m
+PLACES = ((45, 0.2), (45, 0.3), (45, 0.4), (60, 0.3))  # rake deg, depth m
+FORCES = {  # kN at these places
+    "earth of OperaSim-AGX": (2.2, 4.2, 6.8, 5.6),
+    "dry sand": (1.0, 2.3, 4.0, 2.6),
+    "sandy loam": (3.0, 5.3, 8.0, 6.6),
+    "stiff clay": (13.8, 21.2, 29.0, 25.0),
+}
+
+
+def soil_of_vector(name: str) -> Soil:
+    bank, cohesion, friction, steel, *_ = VECTORS[name]
+    return soils()[0].model_copy(update={"bank": bank, "cohesion": cohesion, "friction": friction, "steel": steel})
+
+
 class Report(NamedTuple):
     machine: str
     time: float
@@ -126,6 +149,16 @@ def random_site() -> Earth:
     """An excavator in a hollow, so that most poses of its arm dig."""
     models = {"zx200": model_of("zx200"), "ic120": model_of("ic120")}
     return Earth(Grid.from_heights(flat(25.6, z=0.8), soils("earth", "sand"), KINDS), models)
+
+
+def mass_error(log: Iterable[Report]) -> float:
+    """What a random site has lost or made by a log, as a share of what its machines had moved at least."""
+    earth, most = random_site(), 100.0
+    before = earth.mass()
+    for one in log:
+        earth.report(*one)
+        most = max(most, moved_by(earth, "zx200") + moved_by(earth, "ic120"))
+    return abs(earth.mass() - before) / most
 
 
 def cycle_log(poses: Sequence[ArmAngles], tilt: float, start: float) -> list[Report]:

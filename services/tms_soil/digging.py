@@ -107,6 +107,8 @@ class Digger:
 
     def _spill(self, lip: Array, out: Array, haulers: Sequence[Hauler]) -> list[Bounds]:
         """Let soil [kg] fall from a lip, into vessels below it or to the ground; returns where the ground changed."""
+        if not out.any():
+            return []
         places, changed = lip[0] + OPENING * (lip[1] - lip[0]), []
         for hauler in haulers:
             if share := hauler.below(places):

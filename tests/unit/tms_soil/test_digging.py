@@ -53,7 +53,7 @@ def test_a_pass_fills_the_bucket_as_its_class_says(y: float, z: float) -> None:
     before = earth.mass()
     run(earth, reports(moved(dig_poses((0.0, y, z)))))
     assert 0.5 <= digger(earth).volume <= 0.9
-    assert earth.mass() == pytest.approx(before, rel=1e-14)
+    assert earth.mass() == pytest.approx(before, abs=1e-6)
     assert digger(earth).resistance == 0.0, "in the air"
 
 
@@ -94,9 +94,9 @@ def test_a_dump_on_the_ground_is_a_pile_of_what_was_dug() -> None:
     end = run(earth, reports(moved([*dig_poses((0.0, -6.0, 0.1)), SWUNG, ABOVE])))
     dug = moved_by(earth, "zx200")
     end = run(earth, reports(moved([ABOVE, OPEN, OPEN, OPEN], end)))
+    run(earth, reports((end + 0.02 * k, OPEN) for k in range(1, 150)))
     assert moved_by(earth, "zx200") == 0.0
-    run(earth, reports((end + 0.02 * k, OPEN) for k in range(1, 100)))
-    assert earth.mass() == pytest.approx(before, rel=1e-14)
+    assert earth.mass() == pytest.approx(before, abs=1e-6)
     pile = earth.grid.heights((3, -3, 10, 3))
     risen = pile.z.sum() * pile.cell**2
     assert risen == pytest.approx(dug / soils()[0].loose, rel=1e-6)
@@ -119,7 +119,17 @@ def test_it_dumps_into_the_vessel_below() -> None:
     run(earth, [vessel(0.0, 0.0), *reports(moved([*dig_poses((0.0, -6.0, 0.1)), SWUNG, ABOVE, OPEN, OPEN]))])
     assert moved_by(earth, "zx200") < 0.03 * moved_by(earth, "ic120")
     assert earth.bodies["ic120"].hauler is not None and earth.bodies["ic120"].hauler.volume > 0.5
-    assert earth.mass() == pytest.approx(before, rel=1e-14)
+    assert earth.mass() == pytest.approx(before, abs=1e-6)
+
+
+def test_two_reports_at_one_time_move_no_soil() -> None:
+    earth = loading_site()
+    end = run(earth, [vessel(0.0, 0.0), *reports(moved([*dig_poses((0.0, -6.0, 0.1)), SWUNG, ABOVE]))])
+    tilted = ABOVE._replace(bucket=ABOVE.bucket - 0.7)
+    run(earth, reports([(end + 0.02, tilted)]))
+    before = moved_by(earth, "zx200")
+    run(earth, reports([(end + 0.02, tilted)]))
+    assert moved_by(earth, "zx200") == before > 0
 
 
 def test_hard_ground_stalls_the_bucket_and_soft_ground_does_not() -> None:
