@@ -37,7 +37,8 @@ class Work:
         tree, records = tasks.task(site, machine)
         self._subtasks = {goal.path: f"{machine}:{goal.subtask}" for goal in bt.load(tree).leaf_goals()}
         for name, values in records.items():
-            stored_records.write(node, (machine, name), values, create=True, type="static", description="stop drill")
+            kind = "dynamic" if "waypoints" in values else "static"  # plans are written into it
+            stored_records.write(node, (machine, name), values, create=True, type=kind, description="stop drill")
         stored = session.call(node, AddTask, "/tms/db/add_task", task_sequence=tree, description=f"drill {machine}")
         self._task = stored.task_id
         self._peer = node.peer(ExecuteTask, "/tms/execute_task")
