@@ -5,7 +5,7 @@ usage: upstream_client.py leaf MACHINE SUBTASK RECORD [FIELD=TEXT...]
                                                            last feedback where there was one
        upstream_client.py rp NAMESPACE ACTION X Y Z THETA  one TmsRpZx200ChangePose goal; prints `<status> <error code>`
        upstream_client.py template NAME                    asks tms_db_reader_subtask; prints the text
-       upstream_client.py plan NAME                        asks tms_db_reader for a plan; prints the x of its poses
+       upstream_client.py plan SERVICE NAME                asks for the plan of a record; prints the x of its poses
        upstream_client.py excavator MACHINE JOINT ANGLE... sets the planner, plans to joint angles, executes the plan;
                                                            prints status and error code of both, and the angles
        upstream_client.py planner MACHINE                  serves tms_rp_excavator until it is ended: plans straight to
@@ -75,10 +75,10 @@ def template(node, name):
     print(call(node, TmsdbGetTask, "tms_db_reader_subtask", TmsdbGetTask.Request(task_name=name)).task)
 
 
-def plan(node, name):
+def plan(node, service, name):
     request = TmsdbGetData.Request(type="parameter", id=3012, param_type="plan", name=name)
-    for found in call(node, TmsdbGetData, "tms_db_reader", request).tmsdbs:
-        print(*(one.pose.position.x for one in found.plan.poses))
+    for found in call(node, TmsdbGetData, service, request).tmsdbs:
+        print(node.count_services(f"/{service}"), *(one.pose.position.x for one in found.plan.poses))
 
 
 def excavator(node, machine, *pairs):

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from conftest import NO_CONSOLE, Mesh, mesh_apart, running, wait_until
-from upstream_peers import SUCCEEDED, ask, foreign_server
+from upstream_peers import ABORTED, SUCCEEDED, ask, foreign_server
 
 pytestmark = pytest.mark.system
 FORM = "plans"
@@ -43,7 +43,8 @@ def test_their_reader_gets_the_path_of_a_record(mesh: Mesh) -> None:
     mesh.tms(
         "param", "set", "zx200/ROAD", *(f"{name}={json.dumps(value)}" for name, value in lists.items()), "--create"
     )
-    assert ask(mesh, "plan", "ROAD", form="both") == ["1.0", "2.5"]
+    for service in ("tms_db_reader", "tms_db_param_reader"):
+        assert ask(mesh, "plan", service, "ROAD", form="both") == ["1", "1.0", "2.5"]  # one server
 
 
 def test_their_planner_plans_for_our_primitives(mesh: Mesh, tmp_path: Path) -> None:
@@ -63,6 +64,13 @@ def test_their_planner_plans_for_our_primitives(mesh: Mesh, tmp_path: Path) -> N
         assert server.stdout is not None
         assert server.stdout.readline() == "1 arm\n"
         assert server.stdout.readline().startswith("1 arm 0.4 -0.8 2.0 0.8")
+
+
+def test_a_latch_holds_for_their_primitive(mesh: Mesh) -> None:
+    mesh.tms("stop", "zx200")
+    words = ask(mesh, "excavator", "zx200", "boom_joint", "-0.7", form=FORM)
+    assert words[:2] == [SUCCEEDED, "1"] and words[2:4] == [ABORTED, "99999"]  # it still plans
+    assert float(words[4]) > -0.65
 
 
 def succeeds(mesh: Mesh, number: str) -> bool:

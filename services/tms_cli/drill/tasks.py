@@ -33,6 +33,7 @@ PRIMITIVES: Mapping[str, tuple[str, str, str]] = {  # kind of machine -> leaf of
     "bulldozer": ("LeafNodeBulldozer", "primitive_name", "record_name"),
 }
 PRIMITIVE = "primitive_"  # how the names of primitives begin
+PLANS = "change_pose_plan"  # the subtask file that moves nothing
 
 
 def task(site: Site, machine: str) -> tuple[str, Records]:
@@ -73,9 +74,9 @@ def _arm(model: MachineModel) -> tuple[Leaves, Records]:
 
 def _plans(model: MachineModel) -> tuple[Leaves, Records] | None:
     """The motions of an arm along plans; None for a model without primitives."""
-    if not any(model.subtask(name).run == "change_pose_plan" for name in model.subtasks):
+    if not any(model.subtask(name).run == PLANS for name in model.subtasks):
         return None
-    plan = _subtask(model, "change_pose_plan")
+    plan = _subtask(model, PLANS)
     move = _subtask(model, "change_pose_execute_from_plan", retime=False)
     boom = model.initial["boom_joint"]
     targets = {
