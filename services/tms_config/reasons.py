@@ -74,6 +74,10 @@ class NoService(Reason, text="there is no service '{service}' (there: {services}
 class PasswordInUri(Reason, text="the uri holds a password", action=NO_PASSWORD): pass
 class HalfALogin(Reason, text="user and password_file go together: give both or none", action=EDIT_CONFIG): pass
 class NoUri(Reason, text="user, password_file and TLS need the uri of a MongoDB", action=EDIT_CONFIG): pass
+class TwoPlanners(Reason, text="with motions: true we serve their planner's names: that excludes planner: theirs",
+    action=EDIT_CONFIG): pass
+class FormNotSaid(Reason, text="say under forms: which form of {definition} they speak", action=EDIT_CONFIG):
+    definition: str
 class UserTwice(Reason, text="the user stands in uri and in user: keep the latter", action=EDIT_CONFIG): pass
 
 # PCs

@@ -43,6 +43,17 @@ class NoOrientation(Reason, text="the orientation is empty: its quaternion has t
 class OutOfPlane(Reason, text="the orientation points {angle} out of the arm's plane; turned to {yaw} it lies in it"):
     angle: Radians; yaw: Radians
 
+# goals of the C++ system's version 6
+class UnknownCommand(Reason, text="there is no command {number}"): number: int
+class NothingToExecute(Reason, text="the goal has no plan to execute"): pass
+class SettingNotHonoured(Reason, text="the planner cannot be set so: {name} {value}"): name: str; value: str
+class PlannerAway(Reason, text="the C++ system's planner of {machine} does not answer", details="{name}",
+    action=INSPECT): machine: str; name: str
+class PlannerRefuses(Reason, text="the C++ system's planner of {machine} makes no plan: {why}",
+    details="error {number}"): machine: str; why: Reason; number: int
+class PlanMisses(Reason, text="its plan ends with {joint} at {end}, not at {angle}"):
+    joint: str; end: Radians; angle: Radians
+
 # what the arm can reach
 class Point(Reason, text="point ({x}, {y}, {z}) with bucket angle {theta_w}"):
     x: Metres; y: Metres; z: Metres; theta_w: Radians

@@ -39,9 +39,12 @@ class Work:
 
         self._node, self._site, self.machine = node, site, machine
         tree, records = tasks.task(site, machine)
-        self._subtasks = {goal.path: f"{machine}:{goal.subtask}" for goal in bt.load(tree).leaf_goals()}
+        leaves, model = bt.load(tree).leaf_goals(), site.model_of(machine)
+        moving = [leaf for leaf in leaves if model.subtask(leaf.subtask).run != tasks.PLANS]
+        self._subtasks = {leaf.path: f"{machine}:{leaf.subtask}" for leaf in moving}
         for name, values in records.items():
-            stored_records.write(node, (machine, name), values, create=True, type="static", description="stop drill")
+            kind = "dynamic" if "waypoints" in values else "static"  # plans are written into it
+            stored_records.write(node, (machine, name), values, create=True, type=kind, description="stop drill")
         stored = session.call(node, AddTask, "/tms/db/add_task", task_sequence=tree, description=f"drill {machine}")
         self._task = stored.task_id
         self._peer = node.peer(ExecuteTask, "/tms/execute_task")
@@ -50,7 +53,7 @@ class Work:
         self._call: Call[ExecuteTask.Result, ExecuteTask.Feedback] | None = None
         self._run = ""
         self.lost = False  # its scheduler was lost, so that only the history has its end
-        self.subtask = next(iter(self._subtasks.values()))  # the process behind the present leaf
+        self.subtask = next(iter(self._subtasks.values()))  # the process behind the motion
 
     def be(self, fault: str) -> None:
         """Set the fault of the stand-in; `none` removes it. The simulator's machines have no faults."""

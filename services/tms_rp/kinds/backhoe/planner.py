@@ -8,9 +8,9 @@ from tms_machine import geometry
 from tms_machine.reasons import NoSuchJoint
 from tms_reason.errors import ConfigError, SubtaskFailed
 from tms_reason.reason import Reason
-from tms_rp.kind import Moves
+from tms_rp.kind import Angles, Moves
 from tms_rp.kinds.backhoe.goals import ChangePose, LinkGoal, TipGoal, finite
-from tms_rp.kinds.backhoe.linkage import ArmAngles, Linkage, Tip, wrap
+from tms_rp.kinds.backhoe.linkage import ArmAngles, Linkage, Tip, Vector, wrap
 from tms_rp.reasons import (
     ClearanceCut,
     JointBroken,
@@ -34,7 +34,6 @@ CURLED = 1.7  # rad, bucket joint that holds the soil
 CLEAR_ARM = 0.1  # rad, arm curls in by this much when the bucket closes or opens
 CLEAR_BOOM = -0.15  # rad, boom rises by this much when the bucket opens
 EMPTY = 1e-3  # a shorter quaternion counts as not filled in; others are brought to the length 1, as MoveIt does
-OUT_OF_PLANE = 0.05  # rad, how far an orientation may point out of the arm's plane
 
 
 class Backhoe:
@@ -60,7 +59,7 @@ class Backhoe:
         targets: list[ArmAngles] = []
         for values in goal.joints:
             targets.append(self._joints(now, targets, values))
-        for tip in (*(self._link_tip(link) for link in goal.links), *(_tip(tip) for tip in goal.tips)):
+        for tip in (*(self._link_tip(link, goal.aside) for link in goal.links), *(_tip(tip) for tip in goal.tips)):
             targets.append(_short_way(targets[-1] if targets else now, self.reach(tip)))
         return Moves(tuple(targets))
 
@@ -103,6 +102,13 @@ class Backhoe:
             raise SubtaskFailed(PointOutOfRange(Point(*tip), broken))
         return pose
 
+    def tool(self, now: Angles) -> tuple[Vector, geometry.Quaternion]:
+        """Pose of bucket_end_link in base_link: position [m] and orientation."""
+        pose = ArmAngles(*now)
+        tip = self.linkage.tip(pose)
+        turn = geometry.product(geometry.about("z", pose.swing), geometry.about("y", tip.theta_w + self.linkage.level))
+        return (tip.x, tip.y, tip.z), turn
+
     def _search(self, tip: Tip) -> tuple[ArmAngles, float]:
         """Joints for the point with the possible theta_w nearest to the asked one, and that theta_w [rad]."""
         refused: list[SubtaskFailed] = []
@@ -122,7 +128,7 @@ class Backhoe:
         target = ArmAngles(*(kept.get(name, angle) for name, angle in zip(NAMES, now, strict=True)))
         return self._allowed(now, _short_way(before[-1] if before else now, target))
 
-    def _link_tip(self, link: LinkGoal) -> Tip:
+    def _link_tip(self, link: LinkGoal, most: float) -> Tip:
         """The tip that a pose of bucket_end_link asks for; theta_w is its pitch in the plane of the arm."""
         finite("pose_sequence", *vars(link).values())
         turn = link.qx, link.qy, link.qz, link.qw
@@ -131,8 +137,8 @@ class Backhoe:
         x, y, z = geometry.x_axis(geometry.unit(turn))
         swing = self.linkage.swing_to(link.x, link.y)
         out, aside = x * math.cos(swing) + y * math.sin(swing), y * math.cos(swing) - x * math.sin(swing)
-        if abs(aside) > math.sin(OUT_OF_PLANE):
-            raise SubtaskFailed(OutOfPlane(math.asin(max(-1.0, min(1.0, aside))), swing))
+        if abs(angle := math.asin(max(-1.0, min(1.0, aside)))) > most:
+            raise SubtaskFailed(OutOfPlane(angle, swing))
         return Tip(link.x, link.y, link.z, wrap(math.atan2(-z, out) - self.linkage.level))
 
     def _allowed(self, now: ArmAngles, target: ArmAngles) -> ArmAngles:
