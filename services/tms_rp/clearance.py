@@ -64,7 +64,7 @@ class Clearance:
             (i, j) for (i, a), (j, b) in combinations(enumerate(self._own), 2)
             if links.parent.get(a) != b and links.parent.get(b) != a and not {a, b} <= links.moved
         ]  # fmt: skip
-        self._moved = [i for i, link in enumerate(self._own) if link in links.moved]
+        self._moved = [(i, link) for i, link in enumerate(self._own) if link in links.moved]
 
     @contextmanager
     def looking(self, scene: Scene) -> Iterator["View"]:
@@ -87,10 +87,10 @@ class Clearance:
             self._others[key] = _Body(obstacle.name, obstacle.box, 0.0)
         return self._others[key]
 
-    def pairs(self, count: int) -> NDArray[np.int_]:
-        """Numbers of the bodies that must not touch, of `count` in all: pairs x 2."""
-        others = range(len(self._own), count)
-        return np.array([*self._pairs, *((moved, other) for moved in self._moved for other in others)])
+    def pairs(self, scene: Scene) -> NDArray[np.int_]:
+        """Numbers of the bodies that must not touch: pairs x 2."""
+        others = list(enumerate(scene.obstacles, len(self._own)))
+        return np.array([*self._pairs, *((i, j) for i, link in self._moved for j, one in others if one.lets != link)])
 
     def places(self, poses: Array) -> Matrix:
         """Where the boxes of the machine's own bodies are at the poses: N x bodies x 4 x 4."""
@@ -115,7 +115,7 @@ class View:
     def __init__(self, clearance: Clearance, scene: Scene) -> None:
         self._clearance, self.scene = clearance, scene
         self._bodies = clearance.bodies(scene)
-        self._pairs = clearance.pairs(len(self._bodies))
+        self._pairs = clearance.pairs(scene)
         self._half = np.array([body.half for body in self._bodies])
         inner = [body.inner for body in self._bodies[-len(scene.obstacles) :]] if scene.obstacles else []
         self._others = np.array([one.place @ box for one, box in zip(scene.obstacles, inner, strict=True)])

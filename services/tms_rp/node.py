@@ -30,6 +30,7 @@ from tms_rp.kinds import load
 from tms_rp.messages import follow
 from tms_rp.mover import Mover
 from tms_rp.neighbours import Neighbours
+from tms_rp.plan import Plan
 from tms_rp.reasons import (
     Adapted,
     GatewayAway,
@@ -45,7 +46,7 @@ from tms_rp.scene import Scene
 from tms_rp.their_planner import TheirPlanner
 from tms_rp.told_scene import ToldScene
 from tms_rp.trajectory import Trajectory
-from tms_rp.ways import Plan, Ways
+from tms_rp.ways import Ways
 from tms_runtime.app import App
 
 FRESH = 1.0  # s, older joint states are no start for a motion
@@ -184,6 +185,7 @@ class Planner:
                 say(Planned(plan.made.duration), plan.notes)
                 outcome = Outcome.SUCCEEDED
             else:
+                self._planner.moves(plan.moves)
                 outcome = self._resuming.move(goal, plan, again, say)
         except TmsError as error:
             self._app.log.warning("failed", action=action.name, goal=goal.id, reason=error.reason)

@@ -11,7 +11,7 @@ OTHER_POINT = Remedy("goal", "", "Choose another point or another bucket angle")
 INSIDE = Remedy("goal", "", "Choose a target inside the limits")
 OTHER_TARGET = Remedy("goal", "", "Choose another target, or move away first")
 PLAN_AGAIN = Remedy("goal", "", "Plan anew from where the machine is")
-ADD_JOINTS = Remedy("edit_config", "", "Add them under joints: and geometry: of the machine file")
+ADD_JOINTS = Remedy("edit_config", "", "Add them under joints:, geometry: and shapes: of the machine file")
 
 
 # fmt: off
@@ -21,6 +21,8 @@ class Planned(Reason, text="planned: it takes {duration}"): duration: Seconds
 class MoveOf(Reason, text="move {number} of {count}, {percent}"): number: int; count: int; percent: Percent
 class Adapted(Reason, text="{progress} ({notes})"): progress: Reason; notes: tuple[Reason, ...]
 class OtherAngle(Reason, text="bucket angle {chosen} instead of {wanted}"): chosen: Radians; wanted: Radians
+class DragCut(Reason, text="it drags {drag} instead of {wanted}: the arm gets no further"):
+    drag: Metres; wanted: Metres
 class ClearanceCut(Reason, text="{joint} moves clear to its limit {limit} only"): joint: str; limit: Radians
 class Around(Reason, text="{way}, as {why}"): way: Reason; why: Reason
 class LiftSwingLower(Reason, text="it lifts, swings and lowers"): pass
@@ -66,7 +68,11 @@ class JointBroken(Reason, text="{joint} {why}"): joint: str; why: Reason
 class OutOfRange(Reason, text="{broken}", action=INSIDE): broken: tuple[Reason, ...]
 class PointOutOfRange(Reason, text="{point} needs {broken}", action=OTHER_POINT):
     point: Reason; broken: tuple[Reason, ...]
+class DigUnfit(Reason, text="depth {depth} must be above 0, drag {drag} and lift {lift} not below",
+    action=RECORDS): depth: Metres; drag: Metres; lift: Metres
 class NoAngleDigs(Reason, text="no bucket angle from 0 to pi digs there: {why}"): why: Reason
+class WouldSpill(Reason, text="soil would fall out on the way to {point}: the bucket is {tilt} from level there",
+    action=NEARER): point: Reason; tilt: Radians
 class Collision(Reason, text="{first} would touch {second} after {seconds}, {depth} deep at ({x}, {y}, {z})",
     action=OTHER_TARGET):
     first: Reason; second: Reason; seconds: Seconds; depth: Metres; x: Metres; y: Metres; z: Metres

@@ -20,13 +20,14 @@ GROUND = Box(min=(-15.0, -15.0, -3.0), max=(15.0, 15.0, 0.0))
 class Obstacle:
     """A body that stands: its name in reasons, its box, the place of the frame of that box in our base_link.
 
-    `age`: how long ago [s] it was told to be there.
+    `age`: how long ago [s] it was told to be there. `lets`: our link that may be in it.
     """
 
     name: Reason
     box: Box
     place: Matrix
     age: float = 0.0
+    lets: str = ""
 
     def grown(self, by: float) -> "Obstacle":
         """The same, larger by `by` [m] on each side: as far as it may have moved since it was told."""
