@@ -6,13 +6,14 @@ from dataclasses import dataclass, replace
 from tms_config.models import MachineModel
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
-from tms_rp.clearance import Clearance, Nearest, View
+from tms_rp.clearance import Clearance
 from tms_rp.kind import Angles, MachineKind, Moves, Way
 from tms_rp.plans import one_trajectory, scaled
 from tms_rp.reasons import Around, Collision, NoWayRound, PathBlocked, Searched, SlowlyOut
 from tms_rp.sampling import search
 from tms_rp.scene import Scene
 from tms_rp.trajectory import Joints, Trajectory, trajectory
+from tms_rp.view import Nearest, View
 
 SLOW = 0.25  # share of the limits with which an arm comes out of something
 

@@ -100,7 +100,7 @@ def test_looking_again_makes_no_new_bodies(monkeypatch: pytest.MonkeyPatch) -> N
     """Each of them leaks: 80 KB a task."""
     clearance, made = Clearance(MODEL), move(RIGHT, FRONT)
     clearance.check(made, truck(40.0, 0.0))
-    monkeypatch.setattr("tms_rp.clearance.fcl.CollisionObject", None)
+    monkeypatch.setattr("tms_rp.bodies.fcl.CollisionObject", None)
     clearance.check(made, truck(50.0, 0.0))
     with pytest.raises(SubtaskFailed, match="of ic120 after"):
         clearance.check(move(LOW_RIGHT, LOW_FRONT), truck(8.0, 0.0))

@@ -1,0 +1,130 @@
+"""Surfaces of triangles: those that records tell, simplified within a budget, and those of round bodies.
+
+Of a simplified one it is known how far it is off at most. That is why its corners are joined cell by cell (J. Rossignac
+and P. Borrel, 1993) and not edge by edge, as libraries do it: they look better, and bound nothing.
+"""
+
+import math
+import zlib
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tms_config.models import Box
+from tms_rp.links import Array
+
+BUDGET = 2000  # triangles of a surface that is planned with: half a megabyte
+FINER = 1.2  # cells grow by this factor until the budget is met
+SIDES = 24  # of a body that is round
+THIN = 1e-3  # m, breadth of a triangle in place of a line
+
+Faces = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Corners (N x 3, m), triangles of their numbers (M x 3), and how far the surface is off the true one at most [m]."""
+
+    vertices: Array
+    faces: Faces
+    off: float = 0.0
+
+    @cached_property
+    def key(self) -> int:
+        """The same for the same surface."""
+        return zlib.crc32(self.faces.tobytes(), zlib.crc32(np.round(self.vertices, 3).tobytes()))
+
+    @cached_property
+    def box(self) -> Box:
+        """A box around the true surface."""
+        used = self.vertices[np.unique(self.faces)]
+        low, high = used.min(axis=0) - self.off, used.max(axis=0) + self.off
+        return Box(min=tuple(map(float, low)), max=tuple(map(float, high)))
+
+
+def simplified(vertices: Array, faces: Faces, budget: int = BUDGET) -> Mesh:
+    """The same surface, or one of at most so many triangles."""
+    if len(faces) <= budget:
+        return Mesh(vertices, faces)
+    corners = vertices[faces]
+    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum() / 2
+    span = float(np.ptp(vertices, axis=0).max())
+    cell = max(math.sqrt(2 * area / budget), span / budget)
+    while len((found := _joined(vertices, faces, cell)).faces) > budget:
+        cell *= FINER
+    return found
+
+
+def _joined(vertices: Array, faces: Faces, cell: float) -> Mesh:
+    """The surface with one corner, their middle, for all in a cell."""
+    places = np.floor((vertices - vertices.min(axis=0)) / cell).astype(np.int64)
+    rows = places.max(axis=0) + 1
+    _, group, counts = np.unique(np.ravel_multi_index(tuple(places.T), tuple(rows)), return_inverse=True,
+                                 return_counts=True)  # fmt: skip
+    middles = np.stack([np.bincount(group, one) for one in vertices.T], axis=1) / counts[:, None]
+    off = float(np.linalg.norm(vertices - middles[group], axis=1).max())
+    sorted_faces = np.sort(group[faces], axis=1)
+    flat = (np.diff(sorted_faces, axis=1) == 0).any(axis=1)
+    whole = _unique(sorted_faces[~flat])
+    return _with_lines(middles, whole, _lines(sorted_faces[flat], whole), off)
+
+
+def _lines(flat: Faces, whole: Faces) -> Faces:
+    """Lines to which triangles have shrunk, without those that are edges of triangles: N x 2."""
+    ends = flat[:, [0, 2]]
+    ends = ends[ends[:, 0] != ends[:, 1]]
+    edges = {tuple(edge) for pair in ((0, 1), (1, 2), (0, 2)) for edge in whole[:, pair].tolist()}
+    left = [one for one in _unique(ends).tolist() if tuple(one) not in edges]
+    return np.array(left, dtype=np.int64).reshape(-1, 2)
+
+
+def _unique(rows: Faces) -> Faces:
+    found: Faces = np.unique(rows, axis=0)
+    return found
+
+
+def _with_lines(vertices: Array, faces: Faces, lines: Faces, off: float) -> Mesh:
+    """Thin triangles in place of lines: collision checkers know no lines."""
+    across = np.eye(3)[np.abs(vertices[lines[:, 1]] - vertices[lines[:, 0]]).argmin(axis=1)]
+    added = len(vertices) + np.arange(len(lines))
+    thin = np.column_stack([lines, added])
+    return Mesh(np.concatenate([vertices, vertices[lines[:, 1]] + THIN * across]), np.concatenate([faces, thin]), off)
+
+
+def cylinder(height: float, radius: float) -> Mesh:
+    """Around a cylinder along z, its centre in the origin [m]."""
+    return _tower([(-height / 2, radius), (height / 2, radius)])
+
+
+def cone(height: float, radius: float) -> Mesh:
+    """Around a cone that points along z, its origin half way up [m]."""
+    return _tower([(-height / 2, radius), (height / 2, 0.0)])
+
+
+def sphere(radius: float) -> Mesh:
+    """Around a sphere [m]: rings of which each plane between two touches it."""
+    half = math.pi / SIDES
+    turns = [-math.pi / 2 + half + i * 2 * half for i in range(SIDES // 2)]
+    outer = radius / math.cos(half)
+    return _tower([(outer * math.sin(turn), outer * math.cos(turn)) for turn in turns])
+
+
+def _tower(rings: list[tuple[float, float]]) -> Mesh:
+    """A body of rings around z, from below: height and radius [m] of each; the sides lie outside of round ones."""
+    turns = np.arange(SIDES) * math.tau / SIDES
+    outer = 1 / math.cos(math.pi / SIDES)
+    levels = [
+        np.column_stack([outer * r * np.cos(turns), outer * r * np.sin(turns), np.full(SIDES, z)]) for z, r in rings
+    ]
+    ends = np.array([[0.0, 0.0, rings[0][0]], [0.0, 0.0, rings[-1][0]]])
+    bottom, top = len(rings) * SIDES, len(rings) * SIDES + 1
+    here, after = np.arange(SIDES), (np.arange(SIDES) + 1) % SIDES
+    faces = [np.column_stack([np.full(SIDES, bottom), after, here])]
+    for level in range(len(rings) - 1):
+        low, high = level * SIDES, (level + 1) * SIDES
+        faces += [np.column_stack([low + here, low + after, high + here])]
+        faces += [np.column_stack([low + after, high + after, high + here])]
+    faces += [np.column_stack([np.full(SIDES, top), bottom - SIDES + here, bottom - SIDES + after])]
+    return Mesh(np.concatenate([*levels, ends]), np.concatenate(faces))
