@@ -1,4 +1,4 @@
-"""Sites for tracks, from a seed: machines and areas that stand around on 100 m x 100 m, a start and a goal among them."""
+"""Sites for tracks, from a seed: machines and areas on 100 m x 100 m, and poses among them."""
 
 import math
 import random

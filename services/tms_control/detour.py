@@ -2,7 +2,8 @@
 
 Else it looks for another of the planner's words (planner.py) that is free, at last from poses that a search over a
 lattice reaches, and straight into the goal from some metres before or behind it: where machines stand close, there is
-no room to turn. A way that was found so is shortened by the words between its poses. The same question has the same answer.
+no room to turn. A way that was found so is shortened by the words between its poses. The same question has the same
+answer.
 """
 
 import math
@@ -33,7 +34,7 @@ class Question:
     pace: Pace
     pivot: float
     outline: Outline
-    ground: Ground = Ground()
+    ground: Ground
 
     def fastest(self) -> Plan | None:
         """The fastest path of all, if it is free."""

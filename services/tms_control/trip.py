@@ -1,9 +1,9 @@
 """One goal of tracks: drives to poses or along a told path, and judges how it goes. Pure logic.
 
 The machine stands before a way is planned, and stands again before it is measured whether it has arrived. If it has
-not, the rest is planned anew. Where the fastest way is not free it goes on to stand, and asks for another one: to search
-one takes longer than a step. What comes into the way while it drives stops it; then the rest is planned anew, a few
-times. Times are seconds of the machine's clock.
+not, the rest is planned anew. Where the fastest way is not free it goes on to stand, and asks for another one: to
+search one takes longer than a step. What comes into the way while it drives stops it; then the rest is planned anew, a
+few times. Times are seconds of the machine's clock.
 """
 
 from collections.abc import Sequence

@@ -90,7 +90,7 @@ class WayCheck:
 
 
 def blocked(ground: Ground, outline: Outline, coming: Sequence[Piece]) -> Contact | None:
-    """What stands where a machine drives next, itself, without what it may have moved; not what is that near already."""
+    """What stands where a machine drives next, as it was told; not what is that near already."""
     if not coming:
         return None
     gaps = [float(body.gaps(outline, array(coming[0].start))[0]) for body in ground.bodies]

@@ -1,8 +1,8 @@
 """Bodies as FCL compares them: boxes and surfaces of triangles.
 
-Coal, its successor, was dropped: it brings boost, assimp and octomap, ten times the size, for the same work. FCL's Python
-binding leaks 32 bytes with every collision object (it frees the memory without the C++ destructor), and a surface for
-ever: so each body is one object for ever, which is moved.
+Coal, its successor, was dropped: it brings boost, assimp and octomap, ten times the size, for the same work. FCL's
+Python binding leaks 32 bytes with every collision object (it frees the memory without the C++ destructor): so each body
+is one object for ever, which is moved.
 """
 
 from functools import cached_property
@@ -38,7 +38,7 @@ class Surfaces:
 
 
 class Body:
-    """A box, or a surface in a box: its name in reasons, its centre in its frame, half of its size without and with padding.
+    """A box, or what a surface lies in: its name in reasons, its centre in its frame, half of its size [m].
 
     `slack`: what comes nearer to a surface than this [m] touches it.
     """

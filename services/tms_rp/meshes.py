@@ -25,7 +25,7 @@ Faces = NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """Corners (N x 3, m), triangles of their numbers (M x 3), and how far the surface is off the true one at most [m]."""
+    """Corners (N x 3, m), triangles of their numbers (M x 3), and how far it is off the true surface at most [m]."""
 
     vertices: Array
     faces: Faces

@@ -98,7 +98,8 @@ class MeshEmpty(Reason, text="its surface has no corners or no triangles"): pass
 class MeshNotFinite(Reason, text="a value of its surface is not a number"): pass
 class MeshCorners(Reason, text="its triangles are not three numbers each of its {corners} corners"): corners: int
 class MeshLarge(Reason, text="its surface has {triangles} triangles: {limit} at most"): triangles: int; limit: int
-class MeshSimplified(Reason, text="the surface of {record} is planned with as {kept} of {triangles} triangles, up to {off} off"):
+class MeshSimplified(Reason,
+    text="the surface of {record} is planned with as {kept} of {triangles} triangles, up to {off} off"):
     record: str; triangles: int; kept: int; off: Metres
 class NamesUnfit(Reason, text="{field} is no list of names"): field: str
 class NoSuchObstacle(Reason, text="it names the record '{named}', which is not there"): named: str

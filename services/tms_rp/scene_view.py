@@ -24,7 +24,7 @@ Point = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Shown:
-    """A body: its centre in base_link, its sides [m], what the planner adds on each side [m], its age [s], its surface."""
+    """A body: centre in base_link, sides [m], what the planner adds on each side [m], age [s], surface."""
 
     kind: str
     name: Reason
@@ -88,7 +88,7 @@ def _area(record: str, told: Mapping[str, Value]) -> list[Area]:
 
 
 def way_of_tip(model: MachineModel, made: Trajectory) -> list[Point]:
-    """Some places of the tip on a trajectory, in base_link: the origin of the frame that is last in the machine file."""
+    """Some places of the tip on a trajectory, in base_link: the origin of the last frame of the machine file."""
     count = len(made.samples)
     chosen = sorted({round(i * (count - 1) / (WAY - 1)) for i in range(WAY)})
     last = list(model.geometry.values())[-1]

@@ -1,4 +1,4 @@
-"""Surfaces that records tell: `vertices` x, y, z in turn [m] and `triangles`, three of their numbers in turn, from 0."""
+"""Surfaces that records tell: `vertices`, x, y, z in turn [m], and `triangles`, three numbers of these each, from 0."""
 
 from collections.abc import Mapping
 

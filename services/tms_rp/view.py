@@ -122,6 +122,15 @@ class View:
             return Between(*(self._bodies[i].name for i in self._pairs[pair]))
         return None
 
+    def depths(self, poses: Array) -> Array:
+        """How deep all overlaps at poses are [m, the sum]: N."""
+        places, found = self._places(poses), np.zeros(len(poses))
+        for pose, pair in np.argwhere(self._contacts(places)):
+            i, j = self._pairs[pair]
+            a, b = self._bodies[i].at(places[pose, i]), self._bodies[j].at(places[pose, j])
+            found[pose] += overlap(a, b, self._slack[pair])[0]
+        return found
+
     def check_part(self, made: Trajectory, begin: float, end: float) -> None:
         """Check a trajectory that runs between two times [s]; what touches since its start may go on.
 
