@@ -34,7 +34,7 @@ class Outline:
     def of(cls, footprint: Iterable[Box]) -> "Outline":
         """The rectangle around boxes in base_link; without any, the place alone."""
         boxes = list(footprint)
-        corners = np.array([(*box.min[:2], *box.max[:2]) for box in boxes] or [[0.0] * 4])
+        corners = np.array([(*box.min[:2], *box.max[:2]) for box in boxes] or [(0.0, 0.0, 0.0, 0.0)])
         (back, right), (front, left) = corners[:, :2].min(axis=0), corners[:, 2:].max(axis=0)
         return cls(float(front), float(back), float(left), float(right))
 

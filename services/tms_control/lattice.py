@@ -97,11 +97,11 @@ class Lattice:
         yaws = [yaw + part for yaw, after in pairwise([*self._yaws, self._yaws[0]])
                 for part in (0.0, math.remainder(after - yaw, math.tau) / 2)]  # fmt: skip
         cells = np.flatnonzero(close)
-        free = free.reshape(2 * COUNT, self._cells)
+        flat = free.reshape(2 * COUNT, self._cells)
         for number, yaw in enumerate(yaws):
             poses = np.column_stack([places[cells], np.full(len(cells), self._start.yaw + yaw)])
-            free[number, cells] &= ~self._check.taken(poses)
-        return free.tobytes()
+            flat[number, cells] &= ~self._check.taken(poses)
+        return flat.tobytes()
 
     def _places(self) -> Array:
         """All cells in the map: cells x 2."""

@@ -1,8 +1,7 @@
 """Plans paths of tracks between poses: of all candidates, the one that takes least time.
 
 Candidates are turn on the spot, line, turn; and arc, line, arc (the words of L. E. Dubins, 1957); each of them forward
-and in reverse. Reverse is slower, so that only a short way is taken so. Obstacles are not looked at here: detour.py does
-that.
+and in reverse. Reverse is slower, so that only a short way is taken so. Obstacles do not count here (see detour.py).
 """
 
 import math

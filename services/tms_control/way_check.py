@@ -63,8 +63,7 @@ class WayCheck:
 
     def taken(self, poses: Array) -> Mask:
         """Which poses (N x 3) are too near to something: N."""
-        taken: Mask = self._ground.nearer(self.outline, poses, self._needed).any(axis=1)
-        return taken
+        return np.asarray(self._ground.nearer(self.outline, poses, self._needed).any(axis=1))
 
     def first(self, pieces: Sequence[Piece]) -> Contact | None:
         """Where pieces first do not keep clear."""

@@ -4,7 +4,8 @@ Each of its fields is an area, by its name: the corners of a polygon in the map,
 """
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
+from typing import TypeGuard
 
 from tms_control.ground import Body
 from tms_control.reasons import BlockedArea
@@ -27,11 +28,12 @@ def areas(values: Mapping[str, Value]) -> list[Body]:
 
 
 def _corners(name: str, value: Value) -> tuple[tuple[float, float], ...]:
-    numbers = value if isinstance(value, list) and _finite(value) else []
-    if len(numbers) % 2 or not LEAST <= len(numbers) // 2 <= MOST:
+    numbers = [float(one) for one in value if _finite(one)] if isinstance(value, list) else []
+    complete = isinstance(value, list) and len(numbers) == len(value) and len(numbers) % 2 == 0
+    if not complete or not LEAST <= len(numbers) // 2 <= MOST:
         raise SubtaskFailed(BadRecord(RECORD, AreaUnfit(name, LEAST, MOST)))
-    return tuple((float(x), float(y)) for x, y in zip(numbers[::2], numbers[1::2], strict=True))
+    return tuple(zip(numbers[::2], numbers[1::2], strict=True))
 
 
-def _finite(values: Iterable[object]) -> bool:
-    return all(isinstance(one, (int, float)) and not isinstance(one, bool) and math.isfinite(one) for one in values)
+def _finite(value: object) -> TypeGuard[float]:
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)

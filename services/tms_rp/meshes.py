@@ -41,7 +41,8 @@ class Mesh:
         """A box around the true surface."""
         used = self.vertices[np.unique(self.faces)]
         low, high = used.min(axis=0) - self.off, used.max(axis=0) + self.off
-        return Box(min=tuple(map(float, low)), max=tuple(map(float, high)))
+        (x0, y0, z0), (x1, y1, z1) = low.tolist(), high.tolist()
+        return Box(min=(x0, y0, z0), max=(x1, y1, z1))
 
 
 def simplified(vertices: Array, faces: Faces, budget: int = BUDGET) -> Mesh:

@@ -67,8 +67,9 @@ def areas(records: Mapping[str, Mapping[str, Value]]) -> list[Area]:
     found = []
     for name, values in records.items():
         for waypoint in _documents(values.get("waypoints")):
-            if waypoint.get("type") == "area" and isinstance(waypoint.get("data"), dict):
-                found += _area(name, waypoint["data"])
+            data = waypoint.get("data")
+            if waypoint.get("type") == "area" and isinstance(data, dict):
+                found += _area(name, data)
         for point in _documents(values.get("excavatable_points")):
             found += _area(name, {"size_x": 0.0, "size_y": 0.0, "size_z": 0.0, **point})
     return found

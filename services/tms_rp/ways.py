@@ -93,7 +93,8 @@ class Ways:
     def _parted(self, now: Angles, scene: Scene) -> list[Angles]:
         """Where a way around begins: where the arm is, and, if it seems to be in something, where it is out of that."""
         joints = [self._model.joints[name] for name in self._kind.joints]
-        bounds = [(-math.inf if one.min is None else one.min, math.inf if one.max is None else one.max) for one in joints]
+        least = [-math.inf if one.min is None else one.min for one in joints]
+        most = [math.inf if one.max is None else one.max for one in joints]
 
         def depths(poses: Array) -> Array:
             return view.depths(np.array([self._all_joints(tuple(pose)) for pose in poses]))
@@ -101,7 +102,7 @@ class Ways:
         with self._touching.looking(scene) as view:
             if view.overlap(self._all_joints(now)) is None:
                 return [now]
-            out = way_out(depths, now, bounds)
+            out = way_out(depths, now, list(zip(least, most, strict=True)))
         return [now] if out is None else [now, out]
 
     def blocked(self, made: Trajectory, seconds: float, scene: Scene) -> Reason | None:
