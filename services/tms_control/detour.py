@@ -111,7 +111,7 @@ class _Connect:
         """The fastest one that is free."""
         found = [[*word, *([line] if line.length > SAME_PLACE else [])] for line in self._lines
                  for word in _fast(pose, line.start, self._pace)]  # fmt: skip
-        return next((one for one in sorted(found, key=self._pace.total) if self._check.free(one)), None)
+        return self._check.first_free(sorted(found, key=self._pace.total))
 
 
 def _fast(start: Pose, goal: Pose, pace: Pace) -> list[list[Piece]]:
@@ -136,8 +136,7 @@ def _shortened(pieces: Sequence[Piece], pace: Pace, check: WayCheck) -> list[Pie
     for number in range(1, len(poses)):
         ways = [[*best[number - 1], joined[number - 1]]]
         for earlier in range(max(0, number - AT_ONCE), number - 1):
-            fast = _fast(poses[earlier], poses[number], pace)
-            word = next((one for one in fast if check.free(one)), None)
+            word = check.first_free(_fast(poses[earlier], poses[number], pace))
             if word is not None:
                 ways.append([*best[earlier], *word])
         best.append(min(ways, key=pace.total))

@@ -4,6 +4,7 @@ A machine is the rectangle around its footprint, a body the area inside a line o
 Heights do not count.
 """
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
@@ -52,6 +53,11 @@ class Outline:
         """Of the rectangle."""
         middle: Array = self.corners.mean(axis=0)
         return middle
+
+    @cached_property
+    def half(self) -> float:
+        """Half of its diagonal [m]."""
+        return math.hypot(self.front - self.back, self.left - self.right) / 2
 
     @cached_property
     def reach(self) -> float:
@@ -105,9 +111,12 @@ class Ground:
     def nearer(self, outline: Outline, poses: Array, needed: Array) -> Mask:
         """At which poses (N x 3) a machine is nearer to which body than `needed` [m, by body]: N x bodies."""
         found = np.zeros((len(poses), len(self.bodies)), dtype=bool)
+        c, s = np.cos(poses[:, 2]), np.sin(poses[:, 2])
+        (x, y), half = outline.centre, outline.half
+        middles = poses[:, :2] + np.column_stack([c * x - s * y, s * x + c * y])
         for number, body in enumerate(self.bodies):
             centre, radius = body.circle
-            close = np.flatnonzero(np.hypot(*(poses[:, :2] - centre).T) < radius + outline.reach + needed[number])
+            close = np.flatnonzero(((middles - centre) ** 2).sum(axis=1) < (radius + half + needed[number]) ** 2)
             for part in np.array_split(close, 1 + len(close) * len(body.corners) // AT_ONCE):
                 found[part, number] = body.gaps(outline, poses[part]) < needed[number]
         return found

@@ -90,17 +90,12 @@ class Lattice:
         """Whether each cell is free, in each heading and half way to the next: 2 x headings x cells."""
         free = np.zeros((2 * COUNT, self._rows, self._columns), dtype=bool)
         free[:, BORDER:-BORDER, BORDER:-BORDER] = True
-        places = self._places()
-        close = np.zeros(len(places), dtype=bool)
-        for centre, radius in self._check.near(self._check.outline.reach):
-            close |= np.hypot(*(places - centre).T) < radius
-        yaws = [yaw + part for yaw, after in pairwise([*self._yaws, self._yaws[0]])
-                for part in (0.0, math.remainder(after - yaw, math.tau) / 2)]  # fmt: skip
-        cells = np.flatnonzero(close)
-        flat = free.reshape(2 * COUNT, self._cells)
-        for number, yaw in enumerate(yaws):
-            poses = np.column_stack([places[cells], np.full(len(cells), self._start.yaw + yaw)])
-            flat[number, cells] &= ~self._check.taken(poses)
+        flat, places = free.reshape(2 * COUNT, self._cells), self._places()
+        yaws = self._start.yaw + np.array([yaw + part for yaw, after in pairwise([*self._yaws, self._yaws[0]])
+                                           for part in (0.0, math.remainder(after - yaw, math.tau) / 2)])  # fmt: skip
+        for cells, check in self._check.near(places):
+            poses = np.column_stack([np.tile(places[cells], (len(yaws), 1)), np.repeat(yaws, len(cells))])
+            flat[:, cells] &= ~check.taken(poses).reshape(len(yaws), len(cells))
         return flat.tobytes()
 
     def _places(self) -> Array:

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tms_control.ground import Array, Ground, Mask, Outline
 from tms_control.path import Piece, Pose
@@ -61,6 +62,15 @@ class WayCheck:
         """Whether pieces keep clear."""
         return not self.taken(np.concatenate([self._poses(piece) for piece in pieces])).any() if pieces else True
 
+    def first_free(self, options: Sequence[list[Piece]]) -> list[Piece] | None:
+        """The first of some paths that keeps clear; all are looked at at once."""
+        parts = [(number, self._poses(piece)) for number, pieces in enumerate(options) for piece in pieces]
+        if not parts:
+            return options[0] if options else None
+        owners = np.concatenate([np.full(len(poses), number) for number, poses in parts])
+        bad = set(np.unique(owners[self.taken(np.concatenate([poses for _, poses in parts]))]).tolist())
+        return next((pieces for number, pieces in enumerate(options) if number not in bad), None)
+
     def taken(self, poses: Array) -> Mask:
         """Which poses (N x 3) are too near to something: N."""
         return np.asarray(self._ground.nearer(self.outline, poses, self._needed).any(axis=1))
@@ -79,10 +89,14 @@ class WayCheck:
             away += piece.length
         return None
 
-    def near(self, reach: float) -> list[tuple[Array, float]]:
-        """Circles outside of which a place is free, in any heading, for a machine of that reach: centre, radius [m]."""
-        circles = zip((body.circle for body in self._ground.bodies), self._needed, strict=True)
-        return [(centre, radius + reach + float(least)) for (centre, radius), least in circles]
+    def near(self, places: Array) -> list[tuple[NDArray[np.int_], "WayCheck"]]:
+        """By body: numbers of the places (N x 2) where it may be too near, and a check of that body alone."""
+        found = []
+        for body, least in zip(self._ground.bodies, self._needed, strict=True):
+            centre, radius = body.circle
+            close = ((places - centre) ** 2).sum(axis=1) < (radius + self.outline.reach + least) ** 2
+            found.append((np.flatnonzero(close), WayCheck(Ground((body,)), self.outline, np.array([least]))))
+        return found
 
     def _poses(self, piece: Piece) -> Array:
         return along(piece, self._step, self.outline.reach)

@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from tms_config.models import Box
 from tms_rp.links import Array
 
-BUDGET = 2000  # triangles of a surface that is planned with: half a megabyte
+BUDGET = 10_000  # triangles of a surface that is planned with: five megabytes
 FINER = 1.2  # cells grow by this factor until the budget is met
 SIDES = 24  # of a body that is round
-THIN = 1e-3  # m, breadth of a triangle in place of a line
+THIN = 1e-3  # m, breadth of a triangle in place of a line or a point
 
 Faces = NDArray[np.int64]
 
@@ -49,8 +49,7 @@ def simplified(vertices: Array, faces: Faces, budget: int = BUDGET) -> Mesh:
     """The same surface, or one of at most so many triangles."""
     if len(faces) <= budget:
         return Mesh(vertices, faces)
-    corners = vertices[faces]
-    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum() / 2
+    area = float(_areas(vertices[faces]).sum())
     span = float(np.ptp(vertices, axis=0).max())
     cell = max(math.sqrt(2 * area / budget), span / budget)
     while len((found := _joined(vertices, faces, cell)).faces) > budget:
@@ -73,11 +72,11 @@ def _joined(vertices: Array, faces: Faces, cell: float) -> Mesh:
 
 
 def _lines(flat: Faces, whole: Faces) -> Faces:
-    """Lines to which triangles have shrunk, without those that are edges of triangles: N x 2."""
-    ends = flat[:, [0, 2]]
-    ends = ends[ends[:, 0] != ends[:, 1]]
+    """Lines and points to which triangles have shrunk, without those that are part of others: ends, N x 2."""
+    ends = _unique(flat[:, [0, 2]])
     edges = {tuple(edge) for pair in ((0, 1), (1, 2), (0, 2)) for edge in whole[:, pair].tolist()}
-    left = [one for one in _unique(ends).tolist() if tuple(one) not in edges]
+    edges |= {(end, end) for edge in (*edges, *map(tuple, ends[ends[:, 0] != ends[:, 1]].tolist())) for end in edge}
+    left = [one for one in ends.tolist() if tuple(one) not in edges]
     return np.array(left, dtype=np.int64).reshape(-1, 2)
 
 
@@ -87,11 +86,15 @@ def _unique(rows: Faces) -> Faces:
 
 
 def _with_lines(vertices: Array, faces: Faces, lines: Faces, off: float) -> Mesh:
-    """Thin triangles in place of lines: collision checkers know no lines."""
-    across = np.eye(3)[np.abs(vertices[lines[:, 1]] - vertices[lines[:, 0]]).argmin(axis=1)]
-    added = len(vertices) + np.arange(len(lines))
-    thin = np.column_stack([lines, added])
-    return Mesh(np.concatenate([vertices, vertices[lines[:, 1]] + THIN * across]), np.concatenate([faces, thin]), off)
+    """Thin triangles in place of lines and points: collision checkers know no lines."""
+    if not len(lines):
+        return Mesh(vertices, faces, off)
+    begin, end = vertices[lines[:, 0]], vertices[lines[:, 1]]
+    axis = np.abs(end - begin).argmin(axis=1)
+    beside = [end + THIN * np.eye(3)[one] for one in (axis, (axis + 1) % 3)]
+    numbers = len(vertices) + np.arange(2 * len(lines)).reshape(2, -1)
+    thin = np.column_stack([lines[:, 0], *numbers])
+    return Mesh(np.concatenate([vertices, *beside]), np.concatenate([faces, thin]), off + THIN)
 
 
 def cylinder(height: float, radius: float) -> Mesh:
@@ -128,4 +131,11 @@ def _tower(rings: list[tuple[float, float]]) -> Mesh:
         faces += [np.column_stack([low + here, low + after, high + here])]
         faces += [np.column_stack([low + after, high + after, high + here])]
     faces += [np.column_stack([np.full(SIDES, top), bottom - SIDES + here, bottom - SIDES + after])]
-    return Mesh(np.concatenate([*levels, ends]), np.concatenate(faces))
+    vertices, all_faces = np.concatenate([*levels, ends]), np.concatenate(faces)
+    return Mesh(vertices, all_faces[_areas(vertices[all_faces]) > 0])
+
+
+def _areas(corners: Array) -> Array:
+    """Of triangles (N x 3 x 3) [m2]."""
+    doubled: Array = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    return doubled / 2
