@@ -102,6 +102,7 @@ class Ways:
         with self._touching.looking(scene) as view:
             if view.overlap(self._all_joints(now)) is None:
                 return [now]
+        with self._clearance.looking(scene) as view:
             out = way_out(depths, now, list(zip(least, most, strict=True)))
         return [now] if out is None else [now, out]
 
