@@ -1,5 +1,6 @@
 """Why a planner makes no trajectory, how far a motion is, and why it ended."""
 
+from tms_control.reasons import PathBlocked as PathBlocked
 from tms_reason.quantities import Metres, Moments, Number, Percent, Radians, Seconds
 from tms_reason.reason import Reason
 from tms_reason.remedies import INSPECT, PROCESSES, RECORDS, Remedy
@@ -76,7 +77,6 @@ class WouldSpill(Reason, text="soil would fall out on the way to {point}: the bu
 class Collision(Reason, text="{first} would touch {second} after {seconds}, {depth} deep at ({x}, {y}, {z})",
     action=OTHER_TARGET):
     first: Reason; second: Reason; seconds: Seconds; depth: Metres; x: Metres; y: Metres; z: Metres
-class PathBlocked(Reason, text="{by} has come into the way: {why}", action=INSPECT): by: Reason; why: Reason
 class NoWayRound(Reason, text="{why}; no way round was found", action=OTHER_TARGET): why: Reason
 class Part(Reason, text="{link}"): link: str
 class Ground(Reason, text="the ground"): pass
@@ -110,6 +110,18 @@ class MotionFailed(Reason, text="{why}", details="{name} {outcome}"): why: Reaso
 
 class Told(Reason, text="{record}"): record: str
 class NoShape(Reason, text="it has no dimensions, and there is no machine '{named}'"): named: str
+class SizesUnfit(Reason, text="it has {told} dimensions, not {needed}"): needed: int; told: int
+class MeshEmpty(Reason, text="its surface has no corners or no triangles"): pass
+class MeshNotFinite(Reason, text="a value of its surface is not a number"): pass
+class MeshCorners(Reason, text="its triangles are not three numbers each of its {corners} corners"): corners: int
+class MeshLarge(Reason, text="its surface has {triangles} triangles: {limit} at most"): triangles: int; limit: int
+class MeshSimplified(Reason,
+    text="the surface of {record} is planned with as {kept} of {triangles} triangles, up to {off} off"):
+    record: str; triangles: int; kept: int; off: Metres
+class NamesUnfit(Reason, text="{field} is no list of names"): field: str
+class NoSuchObstacle(Reason, text="it names the record '{named}', which is not there"): named: str
+class PaddingUnfit(Reason, text="its padding of '{link}' is none of a link of the machine, from 0 to {limit}"):
+    link: str; limit: Metres
 class SceneRecordOld(Reason, text="record {record} is {age} old: nobody knows what stands there now", action=RECORDS):
     record: str; age: Seconds
 class SceneUnread(Reason, text="the scene records are as they were read last: {why}"): why: Reason
