@@ -213,6 +213,7 @@ class SiteFile(Settings):
     services: dict[str, Service]
     machines: dict[Annotated[str, Field(pattern=NAME)], MachineUse] = Field(default_factory=dict)
     peers: dict[str, Peer] = Field(default_factory=dict)  # machine -> nodes of the C++ system beside ours
+    ground: dict[str, Any] | None = None  # tms_ground/settings.py reads it
 
     @field_validator("services", mode="before")
     @classmethod

@@ -1,0 +1,95 @@
+"""Point clouds as LAS and LAZ, read by laspy and lazrs in pieces: a cloud of any size needs the same memory."""
+
+import struct
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import laspy
+import lazrs
+import numpy as np
+from laspy.errors import LaspyException
+
+from tms_ground.files.samples import Places
+from tms_ground.reasons import CloudEmpty, GroundFileDamaged
+from tms_reason.errors import TmsError
+from tms_soil.surface import Array, Bounds
+
+PIECE = 500_000  # points: about 60 MB with all their fields
+UNREADABLE = (LaspyException, lazrs.LazrsError, OSError, ValueError, struct.error)
+GROUND, NOISE = 2, (7, 18)  # classes of points, ASPRS LAS 1.4-R15, table 17
+
+
+@dataclass(frozen=True)
+class Cloud:
+    """A file of points; a cell has the mean height of its points.
+
+    Where a cell has points that are classified as ground, only these count, so that machines and trees do not.
+    """
+
+    path: Path
+    epsg: int | None
+    bounds: Bounds
+
+    def over(self, x0: float, y0: float, cell: float, shape: tuple[int, int], places: Places) -> Array:
+        """Mean heights of the points in each cell.
+
+        Raises:
+            TmsError: the file ends early, or is damaged.
+        """
+        of_ground, of_all = _Means(shape), _Means(shape)
+        try:
+            with laspy.open(self.path) as reader:
+                for points in reader.chunk_iterator(PIECE):
+                    x, y = places.to_map(np.asarray(points.x), np.asarray(points.y))
+                    at = _cells(x, y, x0, y0, cell, shape)
+                    z, kind = np.asarray(points.z), np.asarray(points.classification)
+                    valid = (at >= 0) & ~np.isin(kind, NOISE)
+                    of_all.add(at[valid], z[valid])
+                    ground = valid & (kind == GROUND)
+                    of_ground.add(at[ground], z[ground])
+        except UNREADABLE as error:
+            raise TmsError(GroundFileDamaged(str(error))) from error
+        return np.where(of_ground.count > 0, of_ground.means(), of_all.means())
+
+
+class _Means:
+    """Means by cell of numbers that come in pieces."""
+
+    def __init__(self, shape: tuple[int, int]) -> None:
+        self.count, self._sum = np.zeros(shape), np.zeros(shape)
+
+    def add(self, at: Any, z: Array) -> None:
+        """Numbers, and which cell (counted along rows) each belongs to."""
+        self.count += np.bincount(at, minlength=self.count.size).reshape(self.count.shape)
+        self._sum += np.bincount(at, weights=z, minlength=self.count.size).reshape(self.count.shape)
+
+    def means(self) -> Array:
+        """NaN where nothing came."""
+        return np.where(self.count > 0, self._sum / np.maximum(self.count, 1), np.nan)
+
+
+def read(path: Path) -> Cloud:
+    """A cloud's head; its points are read later.
+
+    Raises:
+        TmsError: it is no LAS or LAZ, or holds no points.
+    """
+    try:
+        with laspy.open(path) as reader:
+            head = reader.header
+            system = head.parse_crs()
+    except UNREADABLE as error:
+        raise TmsError(GroundFileDamaged(str(error))) from error
+    if not head.point_count:
+        raise TmsError(CloudEmpty())
+    bounds = (float(head.x_min), float(head.y_min), float(head.x_max), float(head.y_max))
+    return Cloud(path, None if system is None else system.to_epsg(), bounds)
+
+
+def _cells(x: Array, y: Array, x0: float, y0: float, cell: float, shape: tuple[int, int]) -> Any:
+    """Which cell each point is in, counted along rows; -1: none."""
+    rows, columns = shape
+    column, row = np.floor((x - x0) / cell), np.floor((y - y0) / cell)
+    there = (column >= 0) & (column < columns) & (row >= 0) & (row < rows)
+    return np.where(there, row * columns + column, -1.0).astype(np.intp)
