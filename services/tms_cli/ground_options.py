@@ -1,23 +1,26 @@
 """Words of `tms ground` that tell a place, an area or a design."""
 
+import math
 import re
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from tms_cli.words import say
-from tms_soil.surface import Pit, Plane, Point, Surface
+
+if TYPE_CHECKING:
+    from tms_soil.surface import Plane, Point, Surface
 
 CORNERS = 3
 
 
-class Polygon(click.ParamType[tuple[Point, ...]]):
+class Polygon(click.ParamType["tuple[Point, ...]"]):
     """Corners of a polygon: `0,0 10,0 10,5`."""
 
     name = "X,Y X,Y X,Y..."
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[Point, ...]:
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> "tuple[Point, ...]":
         """The corners [m]."""
         corners = [tuple(_number(word) for word in corner.split(",")) for corner in str(value).split()]
         found = tuple((one[0], one[1]) for one in corners if len(one) == 2 and None not in one)
@@ -41,13 +44,15 @@ class Slope(click.ParamType[float]):
         return 1.0 / float(fits[1])
 
 
-class Level(click.ParamType[Plane]):
+class Level(click.ParamType["Plane"]):
     """A level plane, `1.5`, or one that rises along x and y: `1.5,0.02,0` (at the origin of `map`)."""
 
     name = "Z[,SX,SY]"
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Plane:
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> "Plane":
         """The plane."""
+        from tms_soil.surface import Plane
+
         if isinstance(value, Plane):
             return value
         numbers = [_number(word) for word in str(value).split(",")]
@@ -56,8 +61,8 @@ class Level(click.ParamType[Plane]):
         return Plane(*(number or 0.0 for number in numbers))
 
 
-def design(plane: Plane | None, pit: tuple[Point, ...] | None, floor: float | None, rim: float | None, slope: float,
-           file: Path | None) -> Surface | Path | None:  # fmt: skip
+def design(plane: "Plane | None", pit: "tuple[Point, ...] | None", floor: float | None, rim: float | None, slope: float,
+           file: Path | None) -> "Surface | Path | None":  # fmt: skip
     """The design that the options tell; a path is still to be read, None: there is none.
 
     Raises:
@@ -66,6 +71,8 @@ def design(plane: Plane | None, pit: tuple[Point, ...] | None, floor: float | No
     if sum(one is not None for one in (plane, pit, file)) > 1:
         raise click.UsageError(say("give one of --plane, --pit and --design"))
     if pit is not None:
+        from tms_soil.surface import Pit
+
         if floor is None or rim is None:
             raise click.UsageError(say("a pit needs --floor and --rim in metres"))
         return Pit(pit, floor, slope, rim)
@@ -74,6 +81,7 @@ def design(plane: Plane | None, pit: tuple[Point, ...] | None, floor: float | No
 
 def _number(word: str) -> float | None:
     try:
-        return float(word)
+        number = float(word)
     except ValueError:
         return None
+    return number if math.isfinite(number) else None

@@ -4,19 +4,22 @@ import csv
 import io
 import json
 import re
-from collections.abc import Callable
+import shutil
+from collections.abc import Callable, Iterator
 from datetime import datetime, timedelta
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import reportlab
 from click.testing import CliRunner, Result
 from PIL import Image
 
 import height_files as files
 from height_files import EAST, LEVEL, NORTH
 from tms_cli.commands import ground, report, work
+from tms_cli.day_report import letters
 from tms_config.clock import utc_now
 from tms_db import store
 from tms_db.cycles import Cycles, checked
@@ -249,8 +252,19 @@ def prose(page: str) -> str:
     return re.sub(r"<style>.*?</style>|<[^>]*>", "\n", page, flags=re.DOTALL)
 
 
+@pytest.fixture
+def fonts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """The folder of the fonts of this PC, which is empty."""
+    folder = tmp_path / "fonts"
+    folder.mkdir()
+    monkeypatch.setattr(letters, "FOLDER", folder)
+    letters.font.cache_clear()
+    yield folder
+    letters.font.cache_clear()
+
+
 def test_a_report_of_today_has_the_change_of_the_ground(
-    tms: Callable[..., Result], shared_db: store.Db, tmp_path: Path
+    tms: Callable[..., Result], shared_db: store.Db, tmp_path: Path, fonts: Path
 ) -> None:
     assert tms(report.command, "--day", "today", "--output", "none.html").exit_code == 0
     assert "No work is recorded" in (tmp_path / "none.html").read_text(encoding="utf-8")
@@ -259,10 +273,15 @@ def test_a_report_of_today_has_the_change_of_the_ground(
     grounds.add(dug(0.4), "after")
     today = utc_now()
     Cycles(shared_db).write([cycle(1, 0, begun_at=today - timedelta(seconds=40), ended_at=today)])
-    for name in ("r.html", "r.pdf"):
+    for name in ("r.html", "r.pdf", "embedded.pdf"):
+        if name == "embedded.pdf":
+            shutil.copy(Path(reportlab.__file__).parent / "fonts" / "Vera.ttf", fonts / "ipaexg.ttf")
+            letters.font.cache_clear()
         done = tms(report.command, "--day", "today", "--language", "ja", "--output", name)
         assert done.exit_code == 0, done.exception
     text = (tmp_path / "r.html").read_text(encoding="utf-8")
     assert "<th>切土</th><td>4.0</td><td>4.0</td>" in text and "data:image/png;base64," in text
     data = (tmp_path / "r.pdf").read_bytes()
     assert data.startswith(b"%PDF") and b"/HeiseiKakuGo-W5" in data and b"/Subtype /Image" in data
+    data = (tmp_path / "embedded.pdf").read_bytes()
+    assert b"/FontFile2" in data and b"/HeiseiKakuGo-W5" not in data

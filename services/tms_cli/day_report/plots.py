@@ -9,29 +9,20 @@ from reportlab.graphics.charts.legends import Legend
 from reportlab.graphics.charts.linecharts import HorizontalLineChart
 from reportlab.graphics.shapes import Drawing, String
 from reportlab.lib.colors import HexColor
-from reportlab.pdfbase import pdfmetrics
-from reportlab.pdfbase.cidfonts import UnicodeCIDFont
 
 from tms_cli.day_report.facts import Facts
+from tms_cli.day_report.letters import font
 from tms_cli.day_report.sections import part_name
 from tms_work.cycle import PARTS
 
-FONT = "HeiseiKakuGo-W5"  # of Adobe's Japanese fonts, which readers of PDF have: nothing is embedded
 WIDTH, HEIGHT = 480, 190  # points
 LEFT, RIGHT, BOTTOM, TOP = 45, 20, 40, 30  # points round a chart
 BAR, LINE, PLAN = HexColor(0x2166AC), HexColor(0x333333), HexColor(0xB2182B)
 PART_COLOURS = [HexColor(one) for one in (0x2166AC, 0x67A9CF, 0x1B7837, 0x7FBF7B, 0xF1A340, 0xB2182B)]
 
 
-def register_font() -> None:
-    """Make the Japanese font known, which has Latin letters, too."""
-    if FONT not in pdfmetrics.getRegisteredFontNames():
-        pdfmetrics.registerFont(UnicodeCIDFont(FONT))
-
-
 def plots(facts: Facts) -> list[Drawing]:
     """All plots of a report; none for a day without work."""
-    register_font()
     found = []
     if facts.hours:
         found.append(_hours(facts))
@@ -75,8 +66,8 @@ def _parts(facts: Facts) -> Drawing:
     chart.categoryAxis.style = "stacked"
     chart.categoryAxis.reverseDirection = 1
     legend = Legend()
-    legend.x, legend.y, legend.fontName, legend.fontSize, legend.columnMaximum = LEFT, 16, FONT, 7, 1
-    legend.alignment, legend.deltax, legend.dxTextSpace, legend.boxAnchor = "right", 60, 3, "w"
+    legend.x, legend.y, legend.fontName, legend.fontSize, legend.columnMaximum = LEFT, 16, font(), 7, 1
+    legend.alignment, legend.deltax, legend.dxTextSpace, legend.boxAnchor = "right", 70, 3, "w"
     pairs = []
     for at, (part, colour) in enumerate(zip(PARTS["dig"], PART_COLOURS, strict=True)):
         chart.bars[at].fillColor, chart.bars[at].strokeColor = colour, None
@@ -89,7 +80,7 @@ def _parts(facts: Facts) -> Drawing:
 
 def _drawing(title: str, height: float = HEIGHT) -> Drawing:
     drawing = Drawing(WIDTH, height)
-    drawing.add(String(LEFT, height - 14, title, fontName=FONT, fontSize=9))
+    drawing.add(String(LEFT, height - 14, title, fontName=font(), fontSize=9))
     return drawing
 
 
@@ -99,4 +90,4 @@ def _place(chart: Any, data: Sequence[Sequence[float]], names: Sequence[str], he
     chart.data, chart.categoryAxis.categoryNames = [tuple(line) for line in data], list(names)
     chart.valueAxis.valueMin, chart.valueAxis.valueMax = 0, most * 1.05
     for axis in (chart.categoryAxis, chart.valueAxis):
-        axis.labels.fontName, axis.labels.fontSize = FONT, 7
+        axis.labels.fontName, axis.labels.fontSize = font(), 7

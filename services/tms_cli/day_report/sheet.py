@@ -11,8 +11,9 @@ from reportlab.lib.units import mm
 from reportlab.platypus import Image, KeepTogether, Paragraph, SimpleDocTemplate, Spacer, Table, TableStyle
 
 from tms_cli.day_report.facts import Facts
+from tms_cli.day_report.letters import font
 from tms_cli.day_report.page import estimate_note, heading, map_note
-from tms_cli.day_report.plots import FONT, plots, register_font
+from tms_cli.day_report.plots import plots
 from tms_cli.day_report.sections import Section, sections
 
 MARGIN = 15 * mm
@@ -23,7 +24,6 @@ REMARKS_HEIGHT = 25 * mm
 
 def render(facts: Facts) -> bytes:
     """The report as PDF."""
-    register_font()
     out = io.BytesIO()
     title = heading(facts)
     sheet = SimpleDocTemplate(
@@ -51,7 +51,7 @@ def _parts(facts: Facts) -> list[Any]:
 
 def _text(words: str, size: float = 9) -> Paragraph:
     style = ParagraphStyle(
-        "text", fontName=FONT, fontSize=size, leading=size * 1.4, spaceBefore=size * 0.6, spaceAfter=size * 0.3,
+        "text", fontName=font(), fontSize=size, leading=size * 1.4, spaceBefore=size * 0.6, spaceAfter=size * 0.3,
         wordWrap="CJK",
     )  # fmt: skip
     return Paragraph(escape(words), style)
@@ -60,7 +60,7 @@ def _text(words: str, size: float = 9) -> Paragraph:
 def _table(section: Section) -> Table:
     table = Table([list(section.head), *(list(row) for row in section.rows)], repeatRows=1, hAlign="LEFT")
     table.setStyle(TableStyle([
-        ("FONT", (0, 0), (-1, -1), FONT, 8),
+        ("FONT", (0, 0), (-1, -1), font(), 8),
         ("GRID", (0, 0), (-1, -1), 0.5, LINES),
         ("BACKGROUND", (0, 0), (-1, 0), HEAD),
         ("BACKGROUND", (0, 0), (0, -1), HEAD),
