@@ -35,34 +35,40 @@ def ascii_grid(path: Path, cell: float = 0.5, **head: object) -> Path:
     return path
 
 
-def geotiff(
-    path: Path, epsg: int = 6677, point: bool = False, unit: int = 9001, scale: bool = True, **save: Any
-) -> Path:
-    cell, (begin, right, top) = 0.5, SIDE
-    x, y = np.meshgrid(np.arange(begin + cell / 2, right, cell), np.arange(begin + cell / 2, top, cell))
+def tiff(path: Path, z: Any, keys: dict[int, int], doubles: dict[int, tuple[float, ...]], **save: Any) -> Path:
+    """Heights with their first row in the south, GeoTIFF's keys, and tags of doubles."""
     tags = TiffImagePlugin.ImageFileDirectory_v2()
-    corner = (0.25, -0.25) if point else (0.0, 0.0)
-    if scale:
-        tags[33550], tags.tagtype[33550] = (cell, cell, 0.0), 12
-        tags[33922] = (0.0, 0.0, 0.0, EAST + begin + corner[0], NORTH + top + corner[1], 0.0)
-        tags.tagtype[33922] = 12
-    keys = [(1024, 1), (1025, 2 if point else 1), (3072, epsg), (3076, unit)]
-    tags[34735] = (1, 1, 0, len(keys), *(word for key, value in keys for word in (key, 0, 1, value)))
-    tags.tagtype[34735] = 3
-    z = (height(x, y) + LEVEL)[::-1].astype(np.float32)
-    z[9, 9] = save.pop("hole", z[9, 9])  # at (2.75, 7.25)
-    tags[42113], tags.tagtype[42113] = "-9999", 2
-    Image.fromarray(z).save(path, "TIFF", tiffinfo=tags, **save)
+    for tag, values in doubles.items():
+        tags[tag], tags.tagtype[tag] = values, 12
+    tags[34735] = (1, 1, 0, len(keys), *(word for key, value in keys.items() for word in (key, 0, 1, value)))
+    tags[42113] = "-9999"
+    tags.tagtype.update({34735: 3, 42113: 2})
+    Image.fromarray(z[::-1].astype(np.float32)).save(path, "TIFF", tiffinfo=tags, **save)
     return path
 
 
-def cloud(path: Path, step: float = 0.25, epsg: int | None = 6677, height_scale: float = 1.0) -> Path:
+def geotiff(
+    path: Path, epsg: int = 6677, point: bool = False, unit: int = 9001, scale: bool = True, hole: float | None = None,
+    **save: Any,
+) -> Path:  # fmt: skip
+    cell, (begin, right, top) = 0.5, SIDE
+    x, y = np.meshgrid(np.arange(begin + cell / 2, right, cell), np.arange(begin + cell / 2, top, cell))
+    half = cell / 2 if point else 0.0
+    corner = (0.0, 0.0, 0.0, EAST + begin + half, NORTH + top - half, 0.0)
+    z = height(x, y) + LEVEL
+    if hole is not None:
+        z[18, 9] = hole  # at (2.75, 7.25)
+    keys = {1024: 1, 1025: 2 if point else 1, 3072: epsg, 3076: unit}
+    return tiff(path, z, keys, {33550: (cell, cell, 0.0), 33922: corner} if scale else {}, **save)
+
+
+def cloud(path: Path, step: float = 0.25, epsg: int | str | None = 6677, height_scale: float = 1.0) -> Path:
     """With a layer of leaves 3 m above, noise far below, and a stripe of unclassified points on the ground."""
     x, y = (one.ravel() for one in lattice(step))
     head = laspy.LasHeader(point_format=6, version="1.4")
     head.offsets, head.scales = [EAST, NORTH, 0.0], [0.001, 0.001, 0.0001]
     if epsg is not None:
-        head.add_crs(CRS.from_epsg(epsg))
+        head.add_crs(CRS.from_user_input(epsg))
     las = laspy.LasData(head)
     ground = height(x, y) + LEVEL
     las.x, las.y = np.tile(x + EAST, 3), np.tile(y + NORTH, 3)

@@ -73,7 +73,7 @@ def _against(name: str, plan: float | None, actual: float | None, digits: int) -
 
 def _sums(facts: Facts, title: str, first: str, groups: dict[str, Sum]) -> Section:
     head = (
-        first, facts.say("Cycles"), facts.say("Bank m³"), facts.say("Loose m³"), "t", facts.say("Fill"),
+        first, facts.say("Cycles"), facts.say("Bank m³"), facts.say("Loose m³"), "t", facts.say("Fill factor"),
         facts.say("Loads"), "km", facts.say("Bank m³/h"),
     )  # fmt: skip
     rows = tuple(
@@ -95,8 +95,9 @@ def _parts(facts: Facts) -> Section:
             for part in names:
                 if part in parts:
                     share = f"{100 * parts[part] / whole:.0f} %" if whole else ""
-                    rows.append((machine, part_name(facts, part), _number(parts[part] / 60, 1), share))
-    head = (facts.say("Machine"), facts.say("Part"), facts.say("Minutes"), facts.say("Share"))
+                    name = facts.say("{machine}: {part}", machine=machine, part=part_name(facts, part))
+                    rows.append((name, _number(parts[part] / 60, 1), share))
+    head = (facts.say("Part"), facts.say("Minutes"), facts.say("Share"))
     return Section(facts.say("Parts of the cycles"), head, tuple(rows))
 
 

@@ -9,9 +9,10 @@ import laspy
 import lazrs
 import numpy as np
 from laspy.errors import LaspyException
+from pyproj import CRS
 
 from tms_ground.files.samples import Places
-from tms_ground.reasons import CloudEmpty, GroundFileDamaged
+from tms_ground.reasons import CloudEmpty, GroundFileDamaged, LengthUnit
 from tms_reason.errors import TmsError
 from tms_soil.surface import Array, Bounds
 
@@ -83,8 +84,22 @@ def read(path: Path) -> Cloud:
         raise TmsError(GroundFileDamaged(str(error))) from error
     if not head.point_count:
         raise TmsError(CloudEmpty())
+    if system is not None:
+        _refuse_feet(system)
     bounds = (float(head.x_min), float(head.y_min), float(head.x_max), float(head.y_max))
-    return Cloud(path, None if system is None else system.to_epsg(), bounds)
+    return Cloud(path, None if system is None else _horizontal(system).to_epsg(), bounds)
+
+
+def _horizontal(system: CRS) -> CRS:
+    """The part of coordinates that is about places; the other one is about heights."""
+    return system.sub_crs_list[0] if system.is_compound else system
+
+
+def _refuse_feet(system: CRS) -> None:
+    for part in system.sub_crs_list if system.is_compound else ():
+        for axis in part.axis_info:
+            if axis.direction == "up" and axis.unit_name != "metre":
+                raise TmsError(LengthUnit(axis.unit_name))
 
 
 def _cells(x: Array, y: Array, x0: float, y0: float, cell: float, shape: tuple[int, int]) -> Any:

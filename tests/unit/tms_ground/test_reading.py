@@ -194,6 +194,23 @@ def test_an_empty_cloud_and_one_without_coordinates(tmp_path: Path) -> None:
     is_the_plane(of(tmp_path / "b.las"), within=0.02)
 
 
+def test_a_cloud_that_tells_of_its_heights_too(tmp_path: Path) -> None:
+    is_the_plane(of(files.cloud(tmp_path / "a.las", epsg="EPSG:6677+6695"), Given()), within=0.02)
+    assert refused(files.cloud(tmp_path / "b.las", epsg="EPSG:6677+6360")) == reasons.LengthUnit("US survey foot")
+
+
+def test_a_raster_in_degrees(tmp_path: Path) -> None:
+    """As the survey authority's elevation models are."""
+    longitude, latitude = 139.7560, 35.6752  # its lower left corner, beyond that of the area
+    columns, rows = np.meshgrid(np.arange(400), np.arange(300))
+    east, north = longitude + (columns + 0.5) * 1e-6, latitude + (rows + 0.5) * 1e-6
+    frame = SiteFrame(Origin(latitude=latitude + 5e-5, longitude=longitude + 5e-5, height=LEVEL))
+    z = height(*frame.to_map(east, north, 6668)) + LEVEL
+    tags = {33550: (1e-6, 1e-6, 0.0), 33922: (0.0, 0.0, 0.0, longitude, latitude + 300e-6, 0.0)}
+    path = files.tiff(tmp_path / "a.tif", z, {1024: 2, 1025: 1, 2048: 6668}, tags)
+    is_the_plane(read(path, AREA, 0.5, frame, Given()))
+
+
 def test_surfaces_of_landxml(tmp_path: Path) -> None:
     path = tmp_path / "a.xml"
     assert refused(files.landxml(path, surfaces="")) == reasons.NoSurface()
