@@ -16,7 +16,7 @@ from tms_ground.reasons import CloudEmpty, GroundFileDamaged, LengthUnit
 from tms_reason.errors import TmsError
 from tms_soil.surface import Array, Bounds
 
-PIECE = 500_000  # points: about 60 MB with all their fields
+PIECE = 250_000  # points: about 30 MB with all their fields
 UNREADABLE = (LaspyException, lazrs.LazrsError, OSError, ValueError, struct.error)
 GROUND, NOISE = 2, (7, 18)  # classes of points, ASPRS LAS 1.4-R15, table 17
 
@@ -38,7 +38,7 @@ class Cloud:
         Raises:
             TmsError: the file ends early, or is damaged.
         """
-        of_ground, of_all = _Means(shape), _Means(shape)
+        of_ground, of_others = _Means(shape), _Means(shape)
         try:
             with laspy.open(self.path) as reader:
                 for points in reader.chunk_iterator(PIECE):
@@ -46,28 +46,32 @@ class Cloud:
                     at = _cells(x, y, x0, y0, cell, shape)
                     z, kind = np.asarray(points.z), np.asarray(points.classification)
                     valid = (at >= 0) & ~np.isin(kind, NOISE)
-                    of_all.add(at[valid], z[valid])
-                    ground = valid & (kind == GROUND)
+                    ground, others = valid & (kind == GROUND), valid & (kind != GROUND)
                     of_ground.add(at[ground], z[ground])
+                    of_others.add(at[others], z[others])
         except UNREADABLE as error:
             raise TmsError(GroundFileDamaged(str(error))) from error
-        return np.where(of_ground.count > 0, of_ground.means(), of_all.means())
+        found = of_ground.take()
+        np.copyto(found, of_others.take(), where=np.isnan(found))
+        return found
 
 
 class _Means:
-    """Means by cell of numbers that come in pieces."""
+    """Means by cell of numbers that come in pieces; works in place, as a grid may have millions of cells."""
 
     def __init__(self, shape: tuple[int, int]) -> None:
-        self.count, self._sum = np.zeros(shape), np.zeros(shape)
+        self._count, self._sum = np.zeros(shape, np.uint32), np.zeros(shape)
 
     def add(self, at: Any, z: Array) -> None:
         """Numbers, and which cell (counted along rows) each belongs to."""
-        self.count += np.bincount(at, minlength=self.count.size).reshape(self.count.shape)
-        self._sum += np.bincount(at, weights=z, minlength=self.count.size).reshape(self.count.shape)
+        np.add.at(self._count.reshape(-1), at, 1)
+        np.add.at(self._sum.reshape(-1), at, z)
 
-    def means(self) -> Array:
-        """NaN where nothing came."""
-        return np.where(self.count > 0, self._sum / np.maximum(self.count, 1), np.nan)
+    def take(self) -> Array:
+        """The means, once; NaN where nothing came."""
+        self._sum[self._count == 0] = np.nan
+        np.divide(self._sum, self._count, out=self._sum, where=self._count > 0)
+        return self._sum
 
 
 def read(path: Path) -> Cloud:

@@ -100,7 +100,8 @@ def _read(path: Path, area: Bounds, cell: float, frame: SiteFrame | None, given:
     z = samples.over(wanted.x0, wanted.y0, cell, (wanted.z.shape[0], wanted.z.shape[1]), places)
     _check(z, wanted, _bounds_in_map(samples.bounds, places), given)
     height = frame.origin.height if frame is not None and not isinstance(places, _Map) else 0.0
-    return Heights(wanted.x0, wanted.y0, cell, z - height)
+    z -= height  # in place: there may be millions of cells
+    return Heights(wanted.x0, wanted.y0, cell, z)
 
 
 def _samples(path: Path, given: Given) -> Samples:
