@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tms_config.models import MachineModel
+from tms_control.links import Array, Links, Matrix, reaches
 from tms_rp.bodies import Body, Surface, Surfaces
-from tms_rp.links import Array, Links, Matrix, reaches
 from tms_rp.reasons import Part
 from tms_rp.scene import Obstacle, Scene
 from tms_rp.trajectory import Trajectory

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tms_config.models import Box
+from tms_control.links import Matrix
 from tms_reason.reason import Reason
-from tms_rp.links import Matrix
 from tms_rp.meshes import Mesh
 from tms_rp.reasons import Ground
 

@@ -10,10 +10,10 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from tms_control.links import Array, Matrix
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
 from tms_rp.bodies import Body, gap, overlap, touch
-from tms_rp.links import Array, Matrix
 from tms_rp.reasons import Between, Collision, Ground
 from tms_rp.scene import Scene
 from tms_rp.trajectory import Trajectory

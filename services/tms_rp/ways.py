@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 
 from tms_config.models import MachineModel
+from tms_control.links import Array
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
 from tms_rp.clearance import Clearance
 from tms_rp.flow import Flow
 from tms_rp.kind import Angles, MachineKind, Moves, Way
-from tms_rp.links import Array
 from tms_rp.plan import Plan
 from tms_rp.plans import one_trajectory, scaled, without_stops
 from tms_rp.reasons import Around, Collision, NoWayRound, PathBlocked, Searched, SlowlyOut

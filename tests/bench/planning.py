@@ -21,6 +21,7 @@ from random_scenes import random_pose, random_scene
 from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
+from tms_control.links import placed
 from tms_reason.errors import SubtaskFailed
 from tms_rp.clearance import Clearance
 from tms_rp.kind import Angles, Moves
@@ -29,7 +30,6 @@ from tms_rp.kinds.backhoe.digging import excavate, release
 from tms_rp.kinds.backhoe.goals import ChangePose, Dig, Emptying, TipGoal
 from tms_rp.kinds.backhoe.linkage import ArmAngles
 from tms_rp.kinds.backhoe.planner import Backhoe
-from tms_rp.links import placed
 from tms_rp.neighbour import Neighbour, Posture
 from tms_rp.reasons import Around, PartOf, Searched
 from tms_rp.scene import Obstacle, Scene

@@ -12,11 +12,11 @@ from conftest import PROJECT
 from tms_config.config import CONFIGS, load_site
 from tms_config.models import TURNED, MachineModel
 from tms_config.processes import table
-from tms_config.sensing import load_sensing
 from tms_config.yaml_file import parse, read_yaml
 from tms_host.supervisor import render
 from tms_kit.subtask_server import load
 from tms_machine.record_lock import FLAG
+from tms_machine.sensing import load_sensing
 
 MODELS = sorted((CONFIGS / "machines").glob("*.yaml"))
 SITES = [CONFIGS / "site.yaml", *sorted((CONFIGS / "sites").glob("*.yaml"))]

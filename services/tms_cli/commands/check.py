@@ -6,8 +6,8 @@ from tms_cli import session
 from tms_cli.words import say
 from tms_config.config import load_site
 from tms_config.processes import table
-from tms_config.sensing import load_sensing
 from tms_ground.settings import ground_of
+from tms_machine.sensing import load_sensing
 from tms_ur.address import certificate, users
 
 

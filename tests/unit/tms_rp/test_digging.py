@@ -10,6 +10,7 @@ import pytest
 from tms_config.config import CONFIGS
 from tms_config.models import Box, MachineModel
 from tms_config.yaml_file import parse
+from tms_control.links import placed
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
 from tms_rp.kind import Moves
@@ -19,7 +20,6 @@ from tms_rp.kinds.backhoe.digging import excavate, release
 from tms_rp.kinds.backhoe.goals import ChangePose, Dig, Emptying, TipGoal
 from tms_rp.kinds.backhoe.linkage import ArmAngles
 from tms_rp.kinds.backhoe.planner import Backhoe
-from tms_rp.links import placed
 from tms_rp.neighbour import Neighbour, Posture
 from tms_rp.plan import Plan
 from tms_rp.reasons import Around, ClearanceCut, Collision, DragCut, Ground, OtherAngle, Part, PartOf
