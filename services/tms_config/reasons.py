@@ -65,6 +65,7 @@ class NoCodeFile(Reason, text="there is no file services/{path}", action=EDIT_CO
 # the site
 class NoMachine(Reason, text="the site has no machine '{machine}' (there: {machines})",
     action=STATUS): machine: str; machines: tuple[str, ...]
+class NoPlannedArm(Reason, text="{machine} has no arm whose motions are planned"): machine: str
 class NotUnderMachines(Reason, text="there is no machine '{machine}' under machines: (there: {machines})",
     action=EDIT_CONFIG): machine: str; machines: tuple[str, ...]
 class SharedFrames(Reason, text="{first} and {second} would share their frames ('{prefix}base_link')",
@@ -74,6 +75,10 @@ class NoService(Reason, text="there is no service '{service}' (there: {services}
 class PasswordInUri(Reason, text="the uri holds a password", action=NO_PASSWORD): pass
 class HalfALogin(Reason, text="user and password_file go together: give both or none", action=EDIT_CONFIG): pass
 class NoUri(Reason, text="user, password_file and TLS need the uri of a MongoDB", action=EDIT_CONFIG): pass
+class TwoPlanners(Reason, text="with motions: true we serve their planner's names: that excludes planner: theirs",
+    action=EDIT_CONFIG): pass
+class FormNotSaid(Reason, text="say under forms: which form of {definition} they speak", action=EDIT_CONFIG):
+    definition: str
 class UserTwice(Reason, text="the user stands in uri and in user: keep the latter", action=EDIT_CONFIG): pass
 
 # PCs

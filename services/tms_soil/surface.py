@@ -16,6 +16,8 @@ Mask = NDArray[np.bool_]
 Point = tuple[float, float]  # x, y [m]
 Bounds = tuple[float, float, float, float]  # least x, least y, largest x, largest y [m]
 
+SAME_PLACE = 1e-6  # cells
+
 
 class Surface(Protocol):
     """What has a height at each place."""
@@ -99,10 +101,16 @@ def bilinear(z: Array, column: Array, row: Array) -> Array:
     left = np.clip(np.floor(column), 0, max(columns - 2, 0)).astype(np.intp)
     below = np.clip(np.floor(row), 0, max(rows - 2, 0)).astype(np.intp)
     right, above = np.minimum(left + 1, columns - 1), np.minimum(below + 1, rows - 1)
-    u, v = np.clip(column - left, 0.0, 1.0), np.clip(row - below, 0.0, 1.0)
+    u, v = _share(column - left), _share(row - below)
     lower = _mixed(z[below, left], z[below, right], u)
     upper = _mixed(z[above, left], z[above, right], u)
     return np.where(there, _mixed(lower, upper, v), np.nan)
+
+
+def _share(part: Array) -> Array:
+    """How far a place is to the next cell; a place at a centre stays there in spite of rounding."""
+    nearest = np.round(part)
+    return np.clip(np.where(np.abs(part - nearest) < SAME_PLACE, nearest, part), 0.0, 1.0)
 
 
 def _mixed(first: Array, second: Array, share: Array) -> Array:

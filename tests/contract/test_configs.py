@@ -113,8 +113,9 @@ def test_imports_have_no_effects() -> None:
     code = (
         "import threading, importlib, pkgutil, sys\n"
         "layers = ('tms_config', 'tms_decision', 'tms_machine', 'tms_proof', 'tms_reason', 'tms_ros', 'tms_runtime')\n"
-        "services = ('tms_db', 'tms_mc', 'tms_ts', 'tms_rp', 'tms_rc', 'tms_sim', 'tms_host', 'tms_cli')\n"
-        "for name in (*layers, 'tms_control', 'tms_soil', *services):\n"
+        "services = ('tms_db', 'tms_mc', 'tms_ts', 'tms_rp', 'tms_rc', 'tms_sim', 'tms_host', 'tms_cli',\n"
+        "            'tms_ground', 'tms_soil', 'tms_work')\n"
+        "for name in (*layers, 'tms_control', *services):\n"
         "    package = importlib.import_module(name)\n"
         "    for found in pkgutil.walk_packages(package.__path__, name + '.'):\n"
         "        importlib.import_module(found.name)\n"

@@ -19,7 +19,6 @@ from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
 from tms_machine.values import to_parameters
-from tms_reason import wire
 from tms_ros.goals import Outcome
 from tms_rp import node
 from tms_rp.reasons import Around, Collision, PartOf, PathBlocked, Planned, Told
@@ -76,7 +75,7 @@ def planner_beside(
     monkeypatch.setattr(node, "Permit", lambda *_: None)
     monkeypatch.setattr(node, "watch_server", lambda *_: lambda _: None)
     site = SimpleNamespace(
-        file=SimpleNamespace(machines={name: SimpleNamespace(model=name) for name in MODELS}),
+        file=SimpleNamespace(machines={name: SimpleNamespace(model=name) for name in MODELS}, peers={}),
         model_of=MODELS.__getitem__,
         border=lambda name: MODELS[name].borders["sim"].model_copy(
             update={"base_frame": {"zx200": "zx200/base_link", "ic120": "ic120_tf/base_link"}[name]}
@@ -96,9 +95,9 @@ def planned(
     point = JointTrajectoryPoint(positions=[swing])
     request = TmsRpZx200ChangePose.Goal(trajectory=JointTrajectory(joint_names=["swing_joint"], points=[point]))
     said: list[Any] = []
-    goal: Any = SimpleNamespace(id="1", request=request, publish=lambda feedback: said.append(feedback.state))
-    outcome, _ = planner._execute(action, goal)
-    return outcome, wire.known(said[-2 if outcome is Outcome.SUCCEEDED else -1])
+    goal: Any = SimpleNamespace(id="1")
+    outcome, _ = planner._execute(action, goal, request, said.append)
+    return outcome, said[-2 if outcome is Outcome.SUCCEEDED else -1]
 
 
 FAR, AHEAD = (30.0, 0.0, 0.0), (6.0, 1.44, math.pi / 2)
