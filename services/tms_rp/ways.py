@@ -7,13 +7,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tms_config.models import MachineModel
+from tms_control.reasons import PathBlocked
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
 from tms_rp.clearance import Clearance
 from tms_rp.kind import Angles, MachineKind, Moves, Way
 from tms_rp.links import Array
 from tms_rp.plans import one_trajectory, scaled
-from tms_rp.reasons import Around, Collision, NoWayRound, PathBlocked, Searched, SlowlyOut
+from tms_rp.reasons import Around, Collision, NoWayRound, Searched, SlowlyOut
 from tms_rp.sampling import search
 from tms_rp.scene import Scene
 from tms_rp.trajectory import Joints, Trajectory, trajectory
