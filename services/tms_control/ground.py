@@ -85,11 +85,14 @@ class Body:
     def _array(self) -> Array:
         return np.array(self.corners, dtype=float)
 
-    @cached_property
-    def circle(self) -> tuple[Array, float]:
-        """Centre and radius [m] of a circle around it."""
-        centre = (self._array.min(axis=0) + self._array.max(axis=0)) / 2
-        return centre, float(np.hypot(*(self._array - centre).T).max())
+    def close(self, places: Array, distance: float) -> NDArray[np.int_]:
+        """Numbers of the places (N x 2) that may be nearer than a distance [m]; all others are further away."""
+        low, high = self._array.min(axis=0), self._array.max(axis=0)
+        middle = (low + high) / 2
+        radius = float(np.hypot(*(self._array - middle).T).max())
+        from_middle = places - middle
+        inside = (np.abs(from_middle) < (high - low) / 2 + distance).all(axis=1)
+        return np.flatnonzero(inside & ((from_middle**2).sum(axis=1) < (radius + distance) ** 2))
 
     def gaps(self, outline: Outline, poses: Array) -> Array:
         """How far a machine is from it [m] at poses (N x 3): N; 0 where they touch."""
@@ -115,8 +118,7 @@ class Ground:
         (x, y), half = outline.centre, outline.half
         middles = poses[:, :2] + np.column_stack([c * x - s * y, s * x + c * y])
         for number, body in enumerate(self.bodies):
-            centre, radius = body.circle
-            close = np.flatnonzero(((middles - centre) ** 2).sum(axis=1) < (radius + half + needed[number]) ** 2)
+            close = body.close(middles, half + needed[number])
             for part in np.array_split(close, 1 + len(close) * len(body.corners) // AT_ONCE):
                 found[part, number] = body.gaps(outline, poses[part]) < needed[number]
         return found

@@ -31,6 +31,7 @@ from tms_config.config import CONFIGS, load_site
 from tms_config.models import MachineModel
 from tms_config.reasons import AboveLimit
 from tms_config.yaml_file import parse
+from tms_control.reasons import PathBlocked
 from tms_decision.reasons import MachineLatched, PressedByOthers
 from tms_rc.latch_file import LatchFile
 from tms_reason import wire
@@ -47,7 +48,6 @@ from tms_rp.reasons import (
     MoveOf,
     OtherAngle,
     OutOfRange,
-    PathBlocked,
     PlanElsewhere,
     PlannedAnew,
 )

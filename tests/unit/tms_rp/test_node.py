@@ -18,10 +18,11 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
+from tms_control.reasons import PathBlocked
 from tms_machine.values import to_parameters
 from tms_ros.goals import Outcome
 from tms_rp import node
-from tms_rp.reasons import Around, Collision, PartOf, PathBlocked, Planned, Told
+from tms_rp.reasons import Around, Collision, PartOf, Planned, Told
 from tms_rp.trajectory import trajectory
 
 RIGHT = (-1.571, -0.3, 1.4, 0.5)

@@ -12,6 +12,7 @@ from tms_config.config import CONFIGS
 from tms_config.models import Box, MachineModel
 from tms_config.yaml_file import parse
 from tms_control.links import placed
+from tms_control.reasons import PathBlocked
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
 from tms_rp.clearance import Clearance
@@ -27,7 +28,6 @@ from tms_rp.reasons import (
     NoWayRound,
     OtherWayRound,
     PartOf,
-    PathBlocked,
     Searched,
     SlowlyOut,
 )
