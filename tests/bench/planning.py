@@ -93,7 +93,7 @@ def model_of(name: str) -> MachineModel:
     return parse(CONFIGS / "machines" / f"{name}.yaml", MachineModel)
 
 
-Goal = Callable[[Backhoe, TipGoal], Moves]
+Asked = Callable[[Backhoe, TipGoal], Moves]
 
 
 def reach(backhoe: Backhoe, place: TipGoal) -> Moves:
@@ -104,7 +104,7 @@ def dig(backhoe: Backhoe, place: TipGoal) -> Moves:
     return excavate(backhoe, NOW, Dig(place, depth=0.5, drag=1.5, lift=0.5))
 
 
-def plan_all(goal: Goal) -> tuple[list[float], list[float]]:
+def plan_all(goal: Asked) -> tuple[list[float], list[float]]:
     """Milliseconds of each goal that needs no way around, and of its kinematics."""
     model, truck = model_of("zx200"), model_of("ic120")
     backhoe, ways, rng = Backhoe(model), Ways(model, load("backhoe")), random.Random(1)
