@@ -152,6 +152,6 @@ def test_a_bucket_that_has_dug_is_kept_level_on_the_next_way(monkeypatch: pytest
     place = TmsRpZx200PositionWithAngle(position=Point(x=0.0, y=-6.0, z=0.0), theta_w=1.6)
     for name, held in (("excavate_plan", False), ("excavate", True)):
         goal: Any = SimpleNamespace(id="1", request=Excavate.Goal(position_with_angle=place), publish=lambda _: None)
-        assert planner._execute(actions[name], goal)[0] is Outcome.SUCCEEDED
+        assert planner._execute(actions[name], goal, goal.request, lambda _: None)[0] is Outcome.SUCCEEDED
         found = planner.planned(actions["change_pose"], level, swing).moves.through
         assert (found is not None and found.held is not None) == held
