@@ -12,22 +12,30 @@ from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
 from tms_control.links import Matrix, placed
-from tms_rp.kinds.backhoe.goals import TipGoal
-from tms_rp.kinds.backhoe.linkage import ArmAngles
-from tms_rp.kinds.backhoe.planner import Backhoe
 from tms_soil.earth import Earth
 from tms_soil.grid import Grid
 from tms_soil.soils import Soil, SoilsFile
 from tms_soil.surface import Heights
 
+
+class Arm(NamedTuple):
+    """Angles of a zx200 [rad]."""
+
+    swing: float
+    boom: float
+    arm: float
+    bucket: float
+
+
 NAMES = ("swing_joint", "boom_joint", "arm_joint", "bucket_joint")
 SPEEDS = (1.0, 0.45, 1.0, 1.1)  # rad/s, the limits
-START = ArmAngles(-1.571, -1.047, 2.443, -0.524)  # initial_pose of the zx200's records
+START = Arm(-1.571, -1.047, 2.443, -0.524)  # initial_pose of the zx200's records
 KINDS = np.array([[0, 1], [1, 0]], dtype=np.uint8)  # soil by tile of a random site
 QUICK = 12  # reports from pose to pose
+TURNS = [-1.55 + 0.3 * k for k in (0, 1, -1, 2, -2, 3, -3, 4, -4, 5, -5, 6)]  # rad, where a truckload is dug
 HOLD = (-0.9, 2.0, 1.7)  # boom, arm and bucket while it carries
-ABOVE = ArmAngles(0.0, -0.85, 1.65, 2.19)  # release_pose
-OPEN = ArmAngles(0.0, -1.0, 1.55, -0.34)
+ABOVE = Arm(0.0, -0.85, 1.65, 2.19)  # release_pose
+OPEN = Arm(0.0, -1.0, 1.55, -0.34)
 
 
 # The fundamental earthmoving equation, computed from the published formulas: density kg/m3, cohesion Pa, friction deg,
@@ -80,7 +88,7 @@ def loading_site(side: float = 25.6, *kinds: str) -> Earth:
     return Earth(Grid.from_heights(flat(side), soils(*kinds)), {"zx200": model_of("zx200"), "ic120": model_of("ic120")})
 
 
-def moved(targets: Sequence[ArmAngles], start: float = 0.0, rate: float = 50.0) -> Iterator[tuple[float, ArmAngles]]:
+def moved(targets: Sequence[Arm], start: float = 0.0, rate: float = 50.0) -> Iterator[tuple[float, Arm]]:
     """Times and angles on the straight ways between poses, each joint at its speed at most."""
     time = start
     for here, there in itertools.pairwise(targets):
@@ -88,17 +96,16 @@ def moved(targets: Sequence[ArmAngles], start: float = 0.0, rate: float = 50.0) 
         count = max(1, round(seconds * rate))
         for k in range(1, count + 1):
             time += 1 / rate
-            yield time, ArmAngles(*(a + (b - a) * k / count for a, b in zip(here, there, strict=True)))
+            yield time, Arm(*(a + (b - a) * k / count for a, b in zip(here, there, strict=True)))
 
 
-def dig_poses(point: tuple[float, float, float], theta_w: float = 0.0, now: ArmAngles = START) -> list[ArmAngles]:
-    """A pass as the planner makes it: to a point of base_link 1 m above where it digs, in, curled, up."""
-    moves = Backhoe(model_of("zx200")).excavate(now, TipGoal(*point, theta_w))
-    targets = [ArmAngles(*target) for target in moves.targets]
-    return [now, *targets, ArmAngles(targets[-1].swing, *HOLD)]
+def dig_poses(turn: float = -1.58, boom: float = -0.25, arm: float = 1.97, now: Arm = START) -> list[Arm]:
+    """A pass: over the place, with straight teeth about 0.9 m down, curled, up; all angles in rad."""
+    reach = Arm(turn, boom, arm, -0.61)
+    return [now, now._replace(swing=turn), reach, reach._replace(arm=arm + 0.1, bucket=1.7), Arm(turn, *HOLD)]
 
 
-def reports(poses: Iterable[tuple[float, ArmAngles]], base: Matrix | None = None) -> Iterator[Report]:
+def reports(poses: Iterable[tuple[float, Arm]], base: Matrix | None = None) -> Iterator[Report]:
     """Of a zx200."""
     for time, pose in poses:
         yield Report("zx200", time, dict(zip(NAMES, pose, strict=True)), np.eye(4) if base is None else base)
@@ -125,18 +132,14 @@ def moved_by(earth: Earth, of: str) -> float:
     return float(load.sum())
 
 
-SPOTS = [(-6.0, -1.55 + 0.3 * k) for k in (0, 1, -1, 2, -2, 3, -3, 4, -4, 5, -5, 6)]  # m and rad around the swing axis
-
-
 def truckload(earth: Earth) -> list[float]:
     """Dig around the excavator and dump into the ic120 until it is full: the volume of each pass [m3], loose."""
     digger, hauler, vessel_ = earth.bodies["zx200"].digger, earth.bodies["ic120"].hauler, model_of("ic120").vessel
     assert digger and hauler and vessel_
     earth.report(*vessel(0.0, 0.0))
     passes, time = list[float](), 0.0
-    for away, turn in SPOTS:
-        point = -away * math.cos(turn), -away * math.sin(turn), 0.1
-        time = run(earth, reports(moved([*dig_poses(point, now=OPEN), ABOVE], time)))
+    for turn in TURNS:
+        time = run(earth, reports(moved([*dig_poses(turn, now=OPEN), ABOVE], time)))
         passes.append(digger.volume)
         time = run(earth, reports(moved([ABOVE, OPEN, OPEN, OPEN], time)))
         time = run(earth, reports((time + k / 50, OPEN) for k in range(1, 40)))
@@ -161,14 +164,14 @@ def mass_error(log: Iterable[Report]) -> float:
     return abs(earth.mass() - before) / most
 
 
-def cycle_log(poses: Sequence[ArmAngles], tilt: float, start: float) -> list[Report]:
+def cycle_log(poses: Sequence[Arm], tilt: float, start: float) -> list[Report]:
     """Quickly through poses, while the vessel tips [rad] and the truck drives; the first pose is a jump."""
-    found, time = [], start
+    found, time = list[Report](), start
     for number, (here, there) in enumerate(itertools.pairwise(poses)):
         for k in range(QUICK):
             time += 0.02
             share = k / (QUICK - 1)
-            pose = ArmAngles(*(a + (b - a) * share for a, b in zip(here, there, strict=True)))
+            pose = Arm(*(a + (b - a) * share for a, b in zip(here, there, strict=True)))
             found += reports([(time, pose)])
             found.append(vessel(time, -tilt * share, placed(6.5 + 0.05 * k, 0.3 * number, 0.1)))
     return found
@@ -176,6 +179,6 @@ def cycle_log(poses: Sequence[ArmAngles], tilt: float, start: float) -> list[Rep
 
 def cycles(count: int) -> st.SearchStrategy[list[Report]]:
     """Logs of so many random cycles; clocks go back and jump now and then."""
-    pose = st.builds(ArmAngles, st.floats(-3, 3), st.floats(-0.9, -0.1), st.floats(0.6, 2.6), st.floats(-0.6, 2.3))
+    pose = st.builds(Arm, st.floats(-3, 3), st.floats(-0.9, -0.1), st.floats(0.6, 2.6), st.floats(-0.6, 2.3))
     one = st.builds(cycle_log, st.lists(pose, min_size=3, max_size=4), st.floats(0, 1.1), st.floats(-5, 50))
     return st.lists(one, min_size=count, max_size=count).map(lambda logs: list(itertools.chain.from_iterable(logs)))

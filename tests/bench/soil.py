@@ -20,7 +20,7 @@ from earth_rig import (
     FORCES,
     OPEN,
     PLACES,
-    SPOTS,
+    TURNS,
     VECTORS,
     WIDTH,
     Report,
@@ -71,8 +71,8 @@ def measure() -> Iterable[Figure]:
 
 def _log() -> list[Report]:
     poses = [OPEN]
-    for away, turn in SPOTS[:PASSES]:
-        poses += dig_poses((-away * math.cos(turn), -away * math.sin(turn), 0.1), now=poses[-1])[1:]
+    for turn in TURNS[:PASSES]:
+        poses += dig_poses(turn, now=poses[-1])[1:]
         poses += [ABOVE, OPEN]
     return [vessel(0.0, 0.0), *reports(moved(poses))]
 
@@ -96,8 +96,8 @@ def _updates() -> tuple[list[float], list[float]]:
 def _resting() -> float:
     """The median of the updates of an excavator that has stood for a while."""
     earth, times = loading_site(), []
-    end = run(earth, reports(moved(dig_poses((0.0, -6.0, 0.1)))))
-    last = dig_poses((0.0, -6.0, 0.1))[-1]
+    end = run(earth, reports(moved(dig_poses())))
+    last = dig_poses()[-1]
     for one in reports((end + 0.02 * k, last) for k in range(1, 400)):
         begun = time.thread_time()
         earth.report(*one)

@@ -35,7 +35,7 @@ def test_a_straight_cut_is_a_prism() -> None:
     assert window.heights().min() == pytest.approx(-0.3)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(st.lists(st.floats(0.01, 0.99), max_size=12, unique=True), st.floats(-0.6, 0.6), st.floats(-0.5, 0.5))
 def test_a_cut_in_steps_takes_what_a_cut_at_once_takes(steps: list[float], turn: float, rise: float) -> None:
     places = [edge(-1.5 + 3 * s, -0.5 + rise * s, turn) for s in (0.0, *sorted(steps), 1.0)]

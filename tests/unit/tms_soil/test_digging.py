@@ -8,6 +8,7 @@ from earth_rig import (
     HOLD,
     OPEN,
     START,
+    Arm,
     dig_poses,
     flat,
     loading_site,
@@ -19,7 +20,6 @@ from earth_rig import (
     soils,
     vessel,
 )
-from tms_rp.kinds.backhoe.linkage import ArmAngles
 from tms_soil.capacity import Capacity
 from tms_soil.digging import Digger
 from tms_soil.earth import Earth
@@ -47,11 +47,11 @@ def layers(earth: Earth) -> np.ndarray:
     return sums
 
 
-@pytest.mark.parametrize(("y", "z"), [(-6.0, 0.1), (-5.7, 0.2), (-6.5, 0.0)])
-def test_a_pass_fills_the_bucket_as_its_class_says(y: float, z: float) -> None:
+@pytest.mark.parametrize(("boom", "arm"), [(-0.25, 1.97), (-0.22, 1.9), (-0.27, 2.0)])
+def test_a_pass_fills_the_bucket_as_its_class_says(boom: float, arm: float) -> None:
     earth = loading_site()
     before = earth.mass()
-    run(earth, reports(moved(dig_poses((0.0, y, z)))))
+    run(earth, reports(moved(dig_poses(boom=boom, arm=arm))))
     assert 0.5 <= digger(earth).volume <= 0.9
     assert earth.mass() == pytest.approx(before, abs=1e-6)
     assert digger(earth).resistance == 0.0, "in the air"
@@ -60,7 +60,7 @@ def test_a_pass_fills_the_bucket_as_its_class_says(y: float, z: float) -> None:
 def test_what_is_dug_swells() -> None:
     earth = loading_site()
     before = layers(earth)
-    run(earth, reports(moved([*dig_poses((0.0, -6.0, 0.1)), ABOVE, OPEN])))
+    run(earth, reports(moved([*dig_poses(), ABOVE, OPEN])))
     after, soil = layers(earth), soils()[0]
     bank = (before - after)[BANK] / soil.bank
     loose = (after[LOOSE] + moved_by(earth, "zx200")) / soil.loose
@@ -68,7 +68,7 @@ def test_what_is_dug_swells() -> None:
     assert loose == pytest.approx(bank * soil.swell, rel=1e-9)
 
 
-def drag(*arms: float, boom: float = -0.25) -> list[ArmAngles]:
+def drag(*arms: float, boom: float = -0.25) -> list[Arm]:
     """The bucket's teeth down, through the ground towards the machine."""
     return [START._replace(boom=boom, arm=arm, bucket=0.3) for arm in arms]
 
@@ -91,7 +91,7 @@ def test_a_bucket_takes_nothing_in_by_its_back() -> None:
 def test_a_dump_on_the_ground_is_a_pile_of_what_was_dug() -> None:
     earth = loading_site()
     before, flat = earth.mass(), earth.grid.heights().z
-    end = run(earth, reports(moved([*dig_poses((0.0, -6.0, 0.1)), SWUNG, ABOVE])))
+    end = run(earth, reports(moved([*dig_poses(), SWUNG, ABOVE])))
     dug = moved_by(earth, "zx200")
     end = run(earth, reports(moved([ABOVE, OPEN, OPEN, OPEN], end)))
     run(earth, reports((end + 0.02 * k, OPEN) for k in range(1, 150)))
@@ -105,7 +105,7 @@ def test_a_dump_on_the_ground_is_a_pile_of_what_was_dug() -> None:
 
 def test_a_bucket_is_empty_two_seconds_after_it_opened() -> None:
     earth = loading_site()
-    end = run(earth, reports(moved([*dig_poses((0.0, -6.0, 0.1)), SWUNG, ABOVE])))
+    end = run(earth, reports(moved([*dig_poses(), SWUNG, ABOVE])))
     full = moved_by(earth, "zx200")
     end = run(earth, reports((end + 0.02 * k, OPEN) for k in range(10)))
     assert 0.3 * full < moved_by(earth, "zx200") < 0.9 * full, "it takes its time"
@@ -116,7 +116,7 @@ def test_a_bucket_is_empty_two_seconds_after_it_opened() -> None:
 def test_it_dumps_into_the_vessel_below() -> None:
     earth = loading_site()
     before = earth.mass()
-    run(earth, [vessel(0.0, 0.0), *reports(moved([*dig_poses((0.0, -6.0, 0.1)), SWUNG, ABOVE, OPEN, OPEN]))])
+    run(earth, [vessel(0.0, 0.0), *reports(moved([*dig_poses(), SWUNG, ABOVE, OPEN, OPEN]))])
     assert moved_by(earth, "zx200") < 0.03 * moved_by(earth, "ic120")
     assert earth.bodies["ic120"].hauler is not None and earth.bodies["ic120"].hauler.volume > 0.5
     assert earth.mass() == pytest.approx(before, abs=1e-6)
@@ -124,7 +124,7 @@ def test_it_dumps_into_the_vessel_below() -> None:
 
 def test_two_reports_at_one_time_move_no_soil() -> None:
     earth = loading_site()
-    end = run(earth, [vessel(0.0, 0.0), *reports(moved([*dig_poses((0.0, -6.0, 0.1)), SWUNG, ABOVE]))])
+    end = run(earth, [vessel(0.0, 0.0), *reports(moved([*dig_poses(), SWUNG, ABOVE]))])
     tilted = ABOVE._replace(bucket=ABOVE.bucket - 0.7)
     run(earth, reports([(end + 0.02, tilted)]))
     before = moved_by(earth, "zx200")

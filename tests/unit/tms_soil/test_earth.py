@@ -35,7 +35,7 @@ def test_nothing_is_lost_whatever_machines_do(log: list[Report]) -> None:
 
 
 def test_the_same_reports_give_the_same_ground() -> None:
-    log = [vessel(0.0, 0.0), *reports(moved([*dig_poses((0.0, -6.0, 0.1)), ABOVE])), vessel(30.0, -1.0)]
+    log = [vessel(0.0, 0.0), *reports(moved([*dig_poses(), ABOVE])), vessel(30.0, -1.0)]
     first, second = loading_site(), loading_site()
     run(first, log)
     run(second, log)
@@ -48,7 +48,7 @@ def test_slower_reports_give_nearly_the_same(rate: float) -> None:
     volumes = []
     for each in (50.0, rate):
         earth = loading_site()
-        run(earth, reports(moved(dig_poses((0.0, -6.0, 0.1)), rate=each)))
+        run(earth, reports(moved(dig_poses(), rate=each)))
         volumes.append(moved_by(earth, "zx200"))
     assert volumes[1] == pytest.approx(volumes[0], rel=0.03)
 
@@ -83,8 +83,8 @@ def test_a_machine_that_is_put_elsewhere_digs_nothing_on_the_way() -> None:
 
 def test_a_machine_that_rests_costs_nothing() -> None:
     earth = loading_site()
-    end = run(earth, reports(moved(dig_poses((0.0, -6.0, 0.1)))))
-    last = dig_poses((0.0, -6.0, 0.1))[-1]
+    end = run(earth, reports(moved(dig_poses())))
+    last = dig_poses()[-1]
     found = [earth.report(*one) for one in reports((end + 0.02 * k, last) for k in range(1, 200))]
     assert found[-1] == [] and earth.bodies["zx200"].rests
     assert not earth.bodies["zx200"].running
@@ -93,7 +93,7 @@ def test_a_machine_that_rests_costs_nothing() -> None:
 def test_a_report_tells_where_the_ground_changed() -> None:
     earth = loading_site()
     before, changed = earth.grid.heights().z, []
-    for one in reports(moved(dig_poses((0.0, -6.0, 0.1)))):
+    for one in reports(moved(dig_poses())):
         changed += earth.report(*one)
     x, y = earth.grid.heights().centres
     inside = np.zeros(x.shape, dtype=bool)
@@ -106,7 +106,7 @@ def test_a_report_tells_where_the_ground_changed() -> None:
 
 def test_a_truck_hauls_its_load() -> None:
     earth = loading_site()
-    run(earth, [vessel(0.0, 0.0), *reports(moved([*dig_poses((0.0, -6.0, 0.1)), ABOVE, OPEN, OPEN]))])
+    run(earth, [vessel(0.0, 0.0), *reports(moved([*dig_poses(), ABOVE, OPEN, OPEN]))])
     load = moved_by(earth, "ic120")
     places = [placed(6.5 - 0.02 * k, -0.01 * k, 0.0) for k in range(200)]
     run(earth, (vessel(30 + 0.02 * k, 0.0, place) for k, place in enumerate(places)))

@@ -32,7 +32,7 @@ def test_a_coarse_file_is_followed_between_its_cells() -> None:
     assert grid.sample(x, y) == pytest.approx(3.7 + 0.2 * x - 0.1 * y, abs=COARSE * 0.15 + 1e-9)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(st.tuples(*[st.floats(-14, 14)] * 4))
 def test_a_window_that_is_stored_unchanged_changes_nothing(corners: tuple[float, float, float, float]) -> None:
     x0, x1, y0, y1 = *sorted(corners[:2]), *sorted(corners[2:])
