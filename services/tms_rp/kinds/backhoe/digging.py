@@ -5,8 +5,6 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from itertools import pairwise
 
-import numpy as np
-
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
 from tms_rp.clearance import PADDING
@@ -98,8 +96,8 @@ def _fits(arm: Backhoe, ground: float, pose: ArmAngles) -> bool:
     if arm.arm.lowest(pose) < ground + gap:
         return False
     curl = arm.level(pose).bucket - pose.bucket
-    curling = (pose._replace(bucket=pose.bucket + share * curl) for share in CURLING)
-    return arm.tracks is None or not any(arm.bucket.near(one, arm.tracks, gap) for one in curling)
+    curling = [pose._replace(bucket=pose.bucket + share * curl) for share in CURLING]
+    return arm.tracks is None or not arm.bucket.near(curling, arm.tracks, gap)
 
 
 def _dragged(
@@ -116,12 +114,11 @@ def _dragged(
         theta_w += min(ROLL, max(0.0, math.pi / 2 - theta_w))
         tip = Tip(dig.x - way * math.cos(reach.swing), dig.y - way * math.sin(reach.swing), dig.z, theta_w)
         try:
-            pose, turned = arm.search(tip, fits)
+            pose, theta_w = arm.search(tip, fits, ROLL)
         except SubtaskFailed:
             break
-        if abs(turned - theta_w) > ROLL or not fits(pose):
+        if not fits(pose):
             break
-        theta_w = turned
         found.append(short_way(reach, pose))
     if len(found) < steps:
         notes.append(DragCut(drag * len(found) / steps, drag))
@@ -145,8 +142,8 @@ def _trench(arm: Backhoe, poses: Sequence[ArmAngles], top: float) -> Trench:
     swing, (x, y, _) = poses[0].swing, arm.linkage.axis
     c, s = math.cos(swing), math.sin(swing)
     x, y = x - s * arm.linkage.lateral, y + c * arm.linkage.lateral
-    corners = np.concatenate([arm.bucket.corners(pose) for pose in poses])
-    out = (corners[:, 0] - x) * c + (corners[:, 1] - y) * s
+    corners = arm.bucket.corners(*poses)
+    out = (corners[..., 0] - x) * c + (corners[..., 1] - y) * s
     width = 2 * (arm.bucket.half_width + PADDING + ASIDE)
     near, far = float(out.min()) - ROUND, float(out.max()) + ROUND
     return Trench(x, y, swing, width, near, far, top, arm.bucket.link)
