@@ -177,6 +177,17 @@ def test_release_where_it_is_opens_and_comes_up() -> None:
     assert all(b >= a - 1e-6 for a, b in pairwise(pin))  # it rises as the bucket opens
 
 
+@pytest.mark.parametrize("ground", [0.0, 0.1, 0.3])
+def test_an_opening_bucket_does_not_touch_the_ground_that_it_has_dug(ground: float) -> None:
+    """It hangs lower than a curled one, so the boom comes up first where a small machine holds it."""
+    arm, ways = Backhoe(MODELS["zx120"]), Ways(MODELS["zx120"], load("backhoe"))
+    now = ArmAngles(0.0, -0.6, 2.0, 0.8)
+    lifted = poses(ways.plan(now, excavate(arm, now, Dig(TipGoal(4.0, 0.0, ground, 1.6), 1.0, 1.0, 0.5)), Scene()))[-1]
+    opening = poses(ways.plan(lifted, release(arm, lifted, Emptying(-0.34)), Scene()))
+    assert min(map(arm.bucket.lowest, opening)) > 0.05
+    assert opening[-1].bucket == pytest.approx(-0.34, abs=1e-3)
+
+
 def test_release_cuts_the_clearance_at_the_limits() -> None:
     moves = release(BACKHOE, ArmAngles(0.0, -1.1, 2.6, 1.7), Emptying(-0.34))
     assert moves.targets[0][1:3] == (-1.137, 2.687)

@@ -23,6 +23,7 @@ ROLL = 0.1  # rad by which the bucket may have to turn between them; more is no 
 BOOM_STEP = 0.02  # rad
 SPARE = 0.1  # m between padded bodies and what they must not touch: the motion is rounded between the poses
 CURLING = (0.0, 0.25, 0.5, 0.75, 1.0)  # shares of the curl at which the tracks are looked at
+OPENING = (0.25, 0.5, 0.75)  # shares of an opening at which the ground is looked at
 ASIDE = 0.2  # m that the bucket may be beside its plane while it is in the ground
 ROUND = 0.3  # m that it may be beyond the poses of the dig there
 CALM = 1.2  # s over the place before it opens: the upper body comes to rest meanwhile
@@ -75,8 +76,19 @@ def release(arm: Backhoe, now: ArmAngles, goal: Emptying) -> Moves:
     up = arm.clip("boom_joint", over.boom + CLEAR_BOOM, notes)
     end = arm.allowed(over, ArmAngles(over.swing, up, curled, goal.angle))
     if goal.over is None:
-        return Moves((end,), tuple(notes), through=Through((0.0,), free=False))
+        targets = _above_ground(arm, now, end)
+        return Moves(targets, tuple(notes), through=Through((0.0,) * len(targets), free=False))
     return Moves((over, over, end), tuple(notes), through=Through((0.0, CALM, 0.0), held=arm.held))
+
+
+def _above_ground(arm: Backhoe, now: ArmAngles, end: ArmAngles) -> tuple[ArmAngles, ...]:
+    """Opening without a touch of the ground: an open bucket hangs lower, so the boom comes up further, or first."""
+    gap = PADDING + SPARE
+    clear = raised(arm, end, gap)
+    opening = (ArmAngles(*(a + share * (b - a) for a, b in zip(now, clear, strict=True))) for share in OPENING)
+    return (
+        (clear,) if all(arm.bucket.lowest(pose) >= gap for pose in opening) else (now._replace(boom=clear.boom), clear)
+    )
 
 
 def raised(arm: Backhoe, pose: ArmAngles, height: float, level: bool = False) -> ArmAngles:
