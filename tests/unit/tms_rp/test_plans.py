@@ -148,6 +148,7 @@ def test_plans_whose_ends_meet_run_without_a_stop_as_fast_as_they_are() -> None:
         speeds = [(sample.time, abs(sample.velocities[index])) for sample in found.samples]
         assert max(speed for _, speed in speeds) <= joint.velocity * 1.0001
         assert max(abs(sample.accelerations[index]) for sample in found.samples) <= joint.acceleration * 1.0001
+        assert found.stops[0] > 0.75 * made.stops[0]
         before = max(speed for at, speed in speeds if at < found.stops[0] - 1.5)
         assert before <= 0.3 * joint.velocity * 1.02  # the first plan stays slow
 

@@ -23,7 +23,6 @@ ROLL = 0.1  # rad by which the bucket may have to turn between them; more is no 
 BOOM_STEP = 0.02  # rad
 SPARE = 0.1  # m between padded bodies and what they must not touch: the motion is rounded between the poses
 CURLING = (0.0, 0.25, 0.5, 0.75, 1.0)  # shares of the curl at which the tracks are looked at
-OPENING = (0.25, 0.5, 0.75)  # shares of an opening at which the ground is looked at
 ASIDE = 0.2  # m that the bucket may be beside its plane while it is in the ground
 ROUND = 0.3  # m that it may be beyond the poses of the dig there
 CALM = 1.2  # s over the place before it opens: the upper body comes to rest meanwhile
@@ -57,8 +56,8 @@ def excavate(arm: Backhoe, now: ArmAngles, goal: Dig) -> Moves:
     over = raised(arm, reach, surface + OVER)
     curled = arm.level((reach, *dragged)[-1])
     lifted = raised(arm, curled, surface + goal.lift, level=True)
-    ways = [math.dist(arm.linkage.tip(a)[:3], arm.linkage.tip(b)[:3]) for a, b in pairwise((reach, *dragged))]
-    least = (0.0, goal.depth / SPEED, *(way / SPEED for way in ways), 0.0, 0.0)
+    tips = [arm.linkage.tip(pose)[:3] for pose in (over, reach, *dragged)]
+    least = (0.0, *(math.dist(a, b) / SPEED for a, b in pairwise(tips)), 0.0, 0.0)
     targets = (over, reach, *dragged, curled, lifted)
     return Moves(targets, tuple(notes), through=Through(least, trench=_trench(arm, targets, at.z)))
 
@@ -66,29 +65,23 @@ def excavate(arm: Backhoe, now: ArmAngles, goal: Dig) -> Moves:
 def release(arm: Backhoe, now: ArmAngles, goal: Emptying) -> Moves:
     """Over the place with the bucket level, if there is one; then it opens, while arm and boom come up for clearance.
 
+    Where an open bucket would hang into the ground, the boom rises first.
+
     Raises:
         SubtaskFailed: FieldNotFinite, NoAngleDigs, OutOfRange, WouldSpill.
     """
     finite("target_angle", goal.angle)
     notes: list[Reason] = []
     over = now if goal.over is None else _place(arm, now, tip_of(goal.over), notes)
+    hanging = over._replace(bucket=arm.clip("bucket_joint", math.pi / 2 - over.boom - over.arm, []))
+    risen = over._replace(boom=raised(arm, hanging, OVER).boom)
     curled = arm.clip("arm_joint", over.arm + CLEAR_ARM, notes)
-    up = arm.clip("boom_joint", over.boom + CLEAR_BOOM, notes)
+    up = min(risen.boom, arm.clip("boom_joint", over.boom + CLEAR_BOOM, notes))
     end = arm.allowed(over, ArmAngles(over.swing, up, curled, goal.angle))
-    if goal.over is None:
-        targets = _above_ground(arm, now, end)
-        return Moves(targets, tuple(notes), through=Through((0.0,) * len(targets), free=False))
-    return Moves((over, over, end), tuple(notes), through=Through((0.0, CALM, 0.0), held=arm.held))
-
-
-def _above_ground(arm: Backhoe, now: ArmAngles, end: ArmAngles) -> tuple[ArmAngles, ...]:
-    """Opening without a touch of the ground: an open bucket hangs lower, so the boom comes up further, or first."""
-    gap = PADDING + SPARE
-    clear = raised(arm, end, gap)
-    opening = (ArmAngles(*(a + share * (b - a) for a, b in zip(now, clear, strict=True))) for share in OPENING)
-    return (
-        (clear,) if all(arm.bucket.lowest(pose) >= gap for pose in opening) else (now._replace(boom=clear.boom), clear)
-    )
+    if goal.over is not None:
+        return Moves((over, over, end), tuple(notes), through=Through((0.0, CALM, 0.0), held=arm.held))
+    targets = (end,) if risen == over else (risen, end)
+    return Moves(targets, tuple(notes), through=Through((0.0,) * len(targets), free=False))
 
 
 def raised(arm: Backhoe, pose: ArmAngles, height: float, level: bool = False) -> ArmAngles:
