@@ -71,9 +71,8 @@ class Bucket(Settings):
 
     @model_validator(mode="after")
     def _convex(self) -> "Bucket":
-        corners = zip(
-            self.section, self.section[1:] + self.section[:1], self.section[2:] + self.section[:2], strict=True
-        )
+        at = self.section
+        corners = zip(at, (*at[1:], at[0]), (*at[2:], *at[:2]), strict=True)
         if not all((b[0] - a[0]) * (c[1] - b[1]) < (b[1] - a[1]) * (c[0] - b[0]) for a, b, c in corners):
             raise Wrong(reasons.NotConvex(), "section")
         return self
