@@ -27,6 +27,7 @@ class AreaInsideOut(Reason, text="must be [least x, least y, largest x, largest 
 class NoGround(Reason, text="there is no ground:, which tells the site's area", action=EDIT_CONFIG): pass
 class NoOrigin(Reason, text="the file is in EPSG {epsg}, and the site file tells no ground.origin", action=EDIT_CONFIG):
     epsg: int
+class NotAlongPlane(Reason, text="a GeoTIFF needs a ground.origin on a plane, without yaw: export an .asc"): pass
 
 # files of heights
 class GroundFile(Reason, text="{file}: {why}"): file: str; why: Reason
