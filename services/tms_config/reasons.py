@@ -65,6 +65,7 @@ class NoCodeFile(Reason, text="there is no file services/{path}", action=EDIT_CO
 # the site
 class NoMachine(Reason, text="the site has no machine '{machine}' (there: {machines})",
     action=STATUS): machine: str; machines: tuple[str, ...]
+class NoPlannedArm(Reason, text="{machine} has no arm whose motions are planned"): machine: str
 class NotUnderMachines(Reason, text="there is no machine '{machine}' under machines: (there: {machines})",
     action=EDIT_CONFIG): machine: str; machines: tuple[str, ...]
 class SharedFrames(Reason, text="{first} and {second} would share their frames ('{prefix}base_link')",

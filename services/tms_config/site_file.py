@@ -223,6 +223,7 @@ class SiteFile(Settings):
     machines: dict[Annotated[str, Field(pattern=NAME)], MachineUse] = Field(default_factory=dict)
     peers: dict[str, Peer] = Field(default_factory=dict)  # machine -> nodes of the C++ system beside ours
     forms: Forms = Forms()  # of what they speak
+    ground: dict[str, Any] | None = None  # tms_ground/settings.py reads it
 
     @field_validator("services", mode="before")
     @classmethod

@@ -19,8 +19,8 @@ from tms_rp.excavator_messages import leaves, not_kept, plan_goal, progress_of, 
 from tms_rp.excavator_settings import Settings
 from tms_rp.kind import PlanningAction
 from tms_rp.messages import follow
+from tms_rp.plan import Plan
 from tms_rp.reasons import NothingToExecute, UnknownCommand
-from tms_rp.ways import Plan
 from tms_runtime.app import App
 
 ACTION = "tms_rp_excavator"

@@ -1,6 +1,7 @@
 """Process `<machine>:rp`: plans motions and has the machine's gateway execute them."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from control_msgs.action import FollowJointTrajectory
@@ -20,7 +21,6 @@ from tms_reason.texts import text
 from tms_ros.goals import Ended, Outcome
 from tms_ros.server import AnyGoal
 from tms_rp.checks import MotionChecks
-from tms_rp.clearance import Nearest
 from tms_rp.excavator import ExcavatorServer
 from tms_rp.excavator_params import ExcavatorParams
 from tms_rp.interventions import Interventions
@@ -30,6 +30,7 @@ from tms_rp.kinds import load
 from tms_rp.messages import follow
 from tms_rp.mover import Mover
 from tms_rp.neighbours import Neighbours
+from tms_rp.plan import Plan
 from tms_rp.reasons import (
     Adapted,
     GatewayAway,
@@ -42,10 +43,13 @@ from tms_rp.reasons import (
 )
 from tms_rp.resuming import Resuming
 from tms_rp.scene import Scene
+from tms_rp.scene_server import SceneServer
+from tms_rp.scene_view import Area
 from tms_rp.their_planner import TheirPlanner
 from tms_rp.told_scene import ToldScene
 from tms_rp.trajectory import Trajectory
-from tms_rp.ways import Plan, Ways
+from tms_rp.view import Nearest
+from tms_rp.ways import Ways
 from tms_runtime.app import App
 
 FRESH = 1.0  # s, older joint states are no start for a motion
@@ -73,6 +77,7 @@ def start(app: App) -> None:
         planner.serve_excavator(actions["plan_pose"])
     checks = MotionChecks(actions, planner.kind.joints, planner.joints, planner.planned, planner.nearest)
     app.ros.offer_slow(CheckMotion, f"/{app.machine}/rp/check_motion", checks.answer)
+    SceneServer(app, app.site.model_of(app.machine), planner)
     app.ready_when(planner.unready)
 
 
@@ -93,6 +98,7 @@ class Planner:
         self._resuming = Resuming(Mover(self._rc), Interventions(app.ros, app.machine), self._blocked, self._ways.late)
         peer = app.site.file.peers.get(app.machine)
         self._theirs = TheirPlanner(app, self.kind.joints) if peer is not None and peer.planner == "theirs" else None
+        self.last: Trajectory | None = None  # what was planned last
         self._busy = False  # set on the executor thread, which accepts one goal after another
         self._joints = JointStates(app.ros, app.machine, app.site.border(app.machine), self.kind.joints)
 
@@ -184,6 +190,7 @@ class Planner:
                 say(Planned(plan.made.duration), plan.notes)
                 outcome = Outcome.SUCCEEDED
             else:
+                self._planner.moves(plan.moves)
                 outcome = self._resuming.move(goal, plan, again, say)
         except TmsError as error:
             self._app.log.warning("failed", action=action.name, goal=goal.id, reason=error.reason)
@@ -200,13 +207,27 @@ class Planner:
             return None
         return self._ways.blocked(made, seconds, scene)
 
-    def _scene(self) -> Scene:
+    def scene(self) -> Scene:
         """All that stands around the machine now.
 
         Raises:
             SubtaskFailed: something of it is not known.
         """
-        return Scene((*self._neighbours.scene().obstacles, *self._told.obstacles()))
+        told = self._told.scene()
+        return replace(told, obstacles=(*self._neighbours.scene().obstacles, *told.obstacles))
+
+    def pose(self) -> Angles:
+        """The present angles of all joints; those that no goal moves are at 0.
+
+        Raises:
+            SubtaskFailed: JointsUnheard, JointsOld.
+        """
+        angles = dict(zip(self.kind.joints, self.joints(), strict=True))
+        return tuple(angles.get(name, 0.0) for name in self._model.joints)
+
+    def areas(self) -> list[Area]:
+        """Where records say that the machine is to work."""
+        return self._told.areas()
 
     def _planned(self, action: PlanningAction, now: Angles, goal: AnyGoal, request: Any) -> Plan:
         """A plan for a goal; of a plan to be stored the way is their planner's, where the site file says so."""
@@ -221,12 +242,13 @@ class Planner:
 
     def nearest(self, plan: Plan) -> Nearest | None:
         """Where a plan comes nearest to something in the scene as it is now."""
-        return self._ways.nearest(plan.made, self._scene())
+        return self._ways.nearest(plan.made, self.scene())
 
     def _plan(self, action: PlanningAction, now: Angles, moves: Moves) -> Plan:
         """A plan in the scene as it is now."""
         begun = monotonic()
-        plan = self._ways.plan(now, moves, self._scene())
+        plan = self._ways.plan(now, moves, self.scene())
+        self.last = plan.made
         seconds = monotonic() - begun
         PLANNING.observe(seconds)
         self._app.log.info(

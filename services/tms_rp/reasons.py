@@ -11,7 +11,7 @@ OTHER_POINT = Remedy("goal", "", "Choose another point or another bucket angle")
 INSIDE = Remedy("goal", "", "Choose a target inside the limits")
 OTHER_TARGET = Remedy("goal", "", "Choose another target, or move away first")
 PLAN_AGAIN = Remedy("goal", "", "Plan anew from where the machine is")
-ADD_JOINTS = Remedy("edit_config", "", "Add them under joints: and geometry: of the machine file")
+ADD_JOINTS = Remedy("edit_config", "", "Add them under joints:, geometry: and shapes: of the machine file")
 
 
 # fmt: off
@@ -21,6 +21,8 @@ class Planned(Reason, text="planned: it takes {duration}"): duration: Seconds
 class MoveOf(Reason, text="move {number} of {count}, {percent}"): number: int; count: int; percent: Percent
 class Adapted(Reason, text="{progress} ({notes})"): progress: Reason; notes: tuple[Reason, ...]
 class OtherAngle(Reason, text="bucket angle {chosen} instead of {wanted}"): chosen: Radians; wanted: Radians
+class DragCut(Reason, text="it drags {drag} instead of {wanted}: the arm gets no further"):
+    drag: Metres; wanted: Metres
 class ClearanceCut(Reason, text="{joint} moves clear to its limit {limit} only"): joint: str; limit: Radians
 class Around(Reason, text="{way}, as {why}"): way: Reason; why: Reason
 class LiftSwingLower(Reason, text="it lifts, swings and lowers"): pass
@@ -66,11 +68,14 @@ class JointBroken(Reason, text="{joint} {why}"): joint: str; why: Reason
 class OutOfRange(Reason, text="{broken}", action=INSIDE): broken: tuple[Reason, ...]
 class PointOutOfRange(Reason, text="{point} needs {broken}", action=OTHER_POINT):
     point: Reason; broken: tuple[Reason, ...]
+class DigUnfit(Reason, text="depth {depth} must be above 0, drag {drag} and lift {lift} not below",
+    action=RECORDS): depth: Metres; drag: Metres; lift: Metres
 class NoAngleDigs(Reason, text="no bucket angle from 0 to pi digs there: {why}"): why: Reason
+class WouldSpill(Reason, text="soil would fall out on the way to {point}: the bucket is {tilt} from level there",
+    action=NEARER): point: Reason; tilt: Radians
 class Collision(Reason, text="{first} would touch {second} after {seconds}, {depth} deep at ({x}, {y}, {z})",
     action=OTHER_TARGET):
     first: Reason; second: Reason; seconds: Seconds; depth: Metres; x: Metres; y: Metres; z: Metres
-class PathBlocked(Reason, text="{by} has come into the way: {why}", action=INSPECT): by: Reason; why: Reason
 class NoWayRound(Reason, text="{why}; no way round was found", action=OTHER_TARGET): why: Reason
 class Part(Reason, text="{link}"): link: str
 class Ground(Reason, text="the ground"): pass
@@ -104,6 +109,18 @@ class MotionFailed(Reason, text="{why}", details="{name} {outcome}"): why: Reaso
 
 class Told(Reason, text="{record}"): record: str
 class NoShape(Reason, text="it has no dimensions, and there is no machine '{named}'"): named: str
+class SizesUnfit(Reason, text="it has {told} dimensions, not {needed}"): needed: int; told: int
+class MeshEmpty(Reason, text="its surface has no corners or no triangles"): pass
+class MeshNotFinite(Reason, text="a value of its surface is not a number"): pass
+class MeshCorners(Reason, text="its triangles are not three numbers each of its {corners} corners"): corners: int
+class MeshLarge(Reason, text="its surface has {triangles} triangles: {limit} at most"): triangles: int; limit: int
+class MeshSimplified(Reason,
+    text="the surface of {record} is planned with as {kept} of {triangles} triangles, up to {off} off"):
+    record: str; triangles: int; kept: int; off: Metres
+class NamesUnfit(Reason, text="{field} is no list of names"): field: str
+class NoSuchObstacle(Reason, text="it names the record '{named}', which is not there"): named: str
+class PaddingUnfit(Reason, text="its padding of '{link}' is none of a link of the machine, from 0 to {limit}"):
+    link: str; limit: Metres
 class SceneRecordOld(Reason, text="record {record} is {age} old: nobody knows what stands there now", action=RECORDS):
     record: str; age: Seconds
 class SceneUnread(Reason, text="the scene records are as they were read last: {why}"): why: Reason

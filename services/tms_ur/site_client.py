@@ -19,6 +19,7 @@ from tms_msg_host.msg import Processes
 from tms_msg_host.srv import ControlProcess, ReadLog
 from tms_msg_rc.msg import MachineState
 from tms_msg_rc.srv import Rearm, StopMachine
+from tms_msg_rp.srv import GetScene
 from tms_msg_sp.msg import InputState, InputStates
 from tms_msg_ts.action import ExecuteTask
 from tms_msg_ts.msg import RunStates
@@ -42,6 +43,7 @@ from tms_ur.data_models import Change, Record, Sensing
 from tms_ur.models import AddedTemplate, Event, Host, Place, Rearmed, Receipt, Run, Task, TaskText, Template
 from tms_ur.reason_view import of_error, of_line, view
 from tms_ur.reasons import RunNotBegun, StartRefused, UnknownProcess
+from tms_ur.scene_models import Scene, scene
 
 SCHEDULER = "tms:ts"
 CALL_LIMIT = 4.0  # s for an answer of a module
@@ -225,6 +227,14 @@ class SiteClient:
         """
         answer = self._ask(Rearm, f"/{machine}/rearm", token=token)
         return Rearmed(token=answer.token, cause=of_line(answer.cause), armed=answer.armed)
+
+    def scene(self, machine: str) -> Scene:
+        """What the planner of a machine plans among now.
+
+        Raises:
+            TmsError: something of it is not known, or the planner is away.
+        """
+        return scene(machine, self._ask(GetScene, f"/{machine}/rp/get_scene"))
 
     # processes
 

@@ -15,6 +15,7 @@ from std_msgs.msg import Bool
 from tf2_msgs.msg import TFMessage
 from tms_msg_rc.msg import MachineState
 from tms_msg_rp.action import (
+    Excavate,
     ExecutePlans,
     PlanPose,
     TmsRpExcavator,
@@ -32,6 +33,7 @@ from tms_config.config import CONFIGS, load_site
 from tms_config.models import MachineModel
 from tms_config.reasons import AboveLimit
 from tms_config.yaml_file import parse
+from tms_control.reasons import PathBlocked
 from tms_decision.reasons import MachineLatched, PressedByOthers
 from tms_rc.latch_file import LatchFile
 from tms_reason import wire
@@ -48,7 +50,6 @@ from tms_rp.reasons import (
     MoveOf,
     OtherAngle,
     OutOfRange,
-    PathBlocked,
     PlanElsewhere,
     PlannedAnew,
 )
@@ -212,11 +213,34 @@ def test_excavate_then_release(machine: Rig) -> None:
     soil = TmsRpZx200PositionWithAngle(position=Point(x=4.7, y=-0.4, z=0.1), theta_w=0.0)
     dig = machine.send(TmsRpZx200ExcavateSimple, "tms_rp_zx200_excavate_simple", position_with_angle=soil)
     assert machine.end(dig) is Outcome.SUCCEEDED
-    assert machine.states[-1].position[3] == pytest.approx(1.7, abs=0.031)
+    assert sum(machine.states[-1].position[1:4]) == pytest.approx(math.pi, abs=0.06)  # the bucket is level
     assert any((reported := wire.known(text)).find(MoveOf) and reported.find(OtherAngle) for text in machine.said)
     opened = machine.send(TmsRpZx200ReleaseSimple, "tms_rp_zx200_release_simple", target_angle=-0.2)
     assert machine.end(opened) is Outcome.SUCCEEDED
     assert machine.states[-1].position[3] == pytest.approx(-0.2, abs=0.031)
+
+
+def test_a_dig_that_is_blocked_is_planned_anew_from_where_it_was(machine: Rig) -> None:
+    frames = machine.ros.publisher(TFMessage, "/tf", depth=10)
+    soil = TmsRpZx200PositionWithAngle(position=Point(x=-4.0, y=4.5, z=0.0), theta_w=1.6)
+    dig = machine.send(Excavate, "tms_rp_zx200_excavate", position_with_angle=soil, depth=0.4, drag=1.0, lift=0.5)
+    machine.until(machine.moving, "motion")
+
+    def waits() -> bool:
+        frames.publish(at(7.0, 1.6))
+        return any(wire.known(said).find(PlannedAnew) is not None for said in machine.said)
+
+    def over() -> bool:
+        frames.publish(at(60.0, 1.6))
+        return dig.outcome is not None
+
+    machine.until(waits, "a way that is blocked")
+    assert dig.outcome is None and not machine.moving()
+    machine.until(over, "end of the dig")
+    assert dig.outcome is Outcome.SUCCEEDED
+    swing, boom, arm, bucket, _ = machine.states[-1].position
+    assert swing == pytest.approx(math.atan2(4.53, -4.11), abs=0.06)
+    assert boom + arm + bucket == pytest.approx(math.pi, abs=0.06)
 
 
 def test_cancel_ends_with_the_machine_standing(machine: Rig) -> None:

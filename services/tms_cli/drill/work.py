@@ -9,16 +9,20 @@ from tms_msg_ts.srv import CancelRun
 
 from tms_cli import session, stored_records
 from tms_cli.commands import rearm
+from tms_cli.commands.events import journal
 from tms_cli.commands.runs import has_ended, recent
 from tms_cli.drill import tasks
 from tms_cli.drill.plan import fault_of
+from tms_cli.drill.record import time_of
 from tms_cli.drill.verdict import INTERRUPTED
 from tms_cli.reasons import RunDoesNotEnd
 from tms_config.clock import monotonic, sleep
 from tms_config.config import Site
+from tms_reason import wire
 from tms_reason.errors import TmsError
 from tms_ros.client import Call
 from tms_ros.node import Ros
+from tms_ts.reasons import StateBecause
 
 ARM_LIMIT = 30.0  # s for the machine to be armed again
 SERVER_LIMIT = 20.0  # s for the scheduler to be up
@@ -123,6 +127,17 @@ class Work:
         except TmsError:
             return ""  # the database may have been hit
         return run.state if run is not None and has_ended(run) else ""
+
+    def history(self) -> list[tuple[float, str]]:
+        """When the run entered which states, by its journal: s since 1970, and codes; empty: not known."""
+        if not self._run:
+            return []
+        try:
+            rows = [row for row in journal(self._node, self._run) if row.kind == "run"]
+        except TmsError:
+            return []  # the database may have been hit
+        reasons = [(time_of(row.stamp), wire.known(row.text)) for row in rows]
+        return [(at, (why.state if isinstance(why, StateBecause) else why).code) for at, why in reasons]
 
     def _received(self, feedback: ExecuteTask.Feedback) -> None:
         self._run = feedback.run_id or self._run

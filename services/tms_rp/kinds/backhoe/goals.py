@@ -38,6 +38,27 @@ class LinkGoal:
 
 
 @dataclass(frozen=True)
+class Dig:
+    """A place to dig, where z is the ground: how deep the tip goes below it, how far then towards the machine [m].
+
+    `lift`: how far above the ground the bucket hangs at the end [m].
+    """
+
+    at: TipGoal
+    depth: float
+    drag: float
+    lift: float
+
+
+@dataclass(frozen=True)
+class Emptying:
+    """The bucket joint when open [rad], over a place or where the arm is now."""
+
+    angle: float
+    over: TipGoal | None = None
+
+
+@dataclass(frozen=True)
 class ChangePose:
     """Targets one after another; exactly one of the three is given.
 

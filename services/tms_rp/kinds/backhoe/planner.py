@@ -1,14 +1,16 @@
 """Excavators: goals for the bucket become joint targets, each inside the joint limits."""
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 
 from tms_config.models import MachineModel
 from tms_machine import geometry
 from tms_machine.reasons import NoSuchJoint
 from tms_reason.errors import ConfigError, SubtaskFailed
 from tms_reason.reason import Reason
-from tms_rp.kind import Angles, Moves
+from tms_rp.kind import Angles, Moves, Through
+from tms_rp.kinds.backhoe.bucket import EMPTIED, LEVEL, TILT, Body, tilt
 from tms_rp.kinds.backhoe.goals import ChangePose, LinkGoal, TipGoal, finite
 from tms_rp.kinds.backhoe.linkage import ArmAngles, Linkage, Tip, Vector, wrap
 from tms_rp.reasons import (
@@ -18,7 +20,6 @@ from tms_rp.reasons import (
     NoArm,
     NoOrientation,
     OneTarget,
-    OtherAngle,
     OutOfPlane,
     OutOfRange,
     Point,
@@ -28,12 +29,9 @@ from tms_rp.reasons import (
 NAMES = ("swing_joint", "boom_joint", "arm_joint", "bucket_joint")
 TOOL = "bucket_end_joint"  # a frame, not a joint: no command moves it
 
-DEPTH = 1.0  # m, from a record's z (the ground) down to where the bucket digs
 SEARCH_STEP = 0.01  # rad, of theta_w
-CURLED = 1.7  # rad, bucket joint that holds the soil
-CLEAR_ARM = 0.1  # rad, arm curls in by this much when the bucket closes or opens
-CLEAR_BOOM = -0.15  # rad, boom rises by this much when the bucket opens
 EMPTY = 1e-3  # a shorter quaternion counts as not filled in; others are brought to the length 1, as MoveIt does
+SWINGS = 0.05  # rad of the upper body that spill nothing
 
 
 class Backhoe:
@@ -46,9 +44,14 @@ class Backhoe:
         missing = [name for name in (*NAMES, TOOL) if name not in model.joints or name not in model.geometry]
         if "base_joint" not in model.geometry:  # it is fixed, so `joints:` does not have it
             missing.append("base_joint")
+        links = [model.geometry[name].child for name in ("arm_joint", "bucket_joint") if name in model.geometry]
+        missing += [link for link in links if link not in model.shapes]
         if missing:
             raise ConfigError(NoArm(tuple(missing)))
         self.limits = {name: model.joints[name] for name in NAMES}
+        self.bucket, self.arm = Body(model, "bucket_joint"), Body(model, "arm_joint")
+        self.tracks = model.shapes.get(model.geometry["swing_joint"].parent)
+        self._loaded = False  # it has dug, and was not seen open since
         self.linkage = Linkage.of(model.geometry)
 
     def change_pose(self, now: ArmAngles, goal: ChangePose) -> Moves:
@@ -59,36 +62,22 @@ class Backhoe:
         targets: list[ArmAngles] = []
         for values in goal.joints:
             targets.append(self._joints(now, targets, values))
-        for tip in (*(self._link_tip(link, goal.aside) for link in goal.links), *(_tip(tip) for tip in goal.tips)):
-            targets.append(_short_way(targets[-1] if targets else now, self.reach(tip)))
+        for tip in (*(self._link_tip(link, goal.aside) for link in goal.links), *(tip_of(tip) for tip in goal.tips)):
+            targets.append(short_way(targets[-1] if targets else now, self.reach(tip)))
         return Moves(tuple(targets))
 
-    def excavate(self, now: ArmAngles, goal: TipGoal) -> Moves:
-        """Swing over the point, reach it with the nearest possible bucket angle, then curl the bucket in.
+    def moves(self, moves: Moves) -> None:
+        """Take note of a motion that begins: one that digs loads the bucket."""
+        self._loaded = self._loaded or (moves.through is not None and moves.through.trench is not None)
 
-        The bucket digs DEPTH below the goal's z, `offset` further out on the line from the machine's origin.
-        """
-        theta_w = wrap(_tip(goal).theta_w - math.pi / 2) + math.pi / 2  # the turn that holds 0 to pi
-        bearing = math.atan2(goal.y, goal.x)
-        dig = Tip(
-            goal.x + goal.offset * math.cos(bearing), goal.y + goal.offset * math.sin(bearing),
-            goal.z - DEPTH, theta_w,
-        )  # fmt: skip
-        found, chosen = self._search(dig)
-        reach = _short_way(now, found)
-        notes: list[Reason] = [] if chosen == theta_w else [OtherAngle(chosen, theta_w)]
-        arm = self._clip("arm_joint", reach.arm + CLEAR_ARM, notes)
-        curl = self._allowed(reach, reach._replace(arm=arm, bucket=CURLED))
-        return Moves((now._replace(swing=reach.swing), reach, curl), tuple(notes))
-
-    def release(self, now: ArmAngles, angle: float) -> Moves:
-        """Open the bucket to `angle` [rad] in two moves; the second also brings arm and boom up for clearance."""
-        finite("target_angle", angle)
-        notes: list[Reason] = []
-        arm = self._clip("arm_joint", now.arm + CLEAR_ARM, notes)
-        boom = self._clip("boom_joint", now.boom + CLEAR_BOOM, notes)
-        end = self._allowed(now, ArmAngles(now.swing, boom, arm, angle))
-        return Moves((now._replace(bucket=(now.bucket + angle) / 2), end), tuple(notes))
+    def carrying(self, now: ArmAngles, moves: Moves) -> Moves:
+        """The same with the bucket level while it swings, if it carries soil; it opens where the motion ends."""
+        self._loaded = self._loaded and tilt(now) < EMPTIED
+        target = ArmAngles(*moves.targets[-1])
+        if not self._loaded or len(moves.targets) > 1 or abs(target.swing - now.swing) < SWINGS:
+            return moves
+        targets = (target,) if abs(tilt(target)) <= TILT else (self.level(target), target)
+        return replace(moves, targets=targets, through=Through((0.0,) * len(targets), held=self.held))
 
     def reach(self, tip: Tip) -> ArmAngles:
         """Joints inside their limits that bring the bucket tip there; swing in (-pi, pi]."""
@@ -109,14 +98,32 @@ class Backhoe:
         turn = geometry.product(geometry.about("z", pose.swing), geometry.about("y", tip.theta_w + self.linkage.level))
         return (tip.x, tip.y, tip.z), turn
 
-    def _search(self, tip: Tip) -> tuple[ArmAngles, float]:
-        """Joints for the point with the possible theta_w nearest to the asked one, and that theta_w [rad]."""
+    def level(self, pose: ArmAngles) -> ArmAngles:
+        """The pose with the bucket level, or as near to it as the bucket gets."""
+        return pose._replace(bucket=self.clip("bucket_joint", LEVEL - pose.boom - pose.arm, []))
+
+    def held(self, pose: Angles) -> Angles | None:
+        """A pose on a way, with the bucket level; None where it cannot hold its soil."""
+        level = self.level(ArmAngles(*pose))
+        return level if abs(tilt(level)) <= TILT else None
+
+    def search(self, tip: Tip, fits: Callable[[ArmAngles], bool]) -> tuple[ArmAngles, float]:
+        """Joints for the point with the possible theta_w nearest to the asked one, and that theta_w [rad].
+
+        Of those that fit, if one does; else nobody here can say better than the collision check why they do not.
+        """
+        possible: list[tuple[ArmAngles, float]] = []
         refused: list[SubtaskFailed] = []
         for theta_w in _outward(tip.theta_w):
             try:
-                return self.reach(tip._replace(theta_w=theta_w)), theta_w
+                possible.append((self.reach(tip._replace(theta_w=theta_w)), theta_w))
             except SubtaskFailed as error:
                 refused.append(error)
+                continue
+            if fits(possible[-1][0]):
+                return possible[-1]
+        if possible:
+            return possible[0]
         raise SubtaskFailed(NoAngleDigs(refused[0].reason))
 
     def _joints(self, now: ArmAngles, before: list[ArmAngles], values: Mapping[str, float]) -> ArmAngles:
@@ -126,7 +133,7 @@ class Backhoe:
         finite("trajectory", *values.values())
         kept = {name: angle for name, angle in values.items() if name in NAMES and abs(angle) <= math.tau}
         target = ArmAngles(*(kept.get(name, angle) for name, angle in zip(NAMES, now, strict=True)))
-        return self._allowed(now, _short_way(before[-1] if before else now, target))
+        return self.allowed(now, short_way(before[-1] if before else now, target))
 
     def _link_tip(self, link: LinkGoal, most: float) -> Tip:
         """The tip that a pose of bucket_end_link asks for; theta_w is its pitch in the plane of the arm."""
@@ -141,7 +148,7 @@ class Backhoe:
             raise SubtaskFailed(OutOfPlane(angle, swing))
         return Tip(link.x, link.y, link.z, wrap(math.atan2(-z, out) - self.linkage.level))
 
-    def _allowed(self, now: ArmAngles, target: ArmAngles) -> ArmAngles:
+    def allowed(self, now: ArmAngles, target: ArmAngles) -> ArmAngles:
         """The target, if every joint that it moves stays inside its limits."""
         moved = ((n, b) for n, a, b in zip(NAMES, now, target, strict=True) if a != b)
         broken = self._broken(moved)
@@ -153,7 +160,7 @@ class Backhoe:
         found = ((name, self.limits[name].violation(angle)) for name, angle in angles)
         return tuple(JointBroken(name, broken) for name, broken in found if broken)
 
-    def _clip(self, name: str, angle: float, notes: list[Reason]) -> float:
+    def clip(self, name: str, angle: float, notes: list[Reason]) -> float:
         """The angle [rad] of a clearance move, cut at the joint's limit."""
         joint = self.limits[name]
         low, high = (-math.inf if joint.min is None else joint.min), (math.inf if joint.max is None else joint.max)
@@ -163,12 +170,13 @@ class Backhoe:
         return cut
 
 
-def _tip(goal: TipGoal) -> Tip:
+def tip_of(goal: TipGoal) -> Tip:
+    """The tip of a goal, without its offset."""
     finite("position_with_angle", goal.x, goal.y, goal.z, goal.theta_w, goal.offset)
     return Tip(goal.x, goal.y, goal.z, goal.theta_w)
 
 
-def _short_way(before: ArmAngles, target: ArmAngles) -> ArmAngles:
+def short_way(before: ArmAngles, target: ArmAngles) -> ArmAngles:
     """The target with its swing on the turn nearest to the present angle of the upper body."""
     return target._replace(swing=before.swing + wrap(target.swing - before.swing))
 
