@@ -18,12 +18,12 @@ def test_the_form_stands_before_the_usual_packages(monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr("sys.argv", ["run.py", "zx200:if"])
     monkeypatch.setenv("PYTHONPATH", "/opt/tms/services")
     monkeypatch.setenv("LD_LIBRARY_PATH", "/opt/lib")
-    wire_form.enter(["v6b"])
+    wire_form.enter("v6b")
     ((words, env),) = started
     prefix = str(wire_form.PREFIXES / "v6b")
     assert words[1:] == ["-m", "tms_runtime.run", "zx200:if"]
     assert env["LD_LIBRARY_PATH"] == f"{prefix}/lib:/opt/lib"
     assert env["PYTHONPATH"].startswith(prefix) and env["PYTHONPATH"].endswith("site-packages:/opt/tms/services")
     monkeypatch.setenv("PYTHONPATH", env["PYTHONPATH"])
-    wire_form.enter(["v6b"])
+    wire_form.enter("v6b")
     assert len(started) == 1
