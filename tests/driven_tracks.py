@@ -10,14 +10,17 @@ from operasim.machine import Machine
 from operasim.model import Placed, Unknowns, machine
 from tms_config.models import DRIVE, Drive, MachineModel, Response
 from tms_config.yaml_file import parse
+from tms_control.ground import Body, Ground, Outline
 from tms_control.path import Pose
 from tms_control.track_estimate import Command, PoseSample, TrackEstimate
-from tms_control.trip import Task, Trip
+from tms_control.trip import Trip
+from tms_control.trip_task import Task
 
 TICK = 0.01  # s
 ENGINE = 2  # ticks a step
 POSES = {"mst110cr": 12}  # ticks between poses; of the others:
 OFTEN = 6
+LOOK = 10  # ticks between two looks around
 LATEST = 0.05  # s that a pose or a command may be late
 MODELS = ("zx200", "ic120", "mst110cr", "zx120")
 GAINS = (1 / 3, 0.6, 1.0)
@@ -47,6 +50,8 @@ class DrivenTracks:
         self.drive: Drive = found
         self.machine = Machine(machine(name), Placed(model=name, place=(0.0, 0.0, 0.0)), Unknowns(yaw_gain=gain))
         self.estimate = TrackEstimate(Response(**response.model_dump() | {"lag": response.lag / lag}))
+        self.outline = Outline.of(model(name).footprint.values())
+        self.ground = Ground()
         self.blind = self.stuck = False  # no pose arrives; nothing moves it
         self.now = 0.0
         self.sent: list[Command] = []
@@ -69,7 +74,11 @@ class DrivenTracks:
         return max(abs(self.machine.tracks.left.speed), abs(self.machine.tracks.right.speed))
 
     def trip(self, task: Task) -> Trip:
-        return Trip(task, self.drive, self.estimate, self.now)
+        return Trip(task, self.drive, self.estimate, self.now, self.outline, self.ground)
+
+    def stands(self, *bodies: Body) -> None:
+        """These stand around it from now on."""
+        self.ground = Ground(bodies)
 
     def run(self, trip: Trip, seconds: float = 600.0, until: Callable[[], bool] = lambda: False) -> None:
         """Go on until the trip has ended, or this is true, or for this long."""
@@ -85,6 +94,10 @@ class DrivenTracks:
             self._poses.append((self._late(), PoseSample(self.now, self._told())))
         if self._ticks % self._control == 0:
             self._step_trip(trip)
+        if self._ticks % LOOK == 0 and self._ticks > LOOK:
+            trip.see(self.now, self.ground)
+            if trip.asked is not None:
+                trip.answer(self.now, trip.asked.answer())
 
     def kick(self, yaw: float, beside: float = 0.0) -> None:
         """Something turns it and moves it to the left."""

@@ -9,9 +9,10 @@ from tms_msg_db.srv import GetParameter
 from tms_msg_rp.srv import CheckMotion
 
 from tms_cli import session
-from tms_cli.reasons import ForNoArm, NoPlannedArm, RecordUnfitFor, WhichSubtask
+from tms_cli.reasons import ForNoArm, RecordUnfitFor, WhichSubtask
 from tms_config.config import Site
 from tms_config.models import MachineModel
+from tms_config.reasons import NoPlannedArm
 from tms_kit.rehearsal import NotOfArm, Refused, Rehearsal, service_of
 from tms_machine.values import from_parameters
 from tms_reason.errors import ConfigError, SubtaskFailed, TmsError

@@ -99,7 +99,6 @@ class NoUser(Reason, text="{file}: there is no user '{name}'", action=USERS): fi
 class NoUsersKey(Reason, text="{file}: console.users names no file", action=ADD_USERS): file: str
 class NoHostPort(Reason, text="where alerts go is no HOST:PORT: '{address}'", action=HOST_AND_PORT): address: str
 
-class NoPlannedArm(Reason, text="{machine} has no arm whose motions are planned"): machine: str
 class WhichSubtask(Reason, text="record {record}: for which subtask is it ({subtasks})?", action=GIVE_SUBTASK):
     record: str; subtasks: tuple[str, ...]
 class RecordUnfitFor(Reason, text="record {record} does not fit {subtask}: {why}", action=RECORDS):

@@ -94,6 +94,16 @@ class Run:
         """Length [m]."""
         return self.starts[-1]
 
+    def cut(self, begin: float, end: float) -> list[Piece]:
+        """Its pieces between two ways from the begin [m]."""
+        found = []
+        for piece, start in zip(self.pieces, self.starts, strict=False):
+            first, last = max(begin - start, 0.0), min(end - start, piece.length)
+            if first < last:
+                part = (last - first) / piece.length
+                found.append(Piece(piece.at(first), last - first, piece.turn * part, piece.direction))
+        return found
+
     def at(self, way: float) -> Pose:
         """The pose after some metres; beyond the end, straight on."""
         if way >= self.length:

@@ -1,7 +1,7 @@
 """Plans paths of tracks between poses: of all candidates, the one that takes least time.
 
 Candidates are turn on the spot, line, turn; and arc, line, arc (the words of L. E. Dubins, 1957); each of them forward
-and in reverse. Reverse is slower, so that only a short way is taken so. There are no obstacles.
+and in reverse. Reverse is slower, so that only a short way is taken so. Obstacles do not count here (see detour.py).
 """
 
 import math
@@ -74,7 +74,7 @@ def plan(start: Pose, goals: Sequence[Goal], pace: Pace, pivot: float = 0.0) -> 
         before = goals[number - 1] if number else start
         onward = goals[number + 1] if number + 1 < len(goals) else None
         reached: dict[Pose, list[list[Piece]]] = {}
-        for pose in (one.ahead(pivot) for one in _poses(before, goal, onward)):
+        for pose in (one.ahead(pivot) for one in passable(before, goal, onward)):
             ways = ([*legs, fastest(begin, pose, pace)] for begin, legs in best.items())
             reached[pose] = min(ways, key=lambda legs: pace.total([piece for leg in legs for piece in leg]))
         best = reached
@@ -84,7 +84,7 @@ def plan(start: Pose, goals: Sequence[Goal], pace: Pace, pivot: float = 0.0) -> 
     return Plan(Path(tuple(pieces) or (Piece(start.ahead(pivot), 0.0, 0.0),)), counts)
 
 
-def _poses(before: Goal | Pose, goal: Goal, onward: Goal | None) -> list[Pose]:
+def passable(before: Goal | Pose, goal: Goal, onward: Goal | None) -> list[Pose]:
     """The poses in which a goal may be reached."""
     if goal.yaw is not None or onward is None:
         return [Pose(goal.x, goal.y, goal.yaw or 0.0)]
@@ -96,8 +96,12 @@ def _poses(before: Goal | Pose, goal: Goal, onward: Goal | None) -> list[Pose]:
 
 def fastest(start: Pose, goal: Pose, pace: Pace) -> list[Piece]:
     """The pieces between two poses that take least time; none if they are the same."""
-    found = [_without_nothing(pieces) for pieces in _candidates(start, goal)]
-    return min(found, key=pace.total)
+    return min(words(start, goal), key=pace.total)
+
+
+def words(start: Pose, goal: Pose) -> list[list[Piece]]:
+    """All candidates between two poses."""
+    return [_without_nothing(pieces) for pieces in _candidates(start, goal)]
 
 
 def _candidates(start: Pose, goal: Pose) -> Iterator[list[Piece]]:

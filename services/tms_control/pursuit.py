@@ -19,6 +19,7 @@ SLOWEST = 0.05  # m/s, in curves
 GENTLE = 0.6  # share of the acceleration that braking for an end or a curve uses
 SPARE = 0.8  # share of the yaw rate that a curve may use; the rest is for corrections
 LATE = 0.08  # s until brakes act
+LOOKS = 0.5  # s between two looks at what stands around, and the age of what they see
 ALIGNED = 0.02  # rad, where a turn on the spot ends
 HOLD, HOLD_SPEED = 0.4, 0.1  # 1/s, m/s: a turn on the spot keeps its place along the heading
 
@@ -65,6 +66,16 @@ class Pursuit:
             return Deviation(0.0, 0.0)
         on = part.at(self._way)
         return Deviation(abs(on.seen(state.pose)[1]), abs(on.off(state.pose.yaw)))
+
+    def coming(self, state: TrackState, lag: float) -> list[Piece]:
+        """What of the present part it drives through before it can stand; of a turn on the spot, all that is left."""
+        part = self._parts[0] if self._parts else None
+        if part is None:
+            return []
+        if isinstance(part, Piece):
+            return [Piece(part.start._replace(yaw=state.pose.yaw), 0.0, state.pose.off(part.end.yaw))]
+        v = abs(state.v)
+        return part.cut(self._way, self._way + v * (lag + LOOKS) + v**2 / (2 * GENTLE * self._drive.acceleration))
 
     def step(self, state: TrackState) -> Command:
         """The next command."""

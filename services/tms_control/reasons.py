@@ -2,7 +2,9 @@
 
 from tms_reason.quantities import Metres, Moments, Radians, Seconds
 from tms_reason.reason import Reason
-from tms_reason.remedies import INSPECT
+from tms_reason.remedies import INSPECT, Remedy
+
+OTHER_GOAL = Remedy("goal", "", "Choose another goal, or clear the way first")
 
 
 # fmt: off
@@ -30,4 +32,15 @@ class PosesStopped(Reason, text="no pose of the machine for {seconds}", action=I
 class LeftPath(Reason, text="{beside} and {turned} off the path"): beside: Metres; turned: Radians
 class ShortOfPose(Reason, text="{away} and {turned} off the goal after {attempts} attempts", action=INSPECT):
     away: Metres; turned: Radians; attempts: int
+
+# what stands on the ground
+class MachineThere(Reason, text="{machine}"): machine: str
+class BlockedArea(Reason, text="the blocked area '{area}'"): area: str
+class InTheWay(Reason, text="at ({x}, {y}), {away} along its way"): x: Metres; y: Metres; away: Metres
+class StandsIn(Reason, text="the machine stands in {by}", action=INSPECT): by: Reason
+class GoalTaken(Reason, text="the goal is {gap} from {by}: {needed} is needed", action=OTHER_GOAL):
+    by: Reason; gap: Metres; needed: Metres
+class NoWayAround(Reason, text="{by} is in the way {why}; no way around was found", action=OTHER_GOAL):
+    by: Reason; why: Reason
+class PathBlocked(Reason, text="{by} has come into the way: {why}", action=INSPECT): by: Reason; why: Reason
 # fmt: on

@@ -1,21 +1,27 @@
 """One goal of tracks: drives to poses or along a told path, and judges how it goes. Pure logic.
 
 The machine stands before a way is planned, and stands again before it is measured whether it has arrived. If it has
-not, the rest is planned anew. Times are seconds of the machine's clock.
+not, the rest is planned anew. Where the fastest way is not free it goes on to stand, and asks for another one: to
+search one takes longer than a step. What comes into the way while it drives stops it; then the rest is planned anew, a
+few times. Times are seconds of the machine's clock.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from tms_config.models import Drive
+from tms_control.detour import Question, in_the_way
+from tms_control.ground import Ground, Outline
 from tms_control.path import Path, Piece, Pose
-from tms_control.planner import Goal, Pace, plan
+from tms_control.planner import Goal, Pace, Plan
 from tms_control.progress import PATIENCE, Progress
 from tms_control.pursuit import Pursuit
-from tms_control.reasons import LeftPath, NoProgress, PosesStopped, ShortOfPose, Silenced
+from tms_control.reasons import LeftPath, NoProgress, PathBlocked, PosesStopped, ShortOfPose, Silenced
 from tms_control.track_estimate import ZERO, Command, PoseSample, TrackEstimate, TrackState
 from tms_control.track_servo import TrackServo
+from tms_control.trip_task import Feedback, Missed, Task
 from tms_control.verdict import Ending, Verdict
+from tms_control.way_check import blocked
 from tms_reason.reason import Reason
 
 OLD = 0.5  # s, age of a pose from which on the machine stands
@@ -24,65 +30,26 @@ NEAR, ALIGNED = 0.25, 0.08  # m, rad: less off the goal is arrived; a waypoint i
 BESIDE, ASKEW = 0.8, 0.8  # m, rad off the path, from which on it is given up
 ATTEMPTS = 4  # ways that are planned to one goal, before it counts as one that cannot be reached
 STANDS = 0.3  # s with poses that show it standing
+TRIES = 3  # times that a stage is planned anew because something came into the way
+PAUSE = 2.0  # s before each: most of what drives by is gone then
 CANCELLED = Verdict(Ending.CANCELED)
 
 
-@dataclass(frozen=True)
-class Missed:
-    """A waypoint that was not reached."""
-
-    number: int  # from 0
-    why: Reason
-
-
-@dataclass(frozen=True)
-class Task:
-    """What a goal asks: stages, after each of which it stands. All goals of a stage but the last are only passed."""
-
-    stages: tuple[tuple[Goal, ...], ...]
-    goes_on: bool = False  # after a stage that cannot be reached
-    told: Path | None = None  # the way to the only stage; planned is only what turns there have put it off
-
-    @classmethod
-    def to(cls, pose: Pose) -> "Task":
-        """NavigateToPose."""
-        return cls(((Goal(*pose),),))
-
-    @classmethod
-    def through(cls, poses: Sequence[Pose]) -> "Task":
-        """NavigateThroughPoses: headings count at the last pose only."""
-        return cls(((*(Goal(pose.x, pose.y, None) for pose in poses[:-1]), Goal(*poses[-1])),))
-
-    @classmethod
-    def waypoints(cls, poses: Sequence[Pose]) -> "Task":
-        """FollowWaypoints."""
-        return cls(tuple((Goal(*pose),) for pose in poses), goes_on=True)
-
-    @classmethod
-    def along(cls, path: Path) -> "Task":
-        """FollowPath."""
-        return cls(((Goal(*path.end),),), told=path)
-
-
-@dataclass(frozen=True)
-class Feedback:
-    """How far a goal is."""
-
-    pose: Pose
-    speed: float  # m/s, of the base
-    seconds: float  # s since it began
-    left: float  # m to the end of the stage
-    seconds_left: float  # s to the end of the stage
-    waypoint: int  # number of the stage, from 0
-    poses_left: int  # of the stage
-
-
 class Trip:
-    """`verdict` is None until the goal has ended. One TrackEstimate serves all trips of a machine: it learns."""
+    """`verdict` is None until the goal has ended. One TrackEstimate serves all trips of a machine: it learns.
 
-    def __init__(self, task: Task, drive: Drive, estimate: TrackEstimate, now: float) -> None:
+    `asked` is a way that has to be searched, for `answer`; `ground`: what stands around, as `see` tells it later.
+    """
+
+    def __init__(
+        self, task: Task, drive: Drive, estimate: TrackEstimate, now: float, outline: Outline, ground: Ground
+    ) -> None:
         self.verdict: Verdict | None = None
         self.missed: list[Missed] = []
+        self.asked: Question | None = None
+        self._outline, self._ground = outline, ground
+        self._blocked: PathBlocked | None = None  # what came into the way of the present stage last
+        self._tries, self._resumes = 0, now  # plans of this stage after that; s, not before that time
         self._task, self._drive, self._estimate, self._begun = task, drive, estimate, now
         self._servo = TrackServo(drive, estimate)
         self._progress = Progress()
@@ -117,6 +84,28 @@ class Trip:
         if self.verdict is None:
             self._estimate.sent(now, ZERO)
             self.verdict = self._ending or Verdict(Ending.ABORTED, Silenced())
+
+    def see(self, now: float, ground: Ground) -> None:
+        """Take what stands around now, each body where it was told to be last."""
+        self._ground = ground
+        if self.verdict is None and self._pursuit is not None:
+            state = self._estimate.at(now)
+            coming = self._pursuit.coming(replace(state, pose=state.pose.ahead(self._pivot)), self._estimate.lag)
+            contact = blocked(ground, self._outline.seen_from(self._pivot), coming)
+            if contact is not None:
+                self._give_way(now, PathBlocked(contact.name, in_the_way(contact)))
+
+    def answer(self, now: float, found: Plan | Reason) -> None:
+        """Take the way that was asked for, or why there is none."""
+        if self.asked is None:
+            return  # the goal ends meanwhile
+        pivot, self.asked = self.asked.pivot, None
+        if isinstance(found, Plan):
+            self._set_off(found.path, found.reached[:-1], pivot)
+        elif self._blocked is not None and self._tries < TRIES:
+            self._wait(now)
+        else:
+            self._give_up(self._blocked or found)
 
     def feedback(self, now: float) -> Feedback:
         """How far it is."""
@@ -170,12 +159,14 @@ class Trip:
         elif self._stands_since is None:
             self._stands_since = now
         elif now - self._stands_since >= STANDS:
-            self._go_on(state.pose)
+            self._go_on(now, state.pose)
         return command
 
-    def _go_on(self, pose: Pose) -> None:
+    def _go_on(self, now: float, pose: Pose) -> None:
         if self._ending is not None:
             self.verdict = self._ending
+            return
+        if self.asked is not None or now < self._resumes:
             return
         goal = self._task.stages[self._stage][-1]
         away, turned = pose.away(Pose(goal.x, goal.y, 0.0)), abs(pose.off(goal.yaw or 0.0))
@@ -190,19 +181,40 @@ class Trip:
         """Begin a way to the goals that are left; or only turn, where the machine is near enough."""
         self._attempts += 1
         if self._task.told is not None and self._attempts == 1:
-            self._path, self._reached, self._pivot = self._task.told, (), 0.0
+            return self._set_off(self._task.told, (), 0.0)
+        goals, pivot = tuple(self._goals(pose, turns)), self._estimate.pivot
+        question = Question(pose, goals, self._pace(), pivot, self._outline, self._ground)
+        found = question.fastest()
+        if found is None:
+            self.asked = question
         else:
-            self._pivot = self._estimate.pivot
-            found = plan(pose, self._goals(pose, turns), self._pace(), self._pivot)
-            self._path, self._reached = found.path, found.reached[:-1]
-        self._pursuit, self._begun_pieces = Pursuit(self._path, self._drive, self._servo), 0
+            self._set_off(found.path, found.reached[:-1], pivot)
+        return None
+
+    def _set_off(self, path: Path, reached: tuple[int, ...], pivot: float) -> None:
+        self._path, self._reached, self._pivot = path, reached, pivot
+        self._pursuit, self._begun_pieces = Pursuit(path, self._drive, self._servo), 0
         self._progress.restart()
+
+    def _give_way(self, now: float, why: PathBlocked) -> None:
+        """Stop for something that has come into the way."""
+        self._blocked = why
+        if self._task.told is not None or self._tries >= TRIES:
+            self._give_up(why)
+        else:
+            self._attempts -= 1  # it was not the machine that failed
+            self._wait(now)
+        self._rest()
+
+    def _wait(self, now: float) -> None:
+        self._tries, self._resumes = self._tries + 1, now + PAUSE
 
     def _goals(self, pose: Pose, turns: bool) -> Sequence[Goal]:
         goals = self._task.stages[self._stage]
         if turns:
-            turned = pose.ahead(self._pivot)._replace(yaw=goals[-1].yaw or 0.0)
-            return [Goal(*turned.ahead(-self._pivot))]
+            pivot = self._estimate.pivot
+            turned = pose.ahead(pivot)._replace(yaw=goals[-1].yaw or 0.0)
+            return [Goal(*turned.ahead(-pivot))]
         return goals[min(self._passed, len(goals) - 1) :]
 
     def _swerve(self) -> float:
@@ -214,6 +226,7 @@ class Trip:
             self._stop(Verdict(Ending.SUCCEEDED))
         else:
             self._stage, self._attempts, self._passed = self._stage + 1, 0, 0
+            self._tries, self._blocked = 0, None
         self._rest()
 
     def _give_up_way(self, why: Reason) -> None:
@@ -235,7 +248,7 @@ class Trip:
         self._rest()
 
     def _rest(self) -> None:
-        self._pursuit, self._stands_since = None, None
+        self._pursuit, self._stands_since, self.asked = None, None, None
 
     def _pace(self) -> Pace:
         return Pace.of(self._drive, self._estimate.yaw_gain)

@@ -78,12 +78,14 @@ class Digging(Acting):
         previous: JointTrajectory | None,
         velocity_scale: float,
         acceleration_scale: float,
+        group: str = "",
     ) -> JointTrajectory:
         """A plan to joint angles [rad], or to x, y, z [m, base_link], theta_w [rad]; nothing moves.
 
-        It begins at the end of `previous`, else where the arm is. Scales are shares of the joints' limits.
+        It begins at the end of `previous`, else where the arm is. Scales are shares of the joints' limits. `group`: the
+        arm's name in the C++ system's planner, where that one plans in place of ours.
         """
-        goal = PlanPose.Goal(velocity_scale=velocity_scale, acceleration_scale=acceleration_scale)
+        goal = PlanPose.Goal(velocity_scale=velocity_scale, acceleration_scale=acceleration_scale, planning_group=group)
         if isinstance(to, dict):
             goal.trajectory = _angles(to)
         else:

@@ -10,6 +10,7 @@ from tms_mc.guard import Guard
 from tms_mc.joint_servers import TURNS, JointServers
 from tms_mc.joints import Joints
 from tms_mc.path_server import PathServer
+from tms_mc.surroundings import Surroundings
 from tms_mc.track_servers import TrackServers
 from tms_mc.tracks import Tracks
 from tms_runtime.app import App
@@ -44,7 +45,8 @@ def _serve_tracks(app: App, guard: Guard, gateway: GatewayWatch) -> None:
         return
     tracks = Tracks(app, gateway, drive)
     guard.watch(tracks.unready, lambda: tracks.stands, lambda _: tracks.stop())
-    servers = TrackServers(tracks, guard)
+    around = Surroundings(app)
+    servers = TrackServers(tracks, guard, around)
     for field, action, run in (
         ("navigate_to_pose", NavigateToPose, servers.to_pose),
         ("navigate_through_poses", NavigateThroughPoses, servers.through_poses),
@@ -54,5 +56,5 @@ def _serve_tracks(app: App, guard: Guard, gateway: GatewayWatch) -> None:
         if own := getattr(border, field):
             app.ros.serve(action, f"/{app.machine}/{own}", run, refuse)
     if border.compute_path_to_pose:
-        planner = PathServer(tracks)
+        planner = PathServer(tracks, around)
         app.ros.serve(ComputePathToPose, f"/{app.machine}/{border.compute_path_to_pose}", planner.run, planner.refuse)

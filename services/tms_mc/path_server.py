@@ -6,12 +6,13 @@ from nav2_msgs.action import ComputePathToPose
 from nav_msgs.msg import Path
 
 from tms_config.clock import monotonic
-from tms_control.path import Pose
-from tms_control.planner import Goal, plan
+from tms_control.path import Path as Way
 from tms_machine import stamps
 from tms_machine.frames import MAP
 from tms_mc.goal_poses import in_map, pose_of, wrong
+from tms_mc.surroundings import Surroundings
 from tms_mc.tracks import Tracks
+from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
 from tms_reason.wire import to_line
 from tms_ros.goals import Ended, Outcome
@@ -24,8 +25,8 @@ FAILED = 200  # nav2_msgs UNKNOWN of this action
 class PathServer:
     """Plans as the machine's own goals do, but for the place whose pose is told: that is what FollowPath follows."""
 
-    def __init__(self, tracks: Tracks) -> None:
-        self._tracks = tracks
+    def __init__(self, tracks: Tracks, around: Surroundings) -> None:
+        self._tracks, self._around = tracks, around
 
     @staticmethod
     def refuse(request: Any) -> Reason | None:
@@ -36,17 +37,28 @@ class PathServer:
         """Plan from the goal's start, or from where the machine is."""
         begun, request = monotonic(), goal.request
         if not request.use_start and (unknown := self._tracks.unready()) is not None:
-            result = ComputePathToPose.Result()
-            if hasattr(result, "error_code"):  # Humble's results have no reason
-                result.error_code, result.error_msg = FAILED, to_line(unknown)
-            return Outcome.ABORTED, result
+            return _failed(unknown)
         start = pose_of(request.start) if request.use_start else self._tracks.pose
-        path = self._path(start, pose_of(request.goal))
+        try:
+            self._around.read()
+        except SubtaskFailed as error:
+            return _failed(error.reason)
+        question = self._tracks.question(start, pose_of(request.goal), self._around.ground())
+        found = question.fastest() or question.answer()
+        if isinstance(found, Reason):
+            return _failed(found)
         took = stamps.duration(monotonic() - begun)
-        return Outcome.SUCCEEDED, ComputePathToPose.Result(path=path, planning_time=took)
+        return Outcome.SUCCEEDED, ComputePathToPose.Result(path=_told(found.path), planning_time=took)
 
-    def _path(self, start: Pose, goal: Pose) -> Path:
-        found = plan(start, [Goal(*goal)], self._tracks.pace)
-        told = Path(poses=[in_map(pose) for pose in found.path.poses(STEP)])
-        told.header.frame_id = MAP
-        return told
+
+def _told(way: Way) -> Path:
+    told = Path(poses=[in_map(pose) for pose in way.poses(STEP)])
+    told.header.frame_id = MAP
+    return told
+
+
+def _failed(why: Reason) -> Ended[Any]:
+    result = ComputePathToPose.Result()
+    if hasattr(result, "error_code"):  # Humble's results have no reason
+        result.error_code, result.error_msg = FAILED, to_line(why)
+    return Outcome.ABORTED, result

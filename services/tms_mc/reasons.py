@@ -25,6 +25,9 @@ class PosesSilent(Reason, text="the machine has not told where it is for {second
 class NoPoses(Reason, text="the goal has no pose"): pass
 class StrangeFrame(Reason, text="pose {number} is told in the frame '{frame}', not in 'map'"): number: int; frame: str
 class PoseUnfit(Reason, text="pose {number} holds no orientation, or a value that is not a number"): number: int
+class AreaUnfit(Reason, text="area '{area}' needs x and y of {least} to {most} corners in turn, as numbers"):
+    area: str; least: int; most: int
+class AreasUnread(Reason, text="the blocked areas are as they were read last: {why}"): why: Reason
 
 # the end of a goal
 class GatewayGone(Reason, text="the gateway was lost while the machine moved"): pass

@@ -7,13 +7,16 @@ from nav2_msgs.action import FollowPath, FollowWaypoints, NavigateThroughPoses, 
 
 from tms_config.clock import sleep
 from tms_control.path import told as told_path
-from tms_control.trip import Feedback, Missed, Task, Trip
+from tms_control.trip import Trip
+from tms_control.trip_task import Feedback, Missed, Task
 from tms_control.verdict import Verdict
 from tms_machine.motion_messages import missed_waypoints
 from tms_machine.stamps import duration
 from tms_mc.goal_poses import in_map, pose_of
 from tms_mc.guard import Guard
+from tms_mc.surroundings import Surroundings
 from tms_mc.tracks import Tracks
+from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
 from tms_reason.wire import to_line
 from tms_ros.goals import Ended, Outcome
@@ -26,8 +29,8 @@ FAILED = 1  # error code of a goal
 class TrackServers:
     """Serves the navigation of one machine."""
 
-    def __init__(self, tracks: Tracks, guard: Guard) -> None:
-        self._tracks, self._guard = tracks, guard
+    def __init__(self, tracks: Tracks, guard: Guard, around: Surroundings) -> None:
+        self._tracks, self._guard, self._around = tracks, guard, around
 
     def to_pose(self, goal: AnyGoal) -> Ended[Any]:
         """NavigateToPose."""
@@ -60,12 +63,17 @@ class TrackServers:
         with self._guard.working_for(goal):
             if (kept := self._guard.wait(goal)) is not None:
                 return Outcome.ABORTED, _result(action, kept, [])
-            trip = self._tracks.begin(task)
+            try:
+                self._around.read()
+            except SubtaskFailed as error:
+                return Outcome.ABORTED, _result(action, error.reason, [])
+            trip = self._tracks.begin(task, self._around.ground())
             goal.on_cancel = lambda: self._tracks.stop(trip)
             if goal.cancelled.is_set():  # the request came before the motion began
                 goal.on_cancel()
             while trip.verdict is None and not self._guard.closing:
                 sleep(FEEDBACK)
+                self._tracks.look(trip, self._around.ground())
                 goal.publish(progress(action, self._tracks.told(trip)))
         return _ended(action, goal, trip)
 

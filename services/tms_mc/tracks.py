@@ -10,11 +10,14 @@ from prometheus_client import Gauge
 
 from tms_config.clock import monotonic
 from tms_config.models import DRIVE, Drive
+from tms_control.detour import Question
+from tms_control.ground import Ground, Outline
 from tms_control.machine_clock import MachineClock
 from tms_control.path import Pose
-from tms_control.planner import Pace
+from tms_control.planner import Goal, Pace
 from tms_control.track_estimate import Command, PoseSample, TrackEstimate
-from tms_control.trip import Task, Trip
+from tms_control.trip import Trip
+from tms_control.trip_task import Task
 from tms_decision.permit_link import LEASE
 from tms_machine import stamps
 from tms_machine.places import POSES, place_of
@@ -40,6 +43,7 @@ class Tracks:
         border = site.border(machine)
         self._app, self._gateway, self._drive = app, gateway, drive
         self._response = site.model_of(machine).responses(border)[DRIVE]
+        self._outline = Outline.of(site.model_of(machine).footprint.values())
         self._topic, source = f"/{machine}/{border.pose}", border.sources["pose"]
         kind = POSES[source.message]
         self._heard: Callable[[], list[Arrival[Any]]] = app.ros.sample_arrivals(kind, self._topic, DEPTH)
@@ -69,21 +73,31 @@ class Tracks:
         with self._lock:
             return self._estimate.at(self._time()).pose
 
-    @property
-    def pace(self) -> Pace:
-        """What a plan reckons with now."""
+    def question(self, start: Pose, goal: Pose, ground: Ground) -> Question:
+        """How a path between two poses is asked for, of the place whose pose is told."""
         with self._lock:
-            return Pace.of(self._drive, self._estimate.yaw_gain)
+            pace = Pace.of(self._drive, self._estimate.yaw_gain)
+        return Question(start, (Goal(*goal),), pace, 0.0, self._outline, ground)
 
-    def begin(self, task: Task) -> Trip:
-        """Drive, from where the machine is; an open goal ends."""
+    def begin(self, task: Task, ground: Ground) -> Trip:
+        """Drive, from where the machine is, among what stands on the ground; an open goal ends."""
         with self._lock:
             now = self._time()
             if self._trip is not None:
                 self._trip.silence(now)
-            trip = self._trip = Trip(task, self._drive, self._estimate, now)
+            trip = self._trip = Trip(task, self._drive, self._estimate, now, self._outline, ground)
         self._turns.wake()
         return trip
+
+    def look(self, trip: Trip, ground: Ground) -> None:
+        """Have a goal see what stands around now, and search the way that it has asked for: up to some seconds."""
+        with self._lock:
+            trip.see(self._time(), ground)
+            asked = trip.asked
+        if asked is not None:
+            found = asked.answer()
+            with self._lock:
+                trip.answer(self._time(), found)
 
     def told(self, trip: Trip) -> Any:
         """What the feedback of a goal tells."""

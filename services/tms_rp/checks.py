@@ -9,11 +9,11 @@ from tms_reason.reason import Reason
 from tms_reason.wire import to_line
 from tms_ros.packing import unpack
 from tms_rp import reasons as r
-from tms_rp.clearance import Nearest
 from tms_rp.kind import Angles, PlanningAction
 from tms_rp.messages import follow
 from tms_rp.plan import Plan
 from tms_rp.plans import start_of
+from tms_rp.view import Nearest
 
 # Refusals by the goal itself and the machine's own limits; the world has no part in them.
 OWN = (

@@ -1,51 +1,24 @@
-"""Whether a machine would touch itself or something in a scene: the one collision checker of the planner.
-
-Bodies are boxes; whether two of them touch is computed by FCL. Coal, its successor, was dropped: it brings boost,
-assimp and octomap, ten times the size, for the same boxes. Its Python binding leaks 32 bytes with every collision
-object (it frees the memory without the C++ destructor), so each body is one object for ever, which is moved. It is
-asked only for boxes that no face of either separates: that is found beforehand, for all poses and pairs at once.
-"""
+"""Whether a machine would touch itself or something in a scene: the one collision checker of the planner."""
 
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from itertools import combinations
-from typing import Any
 
-import fcl
 import numpy as np
 from numpy.typing import NDArray
 
-from tms_config.models import Box, MachineModel
-from tms_reason.errors import SubtaskFailed
-from tms_reason.reason import Reason
-from tms_rp.links import Array, Links, Matrix, box_place, reaches
-from tms_rp.reasons import Between, Collision, Ground, Part
+from tms_config.models import MachineModel
+from tms_control.links import Array, Links, Matrix, reaches
+from tms_rp.bodies import Body, Surface, Surfaces
+from tms_rp.reasons import Part
 from tms_rp.scene import Obstacle, Scene
 from tms_rp.trajectory import Trajectory
+from tms_rp.view import View
 
 PADDING = 0.1  # m, usual
 # m that no point of the machine moves further between two checked poses: it is never further than PADDING from one.
 TRAVEL = 2 * PADDING
-
-ROUNDING = 1e-9  # m
-# Bodies of which only the padding touches at the start are looked at without it, in steps of FINE [m], to keep NEAR [m]
-# apart, or as far as they are then. Those that overlap may part on any way: how deep they do is no measure of how far.
-FINE = 0.02
-NEAR = 0.02
-
-Mask = NDArray[np.bool_]
-
-
-@dataclass(frozen=True)
-class Nearest:
-    """The two bodies that come nearest to each other, how near [m], and when [s]."""
-
-    first: Reason
-    second: Reason
-    distance: float
-    seconds: float
 
 
 class Clearance:
@@ -54,10 +27,12 @@ class Clearance:
     def __init__(self, model: MachineModel, padding: float = PADDING) -> None:
         self._links = links = Links(model)
         self._reach = np.array(list(reaches(model).values()))
+        self._padding = padding
         self._own = {
-            link: _Body(Part(link), box, padding if link in links.moved else 0.0) for link, box in model.shapes.items()
+            link: Body(Part(link), box, padding if link in links.moved else 0.0) for link, box in model.shapes.items()
         }
-        self._others: dict[tuple[Reason, Box], _Body] = {}  # bodies in scenes: as many as the site has
+        self._known: dict[object, Body] = {}  # bodies in scenes: as many as the site has
+        self._surfaces = Surfaces()
         self._looking = threading.Lock()  # guards the places of all bodies
         # Neighbours along the arm, and links of the arm among each other, are kept apart by the joint limits.
         self._pairs = [
@@ -67,7 +42,7 @@ class Clearance:
         self._moved = [(i, link) for i, link in enumerate(self._own) if link in links.moved]
 
     @contextmanager
-    def looking(self, scene: Scene) -> Iterator["View"]:
+    def looking(self, scene: Scene) -> Iterator[View]:
         """A look at a scene; others wait meanwhile."""
         with self._looking:
             yield View(self, scene)
@@ -77,15 +52,26 @@ class Clearance:
         with self.looking(scene) as view:
             view.check(made)
 
-    def bodies(self, scene: Scene) -> list["_Body"]:
+    def bodies(self, scene: Scene) -> list[Body]:
         """The machine's own, then those of a scene."""
         return [*self._own.values(), *map(self._other, scene.obstacles)]
 
-    def _other(self, obstacle: Obstacle) -> "_Body":
-        key = obstacle.name, obstacle.box
-        if key not in self._others:
-            self._others[key] = _Body(obstacle.name, obstacle.box, 0.0)
-        return self._others[key]
+    def more(self, scene: Scene) -> dict[str, float]:
+        """By link that the arm moves: m to keep to the bodies of a scene beyond the usual padding."""
+        if not self._padding:
+            return {}
+        moved, usual = self._links.moved, self._padding
+        return {link: told - usual for link, told in scene.padding if told > usual and link in moved}
+
+    def _other(self, obstacle: Obstacle) -> Body:
+        key = obstacle.name, obstacle.box, obstacle.mesh and obstacle.mesh.key
+        if key not in self._known:
+            self._known[key] = (
+                Body(obstacle.name, obstacle.box, 0.0)
+                if obstacle.mesh is None
+                else Surface(obstacle, obstacle.mesh, self._surfaces)
+            )
+        return self._known[key]
 
     def pairs(self, scene: Scene) -> NDArray[np.int_]:
         """Numbers of the bodies that must not touch: pairs x 2."""
@@ -107,191 +93,3 @@ class Clearance:
         numbers = np.concatenate([*parts, [len(poses) - 1.0]])
         known = np.arange(len(poses))
         return np.stack([np.interp(numbers, known, angles) for angles in poses.T], axis=1), numbers
-
-
-class View:
-    """One look at one scene, while the bodies belong to it."""
-
-    def __init__(self, clearance: Clearance, scene: Scene) -> None:
-        self._clearance, self.scene = clearance, scene
-        self._bodies = clearance.bodies(scene)
-        self._pairs = clearance.pairs(scene)
-        self._half = np.array([body.half for body in self._bodies])
-        inner = [body.inner for body in self._bodies[-len(scene.obstacles) :]] if scene.obstacles else []
-        self._others = np.array([one.place @ box for one, box in zip(scene.obstacles, inner, strict=True)])
-
-    def free(self, *poses: Sequence[float]) -> bool:
-        """Whether nothing touches at the poses, nor on the straight lines between them."""
-        places = self._places(self._clearance.between(np.array(poses))[0])
-        return not any(self._touch(places, pose, pair) for pose, pair in self._near(places))
-
-    def passable(self, poses: Sequence[Sequence[float]]) -> bool:
-        """Whether `check` would pass a trajectory on the straight lines between the poses."""
-        between, _ = self._clearance.between(np.array(poses))
-        return not self._bad(between, self._places(between)).any()
-
-    def check(self, made: Trajectory) -> None:
-        """Check a whole trajectory.
-
-        What touches at its start may part, but must be apart at its end; only into the ground it may lead.
-
-        Raises:
-            SubtaskFailed: Collision, with the two bodies, the time, and where they overlap most.
-        """
-        poses, numbers = self._clearance.between(np.array([sample.positions for sample in made.samples]))
-        times = np.interp(numbers, range(len(made.samples)), [sample.time for sample in made.samples])
-        places = self._places(poses)
-        self._refuse(places, times, self._bad(poses, places))
-
-    def _bad(self, poses: Array, places: Matrix) -> Mask:
-        """The contacts that `check` does not allow."""
-        contacts = self._contacts(places)
-        since = _run(contacts)
-        bad = contacts & ~since
-        bad[-1] = contacts[-1]
-        soil = np.array([isinstance(self._bodies[b].name, Ground) for _, b in self._pairs])
-        bad[:, soil] &= ~_run(contacts[::-1])[::-1][:, soil]
-        for pair in np.flatnonzero(contacts[0] & ~soil):
-            bad[: since[:, pair].sum(), pair] |= self._nearer(poses[since[:, pair]], int(pair))
-        return bad
-
-    def _nearer(self, poses: Array, pair: int) -> Mask:
-        """At which poses, or before the next one, bodies come too near of which the padding touches at the first."""
-        fine, numbers = self._clearance.between(poses, FINE)
-        places, found = self._places(fine), np.zeros(len(poses), dtype=bool)
-        least = min(self._gap(places, 0, pair), NEAR) - ROUNDING
-        if least <= 0:
-            return found
-        gaps = np.array([self._gap(places, pose, pair) for pose in range(len(fine))])
-        found[numbers[gaps < least].astype(int)] = True
-        return found
-
-    def _gap(self, places: Matrix, pose: int, pair: int) -> float:
-        """How far two bodies are apart [m], without padding; 0 where they overlap."""
-        a, b = (self._bodies[i].at(places[pose, i], padded=False) for i in self._pairs[pair])
-        return max(0.0, float(fcl.distance(a, b, fcl.DistanceRequest(), fcl.DistanceResult())))
-
-    def overlap(self, pose: Sequence[float]) -> Reason | None:
-        """Two bodies that touch at a pose."""
-        for _, pair in np.argwhere(self._contacts(self._places(np.array([pose])))):
-            return Between(*(self._bodies[i].name for i in self._pairs[pair]))
-        return None
-
-    def check_part(self, made: Trajectory, begin: float, end: float) -> None:
-        """Check a trajectory that runs between two times [s]; what touches since its start may go on.
-
-        Raises:
-            SubtaskFailed: Collision.
-        """
-        samples = [sample for sample in made.samples if sample.time <= end]
-        poses, numbers = self._clearance.between(np.array([sample.positions for sample in samples]))
-        times = np.interp(numbers, range(len(samples)), [sample.time for sample in samples])
-        places = self._places(poses)
-        contacts = self._contacts(places)
-        self._refuse(places, times, contacts & ~_run(contacts) & (times >= begin)[:, None])
-
-    def check_end(self, made: Trajectory) -> None:
-        """Check the last pose alone.
-
-        Raises:
-            SubtaskFailed: Collision, after the whole time.
-        """
-        places = self._places(np.array([made.samples[-1].positions]))
-        self._refuse(places, np.array([made.duration]), self._contacts(places))
-
-    def nearest(self, made: Trajectory) -> Nearest | None:
-        """Where a trajectory comes nearest to something, among its samples; None if there is nothing."""
-        places = self._places(np.array([sample.positions for sample in made.samples]))
-        centres, radii = places[..., :3, 3], np.linalg.norm(self._half, axis=1)
-        a, b = self._pairs.T
-        least = np.linalg.norm(centres[:, b] - centres[:, a], axis=2) - radii[a] - radii[b]  # by their spheres
-        found: Nearest | None = None
-        for pose, pair in zip(*np.unravel_index(np.argsort(least, axis=None), least.shape), strict=True):
-            if found is not None and least[pose, pair] >= found.distance:
-                break
-            distance = self._gap(places, pose, pair)
-            if found is None or distance < found.distance:
-                first, second = (self._bodies[i].name for i in self._pairs[pair])
-                found = Nearest(first, second, distance, made.samples[pose].time)
-        return found
-
-    def _places(self, poses: Array) -> Matrix:
-        """Where all boxes are: N x bodies x 4 x 4."""
-        own = self._clearance.places(poses)
-        if not len(self._others):
-            return own
-        return np.concatenate([own, np.broadcast_to(self._others, (len(poses), *self._others.shape))], axis=1)
-
-    def _near(self, places: Matrix) -> NDArray[np.int_]:
-        """Numbers of the poses, and the pairs that no face of either box separates there; all others are apart."""
-        turns, centres = places[..., :3, :3], places[..., :3, 3]
-        a, b = self._pairs.T
-        ways = centres[:, b] - centres[:, a]
-        far = np.linalg.norm(self._half[a], axis=1) + np.linalg.norm(self._half[b], axis=1)
-        found = np.argwhere(np.einsum("npi,npi->np", ways, ways) <= far**2)
-        poses, pairs = found.T
-        a, b, way = a[pairs], b[pairs], ways[poses, pairs][..., None]
-        turn_a, turn_b = turns[poses, a].swapaxes(1, 2), turns[poses, b].swapaxes(1, 2)  # from base_link
-        across = np.abs(turn_a @ turn_b.swapaxes(1, 2))
-        half_a, half_b = self._half[a, :, None], self._half[b, :, None]
-        over_a = np.abs(turn_a @ way) <= half_a + across @ half_b + ROUNDING
-        over_b = np.abs(turn_b @ way) <= half_b + across.swapaxes(1, 2) @ half_a + ROUNDING
-        near: NDArray[np.int_] = found[(over_a & over_b).all(axis=(1, 2))]
-        return near
-
-    def _contacts(self, places: Matrix) -> Mask:
-        """Which pairs touch at which pose: N x pairs."""
-        found = np.zeros((len(places), len(self._pairs)), dtype=bool)
-        for pose, pair in self._near(places):
-            found[pose, pair] = self._touch(places, pose, pair)
-        return found
-
-    def _touch(self, places: Matrix, pose: int, pair: int) -> bool:
-        a, b = (self._bodies[i].at(places[pose, i]) for i in self._pairs[pair])
-        return bool(fcl.collide(a, b, fcl.CollisionRequest(), fcl.CollisionResult()))
-
-    def _refuse(self, places: Matrix, times: Array, bad: Mask) -> None:
-        if not bad.any():
-            return
-        first = int(np.argmax(bad.any(axis=1)))
-        pair = int(np.argmax(bad[first]))
-        a, b = (self._bodies[i] for i in self._pairs[pair])
-        i, j = self._pairs[pair]
-        depth, (x, y, z) = max(
-            _overlap(a.at(places[pose, i]), b.at(places[pose, j])) for pose in np.flatnonzero(bad[:, pair])
-        )
-        raise SubtaskFailed(Collision(a.name, b.name, float(times[first]), depth, x, y, z))
-
-
-class _Body:
-    """A box: its name in reasons, half of its size with padding [m], its centre in the frame that it belongs to."""
-
-    def __init__(self, name: Reason, box: Box, padding: float) -> None:
-        self.name, self.inner = name, box_place(box)
-        bare = np.array([(high - low) / 2 for low, high in zip(box.min, box.max, strict=True)])
-        self.half = bare + padding
-        self._padded = _object(self.half)
-        self._bare = _object(bare) if padding > 0 else self._padded
-
-    def at(self, place: Matrix, padded: bool = True) -> Any:
-        """FCL's object, put to a place."""
-        found = self._padded if padded else self._bare
-        found.setTransform(fcl.Transform(place[:3, :3], place[:3, 3]))
-        return found
-
-
-def _object(half: Array) -> Any:
-    return fcl.CollisionObject(fcl.Box(*map(float, 2 * half)))
-
-
-def _overlap(a: Any, b: Any) -> tuple[float, tuple[float, ...]]:
-    """How deep two of FCL's objects overlap [m] and where, in base_link."""
-    result = fcl.CollisionResult()
-    fcl.collide(a, b, fcl.CollisionRequest(num_max_contacts=8, enable_contact=True), result)
-    found = ((float(one.penetration_depth), tuple(map(float, one.pos))) for one in result.contacts)
-    return max(found, default=(0.0, (0.0, 0.0, 0.0)))
-
-
-def _run(contacts: Mask) -> Mask:
-    """The contacts that last since the first pose."""
-    return np.logical_and.accumulate(contacts, axis=0)

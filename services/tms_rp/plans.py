@@ -9,12 +9,12 @@ import numpy as np
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from tms_config.models import Joint
+from tms_control.links import Array
 from tms_machine.stamps import seconds
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
 from tms_rp.blending import blended
 from tms_rp.kind import Angles
-from tms_rp.links import Array
 from tms_rp.reasons import JointBroken, PlanBroken, PlanElsewhere, PlanLacks, PlanTooFast, PlanWrong
 from tms_rp.trajectory import Joints, Trajectory, TrajectorySample, trajectory
 

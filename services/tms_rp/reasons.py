@@ -45,6 +45,17 @@ class NoOrientation(Reason, text="the orientation is empty: its quaternion has t
 class OutOfPlane(Reason, text="the orientation points {angle} out of the arm's plane; turned to {yaw} it lies in it"):
     angle: Radians; yaw: Radians
 
+# goals of the C++ system's version 6
+class UnknownCommand(Reason, text="there is no command {number}"): number: int
+class NothingToExecute(Reason, text="the goal has no plan to execute"): pass
+class SettingNotHonoured(Reason, text="the planner cannot be set so: {name} {value}"): name: str; value: str
+class PlannerAway(Reason, text="the C++ system's planner of {machine} does not answer", details="{name}",
+    action=INSPECT): machine: str; name: str
+class PlannerRefuses(Reason, text="the C++ system's planner of {machine} makes no plan: {why}",
+    details="error {number}"): machine: str; why: Reason; number: int
+class PlanMisses(Reason, text="its plan ends with {joint} at {end}, not at {angle}"):
+    joint: str; end: Radians; angle: Radians
+
 # what the arm can reach
 class Point(Reason, text="point ({x}, {y}, {z}) with bucket angle {theta_w}"):
     x: Metres; y: Metres; z: Metres; theta_w: Radians
@@ -65,7 +76,6 @@ class WouldSpill(Reason, text="soil would fall out on the way to {point}: the bu
 class Collision(Reason, text="{first} would touch {second} after {seconds}, {depth} deep at ({x}, {y}, {z})",
     action=OTHER_TARGET):
     first: Reason; second: Reason; seconds: Seconds; depth: Metres; x: Metres; y: Metres; z: Metres
-class PathBlocked(Reason, text="{by} has come into the way: {why}", action=INSPECT): by: Reason; why: Reason
 class NoWayRound(Reason, text="{why}; no way round was found", action=OTHER_TARGET): why: Reason
 class Part(Reason, text="{link}"): link: str
 class Ground(Reason, text="the ground"): pass
@@ -99,6 +109,18 @@ class MotionFailed(Reason, text="{why}", details="{name} {outcome}"): why: Reaso
 
 class Told(Reason, text="{record}"): record: str
 class NoShape(Reason, text="it has no dimensions, and there is no machine '{named}'"): named: str
+class SizesUnfit(Reason, text="it has {told} dimensions, not {needed}"): needed: int; told: int
+class MeshEmpty(Reason, text="its surface has no corners or no triangles"): pass
+class MeshNotFinite(Reason, text="a value of its surface is not a number"): pass
+class MeshCorners(Reason, text="its triangles are not three numbers each of its {corners} corners"): corners: int
+class MeshLarge(Reason, text="its surface has {triangles} triangles: {limit} at most"): triangles: int; limit: int
+class MeshSimplified(Reason,
+    text="the surface of {record} is planned with as {kept} of {triangles} triangles, up to {off} off"):
+    record: str; triangles: int; kept: int; off: Metres
+class NamesUnfit(Reason, text="{field} is no list of names"): field: str
+class NoSuchObstacle(Reason, text="it names the record '{named}', which is not there"): named: str
+class PaddingUnfit(Reason, text="its padding of '{link}' is none of a link of the machine, from 0 to {limit}"):
+    link: str; limit: Metres
 class SceneRecordOld(Reason, text="record {record} is {age} old: nobody knows what stands there now", action=RECORDS):
     record: str; age: Seconds
 class SceneUnread(Reason, text="the scene records are as they were read last: {why}"): why: Reason

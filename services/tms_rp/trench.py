@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from tms_config.models import Box
-from tms_rp.links import Matrix, placed
+from tms_control.links import Matrix, placed
 from tms_rp.reasons import Ground
 from tms_rp.scene import Obstacle, Scene
 

@@ -1,21 +1,28 @@
 """A way to each target of a goal: the straight one if it is free, else around what is in the way."""
 
 import contextlib
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from tms_config.models import MachineModel
+from tms_control.links import Array
+from tms_control.reasons import PathBlocked
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
-from tms_rp.clearance import Clearance, Nearest, View
+from tms_rp.clearance import Clearance
 from tms_rp.flow import Flow
 from tms_rp.kind import Angles, MachineKind, Moves, Way
 from tms_rp.plan import Plan
 from tms_rp.plans import one_trajectory, scaled, without_stops
-from tms_rp.reasons import Around, Collision, NoWayRound, PathBlocked, Searched, SlowlyOut
+from tms_rp.reasons import Around, Collision, NoWayRound, Searched, SlowlyOut
 from tms_rp.sampling import search
 from tms_rp.scene import Scene
 from tms_rp.trajectory import Joints, Trajectory, trajectory
+from tms_rp.view import Nearest, View
+from tms_rp.way_out import way_out
 
 SLOW = 0.25  # share of the limits with which an arm comes out of something
 
@@ -75,6 +82,22 @@ class Ways:
         velocity, acceleration = (min(SLOW, scale) for scale in moves.scales)
         return replace(moves, scales=(velocity, acceleration), notes=(*moves.notes, SlowlyOut(inside)))
 
+    def _parted(self, now: Angles, scene: Scene) -> list[Angles]:
+        """Where a way around begins: where the arm is, and, if it seems to be in something, where it is out of that."""
+        joints = [self._model.joints[name] for name in self._kind.joints]
+        least = [-math.inf if one.min is None else one.min for one in joints]
+        most = [math.inf if one.max is None else one.max for one in joints]
+
+        def depths(poses: Array) -> Array:
+            return view.depths(np.array([self._all_joints(tuple(pose)) for pose in poses]))
+
+        with self._touching.looking(scene) as view:
+            if view.overlap(self._all_joints(now)) is None:
+                return [now]
+        with self._clearance.looking(scene) as view:
+            out = way_out(depths, now, list(zip(least, most, strict=True)))
+        return [now] if out is None else [now, out]
+
     def blocked(self, made: Trajectory, seconds: float, scene: Scene) -> Reason | None:
         """What has come into the way of a trajectory that runs since `seconds`, so near that it must stop now."""
         with self._touching.looking(scene) as view:
@@ -92,7 +115,7 @@ class Ways:
             return view.nearest(made)
 
     def _around(self, now: Angles, moves: Moves, scene: Scene, why: Reason) -> Plan:
-        poses, notes, ends = [now], list(moves.notes), list[int]()
+        poses, notes, ends = self._parted(now, scene), list(moves.notes), list[int]()
         turned = (0.0,) * len(now)  # rad by which a way has ended elsewhere than the goal asks: whole turns
         for target in moves.targets:
             wanted = tuple(a + b for a, b in zip(target, turned, strict=True))

@@ -8,6 +8,7 @@ from fastapi import FastAPI, Path, Query, Request, Response
 
 from tms_config.clock import utc_now
 from tms_config.config import Site
+from tms_config.reasons import NoMachine, NoPlannedArm
 from tms_reason import wire
 from tms_reason.errors import TmsError
 from tms_reason.names import Name
@@ -31,11 +32,13 @@ from tms_ur.models import (
     State,
     Task,
     TaskText,
+    Template,
     Tree,
 )
 from tms_ur.problems import Viewer, problems
 from tms_ur.reason_view import view
 from tms_ur.reasons import JournalCut, NoTree
+from tms_ur.scene_models import Scene
 from tms_ur.stream import Stream, StreamResponse
 
 if TYPE_CHECKING:
@@ -49,6 +52,7 @@ BEGINNING = 50  # first events of a run, which include the shape of the tree
 
 RunId = Annotated[str, Path(pattern=r"^[0-9A-Za-z_-]{1,64}$", description="id of a run")]
 TaskId = Annotated[int, Path(ge=1, le=INT32)]
+MachineName = Annotated[str, Path(pattern=r"^[a-z][a-z0-9_]{0,63}$")]
 ProcessName = Annotated[str, Path(pattern=r"^[0-9A-Za-z_]{1,64}:[0-9A-Za-z_]{1,64}$", description="group:name")]
 
 
@@ -59,6 +63,7 @@ def add(app: FastAPI, client: "SiteClient", audit: "Audit", site: Site) -> None:
     _audit(app, client, audit)
     _data(app, client)
     _tasks(app, client)
+    _scenes(app, client, site)
 
 
 def _live(app: FastAPI, client: "SiteClient", site: Site) -> None:
@@ -162,6 +167,10 @@ def _tasks(app: FastAPI, client: "SiteClient") -> None:
     def task(task_id: TaskId) -> TaskText:
         return client.task(task_id)
 
+    @app.get("/api/templates", summary="Stored templates, by name", responses=problems(503))
+    def templates() -> list[Template]:
+        return client.templates()
+
     @app.post("/api/tasks/check", summary="Check a tree; stores and runs nothing",
               responses=problems(403, 409, 411, 413, 415, 503))  # fmt: skip
     def check(given: Xml, person: Viewer) -> Checked:
@@ -174,6 +183,19 @@ def _tasks(app: FastAPI, client: "SiteClient") -> None:
         stored = client.task(task_id).xml.splitlines()
         lines = difflib.unified_diff(stored, given.xml.splitlines(), f"task {task_id}", "this file", lineterm="")
         return Diff(text="\n".join(lines))
+
+
+def _scenes(app: FastAPI, client: "SiteClient", site: Site) -> None:
+    names = tuple(site.file.machines)
+
+    @app.get("/api/machines/{name}/scene", summary="What the planner of an excavator plans among now",
+             responses=problems(404, 409, 503))  # fmt: skip
+    def scene(name: MachineName) -> Scene:
+        if name not in names:
+            raise TmsError(NoMachine(name, names))
+        if site.model_of(name).planner is None:
+            raise TmsError(NoPlannedArm(name))
+        return client.scene(name)
 
 
 def _all_events(client: "SiteClient", run_id: str) -> list[Event]:

@@ -14,7 +14,7 @@ from bench.runner import Figure
 from driven_joints import DrivenJoints
 from driven_tracks import GAINS, DrivenTracks
 from tms_control.path import Pose
-from tms_control.trip import Task
+from tms_control.trip_task import Task
 
 MOVES = [
     ("zx200", "swing_joint", 1.2), ("zx200", "boom_joint", 0.5), ("zx200", "arm_joint", -0.6),

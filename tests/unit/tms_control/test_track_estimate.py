@@ -8,7 +8,7 @@ from driven_tracks import GAINS, MODELS, DrivenTracks
 from tms_config.models import Response
 from tms_control.path import Pose
 from tms_control.track_estimate import ZERO, Command, PoseSample, TrackEstimate, TrackState
-from tms_control.trip import Task
+from tms_control.trip_task import Task
 
 RESPONSE = Response(dead_time=0.0, lag=1.0, origin="a test")
 

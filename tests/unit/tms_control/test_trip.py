@@ -3,13 +3,26 @@
 import math
 from itertools import pairwise
 
+import numpy as np
 import pytest
 
 from driven_tracks import GAINS, MODELS, DrivenTracks
+from tms_control.ground import Body
 from tms_control.path import Path, Piece, Pose
-from tms_control.reasons import LeftPath, NoProgress, PosesStopped, ShortOfPose, Silenced
+from tms_control.reasons import (
+    BlockedArea,
+    GoalTaken,
+    LeftPath,
+    MachineThere,
+    NoProgress,
+    PathBlocked,
+    PosesStopped,
+    ShortOfPose,
+    Silenced,
+)
 from tms_control.track_estimate import ZERO
-from tms_control.trip import PATIENCE_FOR_POSES, Task, Trip
+from tms_control.trip import PATIENCE_FOR_POSES, PAUSE, TRIES, Trip
+from tms_control.trip_task import Task
 from tms_control.verdict import Ending, Verdict
 
 WAYPOINTS = (Pose(1, 3, 2.5), Pose(12, 6, 1.2), Pose(4, 8, 3.1), Pose(6, 8, 3.1), Pose(0, 0, 0))
@@ -340,3 +353,99 @@ def test_a_newer_goal_begins_with_a_ramp() -> None:
     assert all(one.v > 0.05 for one in machine.sent[sent:])
     machine.run(trip)
     assert trip.verdict == ARRIVED and at(machine, Pose(5, 5, 1.0))
+
+
+def machine_at(x: float, y: float, half: float = 1.5) -> Body:
+    corners = ((x - half, y - half), (x + half, y - half), (x + half, y + half), (x - half, y + half))
+    return Body(MachineThere("ic120_1"), corners)
+
+
+def least_gap(machine: DrivenTracks, body: Body) -> float:
+    return float(body.gaps(machine.outline, np.array(machine.been)).min())
+
+
+@pytest.mark.parametrize("gain", GAINS)
+@pytest.mark.parametrize(("model", "pivot"), [("ic120", -0.5), ("zx200", 0.0), ("mst110cr", 0.0)])
+def test_it_drives_around_what_stands_in_its_way(model: str, pivot: float, gain: float) -> None:
+    machine, there = DrivenTracks(model, gain, pivot=pivot), machine_at(15, 0)
+    machine.stands(there)
+    drive_to(machine, Pose(30, 0, 0))
+    assert least_gap(machine, there) > 0.1
+
+
+def test_what_comes_into_the_way_stops_it_and_it_goes_on_around() -> None:
+    machine, there = DrivenTracks("ic120"), machine_at(20, 0)
+    trip = machine.trip(Task.to(Pose(35, 0, 0)))
+    machine.run(trip, until=lambda: machine.pose.x > 8)
+    machine.stands(there)
+    machine.run(trip, until=lambda: machine.speed == 0.0)
+    assert 12 < machine.pose.x < 16.5, "it stops before it, not at once"
+    machine.run(trip)
+    assert trip.verdict == ARRIVED and at(machine, Pose(35, 0, 0))
+    assert least_gap(machine, there) > 0.1
+
+
+def test_what_leaves_the_way_in_time_is_only_waited_for() -> None:
+    machine = DrivenTracks("ic120")
+    trip = machine.trip(Task.to(Pose(35, 0, 0)))
+    machine.run(trip, until=lambda: machine.pose.x > 8)
+    machine.stands(machine_at(14, 0))
+    machine.run(trip, until=lambda: machine.speed == 0.0)
+    machine.stands()
+    machine.run(trip)
+    assert trip.verdict == ARRIVED and max(abs(one.y) for one in machine.been) < 0.3
+
+
+def test_where_it_cannot_get_around_it_tries_three_times_and_tells_what_is_in_the_way() -> None:
+    machine = DrivenTracks("ic120")
+    walls = [
+        Body(BlockedArea(name), ((-20, y), (60, y), (60, y + 1), (-20, y + 1))) for name, y in (("n", 3), ("s", -4))
+    ]
+    machine.stands(*walls)
+    trip = machine.trip(Task.to(Pose(35, 0, 0)))
+    machine.run(trip, until=lambda: machine.pose.x > 8)
+    machine.stands(*walls, machine_at(16, 0))
+    begun = machine.now
+    machine.run(trip)
+    assert trip.verdict is not None and isinstance(trip.verdict.reason, PathBlocked)
+    assert trip.verdict.reason.by == MachineThere("ic120_1")
+    assert TRIES * PAUSE < machine.now - begun < TRIES * PAUSE + 20
+    assert machine.speed == 0.0 and machine.pose.x < 12.6
+
+
+def test_a_cancel_while_it_waits_ends_it() -> None:
+    machine = DrivenTracks("ic120")
+    trip = machine.trip(Task.to(Pose(35, 0, 0)))
+    machine.run(trip, until=lambda: machine.pose.x > 8)
+    machine.stands(machine_at(14, 0))
+    machine.run(trip, until=lambda: machine.speed == 0.0)
+    trip.cancel()
+    machine.run(trip, seconds=2.0)
+    assert trip.verdict == CANCELED
+
+
+def test_a_goal_that_is_taken_is_refused_and_nothing_moves() -> None:
+    machine = DrivenTracks("ic120")
+    machine.stands(machine_at(20, 0))
+    trip = machine.trip(Task.to(Pose(20, 1, 0)))
+    machine.run(trip)
+    assert trip.verdict is not None and isinstance(trip.verdict.reason, GoalTaken)
+    assert machine.pose == Pose(0, 0, 0)
+
+
+def test_a_waypoint_that_is_taken_is_missed_and_the_next_one_met() -> None:
+    machine = DrivenTracks("ic120")
+    machine.stands(machine_at(20, 0))
+    trip = machine.trip(Task.waypoints((Pose(20, 0, 0), Pose(6, 6, 1.0))))
+    machine.run(trip)
+    assert trip.verdict == ARRIVED and at(machine, Pose(6, 6, 1.0))
+    assert [(one.number, type(one.why)) for one in trip.missed] == [(0, GoalTaken)]
+
+
+def test_a_told_path_is_left_to_who_has_told_it() -> None:
+    machine = DrivenTracks("ic120")
+    trip = machine.trip(Task.along(Path((Piece(Pose(0, 0, 0), 30.0, 0.0),))))
+    machine.run(trip, until=lambda: machine.pose.x > 8)
+    machine.stands(machine_at(20, 0))
+    machine.run(trip)
+    assert trip.verdict is not None and isinstance(trip.verdict.reason, PathBlocked)

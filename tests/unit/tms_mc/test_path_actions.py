@@ -6,20 +6,26 @@ from itertools import pairwise
 from types import SimpleNamespace
 from typing import Any, cast
 
+import numpy as np
 import pytest
 from geometry_msgs.msg import PoseStamped
 from nav2_msgs.action import ComputePathToPose, FollowPath, NavigateToPose
 from nav_msgs.msg import Path
 
 from driven_tracks import DrivenTracks
+from tms_control.detour import Question
+from tms_control.ground import Body, Ground, Outline
 from tms_control.path import Pose, told
-from tms_control.planner import Pace
-from tms_control.trip import Task
+from tms_control.planner import Goal, Pace
+from tms_control.reasons import BlockedArea, GoalTaken
+from tms_control.trip_task import Task
 from tms_control.verdict import Ending
 from tms_mc.goal_poses import in_map, pose_of, refuse
 from tms_mc.path_server import FAILED, STEP, PathServer
-from tms_mc.reasons import NoPoses, PosesUnheard, PoseUnfit, StrangeFrame
+from tms_mc.reasons import AreaUnfit, NoPoses, PosesUnheard, PoseUnfit, StrangeFrame
+from tms_mc.surroundings import Surroundings
 from tms_mc.tracks import Tracks
+from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
 from tms_reason.wire import of
 from tms_ros.goals import Ended, Outcome
@@ -35,14 +41,31 @@ class FakeTracks:
 
     silent: Reason | None = None
     pose: Pose = HERE
-    pace: Pace = PACE
 
     def unready(self) -> Reason | None:
         return self.silent
 
+    def question(self, start: Pose, goal: Pose, ground: Ground) -> Question:
+        return Question(start, (Goal(*goal),), PACE, 0.0, Outline(2.0, -2.0, 1.5, -1.5), ground)
 
-def compute(tracks: FakeTracks, request: ComputePathToPose.Goal) -> Ended[Any]:
-    server = PathServer(cast(Tracks, tracks))
+
+@dataclass
+class FakeSurroundings:
+    """What stands around them; or why nobody knows what is blocked."""
+
+    bodies: tuple[Body, ...] = ()
+    unfit: Reason | None = None
+
+    def read(self) -> None:
+        if self.unfit is not None:
+            raise SubtaskFailed(self.unfit)
+
+    def ground(self) -> Ground:
+        return Ground(self.bodies)
+
+
+def compute(tracks: FakeTracks, request: ComputePathToPose.Goal, around: FakeSurroundings | None = None) -> Ended[Any]:
+    server = PathServer(cast(Tracks, tracks), cast(Surroundings, around or FakeSurroundings()))
     assert server.refuse(request) is None
     return server.run(cast(AnyGoal, SimpleNamespace(request=request)))
 
@@ -76,6 +99,29 @@ def test_without_a_place_of_the_machine_there_is_no_path() -> None:
     assert outcome is Outcome.ABORTED and not result.path.poses
     if hasattr(result, "error_code"):
         assert (result.error_code, of(result.error_msg)) == (FAILED, PosesUnheard("/zx200/pose"))
+
+
+def square(x: float, y: float, half: float = 1.0) -> Body:
+    corners = ((x - half, y - half), (x + half, y - half), (x + half, y + half), (x - half, y + half))
+    return Body(BlockedArea("pit"), corners)
+
+
+def test_a_path_leads_around_what_stands_there() -> None:
+    goal, pit = ComputePathToPose.Goal(goal=in_map(Pose(20.0, 2.0, 0.0))), square(10.0, 2.0)
+    outcome, result = compute(FakeTracks(pose=Pose(0.0, 2.0, 0.0)), goal, FakeSurroundings((pit,)))
+    assert outcome is Outcome.SUCCEEDED
+    poses = np.array([pose_of(one) for one in result.path.poses])
+    assert pit.gaps(Outline(2.0, -2.0, 1.5, -1.5), poses).min() > 0.3
+
+
+@pytest.mark.parametrize(
+    "around", [FakeSurroundings((square(9.0, 5.0),)), FakeSurroundings(unfit=AreaUnfit("pit", 3, 100))]
+)
+def test_a_path_that_cannot_be_planned_is_refused_with_its_reason(around: FakeSurroundings) -> None:
+    outcome, result = compute(FakeTracks(), ComputePathToPose.Goal(goal=in_map(THERE)), around)
+    assert outcome is Outcome.ABORTED and not result.path.poses
+    if hasattr(result, "error_code"):
+        assert result.error_code == FAILED and isinstance(of(result.error_msg), (GoalTaken, AreaUnfit))
 
 
 def test_the_path_that_is_told_is_the_one_that_will_be_followed() -> None:

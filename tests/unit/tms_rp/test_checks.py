@@ -68,7 +68,7 @@ def test_the_clearance_is_the_gap_between_the_bodies(gap: float) -> None:
 
 
 def corners(link: str) -> list[tuple[float, float, float]]:
-    from tms_rp.links import Links
+    from tms_control.links import Links
 
     shape = MODEL.shapes[link]
     place = Links(MODEL).places(np.array([(*NOW, 0.0)]))[link][0]

@@ -10,6 +10,7 @@ import pytest
 from tms_config.config import CONFIGS
 from tms_config.models import Box, MachineModel
 from tms_config.yaml_file import parse
+from tms_control.links import placed
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
 from tms_rp.kind import Moves
@@ -19,7 +20,6 @@ from tms_rp.kinds.backhoe.digging import excavate, release
 from tms_rp.kinds.backhoe.goals import ChangePose, Dig, Emptying, TipGoal
 from tms_rp.kinds.backhoe.linkage import ArmAngles
 from tms_rp.kinds.backhoe.planner import Backhoe
-from tms_rp.links import placed
 from tms_rp.neighbour import Neighbour, Posture
 from tms_rp.plan import Plan
 from tms_rp.reasons import Around, ClearanceCut, Collision, DragCut, Ground, OtherAngle, Part, PartOf
@@ -195,6 +195,17 @@ def test_release_where_it_is_opens_and_comes_up() -> None:
     pin = [BACKHOE.linkage.tip(pose).z + 1.562 * math.sin(BACKHOE.linkage.tip(pose).theta_w)
            for pose in poses(WAYS.plan(now, release(BACKHOE, now, Emptying(-0.34)), Scene()))]  # fmt: skip
     assert all(b >= a - 1e-6 for a, b in pairwise(pin))  # it rises as the bucket opens
+
+
+@pytest.mark.parametrize("ground", [0.0, 0.1, 0.3])
+def test_an_opening_bucket_does_not_touch_the_ground_that_it_has_dug(ground: float) -> None:
+    """It hangs lower than a curled one, so the boom comes up first where a small machine holds it."""
+    arm, ways = Backhoe(MODELS["zx120"]), Ways(MODELS["zx120"], load("backhoe"))
+    now = ArmAngles(0.0, -0.6, 2.0, 0.8)
+    lifted = poses(ways.plan(now, excavate(arm, now, Dig(TipGoal(4.0, 0.0, ground, 1.6), 1.0, 1.0, 0.5)), Scene()))[-1]
+    opening = poses(ways.plan(lifted, release(arm, lifted, Emptying(-0.34)), Scene()))
+    assert min(map(arm.bucket.lowest, opening)) > 0.05
+    assert opening[-1].bucket == pytest.approx(-0.34, abs=1e-3)
 
 
 def test_release_cuts_the_clearance_at_the_limits() -> None:

@@ -7,6 +7,7 @@ import pytest
 from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
+from tms_control.links import placed
 from tms_rp.clearance import Clearance
 from tms_rp.kind import Moves
 from tms_rp.kinds import load
@@ -14,7 +15,6 @@ from tms_rp.kinds.backhoe.digging import excavate
 from tms_rp.kinds.backhoe.goals import Dig, TipGoal
 from tms_rp.kinds.backhoe.linkage import ArmAngles, Tip
 from tms_rp.kinds.backhoe.planner import Backhoe
-from tms_rp.links import placed
 from tms_rp.neighbour import Neighbour, Posture
 from tms_rp.scene import Scene
 from tms_rp.ways import Ways

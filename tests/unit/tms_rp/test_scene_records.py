@@ -77,9 +77,28 @@ def test_a_record_that_is_too_old_refuses() -> None:
         {"dimensions": [1.0, 0.0, 1.0]},
         {"dimensions": [1.0, 1.0]},
         {"dimensions": [1.0, 1.0, 1.0], "primitive_type": 3},
+        {"dimensions": [1.0, 1.0], "primitive_type": 2},
+        {"dimensions": [1.0, 1.0], "primitive_type": 5},
         {"dimensions": [1.0, 1.0, 1.0], "qw": 0.3},
         {},
     ],
 )
 def test_a_record_that_makes_no_sense_refuses(values: dict[str, Value]) -> None:
     assert isinstance(refusal(**values), BadRecord)  # type: ignore[arg-type]
+
+
+def test_the_place_may_be_nested_as_in_version_6() -> None:
+    nested = {"position": {"x": 1.0, "y": 2.0, "z": 3.0}, "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}}
+    (wall,) = SceneRecord(
+        "post", {"pose": nested, "primitive_type": 1, "dimensions": [1.0, 1.0, 1.0]}, 0, 0, True
+    ).obstacles({})
+    assert wall.place[:3, 3] == pytest.approx([1.0, 2.0, 3.0])
+
+
+@pytest.mark.parametrize(
+    ("kind", "sizes", "sides"), [(2, [1.0], (2, 2, 2)), (3, [3.0, 1.0], (2, 2, 3)), (4, [3.0, 1.0], (2, 2, 3))]
+)
+def test_round_bodies(kind: int, sizes: list[float], sides: tuple[float, ...]) -> None:
+    (body,) = record(primitive_type=kind, dimensions=sizes)
+    assert body.mesh is not None
+    assert np.subtract(body.box.max, body.box.min) == pytest.approx(sides, rel=0.03)

@@ -11,13 +11,14 @@ from conftest import PROJECT
 from tms_config.config import CONFIGS
 from tms_config.models import Box, MachineModel
 from tms_config.yaml_file import parse
+from tms_control.links import placed
+from tms_control.reasons import PathBlocked
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
 from tms_rp.clearance import Clearance
 from tms_rp.kind import Angles, Moves
 from tms_rp.kinds import load
 from tms_rp.kinds.backhoe.linkage import ArmAngles, Linkage
-from tms_rp.links import placed
 from tms_rp.messages import follow
 from tms_rp.reasons import (
     Around,
@@ -28,7 +29,6 @@ from tms_rp.reasons import (
     NoWayRound,
     OtherWayRound,
     PartOf,
-    PathBlocked,
     Searched,
     SlowlyOut,
 )

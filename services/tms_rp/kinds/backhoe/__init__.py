@@ -27,7 +27,10 @@ def _change_pose(planner: Backhoe, now: Angles, request: TmsRpZx200ChangePose.Go
 
 def _plan_pose(planner: Backhoe, now: Angles, request: PlanPose.Goal) -> Moves:
     begin = start_of(request.previous, NAMES) or now
-    found = planner.change_pose(ArmAngles(*begin), messages.change_pose(request))
+    asked = messages.change_pose(request)
+    if request.orientation_tolerance > 0:
+        asked = replace(asked, aside=request.orientation_tolerance)
+    found = planner.change_pose(ArmAngles(*begin), asked)
     return replace(found, begin=begin, scales=(request.velocity_scale, request.acceleration_scale))
 
 

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from tms_config.models import Box, MachineModel
+from tms_control.links import Array, Links, box_place
 from tms_rp.kinds.backhoe.linkage import ArmAngles
-from tms_rp.links import Array, Links, box_place
 
 LEVEL = (
     math.pi

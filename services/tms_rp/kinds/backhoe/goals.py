@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from tms_reason.errors import SubtaskFailed
 from tms_rp.reasons import AnglesUnfit, FieldNotFinite, NamedTwice
 
+OUT_OF_PLANE = 0.05  # rad, how far an orientation may point out of the arm's plane where a goal does not say it
+
 
 @dataclass(frozen=True)
 class TipGoal:
@@ -61,11 +63,13 @@ class ChangePose:
     """Targets one after another; exactly one of the three is given.
 
     `joints` holds joint name -> angle [rad]; an angle beyond +-2 pi, or a joint left out, keeps its present value.
+    `aside`: how far [rad] the orientation of a pose may point out of the arm's plane, which is left out then.
     """
 
     joints: tuple[Mapping[str, float], ...] = ()
     links: tuple[LinkGoal, ...] = ()
     tips: tuple[TipGoal, ...] = ()
+    aside: float = OUT_OF_PLANE
 
 
 def joint_goal(names: Sequence[str], positions: Sequence[float]) -> dict[str, float]:

@@ -12,7 +12,7 @@ from tms_reason.reason import Reason
 from tms_rp.kind import Angles, Moves, Through
 from tms_rp.kinds.backhoe.bucket import EMPTIED, LEVEL, TILT, Body, tilt
 from tms_rp.kinds.backhoe.goals import ChangePose, LinkGoal, TipGoal, finite
-from tms_rp.kinds.backhoe.linkage import ArmAngles, Linkage, Tip, wrap
+from tms_rp.kinds.backhoe.linkage import ArmAngles, Linkage, Tip, Vector, wrap
 from tms_rp.reasons import (
     ClearanceCut,
     JointBroken,
@@ -32,7 +32,6 @@ TOOL = "bucket_end_joint"  # a frame, not a joint: no command moves it
 SEARCH_STEP = 0.01  # rad, of theta_w
 EMPTY = 1e-3  # a shorter quaternion counts as not filled in; others are brought to the length 1, as MoveIt does
 SWINGS = 0.05  # rad of the upper body that spill nothing
-OUT_OF_PLANE = 0.05  # rad, how far an orientation may point out of the arm's plane
 
 
 class Backhoe:
@@ -63,7 +62,7 @@ class Backhoe:
         targets: list[ArmAngles] = []
         for values in goal.joints:
             targets.append(self._joints(now, targets, values))
-        for tip in (*(self._link_tip(link) for link in goal.links), *(tip_of(tip) for tip in goal.tips)):
+        for tip in (*(self._link_tip(link, goal.aside) for link in goal.links), *(tip_of(tip) for tip in goal.tips)):
             targets.append(short_way(targets[-1] if targets else now, self.reach(tip)))
         return Moves(tuple(targets))
 
@@ -91,6 +90,13 @@ class Backhoe:
         if broken:
             raise SubtaskFailed(PointOutOfRange(Point(*tip), broken))
         return pose
+
+    def tool(self, now: Angles) -> tuple[Vector, geometry.Quaternion]:
+        """Pose of bucket_end_link in base_link: position [m] and orientation."""
+        pose = ArmAngles(*now)
+        tip = self.linkage.tip(pose)
+        turn = geometry.product(geometry.about("z", pose.swing), geometry.about("y", tip.theta_w + self.linkage.level))
+        return (tip.x, tip.y, tip.z), turn
 
     def level(self, pose: ArmAngles) -> ArmAngles:
         """The pose with the bucket level, or as near to it as the bucket gets."""
@@ -130,7 +136,7 @@ class Backhoe:
         target = ArmAngles(*(kept.get(name, angle) for name, angle in zip(NAMES, now, strict=True)))
         return self.allowed(now, short_way(before[-1] if before else now, target))
 
-    def _link_tip(self, link: LinkGoal) -> Tip:
+    def _link_tip(self, link: LinkGoal, most: float) -> Tip:
         """The tip that a pose of bucket_end_link asks for; theta_w is its pitch in the plane of the arm."""
         finite("pose_sequence", *vars(link).values())
         turn = link.qx, link.qy, link.qz, link.qw
@@ -139,8 +145,8 @@ class Backhoe:
         x, y, z = geometry.x_axis(geometry.unit(turn))
         swing = self.linkage.swing_to(link.x, link.y)
         out, aside = x * math.cos(swing) + y * math.sin(swing), y * math.cos(swing) - x * math.sin(swing)
-        if abs(aside) > math.sin(OUT_OF_PLANE):
-            raise SubtaskFailed(OutOfPlane(math.asin(max(-1.0, min(1.0, aside))), swing))
+        if abs(angle := math.asin(max(-1.0, min(1.0, aside)))) > most:
+            raise SubtaskFailed(OutOfPlane(angle, swing))
         return Tip(link.x, link.y, link.z, wrap(math.atan2(-z, out) - self.linkage.level))
 
     def allowed(self, now: ArmAngles, target: ArmAngles) -> ArmAngles:
