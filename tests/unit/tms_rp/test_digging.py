@@ -13,7 +13,7 @@ from tms_config.yaml_file import parse
 from tms_control.links import placed
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
-from tms_rp.kind import Moves
+from tms_rp.kind import Moves, Through
 from tms_rp.kinds import load
 from tms_rp.kinds.backhoe.bucket import LEVEL, TILT, tilt
 from tms_rp.kinds.backhoe.digging import excavate, release
@@ -116,6 +116,12 @@ def test_nothing_but_the_bucket_may_be_in_the_ground_and_that_only_in_its_plane(
             WAYS.plan(NOW, replace(moves, targets=tuple(targets)), Scene())
         said = caught.value.reason.find(Collision)
         assert said is not None and said.first == Part(first) and said.second == Ground() and said.depth > 0
+
+
+def test_a_dig_keeps_the_padding_of_its_scene() -> None:
+    trench = (excavate(BACKHOE, NOW, FACE).through or Through(())).trench
+    padded = Scene(padding=(("bucket_link", 0.3),))
+    assert trench is not None and trench.around(padded).padding == padded.padding
 
 
 def refusal(goal: Dig, scene: Scene | None = None, now: ArmAngles = NOW) -> Reason:
