@@ -291,20 +291,24 @@ def swings(arm: Backhoe, now: ArmAngles, **angles: float) -> Moves:
 
 def test_soil_is_known_from_the_dig_until_the_bucket_was_open() -> None:
     arm, now = Backhoe(MODEL), loaded()
+    turn = ChangePose(joints=({"swing_joint": 1.2},))
     assert swings(arm, now, swing=1.2, bucket=-0.3).through is None
-    arm.moves(excavate(arm, NOW, FACE))
+    arm.begins(NOW, excavate(arm, NOW, FACE))
     held = swings(arm, now, swing=1.2, bucket=-0.3)
     assert held.through is not None and held.through.held is not None
     level, end = map(ArmAngles._make, held.targets)
     assert level.swing == end.swing == 1.2 and tilt(level) == pytest.approx(0.0) and end.bucket == -0.3
     assert swings(arm, now, bucket=-0.3).through is None  # it does not swing: it is emptied
-    assert swings(arm, now._replace(bucket=-0.3), swing=1.2).through is None
+    opened = now._replace(bucket=-0.3)
+    assert swings(arm, opened, swing=1.2).through is None  # a check from where it would be open changes nothing
+    assert swings(arm, now, swing=1.2).through is not None
+    arm.begins(opened, arm.change_pose(opened, turn))
     assert swings(arm, now, swing=1.2, bucket=-0.3).through is None  # emptied in between
 
 
 def test_a_loaded_bucket_opens_after_the_swing() -> None:
     arm, now = Backhoe(MODEL), loaded()
-    arm.moves(excavate(arm, NOW, FACE))
+    arm.begins(NOW, excavate(arm, NOW, FACE))
     for scene in (Scene(), truck()):
         plan = WAYS.plan(now, swings(arm, now, swing=2.6, bucket=-0.3), scene)
         open_at = next(i for i, pose in enumerate(poses(plan)) if tilt(pose) > TILT)
