@@ -93,7 +93,10 @@ class Flow:
         return blended(scaled(self._model.joints, *moves.scales), [self._whole(pose) for pose in poses], least)
 
     def _refusal(self, made: Trajectory, scene: Scene, up: float = 0.0) -> Reason | None:
-        """Why a motion is not free; `up`: when [s] it is out of the ground, if it begins in it: such a contact may last."""
+        """Why a motion is not free.
+
+        `up`: when [s] it is out of the ground in which it begins; else a contact with it might last.
+        """
         late = made.lagging(self._late)
         parts = [(made, 0.0), (late, 0.0)] + [(made, up), (late, up + max(self._late))] * (up > 0)
         try:
