@@ -9,13 +9,15 @@ A numerical solver was dropped: it is slower, and it cannot say by how much a po
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from tms_config.models import Origin
 from tms_reason.errors import SubtaskFailed
+from tms_reason.reason import Reason
 from tms_rp.reasons import Point, TooFar, TooNear, TooNearAxis
 
 Vector = tuple[float, float, float]
+Found = TypeVar("Found")
 
 
 class ArmAngles(NamedTuple):
@@ -88,11 +90,13 @@ class Linkage:
         Raises:
             SubtaskFailed: TooNearAxis, the point is nearer to the swing axis than the arm's plane.
         """
+        return _known(self._swing_to(x, y))
+
+    def _swing_to(self, x: float, y: float) -> float | Reason:
         px, py = x - self.axis[0], y - self.axis[1]
         out = _root(px * px + py * py - self.lateral**2)
         if out is None:
-            missing = abs(self.lateral) - math.hypot(px, py)
-            raise SubtaskFailed(TooNearAxis(x, y, missing))
+            return TooNearAxis(x, y, abs(self.lateral) - math.hypot(px, py))
         return wrap(math.atan2(py, px) - math.atan2(self.lateral, out))
 
     def joints(self, tip: Tip) -> ArmAngles:
@@ -101,14 +105,22 @@ class Linkage:
         Raises:
             SubtaskFailed: TooFar, TooNear, TooNearAxis, with how much is missing.
         """
-        swing = self.swing_to(tip.x, tip.y)
+        return _known(self.solve(tip))
+
+    def solve(self, tip: Tip) -> ArmAngles | Reason:
+        """The same, with the reason instead of an error: in a search each error would cost ten times the geometry."""
+        swing = self._swing_to(tip.x, tip.y)
+        if isinstance(swing, Reason):
+            return swing
         px, py = tip.x - self.axis[0], tip.y - self.axis[1]
         out = _root(px * px + py * py - self.lateral**2) or 0.0
         l1, l2, l3 = self.lengths
         wx = out - self.boom_pin[0] - l3 * math.cos(tip.theta_w)
         wz = tip.z - self.axis[2] - self.boom_pin[1] + l3 * math.sin(tip.theta_w)
         far = math.hypot(wx, wz)
-        _within_reach(tip, far, abs(l1 - l2), l1 + l2)
+        if not abs(l1 - l2) <= far <= l1 + l2:
+            point = Point(*tip)
+            return TooFar(point, far - l1 - l2) if far > l1 + l2 else TooNear(point, abs(l1 - l2) - far)
         g1 = -_corner(l1, far, l2) - math.atan2(wz, wx)
         g2 = math.pi - _corner(l1, l2, far)
         g3 = tip.theta_w - g1 - g2
@@ -116,12 +128,10 @@ class Linkage:
         return ArmAngles(swing, g1 + o1, g2 + o2, g3 + o3)
 
 
-def _within_reach(tip: Tip, far: float, least: float, most: float) -> None:
-    """Refuse a bucket pin that is `far` [m] from the boom pin when the arm spans `least` to `most`."""
-    if least <= far <= most:
-        return
-    point = Point(*tip)
-    raise SubtaskFailed(TooFar(point, far - most) if far > most else TooNear(point, least - far))
+def _known(found: Found | Reason) -> Found:
+    if isinstance(found, Reason):
+        raise SubtaskFailed(found)
+    return found
 
 
 def _corner(p: float, q: float, opposite: float) -> float:

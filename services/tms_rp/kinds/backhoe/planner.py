@@ -84,15 +84,21 @@ class Backhoe:
 
     def reach(self, tip: Tip) -> ArmAngles:
         """Joints inside their limits that bring the bucket tip there; swing in (-pi, pi]."""
-        pose = self.linkage.joints(tip)
+        found = self._solve(tip)
+        if isinstance(found, Reason):
+            raise SubtaskFailed(found)
+        return found
+
+    def _solve(self, tip: Tip) -> ArmAngles | Reason:
+        pose = self.linkage.solve(tip)
+        if isinstance(pose, Reason):
+            return pose
         bucket = self.limits["bucket_joint"]
         for turn in (math.tau, -math.tau):  # theta_w is an angle: full turns more or less are the same bucket
             if bucket.violation(pose.bucket) and not bucket.violation(pose.bucket + turn):
                 pose = pose._replace(bucket=pose.bucket + turn)
         broken = self._broken(zip(NAMES, pose, strict=True))
-        if broken:
-            raise SubtaskFailed(PointOutOfRange(Point(*tip), broken))
-        return pose
+        return PointOutOfRange(Point(*tip), broken) if broken else pose
 
     def tool(self, now: Angles) -> tuple[Vector, geometry.Quaternion]:
         """Pose of bucket_end_link in base_link: position [m] and orientation."""
@@ -117,18 +123,18 @@ class Backhoe:
         tell what it touches.
         """
         possible: list[tuple[ArmAngles, float]] = []
-        refused: list[SubtaskFailed] = []
+        refused: list[Reason] = []
         for theta_w in _outward(tip.theta_w, most):
-            try:
-                possible.append((self.reach(tip._replace(theta_w=theta_w)), theta_w))
-            except SubtaskFailed as error:
-                refused.append(error)
+            found = self._solve(tip._replace(theta_w=theta_w))
+            if isinstance(found, Reason):
+                refused.append(found)
                 continue
-            if fits(possible[-1][0]):
-                return possible[-1]
+            possible.append((found, theta_w))
+            if fits(found):
+                return found, theta_w
         if possible:
             return possible[0]
-        raise SubtaskFailed(NoAngleDigs(refused[0].reason))
+        raise SubtaskFailed(NoAngleDigs(refused[0]))
 
     def _joints(self, now: ArmAngles, before: list[ArmAngles], values: Mapping[str, float]) -> ArmAngles:
         unknown = [name for name in values if name not in (*NAMES, TOOL)]
