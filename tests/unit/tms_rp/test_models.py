@@ -34,6 +34,7 @@ def test_there_and_back(name: str, swing: float, boom: float, arm: float, bucket
     if out < 0.5:  # the tip is behind the swing axis: the other way round reaches it, too
         return
     back = linkage.joints(tip)
+    assert isinstance(back, ArmAngles)
     assert [wrap(a - b) for a, b in zip(back, (swing, *angles), strict=True)] == pytest.approx([0, 0, 0, 0], abs=1e-6)
 
 

@@ -9,7 +9,7 @@ A numerical solver was dropped: it is slower, and it cannot say by how much a po
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 from tms_config.models import Origin
 from tms_reason.errors import SubtaskFailed
@@ -17,7 +17,6 @@ from tms_reason.reason import Reason
 from tms_rp.reasons import Point, TooFar, TooNear, TooNearAxis
 
 Vector = tuple[float, float, float]
-Found = TypeVar("Found")
 
 
 class ArmAngles(NamedTuple):
@@ -90,7 +89,10 @@ class Linkage:
         Raises:
             SubtaskFailed: TooNearAxis, the point is nearer to the swing axis than the arm's plane.
         """
-        return _known(self._swing_to(x, y))
+        found = self._swing_to(x, y)
+        if isinstance(found, Reason):
+            raise SubtaskFailed(found)
+        return found
 
     def _swing_to(self, x: float, y: float) -> float | Reason:
         px, py = x - self.axis[0], y - self.axis[1]
@@ -99,16 +101,12 @@ class Linkage:
             return TooNearAxis(x, y, abs(self.lateral) - math.hypot(px, py))
         return wrap(math.atan2(py, px) - math.atan2(self.lateral, out))
 
-    def joints(self, tip: Tip) -> ArmAngles:
+    def joints(self, tip: Tip) -> ArmAngles | Reason:
         """Inverse kinematics, elbow up, without joint limits; `tip` is in base_link.
 
-        Raises:
-            SubtaskFailed: TooFar, TooNear, TooNearAxis, with how much is missing.
+        Else TooFar, TooNear or TooNearAxis, with how much is missing: in a search, each error would cost ten times the
+        geometry.
         """
-        return _known(self.solve(tip))
-
-    def solve(self, tip: Tip) -> ArmAngles | Reason:
-        """The same, with the reason instead of an error: in a search each error would cost ten times the geometry."""
         swing = self._swing_to(tip.x, tip.y)
         if isinstance(swing, Reason):
             return swing
@@ -126,12 +124,6 @@ class Linkage:
         g3 = tip.theta_w - g1 - g2
         o1, o2, o3 = self.offsets
         return ArmAngles(swing, g1 + o1, g2 + o2, g3 + o3)
-
-
-def _known(found: Found | Reason) -> Found:
-    if isinstance(found, Reason):
-        raise SubtaskFailed(found)
-    return found
 
 
 def _corner(p: float, q: float, opposite: float) -> float:

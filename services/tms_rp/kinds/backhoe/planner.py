@@ -90,7 +90,7 @@ class Backhoe:
         return found
 
     def _solve(self, tip: Tip) -> ArmAngles | Reason:
-        pose = self.linkage.solve(tip)
+        pose = self.linkage.joints(tip)
         if isinstance(pose, Reason):
             return pose
         bucket = self.limits["bucket_joint"]
