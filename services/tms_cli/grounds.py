@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from tms_soil.surface import Bounds, Heights, Mask, Point
     from tms_soil.volumes import Volumes
 
+EXPORTS = (".asc", ".tif")
 CELL = 0.2  # m, where the site file tells none
 
 
@@ -49,6 +50,17 @@ def read(file: Path, given: "Given", area: "Bounds | None", cell: float | None) 
     bounds = area or settings.needed(site).area
     frame = SiteFrame(told.origin) if told is not None and told.origin is not None else None
     return reading.read(file, bounds, cell or (told.cell if told is not None else CELL), frame, given)
+
+
+def write(file: Path, ground: "Heights") -> None:
+    """Write a ground into a new file of one of EXPORTS; OSError where that is refused."""
+    from tms_ground.files import ascii_grid, geotiff
+    from tms_ground.settings import needed
+
+    if file.suffix.lower() == ".asc":
+        ascii_grid.write(file, ground)
+    else:
+        geotiff.write(file, ground, needed(session.site()).origin)
 
 
 def one(db: "Db", word: str) -> "tuple[Snapshot, Heights]":

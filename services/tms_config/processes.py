@@ -47,7 +47,7 @@ class Process:
     autostart: bool = True
     pc: str = ""  # which PC of the site runs it; empty when there is one only
     address: str = "127.0.0.1"  # where its port is
-    forms: tuple[str, ...] = ()  # of interface packages, in place of the usual ones (tms_runtime/wire_form.py)
+    form: str = ""  # of an interface package, in place of the usual one (tms_runtime/wire_form.py)
     ours: bool = True  # has metrics and health, which foreign programs do not have
 
     @property
@@ -134,8 +134,8 @@ def _services(site: Site) -> list[Process]:
         rows.append(Process("tms", "discovery", "cps", "tms_host.discovery", 0, PURPOSES["discovery"], ours=False))
     data = site.file.forms.TmsdbGetData
     if data or any(map(site.other_form, site.file.peers)):  # for templates both forms are the same
-        forms = (data or "both",)
-        rows.append(Process("tms", "if_readers", "cps", "tms_if.reader_border", 0, PURPOSES["readers"], forms=forms))
+        form = data or "both"
+        rows.append(Process("tms", "if_readers", "cps", "tms_if.reader_border", 0, PURPOSES["readers"], form=form))
     if site.file.ground is not None:
         rows.append(Process("tms", "ground", "cps", "tms_ground.node", 0, PURPOSES["ground"]))
     for name, service in site.file.services.items():
@@ -156,15 +156,13 @@ def _machine(site: Site, machine: str) -> list[Process]:
         rows.append(Process("sim", machine, "sim", "tms_sim.node", 0, PURPOSES["sim"], machine))
     rows.append(Process(machine, "rc", use.role, "tms_rc.node", 0, PURPOSES["rc"], machine))
     if form := site.other_form(machine):
-        rows.append(
-            Process(machine, "if", use.role, "tms_if.leaf_border", 0, PURPOSES["peers"], machine, forms=(form,))
-        )
+        rows.append(Process(machine, "if", use.role, "tms_if.leaf_border", 0, PURPOSES["peers"], machine, form=form))
     if site.border(machine).controller == "ours":
         rows.append(Process(machine, "mc", use.role, "tms_mc.node", 0, PURPOSES["mc"], machine))
     if model.planner is not None:
         _require(site, machine, f"tms_rp/kinds/{model.planner}/__init__.py", "planner")
-        forms = ("plans",) if site.file.forms.TmsRpExcavator == "plans" else ()
-        rows.append(Process(machine, "rp", use.role, "tms_rp.node", 0, PURPOSES["rp"], machine, forms=forms))
+        form = "plans" if site.file.forms.TmsRpExcavator == "plans" else ""
+        rows.append(Process(machine, "rp", use.role, "tms_rp.node", 0, PURPOSES["rp"], machine, form=form))
     rows += [_subtask(site, machine, model, action) for action in model.subtasks]
     return rows
 

@@ -21,7 +21,8 @@ from tms_reason.reason import Reason
 
 DOCKS = (0.0, 4.0, -4.0, 8.0, -8.0)  # m before the goal where a way straight into it may begin; negative: behind it
 TRIED = 4  # fastest words between two poses that are looked at
-NEARER, OFTEN = 0.8, 200  # a goal is tried anew this part nearer to it, and after so many poses
+NEARER = 0.8  # a goal is tried anew this part nearer to it, ...
+FIRST, LONGER = 50, 1.5  # ... and after so many poses, each time that much later
 AT_ONCE = 8  # poses of a way that one word may replace
 
 
@@ -84,7 +85,7 @@ def _way(start: Pose, targets: Sequence[Pose], pace: Pace, check: WayCheck) -> l
     connect = _Connect(targets, pace, check)
     if (direct := connect.now(start)) is not None:
         return direct
-    found = Lattice(start, targets, check, pace).search(connect)
+    found = Lattice(start, targets, check, pace).search(connect.due, connect.now)
     if found is None:
         return None
     poses, rest = found
@@ -98,14 +99,17 @@ class _Connect:
         self._pace, self._check = pace, check
         lines = [Piece(goal.ahead(-away), abs(away), 0.0, 1 if away > 0 else -1) for goal in targets for away in DOCKS]
         self._lines = [line for line in lines if check.free([line])]
-        self._next, self._waited = math.inf, 0
+        self._nearer, self._waited, self._patience = math.inf, 0, float(FIRST)
 
-    def __call__(self, pose: Pose, away: float) -> list[Piece] | None:
+    def due(self, away: float) -> bool:
+        """Whether to try a pose that is so far [m] from a target."""
         self._waited += 1
-        if away > self._next and self._waited < OFTEN:
-            return None
-        self._next, self._waited = NEARER * away, 0
-        return self.now(pose)
+        if away > self._nearer and self._waited < self._patience:
+            return False
+        if self._waited >= self._patience:
+            self._patience *= LONGER
+        self._nearer, self._waited = min(self._nearer, NEARER * away), 0
+        return True
 
     def now(self, pose: Pose) -> list[Piece] | None:
         """The fastest one that is free."""

@@ -85,11 +85,14 @@ class Body:
     def _array(self) -> Array:
         return np.array(self.corners, dtype=float)
 
-    @cached_property
-    def circle(self) -> tuple[Array, float]:
-        """Centre and radius [m] of a circle around it."""
-        centre = (self._array.min(axis=0) + self._array.max(axis=0)) / 2
-        return centre, float(np.hypot(*(self._array - centre).T).max())
+    def close(self, places: Array, distance: float) -> NDArray[np.int_]:
+        """Numbers of the places (N x 2) that may be nearer than a distance [m]; all others are further away."""
+        low, high = self._array.min(axis=0), self._array.max(axis=0)
+        middle = (low + high) / 2
+        radius = float(np.hypot(*(self._array - middle).T).max())
+        from_middle = places - middle
+        inside = (np.abs(from_middle) < (high - low) / 2 + distance).all(axis=1)
+        return np.flatnonzero(inside & ((from_middle**2).sum(axis=1) < (radius + distance) ** 2))
 
     def gaps(self, outline: Outline, poses: Array) -> Array:
         """How far a machine is from it [m] at poses (N x 3): N; 0 where they touch."""
@@ -115,8 +118,7 @@ class Ground:
         (x, y), half = outline.centre, outline.half
         middles = poses[:, :2] + np.column_stack([c * x - s * y, s * x + c * y])
         for number, body in enumerate(self.bodies):
-            centre, radius = body.circle
-            close = np.flatnonzero(((middles - centre) ** 2).sum(axis=1) < (radius + half + needed[number]) ** 2)
+            close = body.close(middles, half + needed[number])
             for part in np.array_split(close, 1 + len(close) * len(body.corners) // AT_ONCE):
                 found[part, number] = body.gaps(outline, poses[part]) < needed[number]
         return found
@@ -141,7 +143,7 @@ def _to_edges(outline: Outline, seen: Array, way: Array) -> Array:
 
 def _crossed(outline: Outline, seen: Array, way: Array) -> Mask:
     """Whether an edge of a body goes through the rectangle (its part between both pairs of sides): N."""
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(all="ignore"):
         low = ([outline.back, outline.right] - seen) / way
         high = ([outline.front, outline.left] - seen) / way
     first, last = np.fmax(np.fmin(low, high), 0.0).max(axis=2), np.fmin(np.fmax(low, high), 1.0).min(axis=2)
@@ -153,7 +155,7 @@ def _inside(seen: Array, way: Array) -> Mask:
     """Whether the origin is inside a body: a ray from it crosses the body's edges an odd number of times: N."""
     x, y = seen[..., 0], seen[..., 1]
     across = (y > 0) != (np.roll(y, -1, axis=1) > 0)
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(all="ignore"):
         right = x - y * way[..., 0] / way[..., 1] > 0
     inside: Mask = (across & right).sum(axis=1) % 2 == 1
     return inside

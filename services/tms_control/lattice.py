@@ -44,10 +44,10 @@ class Lattice:
         self._cells = self._columns * self._rows
         self._yaws = [math.atan2(y, x) for x, y in STEPS]
 
-    def search(self, connect: Callable[[Pose, float], T | None]) -> tuple[list[Pose], T] | None:
+    def search(self, due: Callable[[float], bool], connect: Callable[[Pose], T | None]) -> tuple[list[Pose], T] | None:
         """Poses from the start to one that `connect` brings to a goal, and what that returned; None: no way.
 
-        `connect` gets a pose, and how far [m] it is from the nearest goal.
+        `due` gets how far [m] a pose is from the nearest goal, and says whether that is to be tried.
         """
         if self._cells > MOST_CELLS:
             return None
@@ -62,8 +62,8 @@ class Lattice:
             if state in done:
                 continue
             done.add(state)
-            pose = self._pose(state)
-            if (found := connect(pose, hopes[state % self._cells] * self._pace.forward)) is not None:
+            away = hopes[state % self._cells] * self._pace.forward
+            if due(away) and (found := connect(self._pose(state))) is not None:
                 return self._back(state, before), found
             for after, seconds in self._steps(state, free):
                 total = cost[state] + seconds

@@ -90,13 +90,14 @@ class WayCheck:
         return None
 
     def near(self, places: Array) -> list[tuple[NDArray[np.int_], "WayCheck"]]:
-        """By body: numbers of the places (N x 2) where it may be too near, and a check of that body alone."""
-        found = []
-        for body, least in zip(self._ground.bodies, self._needed, strict=True):
-            centre, radius = body.circle
-            close = ((places - centre) ** 2).sum(axis=1) < (radius + self.outline.reach + least) ** 2
-            found.append((np.flatnonzero(close), WayCheck(Ground((body,)), self.outline, np.array([least]))))
-        return found
+        """By body: numbers of the places (N x 2) where it may be too near, and its check alone."""
+        return [
+            (
+                body.close(places, self.outline.reach + float(least)),
+                WayCheck(Ground((body,)), self.outline, least[None]),
+            )
+            for body, least in zip(self._ground.bodies, self._needed, strict=True)
+        ]
 
     def _poses(self, piece: Piece) -> Array:
         return along(piece, self._step, self.outline.reach)

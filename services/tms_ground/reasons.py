@@ -31,6 +31,7 @@ class GroundOther(Reason, text="the kept ground is one of another area or soil: 
 class GroundNotKept(Reason, text="{file}: the ground cannot be kept there ({problem})"): file: str; problem: str
 class NoOrigin(Reason, text="the file is in EPSG {epsg}, and the site file tells no ground.origin", action=EDIT_CONFIG):
     epsg: int
+class NotAlongPlane(Reason, text="a GeoTIFF needs a ground.origin on a plane, without yaw: export an .asc"): pass
 
 # files of heights
 class GroundFile(Reason, text="{file}: {why}"): file: str; why: Reason

@@ -39,7 +39,7 @@ def start(app: App) -> None:
         motion_border.serve(app)
     app.ros.poll_in_thread(LOOK_PERIOD, border.look, "peers")
     app.ready_when(lambda: None)
-    app.log.info("serving", forms=app.process.forms)
+    app.log.info("serving", form=app.process.form)
 
 
 class LeafBorder:

@@ -37,7 +37,7 @@ def start(app: App) -> None:
         app.ros.offer(TmsdbGetData, RECORDS, border.records)
         app.ros.offer(TmsdbGetData, RECORDS_BY_TYPE, border.records)
     app.ready_when(lambda: None)
-    app.log.info("serving", forms=app.process.forms)
+    app.log.info("serving", form=app.process.form)
 
 
 class ReaderBorder:

@@ -6,6 +6,7 @@ from control_msgs.action import FollowJointTrajectory
 
 from tms_config.clock import monotonic
 from tms_config.naming import process_of
+from tms_control.reasons import PathBlocked
 from tms_decision.gateway.stops import STOP_PROVEN
 from tms_decision.reasons import ProcessLost
 from tms_machine import stamps
@@ -18,7 +19,7 @@ from tms_ros.goals import Outcome
 from tms_ros.reasons import LostMeanwhile, NoAnswer
 from tms_ros.server import AnyGoal
 from tms_rp.messages import follow
-from tms_rp.reasons import MotionFailed, MotionLate, MoveOf, PathBlocked
+from tms_rp.reasons import MotionFailed, MotionLate, MoveOf
 from tms_rp.trajectory import Trajectory
 from tms_runtime.fence import derived
 

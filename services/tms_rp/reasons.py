@@ -1,6 +1,5 @@
 """Why a planner makes no trajectory, how far a motion is, and why it ended."""
 
-from tms_control.reasons import PathBlocked as PathBlocked
 from tms_reason.quantities import Metres, Moments, Number, Percent, Radians, Seconds
 from tms_reason.reason import Reason
 from tms_reason.remedies import INSPECT, PROCESSES, RECORDS, Remedy

@@ -9,6 +9,7 @@ import numpy as np
 
 from tms_config.models import MachineModel
 from tms_control.links import Array
+from tms_control.reasons import PathBlocked
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
 from tms_rp.clearance import Clearance
@@ -16,7 +17,7 @@ from tms_rp.flow import Flow
 from tms_rp.kind import Angles, MachineKind, Moves, Way
 from tms_rp.plan import Plan
 from tms_rp.plans import one_trajectory, scaled, without_stops
-from tms_rp.reasons import Around, Collision, NoWayRound, PathBlocked, Searched, SlowlyOut
+from tms_rp.reasons import Around, Collision, NoWayRound, Searched, SlowlyOut
 from tms_rp.sampling import search
 from tms_rp.scene import Scene
 from tms_rp.trajectory import Joints, Trajectory, trajectory

@@ -51,8 +51,8 @@ def main(name: str) -> int:
             row = find(site, name)
             if not row.ours:
                 importlib.import_module(row.module).exec_program(site)
-            if row.forms:
-                wire_form.enter(row.forms)
+            if row.form:
+                wire_form.enter(row.form)
             environment.enter(site)
             return _serve(site, row, leaving)
         except ConfigError as error:

@@ -7,21 +7,18 @@ sent without the fields that it has more, and nothing tells of it. So the search
 import os
 import sys
 import sysconfig
-from collections.abc import Sequence
 from pathlib import Path
 
 PREFIXES = Path(sys.prefix) / "share" / "tms_forms"  # `make interfaces` installs the forms here
 
 
-def enter(forms: Sequence[str]) -> None:
-    """Start this program anew (same pid) with the packages of some forms before the usual ones; once."""
-    packages = Path(sysconfig.get_path("purelib")).relative_to(sys.prefix)
-    before = {
-        "LD_LIBRARY_PATH": [str(PREFIXES / form / "lib") for form in forms],
-        "PYTHONPATH": [str(PREFIXES / form / packages) for form in forms],
-    }
-    if os.environ.get("PYTHONPATH", "").startswith(":".join(before["PYTHONPATH"])):
+def enter(form: str) -> None:
+    """Start this program anew (same pid) with the packages of a form before the usual ones; once."""
+    prefix = PREFIXES / form
+    packages = prefix / Path(sysconfig.get_path("purelib")).relative_to(sys.prefix)
+    before = {"LD_LIBRARY_PATH": prefix / "lib", "PYTHONPATH": packages}
+    if os.environ.get("PYTHONPATH", "").startswith(str(packages)):
         return
-    changed = {name: ":".join([*paths, os.environ.get(name, "")]) for name, paths in before.items()}
+    changed = {name: f"{path}:{os.environ.get(name, '')}" for name, path in before.items()}
     sys.stdout.flush()
     os.execve(sys.executable, [sys.executable, "-m", "tms_runtime.run", *sys.argv[1:]], {**os.environ, **changed})

@@ -4,6 +4,9 @@ Straight ways: 500 random places around the machine, between two trucks; digs: t
 random scenes, in which boxes stand and hang around the machine. A cycle of digging and loading: its two trajectories,
 and the lag of the machine at the end of each. The floor of the time is the kinematics or the trajectory alone, of the
 cycle its two swings; that of the memory a process that has only imported rclpy.
+
+And how long the controller of tracks needs for a way around five machines on 100 m x 100 m. The floor is the fastest
+path, and the look that it is not free.
 """
 
 from __future__ import annotations
@@ -17,11 +20,17 @@ import time
 from collections.abc import Callable, Iterable
 
 from bench.runner import PROJECT, Figure
+from random_grounds import random_ground
+from random_grounds import random_pose as random_track_pose
 from random_scenes import random_pose, random_scene
 from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
+from tms_control.detour import Question
+from tms_control.ground import Outline
 from tms_control.links import placed
+from tms_control.planner import Goal, Pace
+from tms_control.planner import Plan as TracksPlan
 from tms_reason.errors import SubtaskFailed
 from tms_rp.clearance import Clearance
 from tms_rp.kind import Angles, Moves
@@ -41,6 +50,8 @@ AROUND = 1000  # scenes
 IN_MEMORY = 50  # scenes for the memory
 ROUNDS = 2  # for each scene with a way around; the best counts
 TRAJECTORY = 1.0  # ms for a straight trajectory on a usual PC
+SITES = 200  # with five machines
+FASTEST = 2.0  # ms for the fastest path of tracks on a usual PC
 NOW = ArmAngles(0.0, -0.8029, 1.9897, 0.8029)
 MEMORY = """
 import re, pathlib, sys
@@ -58,10 +69,10 @@ print(re.search(r"VmHWM:\\s+(\\d+)", pathlib.Path("/proc/self/status").read_text
 def measure() -> Iterable[Figure]:
     times, floors = plan_all(reach)
     assert len(times) > GOALS / 10, "hardly any of the places can be reached"
-    yield Figure("goal p99", "ms", share(times, 0.99), 50.0, share(floors, 0.99), usual_floor=3.0)
+    yield Figure("goal p99", "ms", share(times, 0.99), 50.0, share(floors, 0.99), usual_floor=0.2)
     times, floors = plan_all(dig)
     assert len(times) > GOALS / 10, "hardly any of the places can be dug"
-    yield Figure("dig p99", "ms", share(times, 0.99), 300.0, share(floors, 0.99), usual_floor=6.0)
+    yield Figure("dig p99", "ms", share(times, 0.99), 300.0, share(floors, 0.99), usual_floor=50.0)
     seconds, swings = cycle()
     yield Figure("dig and load", "s", seconds, 40.0, swings)
     manners, searches, floors = plan_around()
@@ -70,6 +81,11 @@ def measure() -> Iterable[Figure]:
     yield Figure("manners p99", "ms", share(manners, 0.99), 100.0, usual, usual_floor=TRAJECTORY)
     yield Figure("search p50", "ms", share(searches, 0.5), 500.0, usual, usual_floor=TRAJECTORY)
     yield Figure("search p99", "ms", share(searches, 0.99), 3000.0, usual, usual_floor=TRAJECTORY)
+    detours, floors = plan_tracks()
+    assert len(detours) > 30, "the sites ask for other ways"
+    usual = share(floors, 0.5)
+    yield Figure("tracks p50", "ms", share(detours, 0.5), 200.0, usual, usual_floor=FASTEST)
+    yield Figure("tracks p99", "ms", share(detours, 0.99), 1000.0, usual, usual_floor=FASTEST)
     yield Figure("memory", "MB", megabytes("all"), 150.0, megabytes("rclpy"))
 
 
@@ -77,7 +93,7 @@ def model_of(name: str) -> MachineModel:
     return parse(CONFIGS / "machines" / f"{name}.yaml", MachineModel)
 
 
-Goal = Callable[[Backhoe, TipGoal], Moves]
+Asked = Callable[[Backhoe, TipGoal], Moves]
 
 
 def reach(backhoe: Backhoe, place: TipGoal) -> Moves:
@@ -88,7 +104,7 @@ def dig(backhoe: Backhoe, place: TipGoal) -> Moves:
     return excavate(backhoe, NOW, Dig(place, depth=0.5, drag=1.5, lift=0.5))
 
 
-def plan_all(goal: Goal) -> tuple[list[float], list[float]]:
+def plan_all(goal: Asked) -> tuple[list[float], list[float]]:
     """Milliseconds of each goal that needs no way around, and of its kinematics."""
     model, truck = model_of("zx200"), model_of("ic120")
     backhoe, ways, rng = Backhoe(model), Ways(model, load("backhoe")), random.Random(1)
@@ -155,6 +171,20 @@ def plan_around(count: int = AROUND) -> tuple[list[float], list[float], list[flo
         for note in notes:
             (searches if note == Around(Searched(), note.why) else manners).append(taken)
     return manners, searches, floors
+
+
+def plan_tracks() -> tuple[list[float], list[float]]:
+    """Milliseconds of each way around five machines, and of the fastest path, which is not free."""
+    rng, pace = random.Random(1), Pace(forward=1.0, turn=0.24)
+    outline = Outline.of(model_of("ic120").footprint.values())
+    detours, floors = [], []
+    for _ in range(SITES):
+        ground, start, goal = random_ground(rng, 5), random_track_pose(rng), random_track_pose(rng)
+        question = Question(start, (Goal(*goal),), pace, 0.0, outline, ground)
+        if question.fastest() is None and isinstance(question.answer(), TracksPlan):
+            floors.append(min(clock(question.fastest) for _ in range(ROUNDS)))
+            detours.append(min(clock(question.answer) for _ in range(ROUNDS)))
+    return detours, floors
 
 
 def free_pose(rng: random.Random, clearance: Clearance, scene: Scene) -> Angles:

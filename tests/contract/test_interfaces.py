@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from conftest import PROJECT
+from tms_machine.peer_forms import HASHES
 
 INTERFACES = PROJECT / "services" / "interfaces"
 FORMS = INTERFACES / "_forms"  # packages of the same names, each form in a prefix of its own
@@ -49,11 +50,11 @@ KNOWN_FORMS = {
 FORM = re.compile(r"^build_form\((\w+) (\w+)", re.MULTILINE)
 
 
-def built_hash(name: str, prefix: Path = Path(sys.prefix)) -> str:
+def built_hash(name: str, prefix: Path = Path(sys.prefix), part: str = "") -> str:
     package, kind, _ = name.split("/")
     file = prefix / "share" / package / kind / f"{name.split('/')[2]}.json"
     hashes = {row["type_name"]: row["hash_string"] for row in json.loads(file.read_text())["type_hashes"]}
-    return hashes[name].removeprefix("RIHS01_")
+    return hashes[name + part].removeprefix("RIHS01_")
 
 
 @pytest.mark.parametrize("name", sorted(KNOWN))
@@ -65,6 +66,18 @@ def test_type_hash(name: str) -> None:
 def test_type_hash_of_another_form(form: str, name: str) -> None:
     prefix = Path(sys.prefix, "share", "tms_forms", form) if form else Path(sys.prefix)
     assert built_hash(name, prefix) == KNOWN_FORMS[form, name]
+
+
+@pytest.mark.parametrize(("definition", "form"), [(name, form) for name, forms in HASHES.items() for form in forms])
+def test_a_peer_is_known_by_the_hash_of_its_goals(definition: str, form: str) -> None:
+    package = {"LeafNodeBase": "tms_msg_ts", "TmsRpExcavator": "tms_msg_rp"}[definition]
+    usual = form in ("v5", "plan")
+    prefix = Path(sys.prefix) if usual else Path(sys.prefix, "share", "tms_forms", form)
+    told = built_hash(f"{package}/action/{definition}", prefix, "_SendGoal_Request")
+    assert HASHES[definition][form] == f"RIHS01_{told}"
+    others = ("_SendGoal_Response", "_GetResult_Request", "_GetResult_Response", "_FeedbackMessage")
+    name = f"{package}/action/{definition}"
+    assert [built_hash(name, prefix, part) for part in others] == [built_hash(name, part=part) for part in others]
 
 
 @pytest.mark.parametrize("package", PACKAGES, ids=lambda path: f"{path.parent.name}/{path.name}")

@@ -114,13 +114,16 @@ def show(snapshot: str, as_json: bool) -> None:
         found, ground = grounds.one(db, snapshot)
     known = ground.z[np.isfinite(ground.z)]
     facts = {"known_m2": known.size * ground.cell**2, "whole_m2": ground.z.size * ground.cell**2}
-    heights = {"least_m": float(known.min()), "mean_m": float(known.mean()), "most_m": float(known.max())}
+    heights = {}
+    if known.size:
+        heights = {"least_m": float(known.min()), "mean_m": float(known.mean()), "most_m": float(known.max())}
     if as_json:
         session.show_json({**grounds.as_dict(found), **facts, **heights})
         return
     click.echo(f"{grounds.time(found)}  {grounds.extent(found)}  {found.source}")
     click.echo(say("known: {known_m2:.1f} of {whole_m2:.1f} m²", **facts))
-    click.echo(say("heights: {least_m:.2f} to {most_m:.2f} m, mean {mean_m:.2f} m", **heights))
+    if heights:
+        click.echo(say("heights: {least_m:.2f} to {most_m:.2f} m, mean {mean_m:.2f} m", **heights))
 
 
 @command.command()
@@ -181,20 +184,19 @@ def volume(
 @click.argument("file", type=FILE)
 @session.json_option
 def export(snapshot: str, file: Path, as_json: bool) -> None:
-    """Write a ground into FILE, an ASCII grid (.asc) in `map`, which must not be there yet.
+    """Write a ground into FILE, which must not be there yet: an ASCII grid in `map`, or a GeoTIFF on the site's plane.
 
     \b
-    Example:
+    Examples:
       tms ground export last ground.asc
+      tms ground export 2026-11-25 ground.tif
     """
-    from tms_ground.files import ascii_grid
-
-    if file.suffix.lower() != ".asc":
-        raise click.UsageError(say("the file's name must end with .asc"))
+    if file.suffix.lower() not in grounds.EXPORTS:
+        raise click.UsageError(say("the file's name must end with .asc or .tif"))
     with opened() as db:
         found, ground = grounds.one(db, snapshot)
     try:
-        ascii_grid.write(file, ground)
+        grounds.write(file, ground)
     except OSError as error:
         raise TmsError(NameTaken(str(file), str(error.strerror)), "NO_FILE") from error
     if as_json:

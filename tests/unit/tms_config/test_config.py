@@ -241,22 +241,22 @@ def test_peers_of_version_6_get_a_border_on_the_pc_of_their_machine(tmp_path: Pa
     machines = {name: {"model": "zx200"} for name in ("old", "early", "new", "alone")}
     peers = {"old": {"leaf": "v5"}, "early": {"leaf": "v6a"}, "new": {"leaf": "v6b"}}
     assert forms(tmp_path, machines=machines, peers=peers) == {
-        "early:if": ("v6a",), "new:if": ("v6b",), "tms:if_readers": ("both",),
+        "early:if": "v6a", "new:if": "v6b", "tms:if_readers": "both",
     }  # fmt: skip
 
 
 @pytest.mark.parametrize("form", ["param_type", "both"])
 def test_records_are_read_in_the_form_that_the_site_names(tmp_path: Path, form: str) -> None:
-    assert forms(tmp_path, forms={"TmsdbGetData": form}) == {"tms:if_readers": (form,)}
+    assert forms(tmp_path, forms={"TmsdbGetData": form}) == {"tms:if_readers": form}
 
 
 def test_a_planner_speaks_the_form_of_its_peers(tmp_path: Path) -> None:
     assert forms(tmp_path, forms={"TmsRpExcavator": "plan"}) == {}  # the usual one
-    assert forms(tmp_path, forms={"TmsRpExcavator": "plans"}) == {"zx200:rp": ("plans",)}
+    assert forms(tmp_path, forms={"TmsRpExcavator": "plans"}) == {"zx200:rp": "plans"}
 
 
-def forms(tmp_path: Path, **changes: object) -> dict[str, tuple[str, ...]]:
-    return {row.full: row.forms for row in table(load_site(site(tmp_path, **changes))) if row.forms}
+def forms(tmp_path: Path, **changes: object) -> dict[str, str]:
+    return {row.full: row.form for row in table(load_site(site(tmp_path, **changes))) if row.form}
 
 
 def test_a_model_without_the_border_of_the_site(tmp_path: Path) -> None:

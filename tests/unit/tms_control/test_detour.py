@@ -23,7 +23,7 @@ from tms_reason.reason import Reason
 
 PACE = Pace(forward=1.0, turn=0.24)
 TRUCK = Outline(2.0, -3.6, 1.8, -1.35)
-SCENES = 60 if settings.default is None or settings.default.max_examples <= 50 else 2000
+SCENES = 40 if settings.default is None or settings.default.max_examples <= 50 else 2000
 
 
 def area(name: str, *corners: tuple[float, float], growth: float = 0.0) -> Body:

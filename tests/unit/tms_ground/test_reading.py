@@ -136,6 +136,12 @@ def test_holes_and_what_is_not_covered(tmp_path: Path) -> None:
     assert isinstance(why, reasons.HasHoles) and (why.unknown, why.whole) == (0.25, 200.0)
     assert (why.x, why.y) == (2.75, 7.25)
     assert np.isnan(of(tif, Given(keep_holes=True)).z).sum() == 1
+    grid = files.ascii_grid(tmp_path / "c.asc")
+    rows = grid.read_text().splitlines()
+    rows[6 + 9] = "-9999 " * 48
+    grid.write_text("\n".join(rows))
+    why = refused(grid)
+    assert isinstance(why, reasons.HasHoles) and (why.unknown, why.y) == (10.0, 7.25)
     nan = files.geotiff(tmp_path / "b.tif", hole=float("nan"))
     assert isinstance(refused(nan), reasons.HasHoles)
     short = files.ascii_grid(tmp_path / "a.asc", xllcorner=EAST + 3)
@@ -185,6 +191,15 @@ def test_tiffs_that_tell_too_little(tmp_path: Path) -> None:
     assert refused(files.geotiff(tmp_path / "a.tif", epsg=32767), Given()) == reasons.FrameNotTold()
     Image.new("RGB", (4, 4)).save(tmp_path / "b.tif")
     assert refused(tmp_path / "b.tif") == reasons.TiffBands("RGB")
+
+
+def test_a_tiff_that_is_placed_by_a_transformation(tmp_path: Path) -> None:
+    x, y = np.meshgrid(np.arange(48) * 0.5 - 1.75, np.arange(28) * 0.5 - 1.75)
+    z, keys = height(x, y) + LEVEL, {1024: 1, 1025: 1, 3072: 6677}
+    straight = (0.5, 0.0, 0.0, EAST - 2, 0.0, -0.5, 0.0, NORTH + 12, *[0.0] * 7, 1.0)
+    is_the_plane(of(files.tiff(tmp_path / "a.tif", z, keys, {34264: straight})))
+    turned = (0.5, 0.1, *straight[2:])
+    assert refused(files.tiff(tmp_path / "b.tif", z, keys, {34264: turned})) == reasons.TiffTurned()
 
 
 def test_an_empty_cloud_and_one_without_coordinates(tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ from tms_msg_rc.msg import MachineState
 from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
+from tms_control.reasons import PathBlocked
 from tms_decision.owner import Owner
 from tms_decision.owner import parse as owner_of
 from tms_decision.reasons import DrivenByHand, Held, MachineLatched
@@ -24,7 +25,7 @@ from tms_rp.kind import Angles, Moves
 from tms_rp.kinds import load
 from tms_rp.mover import Mover
 from tms_rp.plan import Plan
-from tms_rp.reasons import PathBlocked, PlannedAnew
+from tms_rp.reasons import PlannedAnew
 from tms_rp.resuming import TRIES, Resuming
 from tms_rp.scene import Scene
 from tms_rp.ways import Ways

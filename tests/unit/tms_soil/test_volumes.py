@@ -49,6 +49,8 @@ def test_a_pit_against_a_level_ground() -> None:
     assert found.cut == pytest.approx(8 + 12 / 2 + math.pi / 3, rel=2e-3)
     assert (found.fill, found.unknown) == (0.0, 0.0)
     assert found.area < 40  # what the design says nothing about does not count
+    wide = against(GROUND, pit, np.ones(GROUND.z.shape, dtype=bool))
+    assert (wide.unknown, wide.cut) == (0.0, found.cut)
     deeper = against(raised(np.full(GROUND.z.shape, -2.0)), pit)
     assert deeper.cut == 0.0 and deeper.fill > 8
 

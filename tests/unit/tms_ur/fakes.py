@@ -8,19 +8,27 @@ from typing import Any
 
 import httpx
 from fastapi import FastAPI
+from geometry_msgs.msg import Point, Vector3
+from tms_msg_rp.msg import SceneArea, SceneBody
+from tms_msg_rp.srv import GetScene
 
-from tms_config.config import Site, load_site
+from tms_config.config import CONFIGS, Site, load_site
+from tms_config.models import MachineModel
 from tms_config.site_file import Console, SiteFile
+from tms_config.yaml_file import parse
 from tms_decision.reasons import SoftwareStop
 from tms_reason.errors import TmsError
 from tms_reason.reason import Foreign, Reason
 from tms_reason.remedies import EDIT_TASK
+from tms_reason.wire import to_line
+from tms_rp.reasons import PartOf
 from tms_ur.access import Access
 from tms_ur.api import create_app
 from tms_ur.board import Board
 from tms_ur.data_models import Change, Record, Sensing, SensingInput
 from tms_ur.models import AddedTemplate, Event, Rearmed, Receipt, Run, Task, TaskText, Template
 from tms_ur.reason_view import of_line, view
+from tms_ur.scene_models import Scene, scene
 
 NOON = datetime(2026, 1, 31, 12, tzinfo=timezone.utc)
 HERE = "http://127.0.0.1:8080"
@@ -81,6 +89,14 @@ class FakeSiteClient:
     def parameter_history(self, model_name: str, record_name: str, limit: int) -> list[Change]:
         self._called("parameter_history", model_name, record_name, limit)
         return [Change(stamp=NOON, source="sensing", values={"d": float("nan"), "s": "3"})]
+
+    def scene(self, machine: str) -> Scene:
+        self._called("scene", machine)
+        body = SceneBody(kind="machine", name=to_line(PartOf("vessel", "ic120_1")), margin=0.5, age=3.0,
+                         size=Vector3(x=2.0, y=2.0, z=4.0), triangles=[Point()] * 3)  # fmt: skip
+        body.pose.position.x, body.pose.position.y, body.pose.position.z = 8.0, 2.0, 2.0
+        area = SceneArea(record="dig", centre=Point(x=5.0), size=Vector3(x=2.0, y=1.0, z=0.5))
+        return scene(machine, GetScene.Response(bodies=[body], areas=[area], way=[Point(x=6.0, z=1.0)]))
 
     def sensing(self) -> Sensing:
         facts = {"name": "pile", "topic": "/pile", "state": "alive", "hz": 1.0, "hz_expected": None, "age": 0.5}
@@ -167,13 +183,15 @@ def site(**changes: Any) -> Site:
     """The demo's site, changed."""
     demo = load_site()
     file = SiteFile.model_validate({**demo.file.model_dump(exclude_unset=True), **changes})
-    return Site(demo.path, file, demo.models, demo.state)
+    truck = parse(CONFIGS / "machines" / "ic120.yaml", MachineModel)
+    return Site(demo.path, file, {**demo.models, "ic120": truck}, demo.state)
 
 
 def app(site_client: FakeSiteClient, bind: str = "127.0.0.1", users: Path | None = None, **parts: Any) -> FastAPI:
-    """The application with fakes; `parts` may hold an audit, a clock and settings of the console."""
+    """The application with fakes; `parts` may hold an audit, a clock, machines, settings of the console."""
     access = Access(users, parts["clock"]) if "clock" in parts else Access(users)
-    where = site(bind=bind, console=parts.get("console", Console()))
+    machines = {"machines": parts["machines"]} if "machines" in parts else {}
+    where = site(bind=bind, console=parts.get("console", Console()), **machines)
     return create_app(site_client, parts.get("audit", FakeAudit()), where, access)  # type: ignore[arg-type]
 
 

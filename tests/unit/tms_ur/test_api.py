@@ -508,6 +508,29 @@ def test_loopback() -> None:
     assert not any(map(is_loopback, ["0.0.0.0", "::", "192.0.2.7", "site-pc", ""]))
 
 
+# scenes
+
+
+def test_the_scene_of_an_excavator(client: Client, site_client: FakeSiteClient) -> None:
+    found = client.get("/api/machines/zx200/scene").json()
+    (body,) = found["bodies"]
+    assert (body["kind"], body["size"], body["margin"], body["age"]) == ("machine", [2.0, 2.0, 4.0], 0.5, 3.0)
+    assert body["position"] == [8.0, 2.0, 2.0] and body["triangles"] == 1
+    assert body["name"]["text"]["en"] == "vessel of ic120_1"
+    assert found["areas"] == [{"record": "dig", "centre": [5.0, 0.0, 0.0], "size": [2.0, 1.0, 0.5]}]
+    assert found["way"] == [[6.0, 0.0, 1.0]]
+    assert site_client.calls == [("scene", "zx200")]
+
+
+def test_a_scene_that_there_is_not(site_client: FakeSiteClient) -> None:
+    machines = {"zx200": {"model": "zx200"}, "ic120": {"model": "ic120"}}
+    client = Client(app(site_client, machines=machines))
+    assert client.get("/api/machines/nobody/scene").status_code == 404
+    answer = client.get("/api/machines/ic120/scene")
+    assert (answer.status_code, answer.json()["code"]) == (409, "NO_PLANNED_ARM")
+    assert site_client.calls == []
+
+
 # the document
 
 
@@ -519,7 +542,8 @@ def test_every_endpoint_is_in_the_document(client: Client) -> None:
         "/api/parameters/history", "/api/sensing", "/api/site", "/api/session", "/api/login", "/api/logout",
         "/api/stop", "/api/machines/{name}/rearm", "/api/questions/{question_id}", "/api/tasks/check",
         "/api/tasks/{task_id}/diff", "/api/tasks/{task_id}/remove", "/api/runs/{run_id}/tree",
-        "/api/runs/{run_id}/export", "/api/audit", "/api/processes/{name}/log", "/api/processes/{name}/restart",
+        "/api/runs/{run_id}/export", "/api/audit", "/api/machines/{name}/scene",
+        "/api/processes/{name}/log", "/api/processes/{name}/restart",
         "/api/templates",
     }  # fmt: skip
     assert {method for path in document["paths"].values() for method in path} == {

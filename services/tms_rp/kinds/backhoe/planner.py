@@ -107,14 +107,15 @@ class Backhoe:
         level = self.level(ArmAngles(*pose))
         return level if abs(tilt(level)) <= TILT else None
 
-    def search(self, tip: Tip, fits: Callable[[ArmAngles], bool]) -> tuple[ArmAngles, float]:
+    def search(self, tip: Tip, fits: Callable[[ArmAngles], bool], most: float = math.pi) -> tuple[ArmAngles, float]:
         """Joints for the point with the possible theta_w nearest to the asked one, and that theta_w [rad].
 
-        Of those that fit, if one does; else nobody here can say better than the collision check why they do not.
+        It is at most `most` [rad] from the asked one, and one that fits if there is one; else the collision check will
+        tell what it touches.
         """
         possible: list[tuple[ArmAngles, float]] = []
         refused: list[SubtaskFailed] = []
-        for theta_w in _outward(tip.theta_w):
+        for theta_w in _outward(tip.theta_w, most):
             try:
                 possible.append((self.reach(tip._replace(theta_w=theta_w)), theta_w))
             except SubtaskFailed as error:
@@ -181,9 +182,9 @@ def short_way(before: ArmAngles, target: ArmAngles) -> ArmAngles:
     return target._replace(swing=before.swing + wrap(target.swing - before.swing))
 
 
-def _outward(theta_w: float) -> Iterable[float]:
+def _outward(theta_w: float, most: float) -> Iterable[float]:
     """Angles [rad] in the order in which they are tried: away from `theta_w`, up first, inside 0 to pi."""
-    for step in range(math.ceil(math.pi / SEARCH_STEP)):
+    for step in range(math.ceil(most / SEARCH_STEP)):
         away = step * SEARCH_STEP
         if theta_w + away <= math.pi:
             yield theta_w + away
