@@ -25,6 +25,10 @@ class WhereIsOrigin(Reason, text="needs either plane, north and east, or latitud
     pass
 class AreaInsideOut(Reason, text="must be [least x, least y, largest x, largest y]", action=EDIT_CONFIG): pass
 class NoGround(Reason, text="there is no ground:, which tells the site's area", action=EDIT_CONFIG): pass
+class NoSoil(Reason, text="there is no soil '{soil}' (there: {soils})", action=EDIT_CONFIG):
+    soil: str; soils: tuple[str, ...]
+class GroundOther(Reason, text="the kept ground is one of another area or soil: it is put aside as {file}"): file: str
+class GroundNotKept(Reason, text="{file}: the ground cannot be kept there ({problem})"): file: str; problem: str
 class NoOrigin(Reason, text="the file is in EPSG {epsg}, and the site file tells no ground.origin", action=EDIT_CONFIG):
     epsg: int
 class NotAlongPlane(Reason, text="a GeoTIFF needs a ground.origin on a plane, without yaw: export an .asc"): pass
