@@ -190,7 +190,7 @@ class Planner:
                 say(Planned(plan.made.duration), plan.notes)
                 outcome = Outcome.SUCCEEDED
             else:
-                self._planner.moves(plan.moves)
+                self._planner.begins(self.joints(), plan.moves)
                 outcome = self._resuming.move(goal, plan, again, say)
         except TmsError as error:
             self._app.log.warning("failed", action=action.name, goal=goal.id, reason=error.reason)

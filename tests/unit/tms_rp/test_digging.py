@@ -13,7 +13,7 @@ from tms_config.yaml_file import parse
 from tms_control.links import placed
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
-from tms_rp.kind import Moves
+from tms_rp.kind import Moves, Through
 from tms_rp.kinds import load
 from tms_rp.kinds.backhoe.bucket import LEVEL, TILT, tilt
 from tms_rp.kinds.backhoe.digging import excavate, release
@@ -77,6 +77,11 @@ def test_it_digs_as_deep_and_drags_as_far_as_it_is_told() -> None:
     assert min(tip.z for tip in longer) == pytest.approx(-0.3, abs=0.06) and max(deep) - min(deep) > 2.2
 
 
+def test_a_bucket_that_points_outward_turns_down_in_the_drag_and_curls_no_deeper() -> None:
+    flat = Dig(TipGoal(7.0, 0.0, 0.0, 1.15), depth=0.5, drag=1.5, lift=0.5)
+    assert min(BACKHOE.linkage.tip(pose).z for pose in poses(dug(flat))) > -0.58
+
+
 def test_the_offset_is_along_the_line_from_base_link() -> None:
     moves = excavate(BACKHOE, NOW, Dig(TipGoal(3.3, 4.4, 0.0, 1.6, offset=1.0), 0.5, 0.0, 0.5))
     assert BACKHOE.linkage.tip(ArmAngles(*moves.targets[1]))[:3] == pytest.approx((3.9, 5.2, -0.5))
@@ -111,6 +116,12 @@ def test_nothing_but_the_bucket_may_be_in_the_ground_and_that_only_in_its_plane(
             WAYS.plan(NOW, replace(moves, targets=tuple(targets)), Scene())
         said = caught.value.reason.find(Collision)
         assert said is not None and said.first == Part(first) and said.second == Ground() and said.depth > 0
+
+
+def test_a_dig_keeps_the_padding_of_its_scene() -> None:
+    trench = (excavate(BACKHOE, NOW, FACE).through or Through(())).trench
+    padded = Scene(padding=(("bucket_link", 0.3),))
+    assert trench is not None and trench.around(padded).padding == padded.padding
 
 
 def refusal(goal: Dig, scene: Scene | None = None, now: ArmAngles = NOW) -> Reason:
@@ -280,20 +291,24 @@ def swings(arm: Backhoe, now: ArmAngles, **angles: float) -> Moves:
 
 def test_soil_is_known_from_the_dig_until_the_bucket_was_open() -> None:
     arm, now = Backhoe(MODEL), loaded()
+    turn = ChangePose(joints=({"swing_joint": 1.2},))
     assert swings(arm, now, swing=1.2, bucket=-0.3).through is None
-    arm.moves(excavate(arm, NOW, FACE))
+    arm.begins(NOW, excavate(arm, NOW, FACE))
     held = swings(arm, now, swing=1.2, bucket=-0.3)
     assert held.through is not None and held.through.held is not None
     level, end = map(ArmAngles._make, held.targets)
     assert level.swing == end.swing == 1.2 and tilt(level) == pytest.approx(0.0) and end.bucket == -0.3
     assert swings(arm, now, bucket=-0.3).through is None  # it does not swing: it is emptied
-    assert swings(arm, now._replace(bucket=-0.3), swing=1.2).through is None
+    opened = now._replace(bucket=-0.3)
+    assert swings(arm, opened, swing=1.2).through is None  # a check from where it would be open changes nothing
+    assert swings(arm, now, swing=1.2).through is not None
+    arm.begins(opened, arm.change_pose(opened, turn))
     assert swings(arm, now, swing=1.2, bucket=-0.3).through is None  # emptied in between
 
 
 def test_a_loaded_bucket_opens_after_the_swing() -> None:
     arm, now = Backhoe(MODEL), loaded()
-    arm.moves(excavate(arm, NOW, FACE))
+    arm.begins(NOW, excavate(arm, NOW, FACE))
     for scene in (Scene(), truck()):
         plan = WAYS.plan(now, swings(arm, now, swing=2.6, bucket=-0.3), scene)
         open_at = next(i for i, pose in enumerate(poses(plan)) if tilt(pose) > TILT)

@@ -66,15 +66,18 @@ class Backhoe:
             targets.append(short_way(targets[-1] if targets else now, self.reach(tip)))
         return Moves(tuple(targets))
 
-    def moves(self, moves: Moves) -> None:
-        """Take note of a motion that begins: one that digs loads the bucket."""
-        self._loaded = self._loaded or (moves.through is not None and moves.through.trench is not None)
+    def begins(self, now: Angles, moves: Moves) -> None:
+        """Take note of a motion that begins: one that digs loads the bucket, which was empty if it is open."""
+        digs = moves.through is not None and moves.through.trench is not None
+        self._loaded = digs or self._carries(ArmAngles(*now))
+
+    def _carries(self, pose: ArmAngles) -> bool:
+        return self._loaded and tilt(pose) < EMPTIED
 
     def carrying(self, now: ArmAngles, moves: Moves) -> Moves:
         """The same with the bucket level while it swings, if it carries soil; it opens where the motion ends."""
-        self._loaded = self._loaded and tilt(now) < EMPTIED
         target = ArmAngles(*moves.targets[-1])
-        if not self._loaded or len(moves.targets) > 1 or abs(target.swing - now.swing) < SWINGS:
+        if not self._carries(now) or len(moves.targets) > 1 or abs(target.swing - now.swing) < SWINGS:
             return moves
         targets = (target,) if abs(tilt(target)) <= TILT else (self.level(target), target)
         return replace(moves, targets=targets, through=Through((0.0,) * len(targets), held=self.held))
