@@ -47,6 +47,7 @@ class TiffNotPlaced(Reason, text="is no GeoTIFF: its tags do not tell where it l
 class TiffTurned(Reason, text="its pixels are turned against its coordinates", action=CONVERT): pass
 class TiffBands(Reason, text="has pixels of mode {mode}, not one height each", action=CONVERT): mode: str
 class CloudEmpty(Reason, text="holds no points", action=RIGHT_FILE): pass
+class CloudEndsEarly(Reason, text="ends before its {count} points are complete", action=COPY_AGAIN): count: int
 class NoSurface(Reason, text="holds no surface of triangles (TIN)", action=EXPORT_AGAIN): pass
 class ManySurfaces(Reason, text="holds several surfaces: {names}", action=CHOOSE_SURFACE):
     names: tuple[str, ...]

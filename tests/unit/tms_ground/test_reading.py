@@ -174,6 +174,22 @@ def test_files_that_end_early(tmp_path: Path) -> None:
         assert isinstance(refused(path), reasons.GroundFileDamaged | reasons.XmlUnreadable), path
 
 
+def test_clouds_that_tell_of_more_than_they_hold(tmp_path: Path) -> None:
+    las = files.cloud(tmp_path / "a.las")
+    data = las.read_bytes()
+    las.write_bytes(data[:-60])  # the last two points
+    why = refused(las)
+    assert isinstance(why, reasons.CloudEndsEarly) and why.count == 3 * 97 * 57
+    las.write_bytes(data[:100] + b"\xff" * 4 + data[104:])  # four billion records before the points
+    assert isinstance(refused(las), reasons.GroundFileDamaged)
+    laz = files.cloud(tmp_path / "a.laz")
+    data = laz.read_bytes()
+    points = int.from_bytes(data[96:100], "little")
+    table = int.from_bytes(data[points : points + 8], "little")
+    laz.write_bytes(data[: table + 4] + b"\xff" * 4 + data[table + 8 :])  # as many compressed pieces
+    assert isinstance(refused(laz), reasons.GroundFileDamaged)
+
+
 def test_grids_with_a_wrong_head(tmp_path: Path) -> None:
     path = tmp_path / "a.asc"
     assert refused(files.ascii_grid(path, nrows=29)) == reasons.GridSize(28, 48, 29, 48)
