@@ -35,6 +35,8 @@ class GroundFileMissing(Reason, text="there is no such file", action=RIGHT_FILE)
 class GroundFileKind(Reason, text="is none of {endings}", action=CONVERT): endings: tuple[str, ...]
 class GroundFileLarge(Reason, text="is {size}, {limit} are allowed", action=EXPORT_AGAIN):
     size: Megabytes; limit: Megabytes
+class ManyPixels(Reason, text="has {width} x {height} pixels, {limit} are allowed in all", action=EXPORT_AGAIN):
+    width: int; height: int; limit: int
 class GroundFileDamaged(Reason, text="cannot be read ({problem})", action=COPY_AGAIN): problem: str
 class ImageNeedsSize(Reason, text="an image does not tell how large it is", action=SAY_SIZE): pass
 class ImageNotGrey(Reason, text="a heightmap has 8-bit or 16-bit grey pixels, not those of mode {mode}",

@@ -143,6 +143,10 @@ def test_import_show_and_export(tms: Callable[..., Result], tmp_path: Path, shar
     assert "File exists" in str(tms(ground.command, "export", "last", tmp_path / "out.asc").exception)
     assert tms(ground.command, "export", "last", tmp_path / "out.txt").exit_code == 2
     assert shared_db["fs.files"].count_documents({}) == 2
+    assert "out.asc" in tms(ground.command, "rm", "last").stdout
+    assert json.loads(tms(ground.command, "rm", "last", "--json").stdout)["removed"]["source"] == "a.tif"
+    assert getattr(tms(ground.command, "rm", "last").exception, "code", "") == "GROUND_NOT_THERE"
+    assert shared_db["fs.chunks"].count_documents({}) == 0
 
 
 def test_a_geotiff_is_exported_with_its_coordinates(

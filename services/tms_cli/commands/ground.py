@@ -206,6 +206,28 @@ def export(snapshot: str, file: Path, as_json: bool) -> None:
 
 
 @command.command()
+@click.argument("snapshot")
+@session.json_option
+def rm(snapshot: str, as_json: bool) -> None:
+    """Remove one ground, for example one from a wrong file.
+
+    \b
+    Example:
+      tms ground rm last
+    """
+    from tms_db.ground import GroundSnapshots
+
+    with opened() as db:
+        stored = GroundSnapshots(db)
+        found = stored.find(snapshot)
+        stored.remove(found)
+    if as_json:
+        session.show_json({"removed": grounds.as_dict(found)})
+    else:
+        click.echo(say("removed: {time}, {source}", time=grounds.time(found), source=found.source))
+
+
+@command.command()
 @click.argument("before")
 @click.argument("after", default="last")
 @click.option("--picture", type=FILE, help="Write a map of the change into this .png, too.")

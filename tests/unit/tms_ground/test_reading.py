@@ -164,6 +164,10 @@ def test_files_that_are_not_what_they_seem(tmp_path: Path, monkeypatch: pytest.M
     Image.new("RGB", (4, 4)).save(tmp_path / "c.png")
     assert refused(tmp_path / "c.png", Given(size=Size(1, 1, 1))) == reasons.ImageNotGrey("RGB")
     assert isinstance(refused(files.ascii_grid(tmp_path / "b.asc"), cell=0.001), reasons.ManyCells)
+    monkeypatch.setattr(samples, "MAX_PIXELS", 1000)
+    assert refused(files.geotiff(tmp_path / "b.tif")) == reasons.ManyPixels(48, 28, 1000)
+    Image.new("L", (30, 40)).save(tmp_path / "d.png")
+    assert refused(tmp_path / "d.png", Given(size=Size(1, 1, 1))) == reasons.ManyPixels(30, 40, 1000)
     monkeypatch.setattr(samples, "MAX_FILE", 1000)
     assert isinstance(refused(files.ascii_grid(tmp_path / "b.asc")), reasons.GroundFileLarge)
 
