@@ -185,6 +185,14 @@ def test_a_refused_file_leaves_nothing(tms: Callable[..., Result], tmp_path: Pat
     assert shared_db["fs.files"].count_documents({}) == shared_db["fs.chunks"].count_documents({}) == 0
 
 
+def test_options_of_an_import_that_are_refused(tms: Callable[..., Result], tmp_path: Path) -> None:
+    asc = files.ascii_grid(tmp_path / "a.asc")
+    for words in (("--cell", "nan"), ("--cell", 0), ("--area", 0, 0, "inf", 5), ("--width", 0), ("--offset-x", "nan")):
+        assert tms(ground.command, "import", asc, "--epsg", 6677, *words).exit_code == 2, words
+    inside_out = tms(ground.command, "import", asc, "--epsg", 6677, "--area", 10, 0, 0, 5).exception
+    assert "--area: must be [least x" in str(inside_out)
+
+
 def test_volumes_of_grounds_and_designs(tms: Callable[..., Result], shared_db: store.Db, tmp_path: Path) -> None:
     grounds = GroundSnapshots(shared_db)
     grounds.add(FLAT, "before")
