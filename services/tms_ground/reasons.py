@@ -39,6 +39,8 @@ class GroundFileMissing(Reason, text="there is no such file", action=RIGHT_FILE)
 class GroundFileKind(Reason, text="is none of {endings}", action=CONVERT): endings: tuple[str, ...]
 class GroundFileLarge(Reason, text="is {size}, {limit} are allowed", action=EXPORT_AGAIN):
     size: Megabytes; limit: Megabytes
+class ManyPixels(Reason, text="has {width} x {height} pixels, {limit} are allowed in all", action=EXPORT_AGAIN):
+    width: int; height: int; limit: int
 class GroundFileDamaged(Reason, text="cannot be read ({problem})", action=COPY_AGAIN): problem: str
 class ImageNeedsSize(Reason, text="an image does not tell how large it is", action=SAY_SIZE): pass
 class ImageNotGrey(Reason, text="a heightmap has 8-bit or 16-bit grey pixels, not those of mode {mode}",
@@ -51,6 +53,7 @@ class TiffNotPlaced(Reason, text="is no GeoTIFF: its tags do not tell where it l
 class TiffTurned(Reason, text="its pixels are turned against its coordinates", action=CONVERT): pass
 class TiffBands(Reason, text="has pixels of mode {mode}, not one height each", action=CONVERT): mode: str
 class CloudEmpty(Reason, text="holds no points", action=RIGHT_FILE): pass
+class CloudEndsEarly(Reason, text="ends before its {count} points are complete", action=COPY_AGAIN): count: int
 class NoSurface(Reason, text="holds no surface of triangles (TIN)", action=EXPORT_AGAIN): pass
 class ManySurfaces(Reason, text="holds several surfaces: {names}", action=CHOOSE_SURFACE):
     names: tuple[str, ...]
