@@ -83,11 +83,10 @@ class Keeper:
     def _take(self, name: str) -> None:
         place, joints = self._places.place(name), self._joints.get(name)
         if place is None or (joints is not None and joints.last is None):
-            return
-        told = joints.last if joints is not None and joints.last is not None else (place.received, ())
+            return  # it has not told enough
+        told = joints.last[1] if joints is not None and joints.last is not None else ()
         begun = monotonic()
-        angles = dict(zip(self._moving[name], told[1], strict=False))
-        self._watch.take(name, begun * self._speed, angles, place)
+        self._watch.take(name, begun * self._speed, dict(zip(self._moving[name], told, strict=False)), place)
         UPDATE.observe(monotonic() - begun)
         REPORTS.labels(name).inc()
 
