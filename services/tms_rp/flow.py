@@ -1,5 +1,6 @@
 """Plans for motions that pass their targets without a stop."""
 
+import itertools
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
@@ -14,6 +15,8 @@ from tms_rp.plans import scaled
 from tms_rp.reasons import Around, Collision, Ground, NoWayRound
 from tms_rp.scene import Scene
 from tms_rp.trajectory import Joints, Trajectory, trajectory
+
+MORE = 2  # lifts of the kind by which an arm comes further out of the ground than it must: corners are rounded
 
 AllJoints = Callable[[Angles], Joints]
 FindWay = Callable[[Angles, Angles, Scene, Reason], Way]
@@ -57,7 +60,7 @@ class Flow:
         why: Reason | None = None
         for course in self._courses((now, *up), moves, through, grounded):
             made = self._timed((now, *course.poses), course.least, moves)
-            refused = self._refusal(made, grounded)
+            refused = self._refusal(made, grounded, made.stops[0] if up else 0.0)
             if refused is None:
                 return self._plan(made, course.poses, _notes(moves, course.name, why), moves)
             if why is None:
@@ -84,15 +87,21 @@ class Flow:
             if not through.free or view.free(self._whole(now)):
                 return ()
             found = (one for one in self._kind.manners.lifts(self._model, now) if view.free(self._whole(one)))
-            return _held([next(found, now)], through)
+            return _held([next(itertools.islice(found, MORE, None), now)], through)
 
     def _timed(self, poses: Sequence[Angles], least: Sequence[float], moves: Moves) -> Trajectory:
         return blended(scaled(self._model.joints, *moves.scales), [self._whole(pose) for pose in poses], least)
 
-    def _refusal(self, made: Trajectory, scene: Scene) -> Reason | None:
+    def _refusal(self, made: Trajectory, scene: Scene, up: float = 0.0) -> Reason | None:
+        """Why a motion is not free.
+
+        `up`: when [s] it is out of the ground in which it begins; else a contact with it might last.
+        """
+        late = made.lagging(self._late)
+        parts = [(made, 0.0), (late, 0.0)] + [(made, up), (late, up + max(self._late))] * (up > 0)
         try:
-            self._clearance.check(made, scene)
-            self._clearance.check(made.lagging(self._late), scene)
+            for part, begin in parts:
+                self._clearance.check(part.since(begin), scene)
         except SubtaskFailed as error:
             return error.reason
         return None

@@ -53,6 +53,10 @@ class Trajectory:
         stops = (*self.stops, *(stop + self.duration for stop in other.stops))
         return replace(self, samples=(*self.samples, *later), stops=stops)
 
+    def since(self, seconds: float) -> "Trajectory":
+        """The samples from a time [s] on; their times stay."""
+        return replace(self, samples=tuple(sample for sample in self.samples if sample.time >= seconds))
+
     def lagging(self, late: Sequence[float]) -> "Trajectory":
         """The positions on the way when each joint is late by a time of its own [s]; it has no velocities."""
         times = [sample.time for sample in self.samples]

@@ -161,6 +161,15 @@ def test_out_of_the_ground_it_does_not_plough() -> None:
             assert abs(pose.swing - inside.swing) < 0.05
 
 
+def test_from_close_above_the_ground_it_does_not_dip_into_it() -> None:
+    """Of what only the padding touches at the start, a contact that lasts would be no contact."""
+    low = ArmAngles(0.20, -0.441, 2.32, 0.018)
+    assert 0.0 < BACKHOE.bucket.lowest(low) < 0.1
+    plan = dug(Dig(TipGoal(6.1, 5.2, 0.2, 1.9), 0.6, 1.0, 0.3), now=low)
+    entry = next(i for i, pose in enumerate(poses(plan)) if pose.swing > 0.65)
+    assert min(BACKHOE.bucket.lowest(pose) for pose in poses(plan)[:entry]) > 0.05
+
+
 def test_what_is_in_the_way_of_the_swing_is_passed_and_what_is_in_the_pit_refuses_at_once() -> None:
     beside = ArmAngles(-1.6, *NOW[1:])
     crate = box("crate", (3.0, -5.5, 0.0), (5.5, -3.0, 2.4))
