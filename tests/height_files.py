@@ -86,7 +86,7 @@ def landxml(
     """Two triangles over all; a third one, which is not part of the surface, and breaklines."""
     begin, right, top = SIDE
     corners = [(begin, begin), (right, begin), (right, top), (begin, top)]
-    points = [(NORTH + y, EAST + x, height(x, y) + LEVEL) for x, y in corners] + [(NORTH, EAST, 900.0)]
+    points = [(NORTH + y, EAST + x, height(x, y) + LEVEL) for x, y in corners] + [(NORTH + 8, EAST, 900.0)]
     rows = [f'<P id="{10 + at}">{north!r} {east!r} {z!r}</P>' for at, (north, east, z) in enumerate(points)]
     faces = ["<F>10 11 12</F>", "<F>10 12 13</F>", '<F i="1">10 11 14</F>']
     surface = f"""<Surface name="Design"><SourceData><Breaklines><Breakline><PntList3D>1 2 3</PntList3D></Breakline>

@@ -8,7 +8,8 @@ import numpy as np
 from tms_config.models import Box
 from tms_control.links import placed
 from tms_rp.kind import Angles
-from tms_rp.reasons import PartOf
+from tms_rp.meshes import cone, cylinder
+from tms_rp.reasons import PartOf, Told
 from tms_rp.scene import Obstacle, Scene
 
 
@@ -26,6 +27,15 @@ def random_scene(rng: random.Random) -> Scene:
     height = rng.uniform(5.5, 6.5)
     roof = Box(min=(-12.0, -12.0, height), max=(12.0, 12.0, height + 0.3))
     return Scene((*boxes, Obstacle(PartOf("roof", "site"), roof, np.eye(4))))
+
+
+def random_heap(rng: random.Random, number: int) -> Obstacle:
+    """A heap of soil or a round tank beside the machine, as a surface of triangles."""
+    away, turn, height = rng.uniform(5, 9), rng.uniform(-math.pi, math.pi), rng.uniform(0.5, 3)
+    mesh = rng.choice((cone, cylinder))(height, rng.uniform(0.5, 2.5))
+    place = placed(away * math.cos(turn), away * math.sin(turn), turn)
+    place[2, 3] = height / 2
+    return Obstacle(Told(f"heap_{number}"), mesh.box, place, mesh=mesh)
 
 
 def random_pose(rng: random.Random) -> Angles:

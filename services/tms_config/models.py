@@ -69,6 +69,14 @@ class Bucket(Settings):
     force: float = Field(gt=0)  # N at the cutting edge that arm and bucket can bring up
     origin: str = Field(min_length=1)  # where the figures come from
 
+    @model_validator(mode="after")
+    def _convex(self) -> "Bucket":
+        at = self.section
+        corners = zip(at, (*at[1:], at[0]), (*at[2:], *at[:2]), strict=True)
+        if not all((b[0] - a[0]) * (c[1] - b[1]) < (b[1] - a[1]) * (c[0] - b[0]) for a, b, c in corners):
+            raise Wrong(reasons.NotConvex(), "section")
+        return self
+
 
 class Vessel(Settings):
     """A carrier's vessel, the inside as a box of its link; it tips over the end at the least x."""

@@ -54,6 +54,8 @@ class NoSuchLink(Reason, text="'{name}' is neither a link of geometry: nor a joi
 class NoResponse(Reason, text="no dead time and lag for {name}, which moves: no stop could be proven",
     action=EDIT_CONFIG): name: str
 class NoMover(Reason, text="{name} is no joint that moves, nor 'drive'", action=EDIT_CONFIG): name: str
+class NotConvex(Reason, text="must be convex, from the rear lip over the back to the cutting edge",
+    action=EDIT_CONFIG): pass
 class NoParent(Reason, text="no joint above it has '{parent}' as its child", action=EDIT_CONFIG): parent: str
 class NoSourceFacts(Reason, text="is missing: the border has this topic", action=SAY_SOURCE): pass
 class NoTopic(Reason, text="the border has no topic '{name}'", action=EDIT_CONFIG): name: str

@@ -143,7 +143,7 @@ def _to_edges(outline: Outline, seen: Array, way: Array) -> Array:
 
 def _crossed(outline: Outline, seen: Array, way: Array) -> Mask:
     """Whether an edge of a body goes through the rectangle (its part between both pairs of sides): N."""
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+    with np.errstate(all="ignore"):
         low = ([outline.back, outline.right] - seen) / way
         high = ([outline.front, outline.left] - seen) / way
     first, last = np.fmax(np.fmin(low, high), 0.0).max(axis=2), np.fmin(np.fmax(low, high), 1.0).min(axis=2)
@@ -155,7 +155,7 @@ def _inside(seen: Array, way: Array) -> Mask:
     """Whether the origin is inside a body: a ray from it crosses the body's edges an odd number of times: N."""
     x, y = seen[..., 0], seen[..., 1]
     across = (y > 0) != (np.roll(y, -1, axis=1) > 0)
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+    with np.errstate(all="ignore"):
         right = x - y * way[..., 0] / way[..., 1] > 0
     inside: Mask = (across & right).sum(axis=1) % 2 == 1
     return inside

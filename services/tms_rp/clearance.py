@@ -1,10 +1,9 @@
 """Whether a machine would touch itself or something in a scene: the one collision checker of the planner."""
 
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import combinations
-from typing import ParamSpec
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,8 +20,6 @@ PADDING = 0.1  # m, usual
 # m that no point of the machine moves further between two checked poses: it is never further than PADDING from one.
 TRAVEL = 2 * PADDING
 
-P = ParamSpec("P")
-
 
 class Clearance:
     """Looks at scenes for one machine; `padding`: m around the bodies that the arm moves."""
@@ -30,11 +27,11 @@ class Clearance:
     def __init__(self, model: MachineModel, padding: float = PADDING) -> None:
         self._links = links = Links(model)
         self._reach = np.array(list(reaches(model).values()))
-        self._shapes, self._padding = model.shapes, padding
-        self._own = {link: self._padded(link, padding) for link in model.shapes}
-        self._known: dict[
-            object, Body
-        ] = {}  # bodies in scenes, as many as the site has, and own ones with more padding
+        self._padding = padding
+        self._own = {
+            link: Body(Part(link), box, padding if link in links.moved else 0.0) for link, box in model.shapes.items()
+        }
+        self._known: dict[object, Body] = {}  # bodies in scenes: as many as the site has
         self._surfaces = Surfaces()
         self._looking = threading.Lock()  # guards the places of all bodies
         # Neighbours along the arm, and links of the arm among each other, are kept apart by the joint limits.
@@ -56,28 +53,24 @@ class Clearance:
             view.check(made)
 
     def bodies(self, scene: Scene) -> list[Body]:
-        """The machine's own, with the padding of a scene where that is more, then those of the scene."""
-        told = dict(scene.padding) if self._padding else {}
-        own = [
-            body
-            if told.get(link, 0.0) <= self._padding
-            else self._once((link, told[link]), self._padded, link, told[link])
-            for link, body in self._own.items()
-        ]
-        return [*own, *map(self._other, scene.obstacles)]
+        """The machine's own, then those of a scene."""
+        return [*self._own.values(), *map(self._other, scene.obstacles)]
 
-    def _padded(self, link: str, padding: float) -> Body:
-        return Body(Part(link), self._shapes[link], padding if link in self._links.moved else 0.0)
+    def more(self, scene: Scene) -> dict[str, float]:
+        """By link that the arm moves: m to keep to the bodies of a scene beyond the usual padding."""
+        if not self._padding:
+            return {}
+        moved, usual = self._links.moved, self._padding
+        return {link: told - usual for link, told in scene.padding if told > usual and link in moved}
 
     def _other(self, obstacle: Obstacle) -> Body:
-        mesh = obstacle.mesh
-        if mesh is None:
-            return self._once((obstacle.name, obstacle.box), Body, obstacle.name, obstacle.box, 0.0)
-        return self._once((obstacle.name, obstacle.box, mesh.key), Surface, obstacle, mesh, self._surfaces)
-
-    def _once(self, key: object, make: Callable[P, Body], *given: P.args, **named: P.kwargs) -> Body:
+        key = obstacle.name, obstacle.box, obstacle.mesh and obstacle.mesh.key
         if key not in self._known:
-            self._known[key] = make(*given, **named)
+            self._known[key] = (
+                Body(obstacle.name, obstacle.box, 0.0)
+                if obstacle.mesh is None
+                else Surface(obstacle, obstacle.mesh, self._surfaces)
+            )
         return self._known[key]
 
     def pairs(self, scene: Scene) -> NDArray[np.int_]:

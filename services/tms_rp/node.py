@@ -12,6 +12,7 @@ from tms_msg_rp.srv import CheckMotion
 
 from tms_config.clock import monotonic
 from tms_config.naming import process_of
+from tms_machine.joint_states import JointStates
 from tms_machine.permit import Permit, watch_server
 from tms_machine.reasons import Aborted, Busy
 from tms_reason import wire
@@ -24,7 +25,6 @@ from tms_rp.checks import MotionChecks
 from tms_rp.excavator import ExcavatorServer
 from tms_rp.excavator_params import ExcavatorParams
 from tms_rp.interventions import Interventions
-from tms_rp.joint_states import JointStates
 from tms_rp.kind import Angles, Moves, PlanningAction
 from tms_rp.kinds import load
 from tms_rp.messages import follow
@@ -190,7 +190,7 @@ class Planner:
                 say(Planned(plan.made.duration), plan.notes)
                 outcome = Outcome.SUCCEEDED
             else:
-                self._planner.moves(plan.moves)
+                self._planner.begins(self.joints(), plan.moves)
                 outcome = self._resuming.move(goal, plan, again, say)
         except TmsError as error:
             self._app.log.warning("failed", action=action.name, goal=goal.id, reason=error.reason)

@@ -45,7 +45,7 @@ class Obstacle:
 
 @dataclass(frozen=True)
 class Scene:
-    """All obstacles of one moment; `padding`: m to keep around links, where it is more than usual."""
+    """All obstacles of one moment; `padding`: m that links keep to them, where it is more than usual."""
 
     obstacles: tuple[Obstacle, ...] = ()
     padding: tuple[tuple[str, float], ...] = ()

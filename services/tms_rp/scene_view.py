@@ -12,7 +12,7 @@ from tms_reason.reason import Reason
 from tms_rp.bodies import Body
 from tms_rp.clearance import Clearance
 from tms_rp.meshes import Mesh
-from tms_rp.reasons import PartOf
+from tms_rp.reasons import Part, PartOf
 from tms_rp.scene import Obstacle, Scene
 from tms_rp.trajectory import Trajectory
 
@@ -47,12 +47,14 @@ class Area:
 def bodies(clearance: Clearance, scene: Scene, pose: Sequence[float]) -> list[Shown]:
     """The machine's own at a pose [rad, all joints], then those of the scene."""
     places = clearance.places(np.array([pose]))[0]
-    own = [_own(body, place) for body, place in zip(clearance.bodies(scene), places, strict=False)]
+    more: dict[Reason, float] = {Part(link): by for link, by in clearance.more(scene).items()}
+    machine = zip(clearance.bodies(scene), places, strict=False)  # its bodies come first
+    own = [_own(body, place, more.get(body.name, 0.0)) for body, place in machine]
     return [*own, *map(_obstacle, scene.obstacles)]
 
 
-def _own(body: Body, place: Matrix) -> Shown:
-    return Shown(OWN, body.name, place, _point(2 * body.bare), body.padding)
+def _own(body: Body, place: Matrix, more: float) -> Shown:
+    return Shown(OWN, body.name, place, _point(2 * body.bare), body.padding + more)
 
 
 def _obstacle(one: Obstacle) -> Shown:

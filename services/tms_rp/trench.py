@@ -1,6 +1,6 @@
 """The ground round the place where a tool digs: there only the tool may be in it, elsewhere nothing."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from tms_config.models import Box
 from tms_control.links import Matrix, placed
@@ -40,7 +40,7 @@ class Trench:
         soil = Box(min=(-LONGEST, -side, -DEEP), max=(0.0, side, 0.0))
         found = [Obstacle(Ground(), box, self._place(out, up)) for out, up, box in walls]
         found.append(Obstacle(Ground(), soil, self._place(self.far, self.top), lets=self.tool))
-        return Scene((*scene.obstacles, *found))
+        return replace(scene, obstacles=(*scene.obstacles, *found))
 
     def _place(self, out: float, up: float) -> Matrix:
         found = placed(self.x, self.y, self.yaw)

@@ -14,7 +14,7 @@ from tms_control.links import Array, Matrix
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
 from tms_rp.bodies import Body, gap, overlap, touch
-from tms_rp.reasons import Between, Collision, Ground
+from tms_rp.reasons import Between, Collision, Ground, Part
 from tms_rp.scene import Scene
 from tms_rp.trajectory import Trajectory
 
@@ -46,6 +46,9 @@ class Machine(Protocol):
     def pairs(self, scene: Scene) -> NDArray[np.int_]:
         """Numbers of the bodies that must not touch: pairs x 2."""
 
+    def more(self, scene: Scene) -> dict[str, float]:
+        """By link: m to keep to the bodies of a scene beyond the usual padding."""
+
     def places(self, poses: Array) -> Matrix:
         """Where its own bodies are at the poses: N x bodies x 4 x 4."""
 
@@ -60,7 +63,9 @@ class View:
         self._machine, self.scene = machine, scene
         self._bodies = machine.bodies(scene)
         self._pairs = machine.pairs(scene)
-        self._slack = [max(self._bodies[i].slack, self._bodies[j].slack) for i, j in self._pairs]
+        own, more = len(self._bodies) - len(scene.obstacles), machine.more(scene)
+        self._more = np.array([more.get(_link(self._bodies[i].name), 0.0) if j >= own else 0.0 for i, j in self._pairs])
+        self._slack = self._more + [self._bodies[j].slack for _, j in self._pairs]
         self._half = np.array([body.half for body in self._bodies])
         inner = [body.inner for body in self._bodies[-len(scene.obstacles) :]] if scene.obstacles else []
         self._others = np.array([one.place @ box for one, box in zip(scene.obstacles, inner, strict=True)])
@@ -181,15 +186,16 @@ class View:
         turns, centres = places[..., :3, :3], places[..., :3, 3]
         a, b = self._pairs.T
         ways = centres[:, b] - centres[:, a]
-        far = np.linalg.norm(self._half[a], axis=1) + np.linalg.norm(self._half[b], axis=1)
+        far = np.linalg.norm(self._half[a], axis=1) + np.linalg.norm(self._half[b], axis=1) + self._more
         found = np.argwhere(np.einsum("npi,npi->np", ways, ways) <= far**2)
         poses, pairs = found.T
         a, b, way = a[pairs], b[pairs], ways[poses, pairs][..., None]
         turn_a, turn_b = turns[poses, a].swapaxes(1, 2), turns[poses, b].swapaxes(1, 2)  # from base_link
         across = np.abs(turn_a @ turn_b.swapaxes(1, 2))
         half_a, half_b = self._half[a, :, None], self._half[b, :, None]
-        over_a = np.abs(turn_a @ way) <= half_a + across @ half_b + ROUNDING
-        over_b = np.abs(turn_b @ way) <= half_b + across.swapaxes(1, 2) @ half_a + ROUNDING
+        more = self._more[pairs, None, None] + ROUNDING
+        over_a = np.abs(turn_a @ way) <= half_a + across @ half_b + more
+        over_b = np.abs(turn_b @ way) <= half_b + across.swapaxes(1, 2) @ half_a + more
         near: NDArray[np.int_] = found[(over_a & over_b).all(axis=(1, 2))]
         return near
 
@@ -216,6 +222,10 @@ class View:
             for pose in np.flatnonzero(bad[:, pair])
         )
         raise SubtaskFailed(Collision(a.name, b.name, float(times[first]), depth, x, y, z))
+
+
+def _link(name: Reason) -> str:
+    return name.link if isinstance(name, Part) else ""
 
 
 def _run(contacts: Mask) -> Mask:

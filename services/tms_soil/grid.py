@@ -108,9 +108,9 @@ class Grid:
         self.outside = 0.0  # kg that has fallen outside the site
         self.x: Array = self.x0 + FINE * (np.arange(soil_of.shape[1] * CELLS, dtype=np.float64) + 0.5)  # m, fine cells
         self.y: Array = self.y0 + FINE * (np.arange(soil_of.shape[0] * CELLS, dtype=np.float64) + 0.5)  # m, fine cells
-        self._tiles = tiles  # row and column -> layers, rows, columns
+        self.tiles = tiles  # row and column -> layers, rows, columns [kg/m2]; `window` and `store` are the way to them
         self._size = len(self.y), len(self.x)  # rows and columns of fine cells
-        self._top = {tile: _highest(self._coarse(tile)) for tile in tiles}  # m of map, at least
+        self._top = {tile: self._highest(tile) for tile in tiles}  # m of map, at least
 
     @classmethod
     def from_heights(cls, heights: Heights, soils: Sequence[Soil], soil_of: NDArray[np.uint8] | None = None) -> "Grid":
@@ -149,8 +149,13 @@ class Grid:
         """Take the cells of a window back."""
         top = _highest(window.heights())
         for piece in window.pieces:
-            self._tiles[piece.tile][piece.there] = window.layers[piece.here]
+            self.tiles[piece.tile][piece.there] = window.layers[piece.here]
             self._top[piece.tile] = max(self._top[piece.tile], top)
+
+    def put_back(self, tile: tuple[int, int], layers: Array) -> None:
+        """Give a tile the masses that it had once."""
+        self.tiles[tile] = layers
+        self._top[tile] = self._highest(tile)
 
     def top(self, bounds: Bounds) -> float:
         """A height [m of map] that the ground in and near a rectangle nowhere exceeds."""
@@ -181,7 +186,7 @@ class Grid:
             row, column = (int((v - o) // FINE) for v, o in ((py, self.y0), (px, self.x0)))
             if 0 <= row < self._size[0] and 0 <= column < self._size[1]:
                 tile = row // CELLS, column // CELLS
-                layers = self._tiles[tile]
+                layers = self.tiles[tile]
                 share = layers.shape[1] / CELLS
                 at = layers[:, int(row % CELLS * share), int(column % CELLS * share)]
                 found[k] = self.datum + at @ self.thickness[self.soil_of[tile]]
@@ -190,21 +195,26 @@ class Grid:
     @property
     def bytes(self) -> int:
         """Memory of the cells."""
-        return sum(one.nbytes for one in self._tiles.values())
+        return sum(one.nbytes for one in self.tiles.values())
 
     def mass(self) -> float:
         """All mass above the datum [kg]; unknown bank counts nothing."""
-        return math.fsum(float(np.nansum(one)) * (TILE / one.shape[1]) ** 2 for one in self._tiles.values())
+        return math.fsum(float(np.nansum(one)) * (TILE / one.shape[1]) ** 2 for one in self.tiles.values())
 
     def _fine(self, tile: tuple[int, int]) -> Array:
-        layers = self._tiles[tile]
+        layers = self.tiles[tile]
         if layers.shape[1] < CELLS:
-            layers = self._tiles[tile] = _finer(layers)
+            layers = self.tiles[tile] = _finer(layers)
         return layers
+
+    def _highest(self, tile: tuple[int, int]) -> float:
+        layers, thickness = self.tiles[tile], self.thickness[self.soil_of[tile]][:, None, None]
+        fine = layers if layers.shape[1] == CELLS else _finer(layers)
+        return _highest((fine * thickness).sum(axis=0)) + self.datum
 
     def _coarse(self, tile: tuple[int, int]) -> Array:
         """Heights of a tile in cells of COARSE [m]."""
-        layers, thickness = self._tiles[tile], self.thickness[self.soil_of[tile]][:, None, None]
+        layers, thickness = self.tiles[tile], self.thickness[self.soil_of[tile]][:, None, None]
         heights: Array = (layers * thickness).sum(axis=0) + self.datum
         side = layers.shape[1] // COARSE_CELLS
         coarse: Array = heights.reshape(COARSE_CELLS, side, COARSE_CELLS, side).mean(axis=(1, 3))

@@ -141,8 +141,35 @@ def test_import_show_and_export(tms: Callable[..., Result], tmp_path: Path, shar
     same = json.loads(tms(ground.command, "volume", "--json").stdout)
     assert same["cut_m3"] < 0.1 and same["fill_m3"] < 0.1 and same["area_m2"] == 200.0
     assert "File exists" in str(tms(ground.command, "export", "last", tmp_path / "out.asc").exception)
-    assert tms(ground.command, "export", "last", tmp_path / "out.tif").exit_code == 2
+    assert tms(ground.command, "export", "last", tmp_path / "out.txt").exit_code == 2
     assert shared_db["fs.files"].count_documents({}) == 2
+    assert "out.asc" in tms(ground.command, "rm", "last").stdout
+    assert json.loads(tms(ground.command, "rm", "last", "--json").stdout)["removed"]["source"] == "a.tif"
+    assert getattr(tms(ground.command, "rm", "last").exception, "code", "") == "GROUND_NOT_THERE"
+    assert shared_db["fs.chunks"].count_documents({}) == 0
+
+
+def test_a_geotiff_is_exported_with_its_coordinates(
+    tms: Callable[..., Result], tmp_path: Path, shared_db: store.Db
+) -> None:
+    x, y = np.meshgrid(np.arange(40) * 0.5 + 0.25, np.arange(20) * 0.5 + 0.25)
+    z = files.height(x, y)
+    z[3, 4] = np.nan
+    GroundSnapshots(shared_db).add(Heights(0.0, 0.0, 0.5, z), "a")
+    assert tms(ground.command, "export", "last", "out.tif").exit_code == 0
+    assert "have no height" in str(tms(ground.command, "import", "out.tif").exception)
+    assert tms(ground.command, "import", "out.tif", "--keep-holes", "--json").exit_code == 0
+    back = GroundSnapshots(shared_db).read(GroundSnapshots(shared_db).find("last"))
+    assert np.allclose(back.z, z, atol=1e-5, equal_nan=True)
+    (tmp_path / "site.yaml").write_text((tmp_path / "site.yaml").read_text().replace("height:", "yaw: 0.1, height:"))
+    refused = tms(ground.command, "export", "last", "turned.tif").exception
+    assert getattr(refused, "code", "") == "NOT_ALONG_PLANE" and not (tmp_path / "turned.tif").exists()
+
+
+def test_a_ground_of_which_nothing_is_known(tms: Callable[..., Result], shared_db: store.Db) -> None:
+    GroundSnapshots(shared_db).add(Heights(0.0, 0.0, 1.0, np.full((2, 3), np.nan)), "a")
+    assert "known: 0.0 of 6.0 m²" in tms(ground.command, "show").stdout
+    assert json.loads(tms(ground.command, "volume", "--plane", "0", "--json").stdout)["fill_at_most_m3"] is None
 
 
 def test_a_refused_file_leaves_nothing(tms: Callable[..., Result], tmp_path: Path, shared_db: store.Db) -> None:
@@ -156,6 +183,14 @@ def test_a_refused_file_leaves_nothing(tms: Callable[..., Result], tmp_path: Pat
         error = tms(ground.command, "import", path, *words).exception
         assert getattr(error, "code", "") == "BAD_GROUND", path
     assert shared_db["fs.files"].count_documents({}) == shared_db["fs.chunks"].count_documents({}) == 0
+
+
+def test_options_of_an_import_that_are_refused(tms: Callable[..., Result], tmp_path: Path) -> None:
+    asc = files.ascii_grid(tmp_path / "a.asc")
+    for words in (("--cell", "nan"), ("--cell", 0), ("--area", 0, 0, "inf", 5), ("--width", 0), ("--offset-x", "nan")):
+        assert tms(ground.command, "import", asc, "--epsg", 6677, *words).exit_code == 2, words
+    inside_out = tms(ground.command, "import", asc, "--epsg", 6677, "--area", 10, 0, 0, 5).exception
+    assert "--area: must be [least x" in str(inside_out)
 
 
 def test_volumes_of_grounds_and_designs(tms: Callable[..., Result], shared_db: store.Db, tmp_path: Path) -> None:

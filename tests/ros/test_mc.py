@@ -9,11 +9,15 @@ from com3_msgs.msg import JointCmd
 from geometry_msgs.msg import PoseStamped
 from nav2_msgs.action import ComputePathToPose, FollowPath, NavigateToPose
 from nav_msgs.msg import Path
+from tms_msg_db.srv import GetParameter
 from tms_msg_rc.msg import StopReceipt
 from tms_msg_rc.srv import StopMachine
 
 from mc_rig import angles, armed, begin, ended, moving, send
 from operasim_rig import LIMIT, OperaSim, operasim
+from tms_control.reasons import GoalTaken
+from tms_machine.values import to_parameters
+from tms_reason import wire
 from tms_ros.goals import Outcome
 
 pytestmark = [
@@ -79,6 +83,40 @@ def test_a_path_is_planned_without_the_gateway_and_followed_through_it(site: Ope
     assert stands_at(site, here), "planning has moved nothing"
     done(site, FollowPath, "rc/follow_path", FollowPath.Goal(path=path))
     assert stands_at(site, pose)
+
+
+def beside(site: OperaSim, way: float, left: float) -> tuple[float, float]:
+    """The place some metres ahead and to the left of the machine."""
+    at, turned = ahead(site, way).pose, math.tau / 4 + site.truth()["yaw"]
+    return at.position.x + left * math.cos(turned), at.position.y + left * math.sin(turned)
+
+
+def test_a_path_leads_around_a_blocked_area_and_no_goal_into_it(site: OperaSim) -> None:
+    pit = [beside(site, *corner) for corner in ((8.0, -1.0), (9.0, -1.0), (9.0, 1.0), (8.0, 1.0))]
+    values = to_parameters({"pit": [one for corner in pit for one in corner]})
+
+    def answer(request: GetParameter.Request, response: GetParameter.Response) -> GetParameter.Response:
+        if request.record_name == "blocked_areas":
+            response.record.values = values
+        else:
+            response.error_code = "RECORD_MISSING"
+        return response
+
+    site.ros.offer(GetParameter, "/tms/db/get_parameter", answer)
+    here, pose = ahead(site, 0.0), ahead(site, 17.0)
+    path: Path = done(site, ComputePathToPose, "compute_path_to_pose", ComputePathToPose.Goal(goal=pose)).path
+    middle = tuple(sum(one) / 4 for one in zip(*pit, strict=True))
+    assert min(math.dist((at.pose.position.x, at.pose.position.y), middle) for at in path.poses) > 3.0
+    in_it = PoseStamped()
+    in_it.header.frame_id, in_it.pose.orientation.w = "map", 1.0
+    in_it.pose.position.x, in_it.pose.position.y = middle
+    peer = site.ros.peer(NavigateToPose, f"/{MACHINE}/rc/navigate_to_pose")
+    peer.wait_ready(LIMIT)
+    call = peer.send(NavigateToPose.Goal(pose=in_it))
+    assert ended(site, call) is Outcome.ABORTED
+    why = wire.of(call.result.error_msg)
+    assert why is not None and why.find(GoalTaken) is not None
+    assert stands_at(site, here), "a goal in the area has moved nothing"
 
 
 def test_a_cancelled_goal_leaves_the_joints_to_the_gateway(site: OperaSim) -> None:

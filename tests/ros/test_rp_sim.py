@@ -24,8 +24,9 @@ from tms_msg_rp.action import (
     TmsRpZx200ReleaseSimple,
 )
 from tms_msg_rp.msg import TmsRpErrorCodes, TmsRpExcavatorJointValues, TmsRpZx200PositionWithAngle
-from tms_msg_rp.srv import CheckMotion
+from tms_msg_rp.srv import CheckMotion, GetScene
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+from visualization_msgs.msg import Marker, MarkerArray
 
 import programs
 from conftest import rearm, wait_until
@@ -311,6 +312,21 @@ def test_what_comes_into_the_way_is_waited_for_and_the_motion_goes_on(machine: R
     machine.until(told(at(60.0, 1.8), lambda: call.outcome is not None), "end of the goal")
     assert call.outcome is Outcome.SUCCEEDED
     assert machine.states[-1].position[0] == pytest.approx(2.4, abs=0.031)
+
+
+def test_the_scene_is_told_and_drawn_for_listeners(rig: Rig) -> None:
+    rig.until(lambda: rig.ros.has_service(GetScene, f"/{MACHINE}/rp/get_scene"), "the service")
+
+    def told() -> GetScene.Response:
+        return rig.ros.call(GetScene, f"/{MACHINE}/rp/get_scene", GetScene.Request(), LIMIT)
+
+    rig.until(lambda: told().error_code == "", "the joints are known")
+    assert len([one for one in told().bodies if one.kind == "own"]) == 5
+    drawn: list[MarkerArray] = []
+    rig.ros.subscribe(MarkerArray, f"/{MACHINE}/rp/scene", drawn.append)
+    rig.until(lambda: bool(drawn), "markers")
+    cubes = [one for one in drawn[0].markers if one.type == Marker.CUBE and one.action == Marker.ADD]
+    assert len(cubes) >= 5 and cubes[0].header.frame_id == f"{MACHINE}/base_link"
 
 
 def test_emergency_stop_ends_a_motion_until_it_is_released(machine: Rig) -> None:

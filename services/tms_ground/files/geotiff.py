@@ -8,13 +8,26 @@ from typing import Any
 
 import numpy as np
 
-from tms_ground.files.samples import Raster, refuse_large
-from tms_ground.reasons import GroundFileDamaged, LengthUnit, TiffBands, TiffNotPlaced, TiffTurned
+from tms_ground.files.samples import Raster, refuse_large, refuse_many
+from tms_ground.frame import FIRST_PLANE
+from tms_ground.reasons import (
+    GroundFileDamaged,
+    LengthUnit,
+    NotAlongPlane,
+    TiffBands,
+    TiffNotPlaced,
+    TiffTurned,
+)
+from tms_ground.settings import Origin
 from tms_reason.errors import TmsError
+from tms_soil.surface import Heights
 
 SCALE, TIE_POINT, TRANSFORMATION, KEYS, NO_DATA = 33550, 33922, 34264, 34735, 42113  # tags
-RASTER_TYPE, GEODETIC, PROJECTED, LENGTH_UNIT, HEIGHT_UNIT = 1025, 2048, 3072, 3076, 4099  # keys
-PIXEL_IS_POINT = 2  # of RASTER_TYPE: the tie point is the centre of a pixel, not its corner
+MODEL_TYPE, RASTER_TYPE, GEODETIC, PROJECTED, LENGTH_UNIT, HEIGHT_UNIT = 1024, 1025, 2048, 3072, 3076, 4099  # keys
+PROJECTED_MODEL = 1  # of MODEL_TYPE
+PIXEL_IS_AREA, PIXEL_IS_POINT = 1, 2  # of RASTER_TYPE: the tie point is the corner of a pixel, or its centre
+TEXT, SHORT, DOUBLE = 2, 3, 12  # types of tags
+UNKNOWN = -9999
 METRE = 9001
 OWN = 32767  # user-defined: the code is not told
 HEIGHTS = ("F", "I", "I;16", "I;16S", "I;16B", "I;16BS", "L")  # Pillow's modes of one number a pixel
@@ -31,6 +44,7 @@ def read(path: Path) -> Raster:
     refuse_large(path)
     try:
         with Image.open(path, formats=("TIFF",)) as picture:
+            refuse_many(*picture.size)
             tags: Any = picture.tag_v2  # type: ignore[attr-defined]
             if picture.mode not in HEIGHTS:
                 raise TmsError(TiffBands(picture.mode))
@@ -46,6 +60,31 @@ def read(path: Path) -> Raster:
     return Raster(
         _known(z, tags.get(NO_DATA))[::-1], x, y - (z.shape[0] - 1) * dy, dx, dy, None if code == OWN else code
     )
+
+
+def write(path: Path, ground: Heights, origin: Origin | None) -> None:
+    """Write heights into a new file, in the coordinates of the site's plane.
+
+    Raises:
+        TmsError: the site's origin is on no plane, or `map` is turned against it.
+        OSError: the file is there already, or cannot be written.
+    """
+    from PIL import Image
+    from PIL.TiffImagePlugin import ImageFileDirectory_v2
+
+    if origin is None or origin.plane is None or origin.north is None or origin.east is None or origin.yaw:
+        raise TmsError(NotAlongPlane())
+    top = origin.north + ground.bounds[3]
+    keys = {MODEL_TYPE: PROJECTED_MODEL, RASTER_TYPE: PIXEL_IS_AREA, PROJECTED: FIRST_PLANE + origin.plane}
+    tags = ImageFileDirectory_v2()
+    tags[SCALE] = (ground.cell, ground.cell, 0.0)
+    tags[TIE_POINT] = (0.0, 0.0, 0.0, origin.east + ground.x0, top, 0.0)
+    tags[KEYS] = (1, 1, 0, len(keys), *(word for key, value in keys.items() for word in (key, 0, 1, value)))
+    tags[NO_DATA] = str(UNKNOWN)
+    tags.tagtype.update({SCALE: DOUBLE, TIE_POINT: DOUBLE, KEYS: SHORT, NO_DATA: TEXT})
+    z = np.where(np.isfinite(ground.z), ground.z + origin.height, UNKNOWN)[::-1].astype(np.float32)
+    with path.open("xb") as file:
+        Image.fromarray(z).save(file, "TIFF", tiffinfo=tags, compression="tiff_adobe_deflate")
 
 
 def _keys(words: Any) -> dict[int, int]:

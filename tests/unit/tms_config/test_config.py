@@ -36,6 +36,7 @@ from tms_config.reasons import (
     NoService,
     NoSourceFacts,
     NoSuchLink,
+    NotConvex,
     NoTopic,
     NotUnderMachines,
     NotUtf8,
@@ -351,12 +352,14 @@ def test_the_bridge_has_settings_of_its_own(tmp_path: Path) -> None:
     [
         ("response: {}", "response", NoResponse("swing_joint")),
         ("initial: {tail_joint: 0}", "", NoSuchLink("tail_joint")),
+        ("blade: {link: tail_link, edge: [0, 0], width: 3, origin: o}", "", NoSuchLink("tail_link")),
+        ("bucket: {link: bucket_link, section: [[0, 0], [1, 0], [0.4, 0.1], [0, 1]], width: 1, force: 1, origin: o}",
+         "bucket.section", NotConvex()),
         ("borders: {sim: {odom: odom}}", "borders.sim.sources.odom", NoSourceFacts()),
         ("borders: {sim: {sources: {odom: {period: 0.1, stamps: utc, frozen_after: 1, origin: o}}}}",
          "borders.sim.sources.odom", NoTopic("odom")),
         ("geometry: {boom_joint: {parent: sky, child: boom_link, xyz: [0, 0, 0]}}\nshapes: {}\nbucket: null",
-         "geometry.boom_joint",
-         NoParent("sky")),
+         "geometry.boom_joint", NoParent("sky")),
     ],
 )  # fmt: skip
 def test_a_machine_file_that_does_not_fit_together(tmp_path: Path, change: str, key: str, problem: Reason) -> None:

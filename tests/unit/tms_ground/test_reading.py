@@ -136,6 +136,12 @@ def test_holes_and_what_is_not_covered(tmp_path: Path) -> None:
     assert isinstance(why, reasons.HasHoles) and (why.unknown, why.whole) == (0.25, 200.0)
     assert (why.x, why.y) == (2.75, 7.25)
     assert np.isnan(of(tif, Given(keep_holes=True)).z).sum() == 1
+    grid = files.ascii_grid(tmp_path / "c.asc")
+    rows = grid.read_text().splitlines()
+    rows[6 + 9] = "-9999 " * 48
+    grid.write_text("\n".join(rows))
+    why = refused(grid)
+    assert isinstance(why, reasons.HasHoles) and (why.unknown, why.y) == (10.0, 7.25)
     nan = files.geotiff(tmp_path / "b.tif", hole=float("nan"))
     assert isinstance(refused(nan), reasons.HasHoles)
     short = files.ascii_grid(tmp_path / "a.asc", xllcorner=EAST + 3)
@@ -158,6 +164,10 @@ def test_files_that_are_not_what_they_seem(tmp_path: Path, monkeypatch: pytest.M
     Image.new("RGB", (4, 4)).save(tmp_path / "c.png")
     assert refused(tmp_path / "c.png", Given(size=Size(1, 1, 1))) == reasons.ImageNotGrey("RGB")
     assert isinstance(refused(files.ascii_grid(tmp_path / "b.asc"), cell=0.001), reasons.ManyCells)
+    monkeypatch.setattr(samples, "MAX_PIXELS", 1000)
+    assert refused(files.geotiff(tmp_path / "b.tif")) == reasons.ManyPixels(48, 28, 1000)
+    Image.new("L", (30, 40)).save(tmp_path / "d.png")
+    assert refused(tmp_path / "d.png", Given(size=Size(1, 1, 1))) == reasons.ManyPixels(30, 40, 1000)
     monkeypatch.setattr(samples, "MAX_FILE", 1000)
     assert isinstance(refused(files.ascii_grid(tmp_path / "b.asc")), reasons.GroundFileLarge)
 
@@ -166,6 +176,22 @@ def test_files_that_end_early(tmp_path: Path) -> None:
     for path in (files.geotiff(tmp_path / "a.tif"), files.cloud(tmp_path / "a.laz"), files.landxml(tmp_path / "a.xml")):
         path.write_bytes(path.read_bytes()[: path.stat().st_size * 2 // 3])
         assert isinstance(refused(path), reasons.GroundFileDamaged | reasons.XmlUnreadable), path
+
+
+def test_clouds_that_tell_of_more_than_they_hold(tmp_path: Path) -> None:
+    las = files.cloud(tmp_path / "a.las")
+    data = las.read_bytes()
+    las.write_bytes(data[:-60])  # the last two points
+    why = refused(las)
+    assert isinstance(why, reasons.CloudEndsEarly) and why.count == 3 * 97 * 57
+    las.write_bytes(data[:100] + b"\xff" * 4 + data[104:])  # four billion records before the points
+    assert isinstance(refused(las), reasons.GroundFileDamaged)
+    laz = files.cloud(tmp_path / "a.laz")
+    data = laz.read_bytes()
+    points = int.from_bytes(data[96:100], "little")
+    table = int.from_bytes(data[points : points + 8], "little")
+    laz.write_bytes(data[: table + 4] + b"\xff" * 4 + data[table + 8 :])  # as many compressed pieces
+    assert isinstance(refused(laz), reasons.GroundFileDamaged)
 
 
 def test_grids_with_a_wrong_head(tmp_path: Path) -> None:
@@ -185,6 +211,15 @@ def test_tiffs_that_tell_too_little(tmp_path: Path) -> None:
     assert refused(files.geotiff(tmp_path / "a.tif", epsg=32767), Given()) == reasons.FrameNotTold()
     Image.new("RGB", (4, 4)).save(tmp_path / "b.tif")
     assert refused(tmp_path / "b.tif") == reasons.TiffBands("RGB")
+
+
+def test_a_tiff_that_is_placed_by_a_transformation(tmp_path: Path) -> None:
+    x, y = np.meshgrid(np.arange(48) * 0.5 - 1.75, np.arange(28) * 0.5 - 1.75)
+    z, keys = height(x, y) + LEVEL, {1024: 1, 1025: 1, 3072: 6677}
+    straight = (0.5, 0.0, 0.0, EAST - 2, 0.0, -0.5, 0.0, NORTH + 12, *[0.0] * 7, 1.0)
+    is_the_plane(of(files.tiff(tmp_path / "a.tif", z, keys, {34264: straight})))
+    turned = (0.5, 0.1, *straight[2:])
+    assert refused(files.tiff(tmp_path / "b.tif", z, keys, {34264: turned})) == reasons.TiffTurned()
 
 
 def test_an_empty_cloud_and_one_without_coordinates(tmp_path: Path) -> None:

@@ -13,8 +13,9 @@ from tms_config.models import Box, MachineModel
 from tms_config.yaml_file import parse
 from tms_control.links import Links, placed
 from tms_reason.errors import SubtaskFailed
-from tms_rp.clearance import Clearance
-from tms_rp.reasons import Collision, Part, PartOf
+from tms_rp.clearance import PADDING, Clearance
+from tms_rp.meshes import Mesh, cone
+from tms_rp.reasons import Collision, Part, PartOf, Told
 from tms_rp.scene import Obstacle, Scene
 from tms_rp.trajectory import Trajectory, trajectory
 
@@ -107,3 +108,51 @@ def test_looking_again_makes_no_new_bodies(monkeypatch: pytest.MonkeyPatch) -> N
     clearance.check(made, truck(50.0, 0.0))
     with pytest.raises(SubtaskFailed, match="of ic120 after"):
         clearance.check(move(LOW_RIGHT, LOW_FRONT), truck(8.0, 0.0))
+
+
+def heap(x: float, height: float = 1.0, off: float = 0.0) -> Scene:
+    """A cone of soil before the machine, as a surface."""
+    made = cone(height, 1.5)
+    mesh, place = Mesh(made.vertices, made.faces, off), placed(x, 0.0, 0.3)
+    place[2, 3] = height / 2
+    return Scene((Obstacle(Told("heap"), mesh.box, place, mesh=mesh),))
+
+
+def test_a_surface_in_the_way_is_named_with_the_place() -> None:
+    bucket = max(corners("bucket_link", LOW_FRONT))
+    scene = heap(bucket[0] - 1.0, 3.0)
+    said = refusal(move(LOW_RIGHT, LOW_FRONT), scene)
+    assert said.second == Told("heap") and 0 < said.depth < 3.0
+    assert math.hypot(said.x - bucket[0] + 1.0, said.y) < 3.0 and -0.01 < said.z < 3.2
+    Clearance(MODEL).check(move(RIGHT, FRONT), heap(bucket[0] - 1.0, 0.5))
+
+
+def test_how_far_a_surface_may_be_off_is_kept_away_from() -> None:
+    lowest = min(corners("bucket_link", FRONT), key=lambda corner: corner[2])
+    height = lowest[2] - PADDING - 0.1  # its top is 10 cm below the padding
+    assert height > 0.2
+    Clearance(MODEL).check(move(RIGHT, FRONT), heap(lowest[0], height))
+    said = refusal(move(RIGHT, FRONT), heap(lowest[0], height, off=0.4))
+    assert said.second == Told("heap") and said.depth > 0
+    grown = tuple(one.grown(0.4) for one in heap(lowest[0], height).obstacles)
+    assert refusal(move(RIGHT, FRONT), Scene(grown)).second == Told("heap")
+
+
+def test_more_padding_of_a_link_is_kept() -> None:
+    lowest = min(corners("bucket_link", FRONT), key=lambda corner: corner[2])
+    plate = Box(min=(lowest[0] - 1, -1.0, -0.2), max=(lowest[0] + 1, 1.0, lowest[2] - PADDING - 0.2))
+    below = Obstacle(Told("plate"), plate, np.eye(4))
+    made, clearance = move(RIGHT, FRONT), Clearance(MODEL)
+    clearance.check(made, Scene((below,)))
+    clearance.check(made, Scene((below,), padding=(("bucket_link", 0.05), ("boom_link", 0.5), ("track_link", 2.0))))
+    with pytest.raises(SubtaskFailed, match="bucket_link would touch plate"):
+        clearance.check(made, Scene((below,), padding=(("bucket_link", 0.5),)))
+    Clearance(MODEL, padding=0.0).check(made, Scene((below,), padding=(("bucket_link", 0.5),)))
+
+
+def test_the_same_surface_is_one_body(monkeypatch: pytest.MonkeyPatch) -> None:
+    clearance, made = Clearance(MODEL), move(LOW_RIGHT, LOW_FRONT)
+    for _ in range(2):
+        with suppress(SubtaskFailed):
+            clearance.check(made, heap(7.0, 3.0))
+        monkeypatch.setattr("tms_rp.bodies.fcl.BVHModel", None)

@@ -13,7 +13,7 @@ from tms_config.yaml_file import parse
 from tms_control.links import placed
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
-from tms_rp.kind import Moves
+from tms_rp.kind import Moves, Through
 from tms_rp.kinds import load
 from tms_rp.kinds.backhoe.bucket import LEVEL, TILT, tilt
 from tms_rp.kinds.backhoe.digging import excavate, release
@@ -77,6 +77,11 @@ def test_it_digs_as_deep_and_drags_as_far_as_it_is_told() -> None:
     assert min(tip.z for tip in longer) == pytest.approx(-0.3, abs=0.06) and max(deep) - min(deep) > 2.2
 
 
+def test_a_bucket_that_points_outward_turns_down_in_the_drag_and_curls_no_deeper() -> None:
+    flat = Dig(TipGoal(7.0, 0.0, 0.0, 1.15), depth=0.5, drag=1.5, lift=0.5)
+    assert min(BACKHOE.linkage.tip(pose).z for pose in poses(dug(flat))) > -0.58
+
+
 def test_the_offset_is_along_the_line_from_base_link() -> None:
     moves = excavate(BACKHOE, NOW, Dig(TipGoal(3.3, 4.4, 0.0, 1.6, offset=1.0), 0.5, 0.0, 0.5))
     assert BACKHOE.linkage.tip(ArmAngles(*moves.targets[1]))[:3] == pytest.approx((3.9, 5.2, -0.5))
@@ -113,6 +118,12 @@ def test_nothing_but_the_bucket_may_be_in_the_ground_and_that_only_in_its_plane(
         assert said is not None and said.first == Part(first) and said.second == Ground() and said.depth > 0
 
 
+def test_a_dig_keeps_the_padding_of_its_scene() -> None:
+    trench = (excavate(BACKHOE, NOW, FACE).through or Through(())).trench
+    padded = Scene(padding=(("bucket_link", 0.3),))
+    assert trench is not None and trench.around(padded).padding == padded.padding
+
+
 def refusal(goal: Dig, scene: Scene | None = None, now: ArmAngles = NOW) -> Reason:
     with pytest.raises(SubtaskFailed) as caught:
         dug(goal, now, scene)
@@ -134,6 +145,15 @@ def test_it_takes_less_time_than_with_stops() -> None:
     assert dug().made.duration < 0.7 * with_stops.duration
 
 
+def test_through_the_soil_it_goes_at_the_speed_of_digging() -> None:
+    plan = dug()
+    begin, end = plan.reached[0] + 0.6, plan.reached[-3] - 0.6  # where nothing is rounded
+    tips = [(one.time, BACKHOE.linkage.tip(ArmAngles(*one.positions[:4]))[:3])
+            for one in plan.made.samples if begin <= one.time <= end]  # fmt: skip
+    speeds = [math.dist(a, b) / (later - at) for (at, a), (later, b) in pairwise(tips)]
+    assert max(speeds) < 0.75 and np.mean(speeds) == pytest.approx(0.6, abs=0.1)
+
+
 def test_out_of_the_ground_it_does_not_plough() -> None:
     inside = ArmAngles(-1.566, -0.228, 2.256, -0.618)  # a metre in the soil
     for pose in poses(dug(now=inside)):
@@ -148,7 +168,10 @@ def test_what_is_in_the_way_of_the_swing_is_passed_and_what_is_in_the_pit_refuse
     assert any(isinstance(note, Around) for note in plan.notes)
     pipe = refusal(FACE, box("pipe", (5.5, -3.0, -0.6), (5.8, 3.0, -0.3)))
     assert isinstance(pipe, Collision) and pipe.second == PartOf("pipe", "site") and pipe.first == Part("bucket_link")
-    assert pipe.depth > 0 and 5.0 < pipe.x < 6.3 and pipe.seconds > 1.0
+    assert pipe.depth > 0 and 5.0 < pipe.x < 6.3
+    far = NOW._replace(swing=-2.5)  # the time is that of the whole motion
+    later = refusal(FACE, box("pipe", (5.5, -3.0, -0.6), (5.8, 3.0, -0.3)), far)
+    assert isinstance(later, Collision) and later.seconds > dug(now=far).reached[0] > 5.0
 
 
 def test_blocked_in_the_middle_of_a_dig_the_rest_is_planned_from_there() -> None:
@@ -157,6 +180,9 @@ def test_blocked_in_the_middle_of_a_dig_the_rest_is_planned_from_there() -> None
     middle = plan.made.samples[lowest + 10]
     rest = plan.rest(middle.time)
     assert rest is not None and 1 <= len(rest.targets) < len(plan.moves.targets)
+    assert rest.through is not None and not rest.through.free  # no way around leads on from in there
+    before = plan.rest(plan.reached[0] - 0.1)
+    assert before is not None and before.through is not None and before.through.free
     again = WAYS.plan(middle.positions[:4], rest, Scene())
     assert again.made.samples[-1].positions == pytest.approx(plan.made.samples[-1].positions)
     assert max(pose.swing for pose in poses(again)) - min(pose.swing for pose in poses(again)) < 0.05
@@ -177,10 +203,31 @@ def test_release_where_it_is_opens_and_comes_up() -> None:
     assert all(b >= a - 1e-6 for a, b in pairwise(pin))  # it rises as the bucket opens
 
 
+@pytest.mark.parametrize("ground", [0.0, 0.1, 0.3])
+def test_an_opening_bucket_does_not_touch_the_ground_that_it_has_dug(ground: float) -> None:
+    """It hangs lower than a curled one, so the boom comes up first where a small machine holds it."""
+    arm, ways = Backhoe(MODELS["zx120"]), Ways(MODELS["zx120"], load("backhoe"))
+    now = ArmAngles(0.0, -0.6, 2.0, 0.8)
+    lifted = poses(ways.plan(now, excavate(arm, now, Dig(TipGoal(4.0, 0.0, ground, 1.6), 1.0, 1.0, 0.5)), Scene()))[-1]
+    opening = poses(ways.plan(lifted, release(arm, lifted, Emptying(-0.34)), Scene()))
+    assert min(map(arm.bucket.lowest, opening)) > 0.05
+    assert opening[-1].bucket == pytest.approx(-0.34, abs=1e-3)
+
+
 def test_release_cuts_the_clearance_at_the_limits() -> None:
     moves = release(BACKHOE, ArmAngles(0.0, -1.1, 2.6, 1.7), Emptying(-0.34))
     assert moves.targets[0][1:3] == (-1.137, 2.687)
     assert moves.notes == (ClearanceCut("arm_joint", 2.687), ClearanceCut("boom_joint", -1.137))
+
+
+def test_just_above_the_ground_the_boom_rises_before_the_bucket_opens() -> None:
+    for name in ("zx200", "zx120"):
+        arm, ways = Backhoe(MODELS[name]), Ways(MODELS[name], load("backhoe"))
+        goal = Dig(TipGoal(0.1, -4.5, 0.0, 1.4), depth=0.4, drag=0.5, lift=0.2)
+        now = ArmAngles(*excavate(arm, NOW, goal).targets[-1])
+        plan = ways.plan(now, release(arm, now, Emptying(-0.34)), Scene())
+        assert min(arm.bucket.lowest(pose) for pose in poses(plan)) > 0.1
+        assert poses(plan)[-1].bucket == pytest.approx(-0.34)
 
 
 OVER_TRUCK = TipGoal(0.0, 6.0, 4.2, 3.0)
@@ -198,9 +245,10 @@ def loaded() -> ArmAngles:
 
 
 def test_while_it_swings_to_the_truck_the_bucket_is_level() -> None:
-    for scene in (Scene(), truck()):
+    near = TipGoal(0.0, 4.8, 4.8, 3.0)  # the boom rises so high that the bucket would open by 0.7 rad
+    for scene, place in ((Scene(), OVER_TRUCK), (truck(), OVER_TRUCK), (truck(0.0, 4.8), near)):
         now = loaded()
-        plan = WAYS.plan(now, release(BACKHOE, now, Emptying(-0.34, OVER_TRUCK)), scene)
+        plan = WAYS.plan(now, release(BACKHOE, now, Emptying(-0.34, place)), scene)
         end = poses(plan)[-1]
         tilts = [abs(tilt(pose)) for pose in poses(plan) if abs(pose.swing - end.swing) > 0.1]
         assert len(tilts) > 20 and max(tilts) < TILT
@@ -243,20 +291,24 @@ def swings(arm: Backhoe, now: ArmAngles, **angles: float) -> Moves:
 
 def test_soil_is_known_from_the_dig_until_the_bucket_was_open() -> None:
     arm, now = Backhoe(MODEL), loaded()
+    turn = ChangePose(joints=({"swing_joint": 1.2},))
     assert swings(arm, now, swing=1.2, bucket=-0.3).through is None
-    arm.moves(excavate(arm, NOW, FACE))
+    arm.begins(NOW, excavate(arm, NOW, FACE))
     held = swings(arm, now, swing=1.2, bucket=-0.3)
     assert held.through is not None and held.through.held is not None
     level, end = map(ArmAngles._make, held.targets)
     assert level.swing == end.swing == 1.2 and tilt(level) == pytest.approx(0.0) and end.bucket == -0.3
     assert swings(arm, now, bucket=-0.3).through is None  # it does not swing: it is emptied
-    assert swings(arm, now._replace(bucket=-0.3), swing=1.2).through is None
+    opened = now._replace(bucket=-0.3)
+    assert swings(arm, opened, swing=1.2).through is None  # a check from where it would be open changes nothing
+    assert swings(arm, now, swing=1.2).through is not None
+    arm.begins(opened, arm.change_pose(opened, turn))
     assert swings(arm, now, swing=1.2, bucket=-0.3).through is None  # emptied in between
 
 
 def test_a_loaded_bucket_opens_after_the_swing() -> None:
     arm, now = Backhoe(MODEL), loaded()
-    arm.moves(excavate(arm, NOW, FACE))
+    arm.begins(NOW, excavate(arm, NOW, FACE))
     for scene in (Scene(), truck()):
         plan = WAYS.plan(now, swings(arm, now, swing=2.6, bucket=-0.3), scene)
         open_at = next(i for i, pose in enumerate(poses(plan)) if tilt(pose) > TILT)

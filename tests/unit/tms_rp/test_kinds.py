@@ -1,7 +1,9 @@
 """Every action of every kind of machine plans from plain joint angles, as the process `<machine>:rp` has them."""
 
+import math
+
 import pytest
-from geometry_msgs.msg import Point
+from geometry_msgs.msg import Point, Pose, Quaternion
 from tms_msg_rp.action import (
     Excavate,
     PlanPose,
@@ -17,6 +19,7 @@ from tms_config.models import MachineModel
 from tms_reason.errors import SubtaskFailed
 from tms_rp.kind import PlanningAction
 from tms_rp.kinds import load
+from tms_rp.kinds.backhoe.linkage import ArmAngles
 from tms_rp.reasons import OneTarget
 
 NOW = (0.3, -0.5, 1.5, 0.4)  # rad
@@ -70,3 +73,26 @@ def test_a_plan_begins_where_the_one_before_ends(model: MachineModel) -> None:
     moves = plan.plan(kind.planner(model), NOW, goal)
     assert moves.begin == (1.0, -0.4, 1.0, 0.1) and moves.targets == ((0.5, -0.6, 1.0, 0.1),)
     assert moves.scales == (0.5, 0.25)
+
+
+def test_a_pose_is_asked_for_by_angles_by_the_link_or_by_the_tip_and_in_sequences(model: MachineModel) -> None:
+    kind = load("backhoe")
+    planner, actions = kind.planner(model), {action.name: action for action in kind.actions}
+    tip = planner.linkage.tip(ArmAngles(0.5, -0.6, 1.5, 0.4))
+    level = tip.theta_w + planner.linkage.level  # pitch of the link
+    turn = Quaternion(
+        x=-math.sin(0.25) * math.sin(level / 2), y=math.cos(0.25) * math.sin(level / 2),
+        z=math.sin(0.25) * math.cos(level / 2), w=math.cos(0.25) * math.cos(level / 2),
+    )  # fmt: skip
+    point = Point(x=tip.x, y=tip.y, z=tip.z)
+    angles = [JointTrajectoryPoint(positions=[0.5, -0.6, 1.5, 0.4]), JointTrajectoryPoint(positions=list(NOW))]
+    by_tip = [TmsRpZx200PositionWithAngle(position=point, theta_w=tip.theta_w), PLACE]
+    goals = (
+        {"trajectory": JointTrajectory(joint_names=list(kind.joints), points=angles)},
+        {"pose_sequence": [Pose(position=point, orientation=turn)] * 2},
+        {"position_with_angle_sequence": by_tip},
+    )
+    for given in goals:
+        for name, goal in (("change_pose", TmsRpZx200ChangePose.Goal), ("plan_pose", PlanPose.Goal)):
+            moves = actions[name].plan(planner, NOW, goal(**given))
+            assert len(moves.targets) == 2 and moves.targets[0] == pytest.approx((0.5, -0.6, 1.5, 0.4), abs=1e-6)

@@ -137,24 +137,26 @@ def test_scales_are_shares_of_the_limits() -> None:
 
 def test_plans_whose_ends_meet_run_without_a_stop_as_fast_as_they_are() -> None:
     slow, fast = (follow(trajectory(scaled(JOINTS, share, 1.0), a, [b])).trajectory
-                  for share, a, b in ((0.3, A, B), (1.0, B, C)))  # fmt: skip
+                  for share, a, b in ((0.1, A, B), (1.0, B, C)))  # fmt: skip
     made = one_trajectory(JOINTS, A, [slow, fast])
     found = without_stops(JOINTS, made)
     assert found.samples[0].positions == A and found.samples[-1].positions == pytest.approx(C, abs=1e-6)
-    assert found.duration < made.duration and len(found.stops) == 2 and found.stops[-1] == found.duration
+    assert len(found.stops) == 2 and found.stops[-1] == found.duration
     inner = [sample for sample in found.samples if 0.6 < sample.time < found.duration - 0.6]
     assert min(max(map(abs, sample.velocities)) for sample in inner) > 0.02
     for index, joint in enumerate(JOINTS.values()):
         speeds = [(sample.time, abs(sample.velocities[index])) for sample in found.samples]
         assert max(speed for _, speed in speeds) <= joint.velocity * 1.0001
         assert max(abs(sample.accelerations[index]) for sample in found.samples) <= joint.acceleration * 1.0001
-        before = max(speed for at, speed in speeds if at < found.stops[0] - 1.5)
-        assert before <= 0.3 * joint.velocity * 1.02  # the first plan stays slow
+        assert found.stops[0] > 0.75 * made.stops[0]
+        before = max(speed for at, speed in speeds if at < found.stops[0] - 0.8)
+        assert before <= 0.1 * joint.velocity * 1.02  # the first plan stays slow
 
 
 def test_the_path_of_plans_stays_near_them_away_from_their_ends() -> None:
     made = one_trajectory(JOINTS, A, [plan(A, B), plan(B, C)])
     found = without_stops(JOINTS, made)
+    assert found.duration < made.duration
     corner = np.array([sample.positions for sample in found.samples])
     assert np.abs(corner - np.array(B)).max(axis=1).min() < 0.15
     path = np.array([sample.positions for sample in made.samples])

@@ -27,7 +27,7 @@ from unit.tms_rp.test_blending import beyond
 from unit.tms_rp.test_ways_in_random_scenes import MODEL, WAYS, bodies, dense, free_pose, of_box, touch, touched
 
 BACKHOE = Backhoe(MODEL)
-CYCLES = 40 if settings.default is None or settings.default.max_examples <= 50 else 1000
+CYCLES = 25 if settings.default is None or settings.default.max_examples <= 50 else 1000
 LATE = [0.0 if one.passive else MODEL.response[name].dead_time + MODEL.response[name].lag
         for name, one in MODEL.joints.items()]  # fmt: skip
 

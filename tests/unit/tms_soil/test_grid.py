@@ -67,6 +67,17 @@ def test_each_tile_has_the_densities_of_its_soil() -> None:
     assert window.heights() == pytest.approx(np.array([[thick[0], thick[1]], [thick[0], thick[0]]]) + 2.0)
 
 
+def test_nothing_exceeds_the_top_that_it_tells() -> None:
+    grid = Grid.from_heights(hilly(25.6), soils())
+    told = grid.top((10.0, -10.0, 12.7, -9.0))
+    window = grid.window((0.0, -12.8, 12.8, 0.0))
+    assert window is not None
+    assert window.heights().max() <= told < window.heights().max() + 0.01
+    window.layers[LOOSE][5, 5] = 5000.0
+    grid.store(window)
+    assert grid.top((1.0, -12.0, 1.1, -11.0)) > told + 1.0
+
+
 def test_outside_the_site_there_is_nothing() -> None:
     grid = Grid.from_heights(flat(), soils())
     assert grid.window((7.0, 7.0, 8.0, 8.0)) is None

@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -28,22 +29,24 @@ class Body:
         self._corners = np.array([(*corner, 1.0) for corner in ends]) @ box_place(box).T
         self.half_width = max(-box.min[1], box.max[1])  # m, from the plane of the arm
 
-    def corners(self, pose: ArmAngles) -> Array:
-        """Where its corners are at a pose, in base_link [m]: 8 x 3."""
-        angles = dict(zip(("swing_joint", "boom_joint", "arm_joint", "bucket_joint"), pose, strict=True))
-        place = self._links.places(np.array([[angles.get(name, 0.0) for name in self._names]]))[self.link][0]
-        return np.asarray((self._corners @ place.T)[:, :3])
+    def corners(self, *poses: ArmAngles) -> Array:
+        """Where its corners are at poses, in base_link [m]: poses x 8 x 3."""
+        names = ("swing_joint", "boom_joint", "arm_joint", "bucket_joint")
+        angles = [dict(zip(names, pose, strict=True)) for pose in poses]
+        whole = np.array([[one.get(name, 0.0) for name in self._names] for one in angles])
+        places = self._links.places(whole)[self.link]
+        return np.asarray((self._corners @ places.swapaxes(1, 2))[..., :3])
 
     def lowest(self, pose: ArmAngles) -> float:
         """How high it hangs above the plane on which the tracks stand [m]."""
-        return float(self.corners(pose)[:, 2].min())
+        return float(self.corners(pose)[..., 2].min())
 
-    def near(self, pose: ArmAngles, box: Box, gap: float) -> bool:
-        """Whether it may be nearer to a box of base_link than a gap [m], by its extents along the axes."""
-        corners = self.corners(pose)
-        above = corners.max(axis=0) > np.array(box.min) - gap
-        below = corners.min(axis=0) < np.array(box.max) + gap
-        return bool((above & below).all())
+    def near(self, poses: Sequence[ArmAngles], box: Box, gap: float) -> bool:
+        """Whether it may be nearer to a box of base_link than a gap [m] in a pose, by its extents along the axes."""
+        corners = self.corners(*poses)
+        above = corners.max(axis=1) > np.array(box.min) - gap
+        below = corners.min(axis=1) < np.array(box.max) + gap
+        return bool((above & below).all(axis=1).any())
 
 
 def tilt(pose: ArmAngles) -> float:

@@ -5,8 +5,6 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from itertools import pairwise
 
-import numpy as np
-
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
 from tms_rp.clearance import PADDING
@@ -58,8 +56,8 @@ def excavate(arm: Backhoe, now: ArmAngles, goal: Dig) -> Moves:
     over = raised(arm, reach, surface + OVER)
     curled = arm.level((reach, *dragged)[-1])
     lifted = raised(arm, curled, surface + goal.lift, level=True)
-    ways = [math.dist(arm.linkage.tip(a)[:3], arm.linkage.tip(b)[:3]) for a, b in pairwise((reach, *dragged))]
-    least = (0.0, goal.depth / SPEED, *(way / SPEED for way in ways), 0.0, 0.0)
+    tips = [arm.linkage.tip(pose)[:3] for pose in (over, reach, *dragged)]
+    least = (0.0, *(math.dist(a, b) / SPEED for a, b in pairwise(tips)), 0.0, 0.0)
     targets = (over, reach, *dragged, curled, lifted)
     return Moves(targets, tuple(notes), through=Through(least, trench=_trench(arm, targets, at.z)))
 
@@ -67,18 +65,23 @@ def excavate(arm: Backhoe, now: ArmAngles, goal: Dig) -> Moves:
 def release(arm: Backhoe, now: ArmAngles, goal: Emptying) -> Moves:
     """Over the place with the bucket level, if there is one; then it opens, while arm and boom come up for clearance.
 
+    Where an open bucket would hang into the ground, the boom rises first.
+
     Raises:
         SubtaskFailed: FieldNotFinite, NoAngleDigs, OutOfRange, WouldSpill.
     """
     finite("target_angle", goal.angle)
     notes: list[Reason] = []
     over = now if goal.over is None else _place(arm, now, tip_of(goal.over), notes)
+    hanging = over._replace(bucket=arm.clip("bucket_joint", math.pi / 2 - over.boom - over.arm, []))
+    risen = over._replace(boom=raised(arm, hanging, OVER).boom)
     curled = arm.clip("arm_joint", over.arm + CLEAR_ARM, notes)
-    up = arm.clip("boom_joint", over.boom + CLEAR_BOOM, notes)
+    up = min(risen.boom, arm.clip("boom_joint", over.boom + CLEAR_BOOM, notes))
     end = arm.allowed(over, ArmAngles(over.swing, up, curled, goal.angle))
-    if goal.over is None:
-        return Moves((end,), tuple(notes), through=Through((0.0,), free=False))
-    return Moves((over, over, end), tuple(notes), through=Through((0.0, CALM, 0.0), held=arm.held))
+    if goal.over is not None:
+        return Moves((over, over, end), tuple(notes), through=Through((0.0, CALM, 0.0), held=arm.held))
+    targets = (end,) if risen == over else (risen, end)
+    return Moves(targets, tuple(notes), through=Through((0.0,) * len(targets), free=False))
 
 
 def raised(arm: Backhoe, pose: ArmAngles, height: float, level: bool = False) -> ArmAngles:
@@ -98,8 +101,8 @@ def _fits(arm: Backhoe, ground: float, pose: ArmAngles) -> bool:
     if arm.arm.lowest(pose) < ground + gap:
         return False
     curl = arm.level(pose).bucket - pose.bucket
-    curling = (pose._replace(bucket=pose.bucket + share * curl) for share in CURLING)
-    return arm.tracks is None or not any(arm.bucket.near(one, arm.tracks, gap) for one in curling)
+    curling = [pose._replace(bucket=pose.bucket + share * curl) for share in CURLING]
+    return arm.tracks is None or not arm.bucket.near(curling, arm.tracks, gap)
 
 
 def _dragged(
@@ -116,12 +119,11 @@ def _dragged(
         theta_w += min(ROLL, max(0.0, math.pi / 2 - theta_w))
         tip = Tip(dig.x - way * math.cos(reach.swing), dig.y - way * math.sin(reach.swing), dig.z, theta_w)
         try:
-            pose, turned = arm.search(tip, fits)
+            pose, theta_w = arm.search(tip, fits, ROLL)
         except SubtaskFailed:
             break
-        if abs(turned - theta_w) > ROLL or not fits(pose):
+        if not fits(pose):
             break
-        theta_w = turned
         found.append(short_way(reach, pose))
     if len(found) < steps:
         notes.append(DragCut(drag * len(found) / steps, drag))
@@ -145,8 +147,8 @@ def _trench(arm: Backhoe, poses: Sequence[ArmAngles], top: float) -> Trench:
     swing, (x, y, _) = poses[0].swing, arm.linkage.axis
     c, s = math.cos(swing), math.sin(swing)
     x, y = x - s * arm.linkage.lateral, y + c * arm.linkage.lateral
-    corners = np.concatenate([arm.bucket.corners(pose) for pose in poses])
-    out = (corners[:, 0] - x) * c + (corners[:, 1] - y) * s
+    corners = arm.bucket.corners(*poses)
+    out = (corners[..., 0] - x) * c + (corners[..., 1] - y) * s
     width = 2 * (arm.bucket.half_width + PADDING + ASIDE)
     near, far = float(out.min()) - ROUND, float(out.max()) + ROUND
     return Trench(x, y, swing, width, near, far, top, arm.bucket.link)

@@ -66,15 +66,18 @@ class Backhoe:
             targets.append(short_way(targets[-1] if targets else now, self.reach(tip)))
         return Moves(tuple(targets))
 
-    def moves(self, moves: Moves) -> None:
-        """Take note of a motion that begins: one that digs loads the bucket."""
-        self._loaded = self._loaded or (moves.through is not None and moves.through.trench is not None)
+    def begins(self, now: Angles, moves: Moves) -> None:
+        """Take note of a motion that begins: one that digs loads the bucket, which was empty if it is open."""
+        digs = moves.through is not None and moves.through.trench is not None
+        self._loaded = digs or self._carries(ArmAngles(*now))
+
+    def _carries(self, pose: ArmAngles) -> bool:
+        return self._loaded and tilt(pose) < EMPTIED
 
     def carrying(self, now: ArmAngles, moves: Moves) -> Moves:
         """The same with the bucket level while it swings, if it carries soil; it opens where the motion ends."""
-        self._loaded = self._loaded and tilt(now) < EMPTIED
         target = ArmAngles(*moves.targets[-1])
-        if not self._loaded or len(moves.targets) > 1 or abs(target.swing - now.swing) < SWINGS:
+        if not self._carries(now) or len(moves.targets) > 1 or abs(target.swing - now.swing) < SWINGS:
             return moves
         targets = (target,) if abs(tilt(target)) <= TILT else (self.level(target), target)
         return replace(moves, targets=targets, through=Through((0.0,) * len(targets), held=self.held))
@@ -107,14 +110,15 @@ class Backhoe:
         level = self.level(ArmAngles(*pose))
         return level if abs(tilt(level)) <= TILT else None
 
-    def search(self, tip: Tip, fits: Callable[[ArmAngles], bool]) -> tuple[ArmAngles, float]:
+    def search(self, tip: Tip, fits: Callable[[ArmAngles], bool], most: float = math.pi) -> tuple[ArmAngles, float]:
         """Joints for the point with the possible theta_w nearest to the asked one, and that theta_w [rad].
 
-        Of those that fit, if one does; else nobody here can say better than the collision check why they do not.
+        It is at most `most` [rad] from the asked one, and one that fits if there is one; else the collision check will
+        tell what it touches.
         """
         possible: list[tuple[ArmAngles, float]] = []
         refused: list[SubtaskFailed] = []
-        for theta_w in _outward(tip.theta_w):
+        for theta_w in _outward(tip.theta_w, most):
             try:
                 possible.append((self.reach(tip._replace(theta_w=theta_w)), theta_w))
             except SubtaskFailed as error:
@@ -181,9 +185,9 @@ def short_way(before: ArmAngles, target: ArmAngles) -> ArmAngles:
     return target._replace(swing=before.swing + wrap(target.swing - before.swing))
 
 
-def _outward(theta_w: float) -> Iterable[float]:
+def _outward(theta_w: float, most: float) -> Iterable[float]:
     """Angles [rad] in the order in which they are tried: away from `theta_w`, up first, inside 0 to pi."""
-    for step in range(math.ceil(math.pi / SEARCH_STEP)):
+    for step in range(math.ceil(most / SEARCH_STEP)):
         away = step * SEARCH_STEP
         if theta_w + away <= math.pi:
             yield theta_w + away
