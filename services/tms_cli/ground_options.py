@@ -15,6 +15,17 @@ if TYPE_CHECKING:
 CORNERS = 3
 
 
+class Finite(click.FloatRange):
+    """A number within bounds; `nan`, which click takes for one, is within none."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The number."""
+        number = super().convert(value, param, ctx)
+        if not math.isfinite(number):
+            self.fail(say("'{value}' is no finite number", value=value), param, ctx)
+        return number
+
+
 class Polygon(click.ParamType["tuple[Point, ...]"]):
     """Corners of a polygon: `0,0 10,0 10,5`."""
 

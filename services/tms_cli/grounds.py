@@ -7,6 +7,8 @@ import click
 
 from tms_cli import session
 from tms_cli.words import say
+from tms_reason.errors import TmsError
+from tms_reason.reasons import KeyProblem
 
 if TYPE_CHECKING:
     from tms_db.ground import Snapshot
@@ -44,10 +46,13 @@ def read(file: Path, given: "Given", area: "Bounds | None", cell: float | None) 
     from tms_ground import settings
     from tms_ground.files import reading
     from tms_ground.frame import SiteFrame
+    from tms_ground.reasons import AreaInsideOut
 
     site = session.site()
     told = settings.ground_of(site) if area else settings.needed(site)
     bounds = area or settings.needed(site).area
+    if not (bounds[0] < bounds[2] and bounds[1] < bounds[3]):
+        raise TmsError(KeyProblem("--area", AreaInsideOut()))
     frame = SiteFrame(told.origin) if told is not None and told.origin is not None else None
     return reading.read(file, bounds, cell or (told.cell if told is not None else CELL), frame, given)
 

@@ -18,6 +18,7 @@ PURPOSES = {  # what they and the other processes are for; `tms ps` shows it in 
     "ur": "HTTP API and console",
     "if": "TCP bridge that OperaSim-PhysX connects to",
     "host": "processes of this PC",
+    "ground": "soil: what machines dig, carry and tip",
     "store": "embedded store of the demo",
     "discovery": "lets the PCs' processes find each other",
     "sim": "stand-in for {machine}",
@@ -135,6 +136,8 @@ def _services(site: Site) -> list[Process]:
     if data or any(map(site.other_form, site.file.peers)):  # for templates both forms are the same
         form = data or "both"
         rows.append(Process("tms", "if_readers", "cps", "tms_if.reader_border", 0, PURPOSES["readers"], form=form))
+    if site.file.ground is not None:
+        rows.append(Process("tms", "ground", "cps", "tms_ground.node", 0, PURPOSES["ground"]))
     for name, service in site.file.services.items():
         if name not in SERVICES:
             raise ConfigError(located(site.path, reasons.NoService(name, SERVICES), "services", name))

@@ -89,7 +89,8 @@ def _way(start: Pose, targets: Sequence[Pose], pace: Pace, check: WayCheck) -> l
     if found is None:
         return None
     poses, rest = found
-    return _shortened([*_pieces(poses), *rest], pace, check)
+    made = _shortened([*_pieces(poses), *rest], pace, check)
+    return made if check.free(made) else None  # turns of the lattice are looked at half way only
 
 
 class _Connect:

@@ -94,6 +94,15 @@ class Body:
         inside = (np.abs(from_middle) < (high - low) / 2 + distance).all(axis=1)
         return np.flatnonzero(inside & ((from_middle**2).sum(axis=1) < (radius + distance) ** 2))
 
+    def away(self, places: Array) -> Array:
+        """How far places (N x 2) are from it [m]: N; 0 inside."""
+        return self.all_gaps(Outline(0.0, 0.0, 0.0, 0.0), np.column_stack([places, np.zeros(len(places))]))
+
+    def all_gaps(self, outline: Outline, poses: Array) -> Array:
+        """As `gaps`, for so many poses that they need too much room at once."""
+        parts = np.array_split(poses, 1 + len(poses) * len(self.corners) // AT_ONCE)
+        return np.concatenate([self.gaps(outline, part) for part in parts])
+
     def gaps(self, outline: Outline, poses: Array) -> Array:
         """How far a machine is from it [m] at poses (N x 3): N; 0 where they touch."""
         c, s = np.cos(poses[:, 2, None]), np.sin(poses[:, 2, None])
@@ -119,8 +128,7 @@ class Ground:
         middles = poses[:, :2] + np.column_stack([c * x - s * y, s * x + c * y])
         for number, body in enumerate(self.bodies):
             close = body.close(middles, half + needed[number])
-            for part in np.array_split(close, 1 + len(close) * len(body.corners) // AT_ONCE):
-                found[part, number] = body.gaps(outline, poses[part]) < needed[number]
+            found[close, number] = body.all_gaps(outline, poses[close]) < needed[number]
         return found
 
 

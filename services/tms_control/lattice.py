@@ -93,7 +93,8 @@ class Lattice:
         flat, places = free.reshape(2 * COUNT, self._cells), self._places()
         yaws = self._start.yaw + np.array([yaw + part for yaw, after in pairwise([*self._yaws, self._yaws[0]])
                                            for part in (0.0, math.remainder(after - yaw, math.tau) / 2)])  # fmt: skip
-        for cells, check in self._check.near(places):
+        for taken, cells, check in self._check.near(places):
+            flat[:, taken] = False
             poses = np.column_stack([np.tile(places[cells], (len(yaws), 1)), np.repeat(yaws, len(cells))])
             flat[:, cells] &= ~check.taken(poses).reshape(len(yaws), len(cells))
         return flat.tobytes()

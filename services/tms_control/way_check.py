@@ -17,6 +17,8 @@ STEP, LEAST_STEP = 0.25, 0.05  # m that no corner moves further between two pose
 TOUCH = 0.1  # m to keep while it drives: places that are told are some centimetres apart each time
 ROUNDING = 1e-6  # m
 
+Cells = NDArray[np.int_]
+
 
 @dataclass(frozen=True)
 class Contact:
@@ -89,15 +91,19 @@ class WayCheck:
             away += piece.length
         return None
 
-    def near(self, places: Array) -> list[tuple[NDArray[np.int_], "WayCheck"]]:
-        """By body: numbers of the places (N x 2) where it may be too near, and its check alone."""
-        return [
-            (
-                body.close(places, self.outline.reach + float(least)),
-                WayCheck(Ground((body,)), self.outline, least[None]),
-            )
-            for body, least in zip(self._ground.bodies, self._needed, strict=True)
-        ]
+    def near(self, places: Array) -> list[tuple[Cells, Cells, "WayCheck"]]:
+        """By body: numbers of the places (N x 2) that are taken in any heading, of those that may be, and its check."""
+        found = []
+        outline = self.outline
+        # In any heading the machine covers a circle around the place, if that lies inside of its outline.
+        covered = max(0.0, min(outline.front, -outline.back, outline.left, -outline.right))
+        for body, least in zip(self._ground.bodies, self._needed, strict=True):
+            close = body.close(places, outline.reach + float(least))
+            away = body.away(places[close])
+            taken = away < covered + (least if covered else 0.0)
+            maybe = ~taken & (away < outline.reach + least)
+            found.append((close[taken], close[maybe], WayCheck(Ground((body,)), outline, least[None])))
+        return found
 
     def _poses(self, piece: Piece) -> Array:
         return along(piece, self._step, self.outline.reach)

@@ -89,6 +89,14 @@ class GroundSnapshots:
             raise DbError(GroundUnreadable(snapshot.taken_at.isoformat()))
         return Heights(snapshot.x0, snapshot.y0, snapshot.cell, z)
 
+    def remove(self, snapshot: Snapshot) -> None:
+        """Take a snapshot away.
+
+        Raises:
+            DbError: the store is away.
+        """
+        self._terrain.delete(snapshot.file)
+
 
 def chosen(snapshots: Sequence[Snapshot], word: str) -> Snapshot:
     """Among snapshots, newest first, the one that a user means.

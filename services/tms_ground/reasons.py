@@ -25,6 +25,10 @@ class WhereIsOrigin(Reason, text="needs either plane, north and east, or latitud
     pass
 class AreaInsideOut(Reason, text="must be [least x, least y, largest x, largest y]", action=EDIT_CONFIG): pass
 class NoGround(Reason, text="there is no ground:, which tells the site's area", action=EDIT_CONFIG): pass
+class NoSoil(Reason, text="there is no soil '{soil}' (there: {soils})", action=EDIT_CONFIG):
+    soil: str; soils: tuple[str, ...]
+class GroundOther(Reason, text="the kept ground is one of another area or soil: it is put aside as {file}"): file: str
+class GroundNotKept(Reason, text="{file}: the ground cannot be kept there ({problem})"): file: str; problem: str
 class NoOrigin(Reason, text="the file is in EPSG {epsg}, and the site file tells no ground.origin", action=EDIT_CONFIG):
     epsg: int
 class NotAlongPlane(Reason, text="a GeoTIFF needs a ground.origin on a plane, without yaw: export an .asc"): pass
@@ -35,6 +39,8 @@ class GroundFileMissing(Reason, text="there is no such file", action=RIGHT_FILE)
 class GroundFileKind(Reason, text="is none of {endings}", action=CONVERT): endings: tuple[str, ...]
 class GroundFileLarge(Reason, text="is {size}, {limit} are allowed", action=EXPORT_AGAIN):
     size: Megabytes; limit: Megabytes
+class ManyPixels(Reason, text="has {width} x {height} pixels, {limit} are allowed in all", action=EXPORT_AGAIN):
+    width: int; height: int; limit: int
 class GroundFileDamaged(Reason, text="cannot be read ({problem})", action=COPY_AGAIN): problem: str
 class ImageNeedsSize(Reason, text="an image does not tell how large it is", action=SAY_SIZE): pass
 class ImageNotGrey(Reason, text="a heightmap has 8-bit or 16-bit grey pixels, not those of mode {mode}",
@@ -47,6 +53,7 @@ class TiffNotPlaced(Reason, text="is no GeoTIFF: its tags do not tell where it l
 class TiffTurned(Reason, text="its pixels are turned against its coordinates", action=CONVERT): pass
 class TiffBands(Reason, text="has pixels of mode {mode}, not one height each", action=CONVERT): mode: str
 class CloudEmpty(Reason, text="holds no points", action=RIGHT_FILE): pass
+class CloudEndsEarly(Reason, text="ends before its {count} points are complete", action=COPY_AGAIN): count: int
 class NoSurface(Reason, text="holds no surface of triangles (TIN)", action=EXPORT_AGAIN): pass
 class ManySurfaces(Reason, text="holds several surfaces: {names}", action=CHOOSE_SURFACE):
     names: tuple[str, ...]

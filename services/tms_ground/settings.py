@@ -2,13 +2,14 @@
 
 from pydantic import Field, ValidationError, model_validator
 
-from tms_config.config import Site
+from tms_config.config import CONFIGS, Site
 from tms_config.models import Settings
 from tms_config.reasons import BadConfig
-from tms_config.yaml_file import located
-from tms_ground.reasons import AreaInsideOut, NoGround, WhereIsOrigin
+from tms_config.yaml_file import located, parse
+from tms_ground.reasons import AreaInsideOut, NoGround, NoSoil, WhereIsOrigin
 from tms_reason.errors import ConfigError
 from tms_reason.validation import Wrong, problems
+from tms_soil.soils import Soil, SoilsFile
 
 
 class Origin(Settings):
@@ -49,6 +50,8 @@ class Ground(Settings):
     origin: Origin | None = None  # absent: only files in `map` can be read
     area: tuple[float, float, float, float]  # m, map: least x, least y, largest x, largest y
     cell: float = Field(gt=0.01, le=10, default=0.2)  # m, side of the cells of a ground that is imported
+    level: float = 0.0  # m, map: height of the ground where `tms:ground` begins
+    soil: str = "earth"  # one of configs/soils.yaml
     plan: Plan | None = None
 
     @model_validator(mode="after")
@@ -72,6 +75,18 @@ def ground_of(site: Site) -> Ground | None:
     except ValidationError as error:
         found = [located(site.path, reason, "ground", *keys) for keys, reason in problems(error)]
         raise ConfigError(found[0] if len(found) == 1 else BadConfig(tuple(found))) from error
+
+
+def soil_of(site: Site, ground: Ground) -> Soil:
+    """The soil of a site.
+
+    Raises:
+        ConfigError: configs/soils.yaml is wrong, or has no such soil.
+    """
+    known = parse(CONFIGS / "soils.yaml", SoilsFile).soils
+    if ground.soil not in known:
+        raise ConfigError(located(site.path, NoSoil(ground.soil, tuple(known)), "ground", "soil"))
+    return known[ground.soil]
 
 
 def needed(site: Site) -> Ground:

@@ -3,17 +3,24 @@
 There another program of that system serves them (irvs/tms_if_for_opera), and two servers of one name would both move
 the machine: so it is off by default. Each goal goes to the gateway with its UUID. The planner of an excavator has such
 names, too (tms_rp/excavator.py).
+
+This process stands behind the goals that it passes on: when it is lost, the gateway cancels them
+(tms_rc/relayed_goals.py).
 """
 
+import threading
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 from tms_msg_rp.action import TmsRpCrawlerDumpDumpAngle, TmsRpCrawlerDumpSwingAngle, TmsRpFollowStraight
 
 from tms_if.relay import Relay
-from tms_machine.border import motions
+from tms_machine.border import RELAYING, motions
+from tms_machine.permit import Permit
 from tms_ros.client import AnyPeer
-from tms_ros.goals import Outcome
+from tms_ros.goals import Ended, Outcome
+from tms_ros.server import AnyGoal
 from tms_runtime.app import App
 
 
@@ -53,6 +60,36 @@ def copied(source: Any, target: Any) -> Any:
     return target
 
 
+class Standing:
+    """Stands behind the oldest goal that has not ended: the one that the gateway lets move the machine."""
+
+    def __init__(self, permit: Permit) -> None:
+        self._permit = permit
+        self._open: list[bytes] = []
+        self._changing = threading.Lock()
+
+    def behind(self, run: Callable[[AnyGoal], Ended[Any]]) -> Callable[[AnyGoal], Ended[Any]]:
+        """The same, with this process behind the goal meanwhile."""
+
+        def stood(goal: AnyGoal) -> Ended[Any]:
+            self._change(self._open.append, goal.uuid)
+            try:
+                return run(goal)
+            finally:
+                self._change(self._open.remove, goal.uuid)
+
+        return stood
+
+    def _change(self, change: Callable[[bytes], None], goal: bytes) -> None:
+        with self._changing:
+            before = self._open[:1]
+            change(goal)
+            if not self._open:
+                self._permit.drop()
+            elif self._open[:1] != before:
+                self._permit.hold(self._open[0])
+
+
 @dataclass(frozen=True)
 class Name:
     """A name that primitives call, and its type where it is not that of the machine's own action."""
@@ -77,10 +114,11 @@ NAMES = (
 
 def serve(app: App) -> None:
     """Serve the motions that the machine has."""
+    standing = Standing(Permit(app.ros, app.pulse, app.machine, RELAYING))
     there = {motion.field: motion for motion in motions(app.site.border(app.machine))}
     for name in NAMES:
         if (motion := there.get(name.motion)) is not None:
             peer = app.ros.peer(motion.type, f"/{app.machine}/rc/{motion.served}")
             served = name.kind or motion.type
             relay = name.relay(app.machine, served, peer, motion.type)
-            app.ros.serve(served, f"/{app.machine}/{name.served}", relay.run, relay.accept)
+            app.ros.serve(served, f"/{app.machine}/{name.served}", standing.behind(relay.run), relay.accept)

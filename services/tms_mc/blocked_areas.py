@@ -15,7 +15,7 @@ from tms_mc.reasons import AreaUnfit
 from tms_reason.errors import SubtaskFailed
 
 RECORD = "blocked_areas"
-LEAST, MOST = 3, 100  # corners
+LEAST, MOST = 3, 50  # corners: three large areas of so many make a search of four seconds
 
 
 def areas(values: Mapping[str, Value]) -> list[Body]:

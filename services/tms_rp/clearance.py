@@ -8,8 +8,9 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from tms_config.models import MachineModel
+from tms_config.models import Box, MachineModel
 from tms_control.links import Array, Links, Matrix, reaches
+from tms_reason.reason import Reason
 from tms_rp.bodies import Body, Surface, Surfaces
 from tms_rp.reasons import Part
 from tms_rp.scene import Obstacle, Scene
@@ -31,8 +32,9 @@ class Clearance:
         self._own = {
             link: Body(Part(link), box, padding if link in links.moved else 0.0) for link, box in model.shapes.items()
         }
-        self._known: dict[object, Body] = {}  # bodies in scenes: as many as the site has
-        self._surfaces = Surfaces()
+        # Bodies in scenes, as many as the site has: by name, box, and key of the surface.
+        self._known: dict[tuple[Reason, Box, int | None], Body] = {}
+        self._surfaces, self._shown = Surfaces(), dict[Reason, int | None]()
         self._looking = threading.Lock()  # guards the places of all bodies
         # Neighbours along the arm, and links of the arm among each other, are kept apart by the joint limits.
         self._pairs = [
@@ -52,6 +54,11 @@ class Clearance:
         with self.looking(scene) as view:
             view.check(made)
 
+    @property
+    def own(self) -> list[Body]:
+        """The bodies of the machine itself."""
+        return list(self._own.values())
+
     def bodies(self, scene: Scene) -> list[Body]:
         """The machine's own, then those of a scene."""
         return [*self._own.values(), *map(self._other, scene.obstacles)]
@@ -64,12 +71,14 @@ class Clearance:
         return {link: told - usual for link, told in scene.padding if told > usual and link in moved}
 
     def _other(self, obstacle: Obstacle) -> Body:
-        key = obstacle.name, obstacle.box, obstacle.mesh and obstacle.mesh.key
+        name, mesh = obstacle.name, obstacle.mesh
+        key = name, obstacle.box, None if mesh is None else mesh.key
+        if self._shown.setdefault(name, key[2]) != key[2]:  # the surface before needs no room any more
+            self._shown[name] = key[2]
+            self._known = {known: body for known, body in self._known.items() if known[0] != name}
         if key not in self._known:
             self._known[key] = (
-                Body(obstacle.name, obstacle.box, 0.0)
-                if obstacle.mesh is None
-                else Surface(obstacle, obstacle.mesh, self._surfaces)
+                Body(name, obstacle.box, 0.0) if mesh is None else Surface(obstacle, mesh, self._surfaces)
             )
         return self._known[key]
 

@@ -48,8 +48,7 @@ def bodies(clearance: Clearance, scene: Scene, pose: Sequence[float]) -> list[Sh
     """The machine's own at a pose [rad, all joints], then those of the scene."""
     places = clearance.places(np.array([pose]))[0]
     more: dict[Reason, float] = {Part(link): by for link, by in clearance.more(scene).items()}
-    machine = zip(clearance.bodies(scene), places, strict=False)  # its bodies come first
-    own = [_own(body, place, more.get(body.name, 0.0)) for body, place in machine]
+    own = [_own(body, place, more.get(body.name, 0.0)) for body, place in zip(clearance.own, places, strict=True)]
     return [*own, *map(_obstacle, scene.obstacles)]
 
 

@@ -65,7 +65,7 @@ class View:
         self._pairs = machine.pairs(scene)
         own, more = len(self._bodies) - len(scene.obstacles), machine.more(scene)
         self._more = np.array([more.get(_link(self._bodies[i].name), 0.0) if j >= own else 0.0 for i, j in self._pairs])
-        self._slack = self._more + [self._bodies[j].slack for _, j in self._pairs]
+        self._slack = [more + self._bodies[j].slack for more, (_, j) in zip(self._more, self._pairs, strict=True)]
         self._half = np.array([body.half for body in self._bodies])
         inner = [body.inner for body in self._bodies[-len(scene.obstacles) :]] if scene.obstacles else []
         self._others = np.array([one.place @ box for one, box in zip(scene.obstacles, inner, strict=True)])

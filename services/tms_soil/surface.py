@@ -78,13 +78,13 @@ class Pit:
     """A level floor with slopes that rise from its sides up to the rim; beyond the rim the design says nothing."""
 
     floor: Sequence[Point]  # corners [m, map], in either order
-    depth_level: float  # m, height of the floor
+    level: float  # m, height of the floor
     slope: float  # rise per length, above 0; 1:1.5 is 1 / 1.5
     rim: float  # m, height at which the slopes end
 
     def at(self, x: Array, y: Array) -> Array:
         """Heights [m] at places [m, map]; round corners, since all slopes are equally steep."""
-        z = self.depth_level + self.slope * np.where(inside(self.floor, x, y), 0.0, distance(self.floor, x, y))
+        z = self.level + self.slope * np.where(inside(self.floor, x, y), 0.0, distance(self.floor, x, y))
         return np.where(z <= self.rim, z, np.nan)
 
 

@@ -20,6 +20,7 @@ from earth_rig import (
     FORCES,
     OPEN,
     PLACES,
+    START,
     TURNS,
     VECTORS,
     WIDTH,
@@ -39,14 +40,16 @@ from earth_rig import (
     truckload,
     vessel,
 )
-from tms_control.links import Links
+from tms_control.links import Links, placed
 from tms_soil.cutting import put_down
+from tms_soil.earth import Earth
 from tms_soil.grid import FINE, TILE, Grid
 from tms_soil.resistance import factors, force
 from tms_soil.slumping import settle
 
 CYCLES, AT_ONCE = 1000, 4  # random cycles, on one ground
 PASSES = 4  # of which each update is timed
+RATE = 25.0  # Hz of the reports of a site
 USUAL = 0.06  # ms, kinematics of a pose on a usual PC
 ROUNDING = 0.05  # kN of the published forces
 LEAST = 1e-12  # so that a ratio to it can be told
@@ -58,6 +61,9 @@ def measure() -> Iterable[Figure]:
     yield Figure("update mean", "ms", float(np.mean(updates)), 1.0, usual, usual_floor=USUAL)
     yield Figure("update p99", "ms", float(np.percentile(updates, 99)), 3.0, usual, usual_floor=USUAL)
     yield Figure("update of a machine that rests", "ms", _resting(), 0.3, usual, usual_floor=USUAL)
+    yield Figure(
+        "two diggers, three carriers", "%", _busy_site(), 40.0, usual * 5 * RATE / 10, usual_floor=USUAL * 5 * RATE / 10
+    )
     yield Figure("200 m x 200 m, dug all over", "MB", _memory(), 150.0, flat(200.0).z.nbytes / 1e6)
     yield _true(f"mass error of {CYCLES} random cycles", "", _mass_error(), 1e-9)
     yield _true("piles off their repose after 5 s", "deg", _repose(), 1.0)
@@ -108,6 +114,24 @@ def _resting() -> float:
         earth.report(*one)
         times.append((time.thread_time() - begun) * 1000)
     return float(np.median(times[200:]))
+
+
+def _busy_site() -> float:
+    """Share of a core [%] for five machines that all work, at real speed; without ROS."""
+    models = {
+        name: model_of(name.partition("_")[0]) for name in ("zx200_1", "zx200_2", "ic120_1", "ic120_2", "ic120_3")
+    }
+    earth = Earth(Grid.from_heights(flat(51.2), soils()), models)
+    arms = [one.angles for one in reports(moved([*dig_poses(), ABOVE, OPEN, START], rate=RATE))]
+    begun = time.thread_time()
+    for k, angles in enumerate(arms):
+        now = k / RATE
+        for number in (1, 2):
+            earth.report(f"zx200_{number}", now, angles, placed(0.0, 18.0 * number - 27.0, 0.0))
+        for number in (1, 2, 3):
+            place = placed(6.5 - 0.8 * now * (number > 1), 9.0 * number - 18.0, 0.0)
+            earth.report(f"ic120_{number}", now, {"vessel_pin_joint": -0.05 * now}, place)
+    return 100 * (time.thread_time() - begun) / (len(arms) / RATE)
 
 
 def _memory() -> float:

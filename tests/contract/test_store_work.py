@@ -143,6 +143,10 @@ def test_import_show_and_export(tms: Callable[..., Result], tmp_path: Path, shar
     assert "File exists" in str(tms(ground.command, "export", "last", tmp_path / "out.asc").exception)
     assert tms(ground.command, "export", "last", tmp_path / "out.txt").exit_code == 2
     assert shared_db["fs.files"].count_documents({}) == 2
+    assert "out.asc" in tms(ground.command, "rm", "last").stdout
+    assert json.loads(tms(ground.command, "rm", "last", "--json").stdout)["removed"]["source"] == "a.tif"
+    assert getattr(tms(ground.command, "rm", "last").exception, "code", "") == "GROUND_NOT_THERE"
+    assert shared_db["fs.chunks"].count_documents({}) == 0
 
 
 def test_a_geotiff_is_exported_with_its_coordinates(
@@ -179,6 +183,14 @@ def test_a_refused_file_leaves_nothing(tms: Callable[..., Result], tmp_path: Pat
         error = tms(ground.command, "import", path, *words).exception
         assert getattr(error, "code", "") == "BAD_GROUND", path
     assert shared_db["fs.files"].count_documents({}) == shared_db["fs.chunks"].count_documents({}) == 0
+
+
+def test_options_of_an_import_that_are_refused(tms: Callable[..., Result], tmp_path: Path) -> None:
+    asc = files.ascii_grid(tmp_path / "a.asc")
+    for words in (("--cell", "nan"), ("--cell", 0), ("--area", 0, 0, "inf", 5), ("--width", 0), ("--offset-x", "nan")):
+        assert tms(ground.command, "import", asc, "--epsg", 6677, *words).exit_code == 2, words
+    inside_out = tms(ground.command, "import", asc, "--epsg", 6677, "--area", 10, 0, 0, 5).exception
+    assert "--area: must be [least x" in str(inside_out)
 
 
 def test_volumes_of_grounds_and_designs(tms: Callable[..., Result], shared_db: store.Db, tmp_path: Path) -> None:

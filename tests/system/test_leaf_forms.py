@@ -77,6 +77,22 @@ def test_their_primitive_drives_through_our_gateway(mesh: Mesh) -> None:
     assert call.outcome is Outcome.SUCCEEDED
 
 
+def test_a_motion_ends_with_the_border_that_has_passed_it_on(mesh: Mesh) -> None:
+    goal, goals = NavigateToPose.Goal(), list[str]()
+    goal.pose.header.frame_id = "map"
+    goal.pose.pose.position.x, goal.pose.pose.orientation.w = 2000.0, 1.0
+    with node_in(mesh) as node:
+        peer = node.peer(NavigateToPose, "/mst110cr/tms_rp_navigate_anywhere")
+        peer.wait_ready(LIMIT)
+        node.subscribe(MachineState, "/mst110cr/rc/state", lambda state: goals.append(state.goal), latched=True)
+        peer.send(goal)
+        wait_until(lambda: bool(goals and goals[-1]), LIMIT, "the truck drives")
+        rows = json.loads(mesh.tms("ps", "--json").stdout)
+        os.kill(next(row["pid"] for row in rows if row["name"] == "mst110cr:if"), signal.SIGKILL)
+        wait_until(lambda: not goals[-1], LIMIT, "the truck has no goal any more")
+    mesh.wait_ready()
+
+
 @pytest.mark.parametrize(
     ("machine", "node", "ports", "told"),
     [

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tms_cli import ground_options, grounds, session
-from tms_cli.ground_options import Level, Polygon, Slope
+from tms_cli.ground_options import Finite, Level, Polygon, Slope
 from tms_cli.open_store import opened
 from tms_cli.reasons import NameTaken
 from tms_cli.words import Group, say
@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from tms_soil.surface import Bounds, Point
 
 FILE = click.Path(path_type=Path)
-METRES = click.FloatRange(min=0)
+METRES = Finite(min=0, min_open=True)
+ANY = Finite()
 inside_option = click.option("--inside", type=Polygon(), help="Count only what lies in this polygon.")
 
 
@@ -39,16 +40,16 @@ def command() -> None:
 @click.argument("file", type=FILE)
 @click.option("--epsg", type=int, help="Code of its coordinates, where the file does not tell them.")
 @click.option("--map", "in_map", is_flag=True, help="Its coordinates are those of `map`.")
-@click.option("--area", type=float, nargs=4, help="Least x and y, largest x and y in metres; default: the site file's.")
-@click.option("--cell", type=click.FloatRange(0.01, 10), help="Side of a cell in metres; default: the site file's.")
+@click.option("--area", type=ANY, nargs=4, help="Least x and y, largest x and y in metres; default: the site file's.")
+@click.option("--cell", type=Finite(0.01, 10), help="Side of a cell in metres; default: the site file's.")
 @click.option("--surface", help="Name of a surface, where a LandXML holds several.")
 @click.option("--keep-holes", is_flag=True, help="Let places without a height be unknown.")
 @click.option("--width", type=METRES, help="Metres along x (images).")
 @click.option("--height", type=METRES, help="Metres along y (images).")
 @click.option("--elevation", type=METRES, help="Metres from the darkest to the brightest possible pixel (images).")
-@click.option("--base", type=float, default=0.0, help="Height of the darkest pixel in metres (images).")
-@click.option("--offset-x", type=float, default=0.0, help="Metres from the site's origin.")
-@click.option("--offset-y", type=float, default=0.0, help="Metres from the site's origin.")
+@click.option("--base", type=ANY, default=0.0, help="Height of the darkest pixel in metres (images).")
+@click.option("--offset-x", type=ANY, default=0.0, help="Metres from the site's origin.")
+@click.option("--offset-y", type=ANY, default=0.0, help="Metres from the site's origin.")
 @session.json_option
 def import_(file: Path, area: "Bounds | None", cell: float | None, as_json: bool, **told: Any) -> None:
     """Check a file of heights and store it as the ground of now.
@@ -130,8 +131,8 @@ def show(snapshot: str, as_json: bool) -> None:
 @click.argument("snapshots", nargs=-1)
 @click.option("--plane", type=Level(), help="Against a plane: its height, or height and slopes along x and y.")
 @click.option("--pit", type=Polygon(), help="Against a pit: the corners of its floor.")
-@click.option("--floor", type=float, help="Height of the pit's floor in metres.")
-@click.option("--rim", type=float, help="Height at which the pit's slopes end in metres.")
+@click.option("--floor", type=ANY, help="Height of the pit's floor in metres.")
+@click.option("--rim", type=ANY, help="Height at which the pit's slopes end in metres.")
 @click.option("--slope", type=Slope(), default="1:1.0", show_default=True, help="Slopes of the pit.")
 @click.option("--design", "file", type=FILE, help="Against a surface in a file (LandXML, GeoTIFF, ASCII grid).")
 @click.option("--epsg", type=int, help="Code of its coordinates, where the file does not tell them.")
@@ -203,6 +204,28 @@ def export(snapshot: str, file: Path, as_json: bool) -> None:
         session.show_json({**grounds.as_dict(found), "file": str(file)})
     else:
         click.echo(f"{file}: {grounds.time(found)}, {grounds.extent(found)}")
+
+
+@command.command()
+@click.argument("snapshot")
+@session.json_option
+def rm(snapshot: str, as_json: bool) -> None:
+    """Remove one ground, for example one from a wrong file.
+
+    \b
+    Example:
+      tms ground rm last
+    """
+    from tms_db.ground import GroundSnapshots
+
+    with opened() as db:
+        stored = GroundSnapshots(db)
+        found = stored.find(snapshot)
+        stored.remove(found)
+    if as_json:
+        session.show_json({"removed": grounds.as_dict(found)})
+    else:
+        click.echo(say("removed: {time}, {source}", time=grounds.time(found), source=found.source))
 
 
 @command.command()

@@ -16,8 +16,8 @@ from tms_cli.day_report.sections import part_name
 from tms_work.cycle import PARTS
 
 WIDTH, HEIGHT = 480, 190  # points
-LEFT, RIGHT, BOTTOM, TOP = 45, 20, 40, 30  # points round a chart
-BAR, LINE, PLAN = HexColor(0x2166AC), HexColor(0x333333), HexColor(0xB2182B)
+LEFT, RIGHT, BOTTOM, TOP = 45, 40, 40, 30  # points round a chart
+BAR, LINE, PLAN = HexColor(0x92C5DE), HexColor(0x333333), HexColor(0xB2182B)
 PART_COLOURS = [HexColor(one) for one in (0x2166AC, 0x67A9CF, 0x1B7837, 0x7FBF7B, 0xF1A340, 0xB2182B)]
 
 
@@ -32,25 +32,31 @@ def plots(facts: Facts) -> list[Drawing]:
 
 
 def _hours(facts: Facts) -> Drawing:
-    """Bank m3 of each hour as bars; their sum and the plan as lines over them."""
-    drawing = _drawing(facts.say("Bank m³ by hour: bars; sum of the day: black; plan: red"))
-    amounts = [one.bank for one in facts.hours.values()]
-    lines = [list(accumulate(amounts))]
-    if facts.plan is not None:
-        lines.append([facts.plan.bank] * len(amounts))
-    most = max(max(line) for line in lines) or 1.0
+    """Bank m3 of each hour as bars, by the left axis; their sum and the plan as lines, by the right one."""
+    drawing = _drawing(facts.say("Bank m³ by hour: bars, left; sum of the day: black, plan: red, right"))
     names = [str(at) for at in facts.hours]
-    for chart, data in ((VerticalBarChart(), [amounts]), (HorizontalLineChart(), lines)):
-        _place(chart, data, names, HEIGHT, most)
-        drawing.add(chart)
-        if isinstance(chart, VerticalBarChart):
-            chart.bars[0].fillColor, chart.bars[0].strokeColor = BAR, None
-        else:
-            chart.joinedLines = 1
-            chart.categoryAxis.visible = chart.valueAxis.visible = 0
-            for at, colour in enumerate((LINE, PLAN)[: len(data)]):
-                chart.lines[at].strokeColor, chart.lines[at].strokeWidth = colour, 1.5
+    amounts = [one.bank for one in facts.hours.values()]
+    bars = VerticalBarChart()
+    _place(bars, [amounts], names, HEIGHT, max(amounts))
+    bars.bars[0].fillColor, bars.bars[0].strokeColor = BAR, None
+    drawing.add(bars)
+    drawing.add(_lines(facts, names, list(accumulate(amounts))))
     return drawing
+
+
+def _lines(facts: Facts, names: Sequence[str], sums: list[float]) -> HorizontalLineChart:
+    """The sum of the day, and the plan."""
+    lines = [sums] if facts.plan is None else [sums, [facts.plan.bank] * len(sums)]
+    chart = HorizontalLineChart()
+    _place(chart, lines, names, HEIGHT, max(max(line) for line in lines))
+    for at, colour in enumerate((LINE, PLAN)[: len(lines)]):
+        chart.lines[at].strokeColor, chart.lines[at].strokeWidth = colour, 1.5
+    chart.categoryAxis.visible = 0
+    axis = chart.valueAxis
+    axis.joinAxis, axis.joinAxisMode = chart.categoryAxis, "right"
+    axis.tickLeft, axis.tickRight = 0, 5
+    axis.labels.boxAnchor, axis.labels.dx = "w", 7
+    return chart
 
 
 def _parts(facts: Facts) -> Drawing:
@@ -60,7 +66,7 @@ def _parts(facts: Facts) -> Drawing:
     drawing = _drawing(facts.say("Parts of the excavators' cycles, minutes"), height)
     data = [[parts.get(part, 0.0) / 60 for parts in machines.values()] for part in PARTS["dig"]]
     chart = HorizontalBarChart()
-    most = max(sum(column) for column in zip(*data, strict=True)) or 1.0
+    most = max(sum(column) for column in zip(*data, strict=True))
     _place(chart, data, list(machines), height - 20, most)
     chart.y += 20
     chart.categoryAxis.style = "stacked"
@@ -88,6 +94,6 @@ def _place(chart: Any, data: Sequence[Sequence[float]], names: Sequence[str], he
     """Give a chart its place, numbers and axes."""
     chart.x, chart.y, chart.width, chart.height = LEFT, BOTTOM, WIDTH - LEFT - RIGHT, height - BOTTOM - TOP
     chart.data, chart.categoryAxis.categoryNames = [tuple(line) for line in data], list(names)
-    chart.valueAxis.valueMin, chart.valueAxis.valueMax = 0, most * 1.05
+    chart.valueAxis.valueMin, chart.valueAxis.valueMax = 0, (most or 1.0) * 1.05
     for axis in (chart.categoryAxis, chart.valueAxis):
         axis.labels.fontName, axis.labels.fontSize = font(), 7

@@ -1,23 +1,32 @@
 """Point clouds as LAS and LAZ, read by laspy and lazrs in pieces: a cloud of any size needs the same memory."""
 
 import struct
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import laspy
 import lazrs
 import numpy as np
 from laspy.errors import LaspyException
 from pyproj import CRS
+from pyproj.exceptions import CRSError
 
 from tms_ground.files.samples import Places
-from tms_ground.reasons import CloudEmpty, GroundFileDamaged, LengthUnit
+from tms_ground.reasons import CloudEmpty, CloudEndsEarly, GroundFileDamaged, LengthUnit
 from tms_reason.errors import TmsError
 from tms_soil.surface import Array, Bounds
 
 PIECE = 250_000  # points: about 30 MB with all their fields
-UNREADABLE = (LaspyException, lazrs.LazrsError, OSError, ValueError, struct.error)
+UNREADABLE = (LaspyException, lazrs.LazrsError, CRSError, OSError, OverflowError, ValueError, struct.error)
+PANIC = "pyo3_runtime"  # module of what lazrs raises where its own code gives up; it cannot be imported
+HEAD = 375  # bytes of the head of LAS 1.4
+# Numbers of records in the head: offset, least bytes of a record, first minor version (LAS 1.4-R15, tables 3, 5, 6).
+RECORDS = ((100, 54, b"\0"), (243, 60, b"\4"))
+POINTS, FORMAT, COMPRESSED = 96, 104, 0x80  # offsets in the head: where points begin, their format; its bit for LAZ
+LEAST_CHUNK = 20  # bytes of a compressed piece: its first point is not compressed
 GROUND, NOISE = 2, (7, 18)  # classes of points, ASPRS LAS 1.4-R15, table 17
 
 
@@ -39,18 +48,20 @@ class Cloud:
             TmsError: the file ends early, or is damaged.
         """
         of_ground, of_others = _Means(shape), _Means(shape)
-        try:
-            with laspy.open(self.path) as reader:
-                for points in reader.chunk_iterator(PIECE):
-                    x, y = places.to_map(np.asarray(points.x), np.asarray(points.y))
-                    at = _cells(x, y, x0, y0, cell, shape)
-                    z, kind = np.asarray(points.z), np.asarray(points.classification)
-                    valid = (at >= 0) & ~np.isin(kind, NOISE)
-                    ground, others = valid & (kind == GROUND), valid & (kind != GROUND)
-                    of_ground.add(at[ground], z[ground])
-                    of_others.add(at[others], z[others])
-        except UNREADABLE as error:
-            raise TmsError(GroundFileDamaged(str(error))) from error
+        with _readable(), laspy.open(self.path) as reader:
+            left = reader.header.point_count
+            while left > 0:
+                points = reader.read_points(min(PIECE, left))
+                left -= len(points)
+                if not len(points):  # of a LAS that was cut off
+                    raise TmsError(CloudEndsEarly(reader.header.point_count))
+                x, y = places.to_map(np.asarray(points.x), np.asarray(points.y))
+                at = _cells(x, y, x0, y0, cell, shape)
+                z, kind = np.asarray(points.z), np.asarray(points.classification)
+                valid = (at >= 0) & ~np.isin(kind, NOISE)
+                ground, others = valid & (kind == GROUND), valid & (kind != GROUND)
+                of_ground.add(at[ground], z[ground])
+                of_others.add(at[others], z[others])
         found = of_ground.take()
         np.copyto(found, of_others.take(), where=np.isnan(found))
         return found
@@ -80,18 +91,58 @@ def read(path: Path) -> Cloud:
     Raises:
         TmsError: it is no LAS or LAZ, or holds no points.
     """
-    try:
+    with _readable():
+        _refuse_false_counts(path)
         with laspy.open(path) as reader:
             head = reader.header
             system = head.parse_crs()
-    except UNREADABLE as error:
-        raise TmsError(GroundFileDamaged(str(error))) from error
     if not head.point_count:
         raise TmsError(CloudEmpty())
     if system is not None:
         _refuse_feet(system)
     bounds = (float(head.x_min), float(head.y_min), float(head.x_max), float(head.y_max))
     return Cloud(path, None if system is None else _horizontal(system).to_epsg(), bounds)
+
+
+@contextmanager
+def _readable() -> Iterator[None]:
+    """Turn what the libraries raise for a damaged file into a TmsError."""
+    try:
+        yield
+    except UNREADABLE as error:
+        raise TmsError(GroundFileDamaged(str(error))) from error
+    except BaseException as error:
+        if type(error).__module__ != PANIC:
+            raise
+        raise TmsError(GroundFileDamaged(str(error))) from error
+
+
+def _refuse_false_counts(path: Path) -> None:
+    """Refuse a head that tells of more than fits into the file: libraries would read for hours, or end the process."""
+    size = path.stat().st_size
+    with path.open("rb") as file:
+        head = file.read(HEAD)
+        told = [(_number(head[at : at + 4]), least) for at, least, since in RECORDS if head[25:26] >= since]
+        if len(head) > FORMAT and head[FORMAT] & COMPRESSED:
+            told.append((_chunks(file, _number(head[POINTS : POINTS + 4]), size), LEAST_CHUNK))
+    for count, least in told:
+        if count * least > size:
+            raise TmsError(GroundFileDamaged(f"{count} x {least} B > {size} B"))
+
+
+def _chunks(file: BinaryIO, begin: int, size: int) -> int:
+    """Number of compressed pieces in a LAZ, from their table, whose place is told where points begin, or at the end."""
+    file.seek(begin)
+    place = int.from_bytes(file.read(8), "little", signed=True)
+    if place == -1:
+        file.seek(max(0, size - 8))
+        place = int.from_bytes(file.read(8), "little", signed=True)
+    file.seek(place + 4)
+    return _number(file.read(4))
+
+
+def _number(data: bytes) -> int:
+    return int.from_bytes(data, "little")
 
 
 def _horizontal(system: CRS) -> CRS:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tms_ground.files.samples import Raster, refuse_large
+from tms_ground.files.samples import Raster, refuse_large, refuse_many
 from tms_ground.frame import FIRST_PLANE
 from tms_ground.reasons import (
     GroundFileDamaged,
@@ -44,6 +44,7 @@ def read(path: Path) -> Raster:
     refuse_large(path)
     try:
         with Image.open(path, formats=("TIFF",)) as picture:
+            refuse_many(*picture.size)
             tags: Any = picture.tag_v2  # type: ignore[attr-defined]
             if picture.mode not in HEIGHTS:
                 raise TmsError(TiffBands(picture.mode))

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tms_ground.files.samples import Raster
+from tms_ground.files.samples import Raster, refuse_many
 from tms_ground.reasons import GroundFileDamaged, ImageNotGrey
 from tms_reason.errors import TmsError
 
@@ -34,6 +34,7 @@ def read(path: Path, size: Size) -> Raster:
 
     try:
         with Image.open(path, formats=("PNG",)) as picture:
+            refuse_many(*picture.size)
             if picture.mode not in BRIGHTEST:
                 raise TmsError(ImageNotGrey(picture.mode))
             share = np.asarray(picture, dtype=np.float64)[::-1] / BRIGHTEST[picture.mode]

@@ -6,11 +6,12 @@ from typing import Protocol
 
 import numpy as np
 
-from tms_ground.reasons import GroundFileLarge
+from tms_ground.reasons import GroundFileLarge, ManyPixels
 from tms_reason.errors import TmsError
 from tms_soil.surface import Array, Bounds, bilinear
 
 MAX_FILE = 400 * 2**20  # bytes of a file that is read as a whole
+MAX_PIXELS = 64 * 2**20  # of a picture, which takes 8 bytes each
 MAX_CELLS = 16 * 2**20  # of a grid: 200 m x 200 m have 4 million at 0.1 m
 
 
@@ -70,11 +71,21 @@ class Raster:
         return found
 
 
+def refuse_many(width: int, height: int) -> None:
+    """Refuse a picture that would not fit into memory, however small its file is.
+
+    Raises:
+        TmsError: it has more than MAX_PIXELS.
+    """
+    if width * height > MAX_PIXELS:
+        raise TmsError(ManyPixels(width, height, MAX_PIXELS))
+
+
 def refuse_large(path: Path) -> None:
     """Refuse a file that would not fit into memory as a whole.
 
     Raises:
-        TmsError: BAD_GROUND.
+        TmsError: it is larger than MAX_FILE.
     """
     size = path.stat().st_size
     if size > MAX_FILE:

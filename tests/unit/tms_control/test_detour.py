@@ -131,7 +131,7 @@ def test_through_a_gap_that_is_a_metre_wider_than_it_has_to_be() -> None:
 def test_it_backs_into_a_bay_that_has_no_room_to_turn() -> None:
     """The truck is to stand in it with its front to the open end."""
     bay = box(20, 2.3, 30, 3.3), box(20, -3.3, 30, -2.3), box(29, -3.3, 30, 3.3)
-    path = way(Pose(0, 8, 0), Pose(25, 0, math.pi), *bay)
+    path = way(Pose(0, 8, 0.2), Pose(25, 0, math.pi), *bay)
     assert path.pieces[-1].direction == -1 and path.pieces[-1].length >= 4
     assert min(body.gaps(TRUCK, np.array(dense(path))).min() for body in bay) > 0.3
 

@@ -83,6 +83,12 @@ def test_inside_a_large_area_and_around_a_small_one_is_contact() -> None:
     assert body((-1, -1), (1, -1), (1, 1), (-1, 1)).gaps(ahead, np.array([Pose(0, 0, 0)])) == pytest.approx([2.0])
 
 
+@pytest.mark.parametrize("x", [-3.0, -1.5, 1.5])
+def test_a_thin_wall_through_the_machine_is_contact(x: float) -> None:
+    wall = body((x, -9), (x + 0.1, -9), (x + 0.1, 9), (x, 9))
+    assert wall.gaps(TRUCK, np.array([Pose(0, 0, 0), Pose(6, 0, 0)])) == pytest.approx([0.0, 6 - 3.6 - x - 0.1])
+
+
 @given(st.lists(poses, min_size=1, max_size=5), st.floats(0, 3))
 def test_nearer_is_what_gaps_say(many: list[Pose], needed: float) -> None:
     bodies = (body(*L_SHAPE), body((0, 0), (1, 0), (0, 1)))

@@ -396,6 +396,20 @@ def test_what_leaves_the_way_in_time_is_only_waited_for() -> None:
     assert trip.verdict == ARRIVED and max(abs(one.y) for one in machine.been) < 0.3
 
 
+def test_what_comes_into_the_way_counts_for_no_attempt() -> None:
+    machine = DrivenTracks("ic120")
+    trip = machine.trip(Task.to(Pose(60, 0, 0)))
+    for x in (8, 18, 28):
+        machine.run(trip, until=lambda at=x: machine.pose.x > at)
+        machine.stands(machine_at(x + 6, 0))
+        machine.run(trip, until=lambda: machine.speed == 0.0)
+        machine.stands()
+    machine.run(trip, until=lambda: machine.pose.x > 45)
+    machine.kick(0.0, beside=1.0)
+    machine.run(trip)
+    assert trip.verdict == ARRIVED and at(machine, Pose(60, 0, 0))
+
+
 def test_where_it_cannot_get_around_it_tries_three_times_and_tells_what_is_in_the_way() -> None:
     machine = DrivenTracks("ic120")
     walls = [

@@ -164,6 +164,10 @@ def test_files_that_are_not_what_they_seem(tmp_path: Path, monkeypatch: pytest.M
     Image.new("RGB", (4, 4)).save(tmp_path / "c.png")
     assert refused(tmp_path / "c.png", Given(size=Size(1, 1, 1))) == reasons.ImageNotGrey("RGB")
     assert isinstance(refused(files.ascii_grid(tmp_path / "b.asc"), cell=0.001), reasons.ManyCells)
+    monkeypatch.setattr(samples, "MAX_PIXELS", 1000)
+    assert refused(files.geotiff(tmp_path / "b.tif")) == reasons.ManyPixels(48, 28, 1000)
+    Image.new("L", (30, 40)).save(tmp_path / "d.png")
+    assert refused(tmp_path / "d.png", Given(size=Size(1, 1, 1))) == reasons.ManyPixels(30, 40, 1000)
     monkeypatch.setattr(samples, "MAX_FILE", 1000)
     assert isinstance(refused(files.ascii_grid(tmp_path / "b.asc")), reasons.GroundFileLarge)
 
@@ -172,6 +176,22 @@ def test_files_that_end_early(tmp_path: Path) -> None:
     for path in (files.geotiff(tmp_path / "a.tif"), files.cloud(tmp_path / "a.laz"), files.landxml(tmp_path / "a.xml")):
         path.write_bytes(path.read_bytes()[: path.stat().st_size * 2 // 3])
         assert isinstance(refused(path), reasons.GroundFileDamaged | reasons.XmlUnreadable), path
+
+
+def test_clouds_that_tell_of_more_than_they_hold(tmp_path: Path) -> None:
+    las = files.cloud(tmp_path / "a.las")
+    data = las.read_bytes()
+    las.write_bytes(data[:-60])  # the last two points
+    why = refused(las)
+    assert isinstance(why, reasons.CloudEndsEarly) and why.count == 3 * 97 * 57
+    las.write_bytes(data[:100] + b"\xff" * 4 + data[104:])  # four billion records before the points
+    assert isinstance(refused(las), reasons.GroundFileDamaged)
+    laz = files.cloud(tmp_path / "a.laz")
+    data = laz.read_bytes()
+    points = int.from_bytes(data[96:100], "little")
+    table = int.from_bytes(data[points : points + 8], "little")
+    laz.write_bytes(data[: table + 4] + b"\xff" * 4 + data[table + 8 :])  # as many compressed pieces
+    assert isinstance(refused(laz), reasons.GroundFileDamaged)
 
 
 def test_grids_with_a_wrong_head(tmp_path: Path) -> None:

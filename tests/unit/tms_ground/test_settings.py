@@ -5,9 +5,10 @@ from pathlib import Path
 import pytest
 
 from tms_config.config import load_site
+from tms_config.processes import table
 from tms_config.reasons import BadKey
-from tms_ground.reasons import AreaInsideOut, NoGround, WhereIsOrigin
-from tms_ground.settings import ground_of, needed
+from tms_ground.reasons import AreaInsideOut, NoGround, NoSoil, WhereIsOrigin
+from tms_ground.settings import ground_of, needed, soil_of
 from tms_reason.errors import ConfigError
 from tms_reason.reason import Reason
 
@@ -59,3 +60,19 @@ def test_an_area_without_size(tmp_path: Path, area: str) -> None:
 def test_a_plane_that_japan_does_not_have(tmp_path: Path) -> None:
     found = refused(tmp_path, "ground: {area: [0, 0, 1, 1], origin: {plane: 20, north: 0, east: 0}}")
     assert isinstance(found, BadKey) and found.key == "ground.origin.plane"
+
+
+def test_its_soil_is_one_of_the_known_ones(tmp_path: Path) -> None:
+    chosen = site(tmp_path, "ground: {area: [0, 0, 1, 1], soil: clay}")
+    assert soil_of(chosen, needed(chosen)).cohesion == 40000
+    chosen = site(tmp_path, "ground: {area: [0, 0, 1, 1], soil: cheese}")
+    with pytest.raises(ConfigError) as caught:
+        soil_of(chosen, needed(chosen))
+    found = caught.value.reason
+    assert isinstance(found, BadKey) and found.key == "ground.soil"
+    assert isinstance(found.problem, NoSoil) and "earth" in found.problem.soils
+
+
+def test_only_a_site_with_a_ground_has_the_process(tmp_path: Path) -> None:
+    assert "tms:ground" not in [row.full for row in table(site(tmp_path))]
+    assert "tms:ground" in [row.full for row in table(site(tmp_path, "ground: {area: [0, 0, 1, 1]}"))]

@@ -115,7 +115,7 @@ def test_a_path_leads_around_what_stands_there() -> None:
 
 
 @pytest.mark.parametrize(
-    "around", [FakeSurroundings((square(9.0, 5.0),)), FakeSurroundings(unfit=AreaUnfit("pit", 3, 100))]
+    "around", [FakeSurroundings((square(9.0, 5.0),)), FakeSurroundings(unfit=AreaUnfit("pit", 3, 50))]
 )
 def test_a_path_that_cannot_be_planned_is_refused_with_its_reason(around: FakeSurroundings) -> None:
     outcome, result = compute(FakeTracks(), ComputePathToPose.Goal(goal=in_map(THERE)), around)

@@ -39,12 +39,12 @@ def test_an_area_is_its_corners_in_turn() -> None:
 
 @pytest.mark.parametrize(
     "value",
-    [[], PIT[:4], PIT[:5], [*PIT[:5], math.nan], [*PIT[:5], math.inf], [1.0] * 202, "pit", 3.0, ["a"] * 6, [True] * 6],
+    [[], PIT[:4], PIT[:5], [*PIT[:5], math.nan], [*PIT[:5], math.inf], [1.0] * 102, "pit", 3.0, ["a"] * 6, [True] * 6],
 )
 def test_an_area_that_makes_no_sense_is_refused_by_its_name(value: Value) -> None:
     with pytest.raises(SubtaskFailed) as caught:
         areas({"pit": value})
-    assert caught.value.reason == BadRecord(RECORD, AreaUnfit("pit", 3, 100))
+    assert caught.value.reason == BadRecord(RECORD, AreaUnfit("pit", 3, 50))
 
 
 class Site:
@@ -77,7 +77,7 @@ class Site:
         assert (service, request.model_name, request.record_name, limit) == (SERVICE, "", "blocked_areas", LIMIT)
         if not self.answers:
             raise RosError(NoAnswer("tms:db", service, limit))
-        message = to_line(AreaUnfit("pit", 3, 100))
+        message = to_line(AreaUnfit("pit", 3, 50))
         record = Record(values=to_parameters(self.values))
         return GetParameter.Response(error_code=self.error, error_msg=message if self.error else "", record=record)
 
@@ -126,4 +126,4 @@ def test_a_record_that_is_too_old_refuses(monkeypatch: pytest.MonkeyPatch) -> No
     site.error = "STALE_RECORD"
     with pytest.raises(SubtaskFailed) as caught:
         site.around(monkeypatch).read()
-    assert caught.value.reason == AreaUnfit("pit", 3, 100)  # the reason of the answer
+    assert caught.value.reason == AreaUnfit("pit", 3, 50)  # the reason of the answer

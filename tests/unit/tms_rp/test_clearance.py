@@ -5,6 +5,7 @@ import math
 from collections.abc import Iterator
 from contextlib import suppress
 
+import fcl
 import numpy as np
 import pytest
 
@@ -150,9 +151,21 @@ def test_more_padding_of_a_link_is_kept() -> None:
     Clearance(MODEL, padding=0.0).check(made, Scene((below,), padding=(("bucket_link", 0.5),)))
 
 
-def test_the_same_surface_is_one_body(monkeypatch: pytest.MonkeyPatch) -> None:
-    clearance, made = Clearance(MODEL), move(LOW_RIGHT, LOW_FRONT)
-    for _ in range(2):
-        with suppress(SubtaskFailed):
-            clearance.check(made, heap(7.0, 3.0))
-        monkeypatch.setattr("tms_rp.bodies.fcl.BVHModel", None)
+def test_a_surface_is_made_once_and_an_old_one_is_forgotten(monkeypatch: pytest.MonkeyPatch) -> None:
+    alive, made = set[int](), list[int]()
+
+    class Counted(fcl.BVHModel):  # type: ignore[misc]
+        def __init__(self) -> None:
+            alive.add(id(self))
+            made.append(id(self))
+
+        def __del__(self) -> None:
+            alive.discard(id(self))
+
+    monkeypatch.setattr("tms_rp.bodies.fcl.BVHModel", Counted)
+    clearance, motion = Clearance(MODEL), move(LOW_RIGHT, LOW_FRONT)
+    for height in (2.8, 2.9, 3.0, 3.0, 3.0):
+        for scene in (heap(7.0, height), Scene(tuple(one.grown(0.3) for one in heap(7.0, height).obstacles))):
+            with suppress(SubtaskFailed):
+                clearance.check(motion, scene)
+    assert (len(made), len(alive)) == (3, 1)

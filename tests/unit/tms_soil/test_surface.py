@@ -55,7 +55,7 @@ def test_the_same_grid_is_taken_as_it_is_and_another_is_interpolated() -> None:
 
 
 def test_a_pit_has_a_level_floor_and_slopes_up_to_its_rim() -> None:
-    pit = Pit(SQUARE, depth_level=-2.0, slope=1 / 1.5, rim=0.0)
+    pit = Pit(SQUARE, level=-2.0, slope=1 / 1.5, rim=0.0)
     assert at(pit, 4.0, 4.0) == at(pit, 2.1, 5.9) == -2.0
     assert at(pit, 7.5, 4.0) == pytest.approx(-1.0)  # 1.5 m out, 1 m up
     assert at(pit, 6.0 + 0.9, 6.0 + 1.2) == pytest.approx(-1.0)  # 1.5 m from the corner

@@ -43,7 +43,7 @@ def test_a_cone_comes_close_and_closer_with_smaller_cells() -> None:
 
 
 def test_a_pit_against_a_level_ground() -> None:
-    pit = Pit(((4.0, 4.0), (8.0, 4.0), (8.0, 6.0), (4.0, 6.0)), depth_level=-1.0, slope=1.0, rim=0.0)
+    pit = Pit(((4.0, 4.0), (8.0, 4.0), (8.0, 6.0), (4.0, 6.0)), level=-1.0, slope=1.0, rim=0.0)
     found = against(GROUND, pit)
     # Floor 4 x 2, four wedges of 1 m with a length of 12 m together, a cone of 1 m at the four corners.
     assert found.cut == pytest.approx(8 + 12 / 2 + math.pi / 3, rel=2e-3)
