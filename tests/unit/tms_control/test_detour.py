@@ -211,9 +211,8 @@ def test_where_excavators_stand_close_as_in_the_simulators_scene_samples_are_dri
 ) -> None:
     """The swing circles of zx200 and zx120 are 37 cm apart there."""
     digger, beside = (parse(CONFIGS / "machines" / f"{name}.yaml", MachineModel) for name in ("zx200", "zx120"))
-    bodies = tuple(
-        Body.of(MachineThere("zx120"), part, Pose(*beside.start), 0.0) for part in from_above(beside).values()
-    )
+    there = Pose(*beside.start)
+    bodies = tuple(Body.of(MachineThere("zx120"), part, there, 0.0) for part in from_above(beside).values())
     start = Pose(*digger.start)
     question = Question(start, (Goal(x, y, yaw),), PACE, 0.0, Outline.of(digger), Ground(bodies))
     assert question.fastest() == plan(start, [Goal(x, y, yaw)], PACE)
