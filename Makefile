@@ -25,7 +25,7 @@ TMS := $(VENV)/bin/tms $(if $(SITE),--site $(SITE))
 # A sourced ROS installation would mix its libraries into the venv's.
 unexport PYTHONPATH LD_LIBRARY_PATH AMENT_PREFIX_PATH CMAKE_PREFIX_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE
 .DEFAULT_GOAL := help
-.PHONY: help setup interfaces locks demo test test-fast up down status logs restart lint conformance bench verify pictures soak drill simulate replay model mutants mutmut coverage nightly test-docker system containers clean
+.PHONY: help setup interfaces locks demo test test-fast up down status logs restart lint conformance bench verify pictures soak drill simulate replay model traces mutants mutmut coverage nightly test-docker system containers clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -130,6 +130,10 @@ simulate: setup ## a site in virtual time goes wrong thousands of times; invaria
 model: setup ## stop, permit, fence and latch in all their states (ONLY=check; DEFECTS=1: each planted defect must be found)
 	@sh deploy/system-packages.sh spin
 	@cd tests && $(abspath $(PY)) -m model.run $(if $(DEFECTS),--defects) $(if $(ONLY),--only "$(ONLY)")
+
+traces: setup ## the trials of the last drill are histories of that model (STATE=folder of its state)
+	@sh deploy/system-packages.sh spin
+	@cd tests && $(abspath $(PY)) -m model.journals $(abspath $(or $(STATE),.state/drill/drill))
 
 mutants: setup ## defects planted in the decisions one at a time; the simulation must find each (SLICE=20 ONLY=name SCHEDULES=5000 TURN=3 LIST=1)
 	@cd tests && $(abspath $(PY)) -m mutants.run $(if $(ONLY),--only $(ONLY)) $(if $(SLICE),--slice $(SLICE)) $(if $(TURN),--turn $(TURN)) $(if $(SCHEDULES),--schedules $(SCHEDULES)) $(if $(LEDGER),--ledger $(LEDGER)) $(if $(filter-out auto,$(WORKERS)),--workers $(WORKERS)) $(if $(LIST),--list)

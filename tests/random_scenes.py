@@ -6,8 +6,8 @@ import random
 import numpy as np
 
 from tms_config.models import Box
+from tms_control.links import placed
 from tms_rp.kind import Angles
-from tms_rp.links import placed
 from tms_rp.meshes import cone, cylinder
 from tms_rp.reasons import PartOf, Told
 from tms_rp.scene import Obstacle, Scene

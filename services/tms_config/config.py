@@ -61,7 +61,7 @@ class Site:
         return border.model_copy(update={**own, **stand_in})
 
     def other_form(self, machine: str) -> str:
-        """The form of version 6 that peers speak on a machine's names; empty where those names are version 5's."""
+        """The form of LeafNodeBase that peers of version 6 speak on a machine's names; empty: version 5's."""
         peer = self.file.peers.get(machine)
         return "" if peer is None or peer.leaf == "v5" else peer.leaf
 
@@ -117,10 +117,12 @@ def _check_machines(path: Path, file: SiteFile, models: dict[str, MachineModel])
 
 
 def _check_pcs(path: Path, file: SiteFile) -> None:
-    """Refuse PCs without a role."""
+    """Refuse PCs without a role, and a discovery server without a PC for it."""
     for name, pc in file.pcs.items():
         if not roles(name, pc):
             raise ConfigError(located(path, reasons.NoRole(ROLES), "pcs", name))
+    if file.pcs and file.network.discovery == "server" and not any("cps" in roles(*one) for one in file.pcs.items()):
+        raise ConfigError(located(path, reasons.NoCps(), "network", "discovery"))
 
 
 def _chosen_pc(path: Path, file: SiteFile, state: Path) -> str | None:

@@ -60,6 +60,53 @@ class Box(Settings):
     pitch: float = 0.0  # rad
 
 
+class Bucket(Settings):
+    """An excavator's bucket: its inner section in the x-z plane of its link, the same over its width."""
+
+    link: str
+    section: tuple[tuple[float, float], ...] = Field(min_length=3)  # m; convex, from the rear lip to the cutting edge
+    width: float = Field(gt=0)  # m, inside
+    force: float = Field(gt=0)  # N at the cutting edge that arm and bucket can bring up
+    origin: str = Field(min_length=1)  # where the figures come from
+
+    @model_validator(mode="after")
+    def _convex(self) -> "Bucket":
+        at = self.section
+        corners = zip(at, (*at[1:], at[0]), (*at[2:], *at[:2]), strict=True)
+        if not all((b[0] - a[0]) * (c[1] - b[1]) < (b[1] - a[1]) * (c[0] - b[0]) for a, b, c in corners):
+            raise Wrong(reasons.NotConvex(), "section")
+        return self
+
+
+class Vessel(Settings):
+    """A carrier's vessel, the inside as a box of its link; it tips over the end at the least x."""
+
+    link: str
+    min: tuple[float, float, float]  # m
+    max: tuple[float, float, float]  # m
+    heaped: float = Field(gt=0)  # m3 that it holds
+    origin: str = Field(min_length=1)  # where the figures come from
+
+
+class Blade(Settings):
+    """A bulldozer's blade: its lower edge, across its link."""
+
+    link: str
+    edge: tuple[float, float]  # m, x and z
+    width: float = Field(gt=0)  # m
+    origin: str = Field(min_length=1)  # where the figures come from
+
+
+class Tracks(Settings):
+    """Where two tracks touch the ground, in base_link at z = 0."""
+
+    rear: float  # m, x
+    front: float  # m, x
+    gauge: float = Field(gt=0)  # m from middle to middle
+    width: float = Field(gt=0)  # m, of one
+    origin: str = Field(min_length=1)  # where the figures come from
+
+
 class Drive(Settings):
     """Limits of travel for the navigation and the stand-in."""
 
@@ -165,6 +212,10 @@ class MachineModel(Settings):
     geometry: dict[str, Origin]
     footprint: dict[str, Box] = {}  # boxes that other machines must not touch, base_link
     shapes: dict[str, Box] = {}  # link -> its body in its own frame, for the planner
+    bucket: Bucket | None = None
+    vessel: Vessel | None = None
+    blade: Blade | None = None
+    tracks: Tracks | None = None  # without them it leaves the ground as it is
     drive: Drive | None = None
     response: dict[str, Response] = {}  # joint, or `drive` for the tracks -> how it answers commands
     initial: dict[str, float] = {}  # rad, start pose of its stand-in
@@ -194,7 +245,8 @@ class MachineModel(Settings):
     @model_validator(mode="after")
     def _names_fit(self) -> "MachineModel":
         links = {origin.child for origin in self.geometry.values()} | {"base_link"}
-        strange = [name for name in self.shapes if name not in links]
+        tools = [tool.link for tool in (self.bucket, self.vessel, self.blade) if tool]
+        strange = [name for name in (*self.shapes, *tools) if name not in links]
         strange += [name for name in (*self.initial, *self._border_joints()) if name not in self.joints]
         if strange:
             raise Wrong(reasons.NoSuchLink(strange[0]))

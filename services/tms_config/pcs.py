@@ -1,20 +1,8 @@
-"""The PCs of a site: their addresses, and the way of DDS between them.
-
-Without `pcs:` in the site file everything runs on one PC and DDS stays on its loopback interface. Otherwise every
-process of a PC listens on that PC's address only, and DDS uses that address and the loopback interface: a machine's
-own processes must still reach each other when the cable is out.
-"""
-
-import ipaddress
-import socket
+"""The PCs of a site: without `pcs:` in the site file everything runs on one PC."""
 
 from tms_config.config import Site
-from tms_config.reasons import NoAddress, NoCps, WhichPc
-from tms_config.site_file import roles
-from tms_config.yaml_file import located
+from tms_config.reasons import WhichPc
 from tms_reason.errors import ConfigError
-
-LOOPBACK = "127.0.0.1"
 
 
 def required(site: Site) -> None:
@@ -25,35 +13,3 @@ def required(site: Site) -> None:
     """
     if site.file.pcs and site.pc is None:
         raise ConfigError(WhichPc(site.name, tuple(site.file.pcs)))
-
-
-def discovery_server(site: Site) -> str | None:
-    """host:port of the discovery server, None where the site uses none; on loopback for a site of one PC.
-
-    Raises:
-        ConfigError: no PC would run it, or its address is not known.
-    """
-    if site.file.network.discovery != "server":
-        return None
-    if not site.file.pcs:
-        return f"{LOOPBACK}:{site.file.network.port}"
-    cps = next((pc.address for name, pc in site.file.pcs.items() if "cps" in roles(name, pc)), None)
-    if cps is None:
-        raise ConfigError(located(site.path, NoCps(), "network", "discovery"))
-    return f"{resolve(site, cps)}:{site.file.network.port}"
-
-
-def resolve(site: Site, address: str) -> str:
-    """IPv4 address of a PC, since DDS accepts no names.
-
-    Raises:
-        ConfigError: the name is not known.
-    """
-    try:
-        return str(ipaddress.IPv4Address(address))
-    except ValueError:
-        pass
-    try:
-        return socket.gethostbyname(address)
-    except OSError as error:
-        raise ConfigError(located(site.path, NoAddress(address, str(error.strerror)), "pcs")) from error

@@ -18,12 +18,13 @@ PURPOSES = {  # what they and the other processes are for; `tms ps` shows it in 
     "ur": "HTTP API and console",
     "if": "TCP bridge that OperaSim-PhysX connects to",
     "host": "processes of this PC",
+    "ground": "soil: what machines dig, carry and tip",
     "store": "embedded store of the demo",
     "discovery": "lets the PCs' processes find each other",
     "sim": "stand-in for {machine}",
     "operasim": "stand-in for OperaSim-PhysX",
     "rc": "gateway: every motion passes it",
-    "templates": "templates for the C++ system's version 6",
+    "readers": "templates and records for the C++ system's version 6",
     "peers": "passes goals of the C++ system's version 6 on",
     "mc": "moves joints and tracks",
     "rp": "plans motions",
@@ -46,7 +47,7 @@ class Process:
     autostart: bool = True
     pc: str = ""  # which PC of the site runs it; empty when there is one only
     address: str = "127.0.0.1"  # where its port is
-    form: str = ""  # form of the interface packages that it speaks in place of the usual one: v6a, v6b
+    form: str = ""  # of an interface package, in place of the usual one (tms_runtime/wire_form.py)
     ours: bool = True  # has metrics and health, which foreign programs do not have
 
     @property
@@ -129,11 +130,14 @@ def _services(site: Site) -> list[Process]:
     rows = []
     if site.embedded_store:
         rows.append(Process("tms", "store", "cps", "tms_host.store", 0, PURPOSES["store"], ours=False))
-    if pcs.discovery_server(site) is not None:
+    if site.file.network.discovery == "server":
         rows.append(Process("tms", "discovery", "cps", "tms_host.discovery", 0, PURPOSES["discovery"], ours=False))
-    if any(map(site.other_form, site.file.peers)):  # its schedulers read templates; both forms of theirs are one here
-        row = Process("tms", "if_templates", "cps", "tms_if.template_border", 0, PURPOSES["templates"], form="v6b")
-        rows.append(row)
+    data = site.file.forms.TmsdbGetData
+    if data or any(map(site.other_form, site.file.peers)):  # for templates both forms are the same
+        form = data or "both"
+        rows.append(Process("tms", "if_readers", "cps", "tms_if.reader_border", 0, PURPOSES["readers"], form=form))
+    if site.file.ground is not None:
+        rows.append(Process("tms", "ground", "cps", "tms_ground.node", 0, PURPOSES["ground"]))
     for name, service in site.file.services.items():
         if name not in SERVICES:
             raise ConfigError(located(site.path, reasons.NoService(name, SERVICES), "services", name))
@@ -157,7 +161,8 @@ def _machine(site: Site, machine: str) -> list[Process]:
         rows.append(Process(machine, "mc", use.role, "tms_mc.node", 0, PURPOSES["mc"], machine))
     if model.planner is not None:
         _require(site, machine, f"tms_rp/kinds/{model.planner}/__init__.py", "planner")
-        rows.append(Process(machine, "rp", use.role, "tms_rp.node", 0, PURPOSES["rp"], machine))
+        form = "plans" if site.file.forms.TmsRpExcavator == "plans" else ""
+        rows.append(Process(machine, "rp", use.role, "tms_rp.node", 0, PURPOSES["rp"], machine, form=form))
     rows += [_subtask(site, machine, model, action) for action in model.subtasks]
     return rows
 

@@ -54,6 +54,8 @@ class NoSuchLink(Reason, text="'{name}' is neither a link of geometry: nor a joi
 class NoResponse(Reason, text="no dead time and lag for {name}, which moves: no stop could be proven",
     action=EDIT_CONFIG): name: str
 class NoMover(Reason, text="{name} is no joint that moves, nor 'drive'", action=EDIT_CONFIG): name: str
+class NotConvex(Reason, text="must be convex, from the rear lip over the back to the cutting edge",
+    action=EDIT_CONFIG): pass
 class NoParent(Reason, text="no joint above it has '{parent}' as its child", action=EDIT_CONFIG): parent: str
 class NoSourceFacts(Reason, text="is missing: the border has this topic", action=SAY_SOURCE): pass
 class NoTopic(Reason, text="the border has no topic '{name}'", action=EDIT_CONFIG): name: str
@@ -75,6 +77,10 @@ class NoService(Reason, text="there is no service '{service}' (there: {services}
 class PasswordInUri(Reason, text="the uri holds a password", action=NO_PASSWORD): pass
 class HalfALogin(Reason, text="user and password_file go together: give both or none", action=EDIT_CONFIG): pass
 class NoUri(Reason, text="user, password_file and TLS need the uri of a MongoDB", action=EDIT_CONFIG): pass
+class TwoPlanners(Reason, text="with motions: true we serve their planner's names: that excludes planner: theirs",
+    action=EDIT_CONFIG): pass
+class FormNotSaid(Reason, text="say under forms: which form of {definition} they speak", action=EDIT_CONFIG):
+    definition: str
 class UserTwice(Reason, text="the user stands in uri and in user: keep the latter", action=EDIT_CONFIG): pass
 
 # PCs

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, ValidationError, field_validator, model_validator
 
 from tms_config.models import NAME, Backend, Settings
-from tms_config.reasons import HalfALogin, NoUri, PasswordInUri, UserTwice
+from tms_config.reasons import FormNotSaid, HalfALogin, NoUri, PasswordInUri, TwoPlanners, UserTwice
 from tms_reason.validation import Wrong, problems
 
 ServiceName = Annotated[str, Field(pattern=r"^(/[A-Za-z_][A-Za-z0-9_]*)+$", max_length=200)]
@@ -176,7 +176,16 @@ class Peer(Settings):
 
     # Their form of LeafNodeBase: version 5; 6 with previous_target_record_name only; 6 with all three inputs.
     leaf: Literal["v5", "v6a", "v6b"]
-    motions: bool = False  # with version 6: the gateway's motions also under the names that its primitives call
+    motions: bool = False  # with version 6: the machine's motions also under the names that its primitives call
+    # theirs: their planner plans the arm's motions in place of ours, which checks and executes the plans.
+    planner: Literal["ours", "theirs"] = "ours"
+
+
+class Forms(Settings):
+    """The forms of definitions that version 6 of the C++ system has in several; one definition, one form in a site."""
+
+    TmsRpExcavator: Literal["plan", "plans"] | None = None  # its field for what is executed; none: it is not spoken
+    TmsdbGetData: Literal["param_type", "both"] | None = None  # in place of flgorparam, or beside it; none: version 5
 
 
 class Network(Settings):
@@ -213,6 +222,8 @@ class SiteFile(Settings):
     services: dict[str, Service]
     machines: dict[Annotated[str, Field(pattern=NAME)], MachineUse] = Field(default_factory=dict)
     peers: dict[str, Peer] = Field(default_factory=dict)  # machine -> nodes of the C++ system beside ours
+    forms: Forms = Forms()  # of what they speak
+    ground: dict[str, Any] | None = None  # tms_ground/settings.py reads it
 
     @field_validator("services", mode="before")
     @classmethod
@@ -225,6 +236,15 @@ class SiteFile(Settings):
         except ValidationError as error:
             keys, reason = next(problems(error))
             raise Wrong(reason, "if", *keys) from error
+
+    @model_validator(mode="after")
+    def _one_planner(self) -> "SiteFile":
+        for machine, peer in self.peers.items():
+            if peer.planner == "theirs" and peer.motions:
+                raise Wrong(TwoPlanners(), "peers", machine, "planner")
+            if peer.planner == "theirs" and self.forms.TmsRpExcavator is None:
+                raise Wrong(FormNotSaid("TmsRpExcavator"), "peers", machine, "planner")
+        return self
 
     @property
     def names(self) -> Backend:

@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 from tms_msg_db.msg import Tmsdb
 from tms_msg_db.srv import TmsdbGetData, TmsdbGetTask
-from tms_msg_if.srv import ReadTemplate
+from tms_msg_if.srv import ReadRecords, ReadTemplate
 
 from tms_db import store
 from tms_db.connection import StoreConnection
@@ -16,6 +16,7 @@ from tms_db.templates import Templates
 from tms_reason.errors import TmsError
 from tms_runtime.app import App
 
+READER = "tms_db_param_reader"
 POSE = ("x", "y", "z", "qx", "qy", "qz", "qw", "Release_Count")
 NOT_FLAGS = {"_id", "type", "record_name", "updated_at", "source"}
 
@@ -29,7 +30,9 @@ class CppServices:
 
     def offer(self) -> None:
         self._app.ros.offer(TmsdbGetTask, "tms_db_reader_task", self.get_task)
-        self._app.ros.offer(TmsdbGetData, "tms_db_param_reader", self.get_data)
+        if self._app.site.file.forms.TmsdbGetData is None:  # else `tms:if_readers` serves it, in that form
+            self._app.ros.offer(TmsdbGetData, READER, self.get_data)
+        self._app.ros.offer(ReadRecords, "/tms/db/read_records", self.read_records)
         self._app.ros.offer(ReadTemplate, "/tms/db/read_template", self.read_template)
 
     def get_task(self, request: TmsdbGetTask.Request, response: TmsdbGetTask.Response) -> TmsdbGetTask.Response:
@@ -42,7 +45,7 @@ class CppServices:
         return response
 
     def read_template(self, request: ReadTemplate.Request, response: ReadTemplate.Response) -> ReadTemplate.Response:
-        """The template's text for `tms:if_templates`, "" if there is none."""
+        """The template's text for `tms:if_readers`, "" if there is none."""
 
         def read() -> None:
             response.task_sequence = self._templates.get(request.template_name).task_sequence
@@ -55,9 +58,25 @@ class CppServices:
 
         def read() -> None:
             for name in [request.name] if request.name else request.recordnames:
-                response.tmsdbs += self._found(name, request.flgorparam)
+                for first in self._found(name):
+                    kind, text = _told(first, request.flgorparam)
+                    response.tmsdbs.append(Tmsdb(type=kind, name=name, msg=text))
 
-        self._try("tms_db_param_reader", read)
+        self._try(READER, read)
+        return response
+
+    def read_records(self, request: ReadRecords.Request, response: ReadRecords.Response) -> ReadRecords.Response:
+        """The same for `tms:if_readers`."""
+
+        def read() -> None:
+            for name in request.record_names:
+                for first in self._found(name):
+                    kind, text = _told(first, request.what)
+                    response.found.append(name)
+                    response.types.append(kind)
+                    response.texts.append(text)
+
+        self._try("read_records", read)
         return response
 
     def _try(self, service: str, read: Callable[[], None]) -> None:
@@ -68,16 +87,17 @@ class CppServices:
         except TmsError as error:
             self._app.log.warning("refused", service=service, code=error.code, reason=error.reason)
 
-    def _found(self, name: str, what: str) -> list[Tmsdb]:
+    def _found(self, name: str) -> list[Document]:
+        """The first record of this name, or none: the C++ reader ignores model_name, too."""
         documents = self._parameters.named(name)
         if not documents:
-            self._app.log.warning(
-                "refused", service="tms_db_param_reader", reason="there is no such record", record=name
-            )
-            return []
-        first = documents[0]  # the C++ reader ignores model_name, too
-        text = json.dumps(content(first, what), ensure_ascii=False, default=str)
-        return [Tmsdb(type=str(first.get("type") or ""), name=name, msg=text)]
+            self._app.log.warning("refused", service=READER, reason="there is no such record", record=name)
+        return documents[:1]
+
+
+def _told(document: Document, what: str) -> tuple[str, str]:
+    """The type of a record, and what its readers get as JSON."""
+    return str(document.get("type") or ""), json.dumps(content(document, what), ensure_ascii=False, default=str)
 
 
 def content(document: Document, what: str) -> Document:

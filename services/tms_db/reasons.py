@@ -186,6 +186,12 @@ class TerrainOverRos(Reason,
     text="terrain {name} of type '{type}' came over ROS: store files with `tms terrain add`"): name: str; type: str
 class NoImageType(Reason, text="terrain type '{type}': an image is one of {types}"): type: str; types: tuple[str, ...]
 
+# the ground and the work
+class GroundNotThere(Reason, text="there is no ground of '{time}': `tms ground list` shows what is stored"): time: str
+class GroundUnreadable(Reason, text="the ground of {time} is damaged: import its file again"): time: str
+class BadCycle(Reason, text="a cycle of work cannot be stored: {why}"): why: Reason
+class CycleUnreadable(Reason, text="the stored cycle {cycle} cannot be read: {why}"): cycle: str; why: Reason
+
 # the store
 class EmptyFile(Reason, text="is empty", action=EDIT_CONFIG): pass
 class StoreDown(Reason, text="{why}"): why: Reason

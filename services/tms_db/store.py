@@ -80,6 +80,10 @@ INDEXES: dict[str, list[tuple[list[tuple[str, int]], dict[str, Any]]]] = {
     "parameter_history": [([("model_name", ASCENDING), ("record_name", ASCENDING)], {"unique": True})],
     "machine_pose": [([("time", DESCENDING)], {})],
     "machine_joints": [([("time", DESCENDING)], {})],
+    "cycle": [
+        ([("run_id", ASCENDING), ("machine", ASCENDING), ("number", ASCENDING)], {"unique": True}),
+        ([("ended_at", ASCENDING)], {}),
+    ],
     "event": [([("run_id", ASCENDING), ("number", ASCENDING)], {"unique": True})],
 }
 # GridFS makes these with its first file, but not in collections that have files already, as after a restore.

@@ -86,7 +86,7 @@ class Terrain:
         """
         stored = self.put(filename, "dynamic", data, more)
         for old in self.all("dynamic", filename)[NEWEST_KEPT:]:
-            self._delete(old)
+            self.delete(old)
         return stored
 
     def all(self, type_: str = "", filename: str = "") -> list[TerrainFile]:
@@ -125,10 +125,15 @@ class Terrain:
         if not found or not filename:
             raise missing(filename)
         for file in found:
-            self._delete(file)
+            self.delete(file)
         return len(found)
 
-    def _delete(self, file: TerrainFile) -> None:
+    def delete(self, file: TerrainFile) -> None:
+        """Take one file away.
+
+        Raises:
+            DbError: the store is away.
+        """
         with errors():
             self._grid().delete(file.key)
 

@@ -24,7 +24,8 @@ from tms_reason.errors import DbError
 from tms_reason.reason import Reason
 
 # The C++ system's names of the types, with its ids and file endings. Dynamic clouds come over ROS, not as files.
-IDS = {"static": 3030, "mesh": 3030, "dem": 3030, "dynamic": 3031, "heightmap": 4031, "texture": 4031}
+# `ground` is ours.
+IDS = {"static": 3030, "mesh": 3030, "dem": 3030, "dynamic": 3031, "heightmap": 4031, "texture": 4031, "ground": 4032}
 ENDINGS = {"heightmap": ".png", "texture": ".png", "static": ".pcd", "mesh": ".ply", "dem": ".npy"}
 IMAGES = ("heightmap", "texture")
 FIRST_BYTES = {"mesh": (b"ply\n", b"ply\r\n"), "dem": (b"\x93NUMPY",), "static": (b"# .PCD", b"VERSION", b"#")}

@@ -4,10 +4,10 @@ import os
 import sys
 from pathlib import Path
 
-from tms_config import pcs
 from tms_config.config import Site
 from tms_host.reasons import NoProgram
 from tms_reason.errors import ConfigError
+from tms_runtime.addresses import discovery_server
 
 
 def exec_program(site: Site) -> None:
@@ -16,7 +16,7 @@ def exec_program(site: Site) -> None:
     Raises:
         ConfigError: the site uses none, or the program is missing.
     """
-    address = pcs.discovery_server(site)
+    address = discovery_server(site)
     program = Path(sys.executable).parent / "fast-discovery-server"
     if address is None or not program.exists():
         raise ConfigError(NoProgram(str(program)))

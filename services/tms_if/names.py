@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from tms_config.config import Site
-from tms_config.sensing import load_sensing
 from tms_if.interfaces import short_name
+from tms_machine.sensing import load_sensing
 
 Named = Mapping[str, frozenset[str]]  # full name -> types that it may have, as pkg/Type
 

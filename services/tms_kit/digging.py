@@ -4,13 +4,7 @@ from collections.abc import Sequence
 from typing import Protocol, TypeVar
 
 from geometry_msgs.msg import Point, Pose
-from tms_msg_rp.action import (
-    ExecutePlans,
-    PlanPose,
-    TmsRpZx200ChangePose,
-    TmsRpZx200ExcavateSimple,
-    TmsRpZx200ReleaseSimple,
-)
+from tms_msg_rp.action import Excavate, ExecutePlans, PlanPose, Release, TmsRpZx200ChangePose
 from tms_msg_rp.msg import TmsRpZx200PositionWithAngle
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
@@ -61,15 +55,21 @@ class Digging(Acting):
         theta_w: float,
         offset: float,
         plan_only: bool = False,
+        **shape: float,
     ) -> None:
-        """Dig at x, y, z [m, base_link], reaching `offset` [m] further out, bucket at theta_w [rad]."""
-        goal = TmsRpZx200ExcavateSimple.Goal(position_with_angle=_tip(tip, theta_w, offset))
-        self._plan(TmsRpZx200ExcavateSimple, "excavate_simple", goal, progress, plan_only)
+        """Dig at x, y, z [m, base_link], reaching `offset` [m] further out, bucket at theta_w [rad], in one motion.
 
-    def release_soil(self, progress: Progress, target_angle: float) -> None:
-        """Open the bucket to `target_angle` [rad]."""
-        goal = TmsRpZx200ReleaseSimple.Goal(target_angle=target_angle)
-        self._plan(TmsRpZx200ReleaseSimple, "release_simple", goal, progress, False)
+        `shape`: depth below z, drag towards the machine, lift above the ground at the end [m]; else those of Excavate.
+        """
+        goal = Excavate.Goal(position_with_angle=_tip(tip, theta_w, offset), **shape)
+        self._plan(Excavate, "excavate", goal, progress, plan_only)
+
+    def release_soil(self, progress: Progress, target_angle: float, place: Sequence[float] = ()) -> None:
+        """Open the bucket to `target_angle` [rad], over x, y, z [m, base_link], theta_w [rad] or where the arm is."""
+        goal = Release.Goal(target_angle=target_angle)
+        if place:
+            goal.position_with_angle = [_tip(place[:3], place[3])]
+        self._plan(Release, "release", goal, progress, False)
 
     def plan_pose(
         self,
@@ -78,12 +78,14 @@ class Digging(Acting):
         previous: JointTrajectory | None,
         velocity_scale: float,
         acceleration_scale: float,
+        group: str = "",
     ) -> JointTrajectory:
         """A plan to joint angles [rad], or to x, y, z [m, base_link], theta_w [rad]; nothing moves.
 
-        It begins at the end of `previous`, else where the arm is. Scales are shares of the joints' limits.
+        It begins at the end of `previous`, else where the arm is. Scales are shares of the joints' limits. `group`: the
+        arm's name in the C++ system's planner, where that one plans in place of ours.
         """
-        goal = PlanPose.Goal(velocity_scale=velocity_scale, acceleration_scale=acceleration_scale)
+        goal = PlanPose.Goal(velocity_scale=velocity_scale, acceleration_scale=acceleration_scale, planning_group=group)
         if isinstance(to, dict):
             goal.trajectory = _angles(to)
         else:

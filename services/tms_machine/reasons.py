@@ -4,7 +4,7 @@ from tms_reason.quantities import Metres, Radians, Seconds
 from tms_reason.reason import Reason
 from tms_reason.remedies import EDIT_CONFIG, EDIT_TASK, INSPECT, PROCESSES, RECORDS, Remedy
 
-DECLARE_FORM = Remedy("edit_config", "", "Say it for {machine} under peers: of the site file")
+DECLARE_FORM = Remedy("edit_config", "", "Say it for {machine} under peers: or forms: of the site file")
 
 
 # fmt: off
@@ -13,10 +13,10 @@ class Busy(Reason, text="{process} is still at its last goal"): process: str
 class NoDatabase(Reason, text="{process} did not answer", action=PROCESSES): process: str
 class OneSubtask(Reason, text="{file}: {count} subtasks in it, there must be one"): file: str; count: int
 class InputsNotTaken(Reason, text="the subtask takes no {inputs}", action=EDIT_TASK): inputs: tuple[str, ...]
-class FormUnknown(Reason, text="{node} does not tell which form of LeafNodeBase it speaks", action=DECLARE_FORM):
-    node: str; machine: str
-class FormContradicted(Reason, text="{node} speaks LeafNodeBase as {told}, and {declared} is expected for {machine}",
-    action=DECLARE_FORM): node: str; told: str; declared: str; machine: str
+class FormUnknown(Reason, text="{node} does not tell which form of {definition} it speaks",
+    action=DECLARE_FORM): node: str; definition: str; machine: str
+class FormContradicted(Reason, text="{node} speaks {definition} as {told}, and {declared} is expected for {machine}",
+    action=DECLARE_FORM): node: str; definition: str; told: str; declared: str; machine: str
 class BorderLost(Reason, text="{process}, which could have passed a cancel on, was lost", action=PROCESSES):
     process: str
 class FieldMissing(Reason, text="field '{field}' is missing", action=RECORDS): field: str

@@ -67,6 +67,10 @@ class MotionServers:
         name = f"/{self._app.machine}/rc/{motion.served}"
         self._app.ros.serve(motion.type, name, lambda goal: self._run(motion, peer, goal))
 
+    def goals(self) -> list[AnyGoal]:
+        """The goals of clients that have not ended."""
+        return [served.goal for served in list(self._served.values())]
+
     def look(self, gateway: Gateway) -> tuple[bool, bool, Reason | None]:
         """Whether the server of the active goal is there, or gone; and which joint has left its limits."""
         active = gateway.active

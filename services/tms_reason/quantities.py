@@ -19,6 +19,7 @@ class Unit:
 Seconds = Annotated[float, Unit("s", 1)]
 Moments = Annotated[float, Unit("s", 2)]  # times of stops and stand-still, where hundredths matter
 Metres = Annotated[float, Unit("m", 2)]
+SquareMetres = Annotated[float, Unit("m²", 1)]
 MetresPerSecond = Annotated[float, Unit("m/s", 3)]
 Radians = Annotated[float, Unit("rad", 3)]
 RadiansPerSecond = Annotated[float, Unit("rad/s", 3)]

@@ -1,7 +1,7 @@
 """Units of the fields of records, by the fields' names, which mean the same in every record."""
 
 NAMES = {
-    **dict.fromkeys(("x", "y", "z", "goal_x", "goal_y", "goal_z", "offset"), "m"),
+    **dict.fromkeys(("x", "y", "z", "goal_x", "goal_y", "goal_z", "offset", "depth", "drag", "lift"), "m"),
     **dict.fromkeys(("theta_w", "target_angle", "goal_position"), "rad"),
     "yaw": "deg",
 }

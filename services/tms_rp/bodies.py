@@ -12,8 +12,8 @@ import fcl
 import numpy as np
 
 from tms_config.models import Box
+from tms_control.links import Array, Matrix, box_place
 from tms_reason.reason import Reason
-from tms_rp.links import Array, Matrix, box_place
 from tms_rp.meshes import Mesh
 from tms_rp.scene import Obstacle
 

@@ -11,14 +11,15 @@ from tms_ros.packing import unpack
 from tms_rp import reasons as r
 from tms_rp.kind import Angles, PlanningAction
 from tms_rp.messages import follow
+from tms_rp.plan import Plan
 from tms_rp.plans import start_of
 from tms_rp.view import Nearest
-from tms_rp.ways import Plan
 
 # Refusals by the goal itself and the machine's own limits; the world has no part in them.
 OWN = (
     r.OneTarget, r.AnglesUnfit, r.NamedTwice, r.FieldNotFinite, r.NoOrientation, r.OutOfPlane, r.TooFar, r.TooNear,
-    r.TooNearAxis, r.OutOfRange, r.PointOutOfRange, r.NoAngleDigs, r.NoTrajectory, r.LimitsLeft,
+    r.TooNearAxis, r.OutOfRange, r.PointOutOfRange, r.NoAngleDigs, r.DigUnfit, r.WouldSpill,
+    r.NoTrajectory, r.LimitsLeft,
 )  # fmt: skip
 
 

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tms_config.models import Box, MachineModel
+from tms_control.links import Array, Links, Matrix, reaches
 from tms_reason.reason import Reason
 from tms_rp.bodies import Body, Surface, Surfaces
-from tms_rp.links import Array, Links, Matrix, reaches
 from tms_rp.reasons import Part
 from tms_rp.scene import Obstacle, Scene
 from tms_rp.trajectory import Trajectory
@@ -41,7 +41,7 @@ class Clearance:
             (i, j) for (i, a), (j, b) in combinations(enumerate(self._own), 2)
             if links.parent.get(a) != b and links.parent.get(b) != a and not {a, b} <= links.moved
         ]  # fmt: skip
-        self._moved = [i for i, link in enumerate(self._own) if link in links.moved]
+        self._moved = [(i, link) for i, link in enumerate(self._own) if link in links.moved]
 
     @contextmanager
     def looking(self, scene: Scene) -> Iterator[View]:
@@ -82,10 +82,10 @@ class Clearance:
             )
         return self._known[key]
 
-    def pairs(self, count: int) -> NDArray[np.int_]:
-        """Numbers of the bodies that must not touch, of `count` in all: pairs x 2."""
-        others = range(len(self._own), count)
-        return np.array([*self._pairs, *((moved, other) for moved in self._moved for other in others)])
+    def pairs(self, scene: Scene) -> NDArray[np.int_]:
+        """Numbers of the bodies that must not touch: pairs x 2."""
+        others = list(enumerate(scene.obstacles, len(self._own)))
+        return np.array([*self._pairs, *((i, j) for i, link in self._moved for j, one in others if one.lets != link)])
 
     def places(self, poses: Array) -> Matrix:
         """Where the boxes of the machine's own bodies are at the poses: N x bodies x 4 x 4."""

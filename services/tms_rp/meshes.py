@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tms_config.models import Box
-from tms_rp.links import Array
+from tms_control.links import Array
 
 BUDGET = 10_000  # triangles of a surface that is planned with: five megabytes
 FINER = 1.2  # cells grow by this factor until the budget is met

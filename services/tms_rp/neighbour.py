@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from tms_config.models import Box, MachineModel
+from tms_control.links import Links, Matrix, reach, reaches
 from tms_machine.drift import drift, moving
-from tms_rp.links import Links, Matrix, reach, reaches
 from tms_rp.reasons import PartOf
 from tms_rp.scene import Obstacle
 

@@ -5,12 +5,12 @@ import itertools
 import numpy as np
 
 from tms_config.clock import monotonic
+from tms_control.links import placed
 from tms_machine.drift import FRESH
+from tms_machine.joint_states import JointStates
 from tms_machine.places import PERIOD, Places
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
-from tms_rp.joint_states import JointStates
-from tms_rp.links import placed
 from tms_rp.neighbour import Neighbour, Posture
 from tms_rp.reasons import PlaceUnknown
 from tms_rp.scene import Scene

@@ -1,5 +1,6 @@
 """Process `<machine>:rp`: plans motions and has the machine's gateway execute them."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -11,6 +12,7 @@ from tms_msg_rp.srv import CheckMotion
 
 from tms_config.clock import monotonic
 from tms_config.naming import process_of
+from tms_machine.joint_states import JointStates
 from tms_machine.permit import Permit, watch_server
 from tms_machine.reasons import Aborted, Busy
 from tms_reason import wire
@@ -20,13 +22,15 @@ from tms_reason.texts import text
 from tms_ros.goals import Ended, Outcome
 from tms_ros.server import AnyGoal
 from tms_rp.checks import MotionChecks
+from tms_rp.excavator import ExcavatorServer
+from tms_rp.excavator_params import ExcavatorParams
 from tms_rp.interventions import Interventions
-from tms_rp.joint_states import JointStates
 from tms_rp.kind import Angles, Moves, PlanningAction
 from tms_rp.kinds import load
 from tms_rp.messages import follow
 from tms_rp.mover import Mover
 from tms_rp.neighbours import Neighbours
+from tms_rp.plan import Plan
 from tms_rp.reasons import (
     Adapted,
     GatewayAway,
@@ -41,10 +45,11 @@ from tms_rp.resuming import Resuming
 from tms_rp.scene import Scene
 from tms_rp.scene_server import SceneServer
 from tms_rp.scene_view import Area
+from tms_rp.their_planner import TheirPlanner
 from tms_rp.told_scene import ToldScene
 from tms_rp.trajectory import Trajectory
 from tms_rp.view import Nearest
-from tms_rp.ways import Plan, Ways
+from tms_rp.ways import Ways
 from tms_runtime.app import App
 
 FRESH = 1.0  # s, older joint states are no start for a motion
@@ -67,6 +72,9 @@ def start(app: App) -> None:
     actions = {action.name: action for action in (*planner.kind.actions, EXECUTE)}
     for action in actions.values():
         planner.serve(action, f"/{app.machine}/tms_rp_{model}_{action.name}")
+    peer = app.site.file.peers.get(app.machine)
+    if peer is not None and peer.motions and app.site.file.forms.TmsRpExcavator is not None:
+        planner.serve_excavator(actions["plan_pose"])
     checks = MotionChecks(actions, planner.kind.joints, planner.joints, planner.planned, planner.nearest)
     app.ros.offer_slow(CheckMotion, f"/{app.machine}/rp/check_motion", checks.answer)
     SceneServer(app, app.site.model_of(app.machine), planner)
@@ -88,6 +96,8 @@ class Planner:
         watch_server(app.ros, app.pulse, app.machine, "rc")(self._rc)
         self._permit = Permit(app.ros, app.pulse, app.machine, "rp")
         self._resuming = Resuming(Mover(self._rc), Interventions(app.ros, app.machine), self._blocked, self._ways.late)
+        peer = app.site.file.peers.get(app.machine)
+        self._theirs = TheirPlanner(app, self.kind.joints) if peer is not None and peer.planner == "theirs" else None
         self.last: Trajectory | None = None  # what was planned last
         self._busy = False  # set on the executor thread, which accepts one goal after another
         self._joints = JointStates(app.ros, app.machine, app.site.border(app.machine), self.kind.joints)
@@ -123,45 +133,64 @@ class Planner:
 
     def serve(self, action: PlanningAction, name: str) -> None:
         """Serve one action under its full name."""
+        self._app.ros.serve(
+            action.type, name, lambda goal: self._run(action, goal), lambda _request: self._reserve(action)
+        )
 
-        def accept(_request: Any) -> Reason | None:
-            if action.moves and self._busy:
-                busy = Busy(self._app.process.full)
-                self._app.log.warning("refused", action=action.name, reason=busy)
-                return busy
-            self._busy = self._busy or action.moves
-            return None
+    def serve_excavator(self, plan: PlanningAction) -> None:
+        """Serve primitives of the C++ system's version 6."""
+        joints = {name: self._model.joints[name] for name in self.kind.joints}
+        params = ExcavatorParams(self._app, joints, self.joints, self._planner.tool)
+        ExcavatorServer(self._app, plan, EXECUTE, self._reserve, self._carry_out, lambda: params.settings)
 
-        self._app.ros.serve(action.type, name, lambda goal: self._run(action, goal), accept)
+    def _reserve(self, action: PlanningAction) -> Reason | None:
+        """Take the machine for a goal that will move it, or tell why not."""
+        if action.moves and self._busy:
+            busy = Busy(self._app.process.full)
+            self._app.log.warning("refused", action=action.name, reason=busy)
+            return busy
+        self._busy = self._busy or action.moves
+        return None
 
     def _run(self, action: PlanningAction, goal: AnyGoal) -> Ended[Any]:
-        outcome, plan = Outcome.ABORTED, None
-        if action.moves:
-            self._permit.hold(goal.uuid)
-        try:
-            outcome, plan = self._execute(action, goal)
-        finally:
-            if action.moves:
-                self._permit.drop()
-                self._busy = False
+        def say(state: Reason) -> None:
+            goal.publish(action.type.Feedback(state=wire.to_line(state)))
+
+        outcome, plan = self._carry_out(action, goal, goal.request, say)
         code = TmsRpErrorCodes.SUCCESS if outcome is Outcome.SUCCEEDED else TmsRpErrorCodes.FAILURE
         answer = {"plan": follow(plan.made).trajectory} if action.answers and plan is not None else {}
         return outcome, action.type.Result(error_code=TmsRpErrorCodes(val=code), **answer)
 
-    def _execute(self, action: PlanningAction, goal: AnyGoal) -> tuple[Outcome, Plan | None]:
+    def _carry_out(
+        self, action: PlanningAction, goal: AnyGoal, request: Any, tell: Callable[[Reason], None]
+    ) -> tuple[Outcome, Plan | None]:
+        """Do what `request` asks for a goal; the machine is free afterwards."""
+        if action.moves:
+            self._permit.hold(goal.uuid)
+        try:
+            return self._execute(action, goal, request, tell)
+        finally:
+            if action.moves:
+                self._permit.drop()
+                self._busy = False
+
+    def _execute(
+        self, action: PlanningAction, goal: AnyGoal, request: Any, tell: Callable[[Reason], None]
+    ) -> tuple[Outcome, Plan | None]:
         def say(state: Reason, notes: tuple[Reason, ...] = ()) -> None:
-            goal.publish(action.type.Feedback(state=wire.to_line(Adapted(state, notes) if notes else state)))
+            tell(Adapted(state, notes) if notes else state)
 
         def again(moves: Moves) -> Plan:
             return self._plan(action, self.joints(), moves)
 
         say(Planning())
         try:
-            plan = self.planned(action, self.joints(), goal.request)
+            plan = self._planned(action, self.joints(), goal, request)
             if not action.moves:
                 say(Planned(plan.made.duration), plan.notes)
                 outcome = Outcome.SUCCEEDED
             else:
+                self._planner.begins(self.joints(), plan.moves)
                 outcome = self._resuming.move(goal, plan, again, say)
         except TmsError as error:
             self._app.log.warning("failed", action=action.name, goal=goal.id, reason=error.reason)
@@ -199,6 +228,13 @@ class Planner:
     def areas(self) -> list[Area]:
         """Where records say that the machine is to work."""
         return self._told.areas()
+
+    def _planned(self, action: PlanningAction, now: Angles, goal: AnyGoal, request: Any) -> Plan:
+        """A plan for a goal; of a plan to be stored the way is their planner's, where the site file says so."""
+        if self._theirs is None or not action.answers:
+            return self.planned(action, now, request)
+        moves = action.plan(self._planner, now, request)
+        return self._plan(action, now, self._theirs.way(goal, request, moves))
 
     def planned(self, action: PlanningAction, now: Angles, request: Any) -> Plan:
         """A plan for a goal of an action, from angles of the arm [rad]."""

@@ -5,12 +5,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
+import numpy as np
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from tms_config.models import Joint
+from tms_control.links import Array
 from tms_machine.stamps import seconds
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
+from tms_rp.blending import blended
 from tms_rp.kind import Angles
 from tms_rp.reasons import JointBroken, PlanBroken, PlanElsewhere, PlanLacks, PlanTooFast, PlanWrong
 from tms_rp.trajectory import Joints, Trajectory, TrajectorySample, trajectory
@@ -18,6 +21,7 @@ from tms_rp.trajectory import Joints, Trajectory, TrajectorySample, trajectory
 START = 0.1  # rad from the arm, or from the end of the plan before, to a plan's begin: joints droop and sag
 MARGIN = 1.01  # times a limit that a plan may reach: records round their figures
 REST = 1e-3  # rad/s
+APART = 0.005  # rad between two poses of a path: points of records that are nearer differ by their rounding, too
 ROUNDED = 1e-3  # rad/s that speeds between two points may be off: records round angles
 
 
@@ -55,6 +59,44 @@ def one_trajectory(joints: dict[str, Joint], now: Joints, plans: Sequence[JointT
         samples += _later(found[1:], samples[-1].time - found[0].time)
         stops.append(samples[-1].time)
     return Trajectory(tuple(joints), tuple(samples), tuple(stops))
+
+
+def without_stops(joints: Mapping[str, Joint], made: Trajectory) -> Trajectory:
+    """Plans one behind the other without the stops between them: on their path but for its corners, no faster.
+
+    Raises:
+        SubtaskFailed: LimitsLeft.
+    """
+    poses, least, ends, plan = [made.samples[0].positions], list[float](), list[int](), 0
+    speeds = _speeds(made)
+    for sample in made.samples[1:]:
+        ways = np.abs(np.subtract(sample.positions, poses[-1]))
+        if (ended := sample.time >= made.stops[plan]) or ways.max() > APART:
+            peak = np.where(speeds[plan] > 0, speeds[plan], math.inf)
+            poses.append(sample.positions)
+            least.append(float((ways / peak).max()))
+        if ended:
+            ends.append(len(poses) - 2)
+            plan += 1
+    forces = np.abs([sample.accelerations for sample in made.samples]).max(axis=0)
+    gentle = dict(zip(joints, map(_gentle, joints.values(), map(float, forces)), strict=True))
+    found = blended(gentle, poses, least)
+    return replace(found, stops=tuple(found.stops[end] for end in ends))
+
+
+def _speeds(made: Trajectory) -> list[Array]:
+    """The highest speed of each joint [rad/s] in each plan."""
+    times = np.array([sample.time for sample in made.samples])
+    speeds = np.abs(np.diff([sample.positions for sample in made.samples], axis=0)) / np.diff(times)[:, None]
+    begins = (0.0, *made.stops[:-1])
+    spans = zip(begins, made.stops, strict=True)
+    return [speeds[(times[1:] > begin) & (times[1:] <= end)].max(axis=0) for begin, end in spans]
+
+
+def _gentle(joint: Joint, force: float) -> Joint:
+    """The joint with at most this acceleration, if it is known."""
+    share = min(1.0, force / joint.acceleration) or 1.0
+    return joint.model_copy(update={"acceleration": joint.acceleration * share, "jerk": joint.jerk * share})
 
 
 def scaled(joints: Mapping[str, Joint], velocity: float, acceleration: float) -> dict[str, Joint]:

@@ -11,7 +11,7 @@ OTHER_POINT = Remedy("goal", "", "Choose another point or another bucket angle")
 INSIDE = Remedy("goal", "", "Choose a target inside the limits")
 OTHER_TARGET = Remedy("goal", "", "Choose another target, or move away first")
 PLAN_AGAIN = Remedy("goal", "", "Plan anew from where the machine is")
-ADD_JOINTS = Remedy("edit_config", "", "Add them under joints: and geometry: of the machine file")
+ADD_JOINTS = Remedy("edit_config", "", "Add them under joints:, geometry: and shapes: of the machine file")
 
 
 # fmt: off
@@ -21,6 +21,8 @@ class Planned(Reason, text="planned: it takes {duration}"): duration: Seconds
 class MoveOf(Reason, text="move {number} of {count}, {percent}"): number: int; count: int; percent: Percent
 class Adapted(Reason, text="{progress} ({notes})"): progress: Reason; notes: tuple[Reason, ...]
 class OtherAngle(Reason, text="bucket angle {chosen} instead of {wanted}"): chosen: Radians; wanted: Radians
+class DragCut(Reason, text="it drags {drag} instead of {wanted}: the arm gets no further"):
+    drag: Metres; wanted: Metres
 class ClearanceCut(Reason, text="{joint} moves clear to its limit {limit} only"): joint: str; limit: Radians
 class Around(Reason, text="{way}, as {why}"): way: Reason; why: Reason
 class LiftSwingLower(Reason, text="it lifts, swings and lowers"): pass
@@ -43,6 +45,17 @@ class NoOrientation(Reason, text="the orientation is empty: its quaternion has t
 class OutOfPlane(Reason, text="the orientation points {angle} out of the arm's plane; turned to {yaw} it lies in it"):
     angle: Radians; yaw: Radians
 
+# goals of the C++ system's version 6
+class UnknownCommand(Reason, text="there is no command {number}"): number: int
+class NothingToExecute(Reason, text="the goal has no plan to execute"): pass
+class SettingNotHonoured(Reason, text="the planner cannot be set so: {name} {value}"): name: str; value: str
+class PlannerAway(Reason, text="the C++ system's planner of {machine} does not answer", details="{name}",
+    action=INSPECT): machine: str; name: str
+class PlannerRefuses(Reason, text="the C++ system's planner of {machine} makes no plan: {why}",
+    details="error {number}"): machine: str; why: Reason; number: int
+class PlanMisses(Reason, text="its plan ends with {joint} at {end}, not at {angle}"):
+    joint: str; end: Radians; angle: Radians
+
 # what the arm can reach
 class Point(Reason, text="point ({x}, {y}, {z}) with bucket angle {theta_w}"):
     x: Metres; y: Metres; z: Metres; theta_w: Radians
@@ -55,7 +68,11 @@ class JointBroken(Reason, text="{joint} {why}"): joint: str; why: Reason
 class OutOfRange(Reason, text="{broken}", action=INSIDE): broken: tuple[Reason, ...]
 class PointOutOfRange(Reason, text="{point} needs {broken}", action=OTHER_POINT):
     point: Reason; broken: tuple[Reason, ...]
+class DigUnfit(Reason, text="depth {depth} must be above 0, drag {drag} and lift {lift} not below",
+    action=RECORDS): depth: Metres; drag: Metres; lift: Metres
 class NoAngleDigs(Reason, text="no bucket angle from 0 to pi digs there: {why}"): why: Reason
+class WouldSpill(Reason, text="soil would fall out on the way to {point}: the bucket is {tilt} from level there",
+    action=NEARER): point: Reason; tilt: Radians
 class Collision(Reason, text="{first} would touch {second} after {seconds}, {depth} deep at ({x}, {y}, {z})",
     action=OTHER_TARGET):
     first: Reason; second: Reason; seconds: Seconds; depth: Metres; x: Metres; y: Metres; z: Metres

@@ -13,9 +13,9 @@ from tms_ros.server import AnyGoal
 from tms_rp.interventions import Interventions
 from tms_rp.kind import Moves
 from tms_rp.mover import Mover, WayBlocked
+from tms_rp.plan import Plan
 from tms_rp.reasons import PlannedAnew
 from tms_rp.trajectory import Trajectory
-from tms_rp.ways import Plan
 
 TRIES = 3  # times that the rest of a goal is planned anew
 PAUSE = 2.0  # s before each: most of what drives by has passed the bucket then

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tms_config.models import Box
+from tms_control.links import Matrix
 from tms_reason.reason import Reason
-from tms_rp.links import Matrix
 from tms_rp.meshes import Mesh
 from tms_rp.reasons import Ground
 
@@ -21,14 +21,15 @@ GROUND = Box(min=(-15.0, -15.0, -3.0), max=(15.0, 15.0, 0.0))
 class Obstacle:
     """A body that stands: its name in reasons, its box, the place of the frame of that box in our base_link.
 
-    `age`: how long ago [s] it was told to be there. `growth`: m by which the box was grown on each side. `mesh`: its
-    surface, where the box is only what it lies in; not grown.
+    `age`: how long ago [s] it was told to be there. `lets`: our link that may be in it. `growth`: m by which the box
+    was grown on each side. `mesh`: its surface, where the box is only what it lies in; not grown.
     """
 
     name: Reason
     box: Box
     place: Matrix
     age: float = 0.0
+    lets: str = ""
     growth: float = 0.0
     mesh: Mesh | None = None
 

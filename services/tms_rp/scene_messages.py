@@ -8,9 +8,9 @@ from std_msgs.msg import ColorRGBA
 from tms_msg_rp.msg import SceneArea, SceneBody
 from visualization_msgs.msg import Marker, MarkerArray
 
+from tms_control.links import Matrix
 from tms_reason.wire import to_line
 from tms_rp import scene_view as view
-from tms_rp.links import Matrix
 from tms_rp.meshes import Mesh
 
 COLOURS = {view.OWN: (0.2, 0.6, 1.0), view.MACHINE: (1.0, 0.6, 0.1), view.RECORD: (0.9, 0.2, 0.2)}  # red, green, blue

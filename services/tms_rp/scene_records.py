@@ -13,13 +13,13 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, PositiveFloat, ValidationError, model_validator
 
 from tms_config.models import Box, MachineModel
+from tms_control.links import Matrix
 from tms_machine.geometry import Quaternion, about, is_orientation, length, product, unit, x_axis
 from tms_machine.reasons import BadRecord, NoUnitLength
 from tms_machine.values import Value
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
 from tms_reason.validation import explain
-from tms_rp.links import Matrix
 from tms_rp.meshes import Mesh, cone, cylinder, sphere
 from tms_rp.neighbour import Neighbour
 from tms_rp.reasons import NoShape, SceneRecordOld, SizesUnfit, Told

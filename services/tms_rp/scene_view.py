@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from tms_config.models import MachineModel
+from tms_control.links import Array, Links, Matrix, box_place
 from tms_machine.values import Value
 from tms_reason.reason import Reason
 from tms_rp.bodies import Body
 from tms_rp.clearance import Clearance
-from tms_rp.links import Array, Links, Matrix, box_place
 from tms_rp.meshes import Mesh
 from tms_rp.reasons import Part, PartOf
 from tms_rp.scene import Obstacle, Scene

@@ -1,13 +1,16 @@
 """Joint trajectories from rest to rest, as fast as position, velocity, acceleration and jerk limits allow.
 
+Those through poses without a stop are made by blending.py.
+
 The computation is ruckig's, move by move. Its intermediate waypoints are not used: they would be sent to a
 remote service, and a machine must not depend on one. The stops between the moves are wanted anyway.
 """
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+import numpy as np
 from ruckig import InputParameter, Result, Ruckig, RuckigError, Synchronization
 from ruckig import Trajectory as Profile
 
@@ -33,16 +36,38 @@ class TrajectorySample:
 
 @dataclass(frozen=True)
 class Trajectory:
-    """Samples of one or more moves, each of which ends at rest."""
+    """Samples of one or more moves, the last of which ends at rest."""
 
     names: tuple[str, ...]
     samples: tuple[TrajectorySample, ...]
-    stops: tuple[float, ...]  # s, when each move ends
+    stops: tuple[float, ...]  # s, when each move ends, at rest or in motion
 
     @property
     def duration(self) -> float:
         """Seconds from start to end."""
         return self.samples[-1].time
+
+    def then(self, other: "Trajectory") -> "Trajectory":
+        """The same, then another one that begins at rest where it ends."""
+        later = [replace(sample, time=sample.time + self.duration) for sample in other.samples[1:]]
+        stops = (*self.stops, *(stop + self.duration for stop in other.stops))
+        return replace(self, samples=(*self.samples, *later), stops=stops)
+
+    def since(self, seconds: float) -> "Trajectory":
+        """The samples from a time [s] on; their times stay."""
+        return replace(self, samples=tuple(sample for sample in self.samples if sample.time >= seconds))
+
+    def lagging(self, late: Sequence[float]) -> "Trajectory":
+        """The positions on the way when each joint is late by a time of its own [s]; it has no velocities."""
+        times = [sample.time for sample in self.samples]
+        end = self.duration + max(late)
+        seconds = [*times, *np.linspace(self.duration, end, math.ceil(max(late) / STEP) + 1)[1:]]
+        ways = zip(*(sample.positions for sample in self.samples), strict=True)
+        moved = [np.interp(np.array(seconds) - by, times, way) for by, way in zip(late, ways, strict=True)]
+        return replace(
+            self, samples=tuple(_rest(float(at), tuple(map(float, one)))
+                                for at, one in zip(seconds, np.transpose(moved), strict=True)),
+        )  # fmt: skip
 
     def progress(self, seconds: float) -> tuple[int, int]:
         """Number of the move, from 1, and percent of it, at a time from the start."""
@@ -79,7 +104,7 @@ def trajectory(
         stops.append(samples[-1].time)
     if len(samples) == 1:  # no joint moves: a controller still needs a second point
         samples.append(_rest(step, samples[0].positions))
-    _check(joints, samples, targets)
+    check_limits(joints, samples, targets)
     return Trajectory(tuple(joints), tuple(samples), tuple(stops))
 
 
@@ -137,8 +162,14 @@ def _profile(limits: Sequence[Joint], start: Joints, target: Joints) -> Profile:
     return profile
 
 
-def _check(joints: dict[str, Joint], samples: Sequence[TrajectorySample], targets: Sequence[Sequence[float]]) -> None:
-    """Refuse samples outside the limits, also if ruckig made them."""
+def check_limits(
+    joints: dict[str, Joint], samples: Sequence[TrajectorySample], targets: Sequence[Sequence[float]]
+) -> None:
+    """Refuse samples outside the limits, whoever made them.
+
+    Raises:
+        SubtaskFailed: LimitsLeft.
+    """
     for i, (name, joint) in enumerate(joints.items()):
         reached = [samples[0].positions[i], *(target[i] for target in targets)]
         low = min(reached) if joint.min is None else min(joint.min, *reached)

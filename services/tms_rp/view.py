@@ -10,10 +10,10 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from tms_control.links import Array, Matrix
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
 from tms_rp.bodies import Body, gap, overlap, touch
-from tms_rp.links import Array, Matrix
 from tms_rp.reasons import Between, Collision, Ground, Part
 from tms_rp.scene import Scene
 from tms_rp.trajectory import Trajectory
@@ -43,8 +43,8 @@ class Machine(Protocol):
     def bodies(self, scene: Scene) -> list[Body]:
         """Its own bodies, then those of a scene."""
 
-    def pairs(self, count: int) -> NDArray[np.int_]:
-        """Numbers of the bodies that must not touch, of `count` in all: pairs x 2."""
+    def pairs(self, scene: Scene) -> NDArray[np.int_]:
+        """Numbers of the bodies that must not touch: pairs x 2."""
 
     def more(self, scene: Scene) -> dict[str, float]:
         """By link: m to keep to the bodies of a scene beyond the usual padding."""
@@ -62,7 +62,7 @@ class View:
     def __init__(self, machine: "Machine", scene: Scene) -> None:
         self._machine, self.scene = machine, scene
         self._bodies = machine.bodies(scene)
-        self._pairs = machine.pairs(len(self._bodies))
+        self._pairs = machine.pairs(scene)
         own, more = len(self._bodies) - len(scene.obstacles), machine.more(scene)
         self._more = np.array([more.get(_link(self._bodies[i].name), 0.0) if j >= own else 0.0 for i, j in self._pairs])
         self._slack = [more + self._bodies[j].slack for more, (_, j) in zip(self._more, self._pairs, strict=True)]

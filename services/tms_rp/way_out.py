@@ -4,8 +4,8 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from tms_control.links import Array
 from tms_rp.kind import Angles
-from tms_rp.links import Array
 
 STEP = 0.03  # rad of the fastest joint a step: a tip at 9 m moves 0.3 m
 STEPS = 40

@@ -1,19 +1,22 @@
 """A way to each target of a goal: the straight one if it is free, else around what is in the way."""
 
+import contextlib
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from tms_config.models import MachineModel
+from tms_control.links import Array
 from tms_control.reasons import PathBlocked
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
 from tms_rp.clearance import Clearance
+from tms_rp.flow import Flow
 from tms_rp.kind import Angles, MachineKind, Moves, Way
-from tms_rp.links import Array
-from tms_rp.plans import one_trajectory, scaled
+from tms_rp.plan import Plan
+from tms_rp.plans import one_trajectory, scaled, without_stops
 from tms_rp.reasons import Around, Collision, NoWayRound, Searched, SlowlyOut
 from tms_rp.sampling import search
 from tms_rp.scene import Scene
@@ -22,30 +25,6 @@ from tms_rp.view import Nearest, View
 from tms_rp.way_out import way_out
 
 SLOW = 0.25  # share of the limits with which an arm comes out of something
-
-
-@dataclass(frozen=True)
-class Plan:
-    """A checked trajectory, what people should know of it, and the goal that it serves.
-
-    `reached`: when [s] the trajectory is at each target of `moves`; empty for stored plans. A way around may end whole
-    turns away from the target that the goal has asked for; the targets here are those that it goes to.
-    """
-
-    made: Trajectory
-    notes: tuple[Reason, ...]
-    moves: Moves
-    reached: tuple[float, ...] = ()
-
-    def rest(self, seconds: float) -> Moves | None:
-        """What is left of the goal so many seconds after the begin; None for stored plans, which are kept as they are.
-
-        It ends in the last target, also when the arm was there already: it may have been stopped a little before.
-        """
-        if not self.reached:
-            return None
-        left = [target for target, at in zip(self.moves.targets, self.reached, strict=True) if at > seconds]
-        return replace(self.moves, targets=tuple(left) or self.moves.targets[-1:], begin=None)
 
 
 class Ways:
@@ -58,29 +37,41 @@ class Ways:
         self._touching = Clearance(model, padding=0.0)
         moved = [(model.joints[name], model.response[name]) for name in kind.joints]
         self.late = max(answer.dead_time + answer.lag for _, answer in moved)  # s behind the trajectory
+        self._flow = Flow(model, kind, self._clearance, self._all_joints, self._way)
         self._stopping = max(joint.velocity / joint.acceleration for joint, _ in moved)  # s to brake
 
     def plan(self, now: Angles, moves: Moves, scene: Scene) -> Plan:
         """The trajectory over all targets of `moves`.
 
         It goes straight from target to target as long as it touches nothing, however low that leads. A way around
-        stays above the ground, but for its ends. Stored plans are kept as they are, or refused.
+        stays above the ground, but for its ends. Stored plans keep their path but for its corners, or are refused.
 
         Raises:
             SubtaskFailed: Collision: a target itself is not free. NoWayRound. NoTrajectory, LimitsLeft. PlanWrong.
         """
         now = moves.begin or now
         if moves.plans:
-            made = one_trajectory(self._model.joints, self._all_joints(now), moves.plans)
-            self._clearance.check(made, scene)
-            return Plan(made, moves.notes, moves)
+            return Plan(self._stored(now, moves, scene), moves.notes, moves)
         moves = self._out(now, moves, scene)
+        if moves.through is not None:
+            return self._flow.plan(now, moves, moves.through, scene)
         straight = self._trajectory(now, moves)
         try:
             self._clearance.check(straight, scene)
         except SubtaskFailed as error:
             return self._around(now, moves, scene, error.reason)
         return Plan(straight, moves.notes, moves, straight.stops)
+
+    def _stored(self, now: Angles, moves: Moves, scene: Scene) -> Trajectory:
+        """Stored plans one behind the other; without stops between them if that is free and quicker."""
+        made = one_trajectory(self._model.joints, self._all_joints(now), moves.plans)
+        flowing = without_stops(self._model.joints, made) if len(moves.plans) > 1 else made
+        if flowing.duration < made.duration:
+            with contextlib.suppress(SubtaskFailed):
+                self._clearance.check(flowing, scene)
+                return flowing
+        self._clearance.check(made, scene)
+        return made
 
     def _out(self, now: Angles, moves: Moves, scene: Scene) -> Moves:
         """The same, slow if the arm seems to be in something: then nobody knows how things really stand."""
@@ -160,7 +151,13 @@ class Ways:
 
     def _free(self, view: View, begin: Angles, way: Way) -> bool:
         poses = [self._all_joints(pose) for pose in (begin, *way.targets)]
-        return all(view.free(pose) for pose in poses[1:-1]) and view.passable(poses)  # the first costs little
+        if not (all(view.free(pose) for pose in poses[1:-1]) and view.passable(poses)):  # the first costs little
+            return False
+        try:  # what grazes the padding may be seen at the samples of the motion only
+            view.check(self._trajectory(begin, Moves(way.targets), straight=True))
+        except SubtaskFailed:
+            return False
+        return True
 
     def _search(self, view: View, begin: Angles, target: Angles) -> Way | None:
         """A way that sampling finds, between the ends or poses above them."""

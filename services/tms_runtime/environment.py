@@ -5,7 +5,7 @@ from pathlib import Path
 
 from tms_config import pcs
 from tms_config.config import PROJECT, Site
-from tms_runtime import state_folder
+from tms_runtime import addresses, state_folder
 
 # UDP on one interface only, no shared memory: the LOCALHOST range of Fast DDS silently loses
 # everything above 32 participants, and shared memory leaks with every killed process.
@@ -19,7 +19,7 @@ def environment(site: Site) -> dict[str, str]:
     Raises:
         ConfigError: it is not known which PC of the site this is, or its address is not known.
     """
-    server = pcs.discovery_server(site)
+    server = addresses.discovery_server(site)
     # A super client discovers all endpoints, not only those that it uses: preflight asks for others' servers.
     discovery = {"ROS_DISCOVERY_SERVER": server, "ROS_SUPER_CLIENT": "TRUE"} if server else {}
     return {
@@ -45,7 +45,7 @@ def _profile(site: Site) -> Path:
         return PROFILE
     pcs.required(site)
     assert site.pc is not None
-    address = pcs.resolve(site, site.file.pcs[site.pc].address)
+    address = addresses.resolve(site, site.file.pcs[site.pc].address)
     path = site.state / "dds.xml"
     text = PROFILE.read_text(encoding="utf-8").replace(LOOPBACK, f"<address>{address}</address>{LOOPBACK}")
     if not path.exists() or path.read_text(encoding="utf-8") != text:

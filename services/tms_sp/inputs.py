@@ -8,7 +8,7 @@ from prometheus_client import Counter, Gauge
 from tms_msg_sp.msg import InputState
 
 from tms_config.clock import monotonic, unix_time
-from tms_config.sensing import Input
+from tms_machine.sensing import Input
 from tms_reason.reason import Reason
 from tms_reason.wire import to_line
 from tms_ros.interface_types import Message

@@ -5,8 +5,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from tms_config.sensing import FieldRule, Input
 from tms_machine import stamps
+from tms_machine.sensing import FieldRule, Input
 from tms_reason.errors import TmsError
 from tms_reason.validation import Wrong
 from tms_sp.field_types import NAMES, PART, PLAIN, STAMPS, VALUES, Fields, FieldsOf, FieldTypes

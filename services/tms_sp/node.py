@@ -9,8 +9,8 @@ from tms_msg_db.srv import UpdateParameters
 from tms_msg_sp.msg import InputState, InputStates
 
 from tms_config.clock import monotonic
-from tms_config.sensing import Input, load_sensing, sensing_path
 from tms_config.yaml_file import located
+from tms_machine.sensing import Input, load_sensing, sensing_path
 from tms_machine.values import to_parameters
 from tms_reason.errors import ConfigError
 from tms_reason.reason import Reason

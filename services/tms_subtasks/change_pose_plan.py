@@ -16,6 +16,7 @@ class ChangePosePlan(Subtask):
         machine, before = self.machine, want.previous_target_record_name
         previous = stored(self.get_param_from_db(model_name, before), before) if before else None
         goal = want.goal(previous, machine.angle_of)
-        plan = machine.plan_pose(progress, goal, previous, want.velocity_scale, want.acceleration_scale)
+        scales = want.velocity_scale, want.acceleration_scale
+        plan = machine.plan_pose(progress, goal, previous, *scales, group=want.planning_group)
         want.constraints.check(plan, previous, machine.angle_of)
         self.set_param_in_db(model_name, record_name, {"plan": document(plan)})

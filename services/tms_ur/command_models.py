@@ -2,7 +2,7 @@
 
 from pydantic import ConfigDict, Field
 
-from tms_reason.names import Text
+from tms_reason.names import Name, Text
 from tms_ur.models import INT32, Model
 
 
@@ -24,6 +24,13 @@ class TaskGiven(Command):
 
     xml: str = Field(max_length=5 * 2**20)
     description: Text = Field(default="", max_length=1000)
+
+
+class TemplateGiven(TaskGiven):
+    """A tree to store as a template."""
+
+    name: Name
+    replace: bool = Field(default=False, description="also when a template of this name has another text")
 
 
 class Xml(Command):

@@ -18,9 +18,9 @@ from tms_decision.reasons import SoftwareStopBy
 from tms_reason.errors import TmsError
 from tms_reason.reason import Reason
 from tms_ur.access import Person
-from tms_ur.command_models import AnswerGiven, Nothing, RearmAsked, StartRun, StopAsked, TaskGiven
+from tms_ur.command_models import AnswerGiven, Nothing, RearmAsked, StartRun, StopAsked, TaskGiven, TemplateGiven
 from tms_ur.data_models import FieldGiven, RecordGiven
-from tms_ur.models import Added, Rearmed, Receipt, RunAsked
+from tms_ur.models import Added, AddedTemplate, Rearmed, Receipt, RunAsked
 from tms_ur.problems import Admin, Operator, Viewer, problems
 from tms_ur.reading import MachineName, ProcessName, RunId, TaskId
 from tms_ur.reasons import BadValue, IntTooLong, NotFinite, NotOfType, NotUnicode, Starting
@@ -154,6 +154,11 @@ def _stored(app: FastAPI, client: "SiteClient", note: _Note) -> None:
         note(request, person, "remove_task", f"task {task_id}")
         client.remove_task(task_id)
         return Nothing()
+
+    @app.post("/api/templates", status_code=201, summary="Store a tree as a template", responses=ANSWERS)
+    def add_template(request: Request, given: TemplateGiven, person: Admin) -> AddedTemplate:
+        note(request, person, "add_template", given.name)
+        return client.add_template(given.name, given.xml, given.description, given.replace)
 
     @app.post("/api/parameters", summary="Set fields of a record in one step", responses=ANSWERS)
     def set_parameter(request: Request, given: RecordGiven, person: Admin) -> Nothing:

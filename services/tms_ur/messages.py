@@ -17,7 +17,7 @@ from tms_reason import wire
 from tms_reason.reason import Foreign
 from tms_reason.units import unit
 from tms_ur.data_models import Change, Record, SensingInput
-from tms_ur.models import ActiveRun, Event, Joint, Machine, Process, Question, Receipt, Run
+from tms_ur.models import ActiveRun, Event, Joint, Machine, Process, Question, Receipt, Run, Template
 from tms_ur.models import MachineState as Shown
 from tms_ur.reason_view import ReasonView, of_line, view
 
@@ -93,6 +93,14 @@ def task(task: db.Task) -> dict[str, Any]:
     """For the console: a stored task without its XML."""
     return {"id": task.task_id, "model_name": task.model_name, "description": task.description,
             "added_at": when(task.added_at)}  # fmt: skip
+
+
+def template(template: db.Template) -> Template:
+    """For the console: a stored template without its XML."""
+    return Template(
+        name=template.template_name, model_name=template.model_name, description=template.description,
+        added_at=when(template.added_at),
+    )  # fmt: skip
 
 
 def run(run: db.Run) -> Run:

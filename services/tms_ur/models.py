@@ -137,6 +137,15 @@ class TaskText(Task):
     xml: str = Field(description="the tree as Groot draws it")
 
 
+class Template(Model):
+    """A stored template: a tree that tasks call by its name."""
+
+    name: str
+    model_name: str
+    description: str
+    added_at: datetime | None = None
+
+
 class Run(Model):
     """A run as the history keeps it."""
 
@@ -252,6 +261,13 @@ class Added(Model):
 
     id: int
     already_stored: bool = Field(description="the same text was there under this number")
+
+
+class AddedTemplate(Model):
+    """What came of storing a template."""
+
+    already_stored: bool = Field(description="the same text was there under this name")
+    replaced: bool = Field(description="another text was there under this name")
 
 
 class Diff(Model):

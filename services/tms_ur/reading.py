@@ -32,6 +32,7 @@ from tms_ur.models import (
     State,
     Task,
     TaskText,
+    Template,
     Tree,
 )
 from tms_ur.problems import Viewer, problems
@@ -165,6 +166,10 @@ def _tasks(app: FastAPI, client: "SiteClient") -> None:
     @app.get("/api/tasks/{task_id}", summary="One task with its tree", responses=problems(404, 503))
     def task(task_id: TaskId) -> TaskText:
         return client.task(task_id)
+
+    @app.get("/api/templates", summary="Stored templates, by name", responses=problems(503))
+    def templates() -> list[Template]:
+        return client.templates()
 
     @app.post("/api/tasks/check", summary="Check a tree; stores and runs nothing",
               responses=problems(403, 409, 411, 413, 415, 503))  # fmt: skip

@@ -4,12 +4,14 @@ from typing import Any
 
 from tms_msg_db.srv import (
     AddTask,
+    AddTemplate,
     GetTask,
     ListEvents,
     ListParameterHistory,
     ListParameters,
     ListRuns,
     ListTasks,
+    ListTemplates,
     RemoveTask,
     SetParameter,
 )
@@ -38,7 +40,7 @@ from tms_ros.node import Ros
 from tms_ur import messages
 from tms_ur.board import Board
 from tms_ur.data_models import Change, Record, Sensing
-from tms_ur.models import Event, Host, Place, Rearmed, Receipt, Run, Task, TaskText
+from tms_ur.models import AddedTemplate, Event, Host, Place, Rearmed, Receipt, Run, Task, TaskText, Template
 from tms_ur.reason_view import of_error, of_line, view
 from tms_ur.reasons import RunNotBegun, StartRefused, UnknownProcess
 from tms_ur.scene_models import Scene, scene
@@ -116,6 +118,18 @@ class SiteClient:
     def remove_task(self, task_id: int) -> None:
         """Remove a task; its number becomes free."""
         self._ask(RemoveTask, "/tms/db/remove_task", task_id=task_id)
+
+    def templates(self) -> list[Template]:
+        """All stored templates."""
+        return [messages.template(one) for one in self._ask(ListTemplates, "/tms/db/list_templates").templates]
+
+    def add_template(self, name: str, xml: str, description: str, replace: bool) -> AddedTemplate:
+        """Store a template under its name."""
+        answer = self._ask(
+            AddTemplate, "/tms/db/add_template", template_name=name, task_sequence=xml, description=description,
+            replace=replace,
+        )  # fmt: skip
+        return AddedTemplate(already_stored=answer.already_stored, replaced=answer.replaced)
 
     def runs(self, limit: int) -> list[Run]:
         """The history, newest first."""

@@ -1,8 +1,9 @@
-"""How long an excavator's planner needs from a goal to a checked trajectory, and what it weighs.
+"""How long an excavator's planner needs from a goal to a checked trajectory, how long a cycle takes, what it weighs.
 
-Straight ways: 500 random places to dig around the machine, between two trucks. Ways around: 1,000 random scenes, in
-which boxes stand and hang around the machine. The floor of the time is the kinematics or the trajectory alone; that
-of the memory a process that has only imported rclpy.
+Straight ways: 500 random places around the machine, between two trucks; digs: the same places. Ways around: 1,000
+random scenes, in which boxes stand and hang around the machine. A cycle of digging and loading: its two trajectories,
+and the lag of the machine at the end of each. The floor of the time is the kinematics or the trajectory alone, of the
+cycle its two swings; that of the memory a process that has only imported rclpy.
 
 And how long the controller of tracks needs for a way around five machines on 100 m x 100 m. The floor is the fastest
 path, and the look that it is not free.
@@ -27,16 +28,18 @@ from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
 from tms_control.detour import Question
 from tms_control.ground import Outline
+from tms_control.links import placed
 from tms_control.planner import Goal, Pace
 from tms_control.planner import Plan as TracksPlan
 from tms_reason.errors import SubtaskFailed
 from tms_rp.clearance import Clearance
 from tms_rp.kind import Angles, Moves
 from tms_rp.kinds import load
-from tms_rp.kinds.backhoe.goals import TipGoal
+from tms_rp.kinds.backhoe.digging import excavate, release
+from tms_rp.kinds.backhoe.goals import ChangePose, Dig, Emptying, TipGoal
 from tms_rp.kinds.backhoe.linkage import ArmAngles
 from tms_rp.kinds.backhoe.planner import Backhoe
-from tms_rp.links import placed
+from tms_rp.neighbour import Neighbour, Posture
 from tms_rp.reasons import Around, PartOf, Searched
 from tms_rp.scene import Obstacle, Scene
 from tms_rp.trajectory import trajectory
@@ -57,16 +60,21 @@ import rclpy
 if sys.argv[1] == "all":
     import tms_rp.kinds.backhoe
     import tms_rp.node
-    from bench.planning import IN_MEMORY, plan_all, plan_around
-    plan_all(), plan_around(IN_MEMORY)
+    from bench.planning import IN_MEMORY, dig, plan_all, plan_around
+    plan_all(dig), plan_around(IN_MEMORY)
 print(re.search(r"VmHWM:\\s+(\\d+)", pathlib.Path("/proc/self/status").read_text())[1])
 """
 
 
 def measure() -> Iterable[Figure]:
-    times, floors = plan_all()
+    times, floors = plan_all(reach)
     assert len(times) > GOALS / 10, "hardly any of the places can be reached"
-    yield Figure("goal p99", "ms", share(times, 0.99), 50.0, share(floors, 0.99), usual_floor=3.0)
+    yield Figure("goal p99", "ms", share(times, 0.99), 50.0, share(floors, 0.99), usual_floor=0.2)
+    times, floors = plan_all(dig)
+    assert len(times) > GOALS / 10, "hardly any of the places can be dug"
+    yield Figure("dig p99", "ms", share(times, 0.99), 300.0, share(floors, 0.99), usual_floor=50.0)
+    seconds, swings = cycle()
+    yield Figure("dig and load", "s", seconds, 40.0, swings)
     manners, searches, floors = plan_around()
     assert len(manners) > 30 and len(searches) > 30, "the scenes ask for other ways"
     usual = share(floors, 0.5)
@@ -85,8 +93,19 @@ def model_of(name: str) -> MachineModel:
     return parse(CONFIGS / "machines" / f"{name}.yaml", MachineModel)
 
 
-def plan_all() -> tuple[list[float], list[float]]:
-    """Milliseconds of each goal that goes straight, and of its kinematics."""
+Asked = Callable[[Backhoe, TipGoal], Moves]
+
+
+def reach(backhoe: Backhoe, place: TipGoal) -> Moves:
+    return backhoe.change_pose(NOW, ChangePose(tips=(place,)))
+
+
+def dig(backhoe: Backhoe, place: TipGoal) -> Moves:
+    return excavate(backhoe, NOW, Dig(place, depth=0.5, drag=1.5, lift=0.5))
+
+
+def plan_all(goal: Asked) -> tuple[list[float], list[float]]:
+    """Milliseconds of each goal that needs no way around, and of its kinematics."""
     model, truck = model_of("zx200"), model_of("ic120")
     backhoe, ways, rng = Backhoe(model), Ways(model, load("backhoe")), random.Random(1)
     scene = Scene(
@@ -99,15 +118,36 @@ def plan_all() -> tuple[list[float], list[float]]:
     times, floors = [], []
     for _ in range(GOALS):
         away, turn = rng.uniform(4, 8), rng.uniform(-math.pi, math.pi)
-        goal = TipGoal(away * math.cos(turn), away * math.sin(turn), rng.uniform(-1, 2), rng.uniform(0, 2))
-        kinematics = clock(lambda goal=goal: backhoe.excavate(NOW, goal))
+        place = TipGoal(away * math.cos(turn), away * math.sin(turn), rng.uniform(-1, 2), rng.uniform(0, 2))
+        kinematics = clock(lambda place=place: goal(backhoe, place))
         begun = time.perf_counter()
         with contextlib.suppress(SubtaskFailed):  # out of reach, or in a truck
-            plan = ways.plan(NOW, backhoe.excavate(NOW, goal), scene)
+            plan = ways.plan(NOW, goal(backhoe, place), scene)
             if not any(isinstance(note, Around) for note in plan.notes):
                 floors.append(kinematics)
                 times.append((time.perf_counter() - begun) * 1000)
     return times, floors
+
+
+def cycle() -> tuple[float, float]:
+    """Seconds from over a truck, empty, to a dig at a right angle to it and back; and of the two swings alone."""
+    model, truck = model_of("zx200"), model_of("ic120")
+    backhoe, ways = Backhoe(model), Ways(model, load("backhoe"))
+    posture = Posture(dict.fromkeys(truck.joints, 0.0), 0.0)
+    scene = Scene(tuple(Neighbour("ic120", truck).obstacles(placed(1.44, 6.0, 0.0), 0.0, posture)))
+    over = Emptying(-0.34, TipGoal(0.0, 6.0, 4.2, 3.0))
+    face = Dig(TipGoal(6.5, 0.0, 0.0, 1.6), depth=0.5, drag=1.5, lift=0.5)
+    now, seconds, swings = NOW, 0.0, 0.0
+    for number in range(4):  # the first two bring it to where a cycle begins
+        load_it = number % 2
+        goal = release(backhoe, now, over) if load_it else excavate(backhoe, now, face)
+        made = ways.plan(now, goal, scene).made
+        end = ArmAngles(*made.samples[-1].positions[:4])
+        if number > 1:
+            seconds += made.duration + ways.late
+            swings += trajectory(model.joints, (*now, 0.0), [(end.swing, *now[1:], 0.0)]).duration
+        now = end
+    return seconds, swings
 
 
 def plan_around(count: int = AROUND) -> tuple[list[float], list[float], list[float]]:

@@ -17,14 +17,14 @@ from tms_config.clock import utc_now
 from tms_config.config import load_site
 from tms_decision.reasons import SoftwareStop
 from tms_reason.errors import TmsError
-from tms_reason.reason import Reason
+from tms_reason.reason import Foreign, Reason
 from tms_reason.remedies import REARM, RESUME
 from tms_ur.access import Access
 from tms_ur.api import create_app
 from tms_ur.board import Board
 from tms_ur.connections import Listener
 from tms_ur.data_models import Record
-from tms_ur.models import ActiveRun, Event, Host, Machine, Place, Process, Question, Rearmed, Run
+from tms_ur.models import ActiveRun, AddedTemplate, Event, Host, Machine, Place, Process, Question, Rearmed, Run
 from tms_ur.node import Server
 from tms_ur.reason_view import view
 from unit.tms_ur.fakes import NOON, FakeAudit, FakeSiteClient
@@ -32,6 +32,11 @@ from unit.tms_ur.fakes import NOON, FakeAudit, FakeSiteClient
 pytestmark = pytest.mark.browser
 MACHINES = ("zx200", "ic120")
 SHAPE = {"paths": ["0"], "names": ["all"], "types": ["Sequence"], "kinds": ["control"], "ports": [""]}
+WITH_TEMPLATE = {  # a task that calls the template Dig in its second node
+    "paths": ["0", "0.0", "0.1"], "names": ["all", "own", "called"],
+    "types": ["Sequence", "AlwaysSuccess", "AlwaysSuccess"],
+    "kinds": ["control", "action", "action"], "ports": ["", "", ""], "templates": ["", "", "Dig:3"],
+}  # fmt: skip
 RUN = ActiveRun(run_id="r-1", task_id=4, state="running", machines=["zx200"])
 LONG = 20_000  # events, as many as a browser replays
 
@@ -45,6 +50,7 @@ class Yard(FakeSiteClient):
         self.board = Board(MACHINES, lambda: self.now)
         self.slow = threading.Event()  # until then zx200 does not answer
         self.journals: dict[str, list[Event]] = {}
+        self.taken = False  # whether the template has another text
 
     def receive(self, **facts: Any) -> None:
         """Both machines and the scheduler."""
@@ -56,6 +62,11 @@ class Yard(FakeSiteClient):
         if machine == "zx200":
             self.slow.wait(60)
         return super().rearm(machine, token)
+
+    def add_template(self, name: str, xml: str, description: str, replace: bool) -> AddedTemplate:
+        if self.taken and not replace:
+            raise TmsError(Foreign("it has another text"), "TEMPLATE_EXISTS")
+        return super().add_template(name, xml, description, replace)
 
     def runs(self, limit: int) -> list[Run]:
         facts = {"task_id": 4, "description": "", "machines": [], "started_at": NOON, "ended_at": NOON}
@@ -217,3 +228,33 @@ def test_a_refused_run_shows_no_tree(page: Page, address: str, yard: Yard) -> No
     expect(page.locator("#list_history tr").first).to_contain_text("打ち切り")
     page.locator("button", has_text="表示").first.click()
     expect(page.locator("#past [data-path]")).to_be_visible()
+
+
+@pytest.mark.parametrize(("where", "box"), [("#tree", "#tree_box"), ("#history/r-1", "#past")])
+def test_nodes_of_a_template_are_marked(page: Page, address: str, yard: Yard, where: str, box: str) -> None:
+    """In the live tree and in that of a past run, whose journal names the template, too."""
+    change = Event(number=2, stamp=NOON, kind="node", node="0.1", text="called IDLE -> SUCCESS")
+    yard.journals = {"r-1": [event(1, "tree", **WITH_TEMPLATE), change]}
+    page.goto(f"{address}/{where}")
+    marked = page.locator(f"{box} [data-path]").filter(has=page.locator("rect.template"))
+    expect(page.locator(f"{box} [data-path]")).to_have_count(3)
+    expect(marked).to_have_count(1)
+    expect(marked).to_have_attribute("data-path", "0.1")
+    expect(marked.locator("title")).to_contain_text("(template Dig:3)")
+    if box == "#past":
+        expect(page.locator("#list_events tr").first.locator("[data-part=node]")).to_have_text("0.1 (template Dig:3)")
+    page.locator("#language").click()
+    expect(marked.locator("title")).to_contain_text("(テンプレート Dig:3)")
+
+
+def test_a_file_is_stored_as_a_template_under_its_name(page: Page, address: str, yard: Yard) -> None:
+    yard.taken = True
+    page.goto(f"{address}/#tasks")
+    expect(page.locator("#list_templates tr [data-part=name]")).to_have_text("Dig")
+    text = "<root><BehaviorTree ID='Dig'/></root>"
+    page.locator("#file").set_input_files({"name": "Dig.xml", "mimeType": "text/xml", "buffer": text.encode()})
+    page.get_by_role("button", name="Store as template").click()
+    expect(page.locator("#dialog_text")).to_have_text("Template Dig is stored with another text. Replace it?")
+    page.locator("#dialog_yes").click()
+    expect(page.locator("#message")).to_have_text("Stored as template Dig.")
+    assert [call for call in yard.calls if call[0] == "add_template"] == [("add_template", "Dig", text, "", True)]

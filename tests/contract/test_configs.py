@@ -12,11 +12,11 @@ from conftest import PROJECT
 from tms_config.config import CONFIGS, load_site
 from tms_config.models import TURNED, MachineModel
 from tms_config.processes import table
-from tms_config.sensing import load_sensing
 from tms_config.yaml_file import parse, read_yaml
 from tms_host.supervisor import render
 from tms_kit.subtask_server import load
 from tms_machine.record_lock import FLAG
+from tms_machine.sensing import load_sensing
 
 MODELS = sorted((CONFIGS / "machines").glob("*.yaml"))
 SITES = [CONFIGS / "site.yaml", *sorted((CONFIGS / "sites").glob("*.yaml"))]
@@ -113,7 +113,8 @@ def test_imports_have_no_effects() -> None:
     code = (
         "import threading, importlib, pkgutil, sys\n"
         "layers = ('tms_config', 'tms_decision', 'tms_machine', 'tms_proof', 'tms_reason', 'tms_ros', 'tms_runtime')\n"
-        "services = ('tms_db', 'tms_mc', 'tms_ts', 'tms_rp', 'tms_rc', 'tms_sim', 'tms_host', 'tms_cli')\n"
+        "services = ('tms_db', 'tms_mc', 'tms_ts', 'tms_rp', 'tms_rc', 'tms_sim', 'tms_host', 'tms_cli',\n"
+        "            'tms_ground', 'tms_soil', 'tms_work')\n"
         "for name in (*layers, 'tms_control', *services):\n"
         "    package = importlib.import_module(name)\n"
         "    for found in pkgutil.walk_packages(package.__path__, name + '.'):\n"

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from conftest import PROJECT
+from tms_machine.peer_forms import HASHES
 
 INTERFACES = PROJECT / "services" / "interfaces"
 FORMS = INTERFACES / "_forms"  # packages of the same names, each form in a prefix of its own
@@ -34,18 +35,26 @@ KNOWN = {
 
 # The forms of version 6, by their definitions as read; without a peer of theirs to compare them with.
 KNOWN_FORMS = {
+    ("", "tms_msg_rp/action/TmsRpExcavator"): "3b4d7264d3c192a4ba436a17a9d99f84384ed1e66f10690aaa53d655332d199c",
+    ("", "tms_msg_rp/action/TmsRpFollowStraight"): "300da29a4b3a97ec5bff7cacd39b3d1147348405e64433f11d85c63f17ea373b",
     ("v6a", "tms_msg_ts/action/LeafNodeBase"): "cb6b24b5c49884d4464bf769ba1c45fb583556275ec0c03cc342db9e63122559",
     ("v6b", "tms_msg_ts/action/LeafNodeBase"): "dfc42e8bd08861795e637231ba18ab99dcefc262ae113b0ced99f48cc42547ed",
-    ("v6a", "tms_msg_db/srv/TmsdbGetTask"): "dd546b6a3bb1944f0ca404d5855507421c5ce02584c56243474424b12cbc330d",
-    ("v6b", "tms_msg_db/srv/TmsdbGetTask"): "dd546b6a3bb1944f0ca404d5855507421c5ce02584c56243474424b12cbc330d",
+    ("param_type", "tms_msg_db/srv/TmsdbGetTask"): "dd546b6a3bb1944f0ca404d5855507421c5ce02584c56243474424b12cbc330d",
+    ("both", "tms_msg_db/srv/TmsdbGetTask"): "dd546b6a3bb1944f0ca404d5855507421c5ce02584c56243474424b12cbc330d",
+    ("param_type", "tms_msg_db/srv/TmsdbGetData"): "3982c7709d44f80137db707738b0d5d1b52d8465442590a076e0b97f4c895a77",
+    ("both", "tms_msg_db/srv/TmsdbGetData"): "99811e4e4c7d8c56f045e7714758222cdbe5f8912584630a054fdad66df27ef4",
+    ("plans", "tms_msg_rp/action/TmsRpExcavator"): "a74359ea9b50a0fcf20cff4620697d73fc9a04ac4a4c7586ce8074c96b8f38c8",
 }
 
 
-def built_hash(name: str, prefix: Path = Path(sys.prefix)) -> str:
+FORM = re.compile(r"^build_form\((\w+) (\w+)", re.MULTILINE)
+
+
+def built_hash(name: str, prefix: Path = Path(sys.prefix), part: str = "") -> str:
     package, kind, _ = name.split("/")
     file = prefix / "share" / package / kind / f"{name.split('/')[2]}.json"
     hashes = {row["type_name"]: row["hash_string"] for row in json.loads(file.read_text())["type_hashes"]}
-    return hashes[name].removeprefix("RIHS01_")
+    return hashes[name + part].removeprefix("RIHS01_")
 
 
 @pytest.mark.parametrize("name", sorted(KNOWN))
@@ -55,14 +64,29 @@ def test_type_hash(name: str) -> None:
 
 @pytest.mark.parametrize(("form", "name"), sorted(KNOWN_FORMS))
 def test_type_hash_of_another_form(form: str, name: str) -> None:
-    assert built_hash(name, Path(sys.prefix) / "share" / "tms_forms" / form) == KNOWN_FORMS[form, name]
+    prefix = Path(sys.prefix, "share", "tms_forms", form) if form else Path(sys.prefix)
+    assert built_hash(name, prefix) == KNOWN_FORMS[form, name]
+
+
+@pytest.mark.parametrize(("definition", "form"), [(name, form) for name, forms in HASHES.items() for form in forms])
+def test_a_peer_is_known_by_the_hash_of_its_goals(definition: str, form: str) -> None:
+    package = {"LeafNodeBase": "tms_msg_ts", "TmsRpExcavator": "tms_msg_rp"}[definition]
+    usual = form in ("v5", "plan")
+    prefix = Path(sys.prefix) if usual else Path(sys.prefix, "share", "tms_forms", form)
+    told = built_hash(f"{package}/action/{definition}", prefix, "_SendGoal_Request")
+    assert HASHES[definition][form] == f"RIHS01_{told}"
+    others = ("_SendGoal_Response", "_GetResult_Request", "_GetResult_Response", "_FeedbackMessage")
+    name = f"{package}/action/{definition}"
+    assert [built_hash(name, prefix, part) for part in others] == [built_hash(name, part=part) for part in others]
 
 
 @pytest.mark.parametrize("package", PACKAGES, ids=lambda path: f"{path.parent.name}/{path.name}")
 def test_every_definition_is_built(package: Path) -> None:
     text = (package / "CMakeLists.txt").read_text()
-    forms = ["v6a", "v6b"] if "${FORM}" in text else [""]
-    built = "".join(text.replace("${FORM}", form) for form in forms)
+    forms = FORM.findall((INTERFACES / "_wheel" / "CMakeLists.txt").read_text())
+    built = "".join([text, *(text.replace("${FORM}", form) for form, name in forms if name == package.name)])
+    if text.count("set(FORM ") > 1:  # the usual build has one of them
+        built += text.replace("${FORM}", re.findall(r"set\(FORM (\w+)\)", text)[0])
     listed = set(re.findall(r'"(?:\$\{CMAKE_CURRENT_SOURCE_DIR\}/(\w+):)?(\w+/\w+\.\w+)"', built))
     there = {path.relative_to(package) for kind in ("msg", "srv", "action") for path in package.rglob(f"*.{kind}")}
     assert {f"{base}/{file}" if base else file for base, file in listed} == {str(path) for path in there}

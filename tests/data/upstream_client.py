@@ -5,9 +5,14 @@ usage: upstream_client.py leaf MACHINE SUBTASK RECORD [FIELD=TEXT...]
                                                            last feedback where there was one
        upstream_client.py rp NAMESPACE ACTION X Y Z THETA  one TmsRpZx200ChangePose goal; prints `<status> <error code>`
        upstream_client.py template NAME                    asks tms_db_reader_subtask; prints the text
+       upstream_client.py plan SERVICE NAME                asks for the plan of a record; prints the x of its poses
+       upstream_client.py excavator MACHINE JOINT ANGLE... sets the planner, plans to joint angles, executes the plan;
+                                                           prints status and error code of both, and the angles
+       upstream_client.py planner MACHINE                  serves tms_rp_excavator until it is ended: plans straight to
+                                                           the angles within 10 s; prints command, group and start
        upstream_client.py serve MACHINE SUBTASK            serves LeafNodeBase until it is ended; prints each goal
 
-It speaks the form of LeafNodeBase that stands first on its paths.
+It speaks the forms that stand first on its paths.
 """
 
 import sys
@@ -15,12 +20,15 @@ import time
 
 import rclpy
 from rclpy.action import ActionClient, ActionServer
-from tms_msg_db.srv import TmsdbGetTask
-from tms_msg_rp.action import TmsRpZx200ChangePose
-from tms_msg_rp.msg import TmsRpZx200PositionWithAngle
+from tms_msg_db.srv import TmsdbGetData, TmsdbGetTask
+from tms_msg_rp.action import TmsRpExcavator, TmsRpZx200ChangePose
+from tms_msg_rp.msg import TmsRpExcavatorJointValues, TmsRpZx200PositionWithAngle
+from tms_msg_rp.srv import TmsRpExcavatorParamGet, TmsRpExcavatorParamSet
 from tms_msg_ts.action import LeafNodeBase
+from trajectory_msgs.msg import JointTrajectoryPoint
 
 LIMIT = 60.0  # s
+START = (0.0, -0.8029, 1.9897, 0.8029)  # rad, where a zx200 stands at first
 
 
 def ask(node, kind, name, goal):
@@ -54,13 +62,81 @@ def rp(node, namespace, action, x, y, z, theta_w):
     print(status, result.error_code.val if result else None)
 
 
-def template(node, name):
-    client = node.create_client(TmsdbGetTask, "tms_db_reader_subtask")
+def call(node, kind, name, request):
+    client = node.create_client(kind, name)
     if not client.wait_for_service(LIMIT):
-        sys.exit("tms_db_reader_subtask is not there")
-    asked = client.call_async(TmsdbGetTask.Request(task_name=name))
+        sys.exit(f"{name} is not there")
+    asked = client.call_async(request)
     rclpy.spin_until_future_complete(node, asked, timeout_sec=LIMIT)
-    print(asked.result().task)
+    return asked.result()
+
+
+def template(node, name):
+    print(call(node, TmsdbGetTask, "tms_db_reader_subtask", TmsdbGetTask.Request(task_name=name)).task)
+
+
+def plan(node, service, name):
+    request = TmsdbGetData.Request(type="parameter", id=3012, param_type="plan", name=name)
+    for found in call(node, TmsdbGetData, service, request).tmsdbs:
+        print(node.count_services(f"/{service}"), *(one.pose.position.x for one in found.plan.poses))
+
+
+def excavator(node, machine, *pairs):
+    name = f"/{machine}/tms_rp_excavator"
+    settings = TmsRpExcavatorParamSet.Request(
+        goal_position_tolerance=0.5,
+        goal_orientation_tolerance=0.5,
+        goal_joint_tolerance=-1.0,
+        planning_time=-1.0,
+        max_velocity_scaling_factor=1.0,
+        max_acceleration_scaling_factor=1.0,
+        num_planning_attempts=-1,
+        planner_id="RRTConnectkConfigDefault",
+        planning_pipeline_id="ompl",
+    )
+    if not call(node, TmsRpExcavatorParamSet, f"{name}_param_set", settings).success:
+        sys.exit("not set")
+    wanted = TmsRpExcavatorJointValues(joint_names=pairs[::2], joint_values=list(map(float, pairs[1::2])))
+    goal = TmsRpExcavator.Goal(command=TmsRpExcavator.Goal.CMD_PLAN_TO_JOINTS, joint_values=wanted)
+    status, result, _ = ask(node, TmsRpExcavator, name, goal)
+    print(status, result.moveit_error_code)
+    several = hasattr(goal, "plans")
+    what = {"plans": [result.plan]} if several else {"plan": result.plan}
+    goal = TmsRpExcavator.Goal(command=TmsRpExcavator.Goal.CMD_EXECUTE_PLAN, **what)
+    status, result, _ = ask(node, TmsRpExcavator, name, goal)
+    request = TmsRpExcavatorParamGet.Request(get_current_state=True)
+    state = call(node, TmsRpExcavatorParamGet, f"{name}_param_get", request).joint_states
+    angles = dict(zip(state.name, state.position, strict=True))
+    print(status, result.moveit_error_code, *(f"{angles[joint]:.1f}" for joint in pairs[::2]))
+
+
+def planner(node, machine):
+    def execute(handle):
+        goal = handle.request
+        begins = [list(one.joint_trajectory.points[-1].positions)[:4] for one in goal.previous_pose]
+        print(goal.command, goal.planning_group, *(f"{angle:.1f}" for one in begins for angle in one), flush=True)
+        result = TmsRpExcavator.Result(success=True, moveit_error_code=1)
+        made = result.plan.joint_trajectory
+        made.joint_names = goal.joint_values.joint_names
+        still = [0.0] * len(made.joint_names)
+        start = begins[-1] if begins else START
+        for seconds, angles in ((0, start), (10, goal.joint_values.joint_values)):
+            point = JointTrajectoryPoint(positions=angles, velocities=still, accelerations=still)
+            point.time_from_start.sec = seconds
+            made.points.append(point)
+        handle.succeed()
+        return result
+
+    def settled(_, response):
+        response.success = True
+        return response
+
+    name = f"/{machine}/tms_rp_excavator"
+    node.create_service(TmsRpExcavatorParamSet, f"{name}_param_set", settled)
+    server = ActionServer(node, TmsRpExcavator, name, execute)
+    print("ready", flush=True)
+    rclpy.spin(node)
+    server.destroy()
 
 
 def serve(node, machine, subtask):
@@ -79,6 +155,6 @@ def serve(node, machine, subtask):
 
 if __name__ == "__main__":
     rclpy.init()
-    {"leaf": leaf, "rp": rp, "template": template, "serve": serve}[sys.argv[1]](
-        rclpy.create_node("upstream"), *sys.argv[2:]
-    )
+    modes = {"leaf": leaf, "rp": rp, "template": template, "plan": plan, "excavator": excavator, "planner": planner,
+             "serve": serve}  # fmt: skip
+    modes[sys.argv[1]](rclpy.create_node("upstream"), *sys.argv[2:])

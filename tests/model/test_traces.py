@@ -1,7 +1,11 @@
-"""Histories of the simulation are histories of the model; forged ones are not."""
+"""Histories of the simulation, and those of a drill, are histories of the model; forged ones are not."""
+
+from typing import Any
 
 import pytest
 
+from model.journals import accepted, is_known
+from model.journals import words_of as words_of_trial
 from model.traces import Mapping, Reader, known, numbers, words_of
 from simulation.plan import Lie, machines, plan
 from simulation.schedule import Schedule
@@ -73,3 +77,54 @@ def test_a_goal_of_an_old_run_is_refused(reader: Reader) -> None:
     begin = ["BEGINS 1", "KILLED_SCHEDULER 0", "CONFIRMED 0", "STARTED_SCHEDULER 0", "ARMS 0", "BEGINS 2"]
     assert reader.accepts([*begin, "SENDS 2", "ACCEPTS 2"])
     assert not reader.accepts([*begin, "SENDS 2", "ACCEPTS 2", "SENDS 1"])
+
+
+# trials of a drill
+
+RELAY = "m0:swing"
+
+
+def trial(stop: str, *happened: tuple[float, float, str, str, str], fault: str = "none") -> dict[str, Any]:
+    """Times are s; each thing happened between the first and the second, most likely at the second."""
+    told = [
+        {"first": a, "likely": b, "last": b, "what": what, "who": who, "told": words}
+        for a, b, what, who, words in happened
+    ]
+    return {"machine": "m0", "stop": stop, "fault": fault, "relay": RELAY, "happened": told}
+
+
+BEGIN = ((0.0, 0.0, "run", "tms:ts", "STATE_RUNNING"), (1.0, 1.0, "accepts", "m0", ""))
+KILLED = trial(
+    "kill rc", *BEGIN, (2.0, 2.0, "killed", "m0:rc", ""), (2.0, 3.0, "started", "m0:rc", ""),
+    (3.5, 5.2, "receipt", "m0", "confirmed"), (5.0, 5.0, "accepts", "m0", ""),
+)  # fmt: skip
+
+
+def test_only_trials_without_liars_and_without_a_planner_of_their_own_are_in_words_of_the_model() -> None:
+    assert is_known(KILLED) and is_known(trial("power cut"))
+    assert not is_known(trial("kill rc", fault="replay")) and not is_known(trial("freeze rp"))
+
+
+def test_what_observers_saw_becomes_words() -> None:
+    assert [one.word for one in words_of_trial(KILLED)] == [
+        "BEGINS 1", "SENDS 1", "ACCEPTS 1", "KILLED_GATEWAY 0", "STARTED_GATEWAY 0", "SENDS 1", "ACCEPTS 1",
+        "CONFIRMED 0",
+    ]  # fmt: skip
+
+
+def test_one_order_that_the_times_allow_is_a_history(reader: Reader) -> None:
+    """The receipt arrived after the next goal, and left before it."""
+    seen = words_of_trial(KILLED)
+    read, order = accepted(reader, seen)
+    assert read == len(seen) and order.index("CONFIRMED 0") < order.index("SENDS 1", 3)
+
+
+def test_a_goal_after_the_end_of_its_run_is_refused_in_every_order(reader: Reader) -> None:
+    forged = trial(
+        "cancel", *BEGIN, (3.0, 3.1, "receipt", "m0", "confirmed"), (3.2, 3.2, "run", "tms:ts", "STATE_CANCELLED"),
+        (5.0, 5.0, "accepts", "m0", ""),
+    )  # fmt: skip
+    seen = words_of_trial(forged)
+    assert accepted(reader, seen)[0] < len(seen)
+    whole = words_of_trial({**forged, "happened": forged["happened"][:-1]})
+    assert accepted(reader, whole)[0] == len(whole)

@@ -15,13 +15,15 @@ from std_msgs.msg import Bool
 from tf2_msgs.msg import TFMessage
 from tms_msg_rc.msg import MachineState
 from tms_msg_rp.action import (
+    Excavate,
     ExecutePlans,
     PlanPose,
+    TmsRpExcavator,
     TmsRpZx200ChangePose,
     TmsRpZx200ExcavateSimple,
     TmsRpZx200ReleaseSimple,
 )
-from tms_msg_rp.msg import TmsRpErrorCodes, TmsRpZx200PositionWithAngle
+from tms_msg_rp.msg import TmsRpErrorCodes, TmsRpExcavatorJointValues, TmsRpZx200PositionWithAngle
 from tms_msg_rp.srv import CheckMotion, GetScene
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from visualization_msgs.msg import Marker, MarkerArray
@@ -67,6 +69,8 @@ ports: {{metrics: {port}}}
 sim: {{speed: {speed}, seed: 1}}
 services: {{}}
 machines: {{{machine}: {{model: zx200}}, {mute}: {{model: zx200}}}}
+peers: {{{machine}: {{leaf: v5, motions: true}}}}
+forms: {{TmsRpExcavator: plan}}
 """
 MACHINE, MUTE = "zx200_7", "zx200_8"  # names of their own: other tests may have a zx200 in the same domain
 NAMES = ["swing_joint", "boom_joint", "arm_joint", "bucket_joint", "bucket_end_joint"]
@@ -124,8 +128,8 @@ class Rig:
         name = "tms_rp_zx200_change_pose" + ("_plan" if plan else "")
         return self.send(TmsRpZx200ChangePose, name, machine, trajectory=trajectory)
 
-    def cancel(self, call: Call) -> None:
-        self.ros.peer(TmsRpZx200ChangePose, f"/{MACHINE}/tms_rp_zx200_change_pose").cancel(call)
+    def cancel(self, call: Call, action: Any = TmsRpZx200ChangePose, name: str = "tms_rp_zx200_change_pose") -> None:
+        self.ros.peer(action, f"/{MACHINE}/{name}").cancel(call)
 
     def end(self, call: Call) -> Outcome:
         self.until(lambda: call.outcome is not None, "end of the goal")
@@ -210,11 +214,34 @@ def test_excavate_then_release(machine: Rig) -> None:
     soil = TmsRpZx200PositionWithAngle(position=Point(x=4.7, y=-0.4, z=0.1), theta_w=0.0)
     dig = machine.send(TmsRpZx200ExcavateSimple, "tms_rp_zx200_excavate_simple", position_with_angle=soil)
     assert machine.end(dig) is Outcome.SUCCEEDED
-    assert machine.states[-1].position[3] == pytest.approx(1.7, abs=0.031)
+    assert sum(machine.states[-1].position[1:4]) == pytest.approx(math.pi, abs=0.06)  # the bucket is level
     assert any((reported := wire.known(text)).find(MoveOf) and reported.find(OtherAngle) for text in machine.said)
     opened = machine.send(TmsRpZx200ReleaseSimple, "tms_rp_zx200_release_simple", target_angle=-0.2)
     assert machine.end(opened) is Outcome.SUCCEEDED
     assert machine.states[-1].position[3] == pytest.approx(-0.2, abs=0.031)
+
+
+def test_a_dig_that_is_blocked_is_planned_anew_from_where_it_was(machine: Rig) -> None:
+    frames = machine.ros.publisher(TFMessage, "/tf", depth=10)
+    soil = TmsRpZx200PositionWithAngle(position=Point(x=-4.0, y=4.5, z=0.0), theta_w=1.6)
+    dig = machine.send(Excavate, "tms_rp_zx200_excavate", position_with_angle=soil, depth=0.4, drag=1.0, lift=0.5)
+    machine.until(machine.moving, "motion")
+
+    def waits() -> bool:
+        frames.publish(at(7.0, 1.6))
+        return any(wire.known(said).find(PlannedAnew) is not None for said in machine.said)
+
+    def over() -> bool:
+        frames.publish(at(60.0, 1.6))
+        return dig.outcome is not None
+
+    machine.until(waits, "a way that is blocked")
+    assert dig.outcome is None and not machine.moving()
+    machine.until(over, "end of the dig")
+    assert dig.outcome is Outcome.SUCCEEDED
+    swing, boom, arm, bucket, _ = machine.states[-1].position
+    assert swing == pytest.approx(math.atan2(4.53, -4.11), abs=0.06)
+    assert boom + arm + bucket == pytest.approx(math.pi, abs=0.06)
 
 
 def test_cancel_ends_with_the_machine_standing(machine: Rig) -> None:
@@ -361,6 +388,26 @@ def test_stored_plans_are_executed_one_behind_the_other_and_not_from_elsewhere(m
     elsewhere = machine.reason(PlanElsewhere)
     assert elsewhere is not None and elsewhere.joint == "swing_joint"
     assert machine.states[-1].position == pytest.approx(there, abs=0.031)
+
+
+def test_a_primitive_of_version_6_moves_the_arm_until_it_is_cancelled(machine: Rig) -> None:
+    def send(command: int, **fields: Any) -> Call:
+        return machine.send(TmsRpExcavator, "tms_rp_excavator", command=command, **fields)
+
+    asked, wanted = TmsRpExcavator.Goal, TmsRpExcavatorJointValues(joint_names=NAMES[:1], joint_values=[2.5])
+    found = send(asked.CMD_PLAN_TO_JOINTS, joint_values=wanted)
+    assert machine.end(found) is Outcome.SUCCEEDED and found.result.success
+    assert machine.states[-1].position == pytest.approx(START, abs=0.031)
+    call = send(asked.CMD_EXECUTE_PLAN, plan=found.result.plan)
+    machine.until(machine.moving, "motion")
+    assert machine.end(send(asked.CMD_EXECUTE_PLAN, plan=found.result.plan)) is Outcome.REJECTED
+    assert machine.end(machine.change_pose(*START)) is Outcome.REJECTED  # one motion at a time, whoever asks
+    machine.cancel(call, TmsRpExcavator, "tms_rp_excavator")
+    assert machine.end(call) is Outcome.CANCELED
+    assert (
+        all(abs(velocity) < 0.01 for velocity in machine.states[-1].velocity) and machine.states[-1].position[0] < 2.0
+    )
+    assert (call.result.success, call.result.moveit_error_code) == (False, -7)
 
 
 def test_a_check_plans_without_a_motion_and_while_another_goal_moves(machine: Rig) -> None:

@@ -77,6 +77,22 @@ def test_their_primitive_drives_through_our_gateway(mesh: Mesh) -> None:
     assert call.outcome is Outcome.SUCCEEDED
 
 
+def test_a_motion_ends_with_the_border_that_has_passed_it_on(mesh: Mesh) -> None:
+    goal, goals = NavigateToPose.Goal(), list[str]()
+    goal.pose.header.frame_id = "map"
+    goal.pose.pose.position.x, goal.pose.pose.orientation.w = 2000.0, 1.0
+    with node_in(mesh) as node:
+        peer = node.peer(NavigateToPose, "/mst110cr/tms_rp_navigate_anywhere")
+        peer.wait_ready(LIMIT)
+        node.subscribe(MachineState, "/mst110cr/rc/state", lambda state: goals.append(state.goal), latched=True)
+        peer.send(goal)
+        wait_until(lambda: bool(goals and goals[-1]), LIMIT, "the truck drives")
+        rows = json.loads(mesh.tms("ps", "--json").stdout)
+        os.kill(next(row["pid"] for row in rows if row["name"] == "mst110cr:if"), signal.SIGKILL)
+        wait_until(lambda: not goals[-1], LIMIT, "the truck has no goal any more")
+    mesh.wait_ready()
+
+
 @pytest.mark.parametrize(
     ("machine", "node", "ports", "told"),
     [
@@ -88,7 +104,7 @@ def test_their_server_serves_our_tree(
     mesh: Mesh, tmp_path: Path, machine: str, node: str, ports: str, told: str
 ) -> None:
     number = stored(mesh, tmp_path, machine, node, ports)
-    with foreign_server(mesh, machine, "primitive_of_theirs", MACHINES[machine]) as server:
+    with foreign_server(mesh, "serve", machine, "primitive_of_theirs", form=MACHINES[machine]) as server:
         wait_until(lambda: succeeds(mesh, number), LIMIT, "the border has found their server")
         assert server.stdout is not None and server.stdout.readline() == told
 
@@ -96,14 +112,14 @@ def test_their_server_serves_our_tree(
 def test_their_scheduler_reads_our_templates(mesh: Mesh) -> None:
     file = PROJECT / "configs" / "templates" / "Excavate_combined.xml"
     mesh.tms("template", "add", str(file))
-    assert ask(mesh, "template", "Excavate_combined", form="v6a") == file.read_text(encoding="utf-8").split()
-    assert ask(mesh, "template", "nobody_has_it", form="v6b") == []
+    assert ask(mesh, "template", "Excavate_combined", form="param_type") == file.read_text(encoding="utf-8").split()
+    assert ask(mesh, "template", "nobody_has_it", form="both") == []
 
 
 def test_an_input_that_their_form_has_no_field_for_refuses_the_goal(mesh: Mesh, tmp_path: Path) -> None:
     ports = 'record_name="a" read_direction="down"'
     number = stored(mesh, tmp_path, "mst110cr", "LeafNodeCrawlerDump", ports)
-    with foreign_server(mesh, "mst110cr", "primitive_of_theirs", "v6a"):
+    with foreign_server(mesh, "serve", "mst110cr", "primitive_of_theirs", form="v6a"):
         wait_until(
             lambda: "takes no read_direction" in outcome(mesh, number), LIMIT, "the border has found their server"
         )
@@ -111,7 +127,7 @@ def test_an_input_that_their_form_has_no_field_for_refuses_the_goal(mesh: Mesh, 
 
 def test_a_server_in_another_form_than_declared_refuses_the_run(mesh: Mesh, tmp_path: Path) -> None:
     number = stored(mesh, tmp_path, "mst110cr_2", "LeafNodeCrawlerDump", 'record_name="a"', "primitive_of_others")
-    with foreign_server(mesh, "mst110cr_2", "primitive_of_others", "v6a"):
+    with foreign_server(mesh, "serve", "mst110cr_2", "primitive_of_others", form="v6a"):
         wait_until(
             lambda: "speaks LeafNodeBase as v6a" in outcome(mesh, number), LIMIT, "the border has found their server"
         )

@@ -41,7 +41,7 @@ def test_their_server_serves_our_tree(mesh: Mesh, tmp_path: Path) -> None:
     file.write_text(TREE.format("st_zx200_of_theirs"))
     number = str(json.loads(mesh.tms("task", "add", str(file), "--json").stdout)["task_id"])
     assert "offers no 'st_zx200_of_theirs'" in mesh.tms("run", number, "--wait", expect=1).stderr
-    with foreign_server(mesh, "zx200", "st_zx200_of_theirs") as server:
+    with foreign_server(mesh, "serve", "zx200", "st_zx200_of_theirs") as server:
         done = mesh.tms("run", number, "--wait", "--json", "--ignore-warnings")
         assert json.loads(done.stdout)["outcome"] == "success"
         assert server.stdout is not None and server.stdout.readline() == "zx200 a_record_of_theirs\n"

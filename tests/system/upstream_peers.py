@@ -18,7 +18,7 @@ SUCCEEDED, ABORTED = "4", "6"
 
 
 def their_environment(mesh: Mesh, form: str = "v5") -> dict[str, str]:
-    """ROS settings of the mesh, and the paths of their form of LeafNodeBase; our own code is not on them."""
+    """ROS settings of the mesh, and the paths of a form of theirs; our own code is not on them."""
     ours = environment(load_site(str(mesh.site)))
     kept = {key: ours[key] for key in ours if key.startswith(("ROS_", "FASTRTPS_", "HOME"))}
     if form != "v5":
@@ -47,9 +47,9 @@ def asking(mesh: Mesh, *words: str, form: str = "v5") -> Iterator[None]:
 
 
 @contextmanager
-def foreign_server(mesh: Mesh, machine: str, subtask: str, form: str = "v5") -> Iterator["subprocess.Popen[str]"]:
-    """A server of theirs, which prints the fields of each goal."""
-    command = [sys.executable, SCRIPT, "serve", machine, subtask]
+def foreign_server(mesh: Mesh, *words: str, form: str = "v5") -> Iterator["subprocess.Popen[str]"]:
+    """A server of theirs (`serve MACHINE SUBTASK`, `planner MACHINE`), which prints each goal."""
+    command = [sys.executable, SCRIPT, *words]
     environ = their_environment(mesh, form)
     with subprocess.Popen(command, env=environ, stdout=subprocess.PIPE, text=True, cwd="/") as server:
         assert server.stdout is not None and server.stdout.readline() == "ready\n"

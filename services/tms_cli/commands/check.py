@@ -6,7 +6,8 @@ from tms_cli import session
 from tms_cli.words import say
 from tms_config.config import load_site
 from tms_config.processes import table
-from tms_config.sensing import load_sensing
+from tms_ground.settings import ground_of, soil_of
+from tms_machine.sensing import load_sensing
 from tms_ur.address import certificate, users
 
 
@@ -26,6 +27,8 @@ def command(chosen: str | None, as_json: bool) -> None:
     if any(row.name == "ur" and row.pc in ("", site.pc) for row in rows):  # other PCs do not have the console's files
         certificate(site)
         users(site)
+    if (ground := ground_of(site)) is not None:
+        soil_of(site, ground)
     inputs = load_sensing(site).inputs
     if as_json:
         session.show_json(

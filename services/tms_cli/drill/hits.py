@@ -55,6 +55,10 @@ class Hits:
             raise TmsError(NotRunning(tuple(missing)))
         return {name: running[name] for name in names}
 
+    def all_names(self, subtasks: Sequence[str]) -> tuple[str, ...]:
+        """The processes that a power cut ends; the subtasks of the present leaves were started on demand."""
+        return (*(row.full for row in table(self._site) if row.autostart and row.group != GROUP), *subtasks)
+
     def everything(self) -> list[int]:
         """The pids of all processes that a power cut ends, supervisord first."""
         top = psutil.Process(Supervisor(self._site).pid())
@@ -71,8 +75,11 @@ class Hits:
             come_first(NICE, {self._thaw.pid})
         return at
 
-    def back(self, how: How, pids: Mapping[str, int], hit: float) -> float | None:
-        """Wait until all processes work again; returns seconds from the hit, None after BACK_LIMIT."""
+    def back(self, how: How, pids: Mapping[str, int], hit: float, started: dict[str, float]) -> float | None:
+        """Wait until all processes work again; returns seconds from the hit, None after BACK_LIMIT.
+
+        `started` gets when they were seen to have begun, s since 1970.
+        """
         waiting = dict(pids)
         if self._thaw is not None:
             self._thaw.wait()
@@ -81,20 +88,22 @@ class Hits:
             running = self._running()
             for name, before in list(waiting.items()):
                 pid = running.get(name, 0)
-                if pid and (how is How.FREEZE or pid != before) and self._works(name):
+                if not pid or (how is not How.FREEZE and pid == before):
+                    continue
+                started.setdefault(name, unix_time())
+                if self._works(name):
                     del waiting[name]
             if not waiting:
                 return unix_time() - hit
             sleep(CHECK_PERIOD)
         return None
 
-    def power_on(self, pids: Sequence[int], hit: float) -> float | None:
+    def power_on(self, pids: Sequence[int], hit: float, started: dict[str, float]) -> float | None:
         """Start the mesh again after a power cut, when all processes have ended; returns as `back`."""
         while any(map(psutil.pid_exists, pids)) and unix_time() - hit < BACK_LIMIT:
             sleep(CHECK_PERIOD)
         mesh.up(self._site, without=GROUP)
-        names = [row.full for row in table(self._site) if row.autostart and row.group != GROUP]
-        return self.back(How.POWER, dict.fromkeys(names, 0), hit)
+        return self.back(How.POWER, dict.fromkeys(self.all_names([]), 0), hit, started)
 
     def _running(self) -> dict[str, int]:
         return {row.name: row.pid for row in Supervisor(self._site).processes()}

@@ -1,4 +1,8 @@
-"""An endless task for each machine, of long motions, and the records that it needs. Pure logic."""
+"""An endless task for each machine, of long motions, and the records that it needs. Pure logic.
+
+Models with primitives of the C++ system's version 6 do these, by its leaves; the others do subtasks of version 5. An
+excavator of the former moves along plans that rest in records meanwhile.
+"""
 
 import math
 from collections.abc import Mapping
@@ -23,15 +27,25 @@ TURNS: tuple[tuple[str, str, Any, Any], ...] = (  # subtask, field of its record
 
 Records = dict[str, dict[str, Any]]
 Leaves = list[tuple[str, str]]  # subtask, record
+PRIMITIVES: Mapping[str, tuple[str, str, str]] = {  # kind of machine -> leaf of version 6, its ports for what and of
+    "backhoe": ("LeafNodeExcavator", "primitive_name", "target_record_name"),
+    "crawler_dump": ("LeafNodeCrawlerDump", "primitive_name", "record_name"),
+    "bulldozer": ("LeafNodeBulldozer", "primitive_name", "record_name"),
+}
+PRIMITIVE = "primitive_"  # how the names of primitives begin
+PLANS = "change_pose_plan"  # the subtask file that moves nothing
 
 
 def task(site: Site, machine: str) -> tuple[str, Records]:
     """The tree, and records by name."""
     model = site.model_of(machine)
-    leaves, records = _arm(model) if model.planner else _tracks(site, machine, model)
+    leaves, records = _tracks(site, machine, model) if not model.planner else _plans(model) or _arm(model)
+    node, what, of = f"LeafNode{site.file.machines[machine].model.capitalize()}", "subtask_name", "record_name"
+    if leaves[0][0].startswith(PRIMITIVE):
+        node, what, of = PRIMITIVES[model.kind]
     actions = "".join(
-        f"<Action ID={quoteattr(f'LeafNode{site.file.machines[machine].model.capitalize()}')} "
-        f"model_name={quoteattr(machine)} subtask_name={quoteattr(subtask)} record_name={quoteattr(record)}/>"
+        f"<Action ID={quoteattr(node)} model_name={quoteattr(machine)} {what}={quoteattr(subtask)} "
+        f"{of}={quoteattr(record)}/>"
         for subtask, record in leaves
     )
     return (
@@ -58,6 +72,25 @@ def _arm(model: MachineModel) -> tuple[Leaves, Records]:
     ], records  # fmt: skip
 
 
+def _plans(model: MachineModel) -> tuple[Leaves, Records] | None:
+    """The motions of an arm along plans; None for a model without primitives."""
+    if not any(model.subtask(name).run == PLANS for name in model.subtasks):
+        return None
+    plan = _subtask(model, PLANS)
+    move = _subtask(model, "change_pose_execute_from_plan", retime=False)
+    boom = model.initial["boom_joint"]
+    targets = {
+        "drill_left": {**model.initial, "swing_joint": SWING},
+        "drill_right": {**model.initial, "swing_joint": -SWING, "boom_joint": boom + LIFT},
+    }
+    whole = {"planning_group": "manipulator", "velocity_scale": 1.0, "acceleration_scale": 1.0}
+    records: Records = {
+        name: {**whole, "waypoints": [{"type": "joint_values_absolute", "data": target}]}
+        for name, target in targets.items()
+    }
+    return [(what, record) for record in records for what in (plan, move)], records
+
+
 def _tracks(site: Site, machine: str, model: MachineModel) -> tuple[Leaves, Records]:
     x, y, yaw = site.start_of(machine)
     drive = _subtask(model, "navigate_anywhere", angles="quaternion")
@@ -78,6 +111,7 @@ def _place(x: float, y: float, yaw: float) -> dict[str, Any]:
 
 
 def _subtask(model: MachineModel, run: str, **inputs: Any) -> str:
-    """The model's subtask that runs a file with these inputs."""
+    """The model's subtask that runs a file with these inputs; a primitive where there is one."""
     uses: Mapping[str, Any] = {name: model.subtask(name) for name in model.subtasks}
-    return next(name for name, use in uses.items() if use.run == run and inputs.items() <= dict(use.inputs).items())
+    fit = [name for name, use in uses.items() if use.run == run and inputs.items() <= dict(use.inputs).items()]
+    return next((name for name in fit if name.startswith(PRIMITIVE)), fit[0])

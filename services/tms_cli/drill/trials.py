@@ -10,6 +10,7 @@ import psutil
 from tms_msg_rc.srv import StopMachine
 
 from tms_cli.drill.busy import stood_still
+from tms_cli.drill.history import FOLDER, Hit, happenings, keep
 from tms_cli.drill.hits import BACK_LIMIT, Hits
 from tms_cli.drill.operasim import OperaSim
 from tms_cli.drill.plan import NONE, TROUBLES, TS, How, StopScenario, Trial
@@ -48,6 +49,8 @@ class Struck:
 
     hit: "Future[float]" = field(default_factory=Future)  # s since 1970
     back: "Future[float | None]" = field(default_factory=Future)  # s from the hit
+    processes: tuple[str, ...] = ()  # that are hit
+    started: dict[str, float] = field(default_factory=dict)  # when those that were killed were seen again, s since 1970
 
 
 class Hand:
@@ -116,14 +119,16 @@ class Hand:
             struck.back.set_result(self._operasim.trouble(stop.how))
         elif stop.how is How.POWER:
             pids = self._hits.everything()
+            struck.processes = self._hits.all_names([hand.work.subtask for hand in hands])
             until(at)
             struck.hit.set_result(self._hits.hit(How.KILL, pids))
-            struck.back.set_result(self._hits.power_on(pids, struck.hit.result()))
+            struck.back.set_result(self._hits.power_on(pids, struck.hit.result(), struck.started))
         else:
             found = self._hits.pids(self._hits.names(stop, {hand.machine: hand.work.subtask for hand in hands}))
+            struck.processes = tuple(found)
             until(at)
             struck.hit.set_result(self._hits.hit(stop.how, list(found.values())))
-            struck.back.set_result(self._hits.back(stop.how, found, struck.hit.result()))
+            struck.back.set_result(self._hits.back(stop.how, found, struck.hit.result(), struck.started))
 
     def _press(self) -> None:
         self._node.call_unanswered(StopMachine, f"/{self.machine}/rc/stop", StopMachine.Request(cause=CAUSE))
@@ -150,12 +155,22 @@ class Hand:
         watched = hit + back if takes_gateway(trial) and back is not None else 0.0
         self._look_on(trial, begun, watched)  # another stop may have ended meanwhile
         record = self._last_words(trial, begun)
+        self._note_history(trial, struck)
         stops = [one.begun for one in record.receipts]
         busy = "" if stop.moves else stood_still(self._site, self.machine, stops)
         row = judge(TrialFacts(trial, self.model, record, begun, hit, stopped, self._ends, back, outcome, busy))
         if row.false_receipt or (row.unconfirmed and row.in_order) or row.ran_on:
             self._keep(record, hit)
         return row
+
+    def _note_history(self, trial: Trial, struck: Struck) -> None:
+        """Keep what happened since the begin of the run; without the run's own history it says nothing."""
+        hit, back = struck.hit.result(), struck.back.result()
+        run = self.work.history()
+        if run and back is not None:
+            what = Hit(hit, struck.processes, struck.started, hit + back)
+            found = happenings(trial, self.eyes.since(run[0][0]), what, run)
+            keep(self._site.state / FOLDER, trial, self.work.subtask, found)
 
     def _keep(self, record: TrialRecording, hit: float) -> None:
         """Keep the true motion of a conspicuous trial as a file."""

@@ -9,16 +9,20 @@ from tms_msg_ts.srv import CancelRun
 
 from tms_cli import session, stored_records
 from tms_cli.commands import rearm
+from tms_cli.commands.events import journal
 from tms_cli.commands.runs import has_ended, recent
 from tms_cli.drill import tasks
 from tms_cli.drill.plan import fault_of
+from tms_cli.drill.record import time_of
 from tms_cli.drill.verdict import INTERRUPTED
 from tms_cli.reasons import RunDoesNotEnd
 from tms_config.clock import monotonic, sleep
 from tms_config.config import Site
+from tms_reason import wire
 from tms_reason.errors import TmsError
 from tms_ros.client import Call
 from tms_ros.node import Ros
+from tms_ts.reasons import StateBecause
 
 ARM_LIMIT = 30.0  # s for the machine to be armed again
 SERVER_LIMIT = 20.0  # s for the scheduler to be up
@@ -35,9 +39,12 @@ class Work:
 
         self._node, self._site, self.machine = node, site, machine
         tree, records = tasks.task(site, machine)
-        self._subtasks = {goal.path: f"{machine}:{goal.subtask}" for goal in bt.load(tree).leaf_goals()}
+        leaves, model = bt.load(tree).leaf_goals(), site.model_of(machine)
+        moving = [leaf for leaf in leaves if model.subtask(leaf.subtask).run != tasks.PLANS]
+        self._subtasks = {leaf.path: f"{machine}:{leaf.subtask}" for leaf in moving}
         for name, values in records.items():
-            stored_records.write(node, (machine, name), values, create=True, type="static", description="stop drill")
+            kind = "dynamic" if "waypoints" in values else "static"  # plans are written into it
+            stored_records.write(node, (machine, name), values, create=True, type=kind, description="stop drill")
         stored = session.call(node, AddTask, "/tms/db/add_task", task_sequence=tree, description=f"drill {machine}")
         self._task = stored.task_id
         self._peer = node.peer(ExecuteTask, "/tms/execute_task")
@@ -46,7 +53,7 @@ class Work:
         self._call: Call[ExecuteTask.Result, ExecuteTask.Feedback] | None = None
         self._run = ""
         self.lost = False  # its scheduler was lost, so that only the history has its end
-        self.subtask = next(iter(self._subtasks.values()))  # the process behind the present leaf
+        self.subtask = next(iter(self._subtasks.values()))  # the process behind the motion
 
     def be(self, fault: str) -> None:
         """Set the fault of the stand-in; `none` removes it. The simulator's machines have no faults."""
@@ -120,6 +127,17 @@ class Work:
         except TmsError:
             return ""  # the database may have been hit
         return run.state if run is not None and has_ended(run) else ""
+
+    def history(self) -> list[tuple[float, str]]:
+        """When the run entered which states, by its journal: s since 1970, and codes; empty: not known."""
+        if not self._run:
+            return []
+        try:
+            rows = [row for row in journal(self._node, self._run) if row.kind == "run"]
+        except TmsError:
+            return []  # the database may have been hit
+        reasons = [(time_of(row.stamp), wire.known(row.text)) for row in rows]
+        return [(at, (why.state if isinstance(why, StateBecause) else why).code) for at, why in reasons]
 
     def _received(self, feedback: ExecuteTask.Feedback) -> None:
         self._run = feedback.run_id or self._run

@@ -11,7 +11,7 @@ from tms_cli.reasons import EmptyRecording, NoSuchTopic, NothingToPlay
 from tms_cli.replay.recording import Track
 from tms_config.config import Site
 from tms_config.models import Border
-from tms_config.sensing import Input, sensing_path
+from tms_machine.sensing import Input, sensing_path
 from tms_reason.errors import TmsError
 from tms_reason.validation import Wrong
 from tms_sp.node import message_class

@@ -4,7 +4,7 @@ import struct
 from typing import Any
 
 from tms_cli.reasons import StampFixed
-from tms_config.sensing import Input
+from tms_machine.sensing import Input
 from tms_reason.errors import TmsError
 from tms_ros.packing import pack, unpack
 from tms_sp.mapping import Getter, field_getter, stamp_path

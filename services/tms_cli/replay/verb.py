@@ -52,7 +52,7 @@ def replay(
         from tms_cli.replay.matching import match
         from tms_cli.replay.pace import Pace
         from tms_cli.replay.player import LOOP_GAP, Player
-        from tms_config.sensing import load_sensing
+        from tms_machine.sensing import load_sensing
 
         span = _span(recording, start, duration)
         found = match(recording.tracks, load_sensing(session.site()).inputs, session.site(), topics)

@@ -6,7 +6,8 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 from trajectory_msgs.msg import JointTrajectory
 
-from tms_machine.reasons import NotHonoured, PathLeavesConstraint
+from tms_machine.joint_ranges import left
+from tms_machine.reasons import NotHonoured
 from tms_reason.errors import SubtaskFailed
 from tms_reason.validation import Wrong
 from tms_subtasks.records.plans import end
@@ -48,13 +49,10 @@ class Constraints(BaseModel):
         Raises:
             SubtaskFailed: PathLeavesConstraint, or NotHonoured: the plan does not have the joint.
         """
-        base, names = (end(previous) if previous is not None else {}), list(plan.joint_names)
+        base = end(previous) if previous is not None else {}
         for one in self.joint_constraints:
-            if one.joint_name not in names:
-                raise SubtaskFailed(NotHonoured((one.joint_name,)))
             middle = one.position if one.position != BASE else base.get(one.joint_name)
             middle = now(one.joint_name) if middle is None else middle
-            angles = [point.positions[names.index(one.joint_name)] for point in plan.points]
-            low, high = middle - one.tolerance_below, middle + one.tolerance_above
-            if outside := [angle for angle in angles if not low <= angle <= high]:
-                raise SubtaskFailed(PathLeavesConstraint(one.joint_name, outside[0], low, high))
+            why = left(plan, one.joint_name, middle - one.tolerance_below, middle + one.tolerance_above)
+            if why is not None:
+                raise SubtaskFailed(why)

@@ -46,7 +46,7 @@ class _Point(BaseModel):
 class Waypoint(Params):
     """Where the arm shall go."""
 
-    planning_group: str  # must be present, as in the C++ system; a model of ours has one arm
+    planning_group: str  # the arm's name in the C++ system's planner; must be present, as there
     waypoints: list[_Point]  # one
     velocity_scale: float = Field(default=SCALE, gt=0, le=1)
     acceleration_scale: float = Field(default=SCALE, gt=0, le=1)

@@ -36,6 +36,12 @@ def checked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, tms: Any) -> Callab
     return run
 
 
+def test_a_site_whose_ground_is_wrong(checked: Callable[[dict[str, Any]], Any], tmp_path: Path) -> None:
+    site = tmp_path / "site.yaml"
+    site.write_text(site.read_text() + "ground: {area: [0, 0, 1]}\n")
+    assert "ground.area" in str(checked(MODEL).exception)
+
+
 def changed(change: Callable[[Any], object]) -> dict[str, Any]:
     model: dict[str, Any] = copy.deepcopy(MODEL)
     change(model)

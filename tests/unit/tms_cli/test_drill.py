@@ -15,6 +15,7 @@ from tms_cli.drill.report import line, markdown, text
 from tms_cli.drill.verdict import HUNG, LEFT_OUT, Row
 from tms_config.config import CONFIGS, load_site
 from tms_config.site_file import Fault
+from tms_subtasks.records.waypoints import Waypoint
 from tms_ts import bt
 
 MACHINES = {"zx200": True, "zx120": True, "ic120_1": False, "mst2200_1": False, "mst110cr_2": False, "d37": False}
@@ -105,6 +106,21 @@ def test_each_machine_has_an_endless_task_of_its_own(machine: str) -> None:
     assert {goal.record for goal in goals} == set(records)
     assert {goal.subtask for goal in goals} <= set(site.model_of(machine).subtasks)
     assert 'num_cycles="-1"' in tree
+    primitives = {"zx200", "mst2200", "mst110cr", "d37pxi"}  # models that have them: leaves of version 6
+    assert all(goal.subtask.startswith("primitive_") for goal in goals) == (
+        site.file.machines[machine].model in primitives
+    )
+
+
+def test_an_excavator_of_version_6_moves_along_plans_that_rest_in_records() -> None:
+    tree, records = tasks.task(load_site(SITE), "zx200")
+    asked = [
+        (goal.subtask.removeprefix("primitive_excavator_change_pose_"), goal.record)
+        for goal in bt.load(tree).leaf_goals()
+    ]
+    assert asked == [(what, record) for record in records for what in ("plan", "execute_from_plan")]
+    for values in records.values():
+        Waypoint.model_validate(values)
 
 
 def test_percentiles() -> None:

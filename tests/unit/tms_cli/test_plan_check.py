@@ -41,10 +41,8 @@ def plan() -> JointTrajectory:
 def asked(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
     actions: list[str] = []
     answers = {
-        "excavate_simple": CheckMotion.Response(
-            plan=plan(), clearance=0.42, nearest=to_line(Busy("zx200:rc")), seconds=3.0
-        ),
-        "release_simple": CheckMotion.Response(error_code="BUSY", error_msg=to_line(Busy("zx200:rc")), lasting=True),
+        "excavate": CheckMotion.Response(plan=plan(), clearance=0.42, nearest=to_line(Busy("zx200:rc")), seconds=3.0),
+        "release": CheckMotion.Response(error_code="BUSY", error_msg=to_line(Busy("zx200:rc")), lasting=True),
         "change_pose": CheckMotion.Response(plan=plan(), clearance=float("inf")),
     }
 
@@ -77,7 +75,7 @@ def run(*arguments: str) -> Result:
 
 def test_a_free_motion_with_its_path(asked: list[str]) -> None:
     said = run("zx200", "target_excavate_pose")
-    assert said.exit_code == 0 and asked == ["excavate_simple"]
+    assert said.exit_code == 0 and asked == ["excavate"]
     assert "straight; it takes 29.0 s" in said.output and "0.42 m apart after 3.0 s" in said.output
     rows = said.output.splitlines()
     assert rows[2].split() == ["s", "swing", "boom", "arm", "bucket", "bucket_end"]

@@ -9,7 +9,7 @@ from std_msgs.msg import Float64
 
 from tms_cli.replay.pace import Pace
 from tms_cli.replay.stamps import Stamps
-from tms_config.sensing import Input
+from tms_machine.sensing import Input
 from tms_ros.packing import pack, unpack
 
 SECOND = 1_000_000_000  # ns

@@ -19,6 +19,7 @@ from tms_config.reasons import (
     BadLine,
     BadVariable,
     CannotBeRead,
+    FormNotSaid,
     HalfALogin,
     KeyTwice,
     NoBorder,
@@ -35,6 +36,7 @@ from tms_config.reasons import (
     NoService,
     NoSourceFacts,
     NoSuchLink,
+    NotConvex,
     NoTopic,
     NotUnderMachines,
     NotUtf8,
@@ -44,6 +46,7 @@ from tms_config.reasons import (
     ProcessMeant,
     SeveralProcesses,
     SharedFrames,
+    TwoPlanners,
     UserTwice,
 )
 from tms_config.yaml_file import parse, read_yaml
@@ -223,6 +226,10 @@ def test_the_backend_chooses_the_names(tmp_path: Path) -> None:
         ({"sim": {"faults": {"ic120": {"late": 1}}}}, "sim.faults.ic120", NotUnderMachines("ic120", ("zx200",))),
         ({"sim": {"faults": {"zx200": {"lat": 1}}}}, "sim.faults.zx200.lat", UnknownKey()),
         ({"peers": {"ic120": {"leaf": "v5"}}}, "peers.ic120", NotUnderMachines("ic120", ("zx200",))),
+        ({"peers": {"zx200": {"leaf": "v6b", "planner": "theirs"}}}, "peers.zx200.planner",
+         FormNotSaid("TmsRpExcavator")),
+        ({"peers": {"zx200": {"leaf": "v6b", "planner": "theirs", "motions": True}},
+          "forms": {"TmsRpExcavator": "plan"}}, "peers.zx200.planner", TwoPlanners()),
     ],
 )  # fmt: skip
 def test_machines_that_do_not_fit(tmp_path: Path, changes: dict[str, object], key: str, problem: Reason) -> None:
@@ -233,10 +240,23 @@ def test_machines_that_do_not_fit(tmp_path: Path, changes: dict[str, object], ke
 def test_peers_of_version_6_get_a_border_on_the_pc_of_their_machine(tmp_path: Path) -> None:
     machines = {name: {"model": "zx200"} for name in ("old", "early", "new", "alone")}
     peers = {"old": {"leaf": "v5"}, "early": {"leaf": "v6a"}, "new": {"leaf": "v6b"}}
-    borders = {
-        row.full: row.form for row in table(load_site(site(tmp_path, machines=machines, peers=peers))) if row.form
-    }
-    assert borders == {"early:if": "v6a", "new:if": "v6b", "tms:if_templates": "v6b"}
+    assert forms(tmp_path, machines=machines, peers=peers) == {
+        "early:if": "v6a", "new:if": "v6b", "tms:if_readers": "both",
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("form", ["param_type", "both"])
+def test_records_are_read_in_the_form_that_the_site_names(tmp_path: Path, form: str) -> None:
+    assert forms(tmp_path, forms={"TmsdbGetData": form}) == {"tms:if_readers": form}
+
+
+def test_a_planner_speaks_the_form_of_its_peers(tmp_path: Path) -> None:
+    assert forms(tmp_path, forms={"TmsRpExcavator": "plan"}) == {}  # the usual one
+    assert forms(tmp_path, forms={"TmsRpExcavator": "plans"}) == {"zx200:rp": "plans"}
+
+
+def forms(tmp_path: Path, **changes: object) -> dict[str, str]:
+    return {row.full: row.form for row in table(load_site(site(tmp_path, **changes))) if row.form}
 
 
 def test_a_model_without_the_border_of_the_site(tmp_path: Path) -> None:
@@ -332,11 +352,14 @@ def test_the_bridge_has_settings_of_its_own(tmp_path: Path) -> None:
     [
         ("response: {}", "response", NoResponse("swing_joint")),
         ("initial: {tail_joint: 0}", "", NoSuchLink("tail_joint")),
+        ("blade: {link: tail_link, edge: [0, 0], width: 3, origin: o}", "", NoSuchLink("tail_link")),
+        ("bucket: {link: bucket_link, section: [[0, 0], [1, 0], [0.4, 0.1], [0, 1]], width: 1, force: 1, origin: o}",
+         "bucket.section", NotConvex()),
         ("borders: {sim: {odom: odom}}", "borders.sim.sources.odom", NoSourceFacts()),
         ("borders: {sim: {sources: {odom: {period: 0.1, stamps: utc, frozen_after: 1, origin: o}}}}",
          "borders.sim.sources.odom", NoTopic("odom")),
-        ("geometry: {boom_joint: {parent: sky, child: boom_link, xyz: [0, 0, 0]}}\nshapes: {}", "geometry.boom_joint",
-         NoParent("sky")),
+        ("geometry: {boom_joint: {parent: sky, child: boom_link, xyz: [0, 0, 0]}}\nshapes: {}\nbucket: null",
+         "geometry.boom_joint", NoParent("sky")),
     ],
 )  # fmt: skip
 def test_a_machine_file_that_does_not_fit_together(tmp_path: Path, change: str, key: str, problem: Reason) -> None:

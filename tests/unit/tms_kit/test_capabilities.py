@@ -10,11 +10,12 @@ from nav2_msgs.action import ComputePathToPose, FollowWaypoints, NavigateThrough
 from nav_msgs.msg import Path
 from pydantic import ValidationError
 from tms_msg_rp.action import (
+    Excavate,
     ExecutePlans,
     PlanPose,
+    Release,
     TmsRpBulldozerBlade,
     TmsRpZx200ChangePose,
-    TmsRpZx200ExcavateSimple,
 )
 from tms_msg_ur.action import NextStepPermission
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
@@ -29,6 +30,8 @@ from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
 from tms_ros.client import Call
 from tms_ros.goals import Outcome
+from tms_subtasks.excavate_simple import DigPoint, excavate_simple
+from tms_subtasks.release_simple import Opening
 from tms_subtasks.sample_joint import Angle
 
 PATH = [Pose(position=Point(x=float(x))) for x in range(3)]
@@ -123,9 +126,35 @@ def test_plan_variants_ask_the_servers_that_never_move() -> None:
     machine.change_pose(print, joints={"boom_joint": -0.5})
     assert [(kind, action) for kind, action, _ in machine.sent] == [
         (TmsRpZx200ChangePose, "tms_rp_zx120_change_pose_plan"),
-        (TmsRpZx200ExcavateSimple, "tms_rp_zx120_excavate_simple_plan"),
+        (Excavate, "tms_rp_zx120_excavate_plan"),
         (TmsRpZx200ChangePose, "tms_rp_zx120_change_pose"),
     ]
+
+
+def test_a_dig_has_the_figures_of_its_record_and_the_usual_ones_else() -> None:
+    machine = Recorded("zx200")
+    record = {"position_with_angle": 1.0, "x": 6.0, "y": 1.0, "z": 0.0, "theta_w": 1.5}
+    for more in ({}, {"depth": 0.4, "drag": 2.0}):
+        excavate_simple(machine, DigPoint.model_validate({**record, **more}), print)
+    usual, given = (goal for _, _, goal in machine.sent)
+    assert (usual.depth, usual.drag, usual.lift) == (1.0, 1.0, 0.5)
+    assert (given.depth, given.drag, given.lift) == (0.4, 2.0, 0.5)
+    for wrong in ({"depth": 0.0}, {"drag": -1.0}, {"lift": float("nan")}):
+        with pytest.raises(ValidationError):
+            DigPoint.model_validate({**record, **wrong})
+
+
+def test_a_bucket_is_emptied_where_it_is_or_over_the_place_of_the_record() -> None:
+    machine, place = Recorded("zx200"), {"x": 5.0, "y": 2.0, "z": 3.5, "theta_w": 3.0}
+    for more in ({}, place, {**place, "position_with_angle": 1.0}):
+        want = Opening.model_validate({"target_angle": -0.3, **more})
+        machine.release_soil(print, want.target_angle, want.place())
+    assert [(kind, len(goal.position_with_angle)) for kind, _, goal in machine.sent] == [
+        (Release, 0), (Release, 0), (Release, 1),
+    ]  # fmt: skip
+    assert machine.sent[2][2].position_with_angle[0].theta_w == 3.0
+    with pytest.raises(ValidationError):
+        Opening.model_validate({"target_angle": -0.3, "position_with_angle": 1.0, "x": 5.0})
 
 
 def test_a_plan_comes_from_the_planner_and_goes_back_to_it() -> None:

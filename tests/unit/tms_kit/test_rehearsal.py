@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 from builtin_interfaces.msg import Time
-from tms_msg_rp.action import PlanPose, TmsRpZx200ChangePose, TmsRpZx200ExcavateSimple
+from tms_msg_rp.action import Excavate, PlanPose, TmsRpZx200ChangePose
 from tms_msg_rp.srv import CheckMotion
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
@@ -55,8 +55,8 @@ def test_the_goal_is_what_the_subtask_would_send() -> None:
     planner = Planner()
     planner.rehearse("subtask_zx200_excavate_simple", "dig")
     (asked,) = planner.asked
-    goal = unpack(bytes(asked.goal), TmsRpZx200ExcavateSimple.Goal)
-    assert asked.action == "excavate_simple" and goal.position_with_angle.position.x == 6.0
+    goal = unpack(bytes(asked.goal), Excavate.Goal)
+    assert asked.action == "excavate" and goal.position_with_angle.position.x == 6.0
     assert list(asked.previous.points) == []
 
 
@@ -82,7 +82,7 @@ def test_stored_plans_and_relative_angles_are_those_of_the_rehearsal() -> None:
 
 
 def test_a_refusal_leaves_the_arm_where_it_was() -> None:
-    planner = Planner(refuses="excavate_simple")
+    planner = Planner(refuses="excavate")
     with pytest.raises(Refused) as caught:
         planner.rehearse("subtask_zx200_excavate_simple", "dig")
     assert caught.value.reason == Busy("x") and caught.value.lasting

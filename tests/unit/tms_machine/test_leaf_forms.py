@@ -5,10 +5,13 @@ from typing import Any
 
 import pytest
 
-from tms_machine.leaf_forms import HASHES, judged, misfit
+from tms_machine.leaf_forms import misfit
+from tms_machine.peer_forms import HASHES as ALL
+from tms_machine.peer_forms import judged
 from tms_machine.reasons import FormContradicted, FormUnknown
 from tms_reason.reason import Reason
 
+HASHES = ALL["LeafNodeBase"]
 SILENT = "INVALID"  # what rclpy makes of an endpoint without a hash, as nodes of Humble have
 OTHER = "RIHS01_" + 64 * "0"
 
@@ -17,17 +20,17 @@ OTHER = "RIHS01_" + 64 * "0"
     ("told", "declared", "why"),
     [
         (HASHES["v5"], "", None),  # undeclared: version 5, if it tells so itself
-        (SILENT, "", FormUnknown("/peer", "zx200")),
-        (HASHES["v6b"], "", FormContradicted("/peer", "v6b", "v5", "zx200")),
+        (SILENT, "", FormUnknown("/peer", "LeafNodeBase", "zx200")),
+        (HASHES["v6b"], "", FormContradicted("/peer", "LeafNodeBase", "v6b", "v5", "zx200")),
         (SILENT, "v5", None),  # declared: a hash can only contradict
         (SILENT, "v6a", None),
         (HASHES["v6a"], "v6a", None),
-        (HASHES["v6a"], "v6b", FormContradicted("/peer", "v6a", "v6b", "zx200")),
-        (OTHER, "v6b", FormContradicted("/peer", "?", "v6b", "zx200")),
+        (HASHES["v6a"], "v6b", FormContradicted("/peer", "LeafNodeBase", "v6a", "v6b", "zx200")),
+        (OTHER, "v6b", FormContradicted("/peer", "LeafNodeBase", "?", "v6b", "zx200")),
     ],
 )
 def test_a_peer_is_refused_that_would_be_misread(told: str, declared: str, why: Reason | None) -> None:
-    assert judged(told, "/peer", "zx200", declared) == why
+    assert judged(told, "/peer", "zx200", "LeafNodeBase", declared) == why
 
 
 @pytest.mark.parametrize("servers", [True, False])
@@ -45,6 +48,6 @@ def test_it_is_the_other_side_that_is_looked_at(servers: bool) -> None:
     node = SimpleNamespace(**looks, get_fully_qualified_name=lambda: "/own")
     site: Any = SimpleNamespace(file=SimpleNamespace(peers={}))
     ros: Any = SimpleNamespace(node=node)
-    assert misfit(ros, site, "zx200", "dig", servers=servers) == FormUnknown("/humble", "zx200")
+    assert misfit(ros, site, "zx200", "dig", servers=servers) == FormUnknown("/humble", "LeafNodeBase", "zx200")
     site.file.peers["zx200"] = SimpleNamespace(leaf="v5")
     assert misfit(ros, site, "zx200", "dig", servers=servers) is None

@@ -12,11 +12,10 @@ from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
 from tms_reason.errors import ConfigError, SubtaskFailed
-from tms_rp.kinds.backhoe.goals import ChangePose, LinkGoal, TipGoal, joint_goal
+from tms_rp.kinds.backhoe.digging import excavate, release
+from tms_rp.kinds.backhoe.goals import ChangePose, Dig, Emptying, LinkGoal, TipGoal, joint_goal
 from tms_rp.kinds.backhoe.linkage import ArmAngles
 from tms_rp.kinds.backhoe.planner import Backhoe
-from tms_rp.reasons import ClearanceCut
-from words import words
 
 BACKHOE = Backhoe(parse(CONFIGS / "machines" / "zx200.yaml", MachineModel))
 NOW = ArmAngles(0.0, -0.6, 1.9, 0.3)
@@ -68,6 +67,10 @@ def test_a_full_turn_of_theta_w_is_the_same_bucket() -> None:
     assert turned.targets[0] == pytest.approx(BACKHOE.change_pose(NOW, tips(TipGoal(6, 0, 0, 1.2))).targets[0])
 
 
+def dig(x: float, y: float, z: float, theta_w: float, depth: float = 1.0, drag: float = 1.0, lift: float = 0.5) -> Dig:
+    return Dig(TipGoal(x, y, z, theta_w), depth, drag, lift)
+
+
 def pose_of(joint_angles: ArmAngles, roll: float = 0.0, yaw: float = 0.0) -> LinkGoal:
     """Pose of bucket_end_link by the rotations of the URDF, independent of the planner's formulas."""
     x, y, z, _ = BACKHOE.linkage.tip(joint_angles)
@@ -85,59 +88,6 @@ def test_a_link_pose_leads_back_to_its_joints(a: float, b: float, c: float, d: f
     goal = ChangePose(links=(pose_of(ArmAngles(a, b, c, d), roll),))
     (target,) = BACKHOE.change_pose(NOW._replace(swing=a), goal).targets
     assert target == pytest.approx((a, b, c, d), abs=1e-6)
-
-
-# excavate and release
-
-
-def test_excavate_finds_the_nearest_bucket_angle_and_says_so() -> None:
-    moves = BACKHOE.excavate(NOW, SOIL)
-    swing, reach, curl = moves.targets
-    assert swing == NOW._replace(swing=reach.swing)
-    assert reach == pytest.approx((-1.565542, -0.228449, 2.256313, -0.617864), abs=1.5e-6)
-    assert curl == reach._replace(arm=reach.arm + 0.1, bucket=1.7)
-    assert words(moves.notes[0]) == "bucket angle 1.410 rad instead of 0.000 rad"
-
-
-def test_excavate_keeps_a_possible_angle_silently() -> None:
-    moves = BACKHOE.excavate(NOW, TipGoal(6.0, 0.0, 1.0, 1.2))
-    assert moves.notes == ()
-    assert moves.targets[1] == pytest.approx((0.014778, -0.436543, 2.014228, -0.377684), abs=1.5e-6)
-
-
-def test_excavate_takes_a_full_turn_of_theta_w_as_the_same_angle() -> None:
-    turned = BACKHOE.excavate(NOW, TipGoal(6.0, 0.0, 1.0, 1.2 + math.tau))
-    assert turned.targets[1] == pytest.approx(BACKHOE.excavate(NOW, TipGoal(6.0, 0.0, 1.0, 1.2)).targets[1])
-    assert turned.notes == ()
-
-
-def test_offset_is_along_the_line_from_base_link() -> None:
-    near = BACKHOE.excavate(NOW, TipGoal(3.0, 4.0, 1.0, 1.2, offset=1.0)).targets[1]
-    x, y, z, _ = BACKHOE.linkage.tip(near)
-    assert (x, y, z) == pytest.approx((3.6, 4.8, 0.0))
-
-
-def test_excavate_cuts_the_clearance_at_the_limit() -> None:
-    pose = ArmAngles(0.0, -0.2, 2.65, -0.3)
-    x, y, z, theta_w = BACKHOE.linkage.tip(pose)
-    moves = BACKHOE.excavate(NOW, TipGoal(x, y, z + 1.0, theta_w))
-    assert moves.targets[2].arm == 2.687
-    assert ClearanceCut("arm_joint", 2.687) in moves.notes
-
-
-def test_release_ends_at_the_asked_angle() -> None:
-    now = ArmAngles(-0.0028, -0.837315, 1.646905, 2.190410)
-    half, end = BACKHOE.release(now, -0.34).targets
-    assert BACKHOE.linkage.tip(half)[:3] == pytest.approx((5.854, -0.103, 2.520), abs=1e-3)
-    assert BACKHOE.linkage.tip(end)[:3] == pytest.approx((6.969, -0.106, 4.045), abs=1e-3)
-    assert BACKHOE.release(now, 0.5).targets[1].bucket == 0.5
-    assert half.swing == end.swing == now.swing
-
-
-def test_release_cuts_the_clearance_at_the_limits() -> None:
-    moves = BACKHOE.release(ArmAngles(0.0, -1.1, 2.6, 1.7), -0.34)
-    assert moves.targets[1][1:3] == (-1.137, 2.687)
-    assert moves.notes == (ClearanceCut("arm_joint", 2.687), ClearanceCut("boom_joint", -1.137))
 
 
 # refusals
@@ -183,10 +133,20 @@ Plan = Callable[[], object]
             lambda: BACKHOE.change_pose(NOW, ChangePose(links=(pose_of(NOW, yaw=0.4),))),
             "OUT_OF_PLANE: the orientation points -?0....? rad out of the arm's plane; turned to ",
         ),
-        (lambda: BACKHOE.excavate(NOW, TipGoal(20, 0, 0, 1.0)), "NO_ANGLE_DIGS: no bucket angle from 0 to pi digs"),
-        (lambda: BACKHOE.excavate(NOW, TipGoal(6, 0, 1, NAN)), "FIELD_NOT_FINITE: a value"),
-        (lambda: BACKHOE.release(NOW, -1.0), "OUT_OF_RANGE: bucket_joint -1.000 rad is below its limit -0.622 rad"),
-        (lambda: BACKHOE.release(NOW, NAN), "FIELD_NOT_FINITE: a value"),
+        (lambda: excavate(BACKHOE, NOW, dig(20, 0, 0, 1.0)), "NO_ANGLE_DIGS: no bucket angle from 0 to pi digs"),
+        (lambda: excavate(BACKHOE, NOW, dig(6, 0, 1, NAN)), "FIELD_NOT_FINITE: a value"),
+        (lambda: excavate(BACKHOE, NOW, dig(6, 0, 1, 1.2, drag=NAN)), "FIELD_NOT_FINITE: a value"),
+        (
+            lambda: excavate(BACKHOE, NOW, dig(6, 0, 1, 1.2, depth=0.0)),
+            "DIG_UNFIT: depth 0.00 m must be above 0, drag ",
+        ),
+        (lambda: excavate(BACKHOE, NOW, dig(6, 0, 1, 1.2, lift=-0.1)), "DIG_UNFIT: "),
+        (
+            lambda: release(BACKHOE, NOW, Emptying(-1.0)),
+            "OUT_OF_RANGE: bucket_joint -1.000 rad is below its limit -0.622 rad",
+        ),
+        (lambda: release(BACKHOE, NOW, Emptying(NAN)), "FIELD_NOT_FINITE: a value"),
+        (lambda: release(BACKHOE, NOW, Emptying(0.0, TipGoal(20, 0, 3, 3.0))), "NO_ANGLE_DIGS: "),
     ],
 )
 def test_refusals(plan: Plan, text: str) -> None:

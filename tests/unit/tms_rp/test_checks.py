@@ -18,9 +18,10 @@ from tms_rp.checks import MotionChecks
 from tms_rp.kind import Angles, PlanningAction
 from tms_rp.kinds import load
 from tms_rp.kinds.backhoe.planner import Backhoe
+from tms_rp.plan import Plan
 from tms_rp.reasons import Around, Between, Part, PartOf
 from tms_rp.scene import Obstacle, Scene
-from tms_rp.ways import Plan, Ways
+from tms_rp.ways import Ways
 
 MODEL = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel)
 KIND = load("backhoe")
@@ -67,7 +68,7 @@ def test_the_clearance_is_the_gap_between_the_bodies(gap: float) -> None:
 
 
 def corners(link: str) -> list[tuple[float, float, float]]:
-    from tms_rp.links import Links
+    from tms_control.links import Links
 
     shape = MODEL.shapes[link]
     place = Links(MODEL).places(np.array([(*NOW, 0.0)]))[link][0]

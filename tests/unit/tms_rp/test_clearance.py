@@ -12,9 +12,9 @@ import pytest
 from tms_config.config import CONFIGS
 from tms_config.models import Box, MachineModel
 from tms_config.yaml_file import parse
+from tms_control.links import Links, placed
 from tms_reason.errors import SubtaskFailed
 from tms_rp.clearance import PADDING, Clearance
-from tms_rp.links import Links, placed
 from tms_rp.meshes import Mesh, cone
 from tms_rp.reasons import Collision, Part, PartOf, Told
 from tms_rp.scene import Obstacle, Scene

@@ -7,13 +7,14 @@ import pytest
 from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
+from tms_control.links import placed
 from tms_rp.clearance import Clearance
 from tms_rp.kind import Moves
 from tms_rp.kinds import load
-from tms_rp.kinds.backhoe.goals import TipGoal
+from tms_rp.kinds.backhoe.digging import excavate
+from tms_rp.kinds.backhoe.goals import Dig, TipGoal
 from tms_rp.kinds.backhoe.linkage import ArmAngles, Tip
 from tms_rp.kinds.backhoe.planner import Backhoe
-from tms_rp.links import placed
 from tms_rp.neighbour import Neighbour, Posture
 from tms_rp.scene import Scene
 from tms_rp.ways import Ways
@@ -38,6 +39,12 @@ def bed(truck: MachineModel) -> tuple[float, float]:
     return origin.xyz[0] + (shape.min[0] + shape.max[0]) / 2, parent + origin.xyz[2] + shape.max[2]
 
 
+def curled(backhoe: Backhoe, start: ArmAngles, at: TipGoal) -> ArmAngles:
+    """The bucket in the soil, curled in."""
+    reach = ArmAngles(*excavate(backhoe, start, Dig(at, depth=1.0, drag=0.0, lift=0.0)).targets[1])
+    return reach._replace(arm=reach.arm + 0.1, bucket=1.7)
+
+
 @pytest.mark.parametrize("truck", ["ic120", "mst110cr", "mst2200"])
 @pytest.mark.parametrize("excavator", ["zx200", "zx120"])
 def test_from_six_places(excavator: str, truck: str) -> None:
@@ -54,7 +61,7 @@ def test_from_six_places(excavator: str, truck: str) -> None:
             tuple(Neighbour(truck, other).obstacles(stands, 0.0, Posture(dict.fromkeys(other.joints, 0.0), 0.0)))
         )
         dig = TipGoal(5 * math.cos(bearing + BESIDE), 5 * math.sin(bearing + BESIDE), 0.5, 1.2)
-        dug = ArmAngles(*backhoe.excavate(start, dig).targets[-1])
+        dug = curled(backhoe, start, dig)
         over = backhoe.reach(Tip(x, y, edge + ABOVE, ANGLE))
         near = over._replace(swing=dug.swing + math.remainder(over.swing - dug.swing, math.tau))
         plan = ways.plan(dug, Moves((near,)), scene)

@@ -8,8 +8,8 @@ import pytest
 from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
+from tms_control.links import placed
 from tms_machine.drift import FRESH
-from tms_rp.links import placed
 from tms_rp.neighbour import Neighbour, Posture
 from tms_rp.reasons import PartOf
 from tms_rp.scene import GROWTH_STEP, Obstacle

@@ -6,13 +6,14 @@ from typing import Any
 
 import pytest
 import structlog
-from geometry_msgs.msg import TransformStamped
+from geometry_msgs.msg import Point, TransformStamped
 from rcl_interfaces.msg import Parameter
 from sensor_msgs.msg import JointState
 from tf2_msgs.msg import TFMessage
 from tms_msg_db.msg import Record
 from tms_msg_db.srv import ListParameters
-from tms_msg_rp.action import TmsRpZx200ChangePose
+from tms_msg_rp.action import Excavate, TmsRpZx200ChangePose
+from tms_msg_rp.msg import TmsRpZx200PositionWithAngle
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from tms_config.config import CONFIGS
@@ -20,7 +21,6 @@ from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
 from tms_control.reasons import PathBlocked
 from tms_machine.values import to_parameters
-from tms_reason import wire
 from tms_ros.goals import Outcome
 from tms_rp import node
 from tms_rp.reasons import Around, Collision, PartOf, Planned, Told
@@ -77,7 +77,7 @@ def planner_beside(
     monkeypatch.setattr(node, "Permit", lambda *_: None)
     monkeypatch.setattr(node, "watch_server", lambda *_: lambda _: None)
     site = SimpleNamespace(
-        file=SimpleNamespace(machines={name: SimpleNamespace(model=name) for name in MODELS}),
+        file=SimpleNamespace(machines={name: SimpleNamespace(model=name) for name in MODELS}, peers={}),
         model_of=MODELS.__getitem__,
         border=lambda name: MODELS[name].borders["sim"].model_copy(
             update={"base_frame": {"zx200": "zx200/base_link", "ic120": "ic120_tf/base_link"}[name]}
@@ -97,9 +97,9 @@ def planned(
     point = JointTrajectoryPoint(positions=[swing])
     request = TmsRpZx200ChangePose.Goal(trajectory=JointTrajectory(joint_names=["swing_joint"], points=[point]))
     said: list[Any] = []
-    goal: Any = SimpleNamespace(id="1", request=request, publish=lambda feedback: said.append(feedback.state))
-    outcome, _ = planner._execute(action, goal)
-    return outcome, wire.known(said[-2 if outcome is Outcome.SUCCEEDED else -1])
+    goal: Any = SimpleNamespace(id="1")
+    outcome, _ = planner._execute(action, goal, request, said.append)
+    return outcome, said[-2 if outcome is Outcome.SUCCEEDED else -1]
 
 
 FAR, AHEAD = (30.0, 0.0, 0.0), (6.0, 1.44, math.pi / 2)
@@ -137,3 +137,21 @@ def test_a_truck_that_comes_into_the_way_of_a_motion(monkeypatch: pytest.MonkeyP
     assert planner_beside(monkeypatch, FAR)._blocked(alone, 0.0) is None
     blocked = planner_beside(monkeypatch, AHEAD)._blocked(alone, 0.0)
     assert isinstance(blocked, PathBlocked) and blocked.by == PartOf("vessel", "ic120")
+
+
+def test_a_bucket_that_has_dug_is_kept_level_on_the_next_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    planner = planner_beside(monkeypatch, FAR)
+    actions = {action.name: action for action in planner.kind.actions}
+    point = JointTrajectoryPoint(positions=[1.5, -0.3, 1.7, 1.6])
+    swing = TmsRpZx200ChangePose.Goal(
+        trajectory=JointTrajectory(joint_names=list(MODELS["zx200"].joints)[:4], points=[point])
+    )
+    level = (-1.571, -0.5, 2.1, 1.5)
+    assert planner.planned(actions["change_pose"], level, swing).moves.through is None
+    monkeypatch.setattr(planner._resuming, "move", lambda *_: Outcome.SUCCEEDED)
+    place = TmsRpZx200PositionWithAngle(position=Point(x=0.0, y=-6.0, z=0.0), theta_w=1.6)
+    for name, held in (("excavate_plan", False), ("excavate", True)):
+        goal: Any = SimpleNamespace(id="1", request=Excavate.Goal(position_with_angle=place), publish=lambda _: None)
+        assert planner._execute(actions[name], goal, goal.request, lambda _: None)[0] is Outcome.SUCCEEDED
+        found = planner.planned(actions["change_pose"], level, swing).moves.through
+        assert (found is not None and found.held is not None) == held

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from itertools import pairwise
 
+import numpy as np
 import pytest
 from trajectory_msgs.msg import JointTrajectory
 
@@ -13,7 +14,7 @@ from tms_machine.stamps import duration
 from tms_reason.errors import SubtaskFailed
 from tms_rp.kinds.backhoe.planner import NAMES
 from tms_rp.messages import follow
-from tms_rp.plans import START, one_trajectory, scaled, start_of
+from tms_rp.plans import START, one_trajectory, scaled, start_of, without_stops
 from tms_rp.reasons import JointBroken, PlanBroken, PlanElsewhere, PlanLacks, PlanTooFast, PlanWrong
 from tms_rp.trajectory import trajectory
 
@@ -132,3 +133,31 @@ def test_scales_are_shares_of_the_limits() -> None:
     assert slow.duration > 1.3 * fast.duration
     swing = max(abs(sample.velocities[0]) for sample in trajectory(scaled(JOINTS, 0.1, 1.0), A, [B]).samples)
     assert swing <= 0.1 * JOINTS["swing_joint"].velocity * 1.000001
+
+
+def test_plans_whose_ends_meet_run_without_a_stop_as_fast_as_they_are() -> None:
+    slow, fast = (follow(trajectory(scaled(JOINTS, share, 1.0), a, [b])).trajectory
+                  for share, a, b in ((0.1, A, B), (1.0, B, C)))  # fmt: skip
+    made = one_trajectory(JOINTS, A, [slow, fast])
+    found = without_stops(JOINTS, made)
+    assert found.samples[0].positions == A and found.samples[-1].positions == pytest.approx(C, abs=1e-6)
+    assert len(found.stops) == 2 and found.stops[-1] == found.duration
+    inner = [sample for sample in found.samples if 0.6 < sample.time < found.duration - 0.6]
+    assert min(max(map(abs, sample.velocities)) for sample in inner) > 0.02
+    for index, joint in enumerate(JOINTS.values()):
+        speeds = [(sample.time, abs(sample.velocities[index])) for sample in found.samples]
+        assert max(speed for _, speed in speeds) <= joint.velocity * 1.0001
+        assert max(abs(sample.accelerations[index]) for sample in found.samples) <= joint.acceleration * 1.0001
+        assert found.stops[0] > 0.75 * made.stops[0]
+        before = max(speed for at, speed in speeds if at < found.stops[0] - 0.8)
+        assert before <= 0.1 * joint.velocity * 1.02  # the first plan stays slow
+
+
+def test_the_path_of_plans_stays_near_them_away_from_their_ends() -> None:
+    made = one_trajectory(JOINTS, A, [plan(A, B), plan(B, C)])
+    found = without_stops(JOINTS, made)
+    assert found.duration < made.duration
+    corner = np.array([sample.positions for sample in found.samples])
+    assert np.abs(corner - np.array(B)).max(axis=1).min() < 0.15
+    path = np.array([sample.positions for sample in made.samples])
+    assert max(np.abs(path - pose).max(axis=1).min() for pose in corner) < 0.15

@@ -24,10 +24,11 @@ from tms_rp.interventions import Interventions
 from tms_rp.kind import Angles, Moves
 from tms_rp.kinds import load
 from tms_rp.mover import Mover
+from tms_rp.plan import Plan
 from tms_rp.reasons import PlannedAnew
 from tms_rp.resuming import TRIES, Resuming
 from tms_rp.scene import Scene
-from tms_rp.ways import Plan, Ways
+from tms_rp.ways import Ways
 
 WAYS = Ways(parse(CONFIGS / "machines" / "zx200.yaml", MachineModel), load("backhoe"))
 NOW: Angles = (-1.571, -0.3, 1.4, 0.5)

@@ -14,11 +14,11 @@ from visualization_msgs.msg import Marker
 from tms_config.config import CONFIGS
 from tms_config.models import Box, MachineModel
 from tms_config.yaml_file import parse
+from tms_control.links import placed, turned
 from tms_reason.errors import SubtaskFailed
 from tms_reason.wire import of, to_line
 from tms_rp import scene_messages as messages
 from tms_rp.clearance import PADDING, Clearance
-from tms_rp.links import placed, turned
 from tms_rp.meshes import Mesh
 from tms_rp.reasons import JointsUnheard, Part, PartOf, Told
 from tms_rp.scene import Obstacle, Scene

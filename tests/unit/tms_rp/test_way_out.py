@@ -9,11 +9,11 @@ import pytest
 from tms_config.config import CONFIGS
 from tms_config.models import Box, MachineModel
 from tms_config.yaml_file import parse
+from tms_control.links import Array, Links, box_place
 from tms_reason.errors import SubtaskFailed
 from tms_rp.clearance import Clearance
 from tms_rp.kind import Moves
 from tms_rp.kinds import load
-from tms_rp.links import Array, Links, box_place
 from tms_rp.reasons import PartOf, SlowlyOut
 from tms_rp.scene import Obstacle, Scene
 from tms_rp.way_out import STEP, STEPS, way_out

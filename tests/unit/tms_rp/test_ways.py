@@ -11,6 +11,7 @@ from conftest import PROJECT
 from tms_config.config import CONFIGS
 from tms_config.models import Box, MachineModel
 from tms_config.yaml_file import parse
+from tms_control.links import placed
 from tms_control.reasons import PathBlocked
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
@@ -18,7 +19,7 @@ from tms_rp.clearance import Clearance
 from tms_rp.kind import Angles, Moves
 from tms_rp.kinds import load
 from tms_rp.kinds.backhoe.linkage import ArmAngles, Linkage
-from tms_rp.links import placed
+from tms_rp.messages import follow
 from tms_rp.reasons import (
     Around,
     Collision,
@@ -224,3 +225,20 @@ def test_a_searched_way_keeps_above_the_ground_and_the_soil_in_the_bucket(number
     assert name_of(notes) == Searched()
     Clearance(MODEL).check(made, scene.with_ground())
     assert min(sample.positions[3] for sample in made.samples) >= min(now[3], target[3]) - 1e-6
+
+
+def test_plans_stop_between_them_where_the_rounded_way_is_not_free(monkeypatch: pytest.MonkeyPatch) -> None:
+    plans = tuple(follow(plan(Scene(), a, b)[0]).trajectory for a, b in ((LOW_RIGHT, LOW_LEFT), (LOW_LEFT, LOW_RIGHT)))
+    flowing = WAYS.plan(LOW_RIGHT, Moves((), plans=plans), Scene()).made
+    check, refused = Clearance.check, list[Trajectory]()
+
+    def refuse_once(self: Clearance, made: Trajectory, scene: Scene) -> None:
+        if not refused:
+            refused.append(made)
+            raise SubtaskFailed(Ground())
+        check(self, made, scene)
+
+    monkeypatch.setattr(Clearance, "check", refuse_once)
+    stopping = WAYS.plan(LOW_RIGHT, Moves((), plans=plans), Scene()).made
+    assert refused == [flowing] and stopping.duration > flowing.duration
+    assert any(not any(sample.velocities) for sample in stopping.samples[1:-1])

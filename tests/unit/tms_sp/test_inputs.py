@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from prometheus_client import REGISTRY
 
-from tms_config.sensing import Input
+from tms_machine.sensing import Input
 from tms_reason import wire
 from tms_reason.reason import Foreign
 from tms_reason.wire import to_line

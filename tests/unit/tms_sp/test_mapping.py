@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from pydantic import ValidationError
 
-from tms_config.sensing import Input
+from tms_machine.sensing import Input
 from tms_reason.validation import Wrong
 from tms_sp.mapping import Mapping, MessageRefused
 

@@ -9,7 +9,7 @@ from geometry_msgs.msg import PoseStamped
 from std_msgs.msg import UInt64, UInt64MultiArray
 
 from tms_config.config import CONFIGS, load_site
-from tms_config.sensing import Input, load_sensing
+from tms_machine.sensing import Input, load_sensing
 from tms_reason.errors import ConfigError
 from tms_sp.inputs import SensingInput
 from tms_sp.node import _input

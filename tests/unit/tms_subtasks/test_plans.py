@@ -93,8 +93,8 @@ class Planned:
     def angle_of(self, joint: str) -> float:
         return -0.5
 
-    def plan_pose(self, _progress: Any, *goal: Any) -> JointTrajectory:
-        self.asked.append(goal)
+    def plan_pose(self, _progress: Any, *goal: Any, group: str) -> JointTrajectory:
+        self.asked.append((*goal, group))
         return PLAN
 
     def execute_plans(self, _progress: Any, plans: Any) -> None:
@@ -113,10 +113,10 @@ def test_a_plan_is_stored_in_its_record_and_goes_on_from_the_one_before() -> Non
     fields = target("joint_values_relative", boom_joint=0.125)
     records: dict[str, dict[str, Any]] = {"A": {"plan": document(PLAN)}, "B": dict(fields)}
     want = Waypoint.model_validate({**fields, "previous_target_record_name": "A", "velocity_scale": 1.0})
-    assert run(ChangePosePlan, want, "B", records).asked == [({"boom_joint": -0.125}, PLAN, 1.0, 0.5)]
+    assert run(ChangePosePlan, want, "B", records).asked == [({"boom_joint": -0.125}, PLAN, 1.0, 0.5, "manipulator")]
     assert records["B"]["plan"] == document(PLAN)
     first = Waypoint.model_validate(fields)
-    assert run(ChangePosePlan, first, "B", records).asked == [({"boom_joint": -0.375}, None, 0.5, 0.5)]
+    assert run(ChangePosePlan, first, "B", records).asked == [({"boom_joint": -0.375}, None, 0.5, 0.5, "manipulator")]
 
 
 def test_plans_of_several_records_are_executed_together() -> None:

@@ -26,7 +26,7 @@ from tms_ur.access import Access
 from tms_ur.api import create_app
 from tms_ur.board import Board
 from tms_ur.data_models import Change, Record, Sensing, SensingInput
-from tms_ur.models import Event, Rearmed, Receipt, Run, Task, TaskText
+from tms_ur.models import AddedTemplate, Event, Rearmed, Receipt, Run, Task, TaskText, Template
 from tms_ur.reason_view import of_line, view
 from tms_ur.scene_models import Scene, scene
 
@@ -57,6 +57,14 @@ class FakeSiteClient:
     def task(self, task_id: int) -> TaskText:
         self._called("task", task_id)
         return TaskText(id=task_id, model_name="zx200", description="掘削", added_at=NOON, xml=XML)
+
+    def templates(self) -> list[Template]:
+        self._called("templates")
+        return [Template(name="Dig", model_name="zx200", description="掘削", added_at=NOON)]
+
+    def add_template(self, name: str, xml: str, description: str, replace: bool) -> AddedTemplate:
+        self._called("add_template", name, xml, description, replace)
+        return AddedTemplate(already_stored=False, replaced=replace)
 
     def runs(self, limit: int) -> list[Run]:
         self._called("runs", limit)

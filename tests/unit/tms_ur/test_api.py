@@ -17,14 +17,14 @@ from unit.tms_ur.fakes import HERE, XML, Client, FakeAudit, FakeSiteClient, Wron
 
 READS = [
     "/api/tasks", "/api/tasks/4", "/api/runs", "/api/runs/r-1/events", "/api/runs/r-1/tree", "/api/runs/r-1/export",
-    "/api/parameters", "/api/audit", "/api/processes/zx200:rc/log",
+    "/api/parameters", "/api/audit", "/api/processes/zx200:rc/log", "/api/templates",
 ]  # fmt: skip
 RECORD = {"model_name": "zx200", "record_name": "pose", "fields": [{"name": "a", "type": "double", "value": 3}]}
 COMMANDS = [
     ("/api/runs", {"task_id": 4}), ("/api/runs/r-1/cancel", {}), ("/api/questions/q-1", {"yes": True}),
     ("/api/machines/zx200/rearm", {}), ("/api/tasks", {"xml": XML}), ("/api/tasks/4/remove", {}),
     ("/api/tasks/check", {"xml": XML}), ("/api/tasks/4/diff", {"xml": XML}), ("/api/parameters", RECORD),
-    ("/api/processes/zx200:rc/restart", {}),
+    ("/api/processes/zx200:rc/restart", {}), ("/api/templates", {"name": "Dig", "xml": XML}),
 ]  # fmt: skip
 
 
@@ -83,6 +83,16 @@ def test_tasks(client: Client) -> None:
         "id": 4, "model_name": "zx200", "description": "掘削", "added_at": "2026-01-31T12:00:00Z",
     }  # fmt: skip
     assert client.get("/api/tasks/7").json()["xml"] == XML
+
+
+def test_templates(client: Client, site_client: FakeSiteClient) -> None:
+    assert client.get("/api/templates").json() == [
+        {"name": "Dig", "model_name": "zx200", "description": "掘削", "added_at": "2026-01-31T12:00:00Z"}
+    ]
+    answer = client.post("/api/templates", json={"name": "Dig", "xml": XML, "replace": True})
+    assert (answer.status_code, answer.json()) == (201, {"already_stored": False, "replaced": True})
+    assert site_client.calls[-1] == ("add_template", "Dig", XML, "", True)
+    assert client.post("/api/templates", json={"name": "", "xml": XML}).status_code == 422
 
 
 def test_runs_and_events(client: Client, site_client: FakeSiteClient) -> None:
@@ -273,7 +283,7 @@ def test_every_command_is_audited(site_client: FakeSiteClient) -> None:
         assert client.post(path, json=body).is_success, path
     assert {what for _, _, what, _ in audit.notes} == {
         "start_run", "cancel_run", "answer", "rearm_asked", "add_task", "remove_task", "set_parameter", "restart",
-        "stop",
+        "stop", "add_template",
     }  # fmt: skip
     assert {(who, where) for who, where, _, _ in audit.notes} == {("local", "127.0.0.1")}
 
@@ -534,6 +544,7 @@ def test_every_endpoint_is_in_the_document(client: Client) -> None:
         "/api/tasks/{task_id}/diff", "/api/tasks/{task_id}/remove", "/api/runs/{run_id}/tree",
         "/api/runs/{run_id}/export", "/api/audit", "/api/machines/{name}/scene",
         "/api/processes/{name}/log", "/api/processes/{name}/restart",
+        "/api/templates",
     }  # fmt: skip
     assert {method for path in document["paths"].values() for method in path} == {
         "get",

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from tms_reason.errors import SubtaskFailed
 from tms_rp.reasons import AnglesUnfit, FieldNotFinite, NamedTwice
 
+OUT_OF_PLANE = 0.05  # rad, how far an orientation may point out of the arm's plane where a goal does not say it
+
 
 @dataclass(frozen=True)
 class TipGoal:
@@ -36,15 +38,38 @@ class LinkGoal:
 
 
 @dataclass(frozen=True)
+class Dig:
+    """A place to dig, where z is the ground: how deep the tip goes below it, how far then towards the machine [m].
+
+    `lift`: how far above the ground the bucket hangs at the end [m].
+    """
+
+    at: TipGoal
+    depth: float
+    drag: float
+    lift: float
+
+
+@dataclass(frozen=True)
+class Emptying:
+    """The bucket joint when open [rad], over a place or where the arm is now."""
+
+    angle: float
+    over: TipGoal | None = None
+
+
+@dataclass(frozen=True)
 class ChangePose:
     """Targets one after another; exactly one of the three is given.
 
     `joints` holds joint name -> angle [rad]; an angle beyond +-2 pi, or a joint left out, keeps its present value.
+    `aside`: how far [rad] the orientation of a pose may point out of the arm's plane, which is left out then.
     """
 
     joints: tuple[Mapping[str, float], ...] = ()
     links: tuple[LinkGoal, ...] = ()
     tips: tuple[TipGoal, ...] = ()
+    aside: float = OUT_OF_PLANE
 
 
 def joint_goal(names: Sequence[str], positions: Sequence[float]) -> dict[str, float]:

@@ -1,5 +1,7 @@
 """How an operator goes around something: lift, swing, lower; or lift, curl in, swing, unfold. Either way round.
 
+In a motion that does not stop, the boom rises and sinks while the upper body turns, as much as there is room.
+
 The bucket opens on none of these ways further than at both ends, so that no soil falls out.
 """
 
@@ -16,6 +18,8 @@ LIFT_STEP = 0.05  # rad
 ARM_FOLDED = 0.85  # share of the arm's range, from stretched out to curled in
 CURLED = 1.7  # rad, bucket joint that holds the soil
 ASIDE = 0.5  # rad by which a search may swing further than to the ends
+# Shares of a swing in which the boom rises, and sinks: as much as possible first.
+OVERLAPS = ((0.5, 0.3), (0.25, 0.25), (0.1, 0.1))
 
 
 def ways(model: MachineModel, now: Angles, target: Angles) -> Iterable[Way]:
@@ -26,6 +30,16 @@ def ways(model: MachineModel, now: Angles, target: Angles) -> Iterable[Way]:
         for boom in lifts:
             for way in (_lifted(begin, end, boom), _folded(model, begin, end, boom)):
                 yield Way(way.targets, OtherWayRound(way.name)) if number and way.name else way
+
+
+def flowing(model: MachineModel, now: Angles, target: Angles) -> Iterable[Way]:
+    """The same for motions that do not stop; the straight way is none of them."""
+    begin, end, highest = ArmAngles(*now), ArmAngles(*target), _range(model, "boom_joint")[0]
+    high = min(begin.boom, end.boom)
+    for boom in dict.fromkeys(max(highest, high - lift) for lift in (0.0, LIFT, math.inf)):
+        for rising, sinking in OVERLAPS:
+            yield _while_swinging(begin, end, boom, rising, sinking)
+    yield from ways(model, now, target)
 
 
 def targets(model: MachineModel, now: Angles, target: Angles) -> Sequence[ArmAngles]:
@@ -54,13 +68,21 @@ def bounds(model: MachineModel, ends: Sequence[Angles]) -> Sequence[tuple[float,
     return [*wide, (min(bucket), max(_range(model, "bucket_joint")[1], *bucket))]
 
 
-MANNERS = Manners(ways, lifts, targets, bounds)
+MANNERS = Manners(ways, flowing, lifts, targets, bounds)
 
 
 def _lifted(begin: ArmAngles, end: ArmAngles, boom: float) -> Way:
     up = begin._replace(boom=boom)
     over = end._replace(boom=boom, arm=begin.arm, bucket=max(begin.bucket, end.bucket))
     return Way((up, over, end._replace(boom=boom), end), LiftSwingLower())
+
+
+def _while_swinging(begin: ArmAngles, end: ArmAngles, boom: float, rising: float, sinking: float) -> Way:
+    turn = end.swing - begin.swing
+    up = begin._replace(swing=begin.swing + rising * turn, boom=boom)
+    arm, bucket = max(begin.arm, end.arm), max(begin.bucket, end.bucket)
+    over = ArmAngles(end.swing - sinking * turn, boom, arm, bucket)
+    return Way((up, over, end), LiftSwingLower())
 
 
 def _folded(model: MachineModel, begin: ArmAngles, end: ArmAngles, boom: float) -> Way:

@@ -1,10 +1,12 @@
 """Goals for excavators, from ROS messages."""
 
 from geometry_msgs.msg import Pose
-from tms_msg_rp.action import PlanPose, TmsRpZx200ChangePose
+from tms_msg_rp.action import Excavate, PlanPose, Release, TmsRpZx200ChangePose
 from tms_msg_rp.msg import TmsRpZx200PositionWithAngle
 
-from tms_rp.kinds.backhoe.goals import ChangePose, LinkGoal, TipGoal, joint_goal
+from tms_reason.errors import SubtaskFailed
+from tms_rp.kinds.backhoe.goals import ChangePose, Dig, Emptying, LinkGoal, TipGoal, joint_goal
+from tms_rp.reasons import OneTarget
 
 
 def change_pose(request: TmsRpZx200ChangePose.Goal | PlanPose.Goal) -> ChangePose:
@@ -25,6 +27,23 @@ def tip(message: TmsRpZx200PositionWithAngle) -> TipGoal:
     """Goal of a TmsRpZx200PositionWithAngle."""
     at = message.position
     return TipGoal(at.x, at.y, at.z, message.theta_w, message.offset)
+
+
+def dig(request: Excavate.Goal) -> Dig:
+    """Goal of an Excavate request."""
+    return Dig(tip(request.position_with_angle), request.depth, request.drag, request.lift)
+
+
+def emptying(request: Release.Goal) -> Emptying:
+    """Goal of a Release request.
+
+    Raises:
+        SubtaskFailed: OneTarget.
+    """
+    places = [tip(one) for one in request.position_with_angle]
+    if len(places) > 1:
+        raise SubtaskFailed(OneTarget(len(places)))
+    return Emptying(request.target_angle, *places)
 
 
 def _link(pose: Pose) -> LinkGoal:

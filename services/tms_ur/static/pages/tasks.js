@@ -11,6 +11,7 @@ const MAX_WIDE = 500; // characters of a line
 let given = null; // { name, xml } of the chosen file
 let found = null; // its check
 let stored = [];
+let templates = [];
 
 export function build(root) {
   const file = make("input", { type: "file", id: "file", accept: ".xml,text/xml", onchange: read, onclick: () => { at("file").value = ""; } });
@@ -22,11 +23,14 @@ export function build(root) {
     make("section", { id: "chosen", hidden: true },
       button("check_again", "", (event) => once(event.currentTarget, checkAgain)),
       make("label", {}, make("span", { data: { t: "description" } }), make("input", { id: "description", maxLength: 1000 })), store,
+      button("store_template", "", (event) => once(event.currentTarget, storeTemplate)),
       make("label", {}, make("span", { data: { t: "compare" } }), compare), make("pre", { id: "difference", tabIndex: 0, hidden: true }),
       heading("file_text", "h3"), make("ol", { id: "source", className: "source", tabIndex: 0 })),
     heading("tasks"), make("p", { id: "tasks_problem", className: "bad", role: "status" }),
     make("p", { id: "none_stored", hidden: true, data: { t: "none_tasks_here" } }),
     table("list_stored", "tasks", ["task", "model", "description", "added_at", "commands"]),
+    heading("templates"), make("p", { id: "no_templates", hidden: true, data: { t: "none_templates" } }),
+    table("list_templates", "templates", ["name", "model", "description", "added_at"]),
   );
   given = found = null;
 }
@@ -34,6 +38,7 @@ export function build(root) {
 export async function load() {
   try {
     stored = await ask("/api/tasks");
+    templates = await ask("/api/templates");
     showError(at("tasks_problem"), null);
   } catch (error) {
     showError(at("tasks_problem"), error);
@@ -44,6 +49,9 @@ export async function load() {
   }
   at("none_stored").hidden = stored.length > 0;
   keep(at("list_stored"), stored, (task) => task.id, buildTask, fillTask);
+  at("no_templates").hidden = templates.length > 0;
+  keep(at("list_templates"), templates, (one) => one.name,
+    () => make("tr", {}, ...parts("td", ["name", "model", "description", "added"])), fillTemplate);
   keep(at("compare"), [{ id: "" }, ...stored], (task) => task.id, (task) => make("option", { value: task.id }),
     (option, task) => setText(option, task.id === "" ? "-" : `${task.id} ${task.description}`));
 }
@@ -96,6 +104,26 @@ async function storeTask() {
   return t(added.already_stored ? "stored_before" : "stored", added);
 }
 
+/** The name of a template is that of its file. What it leaves to the tasks that call it counts as an error in the check. */
+async function storeTemplate() {
+  const name = given.name.replace(/\.xml$/i, "");
+  const wanted = { name, xml: given.xml, description: at("description").value };
+  let added;
+  try {
+    added = await ask("/api/templates", wanted);
+  } catch (error) {
+    if (error.reason?.code !== "TEMPLATE_EXISTS") {
+      throw error;
+    }
+    if (!(await confirmed(t("replace_ask", { name })))) {
+      return "";
+    }
+    added = await ask("/api/templates", { ...wanted, replace: true });
+  }
+  await load();
+  return t(added.already_stored ? "same_template" : "stored_template", { name });
+}
+
 async function showDifference() {
   const id = at("compare").value;
   const box = at("difference");
@@ -129,6 +157,13 @@ function fillTask(row, task) {
   setText(part(row, "model"), task.model_name);
   setText(part(row, "description"), task.description);
   setText(part(row, "added"), when(task.added_at));
+}
+
+function fillTemplate(row, template) {
+  setText(part(row, "name"), template.name);
+  setText(part(row, "model"), template.model_name);
+  setText(part(row, "description"), template.description);
+  setText(part(row, "added"), when(template.added_at));
 }
 
 async function save(id) {

@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,15 +41,17 @@ def box_place(box: Box) -> Matrix:
 
 
 class Links:
-    """The links of one machine that have a body, and those that carry them."""
+    """Some links of one machine, and those that carry them."""
 
-    def __init__(self, model: MachineModel) -> None:
+    def __init__(self, model: MachineModel, links: Iterable[str] | None = None) -> None:
+        """`links`: those that matter; None: those that have a body."""
         self.names = tuple(model.joints)  # order of the angles of a pose
         self.moved = _moved(model)
         self.parent = {origin.child: origin.parent for origin in model.geometry.values()}
         self._joint = {origin.child: joint for joint, origin in model.geometry.items()}
-        carrying = set(model.shapes)
-        for link in model.shapes:
+        wanted = list(model.shapes if links is None else links)
+        carrying = set(wanted)
+        for link in wanted:
             while (link := self.parent.get(link, "")) in self.parent:
                 carrying.add(link)
         self._steps = [(self._column(j), one) for j, one in model.geometry.items() if one.child in carrying]

@@ -1,0 +1,93 @@
+"""`tms report`: the daily report of the site as HTML or PDF."""
+
+from datetime import date, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from tms_cli import session, words
+from tms_cli.days import Day, span
+from tms_cli.open_store import opened
+from tms_cli.reasons import NameTaken
+from tms_cli.words import say
+from tms_reason.errors import TmsError
+
+if TYPE_CHECKING:
+    from tms_cli.day_report.facts import Facts, GroundChange
+    from tms_db.store import Db
+
+KINDS = (".html", ".pdf")
+
+
+@click.command()
+@click.option("--day", type=Day(), required=True, help="A date, today or yesterday.")
+@click.option(
+    "--output", type=click.Path(path_type=Path), help="File to write, .html or .pdf; default: the day's name."
+)
+@click.option("--language", type=click.Choice(["en", "ja"]), help="Of the report; default: that of the locale.")
+@click.option("--overwrite", is_flag=True, help="Replace a file that is there already.")
+@session.json_option
+def command(day: date, output: Path | None, language: str | None, overwrite: bool, as_json: bool) -> None:
+    """Write the daily report: plan against actual, by machine and hour, plots, and the change of the ground.
+
+    It talks to the store itself: run it on the PC of tms:db, or wherever TMS_MONGODB_URI is known. The plan is
+    ground.plan of the site file.
+
+    \b
+    Examples:
+      tms report --day today
+      tms report --day 2026-11-26 --language ja --output report.pdf
+    """
+    from tms_cli.day_report import page, sheet
+
+    file = output or Path(f"daily-report-{day.isoformat()}.html")
+    if file.suffix.lower() not in KINDS:
+        raise click.UsageError(say("the file's name must end with .html or .pdf"))
+    with opened() as db:
+        facts = _facts(db, day, language or words.language())
+    data = (page if file.suffix.lower() == ".html" else sheet).render(facts)
+    try:
+        with file.open("wb" if overwrite else "xb") as new:
+            new.write(data)
+    except OSError as error:
+        raise TmsError(NameTaken(str(file), str(error.strerror)), "NO_FILE") from error
+    if as_json:
+        from tms_cli.commands.work import as_dict
+
+        session.show_json({"file": str(file), "day": day.isoformat(), "total": as_dict(facts.total)})
+    else:
+        line = "{file}: {cycles} cycles, {bank:.1f} m³ bank, {loads} truck loads"
+        total = facts.total
+        click.echo(say(line, file=file, cycles=total.cycles, bank=total.bank, loads=total.loads))
+
+
+def _facts(db: "Db", day: date, language: str) -> "Facts":
+    from tms_cli.day_report.facts import Facts
+    from tms_db.cycles import Cycles
+    from tms_ground.settings import ground_of
+
+    site = session.site()
+    begin, end = span(day)
+    ground = ground_of(site)
+    cycles = tuple(Cycles(db).find(begin=begin, end=end))
+    return Facts(site.name, day, cycles, language, ground.plan if ground else None, _change(db, begin, end))
+
+
+def _change(db: "Db", begin: datetime, end: datetime) -> "GroundChange | None":
+    """From the last ground before the day, or its first one, to its last one; None without two of them."""
+    from tms_cli.day_report import ground_map
+    from tms_cli.day_report.facts import GroundChange
+    from tms_db.ground import GroundSnapshots
+    from tms_soil.volumes import between
+
+    grounds = GroundSnapshots(db)
+    old = [one for one in grounds.all() if one.taken_at < end]
+    of_day = [one for one in old if one.taken_at >= begin]
+    earlier = [one for one in old if one.taken_at < begin][:1] or of_day[-1:]
+    if not of_day or earlier[0] == of_day[0]:
+        return None
+    before, after = grounds.read(earlier[0]), grounds.read(of_day[0])
+    rise = ground_map.change(before, after)
+    first, last = (one.taken_at.astimezone().strftime("%Y-%m-%d %H:%M") for one in (earlier[0], of_day[0]))
+    return GroundChange(first, last, between(before, after), ground_map.full_colour(rise), ground_map.picture(rise))

@@ -1,0 +1,34 @@
+"""Days as people name them on the command line, in the local time of this PC."""
+
+from datetime import date, datetime, timedelta
+from typing import Any
+
+import click
+
+from tms_cli.words import say
+from tms_config.clock import utc_now
+
+
+class Day(click.ParamType[date]):
+    """A day: `2026-11-26`, `today` or `yesterday`."""
+
+    name = "YYYY-MM-DD"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> date:
+        """The day."""
+        if isinstance(value, date):
+            return value
+        today = utc_now().astimezone().date()
+        if value in ("today", "yesterday"):
+            return today - timedelta(days=value == "yesterday")
+        try:
+            return date.fromisoformat(str(value))
+        except ValueError:
+            self.fail(say("'{value}' is no day like 2026-11-26, today or yesterday", value=value), param, ctx)
+
+
+def span(day: date) -> tuple[datetime, datetime]:
+    """Begin and end of a day in local time."""
+    begin = datetime(day.year, day.month, day.day).astimezone()
+    next_day = day + timedelta(days=1)
+    return begin, datetime(next_day.year, next_day.month, next_day.day).astimezone()

@@ -1,0 +1,1 @@
+"""Files of heights: a reader a format, and what all have in common."""

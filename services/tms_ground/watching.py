@@ -1,0 +1,85 @@
+"""What the machines of a site tell becomes the ground and their loads; a file keeps both over a restart."""
+
+import io
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from tms_config.models import MachineModel
+from tms_control.links import Matrix, placed
+from tms_ground.settings import Ground
+from tms_machine.frames import FramePose
+from tms_soil.earth import Earth
+from tms_soil.grid import Grid
+from tms_soil.keeping import restore, state_of
+from tms_soil.soils import Soil
+from tms_soil.surface import grid as unknown
+
+CELL = 1.0  # m, of a level ground
+
+
+def touching(models: Mapping[str, MachineModel]) -> dict[str, MachineModel]:
+    """The machines whose files tell what of them touches soil."""
+    return {name: one for name, one in models.items() if one.bucket or one.vessel or one.blade or one.tracks}
+
+
+class GroundWatch:
+    """The ground, and where the machines were last told to be."""
+
+    def __init__(self, ground: Ground, soil: Soil, models: Mapping[str, MachineModel], file: Path) -> None:
+        """`models`: by machine; `file` keeps the ground."""
+        level = unknown(ground.area, CELL)
+        level.z[:] = ground.level
+        self.earth = Earth(Grid.from_heights(level, [soil]), models)
+        self.file = file
+        self._stands: dict[str, tuple[tuple[float, float, float], Matrix]] = {}  # machine -> place, base_link in map
+        self._begun = self.earth.mass()
+        self.changed = False  # since the last `content`
+
+    @property
+    def mass_error(self) -> float:
+        """Mass that was made or lost since the start [kg]; not 0 is a fault of ours."""
+        return self.earth.mass() - self._begun
+
+    def take(self, machine: str, time: float, angles: Mapping[str, float], place: FramePose) -> None:
+        """Take joint angles [rad] and the place of a machine at a time [s of the machines]."""
+        at = place.x, place.y, place.yaw
+        rolling = self.earth.bodies[machine].rolling
+        kept = self._stands.get(machine)
+        if kept is None or kept[0] != at:
+            kept = self._stands[machine] = at, rolling.stand(*at) if rolling else placed(*at)
+        if self.earth.report(machine, time, angles, kept[1]):
+            self.changed = True
+
+    def volumes(self) -> dict[str, float]:
+        """Loads of buckets and vessels by machine [m3], loose."""
+        parts = ((name, body.digger or body.hauler) for name, body in self.earth.bodies.items())
+        return {name: part.volume for name, part in parts if part is not None}
+
+    def load(self) -> bool:
+        """Go on with the kept ground; False where there is none, or it is one of another area or soil.
+
+        Raises:
+            OSError, ValueError: the file cannot be read.
+        """
+        if not self.file.exists():
+            return False
+        try:
+            with np.load(io.BytesIO(self.file.read_bytes()), allow_pickle=False) as file:
+                state = dict(file)  # all of it, before anything changes
+            found = restore(self.earth, state)
+        except (zipfile.BadZipFile, KeyError, EOFError) as error:
+            raise ValueError(str(error)) from error
+        self._begun = self.earth.mass()
+        return found
+
+    def content(self) -> bytes | None:
+        """What `file` must hold to keep the ground; None if it has not changed since the last call."""
+        if not self.changed:
+            return None
+        self.changed = False
+        out = io.BytesIO()
+        np.savez(out, **state_of(self.earth))  # type: ignore[arg-type]
+        return out.getvalue()

@@ -1,0 +1,148 @@
+"""The ground of a site with its machines: it takes what machines report, one report after another.
+
+The same reports give the same ground, to the last bit.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from tms_config.models import MachineModel
+from tms_control.links import Links, Matrix
+from tms_soil.digging import Digger
+from tms_soil.driving import Grader, Rolling
+from tms_soil.grid import Grid
+from tms_soil.hauling import Hauler
+from tms_soil.slumping import MARGIN, settle
+from tms_soil.surface import Array, Bounds
+
+STEP = 0.02  # s, longest step: a report after a longer time is taken in parts, straight from place to place
+GAP = 1.0  # s without a report, after which nobody knows which way the machine took
+JUMP = 1.0  # m in one step that no machine makes: it was put somewhere else
+
+
+class Body:
+    """One machine's parts that touch soil, and where they were."""
+
+    def __init__(self, model: MachineModel, grid: Grid) -> None:
+        self.digger = Digger(model.bucket, grid) if model.bucket else None
+        self.hauler = Hauler(model.vessel, grid) if model.vessel else None
+        self.grader = Grader(model.blade, grid) if model.blade else None
+        self.rolling = Rolling(model.tracks, grid) if model.tracks else None
+        tools = {"digger": model.bucket, "hauler": model.vessel, "grader": model.blade}
+        self._link = {part: tool.link for part, tool in tools.items() if tool}
+        self._links = Links(model, self._link.values())
+        self.time = -math.inf  # s, of its last report
+        self.places: dict[str, Matrix] = {}  # part -> its link in map, at the last report
+        self.running: list[Bounds] = []  # where soil that it moved still runs
+        self.rests = False  # nothing happened in its last step
+
+    @property
+    def load(self) -> Array | None:
+        """Soil in its bucket or vessel [kg by soil]; None: it has neither."""
+        part = self.digger or self.hauler
+        return part.load if part else None
+
+    @property
+    def resistance(self) -> float:
+        """Force of the soil against its bucket or blade [N]."""
+        part = self.digger or self.grader
+        return part.resistance if part else 0.0
+
+    def at(self, angles: Mapping[str, float], base: Matrix) -> dict[str, Matrix]:
+        """The links of its parts in map at joint angles [rad], with base_link at `base`."""
+        if not self._link:
+            return {"base": base}
+        pose = np.array([[angles.get(joint, 0.0) for joint in self._links.names]])
+        links = self._links.places(pose)
+        return {"base": base} | {part: base @ links[link][0] for part, link in self._link.items()}
+
+    def step(
+        self, before: Mapping[str, Matrix], after: Mapping[str, Matrix], seconds: float, haulers: Sequence[Hauler]
+    ) -> list[Bounds]:
+        """Move its parts straight from places to places; returns where the ground changed."""
+        changed: list[Bounds] = []
+        if self.rolling:
+            changed += self.rolling.step(after["base"])
+        if self.grader:
+            changed += self.grader.step(before["grader"], after["grader"])
+        if self.hauler:
+            changed += self.hauler.step(after["hauler"], seconds)
+        if self.digger:
+            changed += self.digger.step(before["digger"], after["digger"], seconds, haulers)
+        return changed
+
+
+class Earth:
+    """The ground and all machines of a site."""
+
+    def __init__(self, grid: Grid, models: Mapping[str, MachineModel]) -> None:
+        """`models`: by machine."""
+        self.grid = grid
+        self.bodies = {name: Body(model, grid) for name, model in models.items()}
+        self._haulers = [body.hauler for body in self.bodies.values() if body.hauler]
+
+    def report(self, machine: str, time: float, angles: Mapping[str, float], base: Matrix) -> list[Bounds]:
+        """Take joint angles [rad] and the place of base_link in map (4 x 4) of a machine at a time [s of its clock].
+
+        Returns where the ground changed. A clock that goes back, a long silence and a jump are a new beginning: nobody
+        knows what the machine did meanwhile, so it did nothing.
+        """
+        body = self.bodies[machine]
+        now, seconds = body.at(angles, base), time - body.time
+        before = body.places if 0 <= seconds <= GAP and _near(body.places, now) else now
+        still = all(np.array_equal(before[part], now[part]) for part in now)
+        body.places, body.time = now, time
+        if still and body.rests and not body.running:
+            return []
+        changed, count = [], max(1, math.ceil(min(seconds, GAP) / STEP - 1e-6))
+        for k in range(count):
+            here, there = (_between(before, now, one / count) for one in (k, k + 1))
+            found = body.step(here, there, min(max(seconds, 0.0), GAP) / count, self._haulers)
+            body.rests = still and not found and seconds > 0.0
+            body.running = self._settle(body.running + found)
+            changed += found + body.running
+        return changed
+
+    def mass(self) -> float:
+        """All soil [kg]: of the ground, beside the site, and in buckets and vessels."""
+        loads = [float(body.load.sum()) for body in self.bodies.values() if body.load is not None]
+        return math.fsum((self.grid.mass(), self.grid.outside, *loads))
+
+    def _settle(self, places: list[Bounds]) -> list[Bounds]:
+        """Let slopes give way at some places; returns where soil still runs."""
+        found = []
+        for x0, y0, x1, y1 in _apart(places):
+            window = self.grid.window((x0 - MARGIN, y0 - MARGIN, x1 + MARGIN, y1 + MARGIN))
+            if window is not None:
+                if (still := settle(window)) is not None:
+                    found.append(still)
+                self.grid.store(window)
+        return found
+
+
+def _near(before: Mapping[str, Matrix], now: Mapping[str, Matrix]) -> bool:
+    return before.keys() == now.keys() and all(math.dist(before[k][:3, 3], now[k][:3, 3]) < JUMP for k in now)
+
+
+def _between(before: Mapping[str, Matrix], now: Mapping[str, Matrix], share: float) -> Mapping[str, Matrix]:
+    if share == 1.0 or before is now:
+        return now
+    return {part: before[part] + share * (now[part] - before[part]) for part in now}
+
+
+def _apart(places: list[Bounds]) -> list[Bounds]:
+    """Rectangles that do not touch, each around some of the given ones."""
+    found: list[Bounds] = []
+    for one in places:
+        while other := next((two for two in found if _touch(one, two)), None):
+            found.remove(other)
+            (a, b, c, d), (e, f, g, h) = one, other
+            one = min(a, e), min(b, f), max(c, g), max(d, h)
+        found.append(one)
+    return found
+
+
+def _touch(a: Bounds, b: Bounds) -> bool:
+    return a[0] <= b[2] and b[0] <= a[2] and a[1] <= b[3] and b[1] <= a[3]

@@ -1,0 +1,74 @@
+"""What machines tell becomes a ground, and is kept."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from earth_rig import dig_poses, model_of, moved, reports, soils
+from tms_ground.settings import Ground
+from tms_ground.watching import GroundWatch, touching
+from tms_machine.frames import FramePose
+
+AREA = (-10.0, -10.0, 10.0, 10.0)
+PLACE = FramePose(0.0, 0.0, 0.0, 0.0)
+
+
+def watch(folder: Path, **ground: object) -> GroundWatch:
+    settings = Ground.model_validate({"area": AREA, **ground})
+    return GroundWatch(settings, soils()[0], {"zx200": model_of("zx200")}, folder / "ground.npz")
+
+
+def dig(one: GroundWatch) -> None:
+    for report in reports(moved(dig_poses(), rate=25.0)):
+        one.take("zx200", report.time, report.angles, PLACE)
+
+
+def test_a_machine_digs_in_the_ground_that_it_stands_on(tmp_path: Path) -> None:
+    one = watch(tmp_path, level=12.0)
+    dig(one)
+    assert 0.5 < one.volumes()["zx200"] < 0.9
+    lowest = np.nanmin(one.earth.grid.heights().z)
+    assert 11.0 < lowest < 11.7
+    assert abs(one.mass_error) < 1e-6
+
+
+def test_it_goes_on_after_a_restart(tmp_path: Path) -> None:
+    one = watch(tmp_path)
+    assert not one.load(), "the first start"
+    assert one.content() is None, "nothing has changed"
+    dig(one)
+    one.file.write_bytes(one.content() or b"")
+    assert one.content() is None
+    again = watch(tmp_path)
+    assert again.load()
+    assert again.volumes() == one.volumes()
+    assert np.array_equal(again.earth.grid.heights().z, one.earth.grid.heights().z, equal_nan=True)
+    assert again.mass_error == 0.0
+    assert not watch(tmp_path, soil="sand", level=3.0).load(), "another level is another ground"
+
+
+def test_a_damaged_file_is_told(tmp_path: Path) -> None:
+    one = watch(tmp_path)
+    one.file.write_bytes(b"PK\x03\x04 cut off")
+    with pytest.raises((ValueError, OSError)):
+        one.load()
+    one.file.write_bytes(b"")
+    with pytest.raises((ValueError, OSError)):
+        one.load()
+
+
+def test_only_machines_with_a_shape_touch_the_ground() -> None:
+    bare = model_of("ic120").model_copy(update={"vessel": None, "tracks": None})
+    assert touching({"a": bare, "b": model_of("d37pxi"), "c": model_of("ic120")}).keys() == {"b", "c"}
+
+
+def test_a_turned_machine_digs_beside_itself(tmp_path: Path) -> None:
+    one = watch(tmp_path)
+    for report in reports(moved(dig_poses(), rate=25.0)):
+        one.take("zx200", report.time, report.angles, FramePose(1.0, 2.0, math.pi / 2, 0.0))
+    heights = one.earth.grid.heights()
+    x, y = heights.centres
+    hole = heights.z < -0.3
+    assert x[hole].mean() == pytest.approx(1.0 + 5.3, abs=0.7) and y[hole].mean() == pytest.approx(2.0, abs=0.3)
