@@ -50,7 +50,7 @@ class DrivenTracks:
         self.drive: Drive = found
         self.machine = Machine(machine(name), Placed(model=name, place=(0.0, 0.0, 0.0)), Unknowns(yaw_gain=gain))
         self.estimate = TrackEstimate(Response(**response.model_dump() | {"lag": response.lag / lag}))
-        self.outline = Outline.of(model(name).footprint.values())
+        self.outline = Outline.of(model(name))
         self.ground = Ground()
         self.blind = self.stuck = False  # no pose arrives; nothing moves it
         self.now = 0.0

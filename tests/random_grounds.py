@@ -6,6 +6,7 @@ import random
 from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
+from tms_control.from_above import from_above
 from tms_control.ground import Body, Ground
 from tms_control.path import Pose
 from tms_control.reasons import BlockedArea, MachineThere
@@ -19,7 +20,7 @@ def random_ground(rng: random.Random, machines: int, areas: int = 0) -> Ground:
     for number in range(machines):
         model, place = rng.choice(MODELS), random_pose(rng)
         grown = rng.choice((0.0, 0.0, rng.uniform(0, 2)))
-        found += [Body.of(MachineThere(f"m{number}"), box, place, grown) for box in model.footprint.values()]
+        found += [Body.of(MachineThere(f"m{number}"), part, place, grown) for part in from_above(model).values()]
     return Ground((*found, *(random_area(rng, number) for number in range(areas))))
 
 

@@ -1,18 +1,18 @@
 """What stands on the ground of a site, and how near a machine on tracks comes to it. Frame `map`; m and rad.
 
-A machine is the rectangle around its footprint, a body the area inside a line of corners that may be bent inwards.
+A machine is a convex polygon around its footprint, a body the area inside a line of corners that may be bent inwards.
 Heights do not count.
 """
 
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tms_config.models import Box
+from tms_config.models import MachineModel
+from tms_control.from_above import Polygon, from_above, hull
 from tms_control.path import Pose
 from tms_reason.reason import Reason
 
@@ -24,40 +24,59 @@ Mask = NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class Outline:
-    """How far a machine reaches from the place whose path is planned [m]; `back` and `right` are negative."""
+    """What a machine takes up, from the place whose path is planned: a convex polygon, counter-clockwise [m]."""
 
-    front: float
-    back: float
-    left: float
-    right: float
+    polygon: Polygon
 
     @classmethod
-    def of(cls, footprint: Iterable[Box]) -> "Outline":
-        """The rectangle around boxes in base_link; without any, the place alone."""
-        boxes = list(footprint)
-        corners = np.array([(*box.min[:2], *box.max[:2]) for box in boxes] or [(0.0, 0.0, 0.0, 0.0)])
-        (back, right), (front, left) = corners[:, :2].min(axis=0), corners[:, 2:].max(axis=0)
-        return cls(float(front), float(back), float(left), float(right))
+    def rectangle(cls, front: float, back: float, left: float, right: float) -> "Outline":
+        """How far it reaches to each side [m]; `back` and `right` are negative."""
+        return cls(((back, right), (front, right), (front, left), (back, left)))
+
+    @classmethod
+    def of(cls, model: MachineModel) -> "Outline":
+        """Around the footprint of a model in base_link; without one, a centimetre."""
+        corners = [corner for part in from_above(model).values() for corner in part]
+        return cls(hull(corners)) if corners else cls.rectangle(0.01, -0.01, 0.01, -0.01)
 
     def seen_from(self, pivot: float) -> "Outline":
         """The same from the place `pivot` [m] ahead."""
-        return Outline(self.front - pivot, self.back - pivot, self.left, self.right)
+        return Outline(tuple((x - pivot, y) for x, y in self.polygon))
 
     @cached_property
     def corners(self) -> Array:
-        """4 x 2."""
-        return np.array([[x, y] for x in (self.back, self.front) for y in (self.right, self.left)])
+        """K x 2."""
+        return np.array(self.polygon, dtype=float)
+
+    @cached_property
+    def ways(self) -> Array:
+        """From each corner to the next: K x 2."""
+        ways: Array = np.roll(self.corners, -1, axis=0) - self.corners
+        return ways
+
+    @cached_property
+    def normals(self) -> Array:
+        """Outwards across each side: K x 2."""
+        across = np.column_stack([self.ways[:, 1], -self.ways[:, 0]])
+        normals: Array = across / np.linalg.norm(across, axis=1)[:, None]
+        return normals
+
+    @cached_property
+    def offsets(self) -> Array:
+        """How far each side is from the place, along its normal [m]: K."""
+        offsets: Array = (self.normals * self.corners).sum(axis=1)
+        return offsets
 
     @cached_property
     def centre(self) -> Array:
-        """Of the rectangle."""
+        """A place inside."""
         middle: Array = self.corners.mean(axis=0)
         return middle
 
     @cached_property
     def half(self) -> float:
-        """Half of its diagonal [m]."""
-        return math.hypot(self.front - self.back, self.left - self.right) / 2
+        """Radius of a circle round the centre and the whole [m]."""
+        return float(np.hypot(*(self.corners - self.centre).T).max())
 
     @cached_property
     def reach(self) -> float:
@@ -70,16 +89,14 @@ class Body:
     """Something that stands there: its corners [m] in order, and how far it may have moved [m] since it was told."""
 
     name: Reason
-    corners: tuple[tuple[float, float], ...]
+    corners: Polygon
     growth: float = 0.0
 
     @classmethod
-    def of(cls, name: Reason, box: Box, place: Pose, growth: float) -> "Body":
-        """A box of a footprint, in the frame of a machine that stands at `place`."""
-        (x0, y0), (x1, y1) = box.min[:2], box.max[:2]
-        turn = Pose(0.0, 0.0, -place.yaw)
-        seen = (turn.seen(Pose(x, y, 0.0)) for x, y in ((x0, y0), (x1, y0), (x1, y1), (x0, y1)))
-        return cls(name, tuple((place.x + x, place.y + y) for x, y in seen), growth)
+    def of(cls, name: Reason, part: Polygon, place: Pose, growth: float) -> "Body":
+        """A part of a machine that stands at `place`."""
+        c, s = math.cos(place.yaw), math.sin(place.yaw)
+        return cls(name, tuple((place.x + c * x - s * y, place.y + s * x + c * y) for x, y in part), growth)
 
     @cached_property
     def _array(self) -> Array:
@@ -96,7 +113,11 @@ class Body:
 
     def away(self, places: Array) -> Array:
         """How far places (N x 2) are from it [m]: N; 0 inside."""
-        return self.all_gaps(Outline(0.0, 0.0, 0.0, 0.0), np.column_stack([places, np.zeros(len(places))]))
+        seen = self._array - places[:, None]
+        way = np.roll(seen, -1, axis=1) - seen
+        away = _apart(np.zeros((1, 1, 2)), seen, way)
+        away[_inside(seen, way)] = 0.0
+        return away
 
     def all_gaps(self, outline: Outline, poses: Array) -> Array:
         """As `gaps`, for so many poses that they need too much room at once."""
@@ -109,7 +130,8 @@ class Body:
         dx, dy = self._array[:, 0] - poses[:, 0, None], self._array[:, 1] - poses[:, 1, None]
         seen = np.stack([c * dx + s * dy, c * dy - s * dx], axis=2)  # N x corners x 2, from the machine
         way = np.roll(seen, -1, axis=1) - seen
-        gaps = np.minimum(_to_corners(outline, seen), _to_edges(outline, seen, way))
+        from_outline = _apart(outline.corners[None], seen, way)
+        gaps = np.minimum(from_outline, _apart(seen, outline.corners[None], outline.ways[None]))
         gaps[_crossed(outline, seen, way) | _inside(seen - outline.centre, way)] = 0.0
         return gaps
 
@@ -132,30 +154,26 @@ class Ground:
         return found
 
 
-def _to_corners(outline: Outline, seen: Array) -> Array:
-    """How far the nearest corner of a body is from the rectangle [m]: N."""
-    beyond = np.maximum(seen - [outline.front, outline.left], [outline.back, outline.right] - seen)
-    gaps: Array = np.hypot(*np.moveaxis(np.maximum(beyond, 0.0), 2, 0)).min(axis=1)
-    return gaps
-
-
-def _to_edges(outline: Outline, seen: Array, way: Array) -> Array:
-    """How far the nearest corner of the rectangle is from an edge of a body [m]: N."""
-    to = outline.corners[None, None] - seen[:, :, None]  # N x edges x 4 x 2
-    length = np.maximum((way**2).sum(axis=2), 1e-12)[..., None]
-    share = np.clip((to * way[:, :, None]).sum(axis=3) / length, 0.0, 1.0)
-    off = to - share[..., None] * way[:, :, None]
+def _apart(points: Array, starts: Array, ways: Array) -> Array:
+    """How far the nearest of points (N x P x 2) is from a side (from starts along ways, N x E x 2) [m]: N."""
+    to = points[:, :, None] - starts[:, None]
+    length = np.maximum((ways**2).sum(axis=2), 1e-12)[:, None]
+    share = np.clip((to * ways[:, None]).sum(axis=3) / length, 0.0, 1.0)
+    off = to - share[..., None] * ways[:, None]
     gaps: Array = np.hypot(off[..., 0], off[..., 1]).min(axis=(1, 2))
     return gaps
 
 
 def _crossed(outline: Outline, seen: Array, way: Array) -> Mask:
-    """Whether an edge of a body goes through the rectangle (its part between both pairs of sides): N."""
+    """Whether a side of a body goes through the outline: a part of it is inside of all its sides: N."""
+    room = outline.offsets - seen @ outline.normals.T  # N x edges x K
+    rate = way @ outline.normals.T
     with np.errstate(all="ignore"):
-        low = ([outline.back, outline.right] - seen) / way
-        high = ([outline.front, outline.left] - seen) / way
-    first, last = np.fmax(np.fmin(low, high), 0.0).max(axis=2), np.fmin(np.fmax(low, high), 1.0).min(axis=2)
-    crossed: Mask = (first <= last).any(axis=1)
+        times = room / rate
+    first = np.where(rate < 0, times, 0.0).max(axis=2, initial=0.0)
+    last = np.where(rate > 0, times, 1.0).min(axis=2, initial=1.0)
+    beside = ((rate == 0) & (room < 0)).any(axis=2)
+    crossed: Mask = ((first <= last) & ~beside).any(axis=1)
     return crossed
 
 

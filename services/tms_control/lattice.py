@@ -39,7 +39,7 @@ class Lattice:
         seen = np.array([(0.0, 0.0), *(start.seen(goal) for goal in goals)])
         low, high = (np.floor((edge + side * AROUND) / CELL).astype(int) for edge, side in
                      ((seen.min(axis=0), -1), (seen.max(axis=0), 1)))  # fmt: skip
-        self._low = low - BORDER
+        self._low = [int(one) - BORDER for one in low]
         self._columns, self._rows = (int(one) for one in high - low + 2 * BORDER + 1)
         self._cells = self._columns * self._rows
         self._yaws = [math.atan2(y, x) for x, y in STEPS]
@@ -118,8 +118,8 @@ class Lattice:
 
     def _pose(self, state: int) -> Pose:
         heading, cell = divmod(state, self._cells)
-        y, x = divmod(cell, self._columns)
-        x, y = CELL * (x + self._low[0]), CELL * (y + self._low[1])
+        row, column = divmod(cell, self._columns)
+        x, y = CELL * (column + self._low[0]), CELL * (row + self._low[1])
         c, s = math.cos(self._start.yaw), math.sin(self._start.yaw)
         return Pose(self._start.x + c * x - s * y, self._start.y + s * x + c * y, self._start.yaw + self._yaws[heading])
 

@@ -14,6 +14,7 @@ from tms_reason.reason import Reason
 
 CLEAR = 0.5  # m to keep to everything: `footprint_padding` of the navigation of the real machines
 STEP, LEAST_STEP = 0.25, 0.05  # m that no corner moves further between two poses that are looked at
+PART = 0.7  # of a smaller gap at an end: round bodies are polygons here, and places some centimetres off
 TOUCH = 0.1  # m to keep while it drives: places that are told are some centimetres apart each time
 ROUNDING = 1e-6  # m
 
@@ -38,7 +39,7 @@ def array(*poses: Pose) -> Array:
 def needed(ground: Ground, outline: Outline, start: Pose, goal: Pose) -> Array | Reason:
     """How far a way between two poses has to keep from each body [m]; or why there is none.
 
-    What is nearer at an end is not come nearer to than there. A body that may have moved may stand in the goal; that
+    Of what is nearer at an end, most of that gap is kept. A body that may have moved may stand in the goal; that
     it does not stand in the start is known.
     """
     found = []
@@ -46,7 +47,7 @@ def needed(ground: Ground, outline: Outline, start: Pose, goal: Pose) -> Array |
         here, there = body.gaps(outline, array(start, goal))
         if here <= 0:
             return StandsIn(body.name)
-        least = min(CLEAR + body.growth, float(here), max(float(there), body.growth))
+        least = min(CLEAR + body.growth, PART * float(here), max(PART * float(there), body.growth))
         if there < least or there <= 0:
             return GoalTaken(body.name, float(there), max(least, ROUNDING))
         found.append(least - ROUNDING)
@@ -96,7 +97,7 @@ class WayCheck:
         found = []
         outline = self.outline
         # In any heading the machine covers a circle around the place, if that lies inside of its outline.
-        covered = max(0.0, min(outline.front, -outline.back, outline.left, -outline.right))
+        covered = max(0.0, float(outline.offsets.min()))
         for body, least in zip(self._ground.bodies, self._needed, strict=True):
             close = body.close(places, outline.reach + float(least))
             away = body.away(places[close])

@@ -3,6 +3,7 @@
 from tms_msg_db.srv import GetParameter
 
 from tms_config.clock import monotonic
+from tms_control.from_above import from_above
 from tms_control.ground import Body, Ground
 from tms_control.path import Pose
 from tms_control.reasons import MachineThere
@@ -57,10 +58,10 @@ class Surroundings:
         """All of it now: machines where they were told to be last, and how far they may have moved since."""
         now = monotonic()
         found = [
-            Body.of(MachineThere(name), box, Pose(*place[:3]), drift(model, now - place.received))
+            Body.of(MachineThere(name), part, Pose(*place[:3]), drift(model, now - place.received))
             for name, model in self._models.items()
             if (place := self._places.place(name)) is not None
-            for box in model.footprint.values()
+            for part in from_above(model).values()
         ]
         return Ground((*found, *self._areas))
 

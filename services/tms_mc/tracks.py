@@ -43,7 +43,7 @@ class Tracks:
         border = site.border(machine)
         self._app, self._gateway, self._drive = app, gateway, drive
         self._response = site.model_of(machine).responses(border)[DRIVE]
-        self._outline = Outline.of(site.model_of(machine).footprint.values())
+        self._outline = Outline.of(site.model_of(machine))
         self._topic, source = f"/{machine}/{border.pose}", border.sources["pose"]
         kind = POSES[source.message]
         self._heard: Callable[[], list[Arrival[Any]]] = app.ros.sample_arrivals(kind, self._topic, DEPTH)

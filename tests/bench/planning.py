@@ -176,7 +176,7 @@ def plan_around(count: int = AROUND) -> tuple[list[float], list[float], list[flo
 def plan_tracks() -> tuple[list[float], list[float]]:
     """Milliseconds of each way around five machines, and of the fastest path, which is not free."""
     rng, pace = random.Random(1), Pace(forward=1.0, turn=0.24)
-    outline = Outline.of(model_of("ic120").footprint.values())
+    outline = Outline.of(model_of("ic120"))
     detours, floors = [], []
     for _ in range(SITES):
         ground, start, goal = random_ground(rng, 5), random_track_pose(rng), random_track_pose(rng)

@@ -13,7 +13,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from random_grounds import random_ground, random_pose
+from tms_config.config import CONFIGS
+from tms_config.models import MachineModel
+from tms_config.yaml_file import parse
 from tms_control.detour import Question
+from tms_control.from_above import from_above
 from tms_control.ground import Body, Ground, Outline
 from tms_control.path import Path, Piece, Pose
 from tms_control.planner import RADIUS, Goal, Pace, Plan, plan
@@ -22,7 +26,8 @@ from tms_control.way_check import CLEAR, STEP
 from tms_reason.reason import Reason
 
 PACE = Pace(forward=1.0, turn=0.24)
-TRUCK = Outline(2.0, -3.6, 1.8, -1.35)
+SIDES = FRONT, BACK, LEFT, RIGHT = 2.0, -3.6, 1.8, -1.35
+TRUCK = Outline.rectangle(*SIDES)
 SCENES = 40 if settings.default is None or settings.default.max_examples <= 50 else 2000
 
 
@@ -59,10 +64,10 @@ def dense(path: Path, pivot: float = 0.0) -> list[Pose]:
     return found
 
 
-def touches(outline: Outline, poses: list[Pose], body: Body) -> bool:
+def touches(poses: list[Pose], body: Body) -> bool:
     """Whether a border of the machine, grown by nothing, lies in the body, or a corner of the body in the machine."""
-    xs = np.linspace(outline.back, outline.front, 15)
-    ys = np.linspace(outline.right, outline.left, 9)
+    xs = np.linspace(BACK, FRONT, 15)
+    ys = np.linspace(RIGHT, LEFT, 9)
     border = np.array([*((x, y) for x in xs for y in (ys[0], ys[-1])), *((x, y) for x in (xs[0], xs[-1]) for y in ys)])
     at, corners = np.array(poses), np.array(body.corners)
     middle = corners.mean(axis=0)
@@ -75,7 +80,7 @@ def touches(outline: Outline, poses: list[Pose], body: Body) -> bool:
         return True
     dx, dy = corners[:, 0] - at[:, 0, None], corners[:, 1] - at[:, 1, None]
     u, v = c * dx + s * dy, c * dy - s * dx
-    return bool(((u > outline.back) & (u < outline.front) & (v > outline.right) & (v < outline.left)).any())
+    return bool(((u > BACK) & (u < FRONT) & (v > RIGHT) & (v < LEFT)).any())
 
 
 def in_polygon(x: np.ndarray, y: np.ndarray, corners: np.ndarray) -> np.ndarray:
@@ -98,7 +103,7 @@ def test_no_way_touches_anything(seed: int, pivot: float) -> None:
         assert isinstance(found, (StandsIn, GoalTaken, NoWayAround))
         return
     poses = dense(found.path, pivot)
-    assert not [body.name for body in ground.bodies if touches(TRUCK, poses, body)]
+    assert not [body.name for body in ground.bodies if touches(poses, body)]
     assert poses[0].away(start) < 1e-6 and poses[-1].away(goal) < 0.01 and abs(poses[-1].off(goal.yaw)) < 0.01
     assert all(abs(piece.curvature) <= 1 / RADIUS + 1e-9 for piece in found.path.pieces)
 
@@ -198,3 +203,16 @@ def test_machines_are_named() -> None:
     truck = Body(MachineThere("ic120_1"), ((19, -1), (21, -1), (21, 1), (19, 1)))
     said = ask(Pose(0, 0, 0), Pose(20, 0, 0), truck)
     assert isinstance(said, GoalTaken) and said.by == MachineThere("ic120_1")
+
+
+@pytest.mark.parametrize(("x", "y", "yaw"), [(-8.0, -9.0, 0.0), (-12.0, -9.0, 0.0), (-13.85, -9.17, 1.0)])
+def test_where_excavators_stand_close_as_in_the_simulators_scene_samples_are_driven_straight(
+    x: float, y: float, yaw: float
+) -> None:
+    """The swing circles of zx200 and zx120 are 37 cm apart there."""
+    digger, beside = (parse(CONFIGS / "machines" / f"{name}.yaml", MachineModel) for name in ("zx200", "zx120"))
+    there = Pose(*beside.start)
+    bodies = tuple(Body.of(MachineThere("zx120"), part, there, 0.0) for part in from_above(beside).values())
+    start = Pose(*digger.start)
+    question = Question(start, (Goal(x, y, yaw),), PACE, 0.0, Outline.of(digger), Ground(bodies))
+    assert question.fastest() == plan(start, [Goal(x, y, yaw)], PACE)

@@ -8,12 +8,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tms_config.models import Box
+from tms_config.config import CONFIGS
+from tms_config.models import MachineModel
+from tms_config.yaml_file import parse
+from tms_control.from_above import from_above, hull
 from tms_control.ground import Body, Ground, Outline
 from tms_control.path import Pose
 from tms_reason.reason import Foreign
 
-TRUCK = Outline(2.0, -3.6, 1.8, -1.35)
+TRUCK = Outline.rectangle(2.0, -3.6, 1.8, -1.35)
+DIGGER = Outline.of(parse(CONFIGS / "machines" / "zx200.yaml", MachineModel))
 L_SHAPE = ((10.0, 0.0), (16.0, 0.0), (16.0, 2.0), (12.0, 2.0), (12.0, 8.0), (10.0, 8.0))
 FINE = 0.05  # m between the points of the second implementation
 
@@ -27,9 +31,7 @@ def body(*corners: tuple[float, float]) -> Body:
 
 def border(outline: Outline, pose: Pose) -> np.ndarray:
     """Points on the border of the machine, close together."""
-    corners = [(outline.front, outline.left), (outline.back, outline.left), (outline.back, outline.right),
-               (outline.front, outline.right)]  # fmt: skip
-    return points([spot(pose, *corner) for corner in corners])
+    return points([spot(pose, *corner) for corner in outline.polygon])
 
 
 def spot(pose: Pose, x: float, y: float) -> tuple[float, float]:
@@ -59,11 +61,12 @@ def gap(outline: Outline, pose: Pose, corners: tuple[tuple[float, float], ...]) 
     return float(np.hypot(*(mine[:, None] - its[None]).T).min())
 
 
+@pytest.mark.parametrize("outline", [TRUCK, DIGGER])
 @pytest.mark.parametrize("corners", [L_SHAPE, L_SHAPE[::-1], ((12.0, 5.0), (12.1, 5.0), (12.0, 5.1))])
 @given(poses)
-def test_gaps(corners: tuple[tuple[float, float], ...], pose: Pose) -> None:
-    (found,) = body(*corners).gaps(TRUCK, np.array([pose]))
-    expected = gap(TRUCK, pose, corners)
+def test_gaps(corners: tuple[tuple[float, float], ...], outline: Outline, pose: Pose) -> None:
+    (found,) = body(*corners).gaps(outline, np.array([pose]))
+    expected = gap(outline, pose, corners)
     assert found == pytest.approx(expected, abs=1.5 * FINE)
 
 
@@ -77,7 +80,7 @@ def test_all_poses_are_looked_at_at_once() -> None:
 def test_inside_a_large_area_and_around_a_small_one_is_contact() -> None:
     yard = body((-50, -50), (50, -50), (50, 50), (-50, 50))
     post = body((0.1, 0.1), (0.2, 0.1), (0.1, 0.2))
-    ahead = Outline(5.0, 3.0, 1.0, -1.0)  # the place of its pose is not in it
+    ahead = Outline.rectangle(5.0, 3.0, 1.0, -1.0)  # the place of its pose is not in it
     assert yard.gaps(ahead, np.array([Pose(0, 0, 0)])) == [0.0]
     assert post.gaps(TRUCK, np.array([Pose(0, 0, 1.0)])) == [0.0]
     assert body((-1, -1), (1, -1), (1, 1), (-1, 1)).gaps(ahead, np.array([Pose(0, 0, 0)])) == pytest.approx([2.0])
@@ -97,13 +100,38 @@ def test_nearer_is_what_gaps_say(many: list[Pose], needed: float) -> None:
 
 
 def test_a_footprint_stands_where_its_machine_does() -> None:
-    box = Box(min=(-1.0, -2.0, 0.0), max=(3.0, 2.0, 2.0))
-    found = Body.of(Foreign("truck"), box, Pose(10.0, 5.0, math.pi / 2), 0.0)
+    part = ((-1.0, -2.0), (3.0, -2.0), (3.0, 2.0), (-1.0, 2.0))
+    found = Body.of(Foreign("truck"), part, Pose(10.0, 5.0, math.pi / 2), 0.0)
     assert np.array(sorted(found.corners)) == pytest.approx(np.array([(8, 4), (8, 8), (12, 4), (12, 8)]))
 
 
-def test_an_outline_is_around_all_boxes_and_seen_from_a_pivot() -> None:
-    boxes = [Box(min=(-3.6, -1.3, 0.0), max=(0.7, 1.3, 2.9)), Box(min=(0.7, -1.35, 0.0), max=(2.0, 1.8, 3.9))]
-    assert Outline.of(boxes) == Outline(2.0, -3.6, 1.8, -1.35)
-    assert Outline.of(boxes).seen_from(-0.5) == Outline(2.5, -3.1, 1.8, -1.35)
-    assert Outline.of([]) == Outline(0.0, 0.0, 0.0, 0.0)
+def test_an_outline_is_around_all_parts_and_seen_from_a_pivot() -> None:
+    truck = Outline.of(parse(CONFIGS / "machines" / "ic120.yaml", MachineModel))
+    assert set(truck.polygon) >= {(-3.6, -1.283), (-3.6, 1.317), (2.0, -1.35), (2.0, 1.8)}
+    assert truck.seen_from(-0.5).corners == pytest.approx(truck.corners + np.array([0.5, 0.0]))
+    assert TRUCK.offsets == pytest.approx([1.35, 2.0, 1.8, 3.6])
+
+
+def test_an_upper_body_that_turns_is_a_circle() -> None:
+    model = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel)
+    tracks, body = from_above(model).values()
+    assert len(tracks) == 4 and len(body) == 16
+    assert DIGGER.half < 3.4 and DIGGER.reach < 3.6
+    tail = [math.hypot(x - 0.10787, y + 0.034301) for x, y in body]
+    assert [min(tail), max(tail)] == pytest.approx([3.2656 / math.cos(math.pi / 16)] * 2, abs=0.001)
+
+
+@given(st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9)), min_size=3))
+def test_a_hull_is_around_all_and_turns_to_the_left(places: list[tuple[float, float]]) -> None:
+    found = hull(places)
+    round_it = zip(found, (*found[1:], *found[:1]), (*found[2:], *found[:2]), strict=True)
+    turns = [(bx - ax) * (cy - by) - (by - ay) * (cx - bx) for (ax, ay), (bx, by), (cx, cy) in round_it]
+    assert all(turn > 0 for turn in turns) or len(found) <= 2
+    for x, y in places:
+        assert len(found) <= 2 or all((bx - ax) * (y - ay) - (by - ay) * (x - ax) >= 0
+                                      for (ax, ay), (bx, by) in pairwise([*found, found[0]]))  # fmt: skip
+
+
+def test_without_a_footprint_a_machine_is_a_spot() -> None:
+    model = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel).model_copy(update={"footprint": {}})
+    assert Outline.of(model).reach < 0.02

@@ -46,7 +46,7 @@ class FakeTracks:
         return self.silent
 
     def question(self, start: Pose, goal: Pose, ground: Ground) -> Question:
-        return Question(start, (Goal(*goal),), PACE, 0.0, Outline(2.0, -2.0, 1.5, -1.5), ground)
+        return Question(start, (Goal(*goal),), PACE, 0.0, Outline.rectangle(2.0, -2.0, 1.5, -1.5), ground)
 
 
 @dataclass
@@ -111,7 +111,7 @@ def test_a_path_leads_around_what_stands_there() -> None:
     outcome, result = compute(FakeTracks(pose=Pose(0.0, 2.0, 0.0)), goal, FakeSurroundings((pit,)))
     assert outcome is Outcome.SUCCEEDED
     poses = np.array([pose_of(one) for one in result.path.poses])
-    assert pit.gaps(Outline(2.0, -2.0, 1.5, -1.5), poses).min() > 0.3
+    assert pit.gaps(Outline.rectangle(2.0, -2.0, 1.5, -1.5), poses).min() > 0.3
 
 
 @pytest.mark.parametrize(
