@@ -24,7 +24,6 @@ class Draft(BaseModel):
     begun: float  # s since 1970
     part: str
     at: tuple[float, float]  # m, where the way driven is known up to
-    seen: float  # s since 1970, when it was there
     parts: dict[str, float] = Field(default_factory=dict)  # s
     still: float = 0.0  # s that it has stood, which are in no part yet
     low: float  # m3, loose, the least that stuck in it while it was empty
@@ -42,8 +41,7 @@ class Draft(BaseModel):
     @classmethod
     def begin(cls, run: str, sample: Sample, part: str) -> "Draft":
         """A cycle that begins at a sample."""
-        here = sample.x, sample.y
-        return cls(run=run, begun=sample.time, part=part, at=here, seen=sample.time, low=sample.load.loose)
+        return cls(run=run, begun=sample.time, part=part, at=(sample.x, sample.y), low=sample.load.loose)
 
     def fill(self, now: Sample) -> None:
         """Soil comes in."""
@@ -59,14 +57,13 @@ class Draft(BaseModel):
         self.into[under] = self.into.get(under, 0.0) + amount.loose
         self.soil, self.measured = before.soil or self.soil, before.measured
 
-    def drive(self, now: Sample) -> None:
+    def drive(self, before: Sample, now: Sample) -> None:
         """Add the way to where it is now."""
-        way, seconds = math.dist(self.at, (now.x, now.y)), now.time - self.seen
-        if way < DRIVES:
-            return
-        if way <= FASTEST * seconds:
-            self.distance += way
-        self.at, self.seen = (now.x, now.y), now.time
+        here = now.x, now.y
+        if math.dist((before.x, before.y), here) > FASTEST * (now.time - before.time):
+            self.at = here
+        elif (way := math.dist(self.at, here)) >= DRIVES:
+            self.at, self.distance = here, self.distance + way
 
     def spend(self, seconds: float, now: Sample, way: Way) -> None:
         """Give the time [s] since the last sample to a part."""

@@ -21,7 +21,7 @@ from tms_work.ways import Way
 
 STEP = 0.2  # s between two samples that are taken at least: loads are told with noise
 GAP = 5.0  # s of silence in which anything may have happened
-FLOWS = 0.02  # of the heaped volume in a second; what is slower is noise, or trickles
+FLOWS = 0.005  # of the heaped volume in a second; what is slower is noise, or trickles
 LEAST = 0.02  # of the heaped volume, below which nothing is carried
 SPILL = 0.25  # of the load, that may fall out on the way
 REST = 0.1  # of what was poured, that may stick in an emptied bucket
@@ -90,9 +90,9 @@ class Recogniser:
         self._soil(draft, before, now, share)
         if silent:
             return cycles + self._end(before.time)
-        draft.drive(now)
+        draft.drive(before, now)
         draft.spend(seconds, now, self._way)
-        if now.run != draft.run or self._is_out(draft, now, share):
+        if now.run != draft.run or _is_out(draft, now, share):
             cycles += self._end(now.time)
             if now.run == draft.run:
                 self._begin(now.run, now, self._way.empty)
@@ -111,7 +111,7 @@ class Recogniser:
             draft.pour(before.load.less(now.load), before, now)
             if share < -FLOWS:
                 draft.spot = now.x, now.y
-            elif _goes(draft, now):
+            elif _goes(draft, now) and not _is_out(draft, now, share):
                 draft.part = way.carry
         elif not self._falls(draft, before, now, share) and _goes(draft, now):
             draft.part = way.carry if self._loaded(now) else way.empty
@@ -132,11 +132,6 @@ class Recogniser:
         draft.pour(draft.top.less(now.load), before, now)
         draft.part, draft.top, draft.spot = way.pour, None, (now.x, now.y)
         return True
-
-    def _is_out(self, draft: Draft, now: Sample, share: float) -> bool:
-        if draft.part != self._way.pour or draft.poured is None:
-            return False
-        return now.load.loose <= 0.0 or (share > -FLOWS and now.load.loose <= REST * draft.poured.loose)
 
     def _loaded(self, sample: Sample) -> bool:
         return sample.load.loose > LEAST * self._heaped
@@ -162,3 +157,10 @@ def _goes(draft: Draft, now: Sample) -> bool:
     """Whether it is leaving where soil last came in or went out."""
     drives = draft.spot is not None and math.dist(draft.spot, (now.x, now.y)) > LEAVES
     return drives or abs(now.swing) > SWINGS
+
+
+def _is_out(draft: Draft, now: Sample, share: float) -> bool:
+    """Whether the load is out, but for what sticks."""
+    if draft.poured is None:
+        return False
+    return now.load.loose <= 0.0 or (share > -FLOWS and now.load.loose <= REST * draft.poured.loose)
