@@ -7,6 +7,8 @@ A cycle ends when the load is out, so it counts at once; the way back belongs to
 - A bucket that is emptied in several goes is one cycle: rests count until soil comes in again.
 - A run that ends, a silence and a clock that goes back end a cycle; it counts if soil was moved. The load stays in the
   bucket, and counts where it is dumped. Work without a run is not counted.
+- An estimated load does not grow in a silence. If it has, a ground of an earlier time was brought back, and what is in
+  the bucket has been counted already.
 """
 
 import math
@@ -21,6 +23,7 @@ from tms_work.ways import Way
 
 STEP = 0.2  # s between two samples that are taken at least: loads are told with noise
 GAP = 5.0  # s of silence in which anything may have happened
+LOST = 1.0  # s of silence, after which estimates of loads begin anew where they were (tms_soil.earth.GAP)
 FLOWS = 0.005  # of the heaped volume in a second; what is slower is noise, or trickles
 LEAST = 0.02  # of the heaped volume, below which nothing is carried
 SPILL = 0.25  # of the load, that may fall out on the way
@@ -69,11 +72,16 @@ class Recogniser:
         if -GAP <= elapsed < STEP - 1e-6:
             return []
         self._state.before = now
-        cycles = [] if before is None else self._through(before, now, elapsed)
+        counted = before is not None and not 0.0 < elapsed <= LOST and self._is_back(before, now)
+        cycles = [] if before is None else self._end(before.time) if counted else self._through(before, now, elapsed)
         draft = self._state.draft
         if now.run and (draft is None or draft.run != now.run):
-            self._begin(now.run, now, self._way.carry if self._loaded(now) else self._way.empty)
+            self._begin(now.run, now, self._way.carry if self._loaded(now) and not counted else self._way.empty)
         return cycles
+
+    def _is_back(self, before: Sample, now: Sample) -> bool:
+        """Whether a load that was gone before a silence is there again."""
+        return not now.measured and now.load.loose > before.load.loose + LEAST * self._heaped
 
     def _through(self, before: Sample, now: Sample, elapsed: float) -> list[Cycle]:
         """Go from one sample to the next, in the run that held the machine before."""

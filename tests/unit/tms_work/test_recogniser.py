@@ -130,6 +130,25 @@ def test_a_bucket_emptied_in_a_silence() -> None:
     assert one.ended_at.timestamp() == pytest.approx(end) and one.seconds < 10
 
 
+def test_a_load_that_is_back_after_a_restart_was_counted() -> None:
+    tape = bucket(Tape(), 0.8)
+    tape.time += 3
+    tape.loose = 0.7
+    tape.go(2, swing=0.5).go(1, 0.0, swing=0.5).go(1, swing=0.5)
+    assert [one.loose for one in seen(bucket(tape, 0.6))] == pytest.approx([0.8, 0.6])
+
+
+def test_a_bucket_filled_and_emptied_in_silences_that_was_weighed() -> None:
+    tape = Tape()
+    tape.kept["measured"] = True
+    tape.time += 600
+    tape.loose = 0.8
+    tape.go(2, swing=0.5)
+    tape.time += 3
+    (one,) = seen(tape.go(0.2, 0.0).go(2, swing=0.5))
+    assert one.loose == pytest.approx(0.8) and one.measured
+
+
 def test_a_bucket_carried_through_a_clock_that_goes_back() -> None:
     tape = Tape().go(5, 0.8, cuts=True).go(2, swing=0.5)
     tape.time -= 7200
