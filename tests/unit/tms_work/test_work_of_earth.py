@@ -21,12 +21,13 @@ def load(part: Digger | Hauler | None, earth: Earth) -> Amount:
 
 
 def test_a_bucket_dug_loaded_and_tipped() -> None:
-    earth, cycles, swing, most = loading_site(), list[Cycle](), START.swing, 0.0
+    earth, cycles, swing = loading_site(), list[Cycle](), START.swing
+    most = caught = 0.0  # kg in the bucket and in the vessel
     vessel_ = model_of("ic120").vessel
     assert vessel_ is not None
     excavator, carrier = Recogniser("zx200", EXCAVATOR, 0.9), Recogniser("ic120", CARRIER, vessel_.heaped)
     back = OPEN._replace(swing=-1.5)
-    dig = [*reports(moved([*dig_poses(), ABOVE, OPEN, back], rate=25.0))]
+    dig = [*reports(moved([*dig_poses(), ABOVE, *[OPEN] * 12, back], rate=25.0))]
     tip = [vessel(dig[-1].time + k / 25, -min(1.0, k / 50)) for k in range(1, 250)]
     for one in [vessel(0.0, 0.0), *dig, *tip]:
         earth.report(*one)
@@ -38,11 +39,12 @@ def test_a_bucket_dug_loaded_and_tipped() -> None:
         sample = Sample(BEGIN + one.time, load(zx200.digger, earth), "r1", "earth", moves=True, swing=speed,
                         cuts=zx200.resistance > 0.0, under="ic120" if below else "")  # fmt: skip
         cycles += excavator.take(sample)
-        most = max(most, sample.load.mass)
+        most, caught = max(most, sample.load.mass), max(caught, float(ic120.hauler.load.sum()))
         cycles += carrier.take(Sample(sample.time, load(ic120.hauler, earth), "r1", "earth", moves=True))
     dug, hauled = cycles
     # What still trickles when it swings back does not count.
     assert dug.mass == pytest.approx(most, rel=0.002)
     assert dug.loose == pytest.approx(dug.bank * earth.grid.soils[0].swell)
     assert dug.into == "ic120" and dug.parts.keys() == {"swing_back", "dig", "swing_loaded", "dump"}
-    assert 0.9 * dug.mass < hauled.mass <= dug.mass and hauled.buckets == 1
+    assert hauled.mass == pytest.approx(caught, rel=0.002) and 0.9 * dug.mass < caught < dug.mass
+    assert hauled.buckets == 1 and hauled.into == ""
