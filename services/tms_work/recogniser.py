@@ -28,6 +28,7 @@ FLOWS = 0.005  # of the heaped volume in a second; what is slower is noise, or t
 LEAST = 0.02  # of the heaped volume, below which nothing is carried
 SPILL = 0.25  # of the load, that may fall out on the way
 REST = 0.1  # of what was poured, that may stick in an emptied bucket
+STICKS = 0.05  # of the rest in a second; what goes out more slowly sticks
 SWINGS = 0.05  # rad/s
 LEAVES = 1.0  # m, from where it was filled
 RUNS = 1000  # whose numbers are remembered
@@ -100,7 +101,7 @@ class Recogniser:
             return cycles + self._end(before.time)
         draft.drive(before, now)
         draft.spend(seconds, now, self._way)
-        if now.run != draft.run or _is_out(draft, now, share):
+        if now.run != draft.run or self._is_out(draft, now, share):
             cycles += self._end(now.time)
             if now.run == draft.run:
                 self._begin(now.run, now, self._way.empty)
@@ -119,7 +120,7 @@ class Recogniser:
             draft.pour(before.load.less(now.load), before, now)
             if share < -FLOWS:
                 draft.spot = now.x, now.y
-            elif _goes(draft, now) and not _is_out(draft, now, share):
+            elif _goes(draft, now) and not self._is_out(draft, now, share):
                 draft.part = way.carry
         elif not self._falls(draft, before, now, share) and _goes(draft, now):
             draft.part = way.carry if self._loaded(now) else way.empty
@@ -140,6 +141,13 @@ class Recogniser:
         draft.pour(draft.top.less(now.load), before, now)
         draft.part, draft.top, draft.spot = way.pour, None, (now.x, now.y)
         return True
+
+    def _is_out(self, draft: Draft, now: Sample, share: float) -> bool:
+        """Whether the load is out, but for what sticks."""
+        if draft.poured is None:
+            return False
+        sticks = -share * self._heaped < STICKS * now.load.loose
+        return now.load.loose <= 0.0 or (sticks and now.load.loose <= REST * draft.poured.loose)
 
     def _loaded(self, sample: Sample) -> bool:
         return sample.load.loose > LEAST * self._heaped
@@ -165,10 +173,3 @@ def _goes(draft: Draft, now: Sample) -> bool:
     """Whether it is leaving where soil last came in or went out."""
     drives = draft.spot is not None and math.dist(draft.spot, (now.x, now.y)) > LEAVES
     return drives or abs(now.swing) > SWINGS
-
-
-def _is_out(draft: Draft, now: Sample, share: float) -> bool:
-    """Whether the load is out, but for what sticks."""
-    if draft.poured is None:
-        return False
-    return now.load.loose <= 0.0 or (share > -FLOWS and now.load.loose <= REST * draft.poured.loose)

@@ -28,7 +28,7 @@ def test_a_bucket_dug_loaded_and_tipped() -> None:
     excavator, carrier = Recogniser("zx200", EXCAVATOR, 0.9), Recogniser("ic120", CARRIER, vessel_.heaped)
     back = OPEN._replace(swing=-1.5)
     dig = [*reports(moved([*dig_poses(), ABOVE, *[OPEN] * 12, back], rate=25.0))]
-    tip = [vessel(dig[-1].time + k / 25, -min(1.0, k / 50)) for k in range(1, 250)]
+    tip = [vessel(dig[-1].time + k / 25, -min(1.0, k / 50)) for k in range(1, 320)]
     for one in [vessel(0.0, 0.0), *dig, *tip]:
         earth.report(*one)
         zx200, ic120 = earth.bodies["zx200"], earth.bodies["ic120"]
