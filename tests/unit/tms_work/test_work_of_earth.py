@@ -42,9 +42,9 @@ def test_a_bucket_dug_loaded_and_tipped() -> None:
         most, caught = max(most, sample.load.mass), max(caught, float(ic120.hauler.load.sum()))
         cycles += carrier.take(Sample(sample.time, load(ic120.hauler, earth), "r1", "earth", moves=True))
     dug, hauled = cycles
-    # What still trickles when it swings back does not count.
+    # What trickles before soil flows, and after, does not count.
     assert dug.mass == pytest.approx(most, rel=0.002)
     assert dug.loose == pytest.approx(dug.bank * earth.grid.soils[0].swell)
     assert dug.into == "ic120" and dug.parts.keys() == {"swing_back", "dig", "swing_loaded", "dump"}
-    assert hauled.mass == pytest.approx(caught, rel=0.002) and 0.9 * dug.mass < caught < dug.mass
+    assert hauled.mass == pytest.approx(caught, rel=0.005) and 0.9 * dug.mass < caught < dug.mass
     assert hauled.buckets == 1 and hauled.into == ""
