@@ -40,6 +40,22 @@ def test_waiting_for_a_truck_and_standing_by_a_stop() -> None:
     assert one.parts == pytest.approx(expected)
 
 
+def test_digging_begins_when_the_edge_is_in_the_ground() -> None:
+    (one,) = seen(Tape().go(3).go(2, cuts=True).go(5, 0.8, cuts=True).go(4, swing=0.5).go(2, 0.0))
+    assert (one.parts["swing_back"], one.parts["dig"]) == pytest.approx((3.0, 7.0))
+
+
+def test_standing_over_a_truck_is_no_waiting_for_it() -> None:
+    tape = Tape().go(5, 0.8, cuts=True).go(4, swing=0.5).go(5, moves=False, under="ic120_1")
+    (one,) = seen(tape.go(1.8, 0.1, under="ic120_1").go(0.2, 0.0))
+    assert one.parts == pytest.approx({"dig": 5.0, "swing_loaded": 9.0, "dump": 2.0})
+
+
+def test_a_truck_that_drives_off_at_the_last_moment() -> None:
+    (one,) = seen(Tape().go(5, 0.8, cuts=True).go(4, swing=0.5, under="ic120_1").go(0.2, 0.0))
+    assert one.into == "ic120_1"
+
+
 def test_spilled_soil_was_not_moved() -> None:
     tape = Tape().go(5, 0.8, cuts=True).go(2, swing=0.5).go(0.4, 0.7, swing=0.5).go(2, swing=0.5)
     (one,) = seen(tape.go(2, 0.0, under="ic120_1"))
@@ -81,6 +97,7 @@ def test_a_rest_that_sticks_belongs_to_the_next_bucket() -> None:
     tape = Tape().go(5, 0.8, cuts=True).go(4, swing=0.5).go(2, 0.05, under="ic120_1").go(3, swing=0.5)
     first, second = seen(bucket(tape, 0.7))
     assert (first.loose, second.loose) == (pytest.approx(0.75), pytest.approx(0.7))
+    assert first.parts["swing_loaded"] == pytest.approx(4.0)
 
 
 def test_digging_again_before_the_bucket_is_empty_ends_the_cycle() -> None:
@@ -96,8 +113,8 @@ def test_dumping_onto_a_pile_that_the_edge_touches() -> None:
 
 
 def test_a_dig_that_fills_slowly_is_none_the_less_a_bucket() -> None:
-    (one,) = seen(Tape().go(60, 0.6).go(4, swing=0.5).go(2, 0.0, under="ic120_1"))
-    assert one.loose == pytest.approx(0.6)
+    (one,) = seen(Tape().go(100, 0.3).go(4, swing=0.5).go(2, 0.0, under="ic120_1"))
+    assert one.loose == pytest.approx(0.3)
 
 
 def test_carrying_by_driving() -> None:
@@ -136,6 +153,8 @@ def test_a_load_that_is_back_after_a_restart_was_counted() -> None:
     tape.loose = 0.7
     tape.go(2, swing=0.5).go(1, 0.0, swing=0.5).go(1, swing=0.5)
     assert [one.loose for one in seen(bucket(tape, 0.6))] == pytest.approx([0.8, 0.6])
+    tape.go(100, 0.3).go(4, swing=0.5).go(2, 0.0)
+    assert [one.loose for one in seen(tape)] == pytest.approx([0.8, 0.6, 0.3])
 
 
 def test_a_bucket_filled_and_emptied_in_silences_that_was_weighed() -> None:
@@ -180,6 +199,16 @@ def test_a_run_that_goes_on_goes_on_with_its_numbers() -> None:
     tape.kept["run"] = "r1"
     bucket(tape, 0.8)
     assert [(one.run_id, one.number) for one in seen(tape)] == [("r1", 1), ("r2", 1), ("r1", 2)]
+
+
+def test_numbers_of_old_runs_are_forgotten(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tms_work.recogniser.RUNS", 2)
+    one, tape = excavator(), Tape()
+    for run in ("r1", "r2", "r3"):
+        tape.kept["run"] = run
+        bucket(tape, 0.8)
+    taken(one, tape.samples)
+    assert one.state()["numbers"] == {"r2": 1, "r3": 1}
 
 
 def test_work_without_a_run_is_not_counted() -> None:

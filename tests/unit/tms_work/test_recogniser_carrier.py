@@ -64,6 +64,11 @@ def test_tipping_in_several_goes_while_it_creeps_on() -> None:
     assert one.loose == pytest.approx(2.1)
 
 
+def test_a_pause_while_it_creeps_on_is_tipping() -> None:
+    (one,) = seen(load(Tape()).go(30, to=60.0).go(3, 1.0, to=63.0).go(2).go(3, 0.0))
+    assert one.parts["tip"] == pytest.approx(8.0)
+
+
 def test_what_sticks_in_the_vessel_is_tipped_with_the_next_load() -> None:
     tape = load(Tape()).go(30, to=60.0).go(6, 0.1).go(30, to=0.0)
     first, second = seen(load(tape).go(30, to=60.0).go(6, 0.0))
