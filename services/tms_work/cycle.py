@@ -36,6 +36,7 @@ class Cycle(BaseModel):
     mass: Amount = 0.0  # kg
     fill: Amount | None = None  # loose by heaped capacity of the bucket or vessel
     distance: Amount = 0.0  # m, driven
+    buckets: int = Field(ge=0, default=0)  # that a carrier's load came in
     into: str = ""  # machine that took the soil; empty: the ground
     measured: bool = False  # by the machine itself; otherwise it is an estimate
 
