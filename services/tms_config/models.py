@@ -224,6 +224,11 @@ class MachineModel(Settings):
     borders: dict[Backend, Border]
     subtasks: dict[str, SubtaskUse | str] = {}
 
+    @property
+    def driven(self) -> list[str]:
+        """The joints that commands move."""
+        return [name for name, joint in self.joints.items() if not joint.passive]
+
     def subtask(self, action: str) -> SubtaskUse:
         """The use for an action name; the short form `action: file` is completed."""
         use = self.subtasks[action]
@@ -255,7 +260,7 @@ class MachineModel(Settings):
     @model_validator(mode="after")
     def _response_known(self) -> "MachineModel":
         """Refuse a model without dead time and lag: a stop could not be proven."""
-        moved = [name for name, joint in self.joints.items() if not joint.passive] + [DRIVE] * (self.drive is not None)
+        moved = self.driven + [DRIVE] * (self.drive is not None)
         for name in moved:
             if name not in self.response:
                 raise Wrong(reasons.NoResponse(name), "response")

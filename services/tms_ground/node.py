@@ -51,10 +51,9 @@ class Keeper:
         self._log, self._watch = app.log, watch
         borders = {name: app.site.border(name) for name in models}
         self._places = Places(app.ros, borders)
-        moving = {name: [j for j, one in model.joints.items() if not one.passive] for name, model in models.items()}
-        self._moving = moving
-        self._joints = {name: JointStates(app.ros, name, borders[name], moving[name])
-                        for name in models if borders[name].joint_states}  # fmt: skip
+        self._driven = {name: model.driven for name, model in models.items()}
+        self._joints = {name: JointStates(app.ros, name, borders[name], driven)
+                        for name, driven in self._driven.items() if borders[name].joint_states}  # fmt: skip
         self._publishers = {
             name: app.ros.publisher(Float64, f"/{name}/soil_volume", depth=1) for name in watch.volumes()
         }
@@ -73,7 +72,7 @@ class Keeper:
         for joints in self._joints.values():
             joints.take()
         with self._lock:
-            for name in self._moving:
+            for name in self._driven:
                 self._take(name)
         now = monotonic()
         if now - self._told >= TELLS:
@@ -86,7 +85,7 @@ class Keeper:
             return  # it has not told enough
         told = joints.last[1] if joints is not None and joints.last is not None else ()
         begun = monotonic()
-        self._watch.take(name, begun * self._speed, dict(zip(self._moving[name], told, strict=False)), place)
+        self._watch.take(name, begun * self._speed, dict(zip(self._driven[name], told, strict=False)), place)
         UPDATE.observe(monotonic() - begun)
         REPORTS.labels(name).inc()
 

@@ -30,6 +30,7 @@ class Surroundings:
         models = {name: app.site.model_of(name) for name in app.site.file.machines if name != app.machine}
         self._models = {name: model for name, model in models.items() if model.footprint}
         self._places = Places(app.ros, {name: app.site.border(name) for name in self._models})
+        self._shapes = {name: from_above(model) for name, model in self._models.items()}
         self._areas: list[Body] = []
         app.ros.prepare(GetParameter, SERVICE)
         if self._models:
@@ -61,7 +62,7 @@ class Surroundings:
             Body.of(MachineThere(name), part, Pose(*place[:3]), drift(model, now - place.received))
             for name, model in self._models.items()
             if (place := self._places.place(name)) is not None
-            for part in from_above(model).values()
+            for part in self._shapes[name].values()
         ]
         return Ground((*found, *self._areas))
 

@@ -29,11 +29,9 @@ class Neighbours:
         self._places = Places(app.ros, borders)
         models = {name: app.site.model_of(name) for name in self._others}
         self._bodies = {name: Neighbour(name, model) for name, model in models.items()}
-        self._moving = {
-            name: [j for j, one in model.joints.items() if not one.passive] for name, model in models.items()
-        }
+        self._driven = {name: model.driven for name, model in models.items()}
         self._joints = {
-            name: JointStates(app.ros, name, borders[name], self._moving[name])
+            name: JointStates(app.ros, name, borders[name], self._driven[name])
             for name, model in models.items()
             if model.shapes and borders[name].joint_states
         }
@@ -79,4 +77,4 @@ class Neighbours:
         last = self._joints[name].last if name in self._joints else None
         if last is None:
             return None
-        return Posture(dict(zip(self._moving[name], last[1], strict=True)), 0.0 if as_told else now - last[0])
+        return Posture(dict(zip(self._driven[name], last[1], strict=True)), 0.0 if as_told else now - last[0])
