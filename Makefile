@@ -50,7 +50,7 @@ $(VENV)-store/.ready: $(LOCKS)/requirements-store.lock | $(UV)
 	@touch $@
 
 $(VENV)/.interfaces-$(NAV2_DISTRO): $(VENV)/.requirements $(LOCKS)/build.lock $(LOCKS)/interfaces.txt $(shell find services/interfaces -type f -not -name '*.pyc')
-	@echo "building the ROS interface packages (about a minute)"
+	@echo "building the ROS interface packages (two to three minutes)"
 	$(UV) pip install -q --compile-bytecode -p $(PY) --no-deps --build-constraints $(LOCKS)/build.lock -r $(LOCKS)/interfaces.txt
 	$(PY) services/interfaces/_wheel/stubs.py
 	@rm -f $(VENV)/.interfaces-*
