@@ -243,6 +243,8 @@ def test_a_dig_that_is_blocked_is_planned_anew_from_where_it_was(machine: Rig) -
     swing, boom, arm, bucket, _ = machine.states[-1].position
     assert swing == pytest.approx(math.atan2(4.53, -4.11), abs=0.06)
     assert boom + arm + bucket == pytest.approx(math.pi, abs=0.06)
+    opened = machine.send(TmsRpZx200ReleaseSimple, "tms_rp_zx200_release_simple", target_angle=-0.2)
+    assert machine.end(opened) is Outcome.SUCCEEDED  # what it carries would be kept level by later motions
 
 
 def test_cancel_ends_with_the_machine_standing(machine: Rig) -> None:
