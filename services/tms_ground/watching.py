@@ -6,18 +6,23 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tms_config.models import MachineModel
 from tms_control.links import Matrix, placed
 from tms_ground.settings import Ground
+from tms_ground.waiting import Waiting
+from tms_ground.work import Duty, Work
 from tms_machine.frames import FramePose
 from tms_soil.earth import Earth
 from tms_soil.grid import Grid
 from tms_soil.keeping import restore, state_of
 from tms_soil.soils import Soil
 from tms_soil.surface import grid as unknown
+from tms_work.cycle import Cycle
 
 CELL = 1.0  # m, of a level ground
+WORK, CYCLES = "work", "cycles"  # names in the file: what recognisers remember, and cycles that wait
 
 
 def touching(models: Mapping[str, MachineModel]) -> dict[str, MachineModel]:
@@ -28,11 +33,15 @@ def touching(models: Mapping[str, MachineModel]) -> dict[str, MachineModel]:
 class GroundWatch:
     """The ground, and where the machines were last told to be."""
 
-    def __init__(self, ground: Ground, soil: Soil, models: Mapping[str, MachineModel], file: Path) -> None:
-        """`models`: by machine; `file` keeps the ground."""
+    def __init__(
+        self, ground: Ground, soil: Soil, models: Mapping[str, MachineModel], file: Path, speed: float = 1.0
+    ) -> None:
+        """`models`: by machine; `file` keeps the ground; `speed`: seconds of the machines in one of ours."""
         level = unknown(ground.area, CELL)
         level.z[:] = ground.level
         self.earth = Earth(Grid.from_heights(level, [soil]), models)
+        self.work = Work(self.earth, [ground.soil], models, speed)
+        self.waiting = Waiting()
         self.file = file
         self._stands: dict[str, tuple[tuple[float, float, float], Matrix]] = {}  # machine -> place, base_link in map
         self._begun = self.earth.mass()
@@ -52,6 +61,15 @@ class GroundWatch:
             kept = self._stands[machine] = at, rolling.stand(*at) if rolling else placed(*at)
         if self.earth.report(machine, time, angles, kept[1]):
             self.changed = True
+
+    def count(
+        self, machine: str, now: float, angles: Mapping[str, float], place: FramePose, duty: Duty
+    ) -> list[Cycle]:  # fmt: skip
+        """Cycles of work that have ended by `now` [s since 1970]; they wait for the database from now on."""
+        cycles = self.work.take(machine, now, angles, place, duty)
+        self.waiting.put(cycles)
+        self.changed = self.changed or bool(cycles)
+        return cycles
 
     def volumes(self) -> dict[str, float]:
         """Loads of buckets and vessels by machine [m3], loose."""
@@ -75,11 +93,33 @@ class GroundWatch:
         self._begun = self.earth.mass()
         return found
 
-    def content(self) -> bytes | None:
-        """What `file` must hold to keep the ground; None if it has not changed since the last call."""
+    def load_work(self) -> None:
+        """Go on with the kept work, once `load` has brought the ground of the same file back.
+
+        Raises:
+            ValueError: it is of a release that knows it otherwise.
+        """
+        with np.load(io.BytesIO(self.file.read_bytes()), allow_pickle=False) as file:
+            if WORK in file:  # files of earlier releases have none
+                self.work.restore(_text(file[WORK]))
+                self.waiting.restore(_text(file[CYCLES]))
+
+    def content(self) -> tuple[bytes, int] | None:
+        """What `file` must hold to keep ground and work, and the number for `waiting.kept` once it does.
+
+        None if nothing has changed since the last call.
+        """
         if not self.changed:
             return None
         self.changed = False
-        out = io.BytesIO()
-        np.savez(out, **state_of(self.earth))  # type: ignore[arg-type]
-        return out.getvalue()
+        out, (cycles, number) = io.BytesIO(), self.waiting.state()
+        np.savez(out, **state_of(self.earth), **{WORK: _bytes(self.work.state()), CYCLES: _bytes(cycles)})  # type: ignore[arg-type]
+        return out.getvalue(), number
+
+
+def _bytes(text: str) -> NDArray[np.uint8]:
+    return np.frombuffer(text.encode(), np.uint8)
+
+
+def _text(data: NDArray[np.uint8]) -> str:
+    return data.tobytes().decode()

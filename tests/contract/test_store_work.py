@@ -7,7 +7,9 @@ import re
 import shutil
 from collections.abc import Callable, Iterator
 from datetime import datetime, timedelta
+from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -15,6 +17,8 @@ import pytest
 import reportlab
 from click.testing import CliRunner, Result
 from PIL import Image
+from tms_msg_db.msg import MachineState
+from tms_msg_db.srv import WriteMachineStates
 
 import height_files as files
 from height_files import EAST, LEVEL, NORTH
@@ -24,6 +28,7 @@ from tms_config.clock import utc_now
 from tms_db import store
 from tms_db.cycles import Cycles, checked
 from tms_db.ground import GroundSnapshots
+from tms_db.node import TaskServices
 from tms_db.reasons import BadCycle, CycleUnreadable, GroundNotThere, GroundUnreadable
 from tms_reason.errors import DbError
 from tms_soil.surface import Heights
@@ -116,6 +121,21 @@ def test_a_cycle_that_is_written_twice_counts_once(db: store.Db) -> None:
     assert [one.number for one in cycles.find(machine="zx200", begin=DAY, end=DAY + timedelta(days=1))] == [1, 2]
     assert [one.number for one in cycles.find("run-1", begin=DAY + timedelta(days=1))] == [3]
     assert cycles.find("run-2") == []
+
+
+def test_cycles_come_in_beside_states_of_machines(db: store.Db) -> None:
+    app: Any = SimpleNamespace(site=SimpleNamespace(models={}))
+    services, answer = TaskServices(app, db), WriteMachineStates.Response()
+    pose = MachineState(collection="machine_pose", machine="zx200", msg="{}")
+    work = MachineState(collection="cycle", machine="zx200", msg=cycle(1, 9).model_dump_json())
+    for _ in range(2):
+        services.write_machine_states(WriteMachineStates.Request(states=[work, pose]), answer)
+    assert Cycles(db).find() == [cycle(1, 9)] and db["machine_pose"].count_documents({}) == 2
+    for text, code in (("{}", "BAD_CYCLE"), ("[]", "BAD_RECORD"), ("{", "BAD_RECORD")):
+        wrong = MachineState(collection="cycle", machine="zx200", msg=text)
+        request = WriteMachineStates.Request(states=[pose, work, wrong])
+        assert refusal(partial(services.write_machine_states, request, answer)).code == code
+    assert db["machine_pose"].count_documents({}) == 2, "of a batch that is refused nothing is stored"
 
 
 def test_cycles_that_are_refused(db: store.Db) -> None:
