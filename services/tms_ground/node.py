@@ -11,7 +11,7 @@ from std_msgs.msg import Float64
 from tms_config.clock import monotonic, unix_time
 from tms_config.config import Site
 from tms_config.models import MachineModel
-from tms_ground.counting import counted
+from tms_ground.counting import begin, counted
 from tms_ground.delivery import Delivery
 from tms_ground.duties import Duties
 from tms_ground.reasons import GroundNotKept, GroundOther, WorkOther
@@ -68,6 +68,7 @@ class Keeper:
             name: app.ros.publisher(Float64, f"/{name}/soil_volume", depth=1) for name in watch.volumes()
         }
         self._speed = speed_of(app.site)
+        begin(watch.work.kinds)
         self._duties = Duties(app.ros, models)
         self._delivery = Delivery(app.ros, app.log, watch.waiting)
         self._told = 0.0

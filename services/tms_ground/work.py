@@ -16,7 +16,7 @@ from tms_soil.capacity import Capacity
 from tms_soil.digging import Digger
 from tms_soil.earth import Body, Earth
 from tms_soil.hauling import Hauler
-from tms_work.cycle import Cycle
+from tms_work.cycle import Cycle, Kind
 from tms_work.recogniser import STEP, Recogniser
 from tms_work.sample import Amount, Sample
 from tms_work.ways import CARRIER, EXCAVATOR
@@ -48,6 +48,11 @@ class Work:
         self._earth, self._soils, self._speed = earth, soils, speed
         self._recognisers = {name: one for name in models if (one := self._recogniser(name, models[name])) is not None}
         self._last: dict[str, _Swing] = {}  # machine -> when it was looked at
+
+    @property
+    def kinds(self) -> dict[str, Kind]:
+        """What is counted of whom."""
+        return {name: one.kind for name, one in self._recognisers.items()}
 
     def _recogniser(self, name: str, model: MachineModel) -> Recogniser | None:
         if model.bucket is not None:

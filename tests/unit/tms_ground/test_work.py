@@ -1,5 +1,6 @@
 """`tms:ground` counts work: what machines, gateways and the scheduler publish becomes cycles in the database."""
 
+import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import SimpleNamespace
@@ -15,6 +16,7 @@ from tms_msg_db.srv import WriteMachineStates
 from tms_msg_rc.msg import MachineState
 from tms_msg_ts.msg import RunState, RunStates
 
+from conftest import PROJECT
 from earth_rig import ABOVE, OPEN, Arm, dig_poses, moved
 from earth_rig import NAMES as JOINTS
 from tms_config.config import load_site
@@ -158,15 +160,22 @@ def test_finished_cycles_are_metrics(pc: Pc) -> None:
     names = ("cycles", "moved_bank_cubic_metres", "moved_loose_cubic_metres", "moved_kilograms", "cycle_fill_ratio")
 
     def values() -> list[float]:
-        found = [REGISTRY.get_sample_value(f"tms_ground_{name}_total", labels) or 0.0 for name in names]
+        found = [REGISTRY.get_sample_value(f"tms_ground_{name}_total", labels) for name in names]
         part = REGISTRY.get_sample_value("tms_ground_cycle_part_seconds_total", {**labels, "part": "dig"})
-        return [*found, part or 0.0]
+        return [value for value in (*found, part) if value is not None]  # all are there from the start
 
     before = values()
     pc.dig(BUCKET)
     (dug,) = pc.cycles("zx200")
     expected = (1, dug.bank, dug.loose, dug.mass, dug.fill, dug.parts["dig"])
     assert [b - a for a, b in zip(before, values(), strict=True)] == pytest.approx(expected)
+
+
+def test_boards_and_alerts_ask_for_metrics_that_are_there(pc: Pc) -> None:
+    there = {name for metric in REGISTRY.collect() for name in (metric.name, f"{metric.name}_total")}
+    files = [PROJECT / "deploy/prometheus/rules.yml", PROJECT / "deploy/grafana/dashboards/tms-work.json"]
+    asked = {name for file in files for name in re.findall(r"\btms_ground_\w+", file.read_text(encoding="utf-8"))}
+    assert len(asked) > 8 and asked <= there
 
 
 def test_a_stop_is_told_by_the_gateway(pc: Pc) -> None:
