@@ -270,7 +270,9 @@ def test_work_by_machine_hour_and_day(tms: Callable[..., Result], shared_db: sto
     assert found["total"]["bank_m3_per_hour"] == pytest.approx(45.0)
     hours = json.loads(tms(work.command, "--by", "hour", "--machine", "zx200", "--json").stdout)["groups"]
     assert [(name[-2:], one["cycles"]) for name, one in hours.items()] == [("09", 2), ("10", 1), ("01", 1)]
-    rows = list(csv.DictReader(io.StringIO(tms(work.command, "--by", "day", "--csv").stdout)))
+    text = tms(work.command, "--by", "day", "--csv").stdout
+    assert tms(work.command, "--run", "none", "--by", "day", "--csv").stdout == text.splitlines(keepends=True)[0]
+    rows = list(csv.DictReader(io.StringIO(text)))
     assert [row["day"] for row in rows] == ["2026-11-26", "2026-11-27"] and float(rows[0]["dig_dig_s"]) == 45.0
     table = tms(work.command, "--run", "run-1").stdout.splitlines()
     assert [line.split()[:3] for line in table[1:]] == [
