@@ -24,6 +24,7 @@ import height_files as files
 from height_files import EAST, LEVEL, NORTH
 from tms_cli.commands import ground, report, work
 from tms_cli.day_report import letters
+from tms_cli.day_report.map_picture import BOTTOM, LEFT, RIGHT, TOP
 from tms_config.clock import utc_now
 from tms_db import store
 from tms_db.cycles import Cycles, checked
@@ -254,10 +255,18 @@ def test_diff_tells_where_and_draws_it(tms: Callable[..., Result], shared_db: st
     assert "lowered most: -0.80 m at (4.8, 4.2)" in tms(ground.command, "diff", "first").stdout
     with Image.open(tmp_path / "c.png") as picture:
         pixels = np.asarray(picture)
-        factor = picture.width // 40
-    red = pixels[-1 - 4 * factor - factor // 2, 12 * factor + factor // 2]
-    grey, same = pixels[-1, 0], pixels[0, -1]
-    assert red.tolist() == [178, 24, 43] and grey.tolist() == [150] * 3 and same.tolist() == [247] * 3
+    # What has changed is from x 3.5 to 8.5 and y 4 to 6: x from 0.5 to 11.5 and y from 2 to 10 are shown.
+    side = (pixels.shape[1] - LEFT - RIGHT) // 22  # pixels a cell
+    assert side > 20 and pixels.shape == (TOP + 16 * side + BOTTOM, LEFT + 22 * side + RIGHT, 3)
+
+    def at(x: float, y: float) -> list[int]:
+        found: list[int] = pixels[TOP + round((10 - y) / 0.5 * side), LEFT + round((x - 0.5) / 0.5 * side)].tolist()
+        return found
+
+    assert at(4.75, 4.25) == [178, 24, 43] and at(3.3, 5.3) == [247] * 3
+    assert at(8.2, 5.3) == pytest.approx([183, 40, 58], abs=2), "half a metre; 98 % have changed by no more than 0.54 m"
+    assert (pixels[-BOTTOM + 10 :, LEFT:] < 100).any() and (pixels[:, : LEFT - 12] < 100).any(), "coordinates"
+    assert pixels[TOP + 5, 1 - RIGHT + 35].tolist() == pytest.approx([33, 102, 172], abs=10), "the scale"
     assert tms(ground.command, "diff", "first", "last", "--picture", "c.png").exception is not None
 
 
