@@ -6,16 +6,18 @@ The volumes are estimates: they follow from motions and shapes, and no machine w
 import threading
 
 from prometheus_client import Counter, Gauge, Histogram
-from std_msgs.msg import Float64
 
 from tms_config.clock import monotonic, unix_time
 from tms_config.config import Site
 from tms_config.models import MachineModel
 from tms_ground.counting import begin, counted
 from tms_ground.delivery import Delivery
+from tms_ground.designs import surface_of
 from tms_ground.duties import Duties
+from tms_ground.heights import HeightsServer
 from tms_ground.reasons import GroundNotKept, GroundOther, WorkOther
 from tms_ground.settings import needed, soil_of
+from tms_ground.telling import Teller
 from tms_ground.watching import GroundWatch, touching
 from tms_machine.joint_states import JointStates
 from tms_machine.places import Places
@@ -27,7 +29,6 @@ TELLS = 0.2  # s between two messages of a volume
 SAVES = 60.0  # s between two files of the ground: after a power cut so much is lost at most
 CYCLES = 2.0  # s between two looks for finished cycles, which are saved and sent at once
 
-LOAD = Gauge("tms_ground_load_cubic_metres", "Soil in bucket or vessel, loose, estimated", ["machine"])
 REPORTS = Counter("tms_ground_reports_total", "Reports of machines that were taken", ["machine"])
 UPDATE = Histogram("tms_ground_update_seconds", "Time of one report", buckets=(0.0003, 0.001, 0.003, 0.01, 0.03, 0.1))
 ERROR = Gauge("tms_ground_mass_error_kilograms", "Mass made or lost since the start; not 0 is a fault")
@@ -45,7 +46,9 @@ def start(app: App) -> None:
     for name in models.keys() - touches.keys():
         app.log.warning("leaves_ground", target=name)
     watch = GroundWatch(ground, soil_of(app.site, ground), touches, app.site.state / "ground.npz", speed_of(app.site))
-    Keeper(app, watch, touches)
+    design = surface_of(app.site, ground)
+    keeper = Keeper(app, watch, touches)
+    HeightsServer(app, watch, keeper.teller, keeper.lock, design)
     app.ready_when(lambda: None)
 
 
@@ -64,15 +67,13 @@ class Keeper:
         self._driven = {name: model.driven for name, model in models.items()}
         self._joints = {name: JointStates(app.ros, name, borders[name], driven)
                         for name, driven in self._driven.items() if borders[name].joint_states}  # fmt: skip
-        self._publishers = {
-            name: app.ros.publisher(Float64, f"/{name}/soil_volume", depth=1) for name in watch.volumes()
-        }
+        self.teller = Teller(app, watch, feeling=app.site.file.backend == "sim")
         self._speed = speed_of(app.site)
         begin(watch.work.kinds)
         self._duties = Duties(app.ros, models)
         self._delivery = Delivery(app.ros, app.log, watch.waiting)
         self._told = 0.0
-        self._lock = threading.Lock()  # between the threads that look and save
+        self.lock = threading.Lock()  # between the threads that look, save and answer
         self._saving = threading.Lock()  # of those that save
         self._go_on()
         app.ros.poll_in_thread(PERIOD, self.look, "ground")
@@ -85,13 +86,13 @@ class Keeper:
         self._places.take()
         for joints in self._joints.values():
             joints.take()
-        with self._lock:
+        with self.lock:
             for name in self._driven:
                 self._take(name)
         now = monotonic()
         if now - self._told >= TELLS:
             self._told = now
-            self._tell()
+            self.teller.tell()
 
     def _take(self, name: str) -> None:
         place, joints = self._places.place(name), self._joints.get(name)
@@ -104,11 +105,7 @@ class Keeper:
         counted(self._watch.count(name, unix_time(), angles, place, self._duties.of(name)))
         UPDATE.observe(monotonic() - begun)
         REPORTS.labels(name).inc()
-
-    def _tell(self) -> None:
-        for name, volume in self._watch.volumes().items():
-            LOAD.labels(name).set(volume)
-            self._publishers[name].publish(Float64(data=volume))
+        self.teller.feel(name)
 
     def _go_on(self) -> None:
         """Begin with the kept ground; one that cannot be read is put aside."""
@@ -138,7 +135,7 @@ class Keeper:
     def save(self) -> None:
         """Keep ground and work on the disk, if they have changed."""
         with self._saving:
-            with self._lock:
+            with self.lock:
                 ERROR.set(self._watch.mass_error)
                 content = self._watch.content()
             if content is None:

@@ -8,16 +8,21 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from tms_config.clock import unix_time
 from tms_config.models import MachineModel
 from tms_control.links import Matrix, placed
 from tms_ground.settings import Ground
 from tms_ground.waiting import Waiting
 from tms_ground.work import Duty, Work
 from tms_machine.frames import FramePose
+from tms_soil.changes import Changes
 from tms_soil.earth import Earth
+from tms_soil.evidence import Evidence
 from tms_soil.grid import Grid
 from tms_soil.keeping import restore, state_of
+from tms_soil.load import Load, load_of
 from tms_soil.soils import Soil
+from tms_soil.surface import Array, Heights
 from tms_soil.surface import grid as unknown
 from tms_work.cycle import Cycle
 
@@ -40,7 +45,11 @@ class GroundWatch:
         level = unknown(ground.area, CELL)
         level.z[:] = ground.level
         self.earth = Earth(Grid.from_heights(level, [soil]), models)
-        self.work = Work(self.earth, [ground.soil], models, speed)
+        self.area = ground.area  # m, map: what of the grid is the site
+        self.soils = [ground.soil]  # names, by the grid's index
+        self.changes = Changes(self.earth.grid)
+        self._evidence = Evidence(self.earth.grid.bounds)
+        self.work = Work(self.earth, self.soils, models, speed)
         self.waiting = Waiting()
         self.file = file
         self._stands: dict[str, tuple[tuple[float, float, float], Matrix]] = {}  # machine -> place, base_link in map
@@ -59,8 +68,10 @@ class GroundWatch:
         kept = self._stands.get(machine)
         if kept is None or kept[0] != at:
             kept = self._stands[machine] = at, rolling.stand(*at) if rolling else placed(*at)
-        if self.earth.report(machine, time, angles, kept[1]):
+        if changed := self.earth.report(machine, time, angles, kept[1]):
             self.changed = True
+            self.changes.add(changed)
+            self._evidence.add(changed, unix_time())
 
     def count(
         self, machine: str, now: float, angles: Mapping[str, float], place: FramePose, duty: Duty
@@ -71,10 +82,19 @@ class GroundWatch:
         self.changed = self.changed or bool(cycles)
         return cycles
 
-    def volumes(self) -> dict[str, float]:
-        """Loads of buckets and vessels by machine [m3], loose."""
+    def stands(self, machine: str) -> Matrix | None:
+        """Its base_link in map, by height and slope under its tracks; None while it has told no place."""
+        kept = self._stands.get(machine)
+        return None if kept is None else kept[1]
+
+    def loads(self) -> dict[str, Load]:
+        """Of buckets and vessels, by machine."""
         parts = ((name, body.digger or body.hauler) for name, body in self.earth.bodies.items())
-        return {name: part.volume for name, part in parts if part is not None}
+        return {name: load_of(part, self.earth.grid) for name, part in parts if part is not None}
+
+    def ages(self, cells: Heights) -> Array:
+        """How old the newest evidence of some cells is [s]; NaN: there is none."""
+        return unix_time() - self._evidence.at(*cells.centres)
 
     def load(self) -> bool:
         """Go on with the kept ground; False where there is none, or it is one of another area or soil.

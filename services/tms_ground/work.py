@@ -16,6 +16,7 @@ from tms_soil.capacity import Capacity
 from tms_soil.digging import Digger
 from tms_soil.earth import Body, Earth
 from tms_soil.hauling import Hauler
+from tms_soil.load import load_of
 from tms_work.cycle import Cycle, Kind
 from tms_work.recogniser import STEP, Recogniser
 from tms_work.sample import Amount, Sample
@@ -73,8 +74,10 @@ class Work:
         body = self._earth.bodies[machine]
         elapsed = time - before.time if before is not None else 0.0
         turn = math.remainder(angle - before.angle, math.tau) / elapsed if before is not None and elapsed > 0.0 else 0.0
+        load = load_of(_part(body), self._earth.grid)
+        soil = "" if load.kind is None else self._soils[load.kind]
         sample = Sample(
-            time, self._amount(body), duty.run, self._soil(body), place.x, place.y, duty.moves, duty.stopped,
+            time, Amount(load.mass, load.bank, load.loose), duty.run, soil, place.x, place.y, duty.moves, duty.stopped,
             swing=turn, cuts=body.digger is not None and body.digger.resistance > 0.0, under=self._under(body),
         )  # fmt: skip
         return [self._dated(one) for one in recogniser.take(sample)]
@@ -93,15 +96,6 @@ class Work:
         for name, recogniser in self._recognisers.items():
             if name in found:
                 recogniser.restore(found[name])
-
-    def _amount(self, body: Body) -> Amount:
-        part = _part(body)
-        bank = (mass / soil.bank for mass, soil in zip(part.load, self._earth.grid.soils, strict=True))
-        return Amount(float(part.load.sum()), float(sum(bank)), part.volume)
-
-    def _soil(self, body: Body) -> str:
-        load = _part(body).load
-        return self._soils[int(load.argmax())] if load.any() else ""
 
     def _under(self, body: Body) -> str:
         """The carrier below a bucket."""

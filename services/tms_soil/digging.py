@@ -41,6 +41,12 @@ class Digger:
         """Volume of the load, loose [m3]."""
         return float((self.load / self._grid.loose).sum())
 
+    @property
+    def capacity(self) -> float:
+        """What digging fills it with at most, loose [m3]."""
+        kind = int(self.load.argmax())
+        return self._grid.soils[kind].fill * self._capacities[kind].heaped
+
     def lip(self, place: Matrix) -> Array:
         """Points of map [m] along the lower lip, from which soil falls, with the bucket's link at `place`."""
         return _along(_lower(self._points[:4] @ place[:3, :3].T + place[:3, 3]))

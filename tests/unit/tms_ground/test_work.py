@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 import structlog
+from builtin_interfaces.msg import Time
 from geometry_msgs.msg import TransformStamped
 from prometheus_client import REGISTRY
 from sensor_msgs.msg import JointState
@@ -63,6 +64,8 @@ class Pc:
             publisher=lambda *_, **__: SimpleNamespace(publish=lambda _: None),
             poll_in_thread=lambda _, step, name: self.steps.update({name: step}),
             call=self.call,
+            now=lambda: Time(sec=int(self.now)),
+            offer_slow=lambda *_: None,
         )
         app: Any = SimpleNamespace(
             site=load_site(str(self.site)), ros=ros, log=structlog.stdlib.get_logger("test"),
