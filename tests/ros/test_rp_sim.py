@@ -356,6 +356,24 @@ def test_a_planner_that_ends_takes_its_motion_with_it(machine: Rig) -> None:
     machine.until(lambda: machine.end(machine.change_pose(*START)) is Outcome.SUCCEEDED, "motion afterwards")
 
 
+def test_a_motion_ends_with_a_planner_that_is_killed(machine: Rig) -> None:
+    """Its client could not cancel it any more."""
+
+    def answered() -> bool:  # goals before the new planner is found are lost
+        call = machine.change_pose(*START)
+        return call.wait_for(lambda: call.accepted, 2.0) and machine.end(call) is Outcome.SUCCEEDED
+
+    machine.change_pose(2.5, *START[1:])
+    machine.until(machine.moving, "motion")
+    killed = machine.running.pop(f"{MACHINE}:rp")
+    killed.kill()
+    killed.wait(LIMIT)
+    machine.until(lambda: not machine.moving(), "standing machine")
+    assert machine.states[-1].position[0] < 2.4
+    machine.start(f"{MACHINE}:rp")
+    machine.until(answered, "motion afterwards")
+
+
 def test_without_a_machine_there_is_a_reason(rig: Rig) -> None:
     rig.said.clear()
     assert rig.end(rig.change_pose(*START, machine=MUTE)) is Outcome.ABORTED
