@@ -95,6 +95,8 @@ class PlanLacks(Reason, text="its joints are not those of the arm", details="mis
 class PlanBroken(Reason, text="it is no motion from rest to rest"): pass
 class PlanElsewhere(Reason, text="it begins with {joint} at {begin}, but the arm is at {angle} then"):
     joint: str; begin: Radians; angle: Radians
+class GoesOn(Reason, text="it goes on in plan {number}, {seconds} after its begin, where the arm stands"):
+    number: int; seconds: Seconds
 class PlanTooFast(Reason, text="{joint} would be faster than its limits after {seconds}"): joint: str; seconds: Moments
 
 # the machine
