@@ -7,7 +7,7 @@ answer.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -24,6 +24,11 @@ TRIED = 4  # fastest words between two poses that are looked at
 NEARER = 0.8  # a goal is tried anew this part nearer to it, ...
 FIRST, LONGER = 50, 1.5  # ... and after so many poses, each time that much later
 AT_ONCE = 8  # poses of a way that one word may replace
+
+
+def never() -> bool:
+    """That somebody waits for the answer to its end."""
+    return False
 
 
 @dataclass(frozen=True)
@@ -45,8 +50,11 @@ class Question:
         found = plan(self.start, self.goals, self.pace, self.pivot)
         return found if check.free(found.path.pieces) else None
 
-    def answer(self) -> Plan | Reason:
-        """A free path; or why there is none. It takes up to some seconds."""
+    def answer(self, over: Callable[[], bool] = never) -> Plan | Reason | None:
+        """A free path; or why there is none. It takes up to some seconds.
+
+        `over` is asked again and again whether nobody wants the answer any more; then there is none.
+        """
         check = self._check()
         if isinstance(check, Reason):
             return check
@@ -55,7 +63,9 @@ class Question:
             before = self.goals[number - 1] if number else self.start
             onward = self.goals[number + 1] if number + 1 < len(self.goals) else None
             targets = [pose.ahead(self.pivot) for pose in passable(before, goal, onward)]
-            found = _way(here, targets, self.pace, check)
+            found = _way(here, targets, self.pace, check, over)
+            if over():
+                return None
             if found is None:
                 return self._blocked(check)
             pieces += found
@@ -80,12 +90,14 @@ def in_the_way(contact: Contact) -> Reason:
     return InTheWay(contact.x, contact.y, contact.away)
 
 
-def _way(start: Pose, targets: Sequence[Pose], pace: Pace, check: WayCheck) -> list[Piece] | None:
+def _way(
+    start: Pose, targets: Sequence[Pose], pace: Pace, check: WayCheck, over: Callable[[], bool]
+) -> list[Piece] | None:
     """The pieces of a free way to one of the targets."""
     connect = _Connect(targets, pace, check)
     if (direct := connect.now(start)) is not None:
         return direct
-    found = Lattice(start, targets, check, pace).search(connect.due, connect.now)
+    found = Lattice(start, targets, check, pace).search(connect.due, connect.now, over)
     if found is None:
         return None
     poses, rest = found

@@ -95,6 +95,10 @@ class Trip:
             if contact is not None:
                 self._give_way(now, PathBlocked(contact.name, in_the_way(contact)))
 
+    def waits_for(self, asked: Question) -> bool:
+        """Whether the answer to a question still matters: not after a cancel. From any thread."""
+        return self.asked is asked and self.verdict is None
+
     def answer(self, now: float, found: Plan | Reason) -> None:
         """Take the way that was asked for, or why there is none."""
         if self.asked is None:

@@ -44,7 +44,9 @@ class PathServer:
         except SubtaskFailed as error:
             return _failed(error.reason)
         question = self._tracks.question(start, pose_of(request.goal), self._around.ground())
-        found = question.fastest() or question.answer()
+        found = question.fastest() or question.answer(goal.cancelled.is_set)
+        if found is None:
+            return Outcome.CANCELED, ComputePathToPose.Result()
         if isinstance(found, Reason):
             return _failed(found)
         took = stamps.duration(monotonic() - begun)

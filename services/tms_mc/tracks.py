@@ -95,9 +95,10 @@ class Tracks:
             trip.see(self._time(), ground)
             asked = trip.asked
         if asked is not None:
-            found = asked.answer()
-            with self._lock:
-                trip.answer(self._time(), found)
+            found = asked.answer(lambda: not trip.waits_for(asked))
+            if found is not None:
+                with self._lock:
+                    trip.answer(self._time(), found)
 
     def told(self, trip: Trip) -> Any:
         """What the feedback of a goal tells."""

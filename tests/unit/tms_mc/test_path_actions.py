@@ -1,6 +1,7 @@
 """ComputePathToPose and the poses of FollowPath: what is refused, what is planned, and that both fit each other."""
 
 import math
+import threading
 from dataclasses import dataclass
 from itertools import pairwise
 from types import SimpleNamespace
@@ -32,6 +33,7 @@ from tms_ros.goals import Ended, Outcome
 from tms_ros.server import AnyGoal
 
 PACE = Pace(1.0, 0.3)
+NOT_CANCELLED = threading.Event()
 HERE, THERE = Pose(1.0, 2.0, 0.5), Pose(9.0, 5.0, 2.0)
 
 
@@ -64,10 +66,15 @@ class FakeSurroundings:
         return Ground(self.bodies)
 
 
-def compute(tracks: FakeTracks, request: ComputePathToPose.Goal, around: FakeSurroundings | None = None) -> Ended[Any]:
+def compute(
+    tracks: FakeTracks,
+    request: ComputePathToPose.Goal,
+    around: FakeSurroundings | None = None,
+    cancelled: threading.Event = NOT_CANCELLED,
+) -> Ended[Any]:
     server = PathServer(cast(Tracks, tracks), cast(Surroundings, around or FakeSurroundings()))
     assert server.refuse(request) is None
-    return server.run(cast(AnyGoal, SimpleNamespace(request=request)))
+    return server.run(cast(AnyGoal, SimpleNamespace(request=request, cancelled=cancelled)))
 
 
 def planned(tracks: FakeTracks, request: ComputePathToPose.Goal) -> list[Pose]:
@@ -112,6 +119,14 @@ def test_a_path_leads_around_what_stands_there() -> None:
     assert outcome is Outcome.SUCCEEDED
     poses = np.array([pose_of(one) for one in result.path.poses])
     assert pit.gaps(Outline.rectangle(2.0, -2.0, 1.5, -1.5), poses).min() > 0.3
+
+
+def test_a_search_ends_with_a_cancel() -> None:
+    goal, over = ComputePathToPose.Goal(goal=in_map(Pose(20.0, 2.0, 0.0))), threading.Event()
+    over.set()
+    around = FakeSurroundings((square(10.0, 2.0),))
+    outcome, _ = compute(FakeTracks(pose=Pose(0.0, 2.0, 0.0)), goal, around, over)
+    assert outcome is Outcome.CANCELED
 
 
 @pytest.mark.parametrize(
