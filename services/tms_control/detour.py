@@ -58,6 +58,8 @@ class Question:
         check = self._check()
         if isinstance(check, Reason):
             return check
+        if (free := self.fastest()) is not None:
+            return free
         here, pieces, reached = self.start.ahead(self.pivot), list[Piece](), list[int]()
         for number, goal in enumerate(self.goals):
             before = self.goals[number - 1] if number else self.start

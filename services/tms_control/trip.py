@@ -32,6 +32,7 @@ ATTEMPTS = 4  # ways that are planned to one goal, before it counts as one that 
 STANDS = 0.3  # s with poses that show it standing
 TRIES = 3  # times that a stage is planned anew because something came into the way
 PAUSE = 2.0  # s before each: most of what drives by is gone then
+AT_ONCE = 8  # goals for which the fastest path is found within a step
 CANCELLED = Verdict(Ending.CANCELED)
 
 
@@ -106,6 +107,8 @@ class Trip:
         pivot, self.asked = self.asked.pivot, None
         if isinstance(found, Plan):
             self._set_off(found.path, found.reached[:-1], pivot)
+        elif self._task.road:
+            self._task, self._attempts = self._task.off_road(), self._attempts - 1
         elif self._blocked is not None and self._tries < TRIES:
             self._wait(now)
         else:
@@ -188,7 +191,7 @@ class Trip:
             return self._set_off(self._task.told, (), 0.0)
         goals, pivot = tuple(self._goals(pose, turns)), self._estimate.pivot
         question = Question(pose, goals, self._pace(), pivot, self._outline, self._ground)
-        found = question.fastest()
+        found = question.fastest() if len(goals) <= AT_ONCE else None
         if found is None:
             self.asked = question
         else:

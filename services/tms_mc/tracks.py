@@ -2,7 +2,7 @@
 
 import math
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from geometry_msgs.msg import Twist
@@ -73,11 +73,11 @@ class Tracks:
         with self._lock:
             return self._estimate.at(self._time()).pose
 
-    def question(self, start: Pose, goal: Pose, ground: Ground) -> Question:
-        """How a path between two poses is asked for, of the place whose pose is told."""
+    def question(self, start: Pose, goals: Sequence[Goal], ground: Ground) -> Question:
+        """How a path from a pose through goals is asked for, of the place whose pose is told."""
         with self._lock:
             pace = Pace.of(self._drive, self._estimate.yaw_gain)
-        return Question(start, (Goal(*goal),), pace, 0.0, self._outline, ground)
+        return Question(start, tuple(goals), pace, 0.0, self._outline, ground)
 
     def begin(self, task: Task, ground: Ground) -> Trip:
         """Drive, from where the machine is, among what stands on the ground; an open goal ends."""

@@ -10,6 +10,7 @@ import pytest
 from driven_tracks import GAINS, MODELS, DrivenTracks
 from tms_control.ground import Body
 from tms_control.path import Path, Piece, Pose
+from tms_control.planner import Goal
 from tms_control.reasons import (
     BlockedArea,
     GoalTaken,
@@ -437,6 +438,26 @@ def test_a_cancel_while_it_waits_ends_it() -> None:
     trip.cancel()
     machine.run(trip, seconds=2.0)
     assert trip.verdict == CANCELED
+
+
+ROAD = (Goal(20, 0, None), Goal(20, 20, None))
+
+
+def test_a_road_is_followed() -> None:
+    machine = DrivenTracks("ic120")
+    trip = machine.trip(Task.to(Pose(0, 20, math.pi), ROAD))
+    machine.run(trip)
+    assert trip.verdict == ARRIVED and at(machine, Pose(0, 20, math.pi))
+    for place in ROAD:
+        assert min(pose.away(Pose(place.x, place.y, 0)) for pose in machine.been) < 0.5
+
+
+def test_a_road_that_is_blocked_is_left() -> None:
+    machine = DrivenTracks("ic120")
+    machine.stands(machine_at(20, 0))
+    trip = machine.trip(Task.to(Pose(0, 20, math.pi), ROAD))
+    machine.run(trip)
+    assert trip.verdict == ARRIVED and at(machine, Pose(0, 20, math.pi))
 
 
 @pytest.mark.parametrize("end", [Trip.cancel, lambda trip: trip.silence(5.0)], ids=["cancel", "silence"])
