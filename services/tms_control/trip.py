@@ -39,16 +39,18 @@ CANCELLED = Verdict(Ending.CANCELED)
 class Trip:
     """`verdict` is None until the goal has ended. One TrackEstimate serves all trips of a machine: it learns.
 
-    `asked` is a way that has to be searched, for `answer`; `ground`: what stands around, as `see` tells it later.
+    `asked` is a way that has to be searched, for `answer`; `ground`: what stands around, as `see` tells it later;
+    `arm`: as a Question has it.
     """
 
     def __init__(
-        self, task: Task, drive: Drive, estimate: TrackEstimate, now: float, outline: Outline, ground: Ground
-    ) -> None:
+        self, task: Task, drive: Drive, estimate: TrackEstimate, now: float, outline: Outline, ground: Ground,
+        arm: Outline | None = None,
+    ) -> None:  # fmt: skip
         self.verdict: Verdict | None = None
         self.missed: list[Missed] = []
         self.asked: Question | None = None
-        self._outline, self._ground = outline, ground
+        self._outline, self._ground, self._arm = outline, ground, arm
         self._blocked: PathBlocked | None = None  # what came into the way of the present stage last
         self._tries, self._resumes = 0, now  # plans of this stage after that; s, not before that time
         self._task, self._drive, self._estimate, self._begun = task, drive, estimate, now
@@ -190,7 +192,7 @@ class Trip:
         if self._task.told is not None and self._attempts == 1:
             return self._set_off(self._task.told, (), 0.0)
         goals, pivot = tuple(self._goals(pose, turns)), self._estimate.pivot
-        question = Question(pose, goals, self._pace(), pivot, self._outline, self._ground)
+        question = Question(pose, goals, self._pace(), pivot, self._outline, self._ground, self._arm)
         found = question.fastest() if len(goals) <= AT_ONCE else None
         if found is None:
             self.asked = question

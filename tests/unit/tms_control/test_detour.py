@@ -194,6 +194,28 @@ def test_the_same_question_has_the_same_answer() -> None:
     assert asked.answer() == asked.answer()
 
 
+ARM = TRUCK.with_arm([(8.0, 0.5), (8.0, -0.5)])
+
+
+def test_an_arm_is_kept_clear() -> None:
+    assert ARM is not None
+    pit = box(9, 2.5, 14, 8)
+    asked = Question(Pose(0, 0, 0), (Goal(12, 20, math.pi / 2),), PACE, 0.0, TRUCK, Ground((pit,)), ARM)
+    without = Question(Pose(0, 0, 0), (Goal(12, 20, math.pi / 2),), PACE, 0.0, TRUCK, Ground((pit,)))
+    clear, bare = asked.answer(), without.answer()
+    assert isinstance(clear, Plan) and isinstance(bare, Plan)
+    assert pit.gaps(ARM, np.array(dense(clear.path))).min() > CLEAR - STEP
+    assert pit.gaps(ARM, np.array(dense(bare.path))).min() == 0.0
+
+
+def test_an_arm_that_no_way_keeps_clear_is_high_enough() -> None:
+    over = box(5, -1, 7, 1)  # at the start already
+    asked = Question(Pose(0, 0, 0), (Goal(-20, 0, 0.0),), PACE, 0.0, TRUCK, Ground((over,)), ARM)
+    without = Question(Pose(0, 0, 0), (Goal(-20, 0, 0.0),), PACE, 0.0, TRUCK, Ground((over,)))
+    assert asked.fastest() is None and without.fastest() is not None
+    assert asked.answer() == without.answer()
+
+
 @pytest.mark.parametrize("patience", [0, 3, 40, 400, 4000])
 def test_a_search_that_nobody_waits_for_ends(patience: int) -> None:
     """With the next pose, or the next some hundred places, that it would look at."""
