@@ -1,10 +1,11 @@
 """What is wrong with areas, and why a machine may not go on because of them."""
 
-from tms_reason.quantities import Metres, SquareMetres
+from tms_reason.quantities import Metres, MetresPerSecond, Seconds, SquareMetres
 from tms_reason.reason import Reason
-from tms_reason.remedies import EDIT_CONFIG, Remedy
+from tms_reason.remedies import EDIT_CONFIG, INSPECT, Remedy
 
 DRAW_AGAIN = Remedy("draw", "", "Draw the area again, and export the file anew")
+DRIVE_OUT = Remedy("take", "tms take {machine}", "Drive the machine by hand to where it may be")
 
 
 # fmt: off
@@ -38,4 +39,21 @@ class AreaTwice(Reason, text="two areas are called {area}", action=EDIT_CONFIG):
 class NoUnmanned(Reason, text="no area is unmanned: no machine could move anywhere", action=EDIT_CONFIG): pass
 class NothingUsable(Reason, text="other areas cover every unmanned one: no machine could move anywhere",
     action=EDIT_CONFIG): pass
+
+# a machine
+class LeavesArea(Reason, text="{machine} must not leave the unmanned area {area}: its border near ({x}, {y}) is"
+    " {gap} away, to stop takes {needed}", action=DRIVE_OUT):
+    machine: str; area: str; gap: Metres; needed: Metres; x: Metres; y: Metres
+class EntersArea(Reason, text="{machine} must not enter the area {area}: its border near ({x}, {y}) is {gap} away,"
+    " to stop takes {needed}", action=DRIVE_OUT):
+    machine: str; area: str; gap: Metres; needed: Metres; x: Metres; y: Metres
+class TooFastFor(Reason, text="{machine} would be in the area {area} at {speed}, {limit} are allowed there",
+    action=DRIVE_OUT): machine: str; area: str; speed: MetresPerSecond; limit: MetresPerSecond
+class NoWay(Reason, text="no way inside the unmanned areas leads {machine} to ({x}, {y})"):
+    machine: str; x: Metres; y: Metres
+class PoseUnknown(Reason, text="its place in the map is not told", action=INSPECT): pass
+class PoseOld(Reason, text="its place in the map is {age} old", action=INSPECT): age: Seconds
+class PoseJumped(Reason, text="its place in the map has jumped", action=INSPECT): pass
+class PoseStuck(Reason, text="its place in the map does not change while its tracks move", action=INSPECT): pass
+class PoseSettles(Reason, text="{why}: it is believed again after {left} without that"): why: Reason; left: Seconds
 # fmt: on
