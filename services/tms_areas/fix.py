@@ -39,6 +39,14 @@ class Motion:
     age: float = 0.0  # s since it arrived
 
 
+@dataclass(frozen=True)
+class Seen:
+    """One look at a place."""
+
+    unsure: Reason | None  # why it is not believed
+    motion: Motion | None  # by the last pose that was believed
+
+
 @dataclass
 class Fix:
     """What is known from the poses so far. Times are of one monotonic clock [s]."""
@@ -80,8 +88,13 @@ class Fix:
         """Take what the tracks say of their own speed [m/s, rad/s]."""
         self.moves = abs(forward) > MOVES or abs(turning) > MOVES
 
-    def look(self, now: float) -> Reason | None:
-        """Why its place is not believed now; None if it is, and then `motion` says it."""
+    def look(self, now: float) -> Seen:
+        """What is known now."""
+        unsure = self._unsure(now)
+        motion = None if self.motion is None else replace(self.motion, age=now - self.motion_at)
+        return Seen(unsure, motion)
+
+    def _unsure(self, now: float) -> Reason | None:
         age = now - self.poses[-1][0] if self.poses else float("inf")
         if age > OLD:
             unknown = PoseOld(age) if self.poses else PoseUnknown()
@@ -92,10 +105,6 @@ class Fix:
                 return PoseSettles(self.wrong, max(left, 0.0)) if left < SETTLED else self.wrong
             self.wrong, self.motion, self.motion_at = None, self._line(), self.poses[-1][0]
         return None
-
-    def present(self, now: float) -> Motion | None:
-        """The motion by the last pose that was believed, with its age now."""
-        return None if self.motion is None else replace(self.motion, age=now - self.motion_at)
 
     def _doubt(self, why: Reason, at: float) -> None:
         self.wrong, self.wrong_at = why, at

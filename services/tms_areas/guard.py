@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from tms_areas.body import Silhouette
-from tms_areas.fix import Fix
+from tms_areas.fix import Seen
 from tms_areas.law import Law, Place
 from tms_reason.reason import Reason
 
@@ -24,14 +24,14 @@ class Verdict:
 
 
 class Guard:
-    """Law and place of one machine."""
+    """The law for one machine, and its shape. It keeps nothing: threads may share it."""
 
-    def __init__(self, law: Law, fix: Fix, silhouette: Silhouette) -> None:
-        self.law, self.fix, self._silhouette = law, fix, silhouette
+    def __init__(self, law: Law, silhouette: Silhouette) -> None:
+        self.law, self._silhouette = law, silhouette
 
-    def look(self, now: float, joints: Mapping[str, float], tracks: bool) -> Verdict:
+    def look(self, seen: Seen, joints: Mapping[str, float], tracks: bool) -> Verdict:
         """Whether a goal may go on; `joints` [rad] now, `tracks`: it drives."""
-        unsure, motion = self.fix.look(now), self.fix.present(now)
+        unsure, motion = seen.unsure, seen.motion
         if motion is None or (tracks and unsure is not None):
             return Verdict(hold=unsure)
         body = self._silhouette.body([joints])
@@ -40,14 +40,13 @@ class Guard:
         wrong = self.law.working(body, motion, 0.0 if unsure is None else UNSURE)
         return Verdict(stop=wrong) if unsure is None or wrong is None else Verdict(hold=unsure)
 
-    def may_drive(self, now: float, joints: Mapping[str, float], way: Sequence[Place], told: bool) -> Reason | None:
+    def may_drive(self, seen: Seen, joints: Mapping[str, float], way: Sequence[Place], told: bool) -> Reason | None:
         """Why tracks must not go to the last of some places by way of the others.
 
         `told`: straight from each to the next. Else a planner chooses the way, of which only this is known here: it
         stays in one piece of where the machine may be.
         """
-        verdict = self.look(now, joints, tracks=True)
-        motion = self.fix.present(now)
+        verdict, motion = self.look(seen, joints, tracks=True), seen.motion
         wrong = verdict.hold or verdict.stop
         if wrong is not None or motion is None:
             return wrong
@@ -58,9 +57,9 @@ class Guard:
         found = (self.law.arriving(body, place) or self.law.apart(here, place) for place in way)
         return next((one for one in found if one is not None), None)
 
-    def may_work(self, now: float, way: Sequence[Mapping[str, float]]) -> Reason | None:
+    def may_work(self, seen: Seen, way: Sequence[Mapping[str, float]]) -> Reason | None:
         """Why joints must not go a way of straight lines between angles [rad], the first of which are those of now."""
-        unsure, motion = self.fix.look(now), self.fix.present(now)
+        unsure, motion = seen.unsure, seen.motion
         if motion is None:
             return unsure
         wrong = self.law.working(self._silhouette.swept(way), motion, 0.0 if unsure is None else UNSURE)

@@ -176,7 +176,7 @@ def run(seed: int, guarded: bool = True, keeps_on: float = math.inf) -> Result:
     what, r = made(seed), random.Random(seed + 1)
     out = Result(seed, what.wild)
     fix, law = Fix(what.tracks.turning.top), Law(what.areas, "machine", what.tracks)
-    guard, outline = Guard(law, fix, Outline(what.corners)), edge(what.corners)
+    guard, outline = Guard(law, Outline(what.corners)), edge(what.corners)
     plant = Plant(Ground(random.Random(seed + 2)), what.slip, what.tracks.dead_time, what.lag, *what.start)
     told = Localisation(random.Random(seed + 3), r.choice([0.06, 0.1]), r.choice([0.02, 0.15]),
                         r.choice([0.002, 0.01, 0.02]), r.uniform(0, 0.1), what.troubles if guarded else [],
@@ -193,7 +193,7 @@ def run(seed: int, guarded: bool = True, keeps_on: float = math.inf) -> Result:
         fix.odometry(plant.v, plant.w)
         if now >= next_beat:
             next_beat = now + BEAT * r.uniform(0.8, 1.4)
-            verdict = guard.look(now, {}, tracks=True) if guarded else Verdict()
+            verdict = guard.look(fix.look(now), {}, tracks=True) if guarded else Verdict()
             if verdict.stop is not None and going:
                 out.stopped, out.why = now, verdict.stop.code
                 stopped, going = True, False

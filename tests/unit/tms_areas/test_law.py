@@ -176,46 +176,46 @@ def test_a_joint_that_is_not_told_may_be_anywhere() -> None:
 # the watch
 
 
-def guard(x: float, speed: float = 0.0) -> tuple[Guard, float]:
+def guard(x: float, speed: float = 0.0) -> tuple[Guard, Fix, float]:
     """A watch over an ic120 that has told its place for a while."""
     model, fix = MODELS["ic120"], Fix(0.35)
     for i in range(20):
         fix.heard(i * 0.06, x + speed * i * 0.06, 0.0, 0.0)
     fix.look(20 * 0.06)
-    return Guard(Law(AreaSet((YARD, HUT)), "ic120", TRACKS), fix, Silhouette(model)), 20 * 0.06
+    return Guard(Law(AreaSet((YARD, HUT)), "ic120", TRACKS), Silhouette(model)), fix, 20 * 0.06
 
 
 JOINTS = {"vessel_pin_joint": 0.0}
 
 
 def test_tracks_are_held_while_the_place_is_not_believed_and_an_arm_goes_on() -> None:
-    watch, now = guard(0.0)
-    assert watch.look(now, JOINTS, tracks=True).hold is None
-    watch.fix.heard(now, 3.0, 0.0, 0.0)
+    watch, fix, now = guard(0.0)
+    assert watch.look(fix.look(now), JOINTS, tracks=True).hold is None
+    fix.heard(now, 3.0, 0.0, 0.0)
     now += 0.1
-    held = watch.look(now, JOINTS, tracks=True)
+    held = watch.look(fix.look(now), JOINTS, tracks=True)
     assert isinstance(held.hold, PoseSettles) and held.hold.why == PoseJumped() and held.stop is None
-    arm = watch.look(now, JOINTS, tracks=False)
+    arm = watch.look(fix.look(now), JOINTS, tracks=False)
     assert arm.hold is None and arm.stop is None
-    assert watch.may_drive(now, JOINTS, [(0.0, 5.0, 0.0)], told=False) is not None
-    assert watch.may_work(now, [JOINTS, {"vessel_pin_joint": 0.5}]) is None
+    assert watch.may_drive(fix.look(now), JOINTS, [(0.0, 5.0, 0.0)], told=False) is not None
+    assert watch.may_work(fix.look(now), [JOINTS, {"vessel_pin_joint": 0.5}]) is None
 
 
 def test_an_arm_near_a_border_is_held_where_its_place_is_not_believed() -> None:
-    watch, now = guard(2.7)  # the hut is 0.3 m ahead
-    assert watch.may_work(now, [JOINTS]) is None
-    watch.fix.heard(now, 9.0, 0.0, 0.0)
-    assert watch.look(now, JOINTS, tracks=False).hold == PoseJumped()
-    assert watch.may_work(now, [JOINTS]) == PoseJumped()
+    watch, fix, now = guard(2.7)  # the hut is 0.3 m ahead
+    assert watch.may_work(fix.look(now), [JOINTS]) is None
+    fix.heard(now, 9.0, 0.0, 0.0)
+    assert watch.look(fix.look(now), JOINTS, tracks=False).hold == PoseJumped()
+    assert watch.may_work(fix.look(now), [JOINTS]) == PoseJumped()
 
 
 def test_a_machine_that_drives_out_is_stopped() -> None:
-    watch, now = guard(16.0, 1.0)
-    assert isinstance(watch.look(now, JOINTS, tracks=True).stop, LeavesArea)
+    watch, fix, now = guard(16.0, 1.0)
+    assert isinstance(watch.look(fix.look(now), JOINTS, tracks=True).stop, LeavesArea)
 
 
 def test_a_goal_beside_a_hut_is_fine_unless_its_told_way_leads_through() -> None:
-    watch, now = guard(0.0)
+    watch, fix, now = guard(0.0)
     goal = (14.0, 0.0, 0.0)
-    assert watch.may_drive(now, JOINTS, [goal], told=False) is None
-    assert isinstance(watch.may_drive(now, JOINTS, [goal], told=True), EntersArea)
+    assert watch.may_drive(fix.look(now), JOINTS, [goal], told=False) is None
+    assert isinstance(watch.may_drive(fix.look(now), JOINTS, [goal], told=True), EntersArea)
