@@ -6,12 +6,14 @@ The volumes are estimates: they follow from motions and shapes, and no machine w
 import threading
 
 from prometheus_client import Counter, Gauge, Histogram
-from std_msgs.msg import Float64
 
 from tms_config.clock import monotonic
 from tms_config.models import MachineModel
+from tms_ground.designs import surface_of
+from tms_ground.heights import HeightsServer
 from tms_ground.reasons import GroundNotKept, GroundOther
 from tms_ground.settings import needed, soil_of
+from tms_ground.telling import Teller
 from tms_ground.watching import GroundWatch, touching
 from tms_machine.joint_states import JointStates
 from tms_machine.places import Places
@@ -22,7 +24,6 @@ PERIOD = 0.04  # s between two looks at what has come: the period of most joint 
 TELLS = 0.2  # s between two messages of a volume
 SAVES = 60.0  # s between two files of the ground: after a power cut so much is lost at most
 
-LOAD = Gauge("tms_ground_load_cubic_metres", "Soil in bucket or vessel, loose, estimated", ["machine"])
 REPORTS = Counter("tms_ground_reports_total", "Reports of machines that were taken", ["machine"])
 UPDATE = Histogram("tms_ground_update_seconds", "Time of one report", buckets=(0.0003, 0.001, 0.003, 0.01, 0.03, 0.1))
 ERROR = Gauge("tms_ground_mass_error_kilograms", "Mass made or lost since the start; not 0 is a fault")
@@ -40,7 +41,9 @@ def start(app: App) -> None:
     for name in models.keys() - touches.keys():
         app.log.warning("leaves_ground", target=name)
     watch = GroundWatch(ground, soil_of(app.site, ground), touches, app.site.state / "ground.npz")
-    Keeper(app, watch, touches)
+    design = surface_of(app.site, ground)
+    keeper = Keeper(app, watch, touches)
+    HeightsServer(app, watch, keeper.teller, keeper.lock, design)
     app.ready_when(lambda: None)
 
 
@@ -54,13 +57,12 @@ class Keeper:
         self._driven = {name: model.driven for name, model in models.items()}
         self._joints = {name: JointStates(app.ros, name, borders[name], driven)
                         for name, driven in self._driven.items() if borders[name].joint_states}  # fmt: skip
-        self._publishers = {
-            name: app.ros.publisher(Float64, f"/{name}/soil_volume", depth=1) for name in watch.volumes()
-        }
+        simulated = app.site.file.backend == "sim"
+        self.teller = Teller(app, watch, feeling=simulated)
         # Stand-ins may live faster than we do.
-        self._speed = app.site.file.sim.speed if app.site.file.backend == "sim" else 1.0
+        self._speed = app.site.file.sim.speed if simulated else 1.0
         self._told = 0.0
-        self._lock = threading.Lock()  # between the threads that look and save
+        self.lock = threading.Lock()  # between the threads that look, save and answer
         self._go_on()
         app.ros.poll_in_thread(PERIOD, self.look, "ground")
         app.ros.poll_in_thread(SAVES, self.save, "ground_file")
@@ -71,13 +73,13 @@ class Keeper:
         self._places.take()
         for joints in self._joints.values():
             joints.take()
-        with self._lock:
+        with self.lock:
             for name in self._driven:
                 self._take(name)
         now = monotonic()
         if now - self._told >= TELLS:
             self._told = now
-            self._tell()
+            self.teller.tell()
 
     def _take(self, name: str) -> None:
         place, joints = self._places.place(name), self._joints.get(name)
@@ -88,11 +90,7 @@ class Keeper:
         self._watch.take(name, begun * self._speed, dict(zip(self._driven[name], told, strict=False)), place)
         UPDATE.observe(monotonic() - begun)
         REPORTS.labels(name).inc()
-
-    def _tell(self) -> None:
-        for name, volume in self._watch.volumes().items():
-            LOAD.labels(name).set(volume)
-            self._publishers[name].publish(Float64(data=volume))
+        self.teller.feel(name)
 
     def _go_on(self) -> None:
         """Begin with the kept ground; one that cannot be read is put aside."""
@@ -108,7 +106,7 @@ class Keeper:
 
     def save(self) -> None:
         """Keep the ground on the disk, if it has changed."""
-        with self._lock:
+        with self.lock:
             ERROR.set(self._watch.mass_error)
             content = self._watch.content()
         if content is None:

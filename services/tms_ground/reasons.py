@@ -24,6 +24,7 @@ SAY_SIZE = Remedy("size", "", "Give --width, --height and --elevation in metres"
 class WhereIsOrigin(Reason, text="needs either plane, north and east, or latitude and longitude", action=EDIT_CONFIG):
     pass
 class AreaInsideOut(Reason, text="must be [least x, least y, largest x, largest y]", action=EDIT_CONFIG): pass
+class OneDesign(Reason, text="needs one of plane, pit and file", action=EDIT_CONFIG): pass
 class NoGround(Reason, text="there is no ground:, which tells the site's area", action=EDIT_CONFIG): pass
 class NoSoil(Reason, text="there is no soil '{soil}' (there: {soils})", action=EDIT_CONFIG):
     soil: str; soils: tuple[str, ...]
@@ -32,6 +33,12 @@ class GroundNotKept(Reason, text="{file}: the ground cannot be kept there ({prob
 class NoOrigin(Reason, text="the file is in EPSG {epsg}, and the site file tells no ground.origin", action=EDIT_CONFIG):
     epsg: int
 class NotAlongPlane(Reason, text="a GeoTIFF needs a ground.origin on a plane, without yaw: export an .asc"): pass
+
+# what others ask of the ground
+class NotAnArea(Reason, text="the rectangle [{x0}, {y0}, {x1}, {y1}] is none on the site"):
+    x0: Metres; y0: Metres; x1: Metres; y1: Metres
+class BadCell(Reason, text="cells of {cell} are asked for: {least} to {most} are possible"):
+    cell: Metres; least: Metres; most: Metres
 
 # files of heights
 class GroundFile(Reason, text="{file}: {why}"): file: str; why: Reason

@@ -7,14 +7,19 @@ from pathlib import Path
 
 import numpy as np
 
+from tms_config.clock import unix_time
 from tms_config.models import MachineModel
 from tms_control.links import Matrix, placed
 from tms_ground.settings import Ground
 from tms_machine.frames import FramePose
+from tms_soil.changes import Changes
 from tms_soil.earth import Earth
+from tms_soil.evidence import Evidence
 from tms_soil.grid import Grid
 from tms_soil.keeping import restore, state_of
+from tms_soil.load import Load, load_of
 from tms_soil.soils import Soil
+from tms_soil.surface import Array, Heights
 from tms_soil.surface import grid as unknown
 
 CELL = 1.0  # m, of a level ground
@@ -33,6 +38,10 @@ class GroundWatch:
         level = unknown(ground.area, CELL)
         level.z[:] = ground.level
         self.earth = Earth(Grid.from_heights(level, [soil]), models)
+        self.area = ground.area  # m, map: what of the grid is the site
+        self.soils = [ground.soil]  # names, by the grid's index
+        self.changes = Changes(self.earth.grid)
+        self._evidence = Evidence(self.earth.grid.bounds)
         self.file = file
         self._stands: dict[str, tuple[tuple[float, float, float], Matrix]] = {}  # machine -> place, base_link in map
         self._begun = self.earth.mass()
@@ -50,13 +59,24 @@ class GroundWatch:
         kept = self._stands.get(machine)
         if kept is None or kept[0] != at:
             kept = self._stands[machine] = at, rolling.stand(*at) if rolling else placed(*at)
-        if self.earth.report(machine, time, angles, kept[1]):
+        if changed := self.earth.report(machine, time, angles, kept[1]):
             self.changed = True
+            self.changes.add(changed)
+            self._evidence.add(changed, unix_time())
 
-    def volumes(self) -> dict[str, float]:
-        """Loads of buckets and vessels by machine [m3], loose."""
+    def stands(self, machine: str) -> Matrix | None:
+        """Its base_link in map, by height and slope under its tracks; None while it has told no place."""
+        kept = self._stands.get(machine)
+        return None if kept is None else kept[1]
+
+    def loads(self) -> dict[str, Load]:
+        """Of buckets and vessels, by machine."""
         parts = ((name, body.digger or body.hauler) for name, body in self.earth.bodies.items())
-        return {name: part.volume for name, part in parts if part is not None}
+        return {name: load_of(part, self.earth.grid) for name, part in parts if part is not None}
+
+    def ages(self, cells: Heights) -> Array:
+        """How old the newest evidence of some cells is [s]; NaN: there is none."""
+        return unix_time() - self._evidence.at(*cells.centres)
 
     def load(self) -> bool:
         """Go on with the kept ground; False where there is none, or it is one of another area or soil.

@@ -41,6 +41,12 @@ class Digger:
         """Volume of the load, loose [m3]."""
         return float((self.load / self._grid.loose).sum())
 
+    @property
+    def capacity(self) -> float:
+        """What digging fills it with at most, loose [m3]."""
+        kind = int(self.load.argmax())
+        return self._grid.soils[kind].fill * self._capacities[kind].heaped
+
     def step(self, before: Matrix, after: Matrix, seconds: float, haulers: Sequence[Hauler]) -> list[Bounds]:
         """Move the bucket's link from one place in map to the next; returns where the ground changed."""
         old, new = (self._points @ place[:3, :3].T + place[:3, 3] for place in (before, after))
