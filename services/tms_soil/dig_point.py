@@ -12,8 +12,6 @@ from typing import NamedTuple
 import numpy as np
 
 from tms_config.models import Bucket
-from tms_soil.capacity import Capacity
-from tms_soil.soils import Soil
 from tms_soil.surface import Array, Heights, Mask, Point, distance, inside
 
 TURN = math.radians(5)  # rad between two directions
@@ -27,7 +25,7 @@ LEAST = 0.1  # m3 loose, of the bucket; what brings less is not worth a swing
 FIXED = 14.0  # s of a cycle without its turns and drag: the measured 25.9 s at 90 degrees, less these
 SWINGS = 0.35  # rad/s of a turn with its beginning and end: 90 degrees there and back in about 9 s
 DRAGGING = 0.6  # m/s: the planner's speed through soil
-RIM = 0.85  # of what the edge passes; the rest stays as a windrow or falls back
+LOOSENS = 1.1  # loose volume in the bucket by volume that the edge passes: the swell, less what falls back
 
 
 class Stand(NamedTuple):
@@ -46,17 +44,14 @@ class Digging:
     width: float  # m, of the bucket
     opening: float  # m, from its rear lip to the cutting edge
     holds: float  # m3 loose, when it was filled in the ground
-    swell: float  # loose volume by bank volume
     near: float  # m, no edge comes nearer
     far: float  # m, nor goes further out
     deepest: float  # m below the tracks, nor goes deeper
 
     @classmethod
-    def of(cls, bucket: Bucket, soil: Soil, near: float, far: float, deepest: float) -> "Digging":
-        """With a bucket, in a soil."""
-        opening = math.dist(bucket.section[0], bucket.section[-1])
-        holds = soil.fill * Capacity(bucket, soil.repose_slope).heaped
-        return cls(bucket.width, opening, holds, soil.swell, near, far, deepest)
+    def of(cls, bucket: Bucket, holds: float, near: float, far: float, deepest: float) -> "Digging":
+        """With a bucket."""
+        return cls(bucket.width, math.dist(bucket.section[0], bucket.section[-1]), holds, near, far, deepest)
 
 
 @dataclass(frozen=True)
@@ -159,6 +154,6 @@ def _brings(surface: Array, near: int, far: int, level: float, tool: Digging) ->
     """
     first = max(0, near - round(CURLS / STEP))
     passed = np.maximum(surface[first : far + 1] - level, 0.0)
-    swept = RIM * tool.width * tool.swell * STEP * float(passed.sum())
+    swept = LOOSENS * tool.width * STEP * float(passed.sum())
     covered = min(1.0, float(passed[: near - first + 1].mean()) / tool.opening)
     return min(swept, tool.holds * covered)

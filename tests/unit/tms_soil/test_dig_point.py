@@ -29,7 +29,7 @@ LEVEL = flat(25.6)
 
 def tool() -> Digging:
     assert ZX200.bucket is not None
-    return Digging.of(ZX200.bucket, soils()[0], near=4.8, far=8.4, deepest=1.8)
+    return Digging.of(ZX200.bucket, holds=0.83, near=4.8, far=8.4, deepest=1.8)
 
 
 def design(level: float, ground: Heights = LEVEL) -> Heights:
