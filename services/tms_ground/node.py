@@ -7,23 +7,27 @@ import threading
 
 from prometheus_client import Counter, Gauge, Histogram
 
-from tms_config.clock import monotonic
+from tms_config.clock import monotonic, unix_time
+from tms_config.config import Site
 from tms_config.models import MachineModel
+from tms_ground.counting import begin, counted
+from tms_ground.delivery import Delivery
 from tms_ground.designs import surface_of
+from tms_ground.duties import Duties
 from tms_ground.heights import HeightsServer
-from tms_ground.reasons import GroundNotKept, GroundOther
+from tms_ground.reasons import GroundNotKept, GroundOther, WorkOther
 from tms_ground.settings import needed, soil_of
 from tms_ground.snapshots import Snapshots
 from tms_ground.telling import Teller
 from tms_ground.watching import GroundWatch, touching
-from tms_machine.joint_states import JointStates
-from tms_machine.places import Places
+from tms_machine.listener import Listener
 from tms_runtime import durable
 from tms_runtime.app import App
 
 PERIOD = 0.04  # s between two looks at what has come: the period of most joint states
 TELLS = 0.2  # s between two messages of a volume
 SAVES = 60.0  # s between two files of the ground: after a power cut so much is lost at most
+CYCLES = 2.0  # s between two looks for finished cycles, which are saved and sent at once
 
 REPORTS = Counter("tms_ground_reports_total", "Reports of machines that were taken", ["machine"])
 UPDATE = Histogram("tms_ground_update_seconds", "Time of one report", buckets=(0.0003, 0.001, 0.003, 0.01, 0.03, 0.1))
@@ -41,7 +45,7 @@ def start(app: App) -> None:
     touches = touching(models)
     for name in models.keys() - touches.keys():
         app.log.warning("leaves_ground", target=name)
-    watch = GroundWatch(ground, soil_of(app.site, ground), touches, app.site.state / "ground.npz")
+    watch = GroundWatch(ground, soil_of(app.site, ground), touches, app.site.state / "ground.npz", speed_of(app.site))
     design = surface_of(app.site, ground)
     keeper = Keeper(app, watch, touches)
     HeightsServer(app, watch, keeper.teller, keeper.lock, design)
@@ -49,34 +53,37 @@ def start(app: App) -> None:
     app.ready_when(lambda: None)
 
 
+def speed_of(site: Site) -> float:
+    """Seconds of the machines in one of ours: stand-ins may live faster than we do."""
+    return site.file.sim.speed if site.file.backend == "sim" else 1.0
+
+
 class Keeper:
-    """Takes what machines tell, tells their loads, and saves the ground now and then."""
+    """Takes what machines tell, tells their loads and cycles, and saves the ground now and then."""
 
     def __init__(self, app: App, watch: GroundWatch, models: dict[str, MachineModel]) -> None:
         self._log, self._watch = app.log, watch
-        borders = {name: app.site.border(name) for name in models}
-        self._places = Places(app.ros, borders)
-        self._driven = {name: model.driven for name, model in models.items()}
-        self._joints = {name: JointStates(app.ros, name, borders[name], driven)
-                        for name, driven in self._driven.items() if borders[name].joint_states}  # fmt: skip
-        simulated = app.site.file.backend == "sim"
-        self.teller = Teller(app, watch, feeling=simulated)
-        # Stand-ins may live faster than we do.
-        self._speed = app.site.file.sim.speed if simulated else 1.0
+        self._machines = list(models)
+        self._listener = Listener(app.ros, app.site, models, models)
+        self.teller = Teller(app, watch, feeling=app.site.file.backend == "sim")
+        self._speed = speed_of(app.site)
+        begin(watch.work.kinds)
+        self._duties = Duties(app.ros, models)
+        self._delivery = Delivery(app.ros, app.log, watch.waiting)
         self._told = 0.0
         self.lock = threading.Lock()  # between the threads that look, save and answer
+        self._saving = threading.Lock()  # of those that save
         self._go_on()
         app.ros.poll_in_thread(PERIOD, self.look, "ground")
         app.ros.poll_in_thread(SAVES, self.save, "ground_file")
+        app.ros.poll_in_thread(CYCLES, self.deliver, "cycles")
         app.on_stop(self.save)
 
     def look(self) -> None:
         """Take what has come since the last look."""
-        self._places.take()
-        for joints in self._joints.values():
-            joints.take()
+        self._listener.take()
         with self.lock:
-            for name in self._driven:
+            for name in self._machines:
                 self._take(name)
             now = monotonic()
             if now - self._told >= TELLS:
@@ -84,12 +91,13 @@ class Keeper:
                 self.teller.tell()
 
     def _take(self, name: str) -> None:
-        place, joints = self._places.place(name), self._joints.get(name)
-        if place is None or (joints is not None and joints.last is None):
+        place, joints = self._listener.places.place(name), self._listener.joints(name)
+        if place is None or (joints is None and self._listener.has_joints(name)):
             return  # it has not told enough
-        told = joints.last[1] if joints is not None and joints.last is not None else ()
         begun = monotonic()
-        self._watch.take(name, begun * self._speed, dict(zip(self._driven[name], told, strict=False)), place)
+        angles = {} if joints is None else joints.angles
+        self._watch.take(name, begun * self._speed, angles, place)
+        counted(self._watch.count(name, unix_time(), angles, place, self._duties.of(name)))
         UPDATE.observe(monotonic() - begun)
         REPORTS.labels(name).inc()
         self.teller.feel(name)
@@ -100,21 +108,37 @@ class Keeper:
         try:
             if self._watch.load():
                 self._log.info("ground_goes_on", file=str(file))
+                self._work_goes_on()
             elif file.exists():
                 self._log.warning("ground_begins_anew", reason=GroundOther(str(durable.set_aside(file))))
         except (OSError, ValueError) as error:
             why = GroundNotKept(str(durable.set_aside(file)), str(error))
             self._log.warning("ground_begins_anew", reason=why)
 
-    def save(self) -> None:
-        """Keep the ground on the disk, if it has changed."""
-        with self.lock:
-            ERROR.set(self._watch.mass_error)
-            content = self._watch.content()
-        if content is None:
-            return
+    def _work_goes_on(self) -> None:
         try:
-            durable.replace(self._watch.file, content)
-        except OSError as error:
-            self._watch.changed = True
-            self._log.error("ground_not_saved", reason=GroundNotKept(str(self._watch.file), str(error.strerror)))
+            self._watch.load_work()
+        except ValueError as error:
+            self._log.warning("work_begins_anew", reason=WorkOther(str(error)))
+
+    def deliver(self) -> None:
+        """Send finished cycles, once they are on the disk."""
+        if self._watch.waiting.unkept:
+            self.save()
+        self._delivery.send()
+
+    def save(self) -> None:
+        """Keep ground and work on the disk, if they have changed."""
+        with self._saving:
+            with self.lock:
+                ERROR.set(self._watch.mass_error)
+                content = self._watch.content()
+            if content is None:
+                return
+            data, number = content
+            try:
+                durable.replace(self._watch.file, data)
+                self._watch.waiting.kept(number)
+            except OSError as error:
+                self._watch.changed = True
+                self._log.error("ground_not_saved", reason=GroundNotKept(str(self._watch.file), str(error.strerror)))
