@@ -16,6 +16,7 @@ from tms_ground.designs import surface_of
 from tms_ground.duties import Duties
 from tms_ground.heights import HeightsServer
 from tms_ground.reasons import GroundNotKept, GroundOther, WorkOther
+from tms_ground.seen import Seen
 from tms_ground.settings import needed, soils_of
 from tms_ground.snapshots import Snapshots
 from tms_ground.telling import Teller
@@ -50,6 +51,7 @@ def start(app: App) -> None:
     keeper = Keeper(app, watch, touches)
     HeightsServer(app, watch, keeper.teller, keeper.lock, design)
     Snapshots(app, watch, keeper.lock)
+    Seen(app, watch, keeper.lock)
     app.ready_when(lambda: None)
 
 

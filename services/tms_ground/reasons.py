@@ -1,6 +1,6 @@
 """Reasons why a ground cannot be read or used."""
 
-from tms_reason.quantities import Megabytes, Metres, Percent, SquareMetres
+from tms_reason.quantities import Megabytes, Metres, Percent, Seconds, SquareMetres
 from tms_reason.reason import Reason
 from tms_reason.remedies import EDIT_CONFIG, Remedy
 
@@ -47,6 +47,10 @@ class BadCell(Reason, text="cells of {cell} are asked for: {least} to {most} are
 class GroundFromFuture(Reason,
     text="the ground of {time} ({source}) lies in the future and is not taken: a clock has gone back"):
     time: str; source: str
+
+class SeenFromFuture(Reason, text="measured heights lie {ahead} in the future and are not taken: a clock is wrong"):
+    ahead: Seconds
+class SeenNotHeights(Reason, text="measured heights are none: {problem}"): problem: str
 
 # files of heights
 class GroundFile(Reason, text="{file}: {why}"): file: str; why: Reason

@@ -31,8 +31,9 @@ SITE = """
 name: groundtest
 domain: {domain}
 ports: {{metrics: {metrics}, console: {console}, store: {store}}}
-sim: {{speed: 5.0, seed: 1}}
-services: {{db: {{role: cps}}}}
+sim: {{speed: 5.0, seed: 1, scanners: {{mast: {{x: -6.0, y: 6.0, range: 6.0}}}}}}
+services: {{db: {{role: cps}}, sp: {{role: cps}}}}
+sensing: sensing.yaml
 machines: {{zx200: {{model: zx200, start: [0.0, 0.0, 0.0]}}}}
 ground: {{area: [-10, -10, 10, 10]}}
 """
@@ -55,7 +56,9 @@ class Earth(Mesh):
         self.ros.subscribe(HeightPatch, "/tms/ground/patches", self.patches.append, depth=100)
         self.ros.subscribe(GroundContact, "/zx200/ground_contact", self.felt.append, depth=10)
         self.ros.subscribe(TFMessage, "/tf", self._framed, depth=10)
-        for name in ("tms:ground", "sim:zx200"):
+        terrain = "terrain: {mast: {topic: /mast/points, hz: 1.0}}\n"
+        self.site.path.with_name("sensing.yaml").write_text(terrain)
+        for name in ("tms:ground", "sim:zx200", "sim:scanners", "tms:sp"):
             self.start(name)
 
     def _framed(self, message: Any) -> None:
@@ -65,6 +68,11 @@ class Earth(Mesh):
         answer = self.call(GetHeights, "/tms/ground/get_heights", cell=0.1)
         assert not answer.error_code
         return patches.heights(answer.ground)
+
+    def ages(self) -> np.ndarray:
+        """How long ago each cell was measured or changed [s]."""
+        answer = self.call(GetHeights, "/tms/ground/get_heights")
+        return np.array(answer.ages).reshape(answer.ground.rows, answer.ground.columns)
 
     def move(self, poses: list[Arm]) -> Outcome:
         """Bring the arm through poses, with a stop at each."""
@@ -96,11 +104,15 @@ def earth(tmp_path: Path, own_domain: int, monkeypatch: pytest.MonkeyPatch) -> I
 
 def test_from_a_stored_ground_over_a_dig_to_the_next_one(earth: Earth) -> None:
     earth.until(lambda: bool((earth.ground().z == LEVEL).all()), "the stored ground")
+    scanned = np.s_[70:90, 10:30]  # around the mast
+    first = earth.ages()[scanned].max()
+    earth.until(lambda: earth.ages()[scanned].max() < first, "a scan")
     earth.until(lambda: abs(earth.heights.get("zx200/base_link", 0.0) - LEVEL) < 1e-6, "a machine that stands on it")
     assert earth.move(dig_poses()[1:]) is Outcome.SUCCEEDED
     earth.until(lambda: earth.loads[-1].loose > 0.3, "a load")
     assert earth.loads[-1].soil == "earth" and max(one.resistance for one in earth.felt) > 1000.0
     now = earth.ground()
+    assert (now.z[140:180, 20:60] == LEVEL).all(), "the noise of scans moves nothing"
     assert now.z.min() < LEVEL - 0.3
     earth.until(lambda: min(min(one.heights) for one in earth.patches) <= now.z.min() + 1e-3, "patches of the dig")
     taken = earth.call(TakeSnapshot, "/tms/ground/take_snapshot", source="test")
