@@ -13,6 +13,7 @@ from tms_ground.designs import surface_of
 from tms_ground.heights import HeightsServer
 from tms_ground.reasons import GroundNotKept, GroundOther
 from tms_ground.settings import needed, soil_of
+from tms_ground.snapshots import Snapshots
 from tms_ground.telling import Teller
 from tms_ground.watching import GroundWatch, touching
 from tms_machine.joint_states import JointStates
@@ -44,6 +45,7 @@ def start(app: App) -> None:
     design = surface_of(app.site, ground)
     keeper = Keeper(app, watch, touches)
     HeightsServer(app, watch, keeper.teller, keeper.lock, design)
+    Snapshots(app, watch, keeper.lock)
     app.ready_when(lambda: None)
 
 
@@ -76,10 +78,10 @@ class Keeper:
         with self.lock:
             for name in self._driven:
                 self._take(name)
-        now = monotonic()
-        if now - self._told >= TELLS:
-            self._told = now
-            self.teller.tell()
+            now = monotonic()
+            if now - self._told >= TELLS:
+                self._told = now
+                self.teller.tell()
 
     def _take(self, name: str) -> None:
         place, joints = self._places.place(name), self._joints.get(name)

@@ -46,6 +46,7 @@ from tms_rp.scene import Scene
 from tms_rp.scene_server import SceneServer
 from tms_rp.scene_view import Area
 from tms_rp.their_planner import TheirPlanner
+from tms_rp.told_ground import ToldGround
 from tms_rp.told_scene import ToldScene
 from tms_rp.trajectory import Trajectory
 from tms_rp.view import Nearest
@@ -91,7 +92,7 @@ class Planner:
         self.kind = load(self._model.planner)
         self._planner = self.kind.planner(self._model)
         self._ways, self._neighbours = Ways(self._model, self.kind), Neighbours(app)
-        self._told = ToldScene(app)
+        self._told, self._ground = ToldScene(app), ToldGround(app)
         self._rc = app.ros.peer(FollowJointTrajectory, f"/{app.machine}/rc/follow_joint_trajectory")
         watch_server(app.ros, app.pulse, app.machine, "rc")(self._rc)
         self._permit = Permit(app.ros, app.pulse, app.machine, "rp")
@@ -247,7 +248,7 @@ class Planner:
     def _plan(self, action: PlanningAction, now: Angles, moves: Moves) -> Plan:
         """A plan in the scene as it is now."""
         begun = monotonic()
-        plan = self._ways.plan(now, moves, self.scene())
+        plan = self._ways.plan(now, moves, replace(self.scene(), ground=self._ground.around()))
         self.last = plan.made
         seconds = monotonic() - begun
         PLANNING.observe(seconds)

@@ -124,6 +124,7 @@ class PaddingUnfit(Reason, text="its padding of '{link}' is none of a link of th
 class SceneRecordOld(Reason, text="record {record} is {age} old: nobody knows what stands there now", action=RECORDS):
     record: str; age: Seconds
 class SceneUnread(Reason, text="the scene records are as they were read last: {why}"): why: Reason
+class GroundUnread(Reason, text="the ground is as it was told last: {why}"): why: Reason
 class PlaceUnknown(Reason, text="it is not known where {machine} stands: the other machines are left out",
     details="nothing on /tf"): machine: str
 

@@ -62,6 +62,7 @@ pytestmark = [
 ]
 LIMIT = 60.0  # s for whatever must happen at all
 SPEED = 2.0  # times real time
+AWAY = 6000.0  # m, of the other machine: nobody tells its place again, so that it grows by all it may have driven since
 SITE = """
 name: rptest
 domain: {domain}
@@ -232,7 +233,7 @@ def test_a_dig_that_is_blocked_is_planned_anew_from_where_it_was(machine: Rig) -
         return any(wire.known(said).find(PlannedAnew) is not None for said in machine.said)
 
     def over() -> bool:
-        frames.publish(at(60.0, 1.6))
+        frames.publish(at(AWAY, 1.6))
         return dig.outcome is not None
 
     machine.until(waits, "a way that is blocked")
@@ -242,6 +243,8 @@ def test_a_dig_that_is_blocked_is_planned_anew_from_where_it_was(machine: Rig) -
     swing, boom, arm, bucket, _ = machine.states[-1].position
     assert swing == pytest.approx(math.atan2(4.53, -4.11), abs=0.06)
     assert boom + arm + bucket == pytest.approx(math.pi, abs=0.06)
+    opened = machine.send(TmsRpZx200ReleaseSimple, "tms_rp_zx200_release_simple", target_angle=-0.2)
+    assert machine.end(opened) is Outcome.SUCCEEDED  # what it carries would be kept level by later motions
 
 
 def test_cancel_ends_with_the_machine_standing(machine: Rig) -> None:
@@ -309,7 +312,7 @@ def test_what_comes_into_the_way_is_waited_for_and_the_motion_goes_on(machine: R
     (said, *_) = [known for said in machine.said if (known := wire.known(said)).find(PlannedAnew)]
     assert said.find(PathBlocked) is not None and not machine.moving()
     assert call.outcome is None and machine.states[-1].position[0] < 1.8
-    machine.until(told(at(60.0, 1.8), lambda: call.outcome is not None), "end of the goal")
+    machine.until(told(at(AWAY, 1.8), lambda: call.outcome is not None), "end of the goal")
     assert call.outcome is Outcome.SUCCEEDED
     assert machine.states[-1].position[0] == pytest.approx(2.4, abs=0.031)
 
