@@ -20,8 +20,11 @@ from tms_machine.joint_states import JointStates
 from tms_machine.places import Places
 from tms_runtime import durable
 from tms_runtime.app import App
+from tms_soil.earth import GAP
 
 PERIOD = 0.04  # s between two looks at what has come: the period of most joint states
+WAITING = 10  # joint states of a machine that may wait for a look: on a busy PC one comes late
+LATE = 0.25  # s without joint states, after which the way of an accelerated stand-in is unknown
 TELLS = 0.2  # s between two messages of a volume
 SAVES = 60.0  # s between two files of the ground: after a power cut so much is lost at most
 
@@ -41,12 +44,18 @@ def start(app: App) -> None:
     touches = touching(models)
     for name in models.keys() - touches.keys():
         app.log.warning("leaves_ground", target=name)
-    watch = GroundWatch(ground, soil_of(app.site, ground), touches, app.site.state / "ground.npz")
+    gap = max(GAP, LATE * _speed(app))
+    watch = GroundWatch(ground, soil_of(app.site, ground), touches, app.site.state / "ground.npz", gap)
     design = surface_of(app.site, ground)
     keeper = Keeper(app, watch, touches)
     HeightsServer(app, watch, keeper.teller, keeper.lock, design)
     Snapshots(app, watch, keeper.lock)
     app.ready_when(lambda: None)
+
+
+def _speed(app: App) -> float:
+    """How much faster the machines live than we do; stand-ins may."""
+    return app.site.file.sim.speed if app.site.file.backend == "sim" else 1.0
 
 
 class Keeper:
@@ -57,12 +66,11 @@ class Keeper:
         borders = {name: app.site.border(name) for name in models}
         self._places = Places(app.ros, borders)
         self._driven = {name: model.driven for name, model in models.items()}
-        self._joints = {name: JointStates(app.ros, name, borders[name], driven)
+        self._joints = {name: JointStates(app.ros, name, borders[name], driven, WAITING)
                         for name, driven in self._driven.items() if borders[name].joint_states}  # fmt: skip
-        simulated = app.site.file.backend == "sim"
-        self.teller = Teller(app, watch, feeling=simulated)
-        # Stand-ins may live faster than we do.
-        self._speed = app.site.file.sim.speed if simulated else 1.0
+        self.teller = Teller(app, watch, feeling=app.site.file.backend == "sim")
+        self._speed = _speed(app)
+        self._times: dict[str, float] = {}  # machine -> when it was looked at last [s of the machines]
         self._told = 0.0
         self.lock = threading.Lock()  # between the threads that look, save and answer
         self._go_on()
@@ -87,11 +95,16 @@ class Keeper:
         place, joints = self._places.place(name), self._joints.get(name)
         if place is None or (joints is not None and joints.last is None):
             return  # it has not told enough
-        told = joints.last[1] if joints is not None and joints.last is not None else ()
-        begun = monotonic()
-        self._watch.take(name, begun * self._speed, dict(zip(self._driven[name], told, strict=False)), place)
-        UPDATE.observe(monotonic() - begun)
-        REPORTS.labels(name).inc()
+        now = monotonic() * self._speed
+        before = self._times.get(name, now)
+        self._times[name] = now
+        told = joints.new or [joints.last[1]] if joints is not None and joints.last is not None else [()]
+        for number, angles in enumerate(told, 1):  # what has waited was told in between
+            begun = monotonic()
+            time = before + (now - before) * number / len(told)
+            self._watch.take(name, time, dict(zip(self._driven[name], angles, strict=False)), place)
+            UPDATE.observe(monotonic() - begun)
+            REPORTS.labels(name).inc()
         self.teller.feel(name)
 
     def _go_on(self) -> None:

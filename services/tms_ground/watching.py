@@ -14,7 +14,7 @@ from tms_control.links import Matrix, placed
 from tms_ground.settings import Ground
 from tms_machine.frames import FramePose
 from tms_soil.changes import Changes
-from tms_soil.earth import Earth
+from tms_soil.earth import GAP, Earth
 from tms_soil.evidence import Evidence
 from tms_soil.grid import Grid
 from tms_soil.keeping import restore, state_of
@@ -36,11 +36,13 @@ def touching(models: Mapping[str, MachineModel]) -> dict[str, MachineModel]:
 class GroundWatch:
     """The ground, and where the machines were last told to be."""
 
-    def __init__(self, ground: Ground, soil: Soil, models: Mapping[str, MachineModel], file: Path) -> None:
-        """`models`: by machine; `file` keeps the ground."""
+    def __init__(
+        self, ground: Ground, soil: Soil, models: Mapping[str, MachineModel], file: Path, gap: float = GAP
+    ) -> None:
+        """`models`: by machine; `file` keeps the ground; `gap`: as of Earth."""
         level = unknown(ground.area, CELL)
         level.z[:] = ground.level
-        self.earth = Earth(Grid.from_heights(level, [soil]), models)
+        self.earth = Earth(Grid.from_heights(level, [soil]), models, gap)
         self.area = ground.area  # m, map: what of the grid is the site
         self.soils = [ground.soil]  # names, by the grid's index
         self.changes = Changes(self.earth.grid)

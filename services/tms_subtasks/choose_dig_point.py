@@ -21,7 +21,8 @@ class ChooseDigPoint(Subtask):
     def execute(self, model_name: str, record_name: str, progress: Progress) -> None:
         work = earthwork_of(self.get_param_from_db, model_name, record_name)
         last = bucket_of(self.get_param_from_db, model_name)
-        found = left_to_dig(self.machine, work, last.bearing)
+        (own,) = self.machine.yard.loads([self.machine.name], self.machine.check)
+        found = left_to_dig(self.machine, work, own.capacity, last.bearing)
         if not found:
             raise SubtaskFailed(NothingToDig(self.machine.name, record_name))
         best = self._planned(found[:TRIES], progress)
