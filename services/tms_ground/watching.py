@@ -17,7 +17,7 @@ from tms_ground.waiting import Waiting
 from tms_ground.work import Duty, Work
 from tms_machine.frames import FramePose
 from tms_soil.changes import Changes
-from tms_soil.earth import Earth
+from tms_soil.earth import GAP, Earth
 from tms_soil.evidence import Evidence
 from tms_soil.grid import Grid
 from tms_soil.keeping import restore, state_of
@@ -30,6 +30,7 @@ from tms_soil.surface import grid as unknown
 from tms_work.cycle import Cycle
 
 CELL = 1.0  # m, of a level ground
+LATE = 0.25  # s without joint states, after which the way of an accelerated stand-in is unknown
 TIMES, NEWEST = "evidence", "snapshot"  # names in the file
 WORK, CYCLES = "work", "cycles"  # names in the file: what recognisers remember, and cycles that wait
 
@@ -58,7 +59,7 @@ class GroundWatch:
         level.z[:] = ground.level
         self.soils = list(soils)  # names, by the grid's index
         by_tile = soil_by_tile(level.bounds, [(self.soils.index(one.soil), one.corners) for one in ground.soils])
-        self.earth = Earth(Grid.from_heights(level, list(soils.values()), by_tile), models)
+        self.earth = Earth(Grid.from_heights(level, list(soils.values()), by_tile), models, max(GAP, LATE * speed))
         self.area = ground.area  # m, map: what of the grid is the site
         self.changes = Changes(self.earth.grid)
         self._evidence = Evidence(self.earth.grid.bounds)
