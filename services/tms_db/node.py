@@ -16,6 +16,7 @@ from tms_db.answering import Answering
 from tms_db.connection import StoreConnection
 from tms_db.cpp_services import CppServices
 from tms_db.cycles import COLLECTION, Cycles
+from tms_db.ground_services import GroundServices
 from tms_db.history import History
 from tms_db.machine_states import MachineStates
 from tms_db.parameter_services import ParameterServices
@@ -98,6 +99,7 @@ def start(app: App) -> None:
     ParameterServices(app, db, connection).offer(answering)
     CppServices(app, db, connection).offer()
     TerrainServices(app, db, connection).offer()
+    GroundServices(app, db).offer(answering)
     retention = Retention(db, connection, app.site.file.store, app.log)
     app.on_stop(retention.stop)
     retention.start()

@@ -17,6 +17,7 @@ from tms_ground.duties import Duties
 from tms_ground.heights import HeightsServer
 from tms_ground.reasons import GroundNotKept, GroundOther, WorkOther
 from tms_ground.settings import needed, soil_of
+from tms_ground.snapshots import Snapshots
 from tms_ground.telling import Teller
 from tms_ground.watching import GroundWatch, touching
 from tms_machine.joint_states import JointStates
@@ -49,6 +50,7 @@ def start(app: App) -> None:
     design = surface_of(app.site, ground)
     keeper = Keeper(app, watch, touches)
     HeightsServer(app, watch, keeper.teller, keeper.lock, design)
+    Snapshots(app, watch, keeper.lock)
     app.ready_when(lambda: None)
 
 
@@ -89,10 +91,10 @@ class Keeper:
         with self.lock:
             for name in self._driven:
                 self._take(name)
-        now = monotonic()
-        if now - self._told >= TELLS:
-            self._told = now
-            self.teller.tell()
+            now = monotonic()
+            if now - self._told >= TELLS:
+                self._told = now
+                self.teller.tell()
 
     def _take(self, name: str) -> None:
         place, joints = self._places.place(name), self._joints.get(name)
@@ -137,13 +139,12 @@ class Keeper:
         with self._saving:
             with self.lock:
                 ERROR.set(self._watch.mass_error)
-                content = self._watch.content()
+                content, made = self._watch.content(), self._watch.waiting.made
             if content is None:
                 return
-            data, number = content
             try:
-                durable.replace(self._watch.file, data)
-                self._watch.waiting.kept(number)
+                durable.replace(self._watch.file, content)
+                self._watch.waiting.kept(made)
             except OSError as error:
                 self._watch.changed = True
                 self._log.error("ground_not_saved", reason=GroundNotKept(str(self._watch.file), str(error.strerror)))

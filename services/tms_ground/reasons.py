@@ -43,6 +43,11 @@ class NotAnArea(Reason, text="the rectangle [{x0}, {y0}, {x1}, {y1}] is none on 
 class BadCell(Reason, text="cells of {cell} are asked for: {least} to {most} are possible"):
     cell: Metres; least: Metres; most: Metres
 
+# grounds in the database, and what somebody has measured
+class GroundFromFuture(Reason,
+    text="the ground of {time} ({source}) lies in the future and is not taken: a clock has gone back"):
+    time: str; source: str
+
 # files of heights
 class GroundFile(Reason, text="{file}: {why}"): file: str; why: Reason
 class GroundFileMissing(Reason, text="there is no such file", action=RIGHT_FILE): pass

@@ -36,18 +36,18 @@ class Teller:
         self.serial = app.ros.now().sec * SECOND  # of the last patch
 
     def feel(self, name: str) -> None:
-        """Tell a machine what it feels, if that has changed."""
+        """Tell a machine what it feels: changes, and a resistance while it lasts, since silence ends it."""
         place = self._watch.stands(name)
         if name not in self._contacts or place is None:
             return
         now = self._watch.earth.bodies[name].resistance, place.tobytes()
-        if now != self._felt.get(name):
+        if now[0] or now != self._felt.get(name):
             self._felt[name] = now
             message = GroundContact(stamp=self._ros.now(), resistance=now[0], stands=_pose(place))
             self._contacts[name].publish(message)
 
     def tell(self) -> None:
-        """Tell all loads, and some of the changes. The caller sees to it that the ground does not change meanwhile."""
+        """Tell all loads, and some of the changes; the ground must not change meanwhile."""
         stamp = self._ros.now()
         for name, load in self._watch.loads().items():
             LOAD.labels(name).set(load.loose)

@@ -4,11 +4,12 @@ import io
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tms_config.clock import unix_time
+from tms_config.clock import unix_time, utc_now
 from tms_config.models import MachineModel
 from tms_control.links import Matrix, placed
 from tms_ground.settings import Ground
@@ -21,6 +22,7 @@ from tms_soil.evidence import Evidence
 from tms_soil.grid import Grid
 from tms_soil.keeping import restore, state_of
 from tms_soil.load import Load, load_of
+from tms_soil.measuring import measured
 from tms_soil.soils import Soil
 from tms_soil.surface import Array, Heights
 from tms_soil.surface import grid as unknown
@@ -28,6 +30,7 @@ from tms_work.cycle import Cycle
 
 CELL = 1.0  # m, of a level ground
 WORK, CYCLES = "work", "cycles"  # names in the file: what recognisers remember, and cycles that wait
+TIMES, NEWEST = "evidence", "snapshot"  # names in the file
 
 
 def touching(models: Mapping[str, MachineModel]) -> dict[str, MachineModel]:
@@ -51,10 +54,12 @@ class GroundWatch:
         self._evidence = Evidence(self.earth.grid.bounds)
         self.work = Work(self.earth, self.soils, models, speed)
         self.waiting = Waiting()
+        self.newest = ""  # ISO 8601: time of the newest snapshot that this ground knows; empty: of none
         self.file = file
         self._stands: dict[str, tuple[tuple[float, float, float], Matrix]] = {}  # machine -> place, base_link in map
         self._begun = self.earth.mass()
         self.changed = False  # since the last `content`
+        self.touched = False  # since the last snapshot, by a machine
 
     @property
     def mass_error(self) -> float:
@@ -69,7 +74,7 @@ class GroundWatch:
         if kept is None or kept[0] != at:
             kept = self._stands[machine] = at, rolling.stand(*at) if rolling else placed(*at)
         if changed := self.earth.report(machine, time, angles, kept[1]):
-            self.changed = True
+            self.changed = self.touched = True
             self.changes.add(changed)
             self._evidence.add(changed, unix_time())
 
@@ -81,6 +86,14 @@ class GroundWatch:
         self.waiting.put(cycles)
         self.changed = self.changed or bool(cycles)
         return cycles
+
+    def measured(self, seen: Heights, time: float, within: float = 0.0) -> None:
+        """Take heights that were measured at a time [s since 1970]; see `measuring`."""
+        changed, made = measured(self.earth.grid, self._evidence, seen, time, within)
+        self._begun += made
+        self.changes.add(changed)
+        self._stands.clear()  # machines stand otherwise now
+        self.changed = True
 
     def stands(self, machine: str) -> Matrix | None:
         """Its base_link in map, by height and slope under its tracks; None while it has told no place."""
@@ -108,6 +121,9 @@ class GroundWatch:
             with np.load(io.BytesIO(self.file.read_bytes()), allow_pickle=False) as file:
                 state = dict(file)  # all of it, before anything changes
             found = restore(self.earth, state)
+            if found:
+                self._remember(state)
+                self.touched = True
         except (zipfile.BadZipFile, KeyError, EOFError) as error:
             raise ValueError(str(error)) from error
         self._begun = self.earth.mass()
@@ -124,17 +140,25 @@ class GroundWatch:
                 self.work.restore(_text(file[WORK]))
                 self.waiting.restore(_text(file[CYCLES]))
 
-    def content(self) -> tuple[bytes, int] | None:
-        """What `file` must hold to keep ground and work, and the number for `waiting.kept` once it does.
+    def _remember(self, state: Mapping[str, Any]) -> None:
+        """When the kept ground was known; files of earlier releases say nothing: then all of it counts as of now."""
+        now = unix_time()
+        times = state.get(TIMES)
+        if times is None or times.shape != self._evidence.times.shape:
+            self._evidence.times[:], self.newest = now, utc_now().isoformat()
+        else:
+            self._evidence.times[:], self.newest = np.minimum(times, now), str(state[NEWEST])
 
-        None if nothing has changed since the last call.
-        """
+    def content(self) -> bytes | None:
+        """What `file` must hold to keep ground and work; None if nothing has changed since the last call."""
         if not self.changed:
             return None
         self.changed = False
-        out, (cycles, number) = io.BytesIO(), self.waiting.state()
-        np.savez(out, **state_of(self.earth), **{WORK: _bytes(self.work.state()), CYCLES: _bytes(cycles)})  # type: ignore[arg-type]
-        return out.getvalue(), number
+        out = io.BytesIO()
+        more = {TIMES: self._evidence.times, NEWEST: np.array(self.newest)}
+        work = {WORK: _bytes(self.work.state()), CYCLES: _bytes(self.waiting.state())}
+        np.savez(out, **state_of(self.earth), **more, **work)  # type: ignore[arg-type]
+        return out.getvalue()
 
 
 def _bytes(text: str) -> NDArray[np.uint8]:

@@ -30,7 +30,7 @@ class Digger:
         self._grid, self._bucket = grid, bucket
         self._capacities = [Capacity(bucket, soil.repose_slope) for soil in grid.soils]
         self.load: Array = np.zeros(len(grid.soils))  # kg by soil
-        self.resistance = 0.0  # N, against the cutting edge
+        self.resistance = 0.0  # N, against the cutting edge; an edge that stands keeps what it met
         side, (lip, edge) = bucket.width / 2, (bucket.section[0], bucket.section[-1])
         # Cutting edge left and right, rear lip left and right, and where the plate behind the edge comes from.
         points = [(edge, side), (edge, -side), (lip, side), (lip, -side), (bucket.section[-2], 0.0)]
@@ -55,7 +55,9 @@ class Digger:
         """Move the bucket's link from one place in map to the next; returns where the ground changed."""
         old, new = (self._points @ place[:3, :3].T + place[:3, 3] for place in (before, after))
         way = new[:2].mean(axis=0) - old[:2].mean(axis=0)
-        changed, covered, self.resistance = [], 0.0, 0.0
+        changed, covered = list[Bounds](), 0.0
+        if float(np.linalg.norm(way)) >= STANDS:
+            self.resistance = 0.0
         bounds, low = around(np.concatenate((old, new)), REACH), min(float(old[:4, 2].min()), float(new[:4, 2].min()))
         window = self._grid.window(bounds) if low < self._grid.top(bounds) else None
         if window is not None:

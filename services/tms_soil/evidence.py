@@ -6,7 +6,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from tms_soil.grid import COARSE
-from tms_soil.surface import Array, Bounds, grid
+from tms_soil.surface import Array, Bounds, Heights, grid
 
 
 class Evidence:
@@ -21,6 +21,16 @@ class Evidence:
         """Note that rectangles [m of map] became known at a time."""
         for x0, y0, x1, y1 in places:
             self.times[_range(y0 - self.y0, y1 - self.y0), _range(x0 - self.x0, x1 - self.x0)] = time
+
+    def learn(self, seen: Heights, time: float) -> None:
+        """Note that heights were measured at a time, where they are known and nothing newer is."""
+        x0, y0, x1, y1 = seen.bounds
+        part = _range(y0 - self.y0, y1 - self.y0), _range(x0 - self.x0, x1 - self.x0)
+        middles = (COARSE * (np.arange(size) + 0.5) for size in self.times.shape)
+        rows, columns = (one[cut] for one, cut in zip(middles, part, strict=True))
+        there = np.isfinite(seen.at(*np.meshgrid(self.x0 + columns, self.y0 + rows)))
+        times = self.times[part]
+        times[there & ~(times >= time)] = time
 
     def at(self, x: Array, y: Array) -> Array:
         """Times of the cells at places; NaN outside, too."""

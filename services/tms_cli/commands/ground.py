@@ -76,6 +76,29 @@ def import_(file: Path, area: "Bounds | None", cell: float | None, as_json: bool
         )
 
 
+@command.command()
+@click.option("--note", default="", help="For people: why.")
+@session.json_option
+def snapshot(note: str, as_json: bool) -> None:
+    """Have tms:ground store the ground of now, as machines have changed it.
+
+    It does so by itself at the end of each day. This asks the process, and runs on any PC of the site.
+
+    \b
+    Examples:
+      tms ground snapshot
+      tms ground snapshot --note "before the rain"
+    """
+    from tms_msg_ground.srv import TakeSnapshot
+
+    with session.ros() as node:
+        found = session.call(node, TakeSnapshot, "/tms/ground/take_snapshot", seconds=90.0, source=note or "snapshot")
+    if as_json:
+        session.show_json({"taken_at": found.taken_at})
+    else:
+        click.echo(say("stored as the ground of {time}", time=found.taken_at))
+
+
 @command.command("list")
 @session.json_option
 def list_(as_json: bool) -> None:

@@ -55,6 +55,7 @@ class World:
                 publisher=self.publisher,
                 now=lambda: Time(sec=int(self.now)),
                 offer_slow=lambda _, name, handler: self.services.update({name: handler}),
+                prepare=lambda *_: None,
                 poll_in_thread=lambda _, step, name: self.steps.update({name: step}),
             ),
             log=structlog.stdlib.get_logger("test"),

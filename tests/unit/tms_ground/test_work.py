@@ -66,6 +66,7 @@ class Pc:
             call=self.call,
             now=lambda: Time(sec=int(self.now)),
             offer_slow=lambda *_: None,
+            prepare=lambda *_: None,
         )
         app: Any = SimpleNamespace(
             site=load_site(str(self.site)), ros=ros, log=structlog.stdlib.get_logger("test"),
