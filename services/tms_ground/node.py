@@ -115,16 +115,17 @@ class Keeper:
         try:
             if self._watch.load():
                 self._log.info("ground_goes_on", file=str(file))
-                self._work_goes_on()
+                self._work_goes_on(loads=True)
             elif file.exists():
+                self._work_goes_on(loads=False)
                 self._log.warning("ground_begins_anew", reason=GroundOther(str(durable.set_aside(file))))
         except (OSError, ValueError) as error:
             why = GroundNotKept(str(durable.set_aside(file)), str(error))
             self._log.warning("ground_begins_anew", reason=why)
 
-    def _work_goes_on(self) -> None:
+    def _work_goes_on(self, loads: bool) -> None:
         try:
-            self._watch.load_work()
+            self._watch.load_work(loads)
         except ValueError as error:
             self._log.warning("work_begins_anew", reason=WorkOther(str(error)))
 

@@ -129,15 +129,15 @@ class GroundWatch:
         self._begun = self.earth.mass()
         return found
 
-    def load_work(self) -> None:
-        """Go on with the kept work, once `load` has brought the ground of the same file back.
+    def load_work(self, loads: bool) -> None:
+        """Go on with the kept work; `loads`: whether `load` has brought the loads of the same file back.
 
         Raises:
             ValueError: it is of a release that knows it otherwise.
         """
         with np.load(io.BytesIO(self.file.read_bytes()), allow_pickle=False) as file:
             if WORK in file:  # files of earlier releases have none
-                self.work.restore(_text(file[WORK]))
+                self.work.restore(_text(file[WORK]), loads)
                 self.waiting.restore(_text(file[CYCLES]))
 
     def _remember(self, state: Mapping[str, Any]) -> None:

@@ -86,8 +86,10 @@ class Work:
         """Everything that it remembers, as JSON."""
         return json.dumps({name: one.state() for name, one in self._recognisers.items()})
 
-    def restore(self, state: str) -> None:
+    def restore(self, state: str, loads: bool) -> None:
         """Go on from a kept state; machines that have joined since begin anew.
+
+        `loads`: whether the loads are those of that time; if not, only the numbers of cycles go on.
 
         Raises:
             ValueError: it is none.
@@ -96,6 +98,8 @@ class Work:
         for name, recogniser in self._recognisers.items():
             if name in found:
                 recogniser.restore(found[name])
+                if not loads:
+                    recogniser.forget()
 
     def _under(self, body: Body) -> str:
         """The carrier below a bucket."""

@@ -69,6 +69,10 @@ class Recogniser:
         """
         self._state = State.model_validate(state)
 
+    def forget(self) -> None:
+        """Drop the cycle that is not over, as nobody knows what has become of the load; the next number stays."""
+        self._state = State(numbers=self._state.numbers)
+
     def take(self, now: Sample) -> list[Cycle]:
         """The cycles that have ended by a sample; one that is not newer than the last one changes nothing."""
         before = self._state.before
