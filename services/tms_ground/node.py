@@ -28,7 +28,7 @@ from tms_runtime.app import App
 PERIOD = 0.04  # s between two looks at what has come: the period of most joint states
 TELLS = 0.2  # s between two messages of a volume
 SAVES = 60.0  # s between two files of the ground: after a power cut so much is lost at most
-CYCLES = 2.0  # s between two looks for finished cycles, which are saved and sent at once
+CYCLES = 2.0  # s between two looks for full buckets and finished cycles, with which the ground is saved at once
 
 REPORTS = Counter("tms_ground_reports_total", "Reports of machines that were taken", ["machine"])
 UPDATE = Histogram("tms_ground_update_seconds", "Time of one report", buckets=(0.0003, 0.001, 0.003, 0.01, 0.03, 0.1))
@@ -130,8 +130,8 @@ class Keeper:
             self._log.warning("work_begins_anew", reason=WorkOther(str(error)))
 
     def deliver(self) -> None:
-        """Send finished cycles, once they are on the disk."""
-        if self._watch.waiting.unkept:
+        """Keep full buckets, and finished cycles; send these once they are on the disk."""
+        if self._watch.waiting.unkept or self._watch.work.filled:
             self.save()
         self._delivery.send()
 

@@ -153,7 +153,7 @@ class GroundWatch:
         """What `file` must hold to keep ground and work; None if nothing has changed since the last call."""
         if not self.changed:
             return None
-        self.changed = False
+        self.changed = self.work.filled = False
         out = io.BytesIO()
         more = {TIMES: self._evidence.times, NEWEST: np.array(self.newest)}
         work = {WORK: _bytes(self.work.state()), CYCLES: _bytes(self.waiting.state())}

@@ -57,6 +57,11 @@ class Recogniser:
         """Of its cycles."""
         return self._way.kind
 
+    @property
+    def carries(self) -> bool:
+        """Whether it carries soil from where it was filled to where it is poured."""
+        return self._state.draft is not None and self._state.draft.part == self._way.carry
+
     def state(self) -> dict[str, Any]:
         """Everything that it remembers, as JSON knows it."""
         return self._state.model_dump(mode="json")

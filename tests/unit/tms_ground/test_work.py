@@ -239,8 +239,10 @@ def test_a_crash_after_the_database_counts_nothing_twice(pc: Pc) -> None:
 
 
 def test_a_crash_with_a_full_bucket(pc: Pc) -> None:
-    pc.dig([*dig_poses(), ABOVE])
-    pc.steps["ground_file"]()
+    """A bucket is kept when it has been filled, so that what it holds does not go back to the ground."""
+    pc.dig([*dig_poses(), Arm(-0.6, *HOLD)])
+    assert pc.cycles("zx200") == []
+    pc.dig([Arm(-0.6, *HOLD), ABOVE])
     pc.start()
     pc.dig([ABOVE, *[OPEN] * 12, BACK])
     (dug,) = pc.cycles("zx200")
@@ -268,12 +270,12 @@ def test_a_full_disk_sends_nothing_that_a_restart_would_not_know(pc: Pc, monkeyp
 def test_work_goes_on_though_the_ground_begins_anew(pc: Pc) -> None:
     """Cycles that wait are sent, a load that the new ground does not know makes none, and numbers go on."""
     pc.away = True
-    pc.dig([*BUCKET, *dig_poses(-1.2)[2:]])
+    pc.dig([*BUCKET, *dig_poses(-1.2)[2:], Arm(-0.6, *HOLD)])
     assert pc.cycles("zx200") == []
     pc.site.write_text(pc.site.read_text().replace("ground: {", "ground: {level: -2.5, "))
     pc.start()
     pc.away = False
-    pc.dig([Arm(-1.2, *HOLD), ABOVE, *[OPEN] * 12, BACK])
+    pc.dig([Arm(-0.6, *HOLD), ABOVE, *[OPEN] * 12, BACK])
     assert [one.number for one in pc.cycles("zx200")] == [1]
     pc.dig([BACK, *dig_poses(-0.9)[2:], ABOVE, *[OPEN] * 12, BACK])
     assert [one.number for one in pc.cycles("zx200")] == [1, 2]
