@@ -91,7 +91,9 @@ class Recogniser:
         cycles = [] if before is None else self._end(before.time) if counted else self._through(before, now, elapsed)
         draft = self._state.draft
         if now.run and (draft is None or draft.run != now.run):
-            self._begin(now.run, now, self._way.carry if self._loaded(now) and not counted else self._way.empty)
+            sticks = now.load.loose <= REST * sum(one.loose for one in cycles)
+            carries = self._loaded(now) and not counted and not sticks
+            self._begin(now.run, now, self._way.carry if carries else self._way.empty)
         return cycles
 
     def _is_back(self, before: Sample, now: Sample) -> bool:
