@@ -28,7 +28,7 @@ PERIOD = 0.04  # s between two looks at what has come: the period of most joint 
 WAITING = 10  # joint states of a machine that may wait for a look: on a busy PC one comes late
 TELLS = 0.2  # s between two messages of a volume
 SAVES = 60.0  # s between two files of the ground: after a power cut so much is lost at most
-CYCLES = 2.0  # s between two looks for finished cycles, which are saved and sent at once
+CYCLES = 2.0  # s between two looks for full buckets and finished cycles, with which the ground is saved at once
 
 REPORTS = Counter("tms_ground_reports_total", "Reports of machines that were taken", ["machine"])
 UPDATE = Histogram("tms_ground_update_seconds", "Time of one report", buckets=(0.0003, 0.001, 0.003, 0.01, 0.03, 0.1))
@@ -114,22 +114,23 @@ class Keeper:
         try:
             if self._watch.load():
                 self._log.info("ground_goes_on", file=str(file))
-                self._work_goes_on()
+                self._work_goes_on(loads=True)
             elif file.exists():
+                self._work_goes_on(loads=False)
                 self._log.warning("ground_begins_anew", reason=GroundOther(str(durable.set_aside(file))))
         except (OSError, ValueError) as error:
             why = GroundNotKept(str(durable.set_aside(file)), str(error))
             self._log.warning("ground_begins_anew", reason=why)
 
-    def _work_goes_on(self) -> None:
+    def _work_goes_on(self, loads: bool) -> None:
         try:
-            self._watch.load_work()
+            self._watch.load_work(loads)
         except ValueError as error:
             self._log.warning("work_begins_anew", reason=WorkOther(str(error)))
 
     def deliver(self) -> None:
-        """Send finished cycles, once they are on the disk."""
-        if self._watch.waiting.unkept:
+        """Keep full buckets, and finished cycles; send these once they are on the disk."""
+        if self._watch.waiting.unkept or self._watch.work.filled:
             self.save()
         self._delivery.send()
 
@@ -138,13 +139,12 @@ class Keeper:
         with self._saving:
             with self.lock:
                 ERROR.set(self._watch.mass_error)
-                content = self._watch.content()
+                content, made = self._watch.content(), self._watch.waiting.made
             if content is None:
                 return
-            data, number = content
             try:
-                durable.replace(self._watch.file, data)
-                self._watch.waiting.kept(number)
+                durable.replace(self._watch.file, content)
+                self._watch.waiting.kept(made)
             except OSError as error:
                 self._watch.changed = True
                 self._log.error("ground_not_saved", reason=GroundNotKept(str(self._watch.file), str(error.strerror)))

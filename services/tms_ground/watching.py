@@ -140,6 +140,17 @@ class GroundWatch:
         self._begun = self.earth.mass()
         return found
 
+    def load_work(self, loads: bool) -> None:
+        """Go on with the kept work; `loads`: whether `load` has brought the loads of the same file back.
+
+        Raises:
+            ValueError: it is of a release that knows it otherwise.
+        """
+        with np.load(io.BytesIO(self.file.read_bytes()), allow_pickle=False) as file:
+            if WORK in file:  # files of earlier releases have none
+                self.work.restore(_text(file[WORK]), loads)
+                self.waiting.restore(_text(file[CYCLES]))
+
     def _remember(self, state: Mapping[str, Any]) -> None:
         """When the kept ground was known; files of earlier releases say nothing: then all of it counts as of now."""
         now = unix_time()
@@ -149,32 +160,16 @@ class GroundWatch:
         else:
             self._evidence.times[:], self.newest = np.minimum(times, now), str(state[NEWEST])
 
-    def load_work(self) -> None:
-        """Go on with the kept work, once `load` has brought the ground of the same file back.
-
-        Raises:
-            ValueError: it is of a release that knows it otherwise.
-        """
-        with np.load(io.BytesIO(self.file.read_bytes()), allow_pickle=False) as file:
-            if WORK in file:  # files of earlier releases have none
-                self.work.restore(_text(file[WORK]))
-                self.waiting.restore(_text(file[CYCLES]))
-
-    def content(self) -> tuple[bytes, int] | None:
-        """What `file` must hold to keep ground and work, and the number for `waiting.kept` once it does.
-
-        None if nothing has changed since the last call.
-        """
+    def content(self) -> bytes | None:
+        """What `file` must hold to keep ground and work; None if nothing has changed since the last call."""
         if not self.changed:
             return None
-        self.changed = False
-        out, (cycles, number) = io.BytesIO(), self.waiting.state()
-        more = {
-            TIMES: self._evidence.times, NEWEST: np.array(self.newest), WORK: _bytes(self.work.state()),
-            CYCLES: _bytes(cycles),
-        }  # fmt: skip
-        np.savez(out, **state_of(self.earth), **more)  # type: ignore[arg-type]
-        return out.getvalue(), number
+        self.changed = self.work.filled = False
+        out = io.BytesIO()
+        more = {TIMES: self._evidence.times, NEWEST: np.array(self.newest)}
+        work = {WORK: _bytes(self.work.state()), CYCLES: _bytes(self.waiting.state())}
+        np.savez(out, **state_of(self.earth), **more, **work)  # type: ignore[arg-type]
+        return out.getvalue()
 
 
 def _bytes(text: str) -> NDArray[np.uint8]:
