@@ -6,7 +6,7 @@ from tms_config.config import CONFIGS, Site
 from tms_config.models import Settings
 from tms_config.reasons import BadConfig
 from tms_config.yaml_file import located, parse
-from tms_ground.reasons import AreaInsideOut, NoGround, NoSoil, WhereIsOrigin
+from tms_ground.reasons import AreaInsideOut, NoGround, NoSoil, OneDesign, WhereIsOrigin
 from tms_reason.errors import ConfigError
 from tms_reason.validation import Wrong, problems
 from tms_soil.soils import Soil, SoilsFile
@@ -37,6 +37,46 @@ class Origin(Settings):
         return self
 
 
+class PlaneDesign(Settings):
+    """A level or sloping plane."""
+
+    z: float  # m, map, at its origin
+    slope_x: float = 0.0  # rise per length along x
+    slope_y: float = 0.0  # rise per length along y
+
+
+class PitDesign(Settings):
+    """A pit: a level floor, slopes up to the rim."""
+
+    floor: tuple[tuple[float, float], ...] = Field(min_length=3)  # m, map: corners
+    level: float  # m, map
+    rim: float  # m, map: height at which the slopes end
+    slope: float = Field(gt=0, default=1.0)  # rise per length
+
+
+class FileDesign(Settings):
+    """A surface in a file (LandXML, GeoTIFF, ASCII grid)."""
+
+    path: str = Field(min_length=1)  # from the folder of the site file
+    surface: str | None = None  # its name, where a LandXML holds several
+    epsg: int | None = None  # code of its coordinates, where it does not tell them
+    in_map: bool = False  # its coordinates are those of `map`
+
+
+class Design(Settings):
+    """The surface that the ground should become, told in one of these ways."""
+
+    plane: PlaneDesign | None = None
+    pit: PitDesign | None = None
+    file: FileDesign | None = None
+
+    @model_validator(mode="after")
+    def _one_surface(self) -> "Design":
+        if [self.plane, self.pit, self.file].count(None) != 2:
+            raise Wrong(OneDesign())
+        return self
+
+
 class Plan(Settings):
     """What a day should bring."""
 
@@ -53,6 +93,7 @@ class Ground(Settings):
     level: float = 0.0  # m, map: height of the ground where `tms:ground` begins
     soil: str = "earth"  # one of configs/soils.yaml
     plan: Plan | None = None
+    design: Design | None = None
 
     @model_validator(mode="after")
     def _has_area(self) -> "Ground":

@@ -11,7 +11,7 @@ from tms_decision.permit_link import LEASE
 from tms_machine.border import Controls, motions
 from tms_machine.facts import facts_of
 from tms_machine.permit import Permit
-from tms_rc import permits, relayed_goals
+from tms_rc import areas, permits, relayed_goals
 from tms_rc.claim import Claim
 from tms_rc.disk import Disk
 from tms_rc.holder import Holder
@@ -71,6 +71,7 @@ def _serve(app: App, claim: Claim) -> None:
         reachable = seen.recovery.reached or controls.reachable()  # asked of the graph at the start only
         return Beat(unix_time(), reachable, drives.settling(), ready, gone, escaped)
 
+    areas.begin(app, gateway, servers)
     shell.begin(effects, monitor.samples, look)
     for motion in motions(border):
         servers.serve(motion, getattr(border, motion.field))

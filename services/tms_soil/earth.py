@@ -101,8 +101,9 @@ class Earth:
             here, there = (_between(before, now, one / count) for one in (k, k + 1))
             found = body.step(here, there, min(max(seconds, 0.0), GAP) / count, self._haulers)
             body.rests = still and not found and seconds > 0.0
-            body.running = self._settle(body.running + found)
-            changed += found + body.running
+            places = body.running + found
+            body.running = self._settle(places)
+            changed += [_with_margin(one) for one in places]
         return changed
 
     def mass(self) -> float:
@@ -113,8 +114,8 @@ class Earth:
     def _settle(self, places: list[Bounds]) -> list[Bounds]:
         """Let slopes give way at some places; returns where soil still runs."""
         found = []
-        for x0, y0, x1, y1 in _apart(places):
-            window = self.grid.window((x0 - MARGIN, y0 - MARGIN, x1 + MARGIN, y1 + MARGIN))
+        for place in _apart(places):
+            window = self.grid.window(_with_margin(place))
             if window is not None:
                 if (still := settle(window)) is not None:
                     found.append(still)
@@ -142,6 +143,10 @@ def _apart(places: list[Bounds]) -> list[Bounds]:
             one = min(a, e), min(b, f), max(c, g), max(d, h)
         found.append(one)
     return found
+
+
+def _with_margin(place: Bounds) -> Bounds:
+    return place[0] - MARGIN, place[1] - MARGIN, place[2] + MARGIN, place[3] + MARGIN
 
 
 def _touch(a: Bounds, b: Bounds) -> bool:

@@ -16,7 +16,7 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from tms_work.cycle import Cycle
+from tms_work.cycle import Cycle, Kind
 from tms_work.draft import Draft
 from tms_work.sample import Sample
 from tms_work.ways import Way
@@ -51,6 +51,11 @@ class Recogniser:
         """`heaped`: what its bucket or vessel holds [m3], loose."""
         self._machine, self._way, self._heaped = machine, way, heaped
         self._state = State()
+
+    @property
+    def kind(self) -> Kind:
+        """Of its cycles."""
+        return self._way.kind
 
     def state(self) -> dict[str, Any]:
         """Everything that it remembers, as JSON knows it."""
