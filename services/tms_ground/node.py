@@ -26,9 +26,10 @@ from tms_runtime import durable
 from tms_runtime.app import App
 
 PERIOD = 0.04  # s between two looks at what has come: the period of most joint states
+WAITING = 10  # joint states of a machine that may wait for a look: on a busy PC one comes late
 TELLS = 0.2  # s between two messages of a volume
 SAVES = 60.0  # s between two files of the ground: after a power cut so much is lost at most
-CYCLES = 2.0  # s between two looks for finished cycles, which are saved and sent at once
+CYCLES = 2.0  # s between two looks for full buckets and finished cycles, with which the ground is saved at once
 
 REPORTS = Counter("tms_ground_reports_total", "Reports of machines that were taken", ["machine"])
 UPDATE = Histogram("tms_ground_update_seconds", "Time of one report", buckets=(0.0003, 0.001, 0.003, 0.01, 0.03, 0.1))
@@ -66,9 +67,10 @@ class Keeper:
     def __init__(self, app: App, watch: GroundWatch, models: dict[str, MachineModel]) -> None:
         self._log, self._watch = app.log, watch
         self._machines = list(models)
-        self._listener = Listener(app.ros, app.site, models, models)
+        self._listener = Listener(app.ros, app.site, models, models, WAITING)
         self.teller = Teller(app, watch, feeling=app.site.file.backend == "sim")
         self._speed = speed_of(app.site)
+        self._times: dict[str, float] = {}  # machine -> when it was looked at last [s of the machines]
         begin(watch.work.kinds)
         self._duties = Duties(app.ros, models)
         self._delivery = Delivery(app.ros, app.log, watch.waiting)
@@ -96,12 +98,16 @@ class Keeper:
         place, joints = self._listener.places.place(name), self._listener.joints(name)
         if place is None or (joints is None and self._listener.has_joints(name)):
             return  # it has not told enough
-        begun = monotonic()
-        angles = {} if joints is None else joints.angles
-        self._watch.take(name, begun * self._speed, angles, place)
+        now, angles = monotonic() * self._speed, {} if joints is None else joints.angles
+        before = self._times.get(name, now)
+        self._times[name] = now
+        told = self._listener.new_joints(name) or [angles]
+        for number, one in enumerate(told, 1):  # what has waited was told in between
+            begun = monotonic()
+            self._watch.take(name, before + (now - before) * number / len(told), one, place)
+            UPDATE.observe(monotonic() - begun)
+            REPORTS.labels(name).inc()
         counted(self._watch.count(name, unix_time(), angles, place, self._duties.of(name)))
-        UPDATE.observe(monotonic() - begun)
-        REPORTS.labels(name).inc()
         self.teller.feel(name)
 
     def _go_on(self) -> None:
@@ -110,22 +116,23 @@ class Keeper:
         try:
             if self._watch.load():
                 self._log.info("ground_goes_on", file=str(file))
-                self._work_goes_on()
+                self._work_goes_on(loads=True)
             elif file.exists():
+                self._work_goes_on(loads=False)
                 self._log.warning("ground_begins_anew", reason=GroundOther(str(durable.set_aside(file))))
         except (OSError, ValueError) as error:
             why = GroundNotKept(str(durable.set_aside(file)), str(error))
             self._log.warning("ground_begins_anew", reason=why)
 
-    def _work_goes_on(self) -> None:
+    def _work_goes_on(self, loads: bool) -> None:
         try:
-            self._watch.load_work()
+            self._watch.load_work(loads)
         except ValueError as error:
             self._log.warning("work_begins_anew", reason=WorkOther(str(error)))
 
     def deliver(self) -> None:
-        """Send finished cycles, once they are on the disk."""
-        if self._watch.waiting.unkept:
+        """Keep full buckets, and finished cycles; send these once they are on the disk."""
+        if self._watch.waiting.unkept or self._watch.work.filled:
             self.save()
         self._delivery.send()
 
@@ -134,13 +141,12 @@ class Keeper:
         with self._saving:
             with self.lock:
                 ERROR.set(self._watch.mass_error)
-                content = self._watch.content()
+                content, made = self._watch.content(), self._watch.waiting.made
             if content is None:
                 return
-            data, number = content
             try:
-                durable.replace(self._watch.file, data)
-                self._watch.waiting.kept(number)
+                durable.replace(self._watch.file, content)
+                self._watch.waiting.kept(made)
             except OSError as error:
                 self._watch.changed = True
                 self._log.error("ground_not_saved", reason=GroundNotKept(str(self._watch.file), str(error.strerror)))

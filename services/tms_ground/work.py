@@ -48,6 +48,7 @@ class Work:
         """`soils`: names of the ground's soils; `models`: by machine; `speed`: seconds of the machines by ours."""
         self._earth, self._soils, self._speed = earth, soils, speed
         self._recognisers = {name: one for name in models if (one := self._recogniser(name, models[name])) is not None}
+        self.filled = False  # a bucket or vessel, since someone set this to False
         self._last: dict[str, _Swing] = {}  # machine -> when it was looked at
 
     @property
@@ -80,14 +81,19 @@ class Work:
             time, Amount(load.mass, load.bank, load.loose), duty.run, soil, place.x, place.y, duty.moves, duty.stopped,
             swing=turn, cuts=body.digger is not None and body.digger.resistance > 0.0, under=self._under(body),
         )  # fmt: skip
-        return [self._dated(one) for one in recogniser.take(sample)]
+        carried = recogniser.carries
+        cycles = [self._dated(one) for one in recogniser.take(sample)]
+        self.filled = self.filled or (recogniser.carries and not carried)
+        return cycles
 
     def state(self) -> str:
         """Everything that it remembers, as JSON."""
         return json.dumps({name: one.state() for name, one in self._recognisers.items()})
 
-    def restore(self, state: str) -> None:
+    def restore(self, state: str, loads: bool) -> None:
         """Go on from a kept state; machines that have joined since begin anew.
+
+        `loads`: whether the loads are those of that time; if not, only the numbers of cycles go on.
 
         Raises:
             ValueError: it is none.
@@ -96,6 +102,8 @@ class Work:
         for name, recogniser in self._recognisers.items():
             if name in found:
                 recogniser.restore(found[name])
+                if not loads:
+                    recogniser.forget()
 
     def _under(self, body: Body) -> str:
         """The carrier below a bucket."""

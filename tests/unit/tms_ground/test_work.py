@@ -18,7 +18,7 @@ from tms_msg_rc.msg import MachineState
 from tms_msg_ts.msg import RunState, RunStates
 
 from conftest import PROJECT
-from earth_rig import ABOVE, OPEN, Arm, dig_poses, moved
+from earth_rig import ABOVE, HOLD, OPEN, Arm, dig_poses, moved
 from earth_rig import NAMES as JOINTS
 from tms_config.config import load_site
 from tms_db import messages
@@ -238,8 +238,10 @@ def test_a_crash_after_the_database_counts_nothing_twice(pc: Pc) -> None:
 
 
 def test_a_crash_with_a_full_bucket(pc: Pc) -> None:
-    pc.dig([*dig_poses(), ABOVE])
-    pc.steps["ground_file"]()
+    """A bucket is kept when it has been filled, so that what it holds does not go back to the ground."""
+    pc.dig([*dig_poses(), Arm(-0.6, *HOLD)])
+    assert pc.cycles("zx200") == []
+    pc.dig([Arm(-0.6, *HOLD), ABOVE])
     pc.start()
     pc.dig([ABOVE, *[OPEN] * 12, BACK])
     (dug,) = pc.cycles("zx200")
@@ -262,6 +264,20 @@ def test_a_full_disk_sends_nothing_that_a_restart_would_not_know(pc: Pc, monkeyp
         pc.dig(BUCKET)
         assert pc.cycles("zx200") == []
     assert [one.number for one in pc.cycles("zx200")] == [1]
+
+
+def test_work_goes_on_though_the_ground_begins_anew(pc: Pc) -> None:
+    """Cycles that wait are sent, a load that the new ground does not know makes none, and numbers go on."""
+    pc.away = True
+    pc.dig([*BUCKET, *dig_poses(-1.2)[2:], Arm(-0.6, *HOLD)])
+    assert pc.cycles("zx200") == []
+    pc.site.write_text(pc.site.read_text().replace("ground: {", "ground: {level: -2.5, "))
+    pc.start()
+    pc.away = False
+    pc.dig([Arm(-0.6, *HOLD), ABOVE, *[OPEN] * 12, BACK])
+    assert [one.number for one in pc.cycles("zx200")] == [1]
+    pc.dig([BACK, *dig_poses(-0.9)[2:], ABOVE, *[OPEN] * 12, BACK])
+    assert [one.number for one in pc.cycles("zx200")] == [1, 2]
 
 
 def test_work_of_another_release_begins_anew_and_the_ground_stays(pc: Pc, monkeypatch: pytest.MonkeyPatch) -> None:
