@@ -74,6 +74,7 @@ class Keeper:
         self._told = 0.0
         self.lock = threading.Lock()  # between the threads that look, save and answer
         self._go_on()
+        ERROR.set_function(self._mass_error)
         app.ros.poll_in_thread(PERIOD, self.look, "ground")
         app.ros.poll_in_thread(SAVES, self.save, "ground_file")
         app.on_stop(self.save)
@@ -119,10 +120,13 @@ class Keeper:
             why = GroundNotKept(str(durable.set_aside(file)), str(error))
             self._log.warning("ground_begins_anew", reason=why)
 
+    def _mass_error(self) -> float:
+        with self.lock:
+            return self._watch.mass_error
+
     def save(self) -> None:
         """Keep the ground on the disk, if it has changed."""
         with self.lock:
-            ERROR.set(self._watch.mass_error)
             content = self._watch.content()
         if content is None:
             return
