@@ -71,7 +71,7 @@ locks: | $(UV) ## lock the requirements of deploy/requirements/*.in anew (UPGRAD
 
 interfaces: $(VENV)/.interfaces-$(NAV2_DISTRO) ## build the .msg/.srv/.action packages (NAV2_DISTRO=humble for Humble machines)
 
-demo: setup ## an excavator digs: set-up, mesh, task, SUCCESS; leaves the mesh running
+demo: setup ## an excavator loads a truck, which hauls: set-up, mesh, task, SUCCESS; leaves the mesh running
 	@$(TMS) demo
 
 ifeq ($(RUNTIME),docker)
@@ -149,13 +149,14 @@ coverage: setup ## unit tests take every branch of the decisions and proofs
 	$(PY) -m coverage run --data-file=$(VENV)/coverage --branch --source tms_decision,tms_proof -m pytest -q tests/unit/tms_decision tests/unit/tms_proof tests/unit/tms_ts/test_interrupted.py
 	$(PY) -m coverage report --data-file=$(VENV)/coverage --show-missing --skip-covered --fail-under=100
 
-nightly: setup ## what takes hours: properties with 400 examples, 100,000 schedules, all mutants, mutmut, replays and 30 power cuts (as root), a long drill
+nightly: setup ## what takes hours: properties with 400 examples, 100,000 schedules, all mutants, mutmut, replays and 30 power cuts (as root), 60 m3 of earth with kills, a long drill
 	$(PY) -m pytest -q -n $(WORKERS) --hypothesis-profile=thorough tests/unit
 	@$(MAKE) coverage
 	@$(MAKE) simulate SCHEDULES=100000
 	@$(MAKE) mutants
 	@$(MAKE) mutmut
 	TMS_POWER_CUTS=30 $(PY) -m pytest tests/system/test_power_cut.py
+	TMS_EARTH=60 $(PY) -m pytest tests/system/test_earthwork.py -k killed
 	@$(MAKE) replay
 	@$(MAKE) drill ROUNDS=4
 	@$(MAKE) drill SITE=drill-physx ROUNDS=2
