@@ -20,8 +20,7 @@ from tms_ground.settings import needed, soil_of
 from tms_ground.snapshots import Snapshots
 from tms_ground.telling import Teller
 from tms_ground.watching import GroundWatch, touching
-from tms_machine.joint_states import JointStates
-from tms_machine.places import Places
+from tms_machine.listener import Listener
 from tms_runtime import durable
 from tms_runtime.app import App
 
@@ -64,11 +63,8 @@ class Keeper:
 
     def __init__(self, app: App, watch: GroundWatch, models: dict[str, MachineModel]) -> None:
         self._log, self._watch = app.log, watch
-        borders = {name: app.site.border(name) for name in models}
-        self._places = Places(app.ros, borders)
-        self._driven = {name: model.driven for name, model in models.items()}
-        self._joints = {name: JointStates(app.ros, name, borders[name], driven)
-                        for name, driven in self._driven.items() if borders[name].joint_states}  # fmt: skip
+        self._machines = list(models)
+        self._listener = Listener(app.ros, app.site, models, models)
         self.teller = Teller(app, watch, feeling=app.site.file.backend == "sim")
         self._speed = speed_of(app.site)
         begin(watch.work.kinds)
@@ -85,11 +81,9 @@ class Keeper:
 
     def look(self) -> None:
         """Take what has come since the last look."""
-        self._places.take()
-        for joints in self._joints.values():
-            joints.take()
+        self._listener.take()
         with self.lock:
-            for name in self._driven:
+            for name in self._machines:
                 self._take(name)
             now = monotonic()
             if now - self._told >= TELLS:
@@ -97,12 +91,11 @@ class Keeper:
                 self.teller.tell()
 
     def _take(self, name: str) -> None:
-        place, joints = self._places.place(name), self._joints.get(name)
-        if place is None or (joints is not None and joints.last is None):
+        place, joints = self._listener.places.place(name), self._listener.joints(name)
+        if place is None or (joints is None and self._listener.has_joints(name)):
             return  # it has not told enough
-        told = joints.last[1] if joints is not None and joints.last is not None else ()
         begun = monotonic()
-        angles = dict(zip(self._driven[name], told, strict=False))
+        angles = {} if joints is None else joints.angles
         self._watch.take(name, begun * self._speed, angles, place)
         counted(self._watch.count(name, unix_time(), angles, place, self._duties.of(name)))
         UPDATE.observe(monotonic() - begun)

@@ -29,8 +29,8 @@ from tms_soil.surface import grid as unknown
 from tms_work.cycle import Cycle
 
 CELL = 1.0  # m, of a level ground
-WORK, CYCLES = "work", "cycles"  # names in the file: what recognisers remember, and cycles that wait
 TIMES, NEWEST = "evidence", "snapshot"  # names in the file
+WORK, CYCLES = "work", "cycles"  # names in the file: what recognisers remember, and cycles that wait
 
 
 def touching(models: Mapping[str, MachineModel]) -> dict[str, MachineModel]:
@@ -52,9 +52,9 @@ class GroundWatch:
         self.soils = [ground.soil]  # names, by the grid's index
         self.changes = Changes(self.earth.grid)
         self._evidence = Evidence(self.earth.grid.bounds)
+        self.newest = ""  # ISO 8601: time of the newest snapshot that this ground knows; empty: of none
         self.work = Work(self.earth, self.soils, models, speed)
         self.waiting = Waiting()
-        self.newest = ""  # ISO 8601: time of the newest snapshot that this ground knows; empty: of none
         self.file = file
         self._stands: dict[str, tuple[tuple[float, float, float], Matrix]] = {}  # machine -> place, base_link in map
         self._begun = self.earth.mass()
@@ -78,6 +78,14 @@ class GroundWatch:
             self.changes.add(changed)
             self._evidence.add(changed, unix_time())
 
+    def measured(self, seen: Heights, time: float, within: float = 0.0) -> None:
+        """Take heights that were measured at a time [s since 1970]; see `measuring`."""
+        changed, made = measured(self.earth.grid, self._evidence, seen, time, within)
+        self._begun += made
+        self.changes.add(changed)
+        self._stands.clear()  # machines stand otherwise now
+        self.changed = True
+
     def count(
         self, machine: str, now: float, angles: Mapping[str, float], place: FramePose, duty: Duty
     ) -> list[Cycle]:  # fmt: skip
@@ -86,14 +94,6 @@ class GroundWatch:
         self.waiting.put(cycles)
         self.changed = self.changed or bool(cycles)
         return cycles
-
-    def measured(self, seen: Heights, time: float, within: float = 0.0) -> None:
-        """Take heights that were measured at a time [s since 1970]; see `measuring`."""
-        changed, made = measured(self.earth.grid, self._evidence, seen, time, within)
-        self._begun += made
-        self.changes.add(changed)
-        self._stands.clear()  # machines stand otherwise now
-        self.changed = True
 
     def stands(self, machine: str) -> Matrix | None:
         """Its base_link in map, by height and slope under its tracks; None while it has told no place."""
@@ -129,6 +129,15 @@ class GroundWatch:
         self._begun = self.earth.mass()
         return found
 
+    def _remember(self, state: Mapping[str, Any]) -> None:
+        """When the kept ground was known; files of earlier releases say nothing: then all of it counts as of now."""
+        now = unix_time()
+        times = state.get(TIMES)
+        if times is None or times.shape != self._evidence.times.shape:
+            self._evidence.times[:], self.newest = now, utc_now().isoformat()
+        else:
+            self._evidence.times[:], self.newest = np.minimum(times, now), str(state[NEWEST])
+
     def load_work(self, loads: bool) -> None:
         """Go on with the kept work; `loads`: whether `load` has brought the loads of the same file back.
 
@@ -140,24 +149,17 @@ class GroundWatch:
                 self.work.restore(_text(file[WORK]), loads)
                 self.waiting.restore(_text(file[CYCLES]))
 
-    def _remember(self, state: Mapping[str, Any]) -> None:
-        """When the kept ground was known; files of earlier releases say nothing: then all of it counts as of now."""
-        now = unix_time()
-        times = state.get(TIMES)
-        if times is None or times.shape != self._evidence.times.shape:
-            self._evidence.times[:], self.newest = now, utc_now().isoformat()
-        else:
-            self._evidence.times[:], self.newest = np.minimum(times, now), str(state[NEWEST])
-
     def content(self) -> bytes | None:
         """What `file` must hold to keep ground and work; None if nothing has changed since the last call."""
         if not self.changed:
             return None
         self.changed = self.work.filled = False
         out = io.BytesIO()
-        more = {TIMES: self._evidence.times, NEWEST: np.array(self.newest)}
-        work = {WORK: _bytes(self.work.state()), CYCLES: _bytes(self.waiting.state())}
-        np.savez(out, **state_of(self.earth), **more, **work)  # type: ignore[arg-type]
+        more = {
+            TIMES: self._evidence.times, NEWEST: np.array(self.newest), WORK: _bytes(self.work.state()),
+            CYCLES: _bytes(self.waiting.state()),
+        }  # fmt: skip
+        np.savez(out, **state_of(self.earth), **more)  # type: ignore[arg-type]
         return out.getvalue()
 
 

@@ -71,7 +71,7 @@ class Site:
         assert name == READ
         found = [one for one in self.stored if not request.after or one[0] > datetime.fromisoformat(request.after)]
         if not found:
-            return ReadSnapshot.Response(error_code="GROUND_NOT_THERE")
+            return ReadSnapshot.Response(error_code="" if request.after else "GROUND_NOT_THERE")
         time, ground, source = found[0 if request.snapshot == "first" else -1]
         return ReadSnapshot.Response(ground=patches.patch(ground), taken_at=time.isoformat(), source=source)
 
