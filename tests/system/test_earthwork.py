@@ -1,4 +1,4 @@
-"""A zx200 and two trucks move the earth of a job at ten times their speed; what is killed counts no bucket twice."""
+"""A zx200 and two trucks move the earth of a job at ten times their speed; kills make no bucket count twice."""
 
 import json
 import os
