@@ -16,7 +16,7 @@ from tms_ground.designs import surface_of
 from tms_ground.duties import Duties
 from tms_ground.heights import HeightsServer
 from tms_ground.reasons import GroundNotKept, GroundOther, WorkOther
-from tms_ground.settings import needed, soil_of
+from tms_ground.settings import needed, soils_of
 from tms_ground.snapshots import Snapshots
 from tms_ground.telling import Teller
 from tms_ground.watching import GroundWatch, touching
@@ -45,7 +45,7 @@ def start(app: App) -> None:
     touches = touching(models)
     for name in models.keys() - touches.keys():
         app.log.warning("leaves_ground", target=name)
-    watch = GroundWatch(ground, soil_of(app.site, ground), touches, app.site.state / "ground.npz", speed_of(app.site))
+    watch = GroundWatch(ground, soils_of(app.site, ground), touches, app.site.state / "ground.npz", speed_of(app.site))
     design = surface_of(app.site, ground)
     keeper = Keeper(app, watch, touches)
     HeightsServer(app, watch, keeper.teller, keeper.lock, design)
@@ -133,12 +133,13 @@ class Keeper:
         with self._saving:
             with self.lock:
                 ERROR.set(self._watch.mass_error)
-                content, made = self._watch.content(), self._watch.waiting.made
+                content = self._watch.content()
             if content is None:
                 return
+            data, number = content
             try:
-                durable.replace(self._watch.file, content)
-                self._watch.waiting.kept(made)
+                durable.replace(self._watch.file, data)
+                self._watch.waiting.kept(number)
             except OSError as error:
                 self._watch.changed = True
                 self._log.error("ground_not_saved", reason=GroundNotKept(str(self._watch.file), str(error.strerror)))

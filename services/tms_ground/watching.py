@@ -23,6 +23,7 @@ from tms_soil.grid import Grid
 from tms_soil.keeping import restore, state_of
 from tms_soil.load import Load, load_of
 from tms_soil.measuring import measured
+from tms_soil.regions import soil_by_tile
 from tms_soil.soils import Soil
 from tms_soil.surface import Array, Heights
 from tms_soil.surface import grid as unknown
@@ -42,14 +43,23 @@ class GroundWatch:
     """The ground, and where the machines were last told to be."""
 
     def __init__(
-        self, ground: Ground, soil: Soil, models: Mapping[str, MachineModel], file: Path, speed: float = 1.0
+        self,
+        ground: Ground,
+        soils: Mapping[str, Soil],
+        models: Mapping[str, MachineModel],
+        file: Path,
+        speed: float = 1.0,
     ) -> None:
-        """`models`: by machine; `file` keeps the ground; `speed`: seconds of the machines in one of ours."""
+        """`models`: by machine; `file` keeps the ground; `speed`: seconds of the machines in one of ours.
+
+        `soils`: those that the site has, by name, that outside all regions first.
+        """
         level = unknown(ground.area, CELL)
         level.z[:] = ground.level
-        self.earth = Earth(Grid.from_heights(level, [soil]), models)
+        self.soils = list(soils)  # names, by the grid's index
+        by_tile = soil_by_tile(level.bounds, [(self.soils.index(one.soil), one.corners) for one in ground.soils])
+        self.earth = Earth(Grid.from_heights(level, list(soils.values()), by_tile), models)
         self.area = ground.area  # m, map: what of the grid is the site
-        self.soils = [ground.soil]  # names, by the grid's index
         self.changes = Changes(self.earth.grid)
         self._evidence = Evidence(self.earth.grid.bounds)
         self.newest = ""  # ISO 8601: time of the newest snapshot that this ground knows; empty: of none
@@ -149,18 +159,21 @@ class GroundWatch:
                 self.work.restore(_text(file[WORK]), loads)
                 self.waiting.restore(_text(file[CYCLES]))
 
-    def content(self) -> bytes | None:
-        """What `file` must hold to keep ground and work; None if nothing has changed since the last call."""
+    def content(self) -> tuple[bytes, int] | None:
+        """What `file` must hold to keep ground and work, and the number for `waiting.kept` once it does.
+
+        None if nothing has changed since the last call.
+        """
         if not self.changed:
             return None
         self.changed = self.work.filled = False
-        out = io.BytesIO()
+        out, (cycles, number) = io.BytesIO(), self.waiting.state()
         more = {
             TIMES: self._evidence.times, NEWEST: np.array(self.newest), WORK: _bytes(self.work.state()),
-            CYCLES: _bytes(self.waiting.state()),
+            CYCLES: _bytes(cycles),
         }  # fmt: skip
         np.savez(out, **state_of(self.earth), **more)  # type: ignore[arg-type]
-        return out.getvalue()
+        return out.getvalue(), number
 
 
 def _bytes(text: str) -> NDArray[np.uint8]:

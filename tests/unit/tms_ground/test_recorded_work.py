@@ -25,7 +25,10 @@ BEGIN = 1.8e9  # s since 1970
 def cycles(tmp_path_factory: pytest.TempPathFactory) -> list[Cycle]:
     models = {"zx200": model_of("zx200"), "ic120": model_of("ic120")}
     ground = Ground(area=(-13.0, -13.0, 26.0, 13.0))
-    watch, found = GroundWatch(ground, soils()[0], models, Path(tmp_path_factory.mktemp("ground")) / "g"), list[Cycle]()
+    watch, found = (
+        GroundWatch(ground, {"earth": soils()[0]}, models, Path(tmp_path_factory.mktemp("ground")) / "g"),
+        list[Cycle](),
+    )
     for row in csv.DictReader(LOG.read_text(encoding="utf-8").splitlines()):
         time = float(row["time"])
         arm = {name: float(row[name.removesuffix("_joint")]) for name in NAMES}

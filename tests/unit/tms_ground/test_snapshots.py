@@ -50,14 +50,16 @@ class Site:
 
     def start(self) -> None:
         ground = Ground.model_validate({"area": AREA})
-        self.watch = GroundWatch(ground, soils()[0], {"zx200": model_of("zx200")}, self.folder / "ground.npz")
+        self.watch = GroundWatch(
+            ground, {"earth": soils()[0]}, {"zx200": model_of("zx200")}, self.folder / "ground.npz"
+        )
         if self.watch.file.exists():
             assert self.watch.load()
         Snapshots(self.app, self.watch, threading.Lock())
 
     def restart(self) -> None:
         if (content := self.watch.content()) is not None:
-            self.watch.file.write_bytes(content)
+            self.watch.file.write_bytes(content[0])
         self.start()
 
     def call(self, kind: Any, name: str, request: Any, _: float) -> Any:

@@ -51,14 +51,15 @@ def delivery(db: Any, waiting: Waiting) -> Delivery:
 
 
 def keep(waiting: Waiting) -> str:
-    waiting.kept(waiting.made)
-    return waiting.state()
+    text, number = waiting.state()
+    waiting.kept(number)
+    return text
 
 
 def test_nothing_is_sent_before_it_is_on_the_disk() -> None:
     db, waiting, cycles = FakeDb(), Waiting(), made(3)
     waiting.put(cycles[:2])
-    number = waiting.made
+    _, number = waiting.state()
     waiting.put(cycles[2:])
     delivery(db, waiting).send()
     assert db.stored == [] and waiting.unkept
@@ -76,7 +77,7 @@ def test_a_restart_sends_what_its_file_holds() -> None:
     again.restore(keep(waiting))
     assert not again.unkept
     delivery(db, again).send()
-    assert db.stored == made(3) and again.state() == "[]"
+    assert db.stored == made(3) and again.state() == ("[]", 3)
 
 
 @pytest.mark.parametrize("kept", ["{}", "[1]", "[", '[{"run_id": ""}]'])
@@ -84,7 +85,7 @@ def test_a_file_that_holds_no_cycles_changes_nothing(kept: str) -> None:
     waiting = Waiting()
     with pytest.raises(ValueError):
         waiting.restore(kept)
-    assert waiting.state() == "[]"
+    assert waiting.state() == ("[]", 0)
 
 
 def test_a_database_that_is_away_is_told_once_and_gets_all_in_order() -> None:

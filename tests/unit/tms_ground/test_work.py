@@ -65,9 +65,8 @@ class Pc:
             poll_in_thread=lambda _, step, name: self.steps.update({name: step}),
             call=self.call,
             now=lambda: Time(sec=int(self.now)),
-            offer_slow=lambda *_: None,
-            prepare=lambda *_: None,
-        )
+            offer_slow=lambda *_: None, prepare=lambda *_: None, has_service=lambda *_: False,
+        )  # fmt: skip
         app: Any = SimpleNamespace(
             site=load_site(str(self.site)), ros=ros, log=structlog.stdlib.get_logger("test"),
             on_stop=lambda _: None, ready_when=lambda _: None,
