@@ -54,7 +54,7 @@ class AreaSet:
     @cached_property
     def id(self) -> str:
         """SHA-256 of the content: a set that says anything else has another one."""
-        content = [[one.properties, one.corners] for one in self.areas]
+        content = [[one.properties, [[float(x), float(y)] for x, y in one.corners]] for one in self.areas]
         return hashlib.sha256(json.dumps(content, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
 
     def of(self, *kinds: Kind) -> tuple[Area, ...]:

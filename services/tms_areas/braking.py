@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from tms_config.models import DRIVE, Border, MachineModel
 
+MOST = 3.0  # times the model's distance: what shows more was no stop of these tracks
 SLOWEST = 0.2  # m/s; from less, a stop shows more of the noise of the poses than of the brakes
 
 
@@ -37,7 +38,7 @@ class Tracks:
         if abs(speed) < SLOWEST:
             return self
         model = abs(speed) * self.dead_time + self.forward.braking(speed)
-        return Tracks(self.forward, self.turning, self.dead_time, max(self.factor, way / model))
+        return Tracks(self.forward, self.turning, self.dead_time, max(self.factor, min(way / model, MOST)))
 
 
 def tracks_of(model: MachineModel, border: Border) -> Tracks | None:

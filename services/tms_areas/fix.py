@@ -15,7 +15,9 @@ from tms_reason.reason import Reason
 
 WINDOW = 0.5  # s of poses whose line gives place and speed
 LEAST = 4  # poses in it
-OLD = 0.5  # s without a pose after which tracks stop
+OLD = 0.5  # s without a pose after which tracks stop ...
+RESTING = 2.0  # s, ... and while the odometry stands: many tell a place less often then
+RESTS = 0.1  # m/s or rad/s; where poses say less, and the odometry stands, the machine stands
 SETTLED = 5.0  # s of good poses after which they may go on
 SURE = 0.1  # m that a pose may be off without showing it
 NOISE = 3.0  # times the deviation from that line that a pose may be off in addition
@@ -36,7 +38,12 @@ class Motion:
     vy: float = 0.0  # m/s
     turning: float = 0.0  # rad/s
     off: float = SURE  # m that the place may be off
-    age: float = 0.0  # s since it arrived
+    age: float = 0.0  # s since it arrived; 0 for a machine that stands
+
+    @property
+    def rests(self) -> bool:
+        """Whether it stands."""
+        return self.vx == self.vy == self.turning == 0.0
 
 
 @dataclass(frozen=True)
@@ -69,7 +76,7 @@ class Fix:
             if at <= when:
                 return None
             yaw = before + math.remainder(yaw - before, math.tau)
-            if at - when > OLD:
+            if at - when > self._limit:
                 self._doubt(PoseOld(at - when), at)
             if self._leaps(at, x, y, yaw):
                 self.poses.clear()
@@ -78,7 +85,7 @@ class Fix:
             self.repeated_at = at
             return None
         self.poses.append((at, x, y, yaw))
-        while self.poses[0][0] < at - WINDOW:
+        while len(self.poses) > LEAST and self.poses[0][0] < at - WINDOW:
             self.poses.popleft()
         if self.wrong is None and len(self.poses) >= LEAST:
             self.motion, self.motion_at = self._line(), at
@@ -91,12 +98,14 @@ class Fix:
     def look(self, now: float) -> Seen:
         """What is known now."""
         unsure = self._unsure(now)
-        motion = None if self.motion is None else replace(self.motion, age=now - self.motion_at)
-        return Seen(unsure, motion)
+        one = self.motion
+        if one is None or (unsure is None and not self.moves and one.rests):
+            return Seen(unsure, one)
+        return Seen(unsure, replace(one, age=now - self.motion_at))
 
     def _unsure(self, now: float) -> Reason | None:
         age = now - self.poses[-1][0] if self.poses else float("inf")
-        if age > OLD:
+        if age > self._limit:
             unknown = PoseOld(age) if self.poses else PoseUnknown()
             self._doubt(PoseStuck() if now - self.repeated_at <= OLD else unknown, now)
         if self.wrong is not None:
@@ -105,6 +114,10 @@ class Fix:
                 return PoseSettles(self.wrong, max(left, 0.0)) if left < SETTLED else self.wrong
             self.wrong, self.motion, self.motion_at = None, self._line(), self.poses[-1][0]
         return None
+
+    @property
+    def _limit(self) -> float:
+        return OLD if self.moves else RESTING
 
     def _doubt(self, why: Reason, at: float) -> None:
         self.wrong, self.wrong_at = why, at
@@ -127,4 +140,6 @@ class Fix:
         rest = found[:, 1:3] - (at @ line)[:, :2]
         off = SURE + NOISE * float(np.sqrt((rest**2).sum() / len(t)))
         (x, y, yaw), (vx, vy, turning) = line.tolist()
+        if not self.moves and max(math.hypot(vx, vy), abs(turning)) < RESTS:
+            vx = vy = turning = 0.0
         return Motion(x, y, yaw, vx, vy, turning, off)

@@ -25,6 +25,7 @@ from tms_runtime import durable
 from tms_runtime.app import App
 
 PERIOD = 0.04  # s between two looks at what has come: the period of most joint states
+WAITING = 10  # joint states of a machine that may wait for a look: on a busy PC one comes late
 TELLS = 0.2  # s between two messages of a volume
 SAVES = 60.0  # s between two files of the ground: after a power cut so much is lost at most
 CYCLES = 2.0  # s between two looks for full buckets and finished cycles, with which the ground is saved at once
@@ -64,9 +65,10 @@ class Keeper:
     def __init__(self, app: App, watch: GroundWatch, models: dict[str, MachineModel]) -> None:
         self._log, self._watch = app.log, watch
         self._machines = list(models)
-        self._listener = Listener(app.ros, app.site, models, models)
+        self._listener = Listener(app.ros, app.site, models, models, WAITING)
         self.teller = Teller(app, watch, feeling=app.site.file.backend == "sim")
         self._speed = speed_of(app.site)
+        self._times: dict[str, float] = {}  # machine -> when it was looked at last [s of the machines]
         begin(watch.work.kinds)
         self._duties = Duties(app.ros, models)
         self._delivery = Delivery(app.ros, app.log, watch.waiting)
@@ -94,12 +96,16 @@ class Keeper:
         place, joints = self._listener.places.place(name), self._listener.joints(name)
         if place is None or (joints is None and self._listener.has_joints(name)):
             return  # it has not told enough
-        begun = monotonic()
-        angles = {} if joints is None else joints.angles
-        self._watch.take(name, begun * self._speed, angles, place)
+        now, angles = monotonic() * self._speed, {} if joints is None else joints.angles
+        before = self._times.get(name, now)
+        self._times[name] = now
+        told = self._listener.new_joints(name) or [angles]
+        for number, one in enumerate(told, 1):  # what has waited was told in between
+            begun = monotonic()
+            self._watch.take(name, before + (now - before) * number / len(told), one, place)
+            UPDATE.observe(monotonic() - begun)
+            REPORTS.labels(name).inc()
         counted(self._watch.count(name, unix_time(), angles, place, self._duties.of(name)))
-        UPDATE.observe(monotonic() - begun)
-        REPORTS.labels(name).inc()
         self.teller.feel(name)
 
     def _go_on(self) -> None:
@@ -133,13 +139,12 @@ class Keeper:
         with self._saving:
             with self.lock:
                 ERROR.set(self._watch.mass_error)
-                content = self._watch.content()
+                content, made = self._watch.content(), self._watch.waiting.made
             if content is None:
                 return
-            data, number = content
             try:
-                durable.replace(self._watch.file, data)
-                self._watch.waiting.kept(number)
+                durable.replace(self._watch.file, content)
+                self._watch.waiting.kept(made)
             except OSError as error:
                 self._watch.changed = True
                 self._log.error("ground_not_saved", reason=GroundNotKept(str(self._watch.file), str(error.strerror)))

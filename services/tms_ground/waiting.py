@@ -59,10 +59,16 @@ class Waiting:
         with self._lock:
             return max(self._kept, self._gone) < self._made
 
-    def state(self) -> tuple[str, int]:
-        """All of them as JSON, and the number for `kept` once that is on the disk."""
+    @property
+    def made(self) -> int:
+        """How many were made since the start: the argument for `kept` once the present state is on the disk."""
         with self._lock:
-            return f"[{','.join(self._cycles)}]", self._made
+            return self._made
+
+    def state(self) -> str:
+        """All of them as JSON."""
+        with self._lock:
+            return f"[{','.join(self._cycles)}]"
 
     def restore(self, state: str) -> None:
         """Begin with those of a file.

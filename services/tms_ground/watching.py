@@ -17,7 +17,7 @@ from tms_ground.waiting import Waiting
 from tms_ground.work import Duty, Work
 from tms_machine.frames import FramePose
 from tms_soil.changes import Changes
-from tms_soil.earth import Earth
+from tms_soil.earth import GAP, Earth
 from tms_soil.evidence import Evidence
 from tms_soil.grid import Grid
 from tms_soil.keeping import restore, state_of
@@ -30,6 +30,7 @@ from tms_soil.surface import grid as unknown
 from tms_work.cycle import Cycle
 
 CELL = 1.0  # m, of a level ground
+LATE = 0.25  # s without joint states, after which the way of an accelerated stand-in is unknown
 TIMES, NEWEST = "evidence", "snapshot"  # names in the file
 WORK, CYCLES = "work", "cycles"  # names in the file: what recognisers remember, and cycles that wait
 
@@ -58,7 +59,7 @@ class GroundWatch:
         level.z[:] = ground.level
         self.soils = list(soils)  # names, by the grid's index
         by_tile = soil_by_tile(level.bounds, [(self.soils.index(one.soil), one.corners) for one in ground.soils])
-        self.earth = Earth(Grid.from_heights(level, list(soils.values()), by_tile), models)
+        self.earth = Earth(Grid.from_heights(level, list(soils.values()), by_tile), models, max(GAP, LATE * speed))
         self.area = ground.area  # m, map: what of the grid is the site
         self.changes = Changes(self.earth.grid)
         self._evidence = Evidence(self.earth.grid.bounds)
@@ -139,15 +140,6 @@ class GroundWatch:
         self._begun = self.earth.mass()
         return found
 
-    def _remember(self, state: Mapping[str, Any]) -> None:
-        """When the kept ground was known; files of earlier releases say nothing: then all of it counts as of now."""
-        now = unix_time()
-        times = state.get(TIMES)
-        if times is None or times.shape != self._evidence.times.shape:
-            self._evidence.times[:], self.newest = now, utc_now().isoformat()
-        else:
-            self._evidence.times[:], self.newest = np.minimum(times, now), str(state[NEWEST])
-
     def load_work(self, loads: bool) -> None:
         """Go on with the kept work; `loads`: whether `load` has brought the loads of the same file back.
 
@@ -159,21 +151,25 @@ class GroundWatch:
                 self.work.restore(_text(file[WORK]), loads)
                 self.waiting.restore(_text(file[CYCLES]))
 
-    def content(self) -> tuple[bytes, int] | None:
-        """What `file` must hold to keep ground and work, and the number for `waiting.kept` once it does.
+    def _remember(self, state: Mapping[str, Any]) -> None:
+        """When the kept ground was known; files of earlier releases say nothing: then all of it counts as of now."""
+        now = unix_time()
+        times = state.get(TIMES)
+        if times is None or times.shape != self._evidence.times.shape:
+            self._evidence.times[:], self.newest = now, utc_now().isoformat()
+        else:
+            self._evidence.times[:], self.newest = np.minimum(times, now), str(state[NEWEST])
 
-        None if nothing has changed since the last call.
-        """
+    def content(self) -> bytes | None:
+        """What `file` must hold to keep ground and work; None if nothing has changed since the last call."""
         if not self.changed:
             return None
         self.changed = self.work.filled = False
-        out, (cycles, number) = io.BytesIO(), self.waiting.state()
-        more = {
-            TIMES: self._evidence.times, NEWEST: np.array(self.newest), WORK: _bytes(self.work.state()),
-            CYCLES: _bytes(cycles),
-        }  # fmt: skip
-        np.savez(out, **state_of(self.earth), **more)  # type: ignore[arg-type]
-        return out.getvalue(), number
+        out = io.BytesIO()
+        more = {TIMES: self._evidence.times, NEWEST: np.array(self.newest)}
+        work = {WORK: _bytes(self.work.state()), CYCLES: _bytes(self.waiting.state())}
+        np.savez(out, **state_of(self.earth), **more, **work)  # type: ignore[arg-type]
+        return out.getvalue()
 
 
 def _bytes(text: str) -> NDArray[np.uint8]:

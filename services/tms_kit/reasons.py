@@ -10,7 +10,7 @@ MOVE_ON = Remedy("move", "", "Move the machine, or change the area or the floor 
 # fmt: off
 class NothingToDig(Reason, text="nothing is left to dig in reach of {machine}: {record} tells where it may",
     action=MOVE_ON): machine: str; record: str
-class NoDigPlanned(Reason, text="{count} places in reach of {machine} have soil, and none can be dug: {why}",
+class NoDigPlanned(Reason, text="the {count} best places in reach of {machine} cannot be dug: {why}",
     action=MOVE_ON): count: int; machine: str; why: Reason
 class PlaceNotTold(Reason, text="{machine} does not tell where it is", action=PROCESSES): machine: str
 class LoadNotTold(Reason, text="nobody tells what {machine} carries: it needs tms:ground", action=PROCESSES):

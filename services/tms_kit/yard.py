@@ -86,21 +86,29 @@ class Yard:
         )
         return at
 
-    def load(self, machine: str, check: Callable[[], None]) -> SoilLoad:
-        """What a machine carries now: told after this call.
+    def loads(self, machines: Sequence[str], check: Callable[[], None]) -> list[SoilLoad]:
+        """What machines carry now: told after this call.
 
         Raises:
             SubtaskFailed: LoadNotTold.
         """
-        until, told = monotonic() + COMES_BACK, self._loads.get(machine)
-        if told is not None:
-            told()  # what has waited is old
-            while monotonic() < until:
-                if messages := told():
-                    return messages[-1]
-                check()
-                sleep(LOOKS)
-        raise SubtaskFailed(LoadNotTold(machine))
+        found: dict[str, SoilLoad] = {}
+        for name in machines:
+            self._new_loads(name)  # what has waited is old
+        until = monotonic() + COMES_BACK
+        while missing := [name for name in machines if name not in found]:
+            for name in missing:
+                if told := self._new_loads(name):
+                    found[name] = told[-1]
+            check()
+            if monotonic() > until:
+                raise SubtaskFailed(LoadNotTold(missing[0]))
+            sleep(LOOKS)
+        return [found[name] for name in machines]
+
+    def _new_loads(self, machine: str) -> list[SoilLoad]:
+        take = self._loads.get(machine)
+        return [] if take is None else take()
 
     def ground(self, bounds: Bounds, floor: float, check: Callable[[], None]) -> tuple[Heights, Heights]:
         """The ground, and what it should become: the site's design, nowhere below `floor` [m]; both on the same cells.

@@ -19,12 +19,14 @@ class JointsTold(NamedTuple):
 class Listener:
     """Hears machines; `take` is for one thread, the answers are for any."""
 
-    def __init__(self, ros: Ros, site: Site, machines: Iterable[str], jointed: Iterable[str]) -> None:
-        """`machines`: whose places matter; `jointed`: whose joints do, too."""
+    def __init__(self, ros: Ros, site: Site, machines: Iterable[str], jointed: Iterable[str], depth: int = 1) -> None:
+        """`machines`: whose places matter; `jointed`: whose joints do, too; `depth`: as of JointStates."""
         borders = {name: site.border(name) for name in machines}
         self.places = Places(ros, borders)
         self._driven = {name: site.model_of(name).driven for name in jointed if borders[name].joint_states}
-        self._joints = {name: JointStates(ros, name, borders[name], driven) for name, driven in self._driven.items()}
+        self._joints = {
+            name: JointStates(ros, name, borders[name], driven, depth) for name, driven in self._driven.items()
+        }
 
     def take(self) -> None:
         """Take what has come."""
@@ -40,3 +42,9 @@ class Listener:
         """The joints of a machine; None as long as it has told none, or none are listened to."""
         last = self._joints[machine].last if machine in self._joints else None
         return None if last is None else JointsTold(dict(zip(self._driven[machine], last[1], strict=True)), last[0])
+
+    def new_joints(self, machine: str) -> list[dict[str, float]]:
+        """The angles [rad] that the last `take` has found, oldest first."""
+        if machine not in self._joints:
+            return []
+        return [dict(zip(self._driven[machine], one, strict=True)) for one in self._joints[machine].new]

@@ -1,7 +1,11 @@
 """Watches a machine by the enabled areas, in a thread of its own: no stop waits for geometry, nor for a lock of it."""
 
+import math
 import threading
+from collections import deque
 from collections.abc import Callable, Mapping
+from dataclasses import replace
+from queue import SimpleQueue
 from typing import Any
 
 from tms_areas.areas import AreaSet
@@ -11,12 +15,14 @@ from tms_areas.fix import Fix, Seen
 from tms_areas.guard import Guard, Verdict
 from tms_areas.law import Law
 from tms_config.clock import monotonic, unix_time
+from tms_decision.gateway.effects import Receipt
 from tms_decision.gateway.state import Gateway
 from tms_decision.reasons import ProcessLost
 from tms_machine.border import MotionAction
 from tms_machine.places import Places
 from tms_proof.standstill import HEADING, ODOM, PLACE
 from tms_rc.area_file import AreaFile, Enabled
+from tms_rc.braking_file import BrakingFile
 from tms_rc.motion_goals import frame_of, places_of, way_of
 from tms_rc.reasons import AreasLate, AreasNotKept, GoalNotInMap, TrapsMachine
 from tms_reason.errors import TmsError
@@ -24,6 +30,8 @@ from tms_reason.reason import Reason
 from tms_runtime.app import App
 
 PERIOD = 0.04  # s between looks; with the beats it stays within tms_areas.law.BEAT
+SPEEDS = 500  # looks that are kept until a receipt comes: it waits for the proof of the stop, and for the disk
+AROUND = 0.3  # s around the begin of a stop whose highest speed counts
 LATE = 0.3  # s; an older verdict is none
 TOLD = ("follow_path",)  # actions whose poses are the way itself; for others a planner chooses it
 
@@ -42,6 +50,11 @@ class AreaWatch:
         self._fix, self._fixing = Fix(drive.turn_velocity if drive is not None else 0.0), threading.Lock()
         self._told = 0.0  # when the last pose that was taken came
         self._enabling = threading.Lock()
+        self.stops: SimpleQueue[Receipt] = SimpleQueue()  # receipts that may show worse brakes
+        self._braking = BrakingFile(site.state, machine)
+        tracks = tracks_of(self._model, self._border)
+        self._tracks = None if tracks is None else replace(tracks, factor=self._braking.read())
+        self._speeds: deque[tuple[float, float]] = deque(maxlen=SPEEDS)  # s since 1970, m/s
         # Replaced, never changed: read without a lock.
         self.enabled: Enabled | None = None
         self._guard: Guard | None = None
@@ -130,7 +143,7 @@ class AreaWatch:
         self.enabled, self._guard = found, self._made(found.areas)
 
     def _made(self, areas: AreaSet) -> Guard:
-        return Guard(Law(areas, self._app.machine, tracks_of(self._model, self._border)), self._silhouette)
+        return Guard(Law(areas, self._app.machine, self._tracks), self._silhouette)
 
     def _now(self) -> Seen:
         with self._fixing:
@@ -148,8 +161,28 @@ class AreaWatch:
                 self._told = place.received
                 self._fix.heard(place.received, place.x, place.y, place.yaw)
             seen = self._seen = self._fix.look(monotonic())
+        if seen.unsure is None and seen.motion is not None:
+            self._speeds.append((unix_time(), math.hypot(seen.motion.vx, seen.motion.vy)))
+        while not self.stops.empty():
+            self._learn(self.stops.get())
         active, guard = self._gateway.active, self._guard
         if active is not None and guard is not None:
             at = monotonic()
             verdict = guard.look(seen, self._gateway.watch.positions, self._drives(active.number))
             self._verdict = at, active.number, verdict
+
+    def _learn(self, stop: Receipt) -> None:
+        """Enlarge the distances if a stop from a known speed took longer than the model says."""
+        speed = max((one for at, one in self._speeds if abs(at - stop.stamp) < AROUND), default=0.0)
+        tracks = self._tracks
+        if tracks is None or (learned := tracks.learned(speed, stop.way)) == tracks:
+            return
+        with self._enabling:
+            self._tracks = learned
+            if self.enabled is not None:
+                self._guard = self._made(self.enabled.areas)
+        self._app.log.warning("brakes_worse", factor=round(learned.factor, 2), speed=round(speed, 2), m=stop.way)
+        try:
+            self._braking.keep(learned.factor)
+        except OSError as error:
+            self._app.log.error("braking_not_kept", reason=str(error))

@@ -11,19 +11,21 @@ from rcl_interfaces.srv import GetParameters, SetParametersAtomically
 
 from tms_decision.gateway.state import Gateway
 from tms_rc.motion_servers import MotionServers
+from tms_rc.stop_receipt import ReceiptTopic
 from tms_reason.errors import TmsError
 from tms_reason.wire import to_line
 from tms_runtime.app import App
 
 
-def begin(app: App, gateway: Gateway, servers: MotionServers) -> None:
+def begin(app: App, gateway: Gateway, servers: MotionServers, receipts: ReceiptTopic) -> None:
     """Watch the machine by its areas, where it has any; without them nothing is loaded, heard or served."""
     if not app.site.area_files and not (app.site.state / "rc" / f"{app.machine}.areas").exists():
         return
     from tms_rc.area_watch import AreaWatch
 
-    servers.areas = AreaWatch(app, gateway, servers.drives)
-    _Service(app, servers.areas)
+    servers.areas = watch = AreaWatch(app, gateway, servers.drives)
+    receipts.heard = watch.stops.put
+    _Service(app, watch)
 
 
 class _Service:

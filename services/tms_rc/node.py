@@ -56,7 +56,7 @@ def _serve(app: App, claim: Claim) -> None:
     servers = MotionServers(app, shell)
     kept = Receipts(app.site.state, machine)
     state = StateTopic(app, shell, monitor, servers, claim)
-    ReceiptTopic(app, shell, kept)
+    receipts = ReceiptTopic(app, shell, kept)
     Disk(app, shell, notes, kept)
     drives: Controls | Holder = controls
     if border.controller == "ours":
@@ -71,7 +71,7 @@ def _serve(app: App, claim: Claim) -> None:
         reachable = seen.recovery.reached or controls.reachable()  # asked of the graph at the start only
         return Beat(unix_time(), reachable, drives.settling(), ready, gone, escaped)
 
-    areas.begin(app, gateway, servers)
+    areas.begin(app, gateway, servers, receipts)
     shell.begin(effects, monitor.samples, look)
     for motion in motions(border):
         servers.serve(motion, getattr(border, motion.field))

@@ -16,11 +16,13 @@ from tms_soil.surface import Array, Heights, Mask, Point, distance, inside
 
 TURN = math.radians(5)  # rad between two directions
 STEP = 0.25  # m between two places on a line
+ARM = 0.3  # m beside the bucket in which the ground must be low enough for the arm
 CURLS = 0.75  # m of a line over which the opening gathers when the bucket curls
 LINES = 5  # lines side by side on which a bucket looks at the ground
 DEPTHS = (0.3, 0.5, 0.7, 0.9, 1.1)  # m; deeper, a full bucket could not curl below the arm
 DRAGS = (0.0, 0.5, 1.0, 1.5, 2.0)  # m
 CLEAR = 0.5  # m between a bucket that digs and what it must not touch
+NEAR, SHALLOWER = 0.8, 0.3  # m between drags that differ
 LEAST = 0.1  # m3 loose, of the bucket; what brings less is not worth a swing
 FIXED = 14.0  # s of a cycle without its turns and drag: the measured 25.9 s at 90 degrees, less these
 SWINGS = 0.35  # rad/s of a turn with its beginning and end: 90 degrees there and back in about 9 s
@@ -66,12 +68,16 @@ class DigPoint:
     loose: float  # m3 that it should bring
     benefit: float  # m3 loose by second of a cycle
 
+    def like(self, other: "DigPoint") -> bool:
+        """Whether an arm that cannot do the other one hardly can do this one: near it, and about as deep."""
+        return math.hypot(self.x - other.x, self.y - other.y) < NEAR and self.depth > other.depth - SHALLOWER
+
 
 def dig_points(
     ground: Heights, design: Heights, stand: Stand, tool: Digging, allowed: Sequence[Point],
     taken: Sequence[Sequence[Point]], swing: float,
 ) -> list[DigPoint]:  # fmt: skip
-    """The best drag of each direction, the best of all first; none where nothing is left to dig.
+    """Drags at each place and to each depth, the best first; none where nothing is left to dig.
 
     Args:
         ground: heights now.
@@ -91,12 +97,11 @@ def dig_points(
     surface, floor = _profiles(ground, design, stand, bearings, out, tool.width)
     floor = np.maximum(floor, -tool.deepest)
     free &= np.isfinite(surface) & np.isfinite(floor)
-    found = []
+    found: list[DigPoint] = []
     for k in np.flatnonzero(free.any(axis=1)):
         turn = abs(math.remainder(float(bearings[k]) - swing, math.tau))
         seconds = FIXED + 2 * turn / SWINGS
-        best = _best(out, surface[k], floor[k], free[k], float(bearings[k]), seconds, tool)
-        found += [best] if best is not None else []
+        found += _in_line(out, surface[k], floor[k], free[k], float(bearings[k]), seconds, tool)
     return sorted(found, key=lambda one: -one.benefit)
 
 
@@ -109,23 +114,30 @@ def _places(stand: Stand, bearings: Array, out: Array, aside: float = 0.0) -> tu
 def _profiles(
     ground: Heights, design: Heights, stand: Stand, bearings: Array, out: Array, width: float
 ) -> tuple[Array, Array]:
-    """The ground's mean height over the bucket's width, and the design's highest there, from the tracks' level [m].
+    """The ground's mean height over the bucket's width, and how low an edge may come there, from the tracks' level [m].
 
-    Both by bearing and distance; NaN where one is not known over all of the width.
+    Not below the design, nor so deep below the highest ground around that the arm would touch that. Both by bearing and
+    distance; NaN where one is not known over all of the width.
     """
-    surfaces, floors = [], []
+    surfaces, designs = [], []
     for aside in (np.arange(LINES) + 0.5) / LINES * width - width / 2:
         x, y = _places(stand, bearings, out, float(aside))
         surfaces.append(ground.at(x, y))
-        floors.append(design.at(x, y))
-    return np.mean(surfaces, axis=0) - stand.z, np.max(floors, axis=0) - stand.z
+        designs.append(design.at(x, y))
+    edges = [ground.at(*_places(stand, bearings, out, side * (width / 2 + ARM))) for side in (-1.0, 1.0)]
+    across = np.fmax.reduce([*surfaces, *edges])
+    reach = round(CURLS / STEP)
+    around = np.pad(across, ((0, 0), (reach, reach)), mode="edge")
+    highest = np.max([around[:, k : k + across.shape[1]] for k in range(2 * reach + 1)], axis=0)
+    # NaN stays NaN, as nothing is to be dug where the design says nothing.
+    return np.mean(surfaces, axis=0) - stand.z, np.maximum(np.max(designs, axis=0), highest - DEPTHS[-1]) - stand.z
 
 
-def _best(
+def _in_line(
     out: Array, surface: Array, floor: Array, free: Mask, bearing: float, seconds: float, tool: Digging
-) -> DigPoint | None:
-    """The best drag of one direction."""
-    best: DigPoint | None = None
+) -> list[DigPoint]:
+    """Those of one direction: at each place and to each depth the drag that brings most for its time."""
+    best: dict[tuple[int, float], DigPoint] = {}
     for drag in DRAGS:
         cells = round(drag / STEP)
         for j in range(cells, len(out)):
@@ -135,10 +147,11 @@ def _best(
             took = seconds + drag / DRAGGING
             for depth in _depths(float(surface[j] - floor[part].max())):
                 loose = _brings(surface, j - cells, j, float(surface[j]) - depth, tool)
-                if loose >= LEAST and (best is None or loose / took > best.benefit + 1e-9):
+                other = best.get((j, depth))
+                if loose >= LEAST and (other is None or loose / took > other.benefit + 1e-9):
                     at = float(out[j]) * math.cos(bearing), float(out[j]) * math.sin(bearing)
-                    best = DigPoint(*at, float(surface[j]), depth, drag, loose, loose / took)
-    return best
+                    best[j, depth] = DigPoint(*at, float(surface[j]), depth, drag, loose, loose / took)
+    return list(best.values())
 
 
 def _depths(room: float) -> list[float]:

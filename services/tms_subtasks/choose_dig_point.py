@@ -8,7 +8,7 @@ from tms_soil.dig_point import DigPoint
 from tms_subtasks.records.digging_place import left_to_dig
 from tms_subtasks.records.earthwork import DIG, Earthwork, bucket_of, earthwork_of, job_of
 
-TRIES = 6  # places that the planner is asked about
+TRIES = 12  # places that the planner is asked about; each takes it some tenths of a second
 THETA_W = 0.9  # rad, wished angle of the bucket; the planner takes the nearest one
 
 
@@ -21,27 +21,33 @@ class ChooseDigPoint(Subtask):
     def execute(self, model_name: str, record_name: str, progress: Progress) -> None:
         work = earthwork_of(self.get_param_from_db, model_name, record_name)
         last = bucket_of(self.get_param_from_db, model_name)
-        found = left_to_dig(self.machine, work, last.bearing)
+        (own,) = self.machine.yard.loads([self.machine.name], self.machine.check)
+        found = left_to_dig(self.machine, work, own.capacity, last.bearing)
         if not found:
             raise SubtaskFailed(NothingToDig(self.machine.name, record_name))
-        best = self._planned(found[:TRIES], progress)
+        best = self._planned(found, progress)
         number = job_of(self.get_param_from_db, work.job).counted + 1
         values = {"position_with_angle": 1.0, "x": best.x, "y": best.y, "z": best.z, "theta_w": THETA_W,
                   "depth": best.depth, "drag": best.drag, "number": number}  # fmt: skip
         self.set_param_in_db(model_name, DIG, values, create=True)
 
     def _planned(self, found: list[DigPoint], progress: Progress) -> DigPoint:
-        """The first one that the planner would dig."""
-        why: Reason | None = None
+        """The first one that the planner would dig; what is like one that it has refused is left out."""
+        refused: list[DigPoint] = []
+        why: list[Reason] = []
         for one in found:
+            if any(one.like(other) for other in refused):
+                continue
             try:
                 at = one.x, one.y, one.z
                 self.machine.excavate(progress, at, THETA_W, 0.0, True, depth=one.depth, drag=one.drag)
             except SubtaskFailed as error:
                 if not isinstance(error.reason, Aborted):
                     raise  # nobody has looked
-                why = why or error.reason
+                refused.append(one)
+                why.append(error.reason)
             else:
                 return one
-        assert why is not None
-        raise SubtaskFailed(NoDigPlanned(len(found), self.machine.name, why))
+            if len(refused) == TRIES:
+                break
+        raise SubtaskFailed(NoDigPlanned(len(refused), self.machine.name, why[0]))

@@ -1,6 +1,7 @@
 """Wait for a truck that is not full, choose where the bucket opens over it, and write it for release_simple."""
 
-from tms_config.clock import sleep
+from tms_msg_ground.msg import SoilLoad
+
 from tms_control.links import Matrix
 from tms_kit.reasons import NoPart, WaitsForTruck
 from tms_kit.subtask import Progress, Subtask, SubtaskFailed
@@ -10,8 +11,7 @@ from tms_subtasks.records.digging_place import standing
 from tms_subtasks.records.earthwork import DIG, DUMP, Earthwork, earthwork_of
 
 LEVEL = 3.0  # rad, theta_w of a bucket that holds its soil
-LOOKS = 0.5  # s between two looks at the trucks: one that stands in both has come to rest
-STANDS = 0.05  # m that it may have moved meanwhile
+STANDS = 0.02  # m that a truck may move while all tell their loads, about 0.2 s: one that moves less has come to rest
 
 
 class ChooseDumpPoint(Subtask):
@@ -27,9 +27,11 @@ class ChooseDumpPoint(Subtask):
         while True:
             work = earthwork_of(self.get_param_from_db, model_name, record_name)
             stand = standing(machine, work.floor)
-            for truck in work.trucks:
-                if (at := self._place(truck, stand, work)) is not None:
-                    load, own = machine.yard.load(truck, check), machine.yard.load(machine.name, check)
+            before = {truck: self._vessel(truck) for truck in work.trucks}
+            own, *loads = machine.yard.loads([machine.name, *work.trucks], check)
+            for truck, load in zip(work.trucks, loads, strict=True):
+                stood = not _moved(before[truck], self._vessel(truck))
+                if stood and (at := self._over(truck, before[truck], load, own, stand, work)) is not None:
                     number = self.get_param_from_db(model_name, DIG)["number"]
                     values = {"position_with_angle": 1.0, "x": at.x, "y": at.y, "z": at.z, "theta_w": LEVEL,
                               "number": number, "truck": truck, "bank": own.bank, "before": load.bank}  # fmt: skip
@@ -38,17 +40,19 @@ class ChooseDumpPoint(Subtask):
             progress(WaitsForTruck(tuple(work.trucks)))
             check()
 
-    def _place(self, truck: str, stand: Stand, work: Earthwork) -> DumpPoint | None:
-        """Over a truck that stands in reach and has room."""
-        machine, yard, check = self.machine, self.machine.yard, self.machine.check
-        model, bucket = yard.model(truck), machine.model.bucket
-        if model.vessel is None or bucket is None:
+    def _vessel(self, truck: str) -> Matrix:
+        """Where its vessel is in map."""
+        vessel = self.machine.yard.model(truck).vessel
+        if vessel is None:
             raise SubtaskFailed(NoPart(truck, "vessel"))
-        place = yard.link(truck, model.vessel.link, check)
-        sleep(LOOKS)
-        if _moved(place, yard.link(truck, model.vessel.link, check)):
-            return None
-        load, own = yard.load(truck, check), yard.load(machine.name, check)
+        return self.machine.yard.link(truck, vessel.link, self.machine.check)
+
+    def _over(
+        self, truck: str, place: Matrix, load: SoilLoad, own: SoilLoad, stand: Stand, work: Earthwork
+    ) -> DumpPoint | None:
+        """Over a truck in reach that has room."""
+        model, bucket = self.machine.yard.model(truck), self.machine.model.bucket
+        assert model.vessel is not None and bucket is not None
         shape = model.shapes.get(model.vessel.link)
         edge = shape.max[2] if shape is not None else model.vessel.max[2]
         brings = max(own.loose, own.capacity / 2)  # an empty bucket may come here, too, when a run is resumed

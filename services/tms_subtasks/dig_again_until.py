@@ -15,7 +15,9 @@ class DigAgainUntil(Subtask):
     def execute(self, model_name: str, record_name: str, progress: Progress) -> None:
         work = earthwork_of(self.get_param_from_db, model_name, record_name)
         job, bucket = job_of(self.get_param_from_db, work.job), bucket_of(self.get_param_from_db, model_name)
-        now = self.machine.yard.load(bucket.truck, self.machine.check).bank if bucket.truck else 0.0
-        found = counted(job, bucket, now, left=bool(left_to_dig(self.machine, work, 0.0)))
+        own, *trucks = self.machine.yard.loads([self.machine.name, *work.trucks], self.machine.check)
+        now = {name: one.bank for name, one in zip(work.trucks, trucks, strict=True)}.get(bucket.truck, 0.0)
+        left = left_to_dig(self.machine, work, own.capacity, bucket.bearing)
+        found = counted(job, bucket, now, left=bool(left))
         self.set_param_in_db(SHARED, work.job, found.fields())
         progress(Moved(found.moved, job.volume, found.buckets))

@@ -27,7 +27,7 @@ class WaitUntilLoaded(Subtask):
         if vessel is None:
             raise SubtaskFailed(NoPart(machine.name, "vessel"))
         while True:
-            load = machine.yard.load(machine.name, machine.check).loose
+            load = machine.yard.loads([machine.name], machine.check)[0].loose
             job, bucket = job_of(read, self.want.job), bucket_of(read, self.want.excavator)
             below = bucket.truck == machine.name and bucket.number > job.counted
             if not below and (full(vessel, load) or job.done):

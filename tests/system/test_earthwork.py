@@ -1,4 +1,4 @@
-"""A zx200 and two trucks move the earth of a job at ten times their speed; kills make no bucket count twice."""
+"""A zx200 and two trucks move the earth of a job, ten times as fast as real ones; no bucket counts twice."""
 
 import json
 import os

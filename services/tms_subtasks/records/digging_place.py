@@ -12,8 +12,8 @@ from tms_subtasks.records.earthwork import Earthwork
 AROUND = 0.5  # m of ground beside the area: a bucket is as wide
 
 
-def left_to_dig(machine: Machine, work: Earthwork, swing: float) -> list[DigPoint]:
-    """Where it may dig, the best first; `swing`: where its load goes [rad, base_link].
+def left_to_dig(machine: Machine, work: Earthwork, holds: float, swing: float) -> list[DigPoint]:
+    """Where it may dig, the best first; `holds`: its bucket [m3, loose], `swing`: where its load goes [rad, base_link].
 
     Raises:
         SubtaskFailed: NoPart, or who does not tell what must be known.
@@ -21,7 +21,6 @@ def left_to_dig(machine: Machine, work: Earthwork, swing: float) -> list[DigPoin
     bucket, yard, check = machine.model.bucket, machine.yard, machine.check
     if bucket is None:
         raise SubtaskFailed(NoPart(machine.name, "bucket"))
-    holds = yard.load(machine.name, check).capacity
     stand = standing(machine, work.floor)
     x0, y0, x1, y1 = work.bounds
     ground, design = yard.ground((x0 - AROUND, y0 - AROUND, x1 + AROUND, y1 + AROUND), work.floor, check)

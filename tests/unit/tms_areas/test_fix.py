@@ -25,6 +25,7 @@ def drive(
 
 def driving() -> tuple[Fix, float, float]:
     fix = Fix(0.4)
+    fix.odometry(0.5, 0.0)
     now, x, wrong = drive(fix, 0.0, 8.0)
     assert wrong is None
     return fix, now, x
@@ -99,3 +100,13 @@ def test_poses_that_are_spread_make_the_place_unsure() -> None:
         fix.look(now + (i + 1) * PERIOD)
     unsure = fix.look(now).motion
     assert sure is not None and unsure is not None and unsure.off > sure.off + 0.05
+
+
+def test_a_machine_that_stands_may_tell_its_place_less_often() -> None:
+    fix = Fix(0.4)
+    for i in range(20):
+        fix.heard(0.4 * i, 1.0, 2.0, 0.0)
+    at = 0.4 * 19
+    assert fix.look(at + 0.39) == Seen(None, fix.motion) and fix.motion is not None and fix.motion.rests
+    fix.odometry(0.3, 0.0)  # it leaves, and nobody says where to
+    assert isinstance(fix.look(at + OLD + 0.01).unsure, PoseOld)

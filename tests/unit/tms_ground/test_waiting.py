@@ -51,15 +51,14 @@ def delivery(db: Any, waiting: Waiting) -> Delivery:
 
 
 def keep(waiting: Waiting) -> str:
-    text, number = waiting.state()
-    waiting.kept(number)
-    return text
+    waiting.kept(waiting.made)
+    return waiting.state()
 
 
 def test_nothing_is_sent_before_it_is_on_the_disk() -> None:
     db, waiting, cycles = FakeDb(), Waiting(), made(3)
     waiting.put(cycles[:2])
-    _, number = waiting.state()
+    number = waiting.made
     waiting.put(cycles[2:])
     delivery(db, waiting).send()
     assert db.stored == [] and waiting.unkept
@@ -77,7 +76,7 @@ def test_a_restart_sends_what_its_file_holds() -> None:
     again.restore(keep(waiting))
     assert not again.unkept
     delivery(db, again).send()
-    assert db.stored == made(3) and again.state() == ("[]", 3)
+    assert db.stored == made(3) and again.state() == "[]"
 
 
 @pytest.mark.parametrize("kept", ["{}", "[1]", "[", '[{"run_id": ""}]'])
@@ -85,7 +84,7 @@ def test_a_file_that_holds_no_cycles_changes_nothing(kept: str) -> None:
     waiting = Waiting()
     with pytest.raises(ValueError):
         waiting.restore(kept)
-    assert waiting.state() == ("[]", 0)
+    assert waiting.state() == "[]"
 
 
 def test_a_database_that_is_away_is_told_once_and_gets_all_in_order() -> None:

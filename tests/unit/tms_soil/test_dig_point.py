@@ -117,7 +117,7 @@ def test_bucket_after_bucket_brings_what_was_told() -> None:
             angles = dict(zip(made.names, sample.positions, strict=True))
             earth.report("zx200", time + sample.time, angles, np.eye(4))
         assert 0.5 <= digger.volume <= 0.9
-        assert digger.volume == pytest.approx(best.loose, rel=0.35)
+        assert 0.65 <= best.loose / digger.volume <= 1.2, "what was told is no less careful than true"
         time += made.duration + 1.0
         digger.load[:] = 0.0
         for report in reports([(time + 10.0, START)]):

@@ -1,6 +1,6 @@
 """Subtasks of earth choose by the ground, the loads and the records of this moment, and write records."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -17,7 +17,6 @@ from tms_machine.reasons import Aborted, NoReason, WaitingFor
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
 from tms_soil.surface import Bounds, Heights, Point
-from tms_subtasks import choose_dump_point
 from tms_subtasks.choose_dig_point import ChooseDigPoint
 from tms_subtasks.choose_dump_point import ChooseDumpPoint
 from tms_subtasks.dig_again_until import DigAgainUntil
@@ -34,7 +33,8 @@ class Yard:
 
     def __init__(self) -> None:
         self.places = {"zx200": (0.0, 0.0, 0.0), "ic120": (50.0, 0.0, 0.0), "other": (60.0, 0.0, 0.0)}
-        self.loads = {"zx200": 0.0, "ic120": 0.0, "other": 0.0}  # m3, loose
+        self.carried = {"zx200": 0.0, "ic120": 0.0, "other": 0.0}  # m3, loose
+        self.time_passes: Callable[[], None] = lambda: None
         self.level = 0.0
 
     def model(self, machine: str) -> MachineModel:
@@ -50,9 +50,13 @@ class Yard:
     def taken(self, own: str) -> list[Sequence[Point]]:
         return []
 
-    def load(self, machine: str, check: Any) -> SoilLoad:
-        loose = self.loads[machine]
-        return SoilLoad(loose=loose, bank=loose / 1.25, capacity=0.83 if machine == "zx200" else 5.9)
+    def loads(self, machines: Sequence[str], check: Any) -> list[SoilLoad]:
+        self.time_passes()
+        volumes = {name: self.carried[name] for name in machines}
+        return [
+            SoilLoad(loose=loose, bank=loose / 1.25, capacity=0.83 if name == "zx200" else 5.9)
+            for name, loose in volumes.items()
+        ]
 
     def ground(self, bounds: Bounds, floor: float, check: Any) -> tuple[Heights, Heights]:
         level = flat(25.6, self.level)
@@ -97,8 +101,7 @@ class Records:
 
 
 @pytest.fixture
-def yard(monkeypatch: pytest.MonkeyPatch) -> Yard:
-    monkeypatch.setattr(choose_dump_point, "LOOKS", 0.0)
+def yard() -> Yard:
     return Yard()
 
 
@@ -151,7 +154,7 @@ def test_nothing_left_is_a_refusal(yard: Yard, records: Records) -> None:
 
 
 def test_the_truck_that_stands_in_reach_and_has_room_is_loaded(yard: Yard, records: Records) -> None:
-    yard.loads |= {"zx200": 0.75, "ic120": 1.0}
+    yard.carried |= {"zx200": 0.75, "ic120": 1.0}
     yard.places["ic120"] = AT_FACE
     execute(ChooseDumpPoint, Machine("zx200", yard), records)
     found = records.of["zx200", "dump_point"]
@@ -161,27 +164,27 @@ def test_the_truck_that_stands_in_reach_and_has_room_is_loaded(yard: Yard, recor
 
 
 @pytest.mark.parametrize("why", ["far", "full", "moving"])
-def test_it_waits_for_one(yard: Yard, records: Records, monkeypatch: pytest.MonkeyPatch, why: str) -> None:
+def test_it_waits_for_one(yard: Yard, records: Records, why: str) -> None:
     yard.places["ic120"] = (20.0, 0.0, 0.0) if why == "far" else AT_FACE
-    yard.loads["ic120"] = 5.8 if why == "full" else 0.0
+    yard.carried["ic120"] = 5.8 if why == "full" else 0.0
     looks = 0
 
-    def let_time_pass(_seconds: float) -> None:
+    def let_time_pass() -> None:
         nonlocal looks
         looks += 1
         if why == "moving" and looks <= 4:
             yard.places["ic120"] = (AT_FACE[0] + 0.1 * looks, *AT_FACE[1:])
         elif looks == 5:
-            yard.places["ic120"], yard.loads["ic120"] = AT_FACE, 0.0
+            yard.places["ic120"], yard.carried["ic120"] = AT_FACE, 0.0
 
-    monkeypatch.setattr(choose_dump_point, "sleep", let_time_pass)
+    yard.time_passes = let_time_pass
     said = execute(ChooseDumpPoint, machine := Machine("zx200", yard), records)
     assert looks >= 5 and machine.checks >= 2, "a cancel is heard meanwhile"
     assert said and records.of["zx200", "dump_point"]["truck"] == "ic120"
 
 
 def test_the_bucket_counts_once(yard: Yard, records: Records) -> None:
-    yard.loads["ic120"] = 1.0  # 0.8 m3 as it lay: 0.4 more
+    yard.carried["ic120"] = 1.0  # 0.8 m3 as it lay: 0.4 more
     for _ in range(2):
         execute(DigAgainUntil, Machine("zx200", yard), records)
     job = records.of["", "EARTHWORK"]
@@ -199,7 +202,7 @@ def test_the_bucket_counts_once(yard: Yard, records: Records) -> None:
 def test_a_truck_stands_until_it_is_loaded(
     yard: Yard, records: Records, load: float, number: int, done: bool, goes: bool
 ) -> None:
-    yard.loads["ic120"] = load
+    yard.carried["ic120"] = load
     records.of["zx200", "dump_point"]["number"] = number
     records.of["", "EARTHWORK"]["done"] = done
     machine = Machine("ic120", yard)
