@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from tms_msg_ts.action import ExecuteTask
     from tms_msg_ts.msg import NodeStatus
 
+    from tms_cli.loads import Loads
+
 IDLE, RUNNING, SUCCESS, FAILURE = 0, 1, 2, 3  # tms_msg_ts/NodeStatus
 WORDS = {IDLE: "idle", RUNNING: "running", SUCCESS: "success", FAILURE: "failure"}
 MARKS = {IDLE: "·", RUNNING: "▶", SUCCESS: "✔", FAILURE: "✘"}
@@ -72,6 +74,7 @@ class View:
     reason: str = ""
     nodes: dict[int, NodeView] = field(default_factory=dict)
     machines: dict[str, "MachineState"] = field(default_factory=dict)  # by name
+    loads: "Loads | None" = None
     over: bool = False
     begun: float = 0.0
 
@@ -216,6 +219,8 @@ class Lines:
         reason = DIGITS.sub("", view.reason)  # a growing percentage is not shown
         if reason and reason != self._reason and not any(node.reason == view.reason for node in changed):
             click.echo(f"{view.elapsed:7.1f} s  {'':8} {view.reason}", err=self._err)
+        for line in view.loads.news() if view.loads else ():
+            click.echo(f"{view.elapsed:7.1f} s  {'':8} {line}", err=self._err)
         self._reason = reason
 
 
@@ -241,7 +246,7 @@ class Screen:
     def show(self, view: View, changed: Sequence[NodeView]) -> None:
         from rich.text import Text
 
-        joints = joint_lines(view.machines)
+        joints = [*joint_lines(view.machines), *(view.loads.lines() if view.loads else ())]
         text = Text(no_wrap=True, overflow="ellipsis")
         text.append(say("task {task}", task=view.task_id) + f" {view.description}\n", style="bold")
         text.append(say("run {run}", run=view.run_id or "-") + f"  {state(view.state)}  {view.elapsed:.1f} s\n")

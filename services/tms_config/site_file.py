@@ -73,6 +73,8 @@ class Store(Settings):
     database: str = Field(pattern=r"^[A-Za-z][A-Za-z0-9_-]*$", default="rostmsdb")
     history_days: int | None = Field(ge=1, default=365)  # days for which ended runs and events are kept; null: for ever
     machine_state_days: int | None = Field(ge=1, default=None)  # the same for machine_pose and machine_joints
+    work_days: int | None = Field(ge=1, default=None)  # the same for cycles of work
+    ground_days: int | None = Field(ge=1, default=None)  # the same for snapshots of the ground; the newest one stays
 
     @model_validator(mode="after")
     def _whole(self) -> "Store":

@@ -32,6 +32,20 @@ def turned(axis: str, angle: float | Array) -> Array:
     return found
 
 
+def quaternion(axes: Array) -> list[float]:
+    """The quaternion (x, y, z, w) of a rotation: an eigenvector (I. Y. Bar-Itzhack, 2000), without a special case."""
+    (a, b, c), (d, e, f), (g, h, i) = axes.tolist()
+    matrix = [
+        [a - e - i, 0, 0, 0],
+        [d + b, e - a - i, 0, 0],
+        [g + c, h + f, i - a - e, 0],
+        [h - f, c - g, d - b, a + e + i],
+    ]
+    _, vectors = np.linalg.eigh(np.array(matrix))  # of the lower triangle
+    found: list[float] = vectors[:, -1].tolist()
+    return found
+
+
 def box_place(box: Box) -> Matrix:
     """Centre of a box in the frame that it belongs to."""
     found = np.eye(4)

@@ -24,14 +24,29 @@ SAY_SIZE = Remedy("size", "", "Give --width, --height and --elevation in metres"
 class WhereIsOrigin(Reason, text="needs either plane, north and east, or latitude and longitude", action=EDIT_CONFIG):
     pass
 class AreaInsideOut(Reason, text="must be [least x, least y, largest x, largest y]", action=EDIT_CONFIG): pass
+class OneDesign(Reason, text="needs one of plane, pit and file", action=EDIT_CONFIG): pass
 class NoGround(Reason, text="there is no ground:, which tells the site's area", action=EDIT_CONFIG): pass
 class NoSoil(Reason, text="there is no soil '{soil}' (there: {soils})", action=EDIT_CONFIG):
     soil: str; soils: tuple[str, ...]
 class GroundOther(Reason, text="the kept ground is one of another area or soil: it is put aside as {file}"): file: str
 class GroundNotKept(Reason, text="{file}: the ground cannot be kept there ({problem})"): file: str; problem: str
+class WorkOther(Reason, text="the kept work cannot be read, cycles begin anew ({problem})"): problem: str
+class CycleLost(Reason, text="the database refuses a finished cycle for good: {why}"): why: Reason
+class CyclesMany(Reason, text="too many cycles wait for the database: the oldest {lost} of them are lost"): lost: int
 class NoOrigin(Reason, text="the file is in EPSG {epsg}, and the site file tells no ground.origin", action=EDIT_CONFIG):
     epsg: int
 class NotAlongPlane(Reason, text="a GeoTIFF needs a ground.origin on a plane, without yaw: export an .asc"): pass
+
+# what others ask of the ground
+class NotAnArea(Reason, text="the rectangle [{x0}, {y0}, {x1}, {y1}] is none on the site"):
+    x0: Metres; y0: Metres; x1: Metres; y1: Metres
+class BadCell(Reason, text="cells of {cell} are asked for: {least} to {most} are possible"):
+    cell: Metres; least: Metres; most: Metres
+
+# grounds in the database, and what somebody has measured
+class GroundFromFuture(Reason,
+    text="the ground of {time} ({source}) lies in the future and is not taken: a clock has gone back"):
+    time: str; source: str
 
 # files of heights
 class GroundFile(Reason, text="{file}: {why}"): file: str; why: Reason

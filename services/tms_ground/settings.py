@@ -6,7 +6,7 @@ from tms_config.config import CONFIGS, Site
 from tms_config.models import Settings
 from tms_config.reasons import BadConfig
 from tms_config.yaml_file import located, parse
-from tms_ground.reasons import AreaInsideOut, NoGround, NoSoil, WhereIsOrigin
+from tms_ground.reasons import AreaInsideOut, NoGround, NoSoil, OneDesign, WhereIsOrigin
 from tms_reason.errors import ConfigError
 from tms_reason.validation import Wrong, problems
 from tms_soil.soils import Soil, SoilsFile
@@ -37,6 +37,53 @@ class Origin(Settings):
         return self
 
 
+class SoilRegion(Settings):
+    """Where another soil lies: in each tile of 12.8 m whose middle is in a polygon."""
+
+    soil: str  # one of configs/soils.yaml
+    corners: tuple[tuple[float, float], ...] = Field(min_length=3)  # m, map
+
+
+class PlaneDesign(Settings):
+    """A level or sloping plane."""
+
+    z: float  # m, map, at its origin
+    slope_x: float = 0.0  # rise per length along x
+    slope_y: float = 0.0  # rise per length along y
+
+
+class PitDesign(Settings):
+    """A pit: a level floor, slopes up to the rim."""
+
+    floor: tuple[tuple[float, float], ...] = Field(min_length=3)  # m, map: corners
+    level: float  # m, map
+    rim: float  # m, map: height at which the slopes end
+    slope: float = Field(gt=0, default=1.0)  # rise per length
+
+
+class FileDesign(Settings):
+    """A surface in a file (LandXML, GeoTIFF, ASCII grid)."""
+
+    path: str = Field(min_length=1)  # from the folder of the site file
+    surface: str | None = None  # its name, where a LandXML holds several
+    epsg: int | None = None  # code of its coordinates, where it does not tell them
+    in_map: bool = False  # its coordinates are those of `map`
+
+
+class Design(Settings):
+    """The surface that the ground should become, told in one of these ways."""
+
+    plane: PlaneDesign | None = None
+    pit: PitDesign | None = None
+    file: FileDesign | None = None
+
+    @model_validator(mode="after")
+    def _one_surface(self) -> "Design":
+        if [self.plane, self.pit, self.file].count(None) != 2:
+            raise Wrong(OneDesign())
+        return self
+
+
 class Plan(Settings):
     """What a day should bring."""
 
@@ -52,7 +99,9 @@ class Ground(Settings):
     cell: float = Field(gt=0.01, le=10, default=0.2)  # m, side of the cells of a ground that is imported
     level: float = 0.0  # m, map: height of the ground where `tms:ground` begins
     soil: str = "earth"  # one of configs/soils.yaml
+    soils: tuple[SoilRegion, ...] = ()  # the last one counts where several overlap
     plan: Plan | None = None
+    design: Design | None = None
 
     @model_validator(mode="after")
     def _has_area(self) -> "Ground":
@@ -77,16 +126,18 @@ def ground_of(site: Site) -> Ground | None:
         raise ConfigError(found[0] if len(found) == 1 else BadConfig(tuple(found))) from error
 
 
-def soil_of(site: Site, ground: Ground) -> Soil:
-    """The soil of a site.
+def soils_of(site: Site, ground: Ground) -> dict[str, Soil]:
+    """The soils of a site by their names, that of its most part first.
 
     Raises:
         ConfigError: configs/soils.yaml is wrong, or has no such soil.
     """
     known = parse(CONFIGS / "soils.yaml", SoilsFile).soils
-    if ground.soil not in known:
-        raise ConfigError(located(site.path, NoSoil(ground.soil, tuple(known)), "ground", "soil"))
-    return known[ground.soil]
+    named = [(ground.soil, ("soil",)), *((one.soil, ("soils", k, "soil")) for k, one in enumerate(ground.soils))]
+    for name, keys in named:
+        if name not in known:
+            raise ConfigError(located(site.path, NoSoil(name, tuple(known)), "ground", *keys))
+    return {name: known[name] for name, _ in named}
 
 
 def needed(site: Site) -> Ground:

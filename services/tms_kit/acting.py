@@ -9,6 +9,7 @@ from tms_config.models import Joint, MachineModel
 from tms_config.naming import process_of
 from tms_decision.gateway.stops import STOP_PROVEN
 from tms_decision.reasons import ProcessLost
+from tms_kit.yard import Yard
 from tms_machine.reasons import (
     Aborted,
     Canceled,
@@ -56,15 +57,25 @@ class Acting:
         timeout: float,
         goal_id: bytes = b"",
         watches: Mapping[str, Callable[[AnyPeer], None]] | None = None,
+        yard: Callable[[], Yard] | None = None,
     ) -> None:
-        """`goal_id`: of the subtask's goal; `watches` end calls to rc and rp when those processes are lost."""
-        self._goal_id, self._watches = goal_id, watches or {}
+        """`goal_id`: of the subtask's goal; `watches` end calls to rc and rp when those processes are lost.
+
+        `yard`: makes what `yard` is, once a subtask asks for it.
+        """
+        self._goal_id, self._watches, self._yard = goal_id, watches or {}, yard
         self.name = name
         self.model = model
         self._ros, self._model_name, self._timeout = ros, model_name, timeout
         self._deadline = monotonic() + timeout
         self._cancelled = threading.Event()
         self._calls: list[tuple[AnyPeer, AnyCall]] = []
+
+    @property
+    def yard(self) -> Yard:
+        """What is around the machine."""
+        assert self._yard is not None, "a subtask has a site"
+        return self._yard()
 
     def joint(self, name: str) -> Joint:
         """Limits of a joint.

@@ -9,6 +9,7 @@ from trajectory_msgs.msg import JointTrajectory
 from tms_config.models import MachineModel
 from tms_kit.machine import Machine
 from tms_kit.subtask import load
+from tms_kit.yard import Yard
 from tms_machine.goal_inputs import Inputs
 from tms_machine.values import Value
 from tms_reason.errors import SubtaskFailed
@@ -98,6 +99,11 @@ class Rehearsal(Machine):
         if hasattr(result, "plan"):
             result.plan = answer.plan
         return result
+
+    @property
+    def yard(self) -> Yard:
+        """What is around the machine changes until the subtask runs."""
+        raise NotOfArm
 
     def angle_of(self, joint: str) -> float:
         """The angle of a joint [rad] after the motions so far."""

@@ -12,6 +12,7 @@ from tms_config.clock import monotonic
 from tms_kit.foreign_goals import ForeignGoals
 from tms_kit.machine import Machine, SubtaskCancelled
 from tms_kit.subtask import Params, Subtask, load
+from tms_kit.yard import Yard
 from tms_machine.goal_inputs import KINDS, parted
 from tms_machine.leaf_forms import own_action
 from tms_machine.permit import Permit, watch_server
@@ -51,6 +52,7 @@ class _Server:
         self._permit = Permit(app.ros, app.pulse, app.machine, str(app.process.action))
         self._watches: dict[str, Callable[[AnyPeer], None]] = {}
         self._foreign = ForeignGoals(app)
+        self._yard: Yard | None = None
         self._action = own_action(app.site, app.machine, str(app.process.action))  # its type and its name
         self._reserved = False
         self._want: Params | None = None
@@ -173,7 +175,7 @@ class _Server:
         app = self._app
         model, limit = app.site.model_of(app.machine), self._kind.timeout
         name = app.site.file.machines[app.machine].model
-        machine = Machine(app.ros, app.machine, name, model, limit, goal.uuid, self._watched())
+        machine = Machine(app.ros, app.machine, name, model, limit, goal.uuid, self._watched(), self._around)
         subtask = self._kind(machine, self._want, self._read, self._write)
 
         def cancel() -> None:
@@ -184,6 +186,11 @@ class _Server:
         if goal.cancelled.is_set():
             cancel()
         return machine, subtask
+
+    def _around(self) -> Yard:
+        """Begin with the first goal that asks for it, as most subtasks never do."""
+        self._yard = self._yard or Yard(self._app.ros, self._app.site)
+        return self._yard
 
     def _watched(self) -> dict[str, Callable[[AnyPeer], None]]:
         """Begin with the first goal: the gateway's lease, ten times a second, must not wake an unused process."""

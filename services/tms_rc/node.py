@@ -66,6 +66,7 @@ def _serve(app: App, claim: Claim) -> None:
     shell.does(CancelAll, lambda _: controls.cancel_everything())
 
     def look(seen: Gateway) -> Beat:
+        relayed_goals.look(app, servers, seen, monotonic())
         ready, gone, escaped = servers.look(seen)
         reachable = seen.recovery.reached or controls.reachable()  # asked of the graph at the start only
         return Beat(unix_time(), reachable, drives.settling(), ready, gone, escaped)

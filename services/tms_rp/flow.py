@@ -56,7 +56,7 @@ class Flow:
         """
         trench = through.trench
         grounded = scene.with_ground() if trench is None else trench.around(scene)
-        up = self._up(now, through, Scene().with_ground() if trench is None else trench.around(Scene()))
+        up = self._up(now, through, scene.bare().with_ground() if trench is None else trench.around(scene.bare()))
         why: Reason | None = None
         for course in self._courses((now, *up), moves, through, grounded):
             made = self._timed((now, *course.poses), course.least, moves)

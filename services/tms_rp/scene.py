@@ -2,7 +2,9 @@
 
 import math
 import zlib
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Protocol
 
 import numpy as np
 
@@ -13,7 +15,7 @@ from tms_rp.meshes import Mesh
 from tms_rp.reasons import Ground
 
 GROWTH_STEP = 0.25  # m; sizes of grown bodies differ by this much, as each new size costs a body for ever
-# Our assumption until the terrain is known: flat, where the tracks stand. The slab reaches beyond the longest arm.
+# Our assumption where the terrain is not known: flat, where the tracks stand. The slab reaches beyond the longest arm.
 GROUND = Box(min=(-15.0, -15.0, -3.0), max=(15.0, 15.0, 0.0))
 
 
@@ -44,15 +46,49 @@ class Obstacle:
 
 
 @dataclass(frozen=True)
+class Region:
+    """A rectangle along the axes of a frame in base_link: along x from `near` to `far`, along y from `right` to `left`.
+
+    All in m. `lets`: the link that may be in the ground there.
+    """
+
+    near: float
+    far: float
+    right: float
+    left: float
+    lets: str = ""
+
+
+class Surrounding(Protocol):
+    """The ground as it is now (terrain.py)."""
+
+    @property
+    def whole(self) -> tuple[Obstacle, ...]:
+        """All of it."""
+
+    def obstacles(self, frame: Matrix, regions: Sequence[Region]) -> tuple[Obstacle, ...]:
+        """What lies in some regions of a frame (4 x 4, in base_link)."""
+
+
+@dataclass(frozen=True)
 class Scene:
-    """All obstacles of one moment; `padding`: m that links keep to them, where it is more than usual."""
+    """All obstacles of one moment; `padding`: m that links keep to them, where it is more than usual.
+
+    `ground`: where somebody tells of it; else it counts as flat.
+    """
 
     obstacles: tuple[Obstacle, ...] = ()
     padding: tuple[tuple[str, float], ...] = ()
+    ground: Surrounding | None = field(default=None, compare=False)
 
     def with_ground(self) -> "Scene":
         """The same with the ground, for ways around something: only the goal itself may lead into the soil."""
-        return replace(self, obstacles=(*self.obstacles, Obstacle(Ground(), GROUND, np.eye(4))))
+        ground = (Obstacle(Ground(), GROUND, np.eye(4)),) if self.ground is None else self.ground.whole
+        return replace(self, obstacles=(*self.obstacles, *ground))
+
+    def bare(self) -> "Scene":
+        """One without obstacles, on the same ground."""
+        return Scene(ground=self.ground)
 
     def fingerprint(self) -> int:
         """A number that is the same for the same scene."""

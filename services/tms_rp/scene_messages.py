@@ -8,7 +8,7 @@ from std_msgs.msg import ColorRGBA
 from tms_msg_rp.msg import SceneArea, SceneBody
 from visualization_msgs.msg import Marker, MarkerArray
 
-from tms_control.links import Matrix
+from tms_control.links import Matrix, quaternion
 from tms_reason.wire import to_line
 from tms_rp import scene_view as view
 from tms_rp.meshes import Mesh
@@ -86,22 +86,8 @@ def _corners(mesh: Mesh, place: Matrix) -> list[Point]:
 
 
 def _pose(place: Matrix) -> Pose:
-    x, y, z, w = _turn(place[:3, :3])
+    x, y, z, w = quaternion(place[:3, :3])
     return Pose(position=_spot(place[:3, 3].tolist()), orientation=Quaternion(x=x, y=y, z=z, w=w))
-
-
-def _turn(axes: Matrix) -> list[float]:
-    """The quaternion (x, y, z, w) of a rotation: an eigenvector (I. Y. Bar-Itzhack, 2000), without a special case."""
-    (a, b, c), (d, e, f), (g, h, i) = axes.tolist()
-    matrix = [
-        [a - e - i, 0, 0, 0],
-        [d + b, e - a - i, 0, 0],
-        [g + c, h + f, i - a - e, 0],
-        [h - f, c - g, d - b, a + e + i],
-    ]
-    _, vectors = np.linalg.eigh(np.array(matrix))  # of the lower triangle
-    found: list[float] = vectors[:, -1].tolist()
-    return found
 
 
 def _spot(at: Sequence[float]) -> Point:

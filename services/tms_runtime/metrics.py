@@ -36,16 +36,23 @@ REQUEST = re.compile(rb"([A-Z]{1,20}) (/[!-~]*) HTTP/1\.[0-9]\r\n")
 
 def unready(row: Process, seconds: float = 2.0) -> Reason | None:
     """Why a process cannot work now, from its health port; None when it can."""
+    status, text = page(row, "/readyz", seconds)
+    if not status:
+        return PortSilent(row.full)
+    return None if status == http.HTTPStatus.OK else wire.known(text.strip())
+
+
+def page(row: Process, path: str = "/metrics", seconds: float = 2.0) -> tuple[int, str]:
+    """Status and text of a page of a process; (0, "") if it does not answer."""
     asked = http.client.HTTPConnection(row.address, row.port, timeout=seconds)
     try:
-        asked.request("GET", "/readyz")
+        asked.request("GET", path)
         answer = asked.getresponse()
-        text = answer.read().decode("utf-8", "replace").strip()
+        return answer.status, answer.read().decode("utf-8", "replace")
     except (OSError, http.client.HTTPException):  # also of a process that ends while it answers
-        return PortSilent(row.full)
+        return 0, ""
     finally:
         asked.close()
-    return None if answer.status == http.HTTPStatus.OK else wire.known(text)
 
 
 class Health:

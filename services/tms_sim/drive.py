@@ -9,6 +9,7 @@ import math
 
 from tms_config.models import Joint, Response
 from tms_sim.dead_time import DeadTime
+from tms_sim.soil import Resistance
 
 TORQUE = 2.0  # times the acceleration limit of planned motions
 STICKS = 5e-4  # rad/s, slower than this a joint stands when no command is under way
@@ -17,8 +18,10 @@ STICKS = 5e-4  # rad/s, slower than this a joint stands when no command is under
 class JointDrive:
     """One joint: true position [rad] and velocity [rad/s]."""
 
-    def __init__(self, joint: Joint, response: Response, position: float) -> None:
+    def __init__(self, joint: Joint, response: Response, position: float, soil: Resistance | None = None) -> None:
+        """`soil`: what slows it."""
         self.position, self.velocity = position, 0.0
+        self._soil = soil or Resistance()
         self._lag, self._most = response.lag, TORQUE * joint.acceleration
         self._low = -math.inf if joint.min is None else joint.min
         self._high = math.inf if joint.max is None else joint.max
@@ -65,8 +68,9 @@ class JointDrive:
         if self._target is None:
             return
         wanted = (self._target - self.position) / self._lag
-        change = self._most * h
-        self.velocity += max(-change, min(change, wanted - self.velocity))
+        change, slowed = self._most * h, self._soil.slowed(wanted)
+        self.velocity = self._soil.braked(self.velocity, slowed)
+        self.velocity += max(-change, min(change, slowed - self.velocity))
         position = self.position + self.velocity * h
         self.position = max(self._low, min(self._high, position))
         if position != self.position:

@@ -1,5 +1,6 @@
 """A whole stand-in: joints, tracks, faults, and its time. Pure logic."""
 
+import math
 import threading
 from collections.abc import Callable, Sequence
 
@@ -10,6 +11,7 @@ from tms_sim.base import Base
 from tms_sim.controller import Controller
 from tms_sim.joint_commands import JointCommands
 from tms_sim.navigator import Navigator
+from tms_sim.soil import Feeling, Stance, joints_in_soil
 from tms_sim.tracks import ZERO
 from tms_sim.turner import Turner
 
@@ -38,6 +40,8 @@ class StandIn:
         self.commands = JointCommands(self.arm, self._border.joints)
         self.base = Base(model.drive, start, response.get(DRIVE)) if model.drive else None
         self.navigator = Navigator(self.base) if self.base else None
+        self.ground = Feeling(model.bucket.force if model.bucket else math.inf)
+        self._in_soil = [self.arm.servos[joint] for joint in joints_in_soil(model)]
         self.fault = fault
         self.time = 0.0  # s
         self._die = die
@@ -102,6 +106,10 @@ class StandIn:
         if not self.busy:
             self.later(lambda: self.commands.take(names, control, position, velocity))
 
+    def feel(self, resistance: float, stands: Stance) -> None:
+        """Take what it feels of the ground; the resistance is in N."""
+        self.ground.tell(self.time, resistance, stands)
+
     def later(self, command: Callable[[], object]) -> None:
         """Run a command now, or with the fault `late` that many seconds of the machine's time later."""
         self._after(self.fault.late, command)
@@ -146,6 +154,9 @@ class StandIn:
         self._in_motion = self._in_motion + seconds if busy else 0.0
         self._strike(busy)
         self._leak(busy, seconds)
+        share = self.ground.share(self.time)
+        for servo in self._in_soil:
+            servo.resist(share)
         self.controller.step(seconds)
         self.turner.step(seconds)
         if not busy:

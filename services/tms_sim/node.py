@@ -8,6 +8,7 @@ from geometry_msgs.msg import Twist
 from nav2_msgs.action import ComputePathToPose
 from pydantic import ValidationError
 from std_msgs.msg import Bool, Float64, String
+from tms_msg_ground.msg import GroundContact
 
 from tms_config.models import Border
 from tms_config.site_file import Fault
@@ -20,6 +21,7 @@ from tms_sim.machine import StandIn
 from tms_sim.nav_servers import nav_servers
 from tms_sim.path_server import PathServer
 from tms_sim.servers import ActionHandler, ActionServer
+from tms_sim.soil import stance
 from tms_sim.telemetry import STEP_PERIOD, Telemetry
 from tms_sim.turn_server import TYPES, turn_server
 
@@ -49,8 +51,15 @@ def start(app: App) -> None:
     for joint, topic in border.joint_angles.items():
         app.ros.subscribe(Float64, f"/{name}/{topic}", _angle_of(machine, joint), depth=10)
     app.ros.subscribe(String, f"/{name}/sim/fault", lambda m: _break(app, machine, m.data), depth=10)
+    if site.file.ground is not None:
+        app.ros.subscribe(GroundContact, f"/{name}/ground_contact", lambda m: _feel(machine, m), latched=True)
     app.ros.every(STEP_PERIOD, Telemetry(app, machine, name).tick)
     app.ready_when(lambda: None)
+
+
+def _feel(machine: StandIn, contact: GroundContact) -> None:
+    q = contact.stands.orientation
+    machine.feel(contact.resistance, stance(contact.stands.position.z, (q.x, q.y, q.z, q.w)))
 
 
 def _angle_of(machine: StandIn, joint: str) -> Callable[[Float64], None]:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from tms_config.site_file import Fault
+from tms_sim.soil import LEVEL, Stance
 
 SECOND = 1_000_000_000  # ns
 
@@ -18,14 +19,14 @@ class Reading(NamedTuple):
     velocities: tuple[float, ...]  # rad/s
     place: tuple[float, float, float]  # x m, y m, yaw rad, in `map`
     speeds: tuple[float, float]  # m/s, rad/s
+    stands: Stance = LEVEL
 
     def each(self, change: Callable[[float], float]) -> "Reading":
         """The same with every number changed; the stamp stays."""
         x, y, yaw = map(change, self.place)
         v, w = map(change, self.speeds)
-        return Reading(
-            self.stamp, tuple(map(change, self.positions)), tuple(map(change, self.velocities)), (x, y, yaw), (v, w)
-        )
+        joints = tuple(map(change, self.positions)), tuple(map(change, self.velocities))
+        return Reading(self.stamp, *joints, (x, y, yaw), (v, w), Stance(*map(change, self.stands)))
 
     def standing(self) -> "Reading":
         """The same with all velocities 0."""

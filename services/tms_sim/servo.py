@@ -5,6 +5,7 @@ import math
 from tms_config.models import Joint, Response
 from tms_control.control_law import ControlLaw
 from tms_sim.drive import JointDrive
+from tms_sim.soil import Resistance
 
 SETTLED = 1e-3  # rad and rad/s, within which the controller ends its commands
 STANDS = 5e-3  # rad/s, slower than this it counts as standing for a goal that is being cancelled
@@ -20,7 +21,8 @@ class Servo:
         self._leak = 0.0  # rad/s, motion without a command
         self._stood = math.inf  # s since the setpoint came to stand
         self._braking = self._halted = False
-        self._drive = JointDrive(joint, response, position) if response else None
+        self._soil = Resistance()
+        self._drive = JointDrive(joint, response, position, self._soil) if response else None
         self._law = ControlLaw(response.dead_time, response.lag, joint.velocity) if response else None
 
     @property
@@ -36,7 +38,7 @@ class Servo:
     @property
     def velocity(self) -> float:
         """True velocity [rad/s]."""
-        return (self._drive.velocity if self._drive else self.rate) + self._leak
+        return (self._drive.velocity if self._drive else self._soil.slowed(self.rate)) + self._leak
 
     @property
     def driven(self) -> bool:
@@ -102,6 +104,10 @@ class Servo:
         self.led, self.rate, self._stood, self._halted = False, 0.0, math.inf, False
         self.setpoint = self.position
 
+    def resist(self, share: float) -> None:
+        """Leave it a share of its free speed, in the direction in which it moves."""
+        self._soil.meet(share, self.velocity)
+
     def leak(self, velocity: float, h: float) -> None:
         """Move without a command, within the end stops."""
         before = self.position
@@ -122,7 +128,8 @@ class Servo:
         joint, most = self.joint, self.joint.acceleration * h
         wanted = max(-joint.velocity, min(joint.velocity, wanted))
         self.rate += max(-most, min(most, wanted - self.rate))
-        position = self.setpoint + self.rate * h
+        rate = self.rate if self._drive else self._soil.slowed(self.rate)
+        position = self.setpoint + rate * h
         self.setpoint = self._within(position)
         if self.setpoint != position:
             self.rate = 0.0  # the end stop

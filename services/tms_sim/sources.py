@@ -17,6 +17,7 @@ from tms_machine.frames import MAP
 from tms_machine.geometry import about
 from tms_ros.node import Ros
 from tms_sim.sensor_model import SECOND, Reading
+from tms_sim.soil import turn_of
 
 Fill = Callable[[Any, Reading], None]  # fills a message from a reading
 
@@ -95,11 +96,19 @@ def _odometry(odom: Odometry, reading: Reading, origin: tuple[float, float, floa
 
 def _global_pose(odom: Odometry, reading: Reading) -> None:
     """Fill in the pose without velocities, as in the simulator."""
-    _place(odom.pose.pose, *reading.place)
+    _stand(odom.pose.pose, reading)
 
 
 def _pose_stamped(pose: PoseStamped, reading: Reading) -> None:
-    _place(pose.pose, *reading.place)
+    _stand(pose.pose, reading)
+
+
+def _stand(pose: Pose, reading: Reading) -> None:
+    """Fill in a place on the ground."""
+    x, y, yaw = reading.place
+    pose.position.x, pose.position.y, pose.position.z = x, y, reading.stands.height
+    q = pose.orientation
+    q.x, q.y, q.z, q.w = turn_of(yaw, reading.stands)
 
 
 def _place(pose: Pose, x: float, y: float, yaw: float) -> None:

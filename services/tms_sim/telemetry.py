@@ -68,15 +68,16 @@ class Telemetry:
         arm, base = self._machine.arm, self._machine.base
         place = (base.x, base.y, base.yaw) if base else self._origin
         speeds = (base.v + base.leak, base.w) if base else (0.0, 0.0)
-        return Reading(measured, tuple(arm.positions), tuple(arm.velocities), place, speeds)
+        return Reading(measured, tuple(arm.positions), tuple(arm.velocities), place, speeds,
+                       self._machine.ground.stance)  # fmt: skip
 
     def _publish_frames(self, reading: Reading) -> None:
-        now = (reading.place, reading.positions)
+        now = (reading.place, reading.positions, reading.stands)
         if now == self._reported and self._ticks % TF_STILL:
             return
         if now != self._reported:
             joints = dict(zip(self._machine.arm.joints, reading.positions, strict=True))
-            frames = self._chain.frames(reading.place, joints)
+            frames = self._chain.frames(reading.place, joints, reading.stands)
             self._frames, self._reported = TFMessage(transforms=[_transform(frame) for frame in frames]), now
         stamp = time_of(reading.stamp)
         for transform in self._frames.transforms:

@@ -1,6 +1,7 @@
 """Tracks and blades on the ground: how a machine stands on it, what tracks press, what a blade grades."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -9,7 +10,7 @@ from tms_control.links import Matrix, placed
 from tms_soil.cutting import around, cut, depths, put_down, square_to, swept
 from tms_soil.grid import COMPACTED, FINE, LOOSE, Grid
 from tms_soil.resistance import force
-from tms_soil.surface import Array, Bounds
+from tms_soil.surface import Array, Bounds, Mask
 
 PLACES = np.linspace(0.0, 1.0, 5)  # along a track, at which the ground is looked at
 PRESSES = 0.1  # m, way after which tracks press anew: a cell
@@ -18,40 +19,50 @@ RAKE = math.radians(60)  # rad, of a blade: ours
 STANDS = 1e-4  # m, motion of an edge that has no direction
 
 
+def standing(tracks: Tracks, sample: Callable[[Array, Array], Array], x: float, y: float, yaw: float) -> Matrix:
+    """The place of base_link in map for a machine that stands at x, y [m], by height and slope under its tracks.
+
+    `sample`: heights [m] at places. Where the ground is unknown it counts as level, at the height 0 if all of it is.
+    """
+    flat, contact = placed(x, y, yaw), _contact(tracks)
+    heights = sample(*(contact @ flat[:3, :3].T + flat[:3, 3])[:, :2].T)
+    known = np.isfinite(heights)
+    if not known.any():
+        return flat
+    ahead, aside, up = _plane(contact, heights, known)
+    place = flat.copy()
+    z = np.array([-ahead, -aside, 1.0]) / math.sqrt(1 + ahead * ahead + aside * aside)
+    front = np.array([1.0, 0.0, ahead]) / math.hypot(1.0, ahead)
+    place[:3, :3] = flat[:3, :3] @ np.column_stack((front, np.cross(z, front), z))
+    place[2, 3] = up
+    return place
+
+
+def _contact(tracks: Tracks) -> Array:
+    """Places along both tracks [m, base_link]."""
+    x = tracks.rear + PLACES * (tracks.front - tracks.rear)
+    return np.array([(one, side, 0.0) for side in (tracks.gauge / 2, -tracks.gauge / 2) for one in x])
+
+
+def _plane(contact: Array, heights: Array, known: Mask) -> tuple[float, float, float]:
+    """Rise ahead and to the left, and the height [m] in the middle, of the plane nearest to the known heights."""
+    filled = np.where(known, heights, heights[known].mean())
+    sides = np.column_stack((contact[:, :2], np.ones(len(filled))))
+    ahead, aside, up = np.linalg.lstsq(sides, filled, rcond=None)[0]
+    return float(ahead), float(aside), float(up)
+
+
 class Rolling:
     """Two tracks: a pass of their length turns two thirds of the loose soil below them into compacted soil."""
 
     def __init__(self, tracks: Tracks, grid: Grid) -> None:
         self._tracks, self._grid = tracks, grid
         self._pressed: Matrix | None = None  # place of base_link when they last pressed
-        x = tracks.rear + PLACES * (tracks.front - tracks.rear)
-        sides = (tracks.gauge / 2, -tracks.gauge / 2)
-        self._contact: Array = np.array([(one, side, 0.0) for side in sides for one in x])  # base_link
+        self._contact = _contact(tracks)
 
     def stand(self, x: float, y: float, yaw: float) -> Matrix:
-        """The place of base_link in map for a machine that stands at x, y [m], by height and slope under its tracks.
-
-        Where the ground is unknown it counts as level, at the height 0 if all of it is.
-        """
-        flat = placed(x, y, yaw)
-        heights = self._grid.sample(*(self._contact @ flat[:3, :3].T + flat[:3, 3])[:, :2].T)
-        known = np.isfinite(heights)
-        if not known.any():
-            return flat
-        ahead, aside, up = self._plane(heights, known)
-        place = flat.copy()
-        z = np.array([-ahead, -aside, 1.0]) / math.sqrt(1 + ahead * ahead + aside * aside)
-        front = np.array([1.0, 0.0, ahead]) / math.hypot(1.0, ahead)
-        place[:3, :3] = flat[:3, :3] @ np.column_stack((front, np.cross(z, front), z))
-        place[2, 3] = up
-        return place
-
-    def _plane(self, heights: Array, known: Array) -> tuple[float, float, float]:
-        """Rise ahead and to the left, and the height [m] in the middle, of the plane nearest to the known heights."""
-        filled = np.where(known, heights, heights[known].mean())
-        sides = np.column_stack((self._contact[:, :2], np.ones(len(filled))))
-        ahead, aside, up = np.linalg.lstsq(sides, filled, rcond=None)[0]
-        return float(ahead), float(aside), float(up)
+        """The place of base_link in map for a machine that stands at x, y [m]; see `standing`."""
+        return standing(self._tracks, self._grid.sample, x, y, yaw)
 
     def step(self, place: Matrix) -> list[Bounds]:
         """Move base_link to a place in map; returns where the ground changed."""

@@ -18,8 +18,9 @@ from tms_soil.slumping import MARGIN, settle
 from tms_soil.surface import Array, Bounds
 
 STEP = 0.02  # s, longest step: a report after a longer time is taken in parts, straight from place to place
-GAP = 1.0  # s without a report, after which nobody knows which way the machine took
-JUMP = 1.0  # m in one step that no machine makes: it was put somewhere else
+GAP = 1.0  # s without a report, after which nobody knows which way the machine took, where nothing else is said
+JUMP = 1.0  # m in a short time that no machine makes: it was put somewhere else ...
+FASTEST = 12.0  # m/s, ... and in a longer one: a bucket far out on an upper body that turns at 1.1 rad/s
 
 
 class Body:
@@ -77,9 +78,9 @@ class Body:
 class Earth:
     """The ground and all machines of a site."""
 
-    def __init__(self, grid: Grid, models: Mapping[str, MachineModel]) -> None:
-        """`models`: by machine."""
-        self.grid = grid
+    def __init__(self, grid: Grid, models: Mapping[str, MachineModel], gap: float = GAP) -> None:
+        """`models`: by machine; `gap`: s without a report, after which nobody knows which way a machine took."""
+        self.grid, self._gap = grid, gap
         self.bodies = {name: Body(model, grid) for name, model in models.items()}
         self._haulers = [body.hauler for body in self.bodies.values() if body.hauler]
 
@@ -91,18 +92,19 @@ class Earth:
         """
         body = self.bodies[machine]
         now, seconds = body.at(angles, base), time - body.time
-        before = body.places if 0 <= seconds <= GAP and _near(body.places, now) else now
+        before = body.places if 0 <= seconds <= self._gap and _near(body.places, now, seconds) else now
         still = all(np.array_equal(before[part], now[part]) for part in now)
         body.places, body.time = now, time
         if still and body.rests and not body.running:
             return []
-        changed, count = [], max(1, math.ceil(min(seconds, GAP) / STEP - 1e-6))
+        changed, count = [], max(1, math.ceil(min(seconds, self._gap) / STEP - 1e-6))
         for k in range(count):
             here, there = (_between(before, now, one / count) for one in (k, k + 1))
-            found = body.step(here, there, min(max(seconds, 0.0), GAP) / count, self._haulers)
+            found = body.step(here, there, min(max(seconds, 0.0), self._gap) / count, self._haulers)
             body.rests = still and not found and seconds > 0.0
-            body.running = self._settle(body.running + found)
-            changed += found + body.running
+            places = body.running + found
+            body.running = self._settle(places)
+            changed += [_with_margin(one) for one in places]
         return changed
 
     def mass(self) -> float:
@@ -113,8 +115,8 @@ class Earth:
     def _settle(self, places: list[Bounds]) -> list[Bounds]:
         """Let slopes give way at some places; returns where soil still runs."""
         found = []
-        for x0, y0, x1, y1 in _apart(places):
-            window = self.grid.window((x0 - MARGIN, y0 - MARGIN, x1 + MARGIN, y1 + MARGIN))
+        for place in _apart(places):
+            window = self.grid.window(_with_margin(place))
             if window is not None:
                 if (still := settle(window)) is not None:
                     found.append(still)
@@ -122,8 +124,9 @@ class Earth:
         return found
 
 
-def _near(before: Mapping[str, Matrix], now: Mapping[str, Matrix]) -> bool:
-    return before.keys() == now.keys() and all(math.dist(before[k][:3, 3], now[k][:3, 3]) < JUMP for k in now)
+def _near(before: Mapping[str, Matrix], now: Mapping[str, Matrix], seconds: float) -> bool:
+    far = max(JUMP, FASTEST * seconds)
+    return before.keys() == now.keys() and all(math.dist(before[k][:3, 3], now[k][:3, 3]) < far for k in now)
 
 
 def _between(before: Mapping[str, Matrix], now: Mapping[str, Matrix], share: float) -> Mapping[str, Matrix]:
@@ -142,6 +145,10 @@ def _apart(places: list[Bounds]) -> list[Bounds]:
             one = min(a, e), min(b, f), max(c, g), max(d, h)
         found.append(one)
     return found
+
+
+def _with_margin(place: Bounds) -> Bounds:
+    return place[0] - MARGIN, place[1] - MARGIN, place[2] + MARGIN, place[3] + MARGIN
 
 
 def _touch(a: Bounds, b: Bounds) -> bool:

@@ -116,7 +116,7 @@ class Grid:
     def from_heights(cls, heights: Heights, soils: Sequence[Soil], soil_of: NDArray[np.uint8] | None = None) -> "Grid":
         """Ground that nobody has dug yet; `soil_of`: as for the class; absent: the first soil everywhere."""
         x0, y0, x1, y1 = heights.bounds
-        rows, columns = (max(1, math.ceil(length / TILE - 1e-9)) for length in (y1 - y0, x1 - x0))
+        rows, columns = tiles_along(y1 - y0), tiles_along(x1 - x0)
         kinds = np.zeros((rows, columns), dtype=np.uint8) if soil_of is None else soil_of
         known = heights.z[np.isfinite(heights.z)]
         datum = float(math.floor(known.min())) if known.size else 0.0
@@ -163,21 +163,21 @@ class Grid:
         tiles = np.ndindex(-(-i1 // CELLS) - i0 // CELLS, -(-j1 // CELLS) - j0 // CELLS)
         return max((self._top[i0 // CELLS + i, j0 // CELLS + j] for i, j in tiles), default=-math.inf)
 
-    def heights(self, bounds: Bounds | None = None) -> Heights:
-        """Heights [m of map] in cells of COARSE, for maps; NaN where unknown.
+    def heights(self, bounds: Bounds | None = None, side: int = SIDE) -> Heights:
+        """Heights [m of map] in cells of COARSE, for maps, or with a `side` of 1 in those of FINE; NaN where unknown.
 
         `bounds`: what to show, widened to whole cells; the whole site if it is absent.
         """
         i0, i1, j0, j1 = self._cells(self.bounds if bounds is None else bounds)
-        i0, j0, i1, j1 = i0 // SIDE * SIDE, j0 // SIDE * SIDE, -(-i1 // SIDE) * SIDE, -(-j1 // SIDE) * SIDE
-        found = np.full((max(0, i1 - i0) // SIDE, max(0, j1 - j0) // SIDE), np.nan)
+        i0, j0, i1, j1 = i0 // side * side, j0 // side * side, -(-i1 // side) * side, -(-j1 // side) * side
+        found = np.full((max(0, i1 - i0) // side, max(0, j1 - j0) // side), np.nan)
         for piece in _pieces(i0, i1, j0, j1) if found.size else ():
             here, there = (
-                tuple(slice(part.start // SIDE, part.stop // SIDE) for part in parts[1:])
+                tuple(slice(part.start // side, part.stop // side) for part in parts[1:])
                 for parts in (piece.here, piece.there)
             )
-            found[here] = self._coarse(piece.tile)[there]
-        return Heights(self.x0 + j0 * FINE, self.y0 + i0 * FINE, COARSE, found)
+            found[here] = self._surface(piece.tile, side)[there]
+        return Heights(self.x0 + j0 * FINE, self.y0 + i0 * FINE, side * FINE, found)
 
     def sample(self, x: Array, y: Array) -> Array:
         """Heights [m of map] of the cells at points; NaN outside and where unknown."""
@@ -212,18 +212,25 @@ class Grid:
         fine = layers if layers.shape[1] == CELLS else _finer(layers)
         return _highest((fine * thickness).sum(axis=0)) + self.datum
 
-    def _coarse(self, tile: tuple[int, int]) -> Array:
-        """Heights of a tile in cells of COARSE [m]."""
+    def _surface(self, tile: tuple[int, int], side: int) -> Array:
+        """Heights of a tile [m] in cells of `side` fine ones."""
         layers, thickness = self.tiles[tile], self.thickness[self.soil_of[tile]][:, None, None]
+        if side == 1 and layers.shape[1] < CELLS:
+            layers = _finer(layers)
         heights: Array = (layers * thickness).sum(axis=0) + self.datum
-        side = layers.shape[1] // COARSE_CELLS
-        coarse: Array = heights.reshape(COARSE_CELLS, side, COARSE_CELLS, side).mean(axis=(1, 3))
-        return coarse
+        count, part = CELLS // side, layers.shape[1] * side // CELLS
+        found: Array = heights.reshape(count, part, count, part).mean(axis=(1, 3))
+        return found
 
     def _cells(self, bounds: Bounds) -> tuple[int, int, int, int]:
         """Least row, row behind the last, and the same of columns, of the cells of the site that touch a rectangle."""
         columns = _range(bounds[0] - self.x0, bounds[2] - self.x0, self._size[1])
         return *_range(bounds[1] - self.y0, bounds[3] - self.y0, self._size[0]), *columns
+
+
+def tiles_along(length: float) -> int:
+    """The number of tiles that cover a length [m]."""
+    return max(1, math.ceil(length / TILE - 1e-9))
 
 
 def _finer(layers: Array) -> Array:

@@ -38,6 +38,11 @@ class Hauler:
         """Volume of the load, loose [m3]."""
         return float((self.load / self._grid.loose).sum())
 
+    @property
+    def capacity(self) -> float:
+        """What it holds at most, loose [m3]."""
+        return self._vessel.heaped
+
     def below(self, points: Array) -> float:
         """The share of points of map [m] from which soil falls into it."""
         if self._place is None:

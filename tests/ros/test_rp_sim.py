@@ -62,6 +62,7 @@ pytestmark = [
 ]
 LIMIT = 60.0  # s for whatever must happen at all
 SPEED = 2.0  # times real time
+AWAY = 6000.0  # m, of the other machine: nobody tells its place again, so that it grows by all it may have driven since
 SITE = """
 name: rptest
 domain: {domain}
@@ -232,7 +233,7 @@ def test_a_dig_that_is_blocked_is_planned_anew_from_where_it_was(machine: Rig) -
         return any(wire.known(said).find(PlannedAnew) is not None for said in machine.said)
 
     def over() -> bool:
-        frames.publish(at(60.0, 1.6))
+        frames.publish(at(AWAY, 1.6))
         return dig.outcome is not None
 
     machine.until(waits, "a way that is blocked")
@@ -242,6 +243,8 @@ def test_a_dig_that_is_blocked_is_planned_anew_from_where_it_was(machine: Rig) -
     swing, boom, arm, bucket, _ = machine.states[-1].position
     assert swing == pytest.approx(math.atan2(4.53, -4.11), abs=0.06)
     assert boom + arm + bucket == pytest.approx(math.pi, abs=0.06)
+    opened = machine.send(TmsRpZx200ReleaseSimple, "tms_rp_zx200_release_simple", target_angle=-0.2)
+    assert machine.end(opened) is Outcome.SUCCEEDED  # what it carries would be kept level by later motions
 
 
 def test_cancel_ends_with_the_machine_standing(machine: Rig) -> None:
@@ -309,7 +312,7 @@ def test_what_comes_into_the_way_is_waited_for_and_the_motion_goes_on(machine: R
     (said, *_) = [known for said in machine.said if (known := wire.known(said)).find(PlannedAnew)]
     assert said.find(PathBlocked) is not None and not machine.moving()
     assert call.outcome is None and machine.states[-1].position[0] < 1.8
-    machine.until(told(at(60.0, 1.8), lambda: call.outcome is not None), "end of the goal")
+    machine.until(told(at(AWAY, 1.8), lambda: call.outcome is not None), "end of the goal")
     assert call.outcome is Outcome.SUCCEEDED
     assert machine.states[-1].position[0] == pytest.approx(2.4, abs=0.031)
 
@@ -354,6 +357,38 @@ def test_a_planner_that_ends_takes_its_motion_with_it(machine: Rig) -> None:
     machine.until(lambda: call.outcome is Outcome.ABORTED or planner.left(), "news that the planner is gone")
     machine.start(f"{MACHINE}:rp")
     machine.until(lambda: machine.end(machine.change_pose(*START)) is Outcome.SUCCEEDED, "motion afterwards")
+
+
+def test_a_motion_ends_with_a_planner_that_is_killed(machine: Rig) -> None:
+    """Its client could not cancel it any more."""
+
+    def answered() -> bool:  # goals before the new planner is found are lost
+        call = machine.change_pose(*START)
+        return call.wait_for(lambda: call.accepted, 2.0) and machine.end(call) is Outcome.SUCCEEDED
+
+    machine.change_pose(2.5, *START[1:])
+    machine.until(machine.moving, "motion")
+    killed = machine.running.pop(f"{MACHINE}:rp")
+    killed.kill()
+    killed.wait(LIMIT)
+    machine.until(lambda: not machine.moving(), "standing machine")
+    assert machine.states[-1].position[0] < 2.4
+    machine.start(f"{MACHINE}:rp")
+    machine.until(answered, "motion afterwards")
+
+
+def test_a_stored_plan_goes_on_where_it_was_broken_off(machine: Rig) -> None:
+    there = (2.5, -0.4, 1.2, *START[3:])
+    plans = [planned(machine, JointTrajectory(), *there)]
+    first = machine.send(ExecutePlans, "tms_rp_zx200_execute_plans", plans=plans)
+    machine.until(lambda: machine.moving() and machine.states[-1].position[0] > 0.3, "motion")
+    machine.cancel(first, ExecutePlans, "tms_rp_zx200_execute_plans")
+    assert machine.end(first) is Outcome.CANCELED
+    assert 0.3 < machine.states[-1].position[0] < 2.3
+    machine.said.clear()
+    assert machine.end(machine.send(ExecutePlans, "tms_rp_zx200_execute_plans", plans=plans)) is Outcome.SUCCEEDED
+    assert any(text.startswith("ADAPTED") and "GOES_ON" in text for text in machine.said)
+    assert machine.states[-1].position == pytest.approx(there, abs=0.031)
 
 
 def test_without_a_machine_there_is_a_reason(rig: Rig) -> None:

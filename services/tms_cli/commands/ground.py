@@ -76,6 +76,29 @@ def import_(file: Path, area: "Bounds | None", cell: float | None, as_json: bool
         )
 
 
+@command.command()
+@click.option("--note", default="", help="For people: why.")
+@session.json_option
+def snapshot(note: str, as_json: bool) -> None:
+    """Have tms:ground store the ground of now, as machines have changed it.
+
+    It does so by itself at the end of each day. This asks the process, and runs on any PC of the site.
+
+    \b
+    Examples:
+      tms ground snapshot
+      tms ground snapshot --note "before the rain"
+    """
+    from tms_msg_ground.srv import TakeSnapshot
+
+    with session.ros() as node:
+        found = session.call(node, TakeSnapshot, "/tms/ground/take_snapshot", seconds=90.0, source=note or "snapshot")
+    if as_json:
+        session.show_json({"taken_at": found.taken_at})
+    else:
+        click.echo(say("stored as the ground of {time}", time=found.taken_at))
+
+
 @command.command("list")
 @session.json_option
 def list_(as_json: bool) -> None:
@@ -241,7 +264,7 @@ def diff(before: str, after: str, picture: Path | None, inside: "tuple[Point, ..
     Example:
       tms ground diff first last --picture change.png
     """
-    from tms_cli.day_report import ground_map
+    from tms_cli.day_report import ground_map, map_picture
     from tms_soil import volumes
 
     with opened() as db:
@@ -252,7 +275,7 @@ def diff(before: str, after: str, picture: Path | None, inside: "tuple[Point, ..
     if picture is not None:
         try:
             with picture.open("xb") as new:
-                new.write(ground_map.picture(change))
+                new.write(map_picture.picture(ground, change))
         except OSError as error:
             raise TmsError(NameTaken(str(picture), str(error.strerror)), "NO_FILE") from error
     grounds.show_volumes(volumes.between(old, ground, mask), ground_map.extremes(ground, change), as_json=as_json)

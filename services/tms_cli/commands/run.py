@@ -9,6 +9,7 @@ import click
 
 from tms_cli import live, session, templates, words
 from tms_cli.commands.runs import has_ended, recent
+from tms_cli.loads import Loads
 from tms_cli.reasons import SchedulerForgot, SchedulerQuiet
 from tms_cli.words import say, state
 from tms_config.clock import monotonic
@@ -179,7 +180,7 @@ def _view(node: "Ros", task_id: int) -> live.View:
 
     task = session.call(node, GetTask, "/tms/db/get_task", task_id=task_id).task
     goals = _goals(task.task_sequence, lambda name: templates.text_of(node, name))
-    view = live.View(task_id, task.description, goals)
+    view = live.View(task_id, task.description, goals, loads=Loads(node, session.site()))
     named = {goal.partition(BETWEEN)[0] for _, goal in goals}  # also by templates
     for machine in session.site().file.machines:
         if machine in named or f'"{machine}"' in task.task_sequence:

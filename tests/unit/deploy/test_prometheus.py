@@ -90,4 +90,4 @@ def test_dashboards_have_their_own_names_and_the_provisioned_source() -> None:
     boards = [json.loads(path.read_text(encoding="utf-8")) for path in DASHBOARDS]
     assert [board["uid"] for board in boards] == [path.stem for path in DASHBOARDS]
     assert {panel["datasource"]["uid"] for board in boards for panel in board["panels"]} == {"tms"}
-    assert len(boards) == 4 and all(board["panels"] for board in boards)
+    assert len(boards) == 5 and all(board["panels"] for board in boards)

@@ -1,5 +1,6 @@
 """`tms demo`: its steps in order, and exit code 0 only on success."""
 
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -7,6 +8,7 @@ from tms_msg_db.srv import AddTask, AddTemplate
 
 from tms_cli import stored_records
 from tms_cli.commands import demo, run
+from tms_cli.loads import Carried
 from tms_reason.errors import DbError, TmsError
 from tms_reason.reason import Foreign
 
@@ -37,6 +39,7 @@ def steps(mesh, monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 class Ran:
     outcome = "success"
+    view = SimpleNamespace(loads=None)
 
     def __init__(self, node: Any, task_id: int, ignore_warnings: bool) -> None:
         assert task_id == 4
@@ -53,11 +56,34 @@ def test_the_steps_and_the_exit_code(steps, tms, monkeypatch, outcome: str, code
     end = tms(demo.command)
     templates = [f"template {path.stem}" for path in sorted(demo.TEMPLATES.glob("*.xml"))]
     assert templates
-    assert steps == ["up", "ready", "records", *templates, "task"]
+    assert steps == ["up", "ready", *["records"] * len(demo.PARAMETERS), *templates, "task"]
     assert end.exit_code == code
     assert "tms events r1" in end.stdout
     assert "http://127.0.0.1:8080" in end.stderr
     assert "make down" in end.stderr
+
+
+def test_the_last_lines_tell_what_was_moved(steps, tms, monkeypatch) -> None:
+    bucket, truck = Carried(bucket=True), Carried(bucket=False)
+    for loose in (0.0, 0.7, 0.0, 0.8, 0.0):
+        bucket.take(loose, loose / 1.25, 0.83)
+    for loose in (0.0, 0.7, 1.5, 0.0):
+        truck.take(loose, loose / 1.25, 5.9)
+    monkeypatch.setattr(run, "Runner", Ran)
+    monkeypatch.setattr(Ran, "view", SimpleNamespace(loads=SimpleNamespace(of={"zx200": bucket, "ic120": truck})))
+    page = "# TYPE tms_ground_mass_error_kilograms gauge\ntms_ground_mass_error_kilograms 2e-10\n"
+    monkeypatch.setattr(demo.metrics, "page", lambda row: (200, page))
+    said = tms(demo.command).stderr
+    lines = [
+        "the stand-ins live 5 times as fast as machines do",
+        "cycles of the excavator: 2",
+        "loaded: 1.20 m³ as it lay, 1.50 m³ loose",
+        "tipped: 1.50 m³ loose",
+        "mass made or lost: 2.0e-10 kg",
+        "duration: 20 s, 100 s of the machines",
+    ]
+    places = [said.index(line) for line in lines]
+    assert places == sorted(places)
 
 
 def test_a_template_of_somebody_elses_stays(steps, mesh, tms, monkeypatch) -> None:
@@ -79,6 +105,6 @@ def test_a_mesh_that_does_not_come_up_ends_the_demo(steps, tms, monkeypatch) -> 
 
 
 def test_the_files_of_the_demo_exist() -> None:
-    assert demo.PARAMETERS.is_file()
+    assert all(file.is_file() for file in demo.PARAMETERS)
     assert demo.TASK.is_file()
     assert demo.TEMPLATES.is_dir()

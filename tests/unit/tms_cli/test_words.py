@@ -24,7 +24,7 @@ SERVICES = Path(words.__file__).parents[1]
 NOT_DAILY = ("drill", "user.py", "palette.py", "panel.py", "prometheus.py", "monitoring.py", "reasons.py",
              "terrain.py", "replay", "open_store.py")  # fmt: skip
 KEPT = {  # what is stored, what is found in a task (also in JSON), and parts of errors
-    "software stop by an operator", "One loading cycle of the zx200",
+    "software stop by an operator", "Two buckets into a truck, which hauls them",
     "it cannot be stored as a task: ", "this is no task: ", "its outermost element is <",
     "it has a TreeNodesModel only (a palette for Groot)", "there is no <BehaviorTree> in it",
     "in it or its folders", "in it (--recursive looks into its folders, too)", "there is no question '",

@@ -77,7 +77,7 @@ def planner_beside(
     monkeypatch.setattr(node, "Permit", lambda *_: None)
     monkeypatch.setattr(node, "watch_server", lambda *_: lambda _: None)
     site = SimpleNamespace(
-        file=SimpleNamespace(machines={name: SimpleNamespace(model=name) for name in MODELS}, peers={}),
+        file=SimpleNamespace(machines={name: SimpleNamespace(model=name) for name in MODELS}, peers={}, ground=None),
         model_of=MODELS.__getitem__,
         border=lambda name: MODELS[name].borders["sim"].model_copy(
             update={"base_frame": {"zx200": "zx200/base_link", "ic120": "ic120_tf/base_link"}[name]}
