@@ -36,7 +36,7 @@ def main(histories: int, seed: int, workers: int) -> None:
         stops = [one for one in some if one.stopped is not None]
         click.echo(
             f"{name}: {len(some)}, {sum(one.reached for one in some)} goals reached, "
-            f"{sum(one.held > 0 for one in some)} held, "
+            f"{sum(one.held > 0 for one in some)} held, {sum(one.refused for one in some)} refused, "
             f"{len(stops)} stopped, {sum(not one.would_cross for one in stops)} needless"
         )
     share = 100.0 * len(needless) / max(1, len(done))
