@@ -66,7 +66,10 @@ class ScannerStandIn:
             return
         if answer.error_code:  # it stands beside the site
             return
-        message = cloud(scanned(heights(answer.ground), place, self._given, self._chance))
+        ground = heights(answer.ground)
+        # A height that nobody has measured or made yet is an assumption of tms:ground, which a scan must not confirm.
+        ground.z[np.isnan(answer.ages).reshape(ground.z.shape)] = np.nan
+        message = cloud(scanned(ground, place, self._given, self._chance))
         message.header.stamp = answer.ground.header.stamp
         self._publisher.publish(message)
 
