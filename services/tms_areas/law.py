@@ -28,6 +28,7 @@ DELAY = 0.15  # s from where a machine is to the message that says so
 BEAT = 0.15  # s from one look at the newest pose to the next one, and until its command has left
 FASTER = 1.15  # times a speed limit that a measured speed may be
 SPARE = 0.15  # m more for what is planned: poses vary while it drives
+PLANNED = 0.1  # s, age of a pose that plans reckon with
 STEP, TURN = 0.5, 0.1  # m and rad between looks at a path
 SPOT = 0.05  # m; a turn over a shorter way is one on the spot
 STRAY = 0.05  # m that tracks may slip to any side while they brake
@@ -113,7 +114,7 @@ class Law:
                 speed, turning = self._paced(left - share * way, way, turn, 1.0 - share)
                 yaw = old[2] + share * turn
                 speed = -speed if backward else speed
-                motion = Motion(x, y, yaw, speed * math.cos(yaw), speed * math.sin(yaw), turning)
+                motion = Motion(x, y, yaw, speed * math.cos(yaw), speed * math.sin(yaw), turning, age=PLANNED)
                 if (wrong := self._planned(body, motion, self._reach(motion))) is not None:
                     return wrong
             left -= way
@@ -145,7 +146,7 @@ class Law:
 
     @cached_property
     def _at_rest(self) -> Reach:
-        return self._reach(Motion(0.0, 0.0, 0.0))
+        return self._reach(Motion(0.0, 0.0, 0.0, age=PLANNED))
 
     @cached_property
     def _arrival(self) -> float:
@@ -154,7 +155,9 @@ class Law:
             return 0.0
         forward = self.tracks.forward
         speeds = np.linspace(0.0, forward.top, 20).tolist()
-        ahead = [self._reach(Motion(0, 0, 0, one)).ahead - one**2 / (2 * forward.acceleration) for one in speeds]
+        ahead = [
+            self._reach(Motion(0, 0, 0, one, age=PLANNED)).ahead - one**2 / (2 * forward.acceleration) for one in speeds
+        ]
         return float(max(ahead))
 
     def _reach(self, motion: Motion) -> Reach:

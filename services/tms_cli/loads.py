@@ -48,7 +48,7 @@ class Carried:
 
     def is_news(self) -> bool:
         """Whether it has changed by much since this was last so."""
-        if abs(self.loose - self._shown) < NEWS * self.capacity:
+        if not self.heard or abs(self.loose - self._shown) < NEWS * self.capacity:
             return False
         self._shown = self.loose
         return True

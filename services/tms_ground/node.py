@@ -78,6 +78,7 @@ class Keeper:
         self.lock = threading.Lock()  # between the threads that look, save and answer
         self._saving = threading.Lock()  # of those that save
         self._go_on()
+        ERROR.set_function(self._mass_error)
         app.ros.poll_in_thread(PERIOD, self.look, "ground")
         app.ros.poll_in_thread(SAVES, self.save, "ground_file")
         app.ros.poll_in_thread(CYCLES, self.deliver, "cycles")
@@ -124,6 +125,10 @@ class Keeper:
             why = GroundNotKept(str(durable.set_aside(file)), str(error))
             self._log.warning("ground_begins_anew", reason=why)
 
+    def _mass_error(self) -> float:
+        with self.lock:
+            return self._watch.mass_error
+
     def _work_goes_on(self, loads: bool) -> None:
         try:
             self._watch.load_work(loads)
@@ -140,7 +145,6 @@ class Keeper:
         """Keep ground and work on the disk, if they have changed."""
         with self._saving:
             with self.lock:
-                ERROR.set(self._watch.mass_error)
                 content, made = self._watch.content(), self._watch.waiting.made
             if content is None:
                 return

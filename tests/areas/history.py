@@ -45,8 +45,10 @@ class Driver:
     until: float = 0.0
     wish: tuple[float, float] = (0.0, 0.0)
 
-    def speeds(self, now: float, x: float, y: float, yaw: float) -> tuple[float, float]:
-        """What it commands: speed and turning."""
+    def speeds(self, now: float, plant: Plant) -> tuple[float, float]:
+        """What it commands: speed and turning. It knows how late the tracks answer, as our controllers do."""
+        late = plant.dead_time + plant.lag
+        x, y, yaw = plant.x, plant.y, plant.yaw + plant.w * late
         if self.wild:
             if now >= self.until:
                 self.until = now + self.random.uniform(1.0, 8.0)
@@ -63,7 +65,9 @@ class Driver:
         w = max(-self.turn_top, min(self.turn_top, 1.0 * off))
         if abs(off) > 0.3:
             return 0.0, w
-        return min(self.top, math.sqrt(2 * GENTLE * self.acceleration * max(away - NEAR, 0.0)) + 0.05), w
+        return min(
+            self.top, math.sqrt(2 * GENTLE * self.acceleration * max(away - NEAR - plant.v * late, 0.0)) + 0.05
+        ), w
 
 
 @dataclass
@@ -126,6 +130,12 @@ def made(seed: int) -> Made:
         ]
         out.goals = [one[:2] for one in straight[:1]]
     return out
+
+
+def _way(plant: Plant, goal: Point) -> list[Place]:
+    """How a driver goes to a goal: it turns, then drives straight."""
+    there = _facing((plant.x, plant.y, plant.yaw), (*goal, 0.0))
+    return [(plant.x, plant.y, there[2]), there]
 
 
 def _facing(old: Place, new: Place) -> Place:
@@ -193,7 +203,8 @@ def run(seed: int, guarded: bool = True, keeps_on: float = math.inf) -> Result:
         fix.odometry(plant.v, plant.w)
         if now >= next_beat:
             next_beat = now + BEAT * r.uniform(0.8, 1.4)
-            verdict = guard.look(fix.look(now), {}, tracks=True) if guarded else Verdict()
+            seen = fix.look(now)
+            verdict = guard.look(seen, {}, tracks=True) if guarded else Verdict()
             if verdict.stop is not None and going:
                 out.stopped, out.why = now, verdict.stop.code
                 stopped, going = True, False
@@ -203,11 +214,13 @@ def run(seed: int, guarded: bool = True, keeps_on: float = math.inf) -> Result:
                 plant.command(0.0, 0.0, r.uniform(0, LINK))
             elif verdict.hold is None and verdict.stop is None and not going and not stopped:
                 going = True
+                if guarded and driver.goals and guard.may_drive(seen, {}, _way(plant, driver.goals[0]), told=True):
+                    out.refused = True
+                    break
             if going:
-                x, y, yaw = (plant.x, plant.y, plant.yaw)
                 goals = len(driver.goals)
                 driver.until = math.inf if now >= keeps_on else driver.until
-                wished = _limited(driver.speeds(now, x, y, yaw), wished, what, next_beat - now)
+                wished = _limited(driver.speeds(now, plant), wished, what, next_beat - now)
                 out.reached += goals - len(driver.goals)
                 plant.command(*wished, r.uniform(0, 0.02))
             else:

@@ -1,14 +1,18 @@
 """A zx200 and two trucks move the earth of a job, ten times as fast as real ones; no bucket counts twice."""
 
+import itertools
 import json
 import os
+import signal
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 import yaml
+from test_mesh import processes
+from test_stop import state_of
 
-from conftest import NO_CONSOLE, PROJECT, Mesh, ports_of, running, site_data
+from conftest import CLI, NO_CONSOLE, PROJECT, Mesh, ports_of, running, site_data, wait_until
 
 pytestmark = [pytest.mark.system, pytest.mark.timeout(300)]
 SPEED = 10.0  # times real time
@@ -19,6 +23,19 @@ MACHINES = {
     "ic120_1": {"model": "ic120", "start": [-9.3, -15.0, 1.5708]},
     "ic120_2": {"model": "ic120", "start": [-9.3, -22.0, 1.5708]},
 }
+KILLED = (  # one after the other, a bucket later each
+    "zx200:st_zx200_choose_dig_point",
+    "zx200:subtask_zx200_excavate_simple",
+    "zx200:st_zx200_dig_again_until",
+    "zx200:rp",
+    "ic120_1:st_ic120_wait_until_loaded",
+    "tms:ts",
+    "zx200:st_zx200_choose_dump_point",
+    "zx200:rc",
+    "tms:db",
+    "tms:ground",
+)
+ACTIVE = ("preparing", "running", "stopping", "held")
 BUCKET = (0.4, 0.75)  # m3 as it lay: 0.5 to 0.95 loose
 
 
@@ -38,15 +55,51 @@ def mesh(own_domain: int, tmp_path: Path) -> Iterator[Mesh]:
 
 
 def job(mesh: Mesh) -> dict[str, float]:
-    rows = json.loads(mesh.tms("param", "get", "/EARTHWORK", "--json").stdout)
-    values: dict[str, float] = rows["values"]
+    """The job's record, once it can be read."""
+    found: list[str] = []
+
+    def read() -> bool:
+        done = mesh.tms("param", "get", "/EARTHWORK", "--json", expect=None)
+        found[:] = [done.stdout]
+        return done.returncode == 0
+
+    wait_until(read, 60, "the database answers", every=CLI)
+    values: dict[str, float] = json.loads(found[0])["values"]
     return values
 
 
-def test_two_trucks_move_the_volume_of_the_job(mesh: Mesh) -> None:
-    done = mesh.tms("run", "1", "--wait", "--json", expect=None, limit=240)
-    answer = json.loads(done.stdout)
-    assert answer["outcome"] == "success", answer
+def check(mesh: Mesh) -> None:
+    """The volume is moved, by buckets of a usual size, of which each has counted once."""
     found = job(mesh)
     assert found["done"] and VOLUME <= found["moved"] <= VOLUME + BUCKET[1]
+    rows = json.loads(mesh.tms("param", "history", "/EARTHWORK", "--limit", "10000", "--json").stdout)
+    told = {(int(row["values"]["counted"]), row["values"]["moved"]) for row in rows}
+    counts, moved = zip(*sorted(told), strict=True)
+    assert list(counts) == list(range(int(found["counted"]) + 1)), "one sum a bucket, and no bucket is left out"
+    assert all(0.0 <= after - before <= BUCKET[1] for before, after in itertools.pairwise(moved))
+
+
+def test_two_trucks_move_the_volume_of_the_job(mesh: Mesh) -> None:
+    done = mesh.tms("run", "1", "--wait", "--json", expect=None, limit=280)
+    answer = json.loads(done.stdout)
+    assert answer["outcome"] == "success", answer
+    check(mesh)
+    found = job(mesh)
     assert BUCKET[0] <= found["moved"] / found["counted"] <= BUCKET[1]
+
+
+@pytest.mark.timeout(3600)
+@pytest.mark.skipif("TMS_EARTH" not in os.environ, reason="make nightly")
+def test_it_goes_on_whatever_is_killed(mesh: Mesh) -> None:
+    run_id = json.loads(mesh.tms("run", "1", "--json").stdout)["run_id"]
+    for number, name in enumerate(KILLED, 1):
+        wait_until(lambda least=number: job(mesh)["counted"] >= least, 300, f"bucket {number} is counted", every=CLI)
+        os.kill(processes(mesh)[name]["pid"], signal.SIGKILL)
+        if name == "tms:ts":
+            wait_until(lambda: state_of(mesh, run_id) == "interrupted", 60, "the run is interrupted", every=CLI)
+            mesh.wait_ready()
+            mesh.tms("rearm", "--all", "--yes")
+            mesh.tms("resume", run_id, "--yes")
+    wait_until(lambda: state_of(mesh, run_id) not in ACTIVE, 3000, "the run ends", every=5.0)
+    assert state_of(mesh, run_id) == "success", mesh.tms("events", run_id).stdout[-2000:]
+    check(mesh)

@@ -2,7 +2,7 @@
 
 import click
 
-from tms_cli import session
+from tms_cli import area_sets, session
 from tms_cli.words import say
 from tms_config.config import load_site
 from tms_config.processes import table
@@ -29,6 +29,8 @@ def command(chosen: str | None, as_json: bool) -> None:
         users(site)
     if (ground := ground_of(site)) is not None:
         soils_of(site, ground)
+    if site.area_files:
+        area_sets.configured(site)
     inputs = load_sensing(site).inputs
     if as_json:
         session.show_json(

@@ -34,6 +34,7 @@ def test_a_line_tells_how_full_it_is() -> None:
 
 
 def test_only_a_large_change_is_news() -> None:
+    assert not Carried(bucket=True).is_news(), "nobody has told it"
     bucket = filled(True, 0.0)
     assert not bucket.is_news()
     bucket.take(0.1, 0.1, 0.8)

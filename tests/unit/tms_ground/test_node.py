@@ -72,15 +72,17 @@ class World:
 
         return SimpleNamespace(publish=publish)
 
-    def run(self) -> None:
-        """A pass of the excavator."""
+    def run(self, late: int = 1) -> None:
+        """A pass of the excavator; of so many joint states one look finds all."""
         base = TransformStamped(child_frame_id="zx200/base_link")
         base.header.frame_id, base.transform.rotation.w = "map", 1.0
-        for report in reports(moved(dig_poses(), rate=25.0)):
+        for number, report in enumerate(reports(moved(dig_poses(), rate=25.0))):
             self.waiting["/tf"] = [TFMessage(transforms=[base])]
             angles = dict(report.angles)
-            self.waiting["/zx200/joint_states"] = [JointState(name=list(angles), position=list(angles.values()))]
-            self.steps["ground"]()
+            told = JointState(name=list(angles), position=list(angles.values()))
+            self.waiting.setdefault("/zx200/joint_states", []).append(told)
+            if number % late == 0:
+                self.steps["ground"]()
             self.now += 0.04
 
 
@@ -98,6 +100,16 @@ def test_a_pass_is_told_and_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     node.start(again.app)
     again.steps["ground"]()
     assert again.published["/zx200/soil_volume"][-1] == pytest.approx(told[-1], abs=0.01)
+
+
+def test_a_look_that_comes_late_takes_all_that_was_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    world = World(tmp_path, monkeypatch)
+    node.start(world.app)
+    taken = node.REPORTS.labels("zx200").collect()[0].samples[0]
+    world.run(late=8)
+    world.steps["ground"]()
+    more = node.REPORTS.labels("zx200").collect()[0].samples[0].value - taken.value
+    assert more == pytest.approx(len(list(moved(dig_poses(), rate=25.0))), abs=1)
 
 
 def asked(world: World, **request: float) -> GetHeights.Response:

@@ -83,7 +83,7 @@ def test_the_soil_is_that_of_the_region_where_it_is_dug(tmp_path: Path) -> None:
         assert kind is not None
         kinds.append(one.soils[kind])
     assert kinds == ["sand", "earth"]
-    one.file.write_bytes((one.content() or (b"", 0))[0])
+    one.file.write_bytes(one.content() or b"")
     assert made(settings).load()
     assert not made(settings.model_copy(update={"soils": ()})).load(), "other soils lie there now"
 

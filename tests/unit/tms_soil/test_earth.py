@@ -53,6 +53,14 @@ def test_slower_reports_give_nearly_the_same(rate: float) -> None:
     assert volumes[1] == pytest.approx(volumes[0], rel=0.03)
 
 
+def test_a_stand_in_that_lives_fast_jumps_nowhere() -> None:
+    """At ten times its speed it tells 2.5 times in a second of its own where it is: its bucket is a metre on."""
+    earth = loading_site()
+    low = START._replace(boom=-0.25, arm=1.0, bucket=0.3)
+    run(earth, reports([(0.0, low), (0.4, low._replace(arm=1.44))]))
+    assert moved_by(earth, "zx200") > 0.0
+
+
 def test_seven_to_nine_passes_fill_a_truck() -> None:
     earth = loading_site()
     before = earth.mass()
