@@ -4,6 +4,7 @@ import math
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 import structlog
 from geometry_msgs.msg import Point, TransformStamped
@@ -24,7 +25,9 @@ from tms_machine.values import to_parameters
 from tms_ros.goals import Outcome
 from tms_rp import node
 from tms_rp.reasons import Around, Collision, PartOf, Planned, Told
+from tms_rp.terrain import Terrain
 from tms_rp.trajectory import trajectory
+from tms_soil.surface import Heights
 
 RIGHT = (-1.571, -0.3, 1.4, 0.5)
 MODELS = {name: parse(CONFIGS / "machines" / f"{name}.yaml", MachineModel) for name in ("zx200", "ic120")}
@@ -155,3 +158,14 @@ def test_a_bucket_that_has_dug_is_kept_level_on_the_next_way(monkeypatch: pytest
         assert planner._execute(actions[name], goal, goal.request, lambda _: None)[0] is Outcome.SUCCEEDED
         found = planner.planned(actions["change_pose"], level, swing).moves.through
         assert (found is not None and found.held is not None) == held
+
+
+def test_a_way_keeps_clear_of_the_ground_as_it_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Beside a truck that it goes around, the ground is higher than its arm gets."""
+    told = Heights(-26.0, -26.0, 0.2, np.zeros((260, 260)))
+    x, y = told.centres
+    told.z[np.hypot(x, y) > 3.2] = 6.0
+    ground = Terrain(told, None, (0.0, 0.0, 0.0))
+    monkeypatch.setattr(node, "ToldGround", lambda _: SimpleNamespace(around=lambda: ground))
+    outcome, _ = planned(monkeypatch, 1.5, AHEAD)
+    assert outcome is Outcome.ABORTED

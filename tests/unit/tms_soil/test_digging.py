@@ -150,3 +150,18 @@ def test_unknown_ground_is_not_dug() -> None:
     run(earth, reports(moved(drag(1.0, 2.2))))
     assert moved_by(earth, "zx200") == 0.0
     assert earth.bodies["zx200"].resistance == 0.0
+
+
+def test_a_bucket_that_stands_in_the_soil_meets_it_until_it_moves_out() -> None:
+    earth = loading_site()
+    body, log = earth.bodies["zx200"], list(reports(moved(dig_poses())))
+    while body.resistance <= 5000.0:
+        at = log.pop(0)
+        earth.report(*at)
+    met = body.resistance
+    for k in (1, 2, 3):
+        earth.report("zx200", at.time + 0.02 * k, at.angles, at.base)
+        assert body.resistance == met, "stalled"
+    for later in log:
+        earth.report("zx200", later.time + 0.06, later.angles, later.base)
+    assert body.resistance == 0.0
