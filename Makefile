@@ -25,7 +25,7 @@ TMS := $(VENV)/bin/tms $(if $(SITE),--site $(SITE))
 # A sourced ROS installation would mix its libraries into the venv's.
 unexport PYTHONPATH LD_LIBRARY_PATH AMENT_PREFIX_PATH CMAKE_PREFIX_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE
 .DEFAULT_GOAL := help
-.PHONY: help setup interfaces locks demo test test-fast up down status logs restart lint conformance bench verify pictures soak drill simulate replay model traces mutants mutmut coverage nightly test-docker system containers clean
+.PHONY: help setup interfaces locks demo test test-fast up down status logs restart lint conformance bench verify pictures soak drill simulate areas replay model traces mutants mutmut coverage nightly test-docker system containers clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -127,6 +127,9 @@ simulate: setup ## a site in virtual time goes wrong thousands of times; invaria
 	@where=$$(cd tests && $(abspath $(PY)) -m simulation.compiled $(abspath $(VENV))/simulation $(if $(SCHEDULES),--schedules $(SCHEDULES))) && \
 	  cd "$$where" && PYTHONPATH=$(abspath tests) $(abspath $(PY)) -m simulation.run $(if $(SCHEDULES),--schedules $(SCHEDULES)) $(if $(SEED),--seed $(SEED)) $(if $(LEDGER),--ledger $(abspath $(LEDGER)))
 
+areas: setup ## machines between areas in virtual time: nobody crosses a border, few stops are needless (HISTORIES=10000 SEED=7)
+	@cd tests && PYTHONPATH=. $(abspath $(PY)) -m areas.run $(if $(HISTORIES),--histories $(HISTORIES)) $(if $(SEED),--seed $(SEED))
+
 model: setup ## stop, permit, fence and latch in all their states (ONLY=check; DEFECTS=1: each planted defect must be found)
 	@sh deploy/system-packages.sh spin
 	@cd tests && $(abspath $(PY)) -m model.run $(if $(DEFECTS),--defects) $(if $(ONLY),--only "$(ONLY)")
@@ -153,6 +156,7 @@ nightly: setup ## what takes hours: properties with 400 examples, 100,000 schedu
 	$(PY) -m pytest -q -n $(WORKERS) --hypothesis-profile=thorough tests/unit
 	@$(MAKE) coverage
 	@$(MAKE) simulate SCHEDULES=100000
+	@$(MAKE) areas
 	@$(MAKE) mutants
 	@$(MAKE) mutmut
 	TMS_POWER_CUTS=30 $(PY) -m pytest tests/system/test_power_cut.py

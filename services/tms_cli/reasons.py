@@ -2,7 +2,7 @@
 
 from tms_reason.quantities import Megabytes, Seconds
 from tms_reason.reason import Reason
-from tms_reason.remedies import LOGS, PROCESSES, RECORDS, RETRY, RUNS, STATUS, TASKS, Remedy
+from tms_reason.remedies import LOGS, PROCESSES, RECORDS, RESTART, RETRY, RUNS, STATUS, TASKS, Remedy
 
 QUESTIONS = Remedy("questions", "tms answer", "See which questions are open")
 CHOOSE = Remedy("questions", "tms answer --question ID", "Choose one of them")
@@ -87,6 +87,12 @@ class NoXmlFiles(Reason, text="{folder}: there are no .xml files in it or its fo
 class NoXmlHere(Reason, text="{folder}: there are no .xml files in it", action=DEEPER): folder: str
 class InTaskFile(Reason, text="{file}: {why}"): file: str; why: Reason
 class NameTaken(Reason, text="{file} cannot be written ({problem})", action=OTHER_NAME): file: str; problem: str
+class NoAreas(Reason, text="the site has no areas: {folder} holds no .geojson file"): folder: str
+class AreaFileUnread(Reason, text="{file} cannot be read ({problem})", action=OTHER_PLACE): file: str; problem: str
+class AreaFileThere(Reason, text="{file} is there already", action=OTHER_NAME): file: str
+class AreasNotReached(Reason, text="the gateway of {machine} tells nothing of areas: {why}", action=RESTART):
+    machine: str; why: Reason; process: str
+class AreasNotEnabledBy(Reason, text="{machine} refuses the areas: {why}"): machine: str; why: Reason
 class NoBrowser(Reason, text="there is no chromium on this PC", action=OTHER_BROWSER): url: str
 class FieldValue(Reason, text="{where}, field {field}: {why}"): where: str; field: str; why: Reason
 class NotAFiniteNumber(Reason, text="{value} is not a finite number", action=FINITE): value: str

@@ -38,6 +38,16 @@ class Site:
         return self.file.store.kind == "embedded" and not {"TMS_MONGODB_URI", "TMS_MONGODB_URI_FILE"} & set(os.environ)
 
     @property
+    def area_folder(self) -> Path:
+        """Where its areas are, beside the site file: `sites/yard/areas` for `sites/yard.yaml`."""
+        return self.path.with_suffix("") / "areas"
+
+    @property
+    def area_files(self) -> list[Path]:
+        """The files of its areas; none: it has no areas."""
+        return sorted(self.area_folder.glob("*.geojson"))
+
+    @property
     def bridge(self) -> Bridge:
         """Settings of the ROS-TCP endpoint; ConfigError where the site has none."""
         found = self.file.services.get("if")

@@ -22,6 +22,7 @@ PURPOSES = {  # what they and the other processes are for; `tms ps` shows it in 
     "store": "embedded store of the demo",
     "discovery": "lets the PCs' processes find each other",
     "sim": "stand-in for {machine}",
+    "scanners": "stand-in for scanners of the ground",
     "operasim": "stand-in for OperaSim-PhysX",
     "rc": "gateway: every motion passes it",
     "readers": "templates and records for the C++ system's version 6",
@@ -138,6 +139,8 @@ def _services(site: Site) -> list[Process]:
         rows.append(Process("tms", "if_readers", "cps", "tms_if.reader_border", 0, PURPOSES["readers"], form=form))
     if site.file.ground is not None:
         rows.append(Process("tms", "ground", "cps", "tms_ground.node", 0, PURPOSES["ground"]))
+        if site.file.backend == "sim" and site.file.sim.scanners:
+            rows.append(Process("sim", "scanners", "sim", "tms_sim.scanners", 0, PURPOSES["scanners"]))
     for name, service in site.file.services.items():
         if name not in SERVICES:
             raise ConfigError(located(site.path, reasons.NoService(name, SERVICES), "services", name))

@@ -73,6 +73,8 @@ class Store(Settings):
     database: str = Field(pattern=r"^[A-Za-z][A-Za-z0-9_-]*$", default="rostmsdb")
     history_days: int | None = Field(ge=1, default=365)  # days for which ended runs and events are kept; null: for ever
     machine_state_days: int | None = Field(ge=1, default=None)  # the same for machine_pose and machine_joints
+    work_days: int | None = Field(ge=1, default=None)  # the same for cycles of work
+    ground_days: int | None = Field(ge=1, default=None)  # the same for snapshots of the ground; the newest one stays
 
     @model_validator(mode="after")
     def _whole(self) -> "Store":
@@ -115,6 +117,18 @@ class Fault(Settings):
     ignore_emg_stop: bool = False
 
 
+class Scanner(Settings):
+    """A stand-in of terrain sensing, on a mast or a machine; its points are on /<name>/points."""
+
+    machine: str | None = None  # that carries it; else it stands at x, y
+    x: float = 0.0  # m, map
+    y: float = 0.0  # m, map
+    height: float = Field(gt=0, default=4.0)  # m, of its eye above the ground
+    range: float = Field(gt=0, le=60, default=20.0)  # m
+    noise: float = Field(ge=0, default=0.01)  # m, standard deviation
+    hz: float = Field(gt=0, le=5, default=1.0)
+
+
 class Simulator(Settings):
     """How the stand-ins of the site move."""
 
@@ -123,6 +137,7 @@ class Simulator(Settings):
     response: Literal["machine", "ideal"] = "machine"  # ideal: no dead time, no lag; for sites that try no stops
     names: Backend = "sim"  # whose names and joint names the stand-ins use
     faults: dict[str, Fault] = Field(default_factory=dict)  # machine -> its faults from the start
+    scanners: dict[Annotated[str, Field(pattern=NAME)], Scanner] = Field(default_factory=dict)  # of a site with ground
 
 
 class Groot(Settings):

@@ -7,7 +7,7 @@ answer.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -26,9 +26,18 @@ FIRST, LONGER = 50, 1.5  # ... and after so many poses, each time that much late
 AT_ONCE = 8  # poses of a way that one word may replace
 
 
+def never() -> bool:
+    """That somebody waits for the answer to its end."""
+    return False
+
+
 @dataclass(frozen=True)
 class Question:
-    """What a way is asked for: from a pose through goals, the last of which has a heading (as planner.plan)."""
+    """What a way is asked for: from a pose through goals, the last of which has a heading (as planner.plan).
+
+    `arm`: the outline with the arm as it is now. A way that keeps it clear comes first; where there is none, it may be
+    over what stands around: heights do not count here, and an arm may be high enough.
+    """
 
     start: Pose
     goals: tuple[Goal, ...]
@@ -36,26 +45,35 @@ class Question:
     pivot: float
     outline: Outline
     ground: Ground
+    arm: Outline | None = None
 
     def fastest(self) -> Plan | None:
         """The fastest path of all, if it is free."""
-        check = self._check()
-        if isinstance(check, Reason):
-            return None
-        found = plan(self.start, self.goals, self.pace, self.pivot)
-        return found if check.free(found.path.pieces) else None
+        check = self._check(self.arm or self.outline)
+        return None if isinstance(check, Reason) else self._fastest(check)
 
-    def answer(self) -> Plan | Reason:
-        """A free path; or why there is none. It takes up to some seconds."""
-        check = self._check()
+    def answer(self, over: Callable[[], bool] = never) -> Plan | Reason | None:
+        """A free path; or why there is none. It takes up to some seconds.
+
+        `over` is asked again and again whether nobody wants the answer any more; then there is none.
+        """
+        found = self._answer(self.arm, over) if self.arm is not None else None
+        return found if isinstance(found, Plan) or over() else self._answer(self.outline, over)
+
+    def _answer(self, outline: Outline, over: Callable[[], bool]) -> Plan | Reason | None:
+        check = self._check(outline)
         if isinstance(check, Reason):
             return check
+        if (free := self._fastest(check)) is not None:
+            return free
         here, pieces, reached = self.start.ahead(self.pivot), list[Piece](), list[int]()
         for number, goal in enumerate(self.goals):
             before = self.goals[number - 1] if number else self.start
             onward = self.goals[number + 1] if number + 1 < len(self.goals) else None
             targets = [pose.ahead(self.pivot) for pose in passable(before, goal, onward)]
-            found = _way(here, targets, self.pace, check)
+            found = _way(here, targets, self.pace, check, over)
+            if over():
+                return None
             if found is None:
                 return self._blocked(check)
             pieces += found
@@ -63,8 +81,12 @@ class Question:
             here = pieces[-1].end if pieces else here
         return Plan(Path(tuple(pieces) or (Piece(here, 0.0, 0.0),)), tuple(reached))
 
-    def _check(self) -> WayCheck | Reason:
-        last, outline = self.goals[-1], self.outline.seen_from(self.pivot)
+    def _fastest(self, check: WayCheck) -> Plan | None:
+        found = plan(self.start, self.goals, self.pace, self.pivot)
+        return found if check.free(found.path.pieces) else None
+
+    def _check(self, around: Outline) -> WayCheck | Reason:
+        last, outline = self.goals[-1], around.seen_from(self.pivot)
         goal = Pose(last.x, last.y, last.yaw or 0.0).ahead(self.pivot)
         least = needed(self.ground, outline, self.start.ahead(self.pivot), goal)
         return least if isinstance(least, Reason) else WayCheck(self.ground, outline, least)
@@ -80,12 +102,14 @@ def in_the_way(contact: Contact) -> Reason:
     return InTheWay(contact.x, contact.y, contact.away)
 
 
-def _way(start: Pose, targets: Sequence[Pose], pace: Pace, check: WayCheck) -> list[Piece] | None:
+def _way(
+    start: Pose, targets: Sequence[Pose], pace: Pace, check: WayCheck, over: Callable[[], bool]
+) -> list[Piece] | None:
     """The pieces of a free way to one of the targets."""
     connect = _Connect(targets, pace, check)
     if (direct := connect.now(start)) is not None:
         return direct
-    found = Lattice(start, targets, check, pace).search(connect.due, connect.now)
+    found = Lattice(start, targets, check, pace).search(connect.due, connect.now, over)
     if found is None:
         return None
     poses, rest = found

@@ -1,9 +1,13 @@
 """A machine from above: its footprint as polygons in base_link [m]."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from itertools import product
+
+import numpy as np
 
 from tms_config.models import Box, MachineModel
+from tms_control.links import Links, box_place
 
 SIDES = 16  # of a polygon around a circle: at most 2 % larger
 SAME = 0.1  # m by which a box may be larger than a circle on each side and still stand for it
@@ -23,6 +27,19 @@ def from_above(model: MachineModel) -> dict[str, Polygon]:
             outer = radius / math.cos(math.pi / SIDES)
             turns = (math.tau * (i + 0.5) / SIDES for i in range(SIDES))
             found[part] = tuple((x + outer * math.cos(turn), y + outer * math.sin(turn)) for turn in turns)
+    return found
+
+
+def arm_from_above(model: MachineModel, links: Links, angles: Mapping[str, float]) -> list[tuple[float, float]]:
+    """The corners of what joints move beside the upper body, at their angles [rad]: an arm, a vessel."""
+    places = links.places(np.array([[angles[name] for name in links.names]]))
+    found = list[tuple[float, float]]()
+    for link in sorted(links.moved & model.shapes.keys()):
+        box, place = model.shapes[link], places[link][0] @ box_place(model.shapes[link])
+        half = [(high - low) / 2 for low, high in zip(box.min, box.max, strict=True)]
+        for signs in product((1, -1), repeat=3):
+            x, y, *_ = place @ [*(sign * one for sign, one in zip(signs, half, strict=True)), 1.0]
+            found.append((float(x), float(y)))
     return found
 
 

@@ -5,6 +5,7 @@ Heights do not count.
 """
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -38,6 +39,11 @@ class Outline:
         """Around the footprint of a model in base_link; without one, a centimetre."""
         corners = [corner for part in from_above(model).values() for corner in part]
         return cls(hull(corners)) if corners else cls.rectangle(0.01, -0.01, 0.01, -0.01)
+
+    def with_arm(self, corners: Iterable[tuple[float, float]]) -> "Outline | None":
+        """Around this and what else it carries at these places; None where that is no larger."""
+        found = Outline(hull([*self.polygon, *corners]))
+        return None if set(found.polygon) == set(self.polygon) else found
 
     def seen_from(self, pivot: float) -> "Outline":
         """The same from the place `pivot` [m] ahead."""

@@ -32,22 +32,25 @@ ATTEMPTS = 4  # ways that are planned to one goal, before it counts as one that 
 STANDS = 0.3  # s with poses that show it standing
 TRIES = 3  # times that a stage is planned anew because something came into the way
 PAUSE = 2.0  # s before each: most of what drives by is gone then
+AT_ONCE = 8  # goals for which the fastest path is found within a step
 CANCELLED = Verdict(Ending.CANCELED)
 
 
 class Trip:
     """`verdict` is None until the goal has ended. One TrackEstimate serves all trips of a machine: it learns.
 
-    `asked` is a way that has to be searched, for `answer`; `ground`: what stands around, as `see` tells it later.
+    `asked` is a way that has to be searched, for `answer`; `ground`: what stands around, as `see` tells it later;
+    `arm`: as a Question has it.
     """
 
     def __init__(
-        self, task: Task, drive: Drive, estimate: TrackEstimate, now: float, outline: Outline, ground: Ground
-    ) -> None:
+        self, task: Task, drive: Drive, estimate: TrackEstimate, now: float, outline: Outline, ground: Ground,
+        arm: Outline | None = None,
+    ) -> None:  # fmt: skip
         self.verdict: Verdict | None = None
         self.missed: list[Missed] = []
         self.asked: Question | None = None
-        self._outline, self._ground = outline, ground
+        self._outline, self._ground, self._arm = outline, ground, arm
         self._blocked: PathBlocked | None = None  # what came into the way of the present stage last
         self._tries, self._resumes = 0, now  # plans of this stage after that; s, not before that time
         self._task, self._drive, self._estimate, self._begun = task, drive, estimate, now
@@ -95,6 +98,10 @@ class Trip:
             if contact is not None:
                 self._give_way(now, PathBlocked(contact.name, in_the_way(contact)))
 
+    def waits_for(self, asked: Question) -> bool:
+        """Whether the answer to a question still matters: not after a cancel. From any thread."""
+        return self.asked is asked and self.verdict is None
+
     def answer(self, now: float, found: Plan | Reason) -> None:
         """Take the way that was asked for, or why there is none."""
         if self.asked is None:
@@ -102,6 +109,8 @@ class Trip:
         pivot, self.asked = self.asked.pivot, None
         if isinstance(found, Plan):
             self._set_off(found.path, found.reached[:-1], pivot)
+        elif self._task.road:
+            self._task, self._attempts = self._task.off_road(), self._attempts - 1
         elif self._blocked is not None and self._tries < TRIES:
             self._wait(now)
         else:
@@ -183,8 +192,8 @@ class Trip:
         if self._task.told is not None and self._attempts == 1:
             return self._set_off(self._task.told, (), 0.0)
         goals, pivot = tuple(self._goals(pose, turns)), self._estimate.pivot
-        question = Question(pose, goals, self._pace(), pivot, self._outline, self._ground)
-        found = question.fastest()
+        question = Question(pose, goals, self._pace(), pivot, self._outline, self._ground, self._arm)
+        found = question.fastest() if len(goals) <= AT_ONCE else None
         if found is None:
             self.asked = question
         else:

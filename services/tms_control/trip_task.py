@@ -23,11 +23,16 @@ class Task:
     stages: tuple[tuple[Goal, ...], ...]
     goes_on: bool = False  # after a stage that cannot be reached
     told: Path | None = None  # the way to the only stage; planned is only what turns there have put it off
+    road: bool = False  # the goals before the last of the only stage are places of roads: passed if that is possible
 
     @classmethod
-    def to(cls, pose: Pose) -> "Task":
-        """NavigateToPose."""
-        return cls(((Goal(*pose),),))
+    def to(cls, pose: Pose, road: Sequence[Goal] = ()) -> "Task":
+        """NavigateToPose, over places of roads."""
+        return cls(((*road, Goal(*pose)),), road=bool(road))
+
+    def off_road(self) -> "Task":
+        """The same by any way."""
+        return Task(tuple(goals[-1:] for goals in self.stages))
 
     @classmethod
     def through(cls, poses: Sequence[Pose]) -> "Task":

@@ -5,12 +5,15 @@ from datetime import datetime
 from typing import Any
 
 from pydantic import ValidationError
+from pymongo.errors import DuplicateKeyError
 
 from tms_db.reasons import BadCycle, CycleUnreadable
 from tms_db.store import Db, errors, long_work
 from tms_reason import validation
 from tms_reason.errors import DbError
 from tms_work.cycle import Cycle
+
+COLLECTION = "cycle"
 
 
 class Cycles:
@@ -28,7 +31,10 @@ class Cycles:
         with errors():
             for one in cycles:
                 key = {"run_id": one.run_id, "machine": one.machine, "number": one.number}
-                self._db["cycle"].replace_one(key, one.model_dump(), upsert=True)
+                try:
+                    self._db[COLLECTION].replace_one(key, one.model_dump(), upsert=True)
+                except DuplicateKeyError:  # it was sent again while its first write was under way: it is there now
+                    self._db[COLLECTION].replace_one(key, one.model_dump())
 
     def find(
         self, run_id: str = "", machine: str = "", begin: datetime | None = None, end: datetime | None = None
@@ -49,7 +55,7 @@ class Cycles:
         if times:
             query["ended_at"] = times
         with long_work(self._db):
-            documents = list(self._db["cycle"].find(query, {"_id": 0}).sort([("ended_at", 1), ("machine", 1)]))
+            documents = list(self._db[COLLECTION].find(query, {"_id": 0}).sort([("ended_at", 1), ("machine", 1)]))
         return [_cycle(document) for document in documents]
 
 

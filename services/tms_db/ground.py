@@ -15,11 +15,10 @@ import numpy as np
 from tms_config.clock import utc_now
 from tms_db.reasons import GroundNotThere, GroundUnreadable
 from tms_db.store import Db
-from tms_db.terrain import Terrain, TerrainFile
+from tms_db.terrain import GROUND, Terrain, TerrainFile
 from tms_reason.errors import DbError
 from tms_soil.surface import Heights
 
-NAME = TYPE = "ground"
 FIRST, LAST = "first", "last"
 
 
@@ -58,11 +57,11 @@ class GroundSnapshots:
         rows, columns = ground.z.shape
         more = {"x0": ground.x0, "y0": ground.y0, "cell": ground.cell, "rows": rows, "columns": columns,
                 "frame": "map", "taken_at": now.isoformat(), "source": source}  # fmt: skip
-        return _snapshot(self._terrain.put(NAME, TYPE, out.getvalue(), more))
+        return _snapshot(self._terrain.put(GROUND, GROUND, out.getvalue(), more))
 
     def all(self) -> list[Snapshot]:
         """Newest first."""
-        found = [_snapshot(file) for file in self._terrain.all(TYPE, NAME)]
+        found = [_snapshot(file) for file in self._terrain.all(GROUND, GROUND)]
         return sorted(found, key=lambda one: one.taken_at, reverse=True)
 
     def find(self, word: str) -> Snapshot:

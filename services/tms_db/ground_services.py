@@ -31,11 +31,14 @@ class GroundServices:
             raise DbError(GroundNotHeights(str(error))) from error
         stored = self._grounds.add(ground, request.source)
         response.taken_at = stored.taken_at.isoformat()
-        self._app.log.info("ground_stored", time=response.taken_at, source=request.source)
+        self._app.log.info("ground_stored", taken_at=response.taken_at, source=request.source)
 
     def read(self, request: ReadSnapshot.Request, response: ReadSnapshot.Response) -> None:
+        """Answer with a ground; where none was taken after the time that is asked for, with an empty `taken_at`."""
         after = _time(request.after) if request.after else None
         known = [one for one in self._grounds.all() if after is None or one.taken_at > after]
+        if after is not None and not known:
+            return
         found = chosen(known, request.snapshot)
         response.ground = patches.patch(self._grounds.read(found))
         response.ground.header.stamp = to_time(found.taken_at)

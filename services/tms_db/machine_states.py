@@ -40,10 +40,20 @@ def envelope(collection: str, machine: str, stamp: datetime, text: str) -> Docum
     """
     if collection not in COLLECTIONS:
         raise bad(NoCollection(collection, tuple(COLLECTIONS)))
+    message = document_of(collection, machine, text)
+    return {"time": stamp.isoformat(), "type": collection, "id": MACHINE, "name": machine, "msg": message}
+
+
+def document_of(collection: str, machine: str, text: str) -> Document:
+    """The document in the text of a state.
+
+    Raises:
+        DbError: BAD_RECORD; the text is no JSON object.
+    """
     try:
-        message: Any = json.loads(text)
+        found: Any = json.loads(text)
     except json.JSONDecodeError as error:
         raise bad(StateNoJson(collection, machine, error.msg)) from error
-    if not isinstance(message, dict):
+    if not isinstance(found, dict):
         raise bad(StateNoObject(collection, machine))
-    return {"time": stamp.isoformat(), "type": collection, "id": MACHINE, "name": machine, "msg": message}
+    return found

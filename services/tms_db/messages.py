@@ -4,12 +4,14 @@ from typing import Any
 
 from tms_msg_db import msg
 
+from tms_db.cycles import checked
 from tms_db.history import Event, Run
-from tms_db.machine_states import envelope
+from tms_db.machine_states import document_of, envelope
 from tms_db.records import Document
 from tms_db.tasks import Task
 from tms_db.templates import Template
 from tms_db.values import from_parameters, from_time, to_parameters, to_time
+from tms_work.cycle import Cycle
 
 
 def task(task: Task) -> msg.Task:
@@ -83,6 +85,15 @@ def past(change: dict[str, Any]) -> msg.PastValues:
     """One change of a record as a message."""
     values, _ = to_parameters(change["values"], hidden=())
     return msg.PastValues(stamp=to_time(change["stamp"]), source=change["source"], values=values)
+
+
+def cycle(message: msg.MachineState) -> Cycle:
+    """A finished cycle of work.
+
+    Raises:
+        DbError: BAD_RECORD, BAD_CYCLE; names the field.
+    """
+    return checked(document_of(message.collection, message.machine, message.msg))
 
 
 def machine_state(message: msg.MachineState) -> Document:

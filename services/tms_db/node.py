@@ -15,6 +15,7 @@ from tms_db import messages, store, store_address
 from tms_db.answering import Answering
 from tms_db.connection import StoreConnection
 from tms_db.cpp_services import CppServices
+from tms_db.cycles import COLLECTION, Cycles
 from tms_db.ground_services import GroundServices
 from tms_db.history import History
 from tms_db.machine_states import MachineStates
@@ -33,7 +34,7 @@ class TaskServices:
     def __init__(self, app: App, db: store.Db) -> None:
         self._app = app
         self._tasks, self._history = Tasks(db), History(db)
-        self._states = MachineStates(db)
+        self._states, self._cycles = MachineStates(db), Cycles(db)
         self._models = {*MODELS, *app.site.models}
 
     def offer(self, answering: Answering) -> None:
@@ -75,7 +76,11 @@ class TaskServices:
         response.events = [messages.event(event) for event in found]
 
     def write_machine_states(self, request: WriteMachineStates.Request, _: WriteMachineStates.Response) -> None:
-        self._states.write([messages.machine_state(state) for state in request.states])
+        """States of machines, and cycles of their work: both are documents that tell of a machine."""
+        cycles = [messages.cycle(one) for one in request.states if one.collection == COLLECTION]
+        states = [messages.machine_state(one) for one in request.states if one.collection != COLLECTION]
+        self._cycles.write(cycles)
+        self._states.write(states)
 
 
 def start(app: App) -> None:

@@ -1,4 +1,4 @@
-"""Deletes what is older than the site keeps: ended runs, each with all of its events, and states of machines.
+"""Deletes what is older than the site keeps: ended runs with all events, states of machines, cycles, grounds.
 
 A run goes whole or stays whole. One that has not ended (active, or interrupted and still to be resumed) stays, and so
 do all tasks and records. Ages count back from the newest run as well as from the clock: a clock that is years ahead,
@@ -13,9 +13,11 @@ from tms_config.clock import utc_now
 from tms_config.site_file import Store
 from tms_db import store
 from tms_db.connection import StoreConnection
+from tms_db.cycles import COLLECTION as CYCLE
 from tms_db.machine_states import COLLECTIONS
 from tms_db.reasons import NoStateTime
 from tms_db.store import Db, errors
+from tms_db.terrain import GROUND, Terrain
 from tms_db.worker import Worker
 from tms_reason.errors import DbError
 from tms_runtime.log import Logger
@@ -71,11 +73,40 @@ def delete_states(db: Db, days: int, now: datetime) -> int:
     return deleted
 
 
-def _delete_before(db: Db, collection: str, time: str) -> int:
+def delete_cycles(db: Db, days: int, now: datetime) -> int:
+    """Delete cycles of work that ended more than `days` ago. Returns how many.
+
+    Raises:
+        DbError: the store is away.
+    """
+    with errors():
+        newest = db[CYCLE].find_one({}, {"ended_at": 1}, sort=[("ended_at", -1)])
+    if newest is None:
+        return 0
+    return _delete_before(db, CYCLE, min(now, newest["ended_at"]) - timedelta(days=days), "ended_at")
+
+
+def delete_grounds(db: Db, days: int, now: datetime) -> int:
+    """Delete snapshots of the ground that are older than `days`, but never the newest one. Returns how many.
+
+    Raises:
+        DbError: the store is away.
+    """
+    terrain = Terrain(db)
+    taken = [(file, datetime.fromisoformat(file.more["taken_at"])) for file in terrain.all(GROUND, GROUND)]
+    newest = max((time for _, time in taken), default=now)
+    old = [file for file, time in taken if time < min(now, newest) - timedelta(days=days)]
+    for file in old:
+        terrain.delete(file)
+    DELETED.labels(GROUND).inc(len(old))
+    return len(old)
+
+
+def _delete_before(db: Db, collection: str, time: str | datetime, field: str = "time") -> int:
     deleted, last = 0, MANY
     while last == MANY:
         with store.long_work(db):
-            old = [state["_id"] for state in db[collection].find({"time": {"$lt": time}}, {"_id": 1}).limit(MANY)]
+            old = [state["_id"] for state in db[collection].find({field: {"$lt": time}}, {"_id": 1}).limit(MANY)]
             db[collection].delete_many({"_id": {"$in": old}})
         last = len(old)
         deleted += last
@@ -119,5 +150,9 @@ class Retention:
             gone["runs"] = delete_runs(self._db, self._settings.history_days, now)
         if self._settings.machine_state_days is not None:
             gone["machine_states"] = delete_states(self._db, self._settings.machine_state_days, now)
+        if self._settings.work_days is not None:
+            gone["cycles"] = delete_cycles(self._db, self._settings.work_days, now)
+        if self._settings.ground_days is not None:
+            gone["grounds"] = delete_grounds(self._db, self._settings.ground_days, now)
         if any(gone.values()):
             self._log.info("retention", reason=" ".join(f"{what}={number}" for what, number in gone.items()))

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 NEWEST_KEPT = 5  # versions of a dynamic cloud
 LISTED = 1000
+GROUND = "ground"  # name and type of snapshots of the ground
 SIZES = ("width", "height", "elevation", "offset_x", "offset_y")
 
 

@@ -1,6 +1,6 @@
 """Reasons why a ground cannot be read or used."""
 
-from tms_reason.quantities import Megabytes, Metres, Percent, SquareMetres
+from tms_reason.quantities import Megabytes, Metres, Percent, Seconds, SquareMetres
 from tms_reason.reason import Reason
 from tms_reason.remedies import EDIT_CONFIG, Remedy
 
@@ -30,6 +30,9 @@ class NoSoil(Reason, text="there is no soil '{soil}' (there: {soils})", action=E
     soil: str; soils: tuple[str, ...]
 class GroundOther(Reason, text="the kept ground is one of another area or soil: it is put aside as {file}"): file: str
 class GroundNotKept(Reason, text="{file}: the ground cannot be kept there ({problem})"): file: str; problem: str
+class WorkOther(Reason, text="the kept work cannot be read, cycles begin anew ({problem})"): problem: str
+class CycleLost(Reason, text="the database refuses a finished cycle for good: {why}"): why: Reason
+class CyclesMany(Reason, text="too many cycles wait for the database: the oldest {lost} of them are lost"): lost: int
 class NoOrigin(Reason, text="the file is in EPSG {epsg}, and the site file tells no ground.origin", action=EDIT_CONFIG):
     epsg: int
 class NotAlongPlane(Reason, text="a GeoTIFF needs a ground.origin on a plane, without yaw: export an .asc"): pass
@@ -44,6 +47,10 @@ class BadCell(Reason, text="cells of {cell} are asked for: {least} to {most} are
 class GroundFromFuture(Reason,
     text="the ground of {time} ({source}) lies in the future and is not taken: a clock has gone back"):
     time: str; source: str
+
+class SeenFromFuture(Reason, text="measured heights lie {ahead} in the future and are not taken: a clock is wrong"):
+    ahead: Seconds
+class SeenNotHeights(Reason, text="measured heights are none: {problem}"): problem: str
 
 # files of heights
 class GroundFile(Reason, text="{file}: {why}"): file: str; why: Reason

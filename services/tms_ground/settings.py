@@ -37,6 +37,13 @@ class Origin(Settings):
         return self
 
 
+class SoilRegion(Settings):
+    """Where another soil lies: in each tile of 12.8 m whose middle is in a polygon."""
+
+    soil: str  # one of configs/soils.yaml
+    corners: tuple[tuple[float, float], ...] = Field(min_length=3)  # m, map
+
+
 class PlaneDesign(Settings):
     """A level or sloping plane."""
 
@@ -92,6 +99,7 @@ class Ground(Settings):
     cell: float = Field(gt=0.01, le=10, default=0.2)  # m, side of the cells of a ground that is imported
     level: float = 0.0  # m, map: height of the ground where `tms:ground` begins
     soil: str = "earth"  # one of configs/soils.yaml
+    soils: tuple[SoilRegion, ...] = ()  # the last one counts where several overlap
     plan: Plan | None = None
     design: Design | None = None
 
@@ -118,16 +126,18 @@ def ground_of(site: Site) -> Ground | None:
         raise ConfigError(found[0] if len(found) == 1 else BadConfig(tuple(found))) from error
 
 
-def soil_of(site: Site, ground: Ground) -> Soil:
-    """The soil of a site.
+def soils_of(site: Site, ground: Ground) -> dict[str, Soil]:
+    """The soils of a site by their names, that of its most part first.
 
     Raises:
         ConfigError: configs/soils.yaml is wrong, or has no such soil.
     """
     known = parse(CONFIGS / "soils.yaml", SoilsFile).soils
-    if ground.soil not in known:
-        raise ConfigError(located(site.path, NoSoil(ground.soil, tuple(known)), "ground", "soil"))
-    return known[ground.soil]
+    named = [(ground.soil, ("soil",)), *((one.soil, ("soils", k, "soil")) for k, one in enumerate(ground.soils))]
+    for name, keys in named:
+        if name not in known:
+            raise ConfigError(located(site.path, NoSoil(name, tuple(known)), "ground", *keys))
+    return {name: known[name] for name, _ in named}
 
 
 def needed(site: Site) -> Ground:

@@ -69,7 +69,7 @@ class Snapshots:
         after = self._watch.newest
         request = ReadSnapshot.Request(snapshot="first" if after else "last", after=after)
         answer = self._ros.call(ReadSnapshot, READ, request, LIMIT)
-        if answer.error_code == NONE:
+        if answer.error_code == NONE or not (answer.error_code or answer.taken_at):
             return False
         if answer.error_code:
             raise TmsError(refusal(answer.error_code, answer.error_msg), answer.error_code)
@@ -80,7 +80,7 @@ class Snapshots:
             if answer.taken_at not in self._own:
                 self._watch.measured(patches.heights(answer.ground), taken.timestamp())
             self._watch.newest = answer.taken_at
-        self._log.info("snapshot_known", time=answer.taken_at, source=answer.source)
+        self._log.info("snapshot_known", taken_at=answer.taken_at, source=answer.source)
         return True
 
     def _write(self, source: str) -> str:
@@ -100,7 +100,7 @@ class Snapshots:
             self._watch.touched = True
             raise
         self._own.add(answer.taken_at)
-        self._log.info("snapshot_stored", time=answer.taken_at, source=source)
+        self._log.info("snapshot_stored", taken_at=answer.taken_at, source=source)
         return answer.taken_at
 
 

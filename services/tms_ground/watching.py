@@ -7,11 +7,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tms_config.clock import unix_time, utc_now
 from tms_config.models import MachineModel
 from tms_control.links import Matrix, placed
 from tms_ground.settings import Ground
+from tms_ground.waiting import Waiting
+from tms_ground.work import Duty, Work
 from tms_machine.frames import FramePose
 from tms_soil.changes import Changes
 from tms_soil.earth import GAP, Earth
@@ -20,12 +23,16 @@ from tms_soil.grid import Grid
 from tms_soil.keeping import restore, state_of
 from tms_soil.load import Load, load_of
 from tms_soil.measuring import measured
+from tms_soil.regions import soil_by_tile
 from tms_soil.soils import Soil
 from tms_soil.surface import Array, Heights
 from tms_soil.surface import grid as unknown
+from tms_work.cycle import Cycle
 
 CELL = 1.0  # m, of a level ground
+LATE = 0.25  # s without joint states, after which the way of an accelerated stand-in is unknown
 TIMES, NEWEST = "evidence", "snapshot"  # names in the file
+WORK, CYCLES = "work", "cycles"  # names in the file: what recognisers remember, and cycles that wait
 
 
 def touching(models: Mapping[str, MachineModel]) -> dict[str, MachineModel]:
@@ -37,17 +44,28 @@ class GroundWatch:
     """The ground, and where the machines were last told to be."""
 
     def __init__(
-        self, ground: Ground, soil: Soil, models: Mapping[str, MachineModel], file: Path, gap: float = GAP
+        self,
+        ground: Ground,
+        soils: Mapping[str, Soil],
+        models: Mapping[str, MachineModel],
+        file: Path,
+        speed: float = 1.0,
     ) -> None:
-        """`models`: by machine; `file` keeps the ground; `gap`: as of Earth."""
+        """`models`: by machine; `file` keeps the ground; `speed`: seconds of the machines in one of ours.
+
+        `soils`: those that the site has, by name, that outside all regions first.
+        """
         level = unknown(ground.area, CELL)
         level.z[:] = ground.level
-        self.earth = Earth(Grid.from_heights(level, [soil]), models, gap)
+        self.soils = list(soils)  # names, by the grid's index
+        by_tile = soil_by_tile(level.bounds, [(self.soils.index(one.soil), one.corners) for one in ground.soils])
+        self.earth = Earth(Grid.from_heights(level, list(soils.values()), by_tile), models, max(GAP, LATE * speed))
         self.area = ground.area  # m, map: what of the grid is the site
-        self.soils = [ground.soil]  # names, by the grid's index
         self.changes = Changes(self.earth.grid)
         self._evidence = Evidence(self.earth.grid.bounds)
         self.newest = ""  # ISO 8601: time of the newest snapshot that this ground knows; empty: of none
+        self.work = Work(self.earth, self.soils, models, speed)
+        self.waiting = Waiting()
         self.file = file
         self._stands: dict[str, tuple[tuple[float, float, float], Matrix]] = {}  # machine -> place, base_link in map
         self._begun = self.earth.mass()
@@ -78,6 +96,15 @@ class GroundWatch:
         self.changes.add(changed)
         self._stands.clear()  # machines stand otherwise now
         self.changed = True
+
+    def count(
+        self, machine: str, now: float, angles: Mapping[str, float], place: FramePose, duty: Duty
+    ) -> list[Cycle]:  # fmt: skip
+        """Cycles of work that have ended by `now` [s since 1970]; they wait for the database from now on."""
+        cycles = self.work.take(machine, now, angles, place, duty)
+        self.waiting.put(cycles)
+        self.changed = self.changed or bool(cycles)
+        return cycles
 
     def stands(self, machine: str) -> Matrix | None:
         """Its base_link in map, by height and slope under its tracks; None while it has told no place."""
@@ -113,6 +140,17 @@ class GroundWatch:
         self._begun = self.earth.mass()
         return found
 
+    def load_work(self, loads: bool) -> None:
+        """Go on with the kept work; `loads`: whether `load` has brought the loads of the same file back.
+
+        Raises:
+            ValueError: it is of a release that knows it otherwise.
+        """
+        with np.load(io.BytesIO(self.file.read_bytes()), allow_pickle=False) as file:
+            if WORK in file:  # files of earlier releases have none
+                self.work.restore(_text(file[WORK]), loads)
+                self.waiting.restore(_text(file[CYCLES]))
+
     def _remember(self, state: Mapping[str, Any]) -> None:
         """When the kept ground was known; files of earlier releases say nothing: then all of it counts as of now."""
         now = unix_time()
@@ -123,11 +161,20 @@ class GroundWatch:
             self._evidence.times[:], self.newest = np.minimum(times, now), str(state[NEWEST])
 
     def content(self) -> bytes | None:
-        """What `file` must hold to keep the ground; None if it has not changed since the last call."""
+        """What `file` must hold to keep ground and work; None if nothing has changed since the last call."""
         if not self.changed:
             return None
-        self.changed = False
+        self.changed = self.work.filled = False
         out = io.BytesIO()
         more = {TIMES: self._evidence.times, NEWEST: np.array(self.newest)}
-        np.savez(out, **state_of(self.earth), **more)  # type: ignore[arg-type]
+        work = {WORK: _bytes(self.work.state()), CYCLES: _bytes(self.waiting.state())}
+        np.savez(out, **state_of(self.earth), **more, **work)  # type: ignore[arg-type]
         return out.getvalue()
+
+
+def _bytes(text: str) -> NDArray[np.uint8]:
+    return np.frombuffer(text.encode(), np.uint8)
+
+
+def _text(data: NDArray[np.uint8]) -> str:
+    return data.tobytes().decode()

@@ -32,6 +32,11 @@ class MotionAction:
     served: str  # name below /<machine>/rc/
     type: ActionType[Any, Any, Any]
 
+    @property
+    def drives(self) -> bool:
+        """Whether it moves the tracks."""
+        return self.field.startswith(("navigate_", "follow_"))
+
 
 MOTIONS = (
     MotionAction("trajectory", "follow_joint_trajectory", FollowJointTrajectory),

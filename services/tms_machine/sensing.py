@@ -90,6 +90,15 @@ class Input(Settings):
         return None if "$" in (self.model[:1], self.record[:1]) else (self.model, self.record)
 
 
+class TerrainInput(Settings):
+    """One topic with clouds of points in `map` (sensor_msgs/msg/PointCloud2), for the ground of the site."""
+
+    topic: str = Field(pattern=r"^/?[A-Za-z][A-Za-z0-9_/]*$")
+    reliability: Literal["reliable", "best_effort"] = "best_effort"
+    cell: float = Field(ge=0.1, le=1, default=0.1)  # m, over which points are averaged
+    hz: float = Field(ge=0, default=0.0)  # expected rate; 0: no rate is expected
+
+
 class MachineState(Settings):
     """Pose and joints of the site's machines, for the collections machine_pose and machine_joints."""
 
@@ -102,6 +111,7 @@ class SensingFile(Settings):
     clock_limit: float = Field(gt=0, default=0.5)  # s that a source's clock may be ahead; later stamps are refused
     machine_state: MachineState = MachineState()
     inputs: dict[Annotated[str, Field(pattern=NAME)], Input] = Field(default_factory=dict)
+    terrain: dict[Annotated[str, Field(pattern=NAME)], TerrainInput] = Field(default_factory=dict)
 
 
 def sensing_path(site: Site) -> Path:

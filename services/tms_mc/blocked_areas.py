@@ -3,14 +3,13 @@
 Each of its fields is an area, by its name: the corners of a polygon in the map, x and y in turn [m].
 """
 
-import math
 from collections.abc import Mapping
-from typing import TypeGuard
 
 from tms_control.ground import Body
 from tms_control.reasons import BlockedArea
 from tms_machine.reasons import BadRecord
 from tms_machine.values import Value
+from tms_mc.numbers import finite
 from tms_mc.reasons import AreaUnfit
 from tms_reason.errors import SubtaskFailed
 
@@ -28,12 +27,8 @@ def areas(values: Mapping[str, Value]) -> list[Body]:
 
 
 def _corners(name: str, value: Value) -> tuple[tuple[float, float], ...]:
-    numbers = [float(one) for one in value if _finite(one)] if isinstance(value, list) else []
+    numbers = [float(one) for one in value if finite(one)] if isinstance(value, list) else []
     complete = isinstance(value, list) and len(numbers) == len(value) and len(numbers) % 2 == 0
     if not complete or not LEAST <= len(numbers) // 2 <= MOST:
         raise SubtaskFailed(BadRecord(RECORD, AreaUnfit(name, LEAST, MOST)))
     return tuple(zip(numbers[::2], numbers[1::2], strict=True))
-
-
-def _finite(value: object) -> TypeGuard[float]:
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)

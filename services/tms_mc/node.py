@@ -21,11 +21,10 @@ def start(app: App) -> None:
     gateway = GatewayWatch(app)
     guard = Guard(app, gateway)
     app.ready_when(guard.unready)
-    _serve_joints(app, guard, gateway)
-    _serve_tracks(app, guard, gateway)
+    _serve_tracks(app, guard, gateway, _serve_joints(app, guard, gateway))
 
 
-def _serve_joints(app: App, guard: Guard, gateway: GatewayWatch) -> None:
+def _serve_joints(app: App, guard: Guard, gateway: GatewayWatch) -> Joints:
     border, machine = app.site.border(app.machine), app.machine
     joints = Joints(app, gateway)
     guard.watch(joints.unready, lambda: joints.stands, lambda why: joints.stop(why, Ending.ABORTED))
@@ -37,13 +36,14 @@ def _serve_joints(app: App, guard: Guard, gateway: GatewayWatch) -> None:
         if own := getattr(border, field):
             action, run, refuse = servers.turn(field)
             app.ros.serve(action, f"/{machine}/{own}", run, refuse)
+    return joints
 
 
-def _serve_tracks(app: App, guard: Guard, gateway: GatewayWatch) -> None:
+def _serve_tracks(app: App, guard: Guard, gateway: GatewayWatch, joints: Joints) -> None:
     border, drive = app.site.border(app.machine), app.site.model_of(app.machine).drive
     if drive is None or not border.pose or not border.cmd_vel:
         return
-    tracks = Tracks(app, gateway, drive)
+    tracks = Tracks(app, gateway, drive, joints)
     guard.watch(tracks.unready, lambda: tracks.stands, lambda _: tracks.stop())
     around = Surroundings(app)
     servers = TrackServers(tracks, guard, around)

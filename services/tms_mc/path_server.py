@@ -1,5 +1,6 @@
 """ComputePathToPose: plans the path of the tracks to a pose, and moves nothing."""
 
+from collections.abc import Callable
 from typing import Any
 
 from nav2_msgs.action import ComputePathToPose
@@ -7,6 +8,8 @@ from nav_msgs.msg import Path
 
 from tms_config.clock import monotonic
 from tms_control.path import Path as Way
+from tms_control.path import Pose
+from tms_control.planner import Goal, Plan
 from tms_machine import stamps
 from tms_machine.frames import MAP
 from tms_mc.goal_poses import in_map, pose_of, wrong
@@ -43,12 +46,23 @@ class PathServer:
             self._around.read()
         except SubtaskFailed as error:
             return _failed(error.reason)
-        question = self._tracks.question(start, pose_of(request.goal), self._around.ground())
-        found = question.fastest() or question.answer()
+        found = self._way(start, pose_of(request.goal), goal.cancelled.is_set)
+        if found is None:
+            return Outcome.CANCELED, ComputePathToPose.Result()
         if isinstance(found, Reason):
             return _failed(found)
         took = stamps.duration(monotonic() - begun)
         return Outcome.SUCCEEDED, ComputePathToPose.Result(path=_told(found.path), planning_time=took)
+
+    def _way(self, start: Pose, goal: Pose, over: Callable[[], bool]) -> Plan | Reason | None:
+        """A path along roads, or else any; or why there is none."""
+        found: Plan | Reason | None = None
+        for passed in dict.fromkeys((self._around.roads.between(start, goal), ())):
+            question = self._tracks.question(start, (*passed, Goal(*goal)), self._around.ground())
+            found = question.answer(over)
+            if not isinstance(found, Reason):
+                break
+        return found
 
 
 def _told(way: Way) -> Path:

@@ -27,7 +27,12 @@ class StrangeFrame(Reason, text="pose {number} is told in the frame '{frame}', n
 class PoseUnfit(Reason, text="pose {number} holds no orientation, or a value that is not a number"): number: int
 class AreaUnfit(Reason, text="area '{area}' needs x and y of {least} to {most} corners in turn, as numbers"):
     area: str; least: int; most: int
-class AreasUnread(Reason, text="the blocked areas are as they were read last: {why}"): why: Reason
+class AreasUnread(Reason, text="the blocked areas and roads are as they were read last: {why}"): why: Reason
+class RoadUnfit(Reason, text="road '{road}' needs names of records in turn"): road: str
+class RoadShort(Reason, text="road '{road}' has only one place"): road: str
+class SectionUnfit(Reason, text="record '{section}' needs x and y, as numbers or as lists of one length"): section: str
+class ManyPlaces(Reason, text="all roads together have {count} places every five metres, more than {most}"):
+    count: int; most: int
 
 # the end of a goal
 class GatewayGone(Reason, text="the gateway was lost while the machine moved"): pass

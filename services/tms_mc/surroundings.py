@@ -1,25 +1,24 @@
-"""What stands around a machine that drives: the other machines of the site, and the blocked areas of the database."""
+"""What is around a machine that drives: other machines of the site, and blocked areas and roads of the database."""
 
-from tms_msg_db.srv import GetParameter
+from collections.abc import Mapping
 
 from tms_config.clock import monotonic
 from tms_control.from_above import from_above
 from tms_control.ground import Body, Ground
 from tms_control.path import Pose
 from tms_control.reasons import MachineThere
+from tms_control.roads import Roads
 from tms_machine.drift import drift
 from tms_machine.places import PERIOD, Places
-from tms_machine.values import from_parameters
-from tms_mc.blocked_areas import RECORD, areas
+from tms_machine.values import Value
+from tms_mc.blocked_areas import RECORD as AREAS
+from tms_mc.blocked_areas import areas
 from tms_mc.reasons import AreasUnread
-from tms_reason.errors import RosError, SubtaskFailed
-from tms_reason.reason import Reason
-from tms_reason.wire import refusal
+from tms_mc.records import Records
+from tms_mc.road_records import RECORD as ROADS
+from tms_mc.road_records import roads
+from tms_reason.errors import RosError
 from tms_runtime.app import App
-
-SERVICE = "/tms/db/get_parameter"
-LIMIT = 0.8  # s for the database to answer
-NONE = "RECORD_MISSING"  # its code where nobody has stored such a record
 
 
 class Surroundings:
@@ -32,28 +31,28 @@ class Surroundings:
         self._places = Places(app.ros, {name: app.site.border(name) for name in self._models})
         self._shapes = {name: from_above(model) for name, model in self._models.items()}
         self._areas: list[Body] = []
-        app.ros.prepare(GetParameter, SERVICE)
+        self._records, self.roads = Records(app), Roads()
         if self._models:
             app.ros.poll_in_thread(PERIOD, self._places.take, "places")
 
     def read(self) -> None:
-        """Read the blocked areas anew; while the database is away, those that were read last hold.
+        """Read blocked areas and roads anew; while the database is away, those that were read last hold.
 
         Raises:
-            SubtaskFailed: BadRecord; or the record is older than it may be.
+            SubtaskFailed: BadRecord; or a record is older than it may be.
         """
-        if not self._app.ros.has_service(GetParameter, SERVICE):
+        if not self._records.there():
             return
         try:
-            answer = self._app.ros.call(GetParameter, SERVICE, GetParameter.Request(record_name=RECORD), LIMIT)
+            self._areas = areas(self._records.read(AREAS) or {})
+            self.roads = roads(self._records.read(ROADS) or {}, self._section)
         except RosError as error:
-            return self._unread(error.reason)
-        if answer.error_code == "STALE_RECORD":
-            raise SubtaskFailed(refusal(answer.error_code, answer.error_msg))
-        if answer.error_code not in ("", NONE):
-            return self._unread(refusal(answer.error_code, answer.error_msg))
-        self._areas = areas(from_parameters(answer.record.values))
-        return None
+            self._app.log.warning("areas_unread", reason=AreasUnread(error.reason))
+
+    def _section(self, name: str) -> Mapping[str, Value] | None:
+        """A section of a road: of this machine, else of all."""
+        own = self._records.read(name, self._app.machine)
+        return self._records.read(name) if own is None else own
 
     def ground(self) -> Ground:
         """All of it now: machines where they were told to be last, and how far they may have moved since."""
@@ -65,6 +64,3 @@ class Surroundings:
             for part in self._shapes[name].values()
         ]
         return Ground((*found, *self._areas))
-
-    def _unread(self, why: Reason) -> None:
-        self._app.log.warning("areas_unread", reason=AreasUnread(why))

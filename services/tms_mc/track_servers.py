@@ -34,12 +34,17 @@ class TrackServers:
 
     def to_pose(self, goal: AnyGoal) -> Ended[Any]:
         """NavigateToPose."""
-        return self._drive(goal, NavigateToPose, Task.to(pose_of(goal.request.pose)), self._progress)
+        pose = pose_of(goal.request.pose)
+
+        def task() -> Task:
+            return Task.to(pose, self._around.roads.between(self._tracks.pose, pose))
+
+        return self._drive(goal, NavigateToPose, task, self._progress)
 
     def through_poses(self, goal: AnyGoal) -> Ended[Any]:
         """NavigateThroughPoses."""
         task = Task.through([pose_of(one) for one in goal.request.poses])
-        return self._drive(goal, NavigateThroughPoses, task, self._progress)
+        return self._drive(goal, NavigateThroughPoses, lambda: task, self._progress)
 
     def waypoints(self, goal: AnyGoal) -> Ended[Any]:
         """FollowWaypoints."""
@@ -48,7 +53,7 @@ class TrackServers:
         def progress(action: Any, told: Feedback) -> Any:
             return action.Feedback(current_waypoint=told.waypoint)
 
-        return self._drive(goal, FollowWaypoints, task, progress)
+        return self._drive(goal, FollowWaypoints, lambda: task, progress)
 
     def path(self, goal: AnyGoal) -> Ended[Any]:
         """FollowPath."""
@@ -57,9 +62,12 @@ class TrackServers:
         def progress(action: Any, told: Feedback) -> Any:
             return action.Feedback(distance_to_goal=told.left, speed=told.speed)
 
-        return self._drive(goal, FollowPath, task, progress)
+        return self._drive(goal, FollowPath, lambda: task, progress)
 
-    def _drive(self, goal: AnyGoal, action: Any, task: Task, progress: Callable[[Any, Feedback], Any]) -> Ended[Any]:
+    def _drive(
+        self, goal: AnyGoal, action: Any, task: Callable[[], Task], progress: Callable[[Any, Feedback], Any]
+    ) -> Ended[Any]:
+        """`task` is asked once it is known what is around, and the machine stands."""
         with self._guard.working_for(goal):
             if (kept := self._guard.wait(goal)) is not None:
                 return Outcome.ABORTED, _result(action, kept, [])
@@ -67,7 +75,7 @@ class TrackServers:
                 self._around.read()
             except SubtaskFailed as error:
                 return Outcome.ABORTED, _result(action, error.reason, [])
-            trip = self._tracks.begin(task, self._around.ground())
+            trip = self._tracks.begin(task(), self._around.ground())
             goal.on_cancel = lambda: self._tracks.stop(trip)
             if goal.cancelled.is_set():  # the request came before the motion began
                 goal.on_cancel()

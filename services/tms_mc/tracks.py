@@ -2,7 +2,7 @@
 
 import math
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from geometry_msgs.msg import Twist
@@ -11,7 +11,9 @@ from prometheus_client import Gauge
 from tms_config.clock import monotonic
 from tms_config.models import DRIVE, Drive
 from tms_control.detour import Question
+from tms_control.from_above import arm_from_above
 from tms_control.ground import Ground, Outline
+from tms_control.links import Links
 from tms_control.machine_clock import MachineClock
 from tms_control.path import Pose
 from tms_control.planner import Goal, Pace
@@ -22,6 +24,7 @@ from tms_decision.permit_link import LEASE
 from tms_machine import stamps
 from tms_machine.places import POSES, place_of
 from tms_mc.gateway_watch import GatewayWatch
+from tms_mc.joints import Joints
 from tms_mc.reasons import ControllerStood, PosesSilent, PosesUnheard
 from tms_mc.turns import Turns
 from tms_reason.reason import Reason
@@ -38,12 +41,13 @@ SILENT = 0.5  # s without a pose after which no goal is taken
 class Tracks:
     """One goal at a time. Safe to call from several threads."""
 
-    def __init__(self, app: App, gateway: GatewayWatch, drive: Drive) -> None:
+    def __init__(self, app: App, gateway: GatewayWatch, drive: Drive, joints: Joints) -> None:
         site, machine = app.site, app.machine
         border = site.border(machine)
         self._app, self._gateway, self._drive = app, gateway, drive
         self._response = site.model_of(machine).responses(border)[DRIVE]
-        self._outline = Outline.of(site.model_of(machine))
+        self._model, self._joints = site.model_of(machine), joints
+        self._outline, self._links = Outline.of(self._model), Links(self._model)
         self._topic, source = f"/{machine}/{border.pose}", border.sources["pose"]
         kind = POSES[source.message]
         self._heard: Callable[[], list[Arrival[Any]]] = app.ros.sample_arrivals(kind, self._topic, DEPTH)
@@ -73,19 +77,26 @@ class Tracks:
         with self._lock:
             return self._estimate.at(self._time()).pose
 
-    def question(self, start: Pose, goal: Pose, ground: Ground) -> Question:
-        """How a path between two poses is asked for, of the place whose pose is told."""
+    def question(self, start: Pose, goals: Sequence[Goal], ground: Ground) -> Question:
+        """How a path from a pose through goals is asked for, of the place whose pose is told."""
         with self._lock:
             pace = Pace.of(self._drive, self._estimate.yaw_gain)
-        return Question(start, (Goal(*goal),), pace, 0.0, self._outline, ground)
+        return Question(start, tuple(goals), pace, 0.0, self._outline, ground, self._with_arm())
+
+    def _with_arm(self) -> Outline | None:
+        """The outline with what joints move beside it, as they were told to be last; None where that is not known."""
+        if self._joints.unready() is not None:
+            return None
+        return self._outline.with_arm(arm_from_above(self._model, self._links, self._joints.positions))
 
     def begin(self, task: Task, ground: Ground) -> Trip:
         """Drive, from where the machine is, among what stands on the ground; an open goal ends."""
+        arm = self._with_arm()
         with self._lock:
             now = self._time()
             if self._trip is not None:
                 self._trip.silence(now)
-            trip = self._trip = Trip(task, self._drive, self._estimate, now, self._outline, ground)
+            trip = self._trip = Trip(task, self._drive, self._estimate, now, self._outline, ground, arm)
         self._turns.wake()
         return trip
 
@@ -95,9 +106,10 @@ class Tracks:
             trip.see(self._time(), ground)
             asked = trip.asked
         if asked is not None:
-            found = asked.answer()
-            with self._lock:
-                trip.answer(self._time(), found)
+            found = asked.answer(lambda: not trip.waits_for(asked))
+            if found is not None:
+                with self._lock:
+                    trip.answer(self._time(), found)
 
     def told(self, trip: Trip) -> Any:
         """What the feedback of a goal tells."""

@@ -7,6 +7,8 @@ from geometry_msgs.msg import Pose, PoseStamped
 from trajectory_msgs.msg import JointTrajectoryPoint
 
 from tms_machine.border import MotionAction
+from tms_machine.geometry import yaw_of
+from tms_machine.places import IN_MAP
 from tms_machine.stamps import seconds
 from tms_rc.limits import TrajectoryPoint
 from tms_reason.reason import Reason
@@ -22,6 +24,30 @@ def poses_of(request: Any) -> Sequence[PoseStamped]:
     if hasattr(request, "path"):
         return list(request.path.poses)
     return list(request.poses) if hasattr(request, "poses") else [request.pose]
+
+
+def places_of(request: Any) -> list[tuple[float, float, float]] | None:
+    """The places x, y [m], yaw [rad] of a goal for the navigation, checked by the limits; None for another goal."""
+    if hasattr(request, "trajectory") or hasattr(request, "target_angle") or hasattr(request, "goal_position"):
+        return None
+    told = [numbers(one.pose) for one in poses_of(request)]
+    return [(x, y, yaw_of((qx, qy, qz, qw))) for x, y, _, qx, qy, qz, qw in told]
+
+
+def frame_of(request: Any) -> str:
+    """A frame of a goal's poses that is not the map's; empty for none."""
+    frames = {one.header.frame_id for one in poses_of(request)}
+    return next(iter(sorted(frames - {*IN_MAP, ""})), "")
+
+
+def way_of(request: Any, joint: str | None) -> list[dict[str, float]]:
+    """The angles [rad] by which a goal leads joints; `joint`: the one that an angle of another goal turns."""
+    if hasattr(request, "trajectory"):
+        wanted = request.trajectory
+        return [dict(zip(wanted.joint_names, point.positions, strict=True)) for point in wanted.points]
+    if hasattr(request, "goal_position"):
+        return [dict(zip(request.joint_name, request.goal_position, strict=True))]
+    return [] if joint is None else [{joint: float(request.target_angle)}]
 
 
 def numbers(pose: Pose) -> tuple[float, ...]:

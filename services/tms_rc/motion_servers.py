@@ -4,7 +4,7 @@ import threading
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from itertools import count
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tms_decision.gateway.effects import Cancel, End, GiveUp, Lose, Send
 from tms_decision.gateway.events import (
@@ -26,6 +26,9 @@ from tms_ros.client import AnyCall, AnyPeer
 from tms_ros.goals import Ended, Outcome
 from tms_ros.server import AnyGoal
 from tms_runtime.app import App
+
+if TYPE_CHECKING:  # its libraries are loaded only where a site has areas
+    from tms_rc.area_watch import AreaWatch
 
 CLOSING_CHECK_PERIOD = 1.0  # s
 CANCELED = 0  # error code of a goal that its client has cancelled
@@ -53,6 +56,7 @@ class MotionServers:
         self._served: dict[int, Served] = {}
         self._numbers = count(1)
         self.peers: list[AnyPeer] = []
+        self.areas: AreaWatch | None = None  # where the site has areas
         ours = app.site.border(app.machine).controller == "ours"
         self._controller = RemotePermit(app.ros, app.pulse, app.machine, "mc", lambda _: None) if ours else None
         shell.does(Send, lambda effect: self._send(self._served[effect.number]))
@@ -72,13 +76,16 @@ class MotionServers:
         return [served.goal for served in list(self._served.values())]
 
     def look(self, gateway: Gateway) -> tuple[bool, bool, Reason | None]:
-        """Whether the server of the active goal is there, or gone; and which joint has left its limits."""
+        """Whether the server of the active goal is there, or gone; and what has left its limits."""
         active = gateway.active
         served = self._served.get(active.number) if active is not None else None
         if active is None or served is None:
             return True, False, None
         gone = served.call is not None and served.call.accepted and self._lost(served.peer, served.call)
-        return served.peer.ready(), gone, self._check.escaped(gateway, active.start)
+        escaped = self._check.escaped(gateway, active.start)
+        if escaped is None and self.areas is not None:
+            escaped = self.areas.astray(gateway)
+        return served.peer.ready(), gone, escaped
 
     def _lost(self, peer: AnyPeer, call: AnyCall) -> bool:
         """Whether the server of a call is gone; our own controller says so seconds before discovery does."""
@@ -87,7 +94,7 @@ class MotionServers:
     def _run(self, motion: MotionAction, peer: AnyPeer, goal: AnyGoal) -> Ended[Any]:
         served = Served(next(self._numbers), motion, goal, peer)
         self._served[served.number] = served
-        wrong = self._shell.read(lambda gateway, now: self._check.problem(motion, goal.request, gateway))
+        wrong = self._wrong(motion, goal.request)
         asked = GoalAsked(served.number, goal.id, parse(goal.uuid), peer.name, wrong)
         if wrong is None:
             asked = replace(asked, motion=self._check.motion(motion, goal.request), lasts=duration(goal.request))
@@ -99,6 +106,18 @@ class MotionServers:
             pass
         del self._served[served.number]
         return _ended(served)
+
+    def _wrong(self, motion: MotionAction, request: Any) -> Reason | None:
+        """Why the machine must not do what a goal asks; its areas take longer than the shell's lock may be held."""
+        wrong = self._shell.read(lambda gateway, _: self._check.problem(motion, request, gateway))
+        if wrong is not None or self.areas is None:
+            return wrong
+        return self.areas.problem(motion, request, self._shell.read(lambda gateway, _: gateway.watch.positions))
+
+    def drives(self, number: int) -> bool:
+        """Whether a goal moves the tracks; also for one that is gone meanwhile."""
+        served = self._served.get(number)
+        return served is None or served.motion.drives
 
     def _cancelled(self, served: Served) -> None:
         if self._app.stopping.is_set():

@@ -11,7 +11,7 @@ from tms_decision.permit_link import LEASE
 from tms_machine.border import Controls, motions
 from tms_machine.facts import facts_of
 from tms_machine.permit import Permit
-from tms_rc import permits, relayed_goals
+from tms_rc import areas, permits, relayed_goals
 from tms_rc.claim import Claim
 from tms_rc.disk import Disk
 from tms_rc.holder import Holder
@@ -56,7 +56,7 @@ def _serve(app: App, claim: Claim) -> None:
     servers = MotionServers(app, shell)
     kept = Receipts(app.site.state, machine)
     state = StateTopic(app, shell, monitor, servers, claim)
-    ReceiptTopic(app, shell, kept)
+    receipts = ReceiptTopic(app, shell, kept)
     Disk(app, shell, notes, kept)
     drives: Controls | Holder = controls
     if border.controller == "ours":
@@ -66,10 +66,12 @@ def _serve(app: App, claim: Claim) -> None:
     shell.does(CancelAll, lambda _: controls.cancel_everything())
 
     def look(seen: Gateway) -> Beat:
+        relayed_goals.look(app, servers, seen, monotonic())
         ready, gone, escaped = servers.look(seen)
         reachable = seen.recovery.reached or controls.reachable()  # asked of the graph at the start only
         return Beat(unix_time(), reachable, drives.settling(), ready, gone, escaped)
 
+    areas.begin(app, gateway, servers, receipts)
     shell.begin(effects, monitor.samples, look)
     for motion in motions(border):
         servers.serve(motion, getattr(border, motion.field))

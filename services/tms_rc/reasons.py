@@ -2,7 +2,9 @@
 
 from tms_reason.quantities import Moments, Number, Radians, RadiansPerSecond
 from tms_reason.reason import Reason
-from tms_reason.remedies import EDIT_CONFIG, INSPECT, PROCESSES
+from tms_reason.remedies import EDIT_CONFIG, INSPECT, PROCESSES, RETRY, Remedy
+
+ENABLE = Remedy("enable_areas", "tms areas enable", "Look at the areas, then enable them")
 
 
 # fmt: off
@@ -35,6 +37,16 @@ class StateNotKept(Reason, text="the note of its state cannot be written: make r
 class DriverNotKept(Reason, text="the note of who drives cannot be written: make room on the disk of this PC",
     details="{problem}"): problem: str
 class NoteUnreadable(Reason, text="the note of how the machine was left cannot be read", action=INSPECT): pass
+
+# areas
+class AreasNotEnabled(Reason, text="no areas are enabled for this site", action=ENABLE): pass
+class AreasUnreadable(Reason, text="its enabled areas cannot be read", action=ENABLE): pass
+class AreasLate(Reason, text="its areas have not been looked at for {seconds}"): seconds: Moments
+class AreasNotKept(Reason, text="the areas cannot be written: make room on the disk of this PC", details="{problem}"):
+    problem: str
+class TrapsMachine(Reason, text="{machine} moves where these areas would stop it: {why}", action=RETRY):
+    machine: str; why: Reason
+class GoalNotInMap(Reason, text="its poses are in the frame '{frame}', areas are in map"): frame: str
 
 # its own life
 class Rival(Reason, text="another gateway for {machine} runs ({where})", action=PROCESSES): machine: str; where: str

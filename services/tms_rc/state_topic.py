@@ -43,7 +43,9 @@ class StateTopic:
             return self._monitor.strange_type() or silent
         if trouble is not None:
             return trouble.reason
-        machine = self._app.machine
+        areas, machine = self._servers.areas, self._app.machine
+        if areas is not None and (unwatched := areas.unready()) is not None:
+            return unwatched
         return next((ControllerAway(machine, peer.name) for peer in self._servers.peers if not peer.ready()), None)
 
     def _state(self, gateway: Gateway, now: float) -> MachineState:

@@ -1,5 +1,7 @@
 """Receipts of stops as messages: kept ones first, then each when it is told."""
 
+from collections.abc import Callable
+
 from prometheus_client import Counter, Histogram
 from tms_msg_rc.msg import StopReceipt
 
@@ -36,10 +38,13 @@ class ReceiptTopic:
         self._publisher = app.ros.publisher(StopReceipt, f"/{app.machine}/rc/receipts", depth=20, latched=True)
         for data in kept.all():
             self._publisher.publish(unpack(data, StopReceipt))
+        self.heard: Callable[[Receipt], None] | None = None  # who else wants them, without waiting
         shell.does(Tell, self._tell)
 
     def _tell(self, effect: Tell) -> None:
         receipt = effect.receipt
+        if self.heard is not None:
+            self.heard(receipt)
         STOPS.labels("yes" if receipt.confirmed else "no").inc()
         STOP_SECONDS.observe(receipt.seconds)
         self._publisher.publish(message_of(receipt, self._app.machine))

@@ -9,6 +9,7 @@ from functools import partial
 from typing import Any
 
 from tms_msg_rp.action import ExecutePlans, TmsRpExcavator
+from trajectory_msgs.msg import JointTrajectory
 
 from tms_machine.peer_forms import misfit
 from tms_reason.reason import Reason
@@ -63,22 +64,24 @@ class ExcavatorServer:
             last[:] = [state]
             goal.publish(TmsRpExcavator.Feedback(state=to_line(state), progress=progress_of(state)))
 
-        if request.command == request.CMD_EXECUTE_PLAN:
+        executes = request.command == request.CMD_EXECUTE_PLAN
+        if executes:
             wanted: Any = ExecutePlans.Goal(plans=stored_plans(request))
             outcome, plan = self._carry_out(self._execute, goal, wanted, say)
         else:
             outcome, plan = self._carry_out(self._plan, goal, plan_goal(request, self._settings()), say)
-            if plan is not None and (why := leaves(request.constraints, follow(plan.made).trajectory)) is not None:
-                outcome = Outcome.ABORTED
-                say(why)
-        return outcome, self._result(outcome, plan, last)
+        path = None if plan is None else follow(plan.made).trajectory
+        if path is not None and not executes and (why := leaves(request.constraints, path)) is not None:
+            outcome = Outcome.ABORTED
+            say(why)
+        return outcome, self._result(outcome, path, last)
 
-    def _result(self, outcome: Outcome, plan: Plan | None, last: list[Reason]) -> TmsRpExcavator.Result:
+    def _result(self, outcome: Outcome, path: JointTrajectory | None, last: list[Reason]) -> TmsRpExcavator.Result:
         codes = {Outcome.SUCCEEDED: SUCCESS, Outcome.CANCELED: PREEMPTED}
         result = TmsRpExcavator.Result(
             success=outcome is Outcome.SUCCEEDED, moveit_error_code=codes.get(outcome, FAILURE),
             message=" ".join(map(to_line, last)),
         )  # fmt: skip
-        if outcome is Outcome.SUCCEEDED and plan is not None:
-            result.plan.joint_trajectory = follow(plan.made).trajectory
+        if outcome is Outcome.SUCCEEDED and path is not None:
+            result.plan.joint_trajectory = path
         return result

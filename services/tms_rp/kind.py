@@ -48,6 +48,7 @@ class Moves:
     plans: tuple[JointTrajectory, ...] = ()  # stored plans, instead of targets
     scales: tuple[float, float] = (1.0, 1.0)  # shares of the limits of velocity, and of acceleration and jerk
     through: Through | None = None
+    broken_off: bool = False  # whether the plans may be: they go on where the arm stands on their path then
 
     def rest(self, count: int) -> "Moves":
         """What is left of the goal when so many targets are, from where the arm is then."""

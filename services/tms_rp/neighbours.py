@@ -7,8 +7,8 @@ import numpy as np
 from tms_config.clock import monotonic
 from tms_control.links import placed
 from tms_machine.drift import FRESH
-from tms_machine.joint_states import JointStates
-from tms_machine.places import PERIOD, Places
+from tms_machine.listener import Listener
+from tms_machine.places import PERIOD
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
 from tms_rp.neighbour import Neighbour, Posture
@@ -21,30 +21,19 @@ class Neighbours:
     """The other machines, as seen from this one."""
 
     def __init__(self, app: App) -> None:
-        self._site, self._own, self._log = app.site, app.machine, app.log
+        self._own, self._log = app.machine, app.log
         self._others = [name for name in app.site.file.machines if name != app.machine]
         if not self._others:
             return  # no place matters
-        borders = {name: app.site.border(name) for name in app.site.file.machines}
-        self._places = Places(app.ros, borders)
         models = {name: app.site.model_of(name) for name in self._others}
         self._bodies = {name: Neighbour(name, model) for name, model in models.items()}
-        self._driven = {name: model.driven for name, model in models.items()}
-        self._joints = {
-            name: JointStates(app.ros, name, borders[name], self._driven[name])
-            for name, model in models.items()
-            if model.shapes and borders[name].joint_states
-        }
-        app.ros.poll_in_thread(PERIOD, self._take, "neighbours")
-
-    def _take(self) -> None:
-        self._places.take()
-        for joints in self._joints.values():
-            joints.take()
+        jointed = [name for name, model in models.items() if model.shapes]
+        self._listener = Listener(app.ros, app.site, app.site.file.machines, jointed)
+        app.ros.poll_in_thread(PERIOD, self._listener.take, "neighbours")
 
     def unready(self) -> Reason | None:
         """Why it is not known where this machine stands, if its pose should tell it and others may be near."""
-        return self._places.missing(self._own, monotonic(), FRESH) if self._others else None
+        return self._listener.places.missing(self._own, monotonic(), FRESH) if self._others else None
 
     def scene(self, as_told: bool = False) -> Scene:
         """The other machines in our base_link, as far as both places are known.
@@ -58,8 +47,8 @@ class Neighbours:
             return Scene()
         if missing := self.unready():
             raise SubtaskFailed(missing)
-        own = self._places.place(self._own)
-        places = {name: place for name in self._others if (place := self._places.place(name)) is not None}
+        own = self._listener.places.place(self._own)
+        places = {name: place for name in self._others if (place := self._listener.places.place(name)) is not None}
         if own is None:
             if places:
                 self._log.warning("place_unknown", target=self._own, reason=PlaceUnknown(self._own))
@@ -74,7 +63,5 @@ class Neighbours:
         return Scene(tuple(itertools.chain.from_iterable(found)))
 
     def _posture(self, name: str, now: float, as_told: bool) -> Posture | None:
-        last = self._joints[name].last if name in self._joints else None
-        if last is None:
-            return None
-        return Posture(dict(zip(self._driven[name], last[1], strict=True)), 0.0 if as_told else now - last[0])
+        told = self._listener.joints(name)
+        return None if told is None else Posture(told.angles, 0.0 if as_told else now - told.received)

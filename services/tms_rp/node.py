@@ -9,6 +9,7 @@ from prometheus_client import Histogram
 from tms_msg_rp.action import ExecutePlans
 from tms_msg_rp.msg import TmsRpErrorCodes
 from tms_msg_rp.srv import CheckMotion
+from trajectory_msgs.msg import JointTrajectory
 
 from tms_config.clock import monotonic
 from tms_config.naming import process_of
@@ -41,7 +42,7 @@ from tms_rp.reasons import (
     Planning,
     Succeeded,
 )
-from tms_rp.resuming import Resuming
+from tms_rp.resuming import Resuming, Say
 from tms_rp.scene import Scene
 from tms_rp.scene_server import SceneServer
 from tms_rp.scene_view import Area
@@ -100,6 +101,7 @@ class Planner:
         peer = app.site.file.peers.get(app.machine)
         self._theirs = TheirPlanner(app, self.kind.joints) if peer is not None and peer.planner == "theirs" else None
         self.last: Trajectory | None = None  # what was planned last
+        self._done: tuple[JointTrajectory, ...] = ()  # the stored plans that were executed last, to their end
         self._busy = False  # set on the executor thread, which accepts one goal after another
         self._joints = JointStates(app.ros, app.machine, app.site.border(app.machine), self.kind.joints)
 
@@ -192,13 +194,21 @@ class Planner:
                 outcome = Outcome.SUCCEEDED
             else:
                 self._planner.begins(self.joints(), plan.moves)
-                outcome = self._resuming.move(goal, plan, again, say)
+                outcome = self._moved(goal, plan, again, say)
         except TmsError as error:
             self._app.log.warning("failed", action=action.name, goal=goal.id, reason=error.reason)
             say(Aborted(error.reason, action.name))
             return Outcome.ABORTED, None
         say(Succeeded() if outcome is Outcome.SUCCEEDED else MotionCancelled())
         return outcome, plan
+
+    def _moved(self, goal: AnyGoal, plan: Plan, again: Callable[[Moves], Plan], say: Say) -> Outcome:
+        plans = plan.moves.plans
+        self._done = () if plans else self._done
+        outcome = self._resuming.move(goal, plan, again, say)
+        if plans and outcome is Outcome.SUCCEEDED:
+            self._done = plans
+        return outcome
 
     def _blocked(self, made: Trajectory, seconds: float) -> Reason | None:
         """What has come into the way of a motion; without this machine's own place nobody knows, and it goes on."""
@@ -232,10 +242,12 @@ class Planner:
 
     def _planned(self, action: PlanningAction, now: Angles, goal: AnyGoal, request: Any) -> Plan:
         """A plan for a goal; of a plan to be stored the way is their planner's, where the site file says so."""
-        if self._theirs is None or not action.answers:
-            return self.planned(action, now, request)
         moves = action.plan(self._planner, now, request)
-        return self._plan(action, now, self._theirs.way(goal, request, moves))
+        if self._theirs is not None and action.answers:
+            moves = self._theirs.way(goal, request, moves)
+        elif moves.plans != self._done:  # a leaf that is sent again after a loss must not begin anew
+            moves = replace(moves, broken_off=True)
+        return self._plan(action, now, moves)
 
     def planned(self, action: PlanningAction, now: Angles, request: Any) -> Plan:
         """A plan for a goal of an action, from angles of the arm [rad]."""

@@ -95,6 +95,8 @@ class PlanLacks(Reason, text="its joints are not those of the arm", details="mis
 class PlanBroken(Reason, text="it is no motion from rest to rest"): pass
 class PlanElsewhere(Reason, text="it begins with {joint} at {begin}, but the arm is at {angle} then"):
     joint: str; begin: Radians; angle: Radians
+class GoesOn(Reason, text="it goes on in plan {number}, {seconds} after its begin, where the arm stands"):
+    number: int; seconds: Seconds
 class PlanTooFast(Reason, text="{joint} would be faster than its limits after {seconds}"): joint: str; seconds: Moments
 
 # the machine
@@ -113,6 +115,8 @@ class SizesUnfit(Reason, text="it has {told} dimensions, not {needed}"): needed:
 class MeshEmpty(Reason, text="its surface has no corners or no triangles"): pass
 class MeshNotFinite(Reason, text="a value of its surface is not a number"): pass
 class MeshCorners(Reason, text="its triangles are not three numbers each of its {corners} corners"): corners: int
+class MeshAsFile(Reason,
+    text="its surface is stored as a file (DAE), which is not read: it needs vertices and triangles"): pass
 class MeshLarge(Reason, text="its surface has {triangles} triangles: {limit} at most"): triangles: int; limit: int
 class MeshSimplified(Reason,
     text="the surface of {record} is planned with as {kept} of {triangles} triangles, up to {off} off"):

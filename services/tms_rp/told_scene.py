@@ -8,20 +8,22 @@ from tms_msg_db.srv import ListParameters
 
 from tms_config.clock import unix_time
 from tms_machine import stamps
+from tms_machine.reasons import BadRecord
 from tms_machine.values import Value, from_parameters
-from tms_reason.errors import RosError
+from tms_reason.errors import RosError, SubtaskFailed
 from tms_reason.reason import Reason
 from tms_reason.wire import refusal
 from tms_rp.meshes import Mesh
-from tms_rp.reasons import MeshSimplified, SceneUnread
+from tms_rp.reasons import MeshAsFile, MeshSimplified, SceneUnread
 from tms_rp.scene import Scene
 from tms_rp.scene_records import PREFIX, SceneRecord
 from tms_rp.scene_roots import SceneRoot
 from tms_rp.scene_view import Area, areas
-from tms_rp.told_mesh import surface
+from tms_rp.told_mesh import VERTICES, surface
 from tms_runtime.app import App
 
 SERVICE = "/tms/db/list_parameters"
+AS_FILE = "mesh"  # type of records of the C++ system with a surface as `data`, which no message brings here
 LIMIT = 0.8  # s for the database to answer
 
 
@@ -65,6 +67,8 @@ class ToldScene:
         return areas({one.record_name: from_parameters(one.values) for one in self._records})
 
     def _record(self, message: Record, values: Mapping[str, Value], now: float) -> SceneRecord:
+        if message.type == AS_FILE and VERTICES not in values:
+            raise SubtaskFailed(BadRecord(message.record_name, MeshAsFile()))
         age = now - stamps.seconds(message.updated_at)
         mesh = self._mesh(message.record_name, stamps.seconds(message.updated_at), values)
         return SceneRecord(message.record_name, values, age, message.max_age, message.type == "dynamic", mesh)

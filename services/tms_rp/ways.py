@@ -12,12 +12,13 @@ from tms_control.links import Array
 from tms_control.reasons import PathBlocked
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
+from tms_rp.broken_off import rest
 from tms_rp.clearance import Clearance
 from tms_rp.flow import Flow
 from tms_rp.kind import Angles, MachineKind, Moves, Way
 from tms_rp.plan import Plan
-from tms_rp.plans import one_trajectory, scaled, without_stops
-from tms_rp.reasons import Around, Collision, NoWayRound, Searched, SlowlyOut
+from tms_rp.plans import START, one_trajectory, scaled, without_stops
+from tms_rp.reasons import Around, Collision, NoWayRound, PlanElsewhere, Searched, SlowlyOut
 from tms_rp.sampling import search
 from tms_rp.scene import Scene
 from tms_rp.trajectory import Joints, Trajectory, trajectory
@@ -36,7 +37,10 @@ class Ways:
         # While it moves, only what is really in the way: places that are told are some centimetres apart each time.
         self._touching = Clearance(model, padding=0.0)
         moved = [(model.joints[name], model.response[name]) for name in kind.joints]
-        self.late = max(answer.dead_time + answer.lag for _, answer in moved)  # s behind the trajectory
+        lates = [answer.dead_time + answer.lag for _, answer in moved]
+        self.late = max(lates)  # s behind the trajectory
+        apart = (max(lates) - min(lates)) / 2  # s that a joint is ahead of, or behind, the others at most
+        self._aside = [START + apart * joint.velocity for joint in model.joints.values()]  # rad beside a path
         self._flow = Flow(model, kind, self._clearance, self._all_joints, self._way)
         self._stopping = max(joint.velocity / joint.acceleration for joint, _ in moved)  # s to brake
 
@@ -51,7 +55,7 @@ class Ways:
         """
         now = moves.begin or now
         if moves.plans:
-            return Plan(self._stored(now, moves, scene), moves.notes, moves)
+            return self._stored(now, moves, scene)
         moves = self._out(now, moves, scene)
         if moves.through is not None:
             return self._flow.plan(now, moves, moves.through, scene)
@@ -62,16 +66,30 @@ class Ways:
             return self._around(now, moves, scene, error.reason)
         return Plan(straight, moves.notes, moves, straight.stops)
 
-    def _stored(self, now: Angles, moves: Moves, scene: Scene) -> Trajectory:
+    def _stored(self, now: Angles, moves: Moves, scene: Scene) -> Plan:
         """Stored plans one behind the other; without stops between them if that is free and quicker."""
-        made = one_trajectory(self._model.joints, self._all_joints(now), moves.plans)
+        try:
+            made = one_trajectory(self._model.joints, self._all_joints(now), moves.plans)
+        except SubtaskFailed as error:
+            return self._broken_off(now, moves, scene, error)
         flowing = without_stops(self._model.joints, made) if len(moves.plans) > 1 else made
         if flowing.duration < made.duration:
             with contextlib.suppress(SubtaskFailed):
                 self._clearance.check(flowing, scene)
-                return flowing
+                return Plan(flowing, moves.notes, moves)
         self._clearance.check(made, scene)
-        return made
+        return Plan(made, moves.notes, moves)
+
+    def _broken_off(self, now: Angles, moves: Moves, scene: Scene, why: SubtaskFailed) -> Plan:
+        """The rest of stored plans that begin elsewhere, where they may have been broken off."""
+        if not moves.broken_off or why.reason.find(PlanElsewhere) is None:
+            raise why
+        found = rest(self._model.joints, self._aside, self._all_joints(now), moves.plans)
+        if found is None:
+            raise why
+        made, goes_on = found
+        self._clearance.check(made, scene)
+        return Plan(made, (*moves.notes, goes_on), moves)
 
     def _out(self, now: Angles, moves: Moves, scene: Scene) -> Moves:
         """The same, slow if the arm seems to be in something: then nobody knows how things really stand."""

@@ -1,4 +1,4 @@
-"""New UUIDs for goals, with their fencing numbers."""
+"""New UUIDs for goals, with their fencing numbers; of foreign clients with all but the tail of the first goal's."""
 
 import secrets
 
@@ -13,6 +13,13 @@ def goal_id(owner: Owner) -> bytes:
 
 
 def derived(uuid: bytes) -> bytes | None:
-    """UUID for a goal that is sent on behalf of goal `uuid`; None (a random one) for foreign goals."""
+    """UUID for a goal that is sent on behalf of goal `uuid`; None (a random one) beyond the last hop."""
     owner = parse(uuid)
-    return None if owner is None or owner.hop >= 255 else goal_id(owner.next())
+    if owner is None:
+        return uuid[:-TAIL] + secrets.token_bytes(TAIL)
+    return None if owner.hop >= 255 else goal_id(owner.next())
+
+
+def same_client(uuid: bytes, other: bytes) -> bool:
+    """Whether two goals of foreign clients were asked for by one goal, or are it."""
+    return parse(uuid) is None and uuid[:-TAIL] == other[:-TAIL]

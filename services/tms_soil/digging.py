@@ -20,7 +20,7 @@ FALLS = 0.4  # m, depth of the strip on which soil from a bucket comes down
 EMPTIES = 0.3  # s, time constant of soil that runs out of a bucket: ours, so that it is empty 1 to 2 s after it opened
 REST = 1.0  # kg, what is less runs out at once
 STANDS = 1e-4  # m, motion of an edge that has no direction
-OPENING = np.linspace(0.1, 0.9, 5)[:, None]  # places along the opening
+OPENING = np.linspace(0.1, 0.9, 5)[:, None]  # places along an opening, or a lip
 
 
 class Digger:
@@ -47,6 +47,10 @@ class Digger:
         kind = int(self.load.argmax())
         return self._grid.soils[kind].fill * self._capacities[kind].heaped
 
+    def lip(self, place: Matrix) -> Array:
+        """Points of map [m] along the lower lip, from which soil falls, with the bucket's link at `place`."""
+        return _along(_lower(self._points[:4] @ place[:3, :3].T + place[:3, 3]))
+
     def step(self, before: Matrix, after: Matrix, seconds: float, haulers: Sequence[Hauler]) -> list[Bounds]:
         """Move the bucket's link from one place in map to the next; returns where the ground changed."""
         old, new = (self._points @ place[:3, :3].T + place[:3, 3] for place in (before, after))
@@ -65,8 +69,7 @@ class Digger:
             pushed = float(self._take(surplus).sum())
             changed.append(put_down(self._grid, new[:2], WINDROW * square_to(new[:2], way), pushed))
         elif surplus > 0.0:
-            lip = new[:2] if new[0, 2] + new[1, 2] < new[2, 2] + new[3, 2] else new[2:4]
-            changed += self._spill(lip, self._take(surplus * -math.expm1(-seconds / EMPTIES)), haulers)
+            changed += self._spill(_lower(new), self._take(surplus * -math.expm1(-seconds / EMPTIES)), haulers)
         return changed
 
     def _dig(self, window: Window, old: Array, new: Array, way: Array) -> list[Bounds]:
@@ -117,7 +120,7 @@ class Digger:
         """Let soil [kg] fall from a lip, into vessels below it or to the ground; returns where the ground changed."""
         if not out.any():
             return []
-        places, changed = lip[0] + OPENING * (lip[1] - lip[0]), []
+        places, changed = _along(lip), list[Bounds]()
         for hauler in haulers:
             if share := hauler.below(places):
                 caught = share * out
@@ -128,3 +131,13 @@ class Digger:
             start = lip - 0.5 * np.append(along, 0.0)
             changed.append(put_down(self._grid, start, along, float(out.sum())))
         return changed
+
+
+def _lower(points: Array) -> Array:
+    """Left and right end of the lip that is lower: of the cutting edge or the rear lip."""
+    return points[:2] if points[0, 2] + points[1, 2] < points[2, 2] + points[3, 2] else points[2:4]
+
+
+def _along(lip: Array) -> Array:
+    found: Array = lip[0] + OPENING * (lip[1] - lip[0])
+    return found

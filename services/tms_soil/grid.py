@@ -116,7 +116,7 @@ class Grid:
     def from_heights(cls, heights: Heights, soils: Sequence[Soil], soil_of: NDArray[np.uint8] | None = None) -> "Grid":
         """Ground that nobody has dug yet; `soil_of`: as for the class; absent: the first soil everywhere."""
         x0, y0, x1, y1 = heights.bounds
-        rows, columns = (max(1, math.ceil(length / TILE - 1e-9)) for length in (y1 - y0, x1 - x0))
+        rows, columns = tiles_along(y1 - y0), tiles_along(x1 - x0)
         kinds = np.zeros((rows, columns), dtype=np.uint8) if soil_of is None else soil_of
         known = heights.z[np.isfinite(heights.z)]
         datum = float(math.floor(known.min())) if known.size else 0.0
@@ -226,6 +226,11 @@ class Grid:
         """Least row, row behind the last, and the same of columns, of the cells of the site that touch a rectangle."""
         columns = _range(bounds[0] - self.x0, bounds[2] - self.x0, self._size[1])
         return *_range(bounds[1] - self.y0, bounds[3] - self.y0, self._size[0]), *columns
+
+
+def tiles_along(length: float) -> int:
+    """The number of tiles that cover a length [m]."""
+    return max(1, math.ceil(length / TILE - 1e-9))
 
 
 def _finer(layers: Array) -> Array:

@@ -8,6 +8,7 @@ from tms_soil.earth import Earth
 from tms_soil.surface import Array
 
 TILE, LOAD, SITE, SOILS, OUTSIDE = "tile", "load", "site", "soils", "outside"  # names, or what they begin with
+BY_TILE = "soils_by_tile"
 
 
 def state_of(earth: Earth) -> dict[str, Array]:
@@ -40,4 +41,5 @@ def restore(earth: Earth, state: Mapping[str, Array]) -> bool:
 def _meaning(earth: Earth) -> dict[str, Array]:
     x0, y0, x1, y1 = earth.grid.bounds
     kinds = earth.grid.thickness.copy()
-    return {SITE: np.array([x0, y0, x1, y1, earth.grid.datum]), SOILS: kinds}
+    found = {SITE: np.array([x0, y0, x1, y1, earth.grid.datum]), SOILS: kinds}
+    return found | ({BY_TILE: earth.grid.soil_of.astype(np.float64)} if len(earth.grid.soils) > 1 else {})

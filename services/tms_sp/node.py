@@ -24,6 +24,7 @@ from tms_sp.machine_states import MachineStateSampler
 from tms_sp.mapping import Mapping
 from tms_sp.outbox import InputUpdate, Outbox
 from tms_sp.reasons import DatabaseAway, DatabaseSilent, NoMessageType
+from tms_sp.terrain import TerrainSensing
 
 GAP = 0.015  # s between batches; the values that arrive in between are sent together
 RETRY = 0.5  # s between attempts while the database or its store is away
@@ -49,8 +50,14 @@ def start(app: App) -> None:
         TopicSubscription(app, topic, sharing)
     if sensing.machine_state.hz:
         MachineStateSampler(app, sensing.machine_state.hz)
+    terrain = [TerrainSensing(app, name, given, sensing.clock_limit) for name, given in sensing.terrain.items()]
     publisher = app.ros.publisher(InputStates, "/tms/sp/inputs", depth=1, latched=True)
-    app.ros.every(STATE_PERIOD, lambda: publisher.publish(InputStates(inputs=[_state(app, one) for one in inputs])))
+
+    def tell() -> None:
+        told = [*(_state(app, one) for one in inputs), *(one.state() for one in terrain)]
+        publisher.publish(InputStates(inputs=told))
+
+    app.ros.every(STATE_PERIOD, tell)
     app.ready_when(sender.unready)
 
 

@@ -31,6 +31,9 @@ class ManyRecords(Reason, text="more than {limit} records: is {record} right?", 
     limit: int; record: str
 class ManyWait(Reason, text="too many records wait for the database", action=PROCESSES): pass
 
+class CloudFrame(Reason, text="its points are in the frame '{frame}', not in `map`"): frame: str
+class CloudNotPoints(Reason, text="it is no cloud of points of the site: {problem}"): problem: str
+
 # an input
 class NoMessageType(Reason, text="there is no message type {name}", action=BUILD): name: str
 class NoMessageField(Reason, text="the message has no field '{path}'; it has {fields}", action=EDIT_CONFIG):

@@ -16,7 +16,7 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from tms_work.cycle import Cycle
+from tms_work.cycle import Cycle, Kind
 from tms_work.draft import Draft
 from tms_work.sample import Sample
 from tms_work.ways import Way
@@ -52,6 +52,16 @@ class Recogniser:
         self._machine, self._way, self._heaped = machine, way, heaped
         self._state = State()
 
+    @property
+    def kind(self) -> Kind:
+        """Of its cycles."""
+        return self._way.kind
+
+    @property
+    def carries(self) -> bool:
+        """Whether it carries soil from where it was filled to where it is poured."""
+        return self._state.draft is not None and self._state.draft.part == self._way.carry
+
     def state(self) -> dict[str, Any]:
         """Everything that it remembers, as JSON knows it."""
         return self._state.model_dump(mode="json")
@@ -63,6 +73,10 @@ class Recogniser:
             ValueError: it is none; then nothing has changed.
         """
         self._state = State.model_validate(state)
+
+    def forget(self) -> None:
+        """Drop the cycle that is not over, as nobody knows what has become of the load; the next number stays."""
+        self._state = State(numbers=self._state.numbers)
 
     def take(self, now: Sample) -> list[Cycle]:
         """The cycles that have ended by a sample; one that is not newer than the last one changes nothing."""
@@ -77,7 +91,9 @@ class Recogniser:
         cycles = [] if before is None else self._end(before.time) if counted else self._through(before, now, elapsed)
         draft = self._state.draft
         if now.run and (draft is None or draft.run != now.run):
-            self._begin(now.run, now, self._way.carry if self._loaded(now) and not counted else self._way.empty)
+            sticks = now.load.loose <= REST * sum(one.loose for one in cycles)
+            carries = self._loaded(now) and not counted and not sticks
+            self._begin(now.run, now, self._way.carry if carries else self._way.empty)
         return cycles
 
     def _is_back(self, before: Sample, now: Sample) -> bool:

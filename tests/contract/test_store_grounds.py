@@ -55,8 +55,9 @@ def test_they_come_back_by_time(services: GroundServices) -> None:
     assert first.source == "hour 0"
     assert [read(services, "first", one.taken_at).source for one in (first, read(services, "first", first.taken_at))] \
         == ["hour 1", "hour 2"]  # fmt: skip
+    assert not read(services, "first", last.taken_at).taken_at, "nothing newer is no error"
     with pytest.raises(DbError) as caught:
-        read(services, "first", last.taken_at)
+        read(services, "1999-01-01")
     assert isinstance(caught.value.reason, GroundNotThere) and caught.value.code == "GROUND_NOT_THERE"
 
 

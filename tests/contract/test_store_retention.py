@@ -11,9 +11,12 @@ from tms_config.clock import utc_now
 from tms_config.site_file import SiteFile, Store
 from tms_db import retention, store
 from tms_db.connection import StoreConnection
+from tms_db.cycles import Cycles
 from tms_db.history import Event, History, Run
-from tms_db.retention import Retention, delete_runs, delete_states
+from tms_db.retention import Retention, delete_cycles, delete_grounds, delete_runs, delete_states
+from tms_db.terrain import GROUND, Terrain
 from tms_reason.errors import DbError
+from tms_work.cycle import Cycle
 
 NOW = datetime(2026, 1, 31, 6, 0, tzinfo=timezone.utc)
 
@@ -89,10 +92,34 @@ def test_a_state_without_a_readable_time_is_told(db: store.Db) -> None:
         delete_states(db, 7, NOW)
 
 
+def test_old_cycles_go(db: store.Db, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(retention, "MANY", 2)
+    end = [NOW - timedelta(days=days) for days in (0.0, 6.9, 7.1, 9.0, 40.0)]
+    Cycles(db).write([
+        Cycle(run_id="r", machine="zx200", number=number, kind="dig", begun_at=at, ended_at=at, parts={})
+        for number, at in enumerate(end, 1)
+    ])  # fmt: skip
+    assert delete_cycles(db, 7, NOW + timedelta(days=3650)) == 3, "a clock that is ahead deletes no more"
+    assert [one.number for one in Cycles(db).find()] == [2, 1]
+    assert delete_cycles(db, 7, NOW) == 0
+
+
+def test_old_snapshots_of_the_ground_go_and_the_newest_stays(shared_db: store.Db) -> None:
+    grounds = Terrain(shared_db)
+    assert delete_grounds(shared_db, 1, NOW) == 0
+    for days in (100.0, 106.9, 107.1, 140.0):  # the site slept
+        grounds.put(GROUND, GROUND, b"heights", {"taken_at": (NOW - timedelta(days=days)).isoformat()})
+    grounds.put(GROUND, "static", b"a file of the site that only has this name", {})
+    assert delete_grounds(shared_db, 7, NOW) == 2
+    assert len(grounds.all(GROUND)) == 2 and len(grounds.all("static")) == 1
+    assert shared_db["fs.chunks"].count_documents({}) == 3
+
+
 def test_the_index_is_used(shared_db: store.Db) -> None:
     """A daily look must not read all of a long history."""
     indexes = shared_db["run"].index_information()
     assert [("ended_at", 1)] in [one["key"] for one in indexes.values()]
+    assert [("ended_at", 1)] in [one["key"] for one in shared_db["cycle"].index_information().values()]
     assert [("run_id", 1), ("number", 1)] in [one["key"] for one in shared_db["event"].index_information().values()]
 
 
@@ -106,19 +133,32 @@ def test_it_looks_by_itself_once_the_store_is_there(shared_db: store.Db, monkeyp
     History(shared_db).write(runs, [])
     log = structlog.stdlib.get_logger("test")
     connection = StoreConnection(shared_db, "test", log)
-    watch = Retention(shared_db, connection, Store(history_days=7), log)
+    Cycles(shared_db).write([
+        Cycle(run_id="r", machine="zx200", number=days + 1, kind="dig", begun_at=at, ended_at=at, parts={})
+        for days in (9, 0)
+        for at in (ended - timedelta(days=days),)
+    ])  # fmt: skip
+    Terrain(shared_db).put(GROUND, GROUND, b"heights", {"taken_at": (ended - timedelta(days=9)).isoformat()})
+    settings = Store(history_days=7, work_days=7, ground_days=7)
+    watch = Retention(shared_db, connection, settings, log)
     watch.start()  # before there is a connection
     connection.start()
     deadline = time.monotonic() + 20
     while len(History(shared_db).runs()) > 1 and time.monotonic() < deadline:
         time.sleep(0.01)
+    while len(Cycles(shared_db).find()) > 1 and time.monotonic() < deadline:
+        time.sleep(0.01)
     there = [run.run_id for run in History(shared_db).runs()]
+    cycles, grounds = Cycles(shared_db).find(), Terrain(shared_db).all(GROUND)
     watch.stop()
     connection.stop()
-    assert there == ["b"]
+    assert there == ["b"] and [one.number for one in cycles] == [1]
+    assert len(grounds) == 1, "the only one stays, however old it is"
 
 
-@pytest.mark.parametrize("given", [{"history_days": 0}, {"history_days": -1}, {"machine_state_days": 0.5}])
+@pytest.mark.parametrize(
+    "given", [{"history_days": 0}, {"history_days": -1}, {"machine_state_days": 0.5}, {"work_days": 0}]
+)
 def test_what_a_site_may_not_say(given: dict[str, Any]) -> None:
     with pytest.raises(ValueError, match=r"greater than|valid integer"):
         Store.model_validate(given)
@@ -126,5 +166,6 @@ def test_what_a_site_may_not_say(given: dict[str, Any]) -> None:
 
 def test_a_year_is_kept_unless_the_site_says_otherwise() -> None:
     assert (Store().history_days, Store().machine_state_days) == (365, None)
+    assert (Store().work_days, Store().ground_days) == (None, None)
     site = {"name": "x", "domain": 1, "services": {}, "store": {"history_days": None}}
     assert SiteFile.model_validate(site).store.history_days is None

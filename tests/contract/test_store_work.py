@@ -7,7 +7,9 @@ import re
 import shutil
 from collections.abc import Callable, Iterator
 from datetime import datetime, timedelta
+from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -15,15 +17,19 @@ import pytest
 import reportlab
 from click.testing import CliRunner, Result
 from PIL import Image
+from tms_msg_db.msg import MachineState
+from tms_msg_db.srv import WriteMachineStates
 
 import height_files as files
 from height_files import EAST, LEVEL, NORTH
 from tms_cli.commands import ground, report, work
 from tms_cli.day_report import letters
+from tms_cli.day_report.map_picture import BOTTOM, LEFT, RIGHT, TOP
 from tms_config.clock import utc_now
 from tms_db import store
 from tms_db.cycles import Cycles, checked
 from tms_db.ground import GroundSnapshots
+from tms_db.node import TaskServices
 from tms_db.reasons import BadCycle, CycleUnreadable, GroundNotThere, GroundUnreadable
 from tms_reason.errors import DbError
 from tms_soil.surface import Heights
@@ -116,6 +122,21 @@ def test_a_cycle_that_is_written_twice_counts_once(db: store.Db) -> None:
     assert [one.number for one in cycles.find(machine="zx200", begin=DAY, end=DAY + timedelta(days=1))] == [1, 2]
     assert [one.number for one in cycles.find("run-1", begin=DAY + timedelta(days=1))] == [3]
     assert cycles.find("run-2") == []
+
+
+def test_cycles_come_in_beside_states_of_machines(db: store.Db) -> None:
+    app: Any = SimpleNamespace(site=SimpleNamespace(models={}))
+    services, answer = TaskServices(app, db), WriteMachineStates.Response()
+    pose = MachineState(collection="machine_pose", machine="zx200", msg="{}")
+    work = MachineState(collection="cycle", machine="zx200", msg=cycle(1, 9).model_dump_json())
+    for _ in range(2):
+        services.write_machine_states(WriteMachineStates.Request(states=[work, pose]), answer)
+    assert Cycles(db).find() == [cycle(1, 9)] and db["machine_pose"].count_documents({}) == 2
+    for text, code in (("{}", "BAD_CYCLE"), ("[]", "BAD_RECORD"), ("{", "BAD_RECORD")):
+        wrong = MachineState(collection="cycle", machine="zx200", msg=text)
+        request = WriteMachineStates.Request(states=[pose, work, wrong])
+        assert refusal(partial(services.write_machine_states, request, answer)).code == code
+    assert db["machine_pose"].count_documents({}) == 2, "of a batch that is refused nothing is stored"
 
 
 def test_cycles_that_are_refused(db: store.Db) -> None:
@@ -234,10 +255,18 @@ def test_diff_tells_where_and_draws_it(tms: Callable[..., Result], shared_db: st
     assert "lowered most: -0.80 m at (4.8, 4.2)" in tms(ground.command, "diff", "first").stdout
     with Image.open(tmp_path / "c.png") as picture:
         pixels = np.asarray(picture)
-        factor = picture.width // 40
-    red = pixels[-1 - 4 * factor - factor // 2, 12 * factor + factor // 2]
-    grey, same = pixels[-1, 0], pixels[0, -1]
-    assert red.tolist() == [178, 24, 43] and grey.tolist() == [150] * 3 and same.tolist() == [247] * 3
+    # What has changed is from x 3.5 to 8.5 and y 4 to 6: x from 0.5 to 11.5 and y from 2 to 10 are shown.
+    side = (pixels.shape[1] - LEFT - RIGHT) // 22  # pixels a cell
+    assert side > 20 and pixels.shape == (TOP + 16 * side + BOTTOM, LEFT + 22 * side + RIGHT, 3)
+
+    def at(x: float, y: float) -> list[int]:
+        found: list[int] = pixels[TOP + round((10 - y) / 0.5 * side), LEFT + round((x - 0.5) / 0.5 * side)].tolist()
+        return found
+
+    assert at(4.75, 4.25) == [178, 24, 43] and at(3.3, 5.3) == [247] * 3
+    assert at(8.2, 5.3) == pytest.approx([183, 40, 58], abs=2), "half a metre; 98 % have changed by no more than 0.54 m"
+    assert (pixels[-BOTTOM + 10 :, LEFT:] < 100).any() and (pixels[:, : LEFT - 12] < 100).any(), "coordinates"
+    assert pixels[TOP + 5, 1 - RIGHT + 35].tolist() == pytest.approx([33, 102, 172], abs=10), "the scale"
     assert tms(ground.command, "diff", "first", "last", "--picture", "c.png").exception is not None
 
 
@@ -250,7 +279,9 @@ def test_work_by_machine_hour_and_day(tms: Callable[..., Result], shared_db: sto
     assert found["total"]["bank_m3_per_hour"] == pytest.approx(45.0)
     hours = json.loads(tms(work.command, "--by", "hour", "--machine", "zx200", "--json").stdout)["groups"]
     assert [(name[-2:], one["cycles"]) for name, one in hours.items()] == [("09", 2), ("10", 1), ("01", 1)]
-    rows = list(csv.DictReader(io.StringIO(tms(work.command, "--by", "day", "--csv").stdout)))
+    text = tms(work.command, "--by", "day", "--csv").stdout
+    assert tms(work.command, "--run", "none", "--by", "day", "--csv").stdout == text.splitlines(keepends=True)[0]
+    rows = list(csv.DictReader(io.StringIO(text)))
     assert [row["day"] for row in rows] == ["2026-11-26", "2026-11-27"] and float(rows[0]["dig_dig_s"]) == 45.0
     table = tms(work.command, "--run", "run-1").stdout.splitlines()
     assert [line.split()[:3] for line in table[1:]] == [

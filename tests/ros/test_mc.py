@@ -16,7 +16,7 @@ from tms_msg_rc.srv import StopMachine
 from mc_rig import angles, armed, begin, ended, moving, send
 from operasim_rig import LIMIT, OperaSim, operasim
 from tms_control.reasons import GoalTaken
-from tms_machine.values import to_parameters
+from tms_machine.values import Value, to_parameters
 from tms_reason import wire
 from tms_ros.goals import Outcome
 
@@ -91,22 +91,31 @@ def beside(site: OperaSim, way: float, left: float) -> tuple[float, float]:
     return at.position.x + left * math.cos(turned), at.position.y + left * math.sin(turned)
 
 
-def test_a_path_leads_around_a_blocked_area_and_no_goal_into_it(site: OperaSim) -> None:
+def path_to(site: OperaSim, pose: PoseStamped) -> list[tuple[float, float]]:
+    path: Path = done(site, ComputePathToPose, "compute_path_to_pose", ComputePathToPose.Goal(goal=pose)).path
+    return [(at.pose.position.x, at.pose.position.y) for at in path.poses]
+
+
+def test_a_path_leads_along_a_road_and_around_a_blocked_area_and_no_goal_into_it(site: OperaSim) -> None:
     pit = [beside(site, *corner) for corner in ((8.0, -1.0), (9.0, -1.0), (9.0, 1.0), (8.0, 1.0))]
-    values = to_parameters({"pit": [one for corner in pit for one in corner]})
+    road = [beside(site, 2.0, 4.0), beside(site, 15.0, 4.0)]
+    x, y = (list(one) for one in zip(*road, strict=True))
+    records: dict[str, dict[str, Value]] = {"roads": {"haul": ["section"]}, "section": {"x": x, "y": y}}
 
     def answer(request: GetParameter.Request, response: GetParameter.Response) -> GetParameter.Response:
-        if request.record_name == "blocked_areas":
-            response.record.values = values
+        if request.record_name in records:
+            response.record.values = to_parameters(records[request.record_name])
         else:
             response.error_code = "RECORD_MISSING"
         return response
 
     site.ros.offer(GetParameter, "/tms/db/get_parameter", answer)
     here, pose = ahead(site, 0.0), ahead(site, 17.0)
-    path: Path = done(site, ComputePathToPose, "compute_path_to_pose", ComputePathToPose.Goal(goal=pose)).path
+    along = path_to(site, pose)
+    assert all(min(math.dist(at, place) for at in along) < 0.2 for place in road)
+    records["blocked_areas"] = {"pit": [one for corner in pit for one in corner]}
     middle = tuple(sum(one) / 4 for one in zip(*pit, strict=True))
-    assert min(math.dist((at.pose.position.x, at.pose.position.y), middle) for at in path.poses) > 3.0
+    assert min(math.dist(at, middle) for at in path_to(site, pose)) > 3.0
     in_it = PoseStamped()
     in_it.header.frame_id, in_it.pose.orientation.w = "map", 1.0
     in_it.pose.position.x, in_it.pose.position.y = middle

@@ -359,6 +359,38 @@ def test_a_planner_that_ends_takes_its_motion_with_it(machine: Rig) -> None:
     machine.until(lambda: machine.end(machine.change_pose(*START)) is Outcome.SUCCEEDED, "motion afterwards")
 
 
+def test_a_motion_ends_with_a_planner_that_is_killed(machine: Rig) -> None:
+    """Its client could not cancel it any more."""
+
+    def answered() -> bool:  # goals before the new planner is found are lost
+        call = machine.change_pose(*START)
+        return call.wait_for(lambda: call.accepted, 2.0) and machine.end(call) is Outcome.SUCCEEDED
+
+    machine.change_pose(2.5, *START[1:])
+    machine.until(machine.moving, "motion")
+    killed = machine.running.pop(f"{MACHINE}:rp")
+    killed.kill()
+    killed.wait(LIMIT)
+    machine.until(lambda: not machine.moving(), "standing machine")
+    assert machine.states[-1].position[0] < 2.4
+    machine.start(f"{MACHINE}:rp")
+    machine.until(answered, "motion afterwards")
+
+
+def test_a_stored_plan_goes_on_where_it_was_broken_off(machine: Rig) -> None:
+    there = (2.5, -0.4, 1.2, *START[3:])
+    plans = [planned(machine, JointTrajectory(), *there)]
+    first = machine.send(ExecutePlans, "tms_rp_zx200_execute_plans", plans=plans)
+    machine.until(lambda: machine.moving() and machine.states[-1].position[0] > 0.3, "motion")
+    machine.cancel(first, ExecutePlans, "tms_rp_zx200_execute_plans")
+    assert machine.end(first) is Outcome.CANCELED
+    assert 0.3 < machine.states[-1].position[0] < 2.3
+    machine.said.clear()
+    assert machine.end(machine.send(ExecutePlans, "tms_rp_zx200_execute_plans", plans=plans)) is Outcome.SUCCEEDED
+    assert any(text.startswith("ADAPTED") and "GOES_ON" in text for text in machine.said)
+    assert machine.states[-1].position == pytest.approx(there, abs=0.031)
+
+
 def test_without_a_machine_there_is_a_reason(rig: Rig) -> None:
     rig.said.clear()
     assert rig.end(rig.change_pose(*START, machine=MUTE)) is Outcome.ABORTED

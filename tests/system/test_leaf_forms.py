@@ -51,7 +51,8 @@ def test_their_leaf_drives_our_subtask_with_its_inputs(mesh: Mesh, machine: str,
     )
 
 
-def test_a_goal_ends_with_the_border_that_has_passed_it_on(mesh: Mesh) -> None:
+@pytest.mark.parametrize("lost", ["mst110cr_2:if", f"mst110cr_2:{DRIVE}"])
+def test_a_goal_ends_with_the_border_or_the_subtask_that_has_passed_it_on(mesh: Mesh, lost: str) -> None:
     """Nobody could bring its cancel any more."""
     mesh.tms("param", "set", "mst110cr_2/AWAY", *AWAY, "--create")
     mesh.tms("start", f"mst110cr_2:{DRIVE}")
@@ -60,7 +61,7 @@ def test_a_goal_ends_with_the_border_that_has_passed_it_on(mesh: Mesh) -> None:
         node.subscribe(MachineState, "/mst110cr_2/rc/state", lambda state: goals.append(state.goal), latched=True)
         wait_until(lambda: bool(goals and goals[-1]), LIMIT, "the truck drives")
         rows = json.loads(mesh.tms("ps", "--json").stdout)
-        os.kill(next(row["pid"] for row in rows if row["name"] == "mst110cr_2:if"), signal.SIGKILL)
+        os.kill(next(row["pid"] for row in rows if row["name"] == lost), signal.SIGKILL)
         wait_until(lambda: not goals[-1], LIMIT, "the truck has no goal any more")
     mesh.wait_ready()
 

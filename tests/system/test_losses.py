@@ -34,6 +34,37 @@ def test_a_run_goes_on_after_the_loss_of_planner_or_gateway(mesh: Mesh, node: Ro
     assert processes(mesh)[name]["pid"] not in (0, old)
 
 
+EXECUTE = "primitive_excavator_change_pose_execute_from_plan"
+ALONG_A_PLAN = '<root main_tree_to_execute="T"><BehaviorTree ID="T"><Sequence>{leaves}</Sequence></BehaviorTree></root>'
+LEAF = (
+    '<Action ID="LeafNodeExcavator" model_name="zx200" primitive_name="{name}" target_record_name="broken_off" '
+    'previous_target_record_name=""/>'
+)
+
+
+def test_a_run_goes_on_along_its_stored_plan(mesh: Mesh, node: Ros, tmp_path: Path) -> None:
+    run(mesh, ONE_MOVE)
+    waypoint = {"type": "joint_values_relative", "data": {"swing_joint": 2.0, "boom_joint": 0.2}}
+    record = {
+        "model_name": "zx200", "record_name": "broken_off", "type": "dynamic", "description": "",
+        "planning_group": "manipulator", "velocity_scale": 1.0, "acceleration_scale": 1.0, "waypoints": [waypoint],
+    }  # fmt: skip
+    (tmp_path / "records.yaml").write_text(json.dumps([record]))
+    mesh.tms("param", "load", str(tmp_path / "records.yaml"))
+    leaves = "".join(LEAF.format(name=name) for name in ("primitive_excavator_change_pose_plan", EXECUTE))
+    (tmp_path / "tree.xml").write_text(ALONG_A_PLAN.format(leaves=leaves))
+    task = str(json.loads(mesh.tms("task", "add", str(tmp_path / "tree.xml"), "--json").stdout)["task_id"])
+    mesh.tms("start", f"zx200:{EXECUTE}")
+    pid = processes(mesh)[f"zx200:{EXECUTE}"]["pid"]
+    with swinging(mesh, node, task) as client:
+        os.kill(pid, signal.SIGKILL)
+        answer = json.loads(client.output(150))
+    assert answer["outcome"] == "success", answer
+    assert stops(mesh, answer["run_id"])
+    mesh.tms("task", "rm", task)
+    run(mesh, ONE_MOVE)
+
+
 def test_a_run_does_not_need_the_store_and_its_history_comes_later(mesh: Mesh, node: Ros) -> None:
     run(mesh, ONE_MOVE)
     with swinging(mesh, node) as client:

@@ -20,7 +20,7 @@ from tms_ros.node import Ros
 
 pytestmark = pytest.mark.system
 NEEDS_A_RUN = ("tms_ts_runs", "tms_action_goals", "tms_ts_handover_seconds")
-CHOSEN_BY_SITE = ("tms_sp_", "tms_if_")  # processes that this mesh does not have
+CHOSEN_BY_SITE = ("tms_sp_", "tms_if_", "tms_ground_")  # processes that this mesh does not have
 
 
 def targets(mesh: Mesh) -> dict[str, str]:

@@ -2,11 +2,11 @@
 
 import click
 
-from tms_cli import session
+from tms_cli import area_sets, session
 from tms_cli.words import say
 from tms_config.config import load_site
 from tms_config.processes import table
-from tms_ground.settings import ground_of, soil_of
+from tms_ground.settings import ground_of, soils_of
 from tms_machine.sensing import load_sensing
 from tms_ur.address import certificate, users
 
@@ -28,7 +28,9 @@ def command(chosen: str | None, as_json: bool) -> None:
         certificate(site)
         users(site)
     if (ground := ground_of(site)) is not None:
-        soil_of(site, ground)
+        soils_of(site, ground)
+    if site.area_files:
+        area_sets.configured(site)
     inputs = load_sensing(site).inputs
     if as_json:
         session.show_json(

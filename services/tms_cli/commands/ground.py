@@ -264,7 +264,7 @@ def diff(before: str, after: str, picture: Path | None, inside: "tuple[Point, ..
     Example:
       tms ground diff first last --picture change.png
     """
-    from tms_cli.day_report import ground_map
+    from tms_cli.day_report import ground_map, map_picture
     from tms_soil import volumes
 
     with opened() as db:
@@ -275,7 +275,7 @@ def diff(before: str, after: str, picture: Path | None, inside: "tuple[Point, ..
     if picture is not None:
         try:
             with picture.open("xb") as new:
-                new.write(ground_map.picture(change))
+                new.write(map_picture.picture(ground, change))
         except OSError as error:
             raise TmsError(NameTaken(str(picture), str(error.strerror)), "NO_FILE") from error
     grounds.show_volumes(volumes.between(old, ground, mask), ground_map.extremes(ground, change), as_json=as_json)

@@ -76,7 +76,7 @@ def _facts(db: "Db", day: date, language: str) -> "Facts":
 
 def _change(db: "Db", begin: datetime, end: datetime) -> "GroundChange | None":
     """From the last ground before the day, or its first one, to its last one; None without two of them."""
-    from tms_cli.day_report import ground_map
+    from tms_cli.day_report import ground_map, map_picture
     from tms_cli.day_report.facts import GroundChange
     from tms_db.ground import GroundSnapshots
     from tms_soil.volumes import between
@@ -90,4 +90,5 @@ def _change(db: "Db", begin: datetime, end: datetime) -> "GroundChange | None":
     before, after = grounds.read(earlier[0]), grounds.read(of_day[0])
     rise = ground_map.change(before, after)
     first, last = (one.taken_at.astimezone().strftime("%Y-%m-%d %H:%M") for one in (earlier[0], of_day[0]))
-    return GroundChange(first, last, between(before, after), ground_map.full_colour(rise), ground_map.picture(rise))
+    picture, full = map_picture.picture(after, rise), ground_map.full_colour(rise)
+    return GroundChange(first, last, between(before, after), full, picture)

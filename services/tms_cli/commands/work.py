@@ -80,10 +80,11 @@ def _key(by: str) -> "Callable[[Cycle], str]":
 
 
 def _csv(by: str, groups: "dict[str, Sum]") -> str:
+    from tms_work import sums
     from tms_work.cycle import PARTS
 
     out = io.StringIO()
-    names = [name for name in as_dict(next(iter(groups.values()))) if not name.endswith("parts_s")] if groups else []
+    names = [name for name in as_dict(sums.total(())) if not name.endswith("parts_s")]
     dug, hauled = ([f"{kind}_{part}_s" for part in PARTS[kind]] for kind in ("dig", "haul"))
     writer = csv.writer(out)
     writer.writerow([by, *names, *dug, *hauled])

@@ -10,7 +10,7 @@ from reportlab.graphics import renderSVG
 
 from tms_cli.day_report.facts import Facts
 from tms_cli.day_report.plots import plots
-from tms_cli.day_report.sections import Section, sections
+from tms_cli.day_report.sections import Section, plan, sections
 
 STYLE = Path(__file__).with_name("page.css")
 
@@ -46,7 +46,7 @@ def map_note(facts: Facts) -> str:
     if facts.change is None:
         return ""
     return facts.say(
-        "From {before} to {after}. Red: lowered by up to {full:.2f} m; blue: raised by as much; grey: unknown.",
+        "From {before} to {after}. Red: lowered, blue: raised, full colour from {full:.2f} m; grey: unknown.",
         before=facts.change.before, after=facts.change.after, full=facts.change.full,
     )  # fmt: skip
 
@@ -55,9 +55,9 @@ def _parts(facts: Facts) -> list[Any]:
     found = []
     if facts.total.cycles == 0 and facts.total.loads == 0:
         found.append(build.P(facts.say("No work is recorded on this day.")))
-    for section in sections(facts):
-        found.append(build.E.section(build.H2(section.title), _table(section)))
+    found.append(_section(plan(facts)))
     found += [build.E.figure(etree.fromstring(renderSVG.drawToString(plot).encode())) for plot in plots(facts)]
+    found += map(_section, sections(facts))
     if facts.change is not None:
         data = "data:image/png;base64," + base64.b64encode(facts.change.picture).decode()
         image = build.IMG(src=data, alt=facts.say("Map of the change of the ground"))
@@ -66,6 +66,10 @@ def _parts(facts: Facts) -> list[Any]:
     remarks.set("class", "remarks")
     found += [build.P(estimate_note(facts)), build.H2(facts.say("Remarks")), remarks]
     return found
+
+
+def _section(section: Section) -> Any:
+    return build.E.section(build.H2(section.title), _table(section))
 
 
 def _table(section: Section) -> Any:

@@ -15,8 +15,9 @@ from tms_cli.day_report.letters import font
 from tms_cli.day_report.sections import part_name
 from tms_work.cycle import PARTS
 
-WIDTH, HEIGHT = 480, 190  # points
-LEFT, RIGHT, BOTTOM, TOP = 45, 40, 40, 30  # points round a chart
+WIDTH, HEIGHT = 480, 170  # points
+LEFT, RIGHT, BOTTOM, TOP = 45, 40, 22, 28  # points round a chart
+LEGEND = 36  # points
 BAR, LINE, PLAN = HexColor(0x92C5DE), HexColor(0x333333), HexColor(0xB2182B)
 PART_COLOURS = [HexColor(one) for one in (0x2166AC, 0x67A9CF, 0x1B7837, 0x7FBF7B, 0xF1A340, 0xB2182B)]
 
@@ -62,18 +63,18 @@ def _lines(facts: Facts, names: Sequence[str], sums: list[float]) -> HorizontalL
 def _parts(facts: Facts) -> Drawing:
     """Minutes of each excavator's parts as one bar a machine."""
     machines = {name: one.parts for name, one in facts.machines.items() if one.parts}
-    height = 22 * len(machines) + BOTTOM + TOP + 20
+    height = 22 * len(machines) + BOTTOM + TOP + LEGEND
     drawing = _drawing(facts.say("Parts of the excavators' cycles, minutes"), height)
     data = [[parts.get(part, 0.0) / 60 for parts in machines.values()] for part in PARTS["dig"]]
     chart = HorizontalBarChart()
     most = max(sum(column) for column in zip(*data, strict=True))
-    _place(chart, data, list(machines), height - 20, most)
-    chart.y += 20
+    _place(chart, data, list(machines), height - LEGEND, most)
+    chart.y += LEGEND
     chart.categoryAxis.style = "stacked"
     chart.categoryAxis.reverseDirection = 1
     legend = Legend()
-    legend.x, legend.y, legend.fontName, legend.fontSize, legend.columnMaximum = LEFT, 16, font(), 7, 1
-    legend.alignment, legend.deltax, legend.dxTextSpace, legend.boxAnchor = "right", 70, 3, "w"
+    legend.x, legend.y, legend.fontName, legend.fontSize, legend.columnMaximum = LEFT, 22, font(), 7, 2
+    legend.alignment, legend.deltax, legend.dxTextSpace, legend.boxAnchor = "right", 130, 3, "w"
     pairs = []
     for at, (part, colour) in enumerate(zip(PARTS["dig"], PART_COLOURS, strict=True)):
         chart.bars[at].fillColor, chart.bars[at].strokeColor = colour, None

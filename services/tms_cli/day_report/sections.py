@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from tms_cli.day_report.facts import Facts
-from tms_work.cycle import PARTS
+from tms_work.cycle import PARTS, Kind
 from tms_work.sums import Sum
 
 Row = tuple[str, ...]
@@ -20,15 +20,16 @@ class Section:
 
 
 def sections(facts: Facts) -> list[Section]:
-    """All tables, in their order; those without rows are left out."""
-    by = facts.say("By machine"), facts.say("By hour"), facts.say("By run")
+    """All tables but that of the plan, in their order; those without rows are left out."""
+    by = facts.say("By hour"), facts.say("By run")
     hours = {facts.say("{hour}:00 to {end}:00", hour=at, end=at + 1): one for at, one in facts.hours.items()}
     found = [
-        _plan(facts),
-        _sums(facts, by[0], facts.say("Machine"), facts.machines),
-        _parts(facts),
-        _sums(facts, by[1], facts.say("Hour"), hours),
-        _sums(facts, by[2], facts.say("Run"), facts.runs),
+        _excavators(facts),
+        _parts(facts, facts.say("Time of the excavators [min]"), "dig", lambda one: one.parts),
+        _carriers(facts),
+        _parts(facts, facts.say("Time of the carriers [min]"), "haul", lambda one: one.haul_parts),
+        _sums(facts, by[0], facts.say("Hour"), hours),
+        _sums(facts, by[1], facts.say("Run"), facts.runs),
         _ground(facts),
     ]
     return [one for one in found if one.rows]
@@ -47,12 +48,12 @@ def part_name(facts: Facts, part: str) -> str:
     return names[part]()
 
 
-def _plan(facts: Facts) -> Section:
+def plan(facts: Facts) -> Section:
     """Plan against actual."""
-    total, plan = facts.total, facts.plan
+    total, planned = facts.total, facts.plan
     rows = [
-        _against(facts.say("Soil dug, bank [m³]"), plan.bank if plan else None, total.bank, 1),
-        _against(facts.say("Truck loads"), plan.loads if plan else None, total.loads, 0),
+        _against(facts.say("Soil dug, bank [m³]"), planned.bank if planned else None, total.bank, 1),
+        _against(facts.say("Truck loads"), planned.loads if planned else None, total.loads, 0),
         _against(facts.say("Bank m³ in an hour of an excavator"), None, total.rate, 1),
         _against(facts.say("Soil dug, loose [m³]"), None, total.loose, 1),
         _against(facts.say("Mass [t]"), None, total.mass / 1000, 1),
@@ -86,19 +87,47 @@ def _sums(facts: Facts, title: str, first: str, groups: dict[str, Sum]) -> Secti
     return Section(title, head, rows)
 
 
-def _parts(facts: Facts) -> Section:
-    """Minutes of each part, by machine."""
-    rows = []
-    for machine, one in facts.machines.items():
-        for names, parts in ((PARTS["dig"], one.parts), (PARTS["haul"], one.haul_parts)):
-            whole = sum(parts.values())
-            for part in names:
-                if part in parts:
-                    share = f"{100 * parts[part] / whole:.0f} %" if whole else ""
-                    name = facts.say("{machine}: {part}", machine=machine, part=part_name(facts, part))
-                    rows.append((name, _number(parts[part] / 60, 1), share))
-    head = (facts.say("Part"), facts.say("Minutes"), facts.say("Share"))
-    return Section(facts.say("Parts of the cycles"), head, tuple(rows))
+def _excavators(facts: Facts) -> Section:
+    head = (
+        facts.say("Machine"), facts.say("Cycles"), facts.say("Bank m³"), facts.say("Loose m³"), "t",
+        facts.say("Fill factor"), facts.say("Bank m³/h"), facts.say("Mean cycle [s]"),
+    )  # fmt: skip
+    rows = tuple(
+        (
+            name, str(one.cycles), _number(one.bank, 1), _number(one.loose, 1), _number(one.mass / 1000, 1),
+            _number(one.fill, 2), _number(one.rate, 1), _number(one.mean_cycle, 1),
+        )
+        for name, one in facts.machines.items() if one.cycles
+    )  # fmt: skip
+    return Section(facts.say("Excavators"), head, rows)
+
+
+def _carriers(facts: Facts) -> Section:
+    head = (
+        facts.say("Machine"), facts.say("Loads"), facts.say("Hauled, loose m³"), facts.say("Loose m³ a load"), "km",
+    )  # fmt: skip
+    rows = tuple(
+        (
+            name, str(one.loads), _number(one.hauled, 1), _number(one.hauled / one.loads if one.loads else None, 1),
+            _number(one.distance / 1000, 2),
+        )
+        for name, one in facts.machines.items() if one.haul_parts or one.loads
+    )  # fmt: skip
+    return Section(facts.say("Carriers"), head, rows)
+
+
+def _parts(facts: Facts, title: str, kind: Kind, parts: Callable[[Sum], dict[str, float]]) -> Section:
+    """Minutes of each part, and its share, by machine."""
+    found = {name: parts(one) for name, one in facts.machines.items() if parts(one)}
+    rows = tuple((name, *(_share(one, part) for part in PARTS[kind])) for name, one in found.items())
+    return Section(title, (facts.say("Machine"), *(part_name(facts, part) for part in PARTS[kind])), rows)
+
+
+def _share(parts: dict[str, float], part: str) -> str:
+    whole = sum(parts.values())
+    if part not in parts or not whole:
+        return ""
+    return f"{parts[part] / 60:.1f} ({100 * parts[part] / whole:.0f} %)"
 
 
 def _ground(facts: Facts) -> Section:

@@ -14,12 +14,13 @@ from tms_cli.day_report.facts import Facts
 from tms_cli.day_report.letters import font
 from tms_cli.day_report.page import estimate_note, heading, map_note
 from tms_cli.day_report.plots import plots
-from tms_cli.day_report.sections import Section, sections
+from tms_cli.day_report.sections import Section, plan, sections
 
 MARGIN = 15 * mm
-MAP_WIDTH, MAP_HEIGHT = 120 * mm, 110 * mm
+MAP_WIDTH, MAP_HEIGHT = 165 * mm, 95 * mm
 LINES, HEAD = HexColor(0x999999), HexColor(0xEEEEEE)
-REMARKS_HEIGHT = 25 * mm
+PADDING = 6  # points that reportlab leaves beside what stands on a page
+REMARKS_HEIGHT = 17 * mm
 
 
 def render(facts: Facts) -> bytes:
@@ -38,12 +39,13 @@ def _parts(facts: Facts) -> list[Any]:
     found: list[Any] = []
     if facts.total.cycles == 0 and facts.total.loads == 0:
         found.append(_text(facts.say("No work is recorded on this day.")))
-    found += [KeepTogether([_text(one.title, 11), _table(one)]) for one in sections(facts)]
+    found.append(_section(plan(facts)))
     found += [KeepTogether([Spacer(1, 4 * mm), plot]) for plot in plots(facts)]
+    found += map(_section, sections(facts))
     if facts.change is not None:
         image = Image(io.BytesIO(facts.change.picture), MAP_WIDTH, MAP_HEIGHT, kind="proportional")
         found.append(KeepTogether([Spacer(1, 4 * mm), image, _text(map_note(facts), 8)]))
-    remarks = Table([[""]], colWidths=[A4[0] - 2 * MARGIN], rowHeights=[REMARKS_HEIGHT])
+    remarks = Table([[""]], colWidths=[A4[0] - 2 * MARGIN - 2 * PADDING], rowHeights=[REMARKS_HEIGHT])
     remarks.setStyle(TableStyle([("BOX", (0, 0), (-1, -1), 0.5, LINES)]))
     found += [_text(estimate_note(facts), 8), KeepTogether([_text(facts.say("Remarks"), 11), remarks])]
     return found
@@ -57,6 +59,10 @@ def _text(words: str, size: float = 9) -> Paragraph:
     return Paragraph(escape(words), style)
 
 
+def _section(section: Section) -> KeepTogether:
+    return KeepTogether([_text(section.title, 11), _table(section)])
+
+
 def _table(section: Section) -> Table:
     table = Table([list(section.head), *(list(row) for row in section.rows)], repeatRows=1, hAlign="LEFT")
     table.setStyle(TableStyle([
@@ -64,6 +70,6 @@ def _table(section: Section) -> Table:
         ("GRID", (0, 0), (-1, -1), 0.5, LINES),
         ("BACKGROUND", (0, 0), (-1, 0), HEAD),
         ("BACKGROUND", (0, 0), (0, -1), HEAD),
-        ("ALIGN", (1, 1), (-1, -1), "RIGHT"),
+        ("ALIGN", (1, 0), (-1, -1), "RIGHT"),
     ]))  # fmt: skip
     return table

@@ -26,7 +26,7 @@ class Beat(Event):
     settling: bool = False  # the machine may still have commands of a stop before it, as a cancel
     ready: bool = True  # the server of the active goal is there
     gone: bool = False  # the server that took the active goal is gone
-    escaped: Reason | None = None  # the joint that has left its limits
+    escaped: Reason | None = None  # what has left its limits, or its areas; a ProcessLost: nobody sees whether it has
 
 
 class Reference(Data):

@@ -41,8 +41,8 @@ def watch(gateway: Gateway, now: float, since: float) -> None:
 
 def _wrong(gateway: Gateway, goal: Goal, now: float) -> tuple[Reason, StopKind] | None:
     """Why the machine must stop, and what that means for the next motion."""
-    if gateway.beat.escaped is not None:
-        return gateway.beat.escaped, StopKind.LATCH
+    if (escaped := gateway.beat.escaped) is not None:
+        return escaped, StopKind.LATCH if escaped.find(r.ProcessLost) is None else StopKind.HOLD
     if (silent := gateway.silent(now)) is not None:
         return r.WhileMoving(silent), StopKind.LATCH
     if (trouble := gateway.watch.trouble(now)) is not None:

@@ -14,6 +14,7 @@ from laspy.errors import LaspyException
 from pyproj import CRS
 from pyproj.exceptions import CRSError
 
+from tms_ground.files.pieces import refuse_false_sizes
 from tms_ground.files.samples import Places
 from tms_ground.reasons import CloudEmpty, CloudEndsEarly, GroundFileDamaged, LengthUnit
 from tms_reason.errors import TmsError
@@ -22,6 +23,8 @@ from tms_soil.surface import Array, Bounds
 PIECE = 250_000  # points: about 30 MB with all their fields
 UNREADABLE = (LaspyException, lazrs.LazrsError, CRSError, OSError, OverflowError, ValueError, struct.error)
 PANIC = "pyo3_runtime"  # module of what lazrs raises where its own code gives up; it cannot be imported
+# Of one thread: that of several makes room for what a damaged table tells of its pieces, and ends the process.
+BACKEND = laspy.LazBackend.Lazrs
 HEAD = 375  # bytes of the head of LAS 1.4
 # Numbers of records in the head: offset, least bytes of a record, first minor version (LAS 1.4-R15, tables 3, 5, 6).
 RECORDS = ((100, 54, b"\0"), (243, 60, b"\4"))
@@ -48,7 +51,7 @@ class Cloud:
             TmsError: the file ends early, or is damaged.
         """
         of_ground, of_others = _Means(shape), _Means(shape)
-        with _readable(), laspy.open(self.path) as reader:
+        with _readable(), laspy.open(self.path, laz_backend=BACKEND) as reader:
             left = reader.header.point_count
             while left > 0:
                 points = reader.read_points(min(PIECE, left))
@@ -93,8 +96,9 @@ def read(path: Path) -> Cloud:
     """
     with _readable():
         _refuse_false_counts(path)
-        with laspy.open(path) as reader:
+        with laspy.open(path, laz_backend=BACKEND) as reader:
             head = reader.header
+            refuse_false_sizes(path, head)
             system = head.parse_crs()
     if not head.point_count:
         raise TmsError(CloudEmpty())
@@ -106,9 +110,10 @@ def read(path: Path) -> Cloud:
 
 @contextmanager
 def _readable() -> Iterator[None]:
-    """Turn what the libraries raise for a damaged file into a TmsError."""
+    """Turn what the libraries raise for a damaged file into a TmsError; numbers beyond all bounds are no places."""
     try:
-        yield
+        with np.errstate(over="ignore", invalid="ignore"):
+            yield
     except UNREADABLE as error:
         raise TmsError(GroundFileDamaged(str(error))) from error
     except BaseException as error:

@@ -90,4 +90,17 @@ def test_dashboards_have_their_own_names_and_the_provisioned_source() -> None:
     boards = [json.loads(path.read_text(encoding="utf-8")) for path in DASHBOARDS]
     assert [board["uid"] for board in boards] == [path.stem for path in DASHBOARDS]
     assert {panel["datasource"]["uid"] for board in boards for panel in board["panels"]} == {"tms"}
-    assert len(boards) == 4 and all(board["panels"] for board in boards)
+    assert len(boards) == 5 and all(board["panels"] for board in boards)
+
+
+def test_what_dashboards_ask_for_is_promql(tmp_path: Path) -> None:
+    asked = [
+        target["expr"].replace("$__range", "1h").replace("$machine", ".*")
+        for path in DASHBOARDS
+        for panel in json.loads(path.read_text(encoding="utf-8"))["panels"]
+        for target in panel["targets"]
+    ]
+    assert len(asked) > 40 and not [one for one in asked if "$" in one]
+    rules = [{"record": f"tms:panel:{number}", "expr": one} for number, one in enumerate(asked)]
+    (tmp_path / "panels.yml").write_text(json.dumps({"groups": [{"name": "panels", "rules": rules}]}))
+    check("check", "rules", "panels.yml", cwd=tmp_path)

@@ -36,7 +36,7 @@ class FakeMesh:
     def peer(self, action_type: Any, name: str) -> Any:
         return self.action
 
-    def subscribe(self, message_type: Any, topic: str, received: Callable[[Any], None], latched: bool) -> None:
+    def subscribe(self, message_type: Any, topic: str, received: Callable[[Any], None], latched: bool = False) -> None:
         self.received[topic] = received
 
 

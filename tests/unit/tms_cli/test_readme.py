@@ -17,7 +17,7 @@ from tms_ts.bt import Registry, Status, load, palette, registry
 
 PAGES = {name: (PROJECT / name).read_text(encoding="utf-8") for name in (
     "README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "deploy/CONSOLE.md", "deploy/OPERASIM.md",
-    "deploy/OPERASIM.ja.md", "configs/README.md",
+    "deploy/OPERASIM.ja.md", "deploy/WORK.md", "deploy/WORK.ja.md", "configs/README.md",
 )}  # fmt: skip
 README = "\n".join(PAGES.values())
 SUBTASK, BEHAVIOUR = re.findall(r"```python\n(.*?)```", README, re.DOTALL)

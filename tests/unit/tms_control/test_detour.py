@@ -194,6 +194,46 @@ def test_the_same_question_has_the_same_answer() -> None:
     assert asked.answer() == asked.answer()
 
 
+ARM = TRUCK.with_arm([(8.0, 0.5), (8.0, -0.5)])
+
+
+def test_an_arm_is_kept_clear() -> None:
+    assert ARM is not None
+    pit = box(9, 2.5, 14, 8)
+    asked = Question(Pose(0, 0, 0), (Goal(12, 20, math.pi / 2),), PACE, 0.0, TRUCK, Ground((pit,)), ARM)
+    without = Question(Pose(0, 0, 0), (Goal(12, 20, math.pi / 2),), PACE, 0.0, TRUCK, Ground((pit,)))
+    clear, bare = asked.answer(), without.answer()
+    assert isinstance(clear, Plan) and isinstance(bare, Plan)
+    assert pit.gaps(ARM, np.array(dense(clear.path))).min() > CLEAR - STEP
+    assert pit.gaps(ARM, np.array(dense(bare.path))).min() == 0.0
+
+
+def test_an_arm_that_no_way_keeps_clear_is_high_enough() -> None:
+    over = box(5, -1, 7, 1)  # at the start already
+    asked = Question(Pose(0, 0, 0), (Goal(-20, 0, 0.0),), PACE, 0.0, TRUCK, Ground((over,)), ARM)
+    without = Question(Pose(0, 0, 0), (Goal(-20, 0, 0.0),), PACE, 0.0, TRUCK, Ground((over,)))
+    assert asked.fastest() is None and without.fastest() is not None
+    assert asked.answer() == without.answer()
+
+
+@pytest.mark.parametrize("patience", [0, 3, 40, 400, 4000])
+def test_a_search_that_nobody_waits_for_ends(patience: int) -> None:
+    """With the next pose, or the next some hundred places, that it would look at."""
+    asked = 0
+
+    def over() -> bool:
+        nonlocal asked
+        asked += 1
+        return asked > patience
+
+    ring = [box(x, y, x + 6, y + 6, "ring") for x in range(20, 50, 6) for y in (-15, 15)]
+    ring += [box(x, y, x + 6, y + 6, "ring") for x in (20, 44) for y in range(-15, 20, 6)]
+    round_one = area("round", *((math.cos(i / 8) * 9, 30 + math.sin(i / 8) * 9) for i in range(50)))
+    question = Question(Pose(0, 0, 0), (Goal(35, 0, 0.0),), PACE, 0.0, TRUCK, Ground((*ring, round_one)))
+    assert question.answer(over) is None
+    assert patience < asked <= patience + 3
+
+
 def test_a_machine_that_is_there_already_stays() -> None:
     found = ask(Pose(3, 4, 0.5), Pose(3, 4, 0.5))
     assert isinstance(found, Plan) and found.path.pieces == (Piece(Pose(3, 4, 0.5), 0.0, 0.0),)

@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 from tms_config.config import CONFIGS
 from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
-from tms_control.from_above import from_above, hull
+from tms_control.from_above import arm_from_above, from_above, hull
 from tms_control.ground import Body, Ground, Outline
+from tms_control.links import Links
 from tms_control.path import Pose
 from tms_reason.reason import Foreign
 
@@ -135,3 +136,22 @@ def test_a_hull_is_around_all_and_turns_to_the_left(places: list[tuple[float, fl
 def test_without_a_footprint_a_machine_is_a_spot() -> None:
     model = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel).model_copy(update={"footprint": {}})
     assert Outline.of(model).reach < 0.02
+
+
+@pytest.mark.parametrize("swing", [0.0, 0.5, -math.pi / 2])
+def test_an_arm_is_where_its_joints_turn_it(swing: float) -> None:
+    model = parse(CONFIGS / "machines" / "zx200.yaml", MachineModel)
+    angles = {**dict.fromkeys(model.joints, 0.0), "boom_joint": -0.8, "arm_joint": 2.0, "bucket_joint": 0.8}
+    corners = np.array(arm_from_above(model, Links(model), {**angles, "swing_joint": swing}))
+    c, s = math.cos(swing), math.sin(swing)
+    ahead = np.array(arm_from_above(model, Links(model), angles))
+    axis = np.array(model.geometry["swing_joint"].xyz[:2])
+    assert corners == pytest.approx((ahead - axis) @ np.array([[c, s], [-s, c]]) + axis)
+    assert 5.0 < ahead[:, 0].max() < 10.0 and np.abs(ahead[:, 1]).max() < 1.0
+    around = DIGGER.with_arm(map(tuple, corners))
+    assert around is not None and set(around.polygon) <= {*DIGGER.polygon, *map(tuple, corners)}
+    assert around.reach == pytest.approx(np.hypot(*corners.T).max())
+
+
+def test_an_arm_that_is_over_the_machine_makes_it_no_larger() -> None:
+    assert TRUCK.with_arm([(1.0, 1.0), (-3.6, 1.8)]) is None

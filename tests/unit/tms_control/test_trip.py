@@ -1,6 +1,7 @@
 """Trips of all models on the stand-in of OperaSim-PhysX: they arrive, whatever the yaw gain, and end as they should."""
 
 import math
+from collections.abc import Callable
 from itertools import pairwise
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from driven_tracks import GAINS, MODELS, DrivenTracks
 from tms_control.ground import Body
 from tms_control.path import Path, Piece, Pose
+from tms_control.planner import Goal
 from tms_control.reasons import (
     BlockedArea,
     GoalTaken,
@@ -436,6 +438,38 @@ def test_a_cancel_while_it_waits_ends_it() -> None:
     trip.cancel()
     machine.run(trip, seconds=2.0)
     assert trip.verdict == CANCELED
+
+
+ROAD = (Goal(20, 0, None), Goal(20, 20, None))
+
+
+def test_a_road_is_followed() -> None:
+    machine = DrivenTracks("ic120")
+    trip = machine.trip(Task.to(Pose(0, 20, math.pi), ROAD))
+    machine.run(trip)
+    assert trip.verdict == ARRIVED and at(machine, Pose(0, 20, math.pi))
+    for place in ROAD:
+        assert min(pose.away(Pose(place.x, place.y, 0)) for pose in machine.been) < 0.5
+
+
+def test_a_road_that_is_blocked_is_left() -> None:
+    machine = DrivenTracks("ic120")
+    machine.stands(machine_at(20, 0))
+    trip = machine.trip(Task.to(Pose(0, 20, math.pi), ROAD))
+    machine.run(trip)
+    assert trip.verdict == ARRIVED and at(machine, Pose(0, 20, math.pi))
+
+
+@pytest.mark.parametrize("end", [Trip.cancel, lambda trip: trip.silence(5.0)], ids=["cancel", "silence"])
+def test_nobody_waits_for_the_way_of_a_goal_that_ends(end: Callable[[Trip], None]) -> None:
+    machine = DrivenTracks("ic120")
+    machine.stands(machine_at(14, 0))
+    trip = machine.trip(Task.to(Pose(35, 0, 0)))
+    machine.run(trip, until=lambda: trip.asked is not None)
+    asked = trip.asked
+    assert asked is not None and trip.waits_for(asked)
+    end(trip)
+    assert not trip.waits_for(asked)
 
 
 def test_a_goal_that_is_taken_is_refused_and_nothing_moves() -> None:

@@ -332,6 +332,15 @@ def test_a_joint_beyond_its_limits_is_stopped_and_latched() -> None:
     assert rig.gateway.latch.cause == Foreign("boom has left its limits")
 
 
+def test_a_goal_of_which_nobody_sees_whether_it_has_is_stopped_and_held() -> None:
+    rig = ready()
+    rig.permits()
+    rig.moving(1, GOAL)
+    rig.look = replace(rig.look, escaped=ProcessLost(Foreign("its place is not told")))
+    rig.run(0.1)
+    assert rig.gateway.latch.cause is None and rig.gateway.latch.hold is not None
+
+
 def test_a_gateway_that_stood_still_stops_its_machine() -> None:
     rig = ready()
     rig.permits()

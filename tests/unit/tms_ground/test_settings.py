@@ -11,7 +11,7 @@ from tms_config.processes import table
 from tms_config.reasons import BadKey
 from tms_ground.designs import surface_of
 from tms_ground.reasons import AreaInsideOut, GroundFile, NoGround, NoSoil, OneDesign, WhereIsOrigin
-from tms_ground.settings import ground_of, needed, soil_of
+from tms_ground.settings import ground_of, needed, soils_of
 from tms_reason.errors import ConfigError
 from tms_reason.reason import Reason
 
@@ -67,10 +67,10 @@ def test_a_plane_that_japan_does_not_have(tmp_path: Path) -> None:
 
 def test_its_soil_is_one_of_the_known_ones(tmp_path: Path) -> None:
     chosen = site(tmp_path, "ground: {area: [0, 0, 1, 1], soil: clay}")
-    assert soil_of(chosen, needed(chosen)).cohesion == 40000
+    assert [one.cohesion for one in soils_of(chosen, needed(chosen)).values()] == [40000]
     chosen = site(tmp_path, "ground: {area: [0, 0, 1, 1], soil: cheese}")
     with pytest.raises(ConfigError) as caught:
-        soil_of(chosen, needed(chosen))
+        soils_of(chosen, needed(chosen))
     found = caught.value.reason
     assert isinstance(found, BadKey) and found.key == "ground.soil"
     assert isinstance(found.problem, NoSoil) and "earth" in found.problem.soils
@@ -102,6 +102,18 @@ def test_a_design_is_a_plane_a_pit_or_a_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize("design", ["{}", f"{{{PIT}, plane: {{z: 1}}}}"])
 def test_no_design_and_two(tmp_path: Path, design: str) -> None:
     assert refused(tmp_path, f"ground: {{area: [0, 0, 1, 1], design: {design}}}").find(OneDesign) is not None
+
+
+def test_soils_by_region(tmp_path: Path) -> None:
+    region = "{{soil: {}, corners: [[0, 0], [30, 0], [30, 30], [0, 30]]}}"
+    told = "ground: {{area: [-30, -30, 30, 30], soils: [{}, {}, {}]}}"
+    names = [region.format(name) for name in ("sand", "clay", "earth")]
+    chosen = site(tmp_path, told.format(*names))
+    assert list(soils_of(chosen, needed(chosen))) == ["earth", "sand", "clay"]
+    chosen = site(tmp_path, told.format(names[0], names[1], region.format("cheese")))
+    with pytest.raises(ConfigError) as caught:
+        soils_of(chosen, needed(chosen))
+    assert isinstance(caught.value.reason, BadKey) and caught.value.reason.key == "ground.soils.2.soil"
 
 
 def test_only_a_site_with_a_ground_has_the_process(tmp_path: Path) -> None:

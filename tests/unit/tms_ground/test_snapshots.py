@@ -50,7 +50,9 @@ class Site:
 
     def start(self) -> None:
         ground = Ground.model_validate({"area": AREA})
-        self.watch = GroundWatch(ground, soils()[0], {"zx200": model_of("zx200")}, self.folder / "ground.npz")
+        self.watch = GroundWatch(
+            ground, {"earth": soils()[0]}, {"zx200": model_of("zx200")}, self.folder / "ground.npz"
+        )
         if self.watch.file.exists():
             assert self.watch.load()
         Snapshots(self.app, self.watch, threading.Lock())
@@ -71,7 +73,7 @@ class Site:
         assert name == READ
         found = [one for one in self.stored if not request.after or one[0] > datetime.fromisoformat(request.after)]
         if not found:
-            return ReadSnapshot.Response(error_code="GROUND_NOT_THERE")
+            return ReadSnapshot.Response(error_code="" if request.after else "GROUND_NOT_THERE")
         time, ground, source = found[0 if request.snapshot == "first" else -1]
         return ReadSnapshot.Response(ground=patches.patch(ground), taken_at=time.isoformat(), source=source)
 

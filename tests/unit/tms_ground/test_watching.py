@@ -17,7 +17,7 @@ PLACE = FramePose(0.0, 0.0, 0.0, 0.0)
 
 def watch(folder: Path, **ground: object) -> GroundWatch:
     settings = Ground.model_validate({"area": AREA, **ground})
-    return GroundWatch(settings, soils()[0], {"zx200": model_of("zx200")}, folder / "ground.npz")
+    return GroundWatch(settings, {"earth": soils()[0]}, {"zx200": model_of("zx200")}, folder / "ground.npz")
 
 
 def dig(one: GroundWatch) -> None:
@@ -62,6 +62,30 @@ def test_a_damaged_file_is_told(tmp_path: Path) -> None:
 def test_only_machines_with_a_shape_touch_the_ground() -> None:
     bare = model_of("ic120").model_copy(update={"vessel": None, "tracks": None})
     assert touching({"a": bare, "b": model_of("d37pxi"), "c": model_of("ic120")}).keys() == {"b", "c"}
+
+
+def test_the_soil_is_that_of_the_region_where_it_is_dug(tmp_path: Path) -> None:
+    corners = ((-30.0, -30.0), (30.0, -30.0), (30.0, 0.0), (-30.0, 0.0))
+    settings = Ground.model_validate(
+        {"area": (-25.6, -25.6, 25.6, 25.6), "soils": ({"soil": "sand", "corners": corners},)}
+    )
+    known = dict(zip(("earth", "sand"), soils("earth", "sand"), strict=True))
+
+    def made(ground: Ground) -> GroundWatch:
+        return GroundWatch(ground, known, {"zx200": model_of("zx200")}, tmp_path / "ground.npz")
+
+    kinds = []
+    for yaw in (0.0, math.pi):  # it digs to its right: at y < 0, then at y > 0
+        one = made(settings)
+        for report in reports(moved(dig_poses(), rate=25.0)):
+            one.take("zx200", report.time, report.angles, FramePose(0.0, 0.0, yaw, 0.0))
+        kind = one.loads()["zx200"].kind
+        assert kind is not None
+        kinds.append(one.soils[kind])
+    assert kinds == ["sand", "earth"]
+    one.file.write_bytes(one.content() or b"")
+    assert made(settings).load()
+    assert not made(settings.model_copy(update={"soils": ()})).load(), "other soils lie there now"
 
 
 def test_a_turned_machine_digs_beside_itself(tmp_path: Path) -> None:

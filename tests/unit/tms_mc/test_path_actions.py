@@ -1,6 +1,8 @@
 """ComputePathToPose and the poses of FollowPath: what is refused, what is planned, and that both fit each other."""
 
 import math
+import threading
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from types import SimpleNamespace
@@ -18,6 +20,7 @@ from tms_control.ground import Body, Ground, Outline
 from tms_control.path import Pose, told
 from tms_control.planner import Goal, Pace
 from tms_control.reasons import BlockedArea, GoalTaken
+from tms_control.roads import Roads
 from tms_control.trip_task import Task
 from tms_control.verdict import Ending
 from tms_mc.goal_poses import in_map, pose_of, refuse
@@ -32,6 +35,8 @@ from tms_ros.goals import Ended, Outcome
 from tms_ros.server import AnyGoal
 
 PACE = Pace(1.0, 0.3)
+NOT_CANCELLED = threading.Event()
+NO_ROADS = Roads()
 HERE, THERE = Pose(1.0, 2.0, 0.5), Pose(9.0, 5.0, 2.0)
 
 
@@ -45,8 +50,8 @@ class FakeTracks:
     def unready(self) -> Reason | None:
         return self.silent
 
-    def question(self, start: Pose, goal: Pose, ground: Ground) -> Question:
-        return Question(start, (Goal(*goal),), PACE, 0.0, Outline.rectangle(2.0, -2.0, 1.5, -1.5), ground)
+    def question(self, start: Pose, goals: Sequence[Goal], ground: Ground) -> Question:
+        return Question(start, tuple(goals), PACE, 0.0, Outline.rectangle(2.0, -2.0, 1.5, -1.5), ground)
 
 
 @dataclass
@@ -55,6 +60,7 @@ class FakeSurroundings:
 
     bodies: tuple[Body, ...] = ()
     unfit: Reason | None = None
+    roads: Roads = NO_ROADS
 
     def read(self) -> None:
         if self.unfit is not None:
@@ -64,10 +70,15 @@ class FakeSurroundings:
         return Ground(self.bodies)
 
 
-def compute(tracks: FakeTracks, request: ComputePathToPose.Goal, around: FakeSurroundings | None = None) -> Ended[Any]:
+def compute(
+    tracks: FakeTracks,
+    request: ComputePathToPose.Goal,
+    around: FakeSurroundings | None = None,
+    cancelled: threading.Event = NOT_CANCELLED,
+) -> Ended[Any]:
     server = PathServer(cast(Tracks, tracks), cast(Surroundings, around or FakeSurroundings()))
     assert server.refuse(request) is None
-    return server.run(cast(AnyGoal, SimpleNamespace(request=request)))
+    return server.run(cast(AnyGoal, SimpleNamespace(request=request, cancelled=cancelled)))
 
 
 def planned(tracks: FakeTracks, request: ComputePathToPose.Goal) -> list[Pose]:
@@ -112,6 +123,25 @@ def test_a_path_leads_around_what_stands_there() -> None:
     assert outcome is Outcome.SUCCEEDED
     poses = np.array([pose_of(one) for one in result.path.poses])
     assert pit.gaps(Outline.rectangle(2.0, -2.0, 1.5, -1.5), poses).min() > 0.3
+
+
+def test_along_a_road_where_that_is_free() -> None:
+    goal = ComputePathToPose.Goal(goal=in_map(Pose(60.0, 60.0, math.pi / 2)))
+    road = Roads((((0.0, 0.0), (60.0, 0.0), (60.0, 60.0)),))
+    tracks = FakeTracks(pose=Pose(0.0, 0.0, 0.0))
+    _, along = compute(tracks, goal, FakeSurroundings(roads=road))
+    assert min(math.dist((one.pose.position.x, one.pose.position.y), (60.0, 0.0)) for one in along.path.poses) < 0.1
+    blocked = FakeSurroundings((square(60.0, 0.0),), roads=road)
+    outcome, across = compute(tracks, goal, blocked)
+    assert outcome is Outcome.SUCCEEDED and len(across.path.poses) < 0.8 * len(along.path.poses)
+
+
+def test_a_search_ends_with_a_cancel() -> None:
+    goal, over = ComputePathToPose.Goal(goal=in_map(Pose(20.0, 2.0, 0.0))), threading.Event()
+    over.set()
+    around = FakeSurroundings((square(10.0, 2.0),))
+    outcome, _ = compute(FakeTracks(pose=Pose(0.0, 2.0, 0.0)), goal, around, over)
+    assert outcome is Outcome.CANCELED
 
 
 @pytest.mark.parametrize(

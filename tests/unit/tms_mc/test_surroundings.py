@@ -15,13 +15,15 @@ from tms_config.models import MachineModel
 from tms_config.yaml_file import parse
 from tms_control.ground import Body
 from tms_control.reasons import BlockedArea, MachineThere
+from tms_control.roads import Roads
 from tms_machine.drift import drift
 from tms_machine.frames import FramePose
 from tms_machine.reasons import BadRecord
 from tms_machine.values import Value, to_parameters
 from tms_mc.blocked_areas import RECORD, areas
 from tms_mc.reasons import AreaUnfit
-from tms_mc.surroundings import LIMIT, SERVICE, Surroundings
+from tms_mc.records import LIMIT, SERVICE
+from tms_mc.surroundings import Surroundings
 from tms_reason.errors import RosError, SubtaskFailed
 from tms_reason.wire import to_line
 from tms_ros.reasons import NoAnswer
@@ -54,6 +56,7 @@ class Site:
         self.there, self.error = True, ""
         self.answers = True
         self.values: dict[str, Any] = {"pit": PIT}
+        self.sections: dict[tuple[str, str], dict[str, Any]] = {}  # by machine and record: further records
         self.places: dict[str, FramePose] = {}
 
     def around(self, monkeypatch: pytest.MonkeyPatch) -> Surroundings:
@@ -74,12 +77,20 @@ class Site:
         return places
 
     def _call(self, _: Any, service: str, request: GetParameter.Request, limit: float) -> GetParameter.Response:
-        assert (service, request.model_name, request.record_name, limit) == (SERVICE, "", "blocked_areas", LIMIT)
+        assert (service, limit) == (SERVICE, LIMIT)
         if not self.answers:
             raise RosError(NoAnswer("tms:db", service, limit))
+        if (request.model_name, request.record_name) != ("", RECORD):
+            return self._section(self.sections.get((request.model_name, request.record_name)))
         message = to_line(AreaUnfit("pit", 3, 50))
         record = Record(values=to_parameters(self.values))
         return GetParameter.Response(error_code=self.error, error_msg=message if self.error else "", record=record)
+
+    @staticmethod
+    def _section(values: dict[str, Any] | None) -> GetParameter.Response:
+        if values is None:
+            return GetParameter.Response(error_code="RECORD_MISSING")
+        return GetParameter.Response(record=Record(values=to_parameters(values)))
 
 
 def test_areas_are_read_and_machines_stand_where_they_were_told_to_be(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -127,3 +138,17 @@ def test_a_record_that_is_too_old_refuses(monkeypatch: pytest.MonkeyPatch) -> No
     with pytest.raises(SubtaskFailed) as caught:
         site.around(monkeypatch).read()
     assert caught.value.reason == AreaUnfit("pit", 3, 50)  # the reason of the answer
+
+
+def test_roads_are_read_of_the_machine_s_own_sections_before_shared_ones(monkeypatch: pytest.MonkeyPatch) -> None:
+    site = Site()
+    site.sections = {
+        ("", "roads"): {"haul": ["s0", "s1"]}, ("", "s0"): {"x": 1.0, "y": 2.0}, ("", "s1"): {"x": 5.0, "y": 5.0},
+        ("ic120_1", "s1"): {"x": 9.0, "y": 2.0},
+    }  # fmt: skip
+    around = site.around(monkeypatch)
+    around.read()
+    assert around.roads == Roads((((1.0, 2.0), (9.0, 2.0)),))
+    site.sections = {}
+    around.read()
+    assert around.roads == Roads()

@@ -20,7 +20,7 @@ from tms_machine.values import to_parameters
 from tms_reason.errors import RosError, SubtaskFailed
 from tms_reason.reason import Reason
 from tms_ros.reasons import NoAnswer
-from tms_rp.reasons import MeshSimplified, NamesUnfit, NoSuchObstacle, PaddingUnfit, SceneRecordOld, Told
+from tms_rp.reasons import MeshAsFile, MeshSimplified, NamesUnfit, NoSuchObstacle, PaddingUnfit, SceneRecordOld, Told
 from tms_rp.scene_view import Area
 from tms_rp.told_mesh import surface
 from tms_rp.told_scene import LIMIT, SERVICE, ToldScene
@@ -129,6 +129,17 @@ def test_a_surface_is_made_once_for_each_change(monkeypatch: pytest.MonkeyPatch)
     database.records = [record("collision_object_heap", age=5.0, **HEAP)]
     told.scene()
     assert len(made) == 2
+
+
+@pytest.mark.parametrize("name", ["collision_object_heap", "collision_object_zx200"])
+def test_a_surface_that_is_stored_as_a_file_refuses(name: str) -> None:
+    told = record(name, x=6.0, y=0.0, z=0.0)
+    told.type = "mesh"
+    with pytest.raises(SubtaskFailed) as caught:
+        Database(told).told().scene()
+    assert caught.value.reason == BadRecord(name, MeshAsFile())
+    told.values = to_parameters(HEAP)
+    assert Database(told).told().scene().obstacles
 
 
 def test_a_surface_that_is_simplified_is_told() -> None:

@@ -5,7 +5,7 @@ import uuid
 import pytest
 
 from tms_decision.owner import Owner, parse
-from tms_runtime.fence import derived, goal_id
+from tms_runtime.fence import derived, goal_id, same_client
 
 
 def test_an_owner_survives_the_uuid() -> None:
@@ -25,4 +25,17 @@ def test_a_derived_goal_is_one_hop_further() -> None:
 )
 def test_foreign_goals_have_no_owner(goal_id: bytes) -> None:
     assert parse(goal_id) is None
-    assert derived(goal_id) is None
+
+
+def test_what_a_foreign_goal_asks_for_is_known_as_its_own() -> None:
+    first, other = uuid.uuid4().bytes, uuid.uuid4().bytes
+    below = derived(first)
+    assert below is not None and below != first and len(below) == 16 and parse(below) is None
+    further = derived(below)
+    assert further is not None and same_client(first, below) and same_client(first, further)
+    assert not same_client(other, below)
+
+
+def test_goals_of_runs_are_no_foreign_client_s() -> None:
+    of_run = goal_id(Owner(7, 3))
+    assert not same_client(of_run, of_run)

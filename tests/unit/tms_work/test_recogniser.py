@@ -147,6 +147,14 @@ def test_a_bucket_emptied_in_a_silence() -> None:
     assert one.ended_at.timestamp() == pytest.approx(end) and one.seconds < 10
 
 
+def test_a_rest_after_a_silence_is_no_bucket() -> None:
+    tape = Tape().go(5, 0.8, cuts=True).go(4, swing=0.5, under="ic120_1")
+    tape.time += 60
+    tape.loose = 0.05
+    first, second = seen(bucket(tape.go(1, 0.0, under="ic120_1").go(3, swing=-0.5), 0.7))
+    assert (first.loose, second.loose) == (pytest.approx(0.76), pytest.approx(0.7))
+
+
 def test_a_load_that_is_back_after_a_restart_was_counted() -> None:
     tape = bucket(Tape(), 0.8)
     tape.time += 3

@@ -1,0 +1,66 @@
+"""The watch over one machine by its areas: at each look, whether its motion may go on.
+
+While its place is not believed, tracks are stopped and held; until then each look has shown that they can still be
+stopped inside. An arm may finish where it would be inside even if the last believed place were off some more.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from tms_areas.body import Silhouette
+from tms_areas.fix import Seen
+from tms_areas.law import Law, Place
+from tms_reason.reason import Reason
+
+UNSURE = 0.5  # m around an arm that works although the place of its machine is not believed
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What follows from one look."""
+
+    stop: Reason | None = None  # and latch
+    hold: Reason | None = None  # its goal ends, and the next one waits until this is over
+
+
+class Guard:
+    """The law for one machine, and its shape. It keeps nothing: threads may share it."""
+
+    def __init__(self, law: Law, silhouette: Silhouette) -> None:
+        self.law, self._silhouette = law, silhouette
+
+    def look(self, seen: Seen, joints: Mapping[str, float], tracks: bool) -> Verdict:
+        """Whether a goal may go on; `joints` [rad] now, `tracks`: it drives."""
+        unsure, motion = seen.unsure, seen.motion
+        if motion is None or (tracks and unsure is not None):
+            return Verdict(hold=unsure)
+        body = self._silhouette.body([joints])
+        if tracks:
+            return Verdict(stop=self.law.driving(body, motion))
+        wrong = self.law.working(body, motion, 0.0 if unsure is None else UNSURE)
+        return Verdict(stop=wrong) if unsure is None or wrong is None else Verdict(hold=unsure)
+
+    def may_drive(self, seen: Seen, joints: Mapping[str, float], way: Sequence[Place], told: bool) -> Reason | None:
+        """Why tracks must not go to the last of some places by way of the others.
+
+        `told`: straight from each to the next. Else a planner chooses the way, of which only this is known here: it
+        stays in one piece of where the machine may be.
+        """
+        verdict, motion = self.look(seen, joints, tracks=True), seen.motion
+        wrong = verdict.hold or verdict.stop
+        if wrong is not None or motion is None:
+            return wrong
+        here = (motion.x, motion.y, motion.yaw)
+        body = self._silhouette.body([joints])
+        if told:
+            return self.law.path(body, (here, *way)) or self.law.arriving(body, way[-1])
+        found = (self.law.arriving(body, place) or self.law.apart(here, place) for place in way)
+        return next((one for one in found if one is not None), None)
+
+    def may_work(self, seen: Seen, way: Sequence[Mapping[str, float]]) -> Reason | None:
+        """Why joints must not go a way of straight lines between angles [rad], the first of which are those of now."""
+        unsure, motion = seen.unsure, seen.motion
+        if motion is None:
+            return unsure
+        wrong = self.law.working(self._silhouette.swept(way), motion, 0.0 if unsure is None else UNSURE)
+        return unsure if wrong is not None and unsure is not None else wrong

@@ -1,0 +1,252 @@
+"""What areas mean for one machine: whether it may go on, may begin a goal, and how fast it may be.
+
+It may go on while it could still be stopped inside: everything that it can reach until a stop that is commanded at
+the next look has worked must be where it may be. That is what its motion does in the time that nobody sees or commands
+it (age of the pose, delay, dead time), gaining speed as fast as it can, and its way of braking after that; ahead and
+to both sides as far as tracks can change their course meanwhile; and around all of it what the pose may be off.
+"""
+
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry.base import BaseGeometry
+
+from tms_areas.areas import FORBIDDEN, AreaSet
+from tms_areas.body import Body
+from tms_areas.braking import Axis, Tracks
+from tms_areas.fix import WINDOW, Motion
+from tms_areas.reasons import EntersArea, LeavesArea, NoWay, TooFastFor
+from tms_reason.reason import Reason
+
+DELAY = 0.15  # s from where a machine is to the message that says so
+BEAT = 0.15  # s from one look at the newest pose to the next one, and until its command has left
+FASTER = 1.15  # times a speed limit that a measured speed may be
+SPARE = 0.15  # m more for what is planned: poses vary while it drives
+PLANNED = 0.1  # s, age of a pose that plans reckon with
+STEP, TURN = 0.5, 0.1  # m and rad between looks at a path
+SPOT = 0.05  # m; a turn over a shorter way is one on the spot
+STRAY = 0.05  # m that tracks may slip to any side while they brake
+
+Array = NDArray[np.float64]
+Place = tuple[float, float, float]  # x, y [m], yaw [rad] in `map`
+
+
+@dataclass(frozen=True)
+class Reach:
+    """How far the base can come until it stands: the least and the most forward [m], to the left [m], and turned."""
+
+    back: float
+    ahead: float
+    side: float
+    right: float  # rad
+    left: float  # rad
+    around: float  # m in any direction in addition
+
+    @property
+    def most(self) -> float:
+        """For people: what it needs to stop [m]."""
+        return max(abs(self.back), abs(self.ahead), abs(self.side)) + self.around
+
+
+@dataclass(frozen=True)
+class Covered:
+    """A convex polygon, and how much around it [m] a part of the machine may cover too."""
+
+    shape: BaseGeometry
+    around: float
+
+
+class Law:
+    """The areas that are enabled, for one machine."""
+
+    def __init__(self, areas: AreaSet, machine: str, tracks: Tracks | None, held: frozenset[str] = frozenset()) -> None:
+        """`held`: the release areas whose holder the machine is."""
+        self.areas, self.machine, self.tracks = areas, machine, tracks
+        self._usable = areas.usable(held)
+        self._border = self._usable.boundary
+        self._pieces = shapely.get_parts(self._usable)
+        self._closed = [one for one in areas.of(*FORBIDDEN, "release") if one.id not in held]
+        self._limits = areas.of("speed_limit")
+        ends = [pair for line in shapely.get_parts(self._border) for pair in itertools.pairwise(line.coords)]
+        self._sides = shapely.linestrings(ends)  # of the border: a tree of them finds the nearest one at once
+        self._tree = shapely.STRtree(self._sides)
+        for shape in (self._usable, self._border, *(one.polygon for one in (*self._closed, *self._limits))):
+            shapely.prepare(shape)
+
+    # while it moves
+
+    def driving(self, body: Body, motion: Motion) -> Reason | None:
+        """Why tracks must stop now; None if they may go on until the next look."""
+        reach = self._reach(motion)
+        covered = _covered(body, _places(motion, reach), (reach.left - reach.right) / 4, reach.around)
+        wrong = self._outside(covered, body, motion, reach.most)
+        return wrong if wrong is not None else self._too_fast(covered, math.hypot(motion.vx, motion.vy))
+
+    def working(self, body: Body, motion: Motion, more: float = 0.0) -> Reason | None:
+        """Why a machine must not move its joints, standing; `more`: m around it in addition to what its pose is off."""
+        around = motion.off + more
+        return self._outside(_covered(body, _place(motion), 0.0, around), body, motion, around)
+
+    # before a goal
+
+    def arriving(self, body: Body, place: Place) -> Reason | None:
+        """Why a machine on tracks must not go to a place: it would be stopped when it arrives there."""
+        at, reach = Motion(*place), replace(self._at_rest, back=-self._arrival, ahead=self._arrival)
+        return self._planned(body, at, reach)
+
+    def path(self, body: Body, places: Sequence[Place]) -> Reason | None:
+        """Why a machine must not drive along places, straight from each to the next: where it would be stopped.
+
+        It is taken to drive as fast as it can, and to brake for the end, and for turns on the spot.
+        """
+        left = sum(math.dist(old[:2], new[:2]) for old, new in itertools.pairwise(places))
+        for old, new in itertools.pairwise(places):
+            way, turn = math.dist(old[:2], new[:2]), math.remainder(new[2] - old[2], math.tau)
+            backward = math.cos(old[2]) * (new[0] - old[0]) + math.sin(old[2]) * (new[1] - old[1]) < 0
+            for share in np.linspace(0.0, 1.0, 2 + int(max(way / STEP, abs(turn) / TURN))).tolist():
+                x, y = old[0] + share * (new[0] - old[0]), old[1] + share * (new[1] - old[1])
+                speed, turning = self._paced(left - share * way, way, turn, 1.0 - share)
+                yaw = old[2] + share * turn
+                speed = -speed if backward else speed
+                motion = Motion(x, y, yaw, speed * math.cos(yaw), speed * math.sin(yaw), turning, age=PLANNED)
+                if (wrong := self._planned(body, motion, self._reach(motion))) is not None:
+                    return wrong
+            left -= way
+        return None
+
+    def _paced(self, left: float, way: float, turn: float, rest: float) -> tuple[float, float]:
+        """Speed and turning on a piece of a path: `left` m before its end, `rest` of the piece still to go."""
+        if self.tracks is None:
+            return 0.0, 0.0
+        forward, turning = self.tracks.forward, self.tracks.turning
+        if way < SPOT:
+            pace = math.sqrt(2 * turning.acceleration * abs(turn) * rest)
+            return 0.0, math.copysign(min(turning.top, pace), turn)
+        speed = min(
+            forward.top, math.sqrt(2 * forward.acceleration * max(left, 0.0)), turning.top * way / max(abs(turn), 1e-9)
+        )
+        return speed, turn / way * speed
+
+    def _planned(self, body: Body, motion: Motion, reach: Reach) -> Reason | None:
+        covered = _covered(body, _places(motion, reach), (reach.left - reach.right) / 4, reach.around + SPARE)
+        return self._outside(covered, body, motion, reach.most) or self._slow(covered)
+
+    def apart(self, here: Place, there: Place) -> Reason | None:
+        """Why no way at all leads from one place to another: both must be in one piece of where it may be."""
+        inside = [shapely.contains_xy(self._pieces, *one[:2]) for one in (here, there)]
+        return None if (inside[0] & inside[1]).any() else NoWay(self.machine, *there[:2])
+
+    # how far
+
+    @cached_property
+    def _at_rest(self) -> Reach:
+        return self._reach(Motion(0.0, 0.0, 0.0, age=PLANNED))
+
+    @cached_property
+    def _arrival(self) -> float:
+        """How far from a border a machine must be able to arrive [m]: on the way there it brakes as it is planned."""
+        if self.tracks is None:
+            return 0.0
+        forward = self.tracks.forward
+        speeds = np.linspace(0.0, forward.top, 20).tolist()
+        ahead = [
+            self._reach(Motion(0, 0, 0, one, age=PLANNED)).ahead - one**2 / (2 * forward.acceleration) for one in speeds
+        ]
+        return float(max(ahead))
+
+    def _reach(self, motion: Motion) -> Reach:
+        if self.tracks is None:
+            return Reach(0.0, 0.0, 0.0, 0.0, 0.0, motion.off)
+        c, s = math.cos(motion.yaw), math.sin(motion.yaw)
+        forward, aside = c * motion.vx + s * motion.vy, c * motion.vy - s * motion.vx
+        blind = motion.age + DELAY + BEAT + self.tracks.dead_time
+        factor = self.tracks.factor
+        back, ahead = _ends(self.tracks.forward, forward, blind, factor)
+        right, left = _ends(self.tracks.turning, motion.turning, blind, factor)
+        side = aside * blind + math.copysign(self.tracks.forward.braking(aside), aside) * factor
+        return Reach(back, ahead, side, right, left, motion.off + STRAY)
+
+    # where
+
+    def _outside(self, covered: list[Covered], body: Body, motion: Motion, needed: float) -> Reason | None:
+        for one in covered:
+            if not self._usable.contains(one.shape) or shapely.dwithin(self._border, one.shape, one.around):
+                return self._why(one, body, motion, needed)
+        return None
+
+    def _why(self, one: Covered, body: Body, motion: Motion, needed: float) -> Reason:
+        """Which area is the next one that it must not enter, or leave; where, how far, and how far it needs."""
+        now = shapely.union_all([part.shape for part in _covered(body, _place(motion), 0.0, 0.0)])
+        entered = [area for area in self._closed if shapely.dwithin(area.polygon, one.shape, one.around)]
+        if entered:
+            area = min(entered, key=lambda area: float(shapely.distance(area.polygon, now)))
+            gap, x, y = _nearest(area.polygon, now)
+            return EntersArea(self.machine, area.id, gap, needed, x, y)
+        gap, x, y = _nearest(self._sides[self._tree.query_nearest(now, all_matches=False)[0]], now)
+        at = shapely.Point(x, y)
+        left = min(self.areas.of("unmanned"), key=lambda area: float(shapely.distance(area.polygon, at)))
+        return LeavesArea(self.machine, left.id, gap if self._usable.contains(now) else 0.0, needed, x, y)
+
+    def _too_fast(self, covered: list[Covered], speed: float) -> Reason | None:
+        """The speed limit that a machine breaks where it is, or may soon be."""
+        for area in self._limits:
+            limit = area.speed or 0.0
+            if speed > limit * FASTER and any(area.polygon.intersects(one.shape) for one in covered):
+                return TooFastFor(self.machine, area.id, speed, limit)
+        return None
+
+    def _slow(self, covered: list[Covered]) -> Reason | None:
+        """A goal tells no speed, so what drives it may take the machine's top speed anywhere."""
+        return None if self.tracks is None else self._too_fast(covered, self.tracks.forward.top)
+
+
+def _ends(axis: Axis, speed: float, blind: float, factor: float) -> tuple[float, float]:
+    """The least and the most that an axis can go on from a measured speed until it stands [m or rad]."""
+    gain = axis.acceleration * (blind + WINDOW / 2)
+    low, high = max(speed - gain, min(speed, -axis.top)), min(speed + gain, max(speed, axis.top))
+    ends = [one * blind + math.copysign(axis.braking(one), one) * factor for one in (low, high)]
+    return ends[0], ends[1]
+
+
+def _place(motion: Motion) -> Array:
+    return np.array([[motion.x, motion.y, motion.yaw]])
+
+
+def _places(motion: Motion, reach: Reach) -> Array:
+    """Places (N x 3) between and around which the base is until it stands."""
+    turns = sorted({reach.right, (reach.right + reach.left) / 2, reach.left})
+    places = [(motion.x, motion.y, motion.yaw)]
+    for turn in turns:
+        for way in {reach.back, reach.ahead}:
+            for share in (0.5, 1.0):
+                chord = motion.yaw + turn * share / 2
+                c, s = math.cos(chord), math.sin(chord)
+                ahead, side = way * share, reach.side * share
+                at = motion.x + c * ahead - s * side, motion.y + s * ahead + c * side
+                places.append((*at, motion.yaw + turn * share))
+    return np.array(places)
+
+
+def _covered(body: Body, places: Array, between: float, around: float) -> list[Covered]:
+    """What each part covers at places (N x 3), between them, and at headings that are `between` [rad] off."""
+    c, s = np.cos(places[:, 2, None]), np.sin(places[:, 2, None])
+    found = []
+    for part in body.parts:
+        (px, py), bulge = part.corners.T, part.spin * (1.0 - math.cos(min(between, math.pi)))
+        x, y = places[:, 0, None] + c * px - s * py, places[:, 1, None] + s * px + c * py
+        corners = shapely.multipoints(np.column_stack([x.ravel(), y.ravel()]))
+        found.append(Covered(shapely.convex_hull(corners), around + bulge))
+    return found
+
+
+def _nearest(line: BaseGeometry, shape: BaseGeometry) -> tuple[float, float, float]:
+    """How far a shape is from a line or an area [m], and the place there that is nearest to it."""
+    way = shapely.shortest_line(line, shape)
+    x, y = shapely.get_coordinates(way)[0]
+    return float(way.length), float(x), float(y)

@@ -1,0 +1,59 @@
+"""What is wrong with areas, and why a machine may not go on because of them."""
+
+from tms_reason.quantities import Metres, MetresPerSecond, Seconds, SquareMetres
+from tms_reason.reason import Reason
+from tms_reason.remedies import EDIT_CONFIG, INSPECT, Remedy
+
+DRAW_AGAIN = Remedy("draw", "", "Draw the area again, and export the file anew")
+DRIVE_OUT = Remedy("take", "tms take {machine}", "Drive the machine by hand to where it may be")
+
+
+# fmt: off
+# files
+class AreaFile(Reason, text="{file}: {why}"): file: str; why: Reason
+class OfArea(Reason, text="area {area}: {why}"): area: str; why: Reason
+class AreaFileLarge(Reason, text="is larger than {limit} bytes", action=DRAW_AGAIN): limit: int
+class NoJson(Reason, text="is no JSON, line {line}, column {column}", action=DRAW_AGAIN): line: int; column: int
+class NoOriginForAreas(Reason, text="its corners are in degrees, and the site file tells no ground.origin",
+    action=EDIT_CONFIG): pass
+class OtherCoordinates(Reason, text="its coordinates are '{crs}', not longitude and latitude (WGS84) or those of map",
+    action=DRAW_AGAIN): crs: str
+
+# one area
+class RingOpen(Reason, text="its last corner is not its first one", action=DRAW_AGAIN): pass
+class HasHole(Reason, text="it has a hole: make the hole a blocked area", action=DRAW_AGAIN): pass
+class FewCorners(Reason, text="it has {corners} different corners, 3 are needed", action=DRAW_AGAIN): corners: int
+class ManyCorners(Reason, text="it has {corners} corners, {limit} are allowed", action=DRAW_AGAIN):
+    corners: int; limit: int
+class CrossesItself(Reason, text="its border crosses or touches itself near ({x}, {y})", action=DRAW_AGAIN):
+    x: Metres; y: Metres
+class TooSmall(Reason, text="it has {size} only", action=DRAW_AGAIN): size: SquareMetres
+class TooFar(Reason, text="its corner ({x}, {y}) is further than {limit} from the origin of the map",
+    action=DRAW_AGAIN): x: Metres; y: Metres; limit: Metres
+class NeedsSpeed(Reason, text="a speed limit needs maximum_speed, another area has none", action=EDIT_CONFIG): pass
+class NeedsNoLoss(Reason, text="only a release area has on_loss", action=EDIT_CONFIG): pass
+
+# a set
+class ManyAreas(Reason, text="there are {count} areas, {limit} are allowed", action=EDIT_CONFIG): count: int; limit: int
+class AreaTwice(Reason, text="two areas are called {area}", action=EDIT_CONFIG): area: str
+class NoUnmanned(Reason, text="no area is unmanned: no machine could move anywhere", action=EDIT_CONFIG): pass
+class NothingUsable(Reason, text="other areas cover every unmanned one: no machine could move anywhere",
+    action=EDIT_CONFIG): pass
+
+# a machine
+class LeavesArea(Reason, text="{machine} must not leave the unmanned area {area}: its border near ({x}, {y}) is"
+    " {gap} away, to stop takes {needed}", action=DRIVE_OUT):
+    machine: str; area: str; gap: Metres; needed: Metres; x: Metres; y: Metres
+class EntersArea(Reason, text="{machine} must not enter the area {area}: its border near ({x}, {y}) is {gap} away,"
+    " to stop takes {needed}", action=DRIVE_OUT):
+    machine: str; area: str; gap: Metres; needed: Metres; x: Metres; y: Metres
+class TooFastFor(Reason, text="{machine} would be in the area {area} at {speed}, {limit} are allowed there",
+    action=DRIVE_OUT): machine: str; area: str; speed: MetresPerSecond; limit: MetresPerSecond
+class NoWay(Reason, text="no way inside the unmanned areas leads {machine} to ({x}, {y})"):
+    machine: str; x: Metres; y: Metres
+class PoseUnknown(Reason, text="its place in the map is not told", action=INSPECT): pass
+class PoseOld(Reason, text="its place in the map is {age} old", action=INSPECT): age: Seconds
+class PoseJumped(Reason, text="its place in the map has jumped", action=INSPECT): pass
+class PoseStuck(Reason, text="its place in the map does not change while its tracks move", action=INSPECT): pass
+class PoseSettles(Reason, text="{why}: it is believed again after {left} without that"): why: Reason; left: Seconds
+# fmt: on

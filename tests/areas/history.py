@@ -1,0 +1,240 @@
+"""One seeded history of a machine between areas, watched by the gateway's law, against where it truly is."""
+
+import math
+import random
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from areas.plant import STEP, TROUBLES, Ground, Localisation, Plant, Trouble
+from areas.truth import Array, Rules, edge
+from tms_areas.areas import Area, AreaSet, Point, ring
+from tms_areas.body import Body, Part, Silhouette
+from tms_areas.braking import Axis, Tracks
+from tms_areas.fix import Fix
+from tms_areas.guard import Guard, Verdict
+from tms_areas.law import Law, Place
+
+SECONDS = 60.0  # of a history
+BEAT = 0.05  # s between looks of the gateway
+LINK = 0.08  # s at most from a decision to the command at the machine
+GENTLE = 0.8  # share of the acceleration with which a driver brakes for its goal
+NEAR = 0.3  # m, rad: there
+
+
+class Outline(Silhouette):
+    """A machine whose joints stand still."""
+
+    def __init__(self, corners: Array) -> None:
+        self._whole = Body((Part(corners, float(np.hypot(*corners.T).max())),))
+
+    def body(self, joints: object) -> Body:
+        return self._whole
+
+
+@dataclass
+class Driver:
+    """Drives to goals one after the other, or wherever it likes."""
+
+    random: random.Random
+    wild: bool
+    top: float
+    acceleration: float
+    turn_top: float
+    goals: list[Point]
+    until: float = 0.0
+    wish: tuple[float, float] = (0.0, 0.0)
+
+    def speeds(self, now: float, plant: Plant) -> tuple[float, float]:
+        """What it commands: speed and turning. It knows how late the tracks answer, as our controllers do."""
+        late = plant.dead_time + plant.lag
+        x, y, yaw = plant.x, plant.y, plant.yaw + plant.w * late
+        if self.wild:
+            if now >= self.until:
+                self.until = now + self.random.uniform(1.0, 8.0)
+                self.wish = (self.random.choice([-1, 1, 1]) * self.random.uniform(0, self.top),
+                             self.random.choice([0.0, self.random.uniform(-1, 1) * self.turn_top]))  # fmt: skip
+            return self.wish
+        if not self.goals:
+            return 0.0, 0.0
+        dx, dy = self.goals[0][0] - x, self.goals[0][1] - y
+        away, off = math.hypot(dx, dy), math.remainder(math.atan2(dy, dx) - yaw, math.tau)
+        if away < NEAR:
+            self.goals.pop(0)
+            return 0.0, 0.0
+        w = max(-self.turn_top, min(self.turn_top, 1.0 * off))
+        if abs(off) > 0.3:
+            return 0.0, w
+        return min(
+            self.top, math.sqrt(2 * GENTLE * self.acceleration * max(away - NEAR - plant.v * late, 0.0)) + 0.05
+        ), w
+
+
+@dataclass
+class Result:
+    """What a history has shown."""
+
+    seed: int
+    wild: bool
+    crossed: float | None = None  # when the machine truly was where it must not be
+    stopped: float | None = None  # when the law stopped it
+    why: str = ""
+    held: int = 0
+    would_cross: bool = False  # without the law
+    refused: bool = False
+    reached: int = 0  # goals
+
+
+@dataclass
+class Made:
+    """Everything that a seed decides."""
+
+    areas: AreaSet
+    rules: Rules
+    corners: Array
+    tracks: Tracks
+    slip: float
+    lag: float
+    start: Place
+    troubles: list[Trouble]
+    wild: bool
+    goals: list[Point] = field(default_factory=list)
+
+
+def made(seed: int) -> Made:
+    """A site, a machine in it, and what goes wrong."""
+    r = random.Random(seed)
+    corners = _machine(r)
+    areas, polygons, closed = _areas(r)
+    lag, acceleration = r.uniform(0.3, 1.4), r.uniform(0.3, 0.8)
+    tracks = Tracks(Axis(r.uniform(0.5, 1.2), acceleration, lag), Axis(r.uniform(0.2, 0.5), r.uniform(0.2, 0.5), lag),
+                    r.choice([0.0, r.uniform(0.0, 0.9)]))  # fmt: skip
+    troubles = []
+    for _ in range(r.choice([0, 0, 1, 2, 3])):
+        begins, away, to = r.uniform(6, SECONDS), r.uniform(0.6, 3.0), r.uniform(0, math.tau)
+        lasts = r.uniform(0.2, 4.5)
+        troubles.append(Trouble(r.choice(TROUBLES), begins, begins + lasts, away * math.cos(to), away * math.sin(to),
+                                r.choice([0.0, r.uniform(-0.5, 0.5)])))  # fmt: skip
+    out = Made(areas, Rules(polygons, closed), corners, tracks, r.choice([0.0, 0.1, 0.4]), lag * r.uniform(0.6, 1.0),
+               (0.0, 0.0, 0.0), troubles, r.random() < 0.5)  # fmt: skip
+    law = Law(areas, "machine", tracks)
+    body = Outline(corners).body(())
+    places = [one for _ in range(300) if law.arriving(body, one := _anywhere(r)) is None]
+    if places:
+        out.start = places[0]
+        straight = [
+            one
+            for one in places[1:]
+            if law.path(body, [places[0], (*places[0][:2], _facing(places[0], one)[2]), _facing(places[0], one)])
+            is None
+        ]
+        out.goals = [one[:2] for one in straight[:1]]
+    return out
+
+
+def _way(plant: Plant, goal: Point) -> list[Place]:
+    """How a driver goes to a goal: it turns, then drives straight."""
+    there = _facing((plant.x, plant.y, plant.yaw), (*goal, 0.0))
+    return [(plant.x, plant.y, there[2]), there]
+
+
+def _facing(old: Place, new: Place) -> Place:
+    return new[0], new[1], math.atan2(new[1] - old[1], new[0] - old[0])
+
+
+def _anywhere(r: random.Random) -> Place:
+    return r.uniform(-30, 30), r.uniform(-30, 30), r.uniform(-math.pi, math.pi)
+
+
+def _machine(r: random.Random) -> Array:
+    front, back, half = r.uniform(1.0, 3.5), r.uniform(1.0, 3.5), r.uniform(0.8, 1.8)
+    return np.array([(-back, -half), (front, -half), (front, half), (-back, half)])
+
+
+def _areas(r: random.Random) -> tuple[AreaSet, list[Array], list[Array]]:
+    """One or two unmanned areas, bent inwards and out, and some that are closed inside of them."""
+    found = []
+    for number in range(r.choice([1, 1, 2])):
+        count, x, y = r.randint(5, 14), r.uniform(-8, 8) * number, r.uniform(-8, 8) * number
+        turns = [math.tau * i / count for i in range(count)]
+        far = [r.uniform(14, 28) for _ in turns]
+        found.append(
+            Area(
+                f"u{number}",
+                "unmanned",
+                ring([(x + d * math.cos(t), y + d * math.sin(t)) for d, t in zip(far, turns, strict=True)]),
+            )
+        )
+    for number in range(r.choice([0, 1, 2, 3])):
+        x, y, size = r.uniform(-20, 20), r.uniform(-20, 20), r.uniform(1.0, 4.0)
+        kind = r.choice(["blocked", "manned", "restricted", "release"])
+        found.append(
+            Area(
+                f"c{number}",
+                kind,
+                ring([(x, y), (x + size, y), (x + size, y + size), (x, y + size * r.uniform(0.3, 1))]),
+            )
+        )  # type: ignore[arg-type]
+    shapes = [np.array(one.corners) for one in found]
+    open_ones = [shape for one, shape in zip(found, shapes, strict=True) if one.kind == "unmanned"]
+    return AreaSet(tuple(found)), open_ones, shapes[len(open_ones) :]
+
+
+def run(seed: int, guarded: bool = True, keeps_on: float = math.inf) -> Result:
+    """The history of a seed; not `guarded`: without the law, until it crosses. From `keeps_on` [s] on a wild driver's
+    command stays what it is."""
+    what, r = made(seed), random.Random(seed + 1)
+    out = Result(seed, what.wild)
+    fix, law = Fix(what.tracks.turning.top), Law(what.areas, "machine", what.tracks)
+    guard, outline = Guard(law, Outline(what.corners)), edge(what.corners)
+    plant = Plant(Ground(random.Random(seed + 2)), what.slip, what.tracks.dead_time, what.lag, *what.start)
+    told = Localisation(random.Random(seed + 3), r.choice([0.06, 0.1]), r.choice([0.02, 0.15]),
+                        r.choice([0.002, 0.01, 0.02]), r.uniform(0, 0.1), what.troubles if guarded else [],
+                        r.uniform(0, 6))  # fmt: skip
+    driver = Driver(random.Random(seed + 4), what.wild, what.tracks.forward.top, what.tracks.forward.acceleration,
+                    what.tracks.turning.top, list(what.goals))  # fmt: skip
+    going, stopped, next_beat = False, False, 0.0
+    wished = (0.0, 0.0)
+    for step in range(round(SECONDS / STEP)):
+        plant.step()
+        now = plant.now
+        for at, pose in told.take(now, (plant.x, plant.y, plant.yaw)):
+            fix.heard(at, *pose)
+        fix.odometry(plant.v, plant.w)
+        if now >= next_beat:
+            next_beat = now + BEAT * r.uniform(0.8, 1.4)
+            seen = fix.look(now)
+            verdict = guard.look(seen, {}, tracks=True) if guarded else Verdict()
+            if verdict.stop is not None and going:
+                out.stopped, out.why = now, verdict.stop.code
+                stopped, going = True, False
+                plant.command(0.0, 0.0, r.uniform(0, LINK))
+            elif verdict.hold is not None and going:
+                out.held, going = out.held + 1, False
+                plant.command(0.0, 0.0, r.uniform(0, LINK))
+            elif verdict.hold is None and verdict.stop is None and not going and not stopped:
+                going = True
+                if guarded and driver.goals and guard.may_drive(seen, {}, _way(plant, driver.goals[0]), told=True):
+                    out.refused = True
+                    break
+            if going:
+                goals = len(driver.goals)
+                driver.until = math.inf if now >= keeps_on else driver.until
+                wished = _limited(driver.speeds(now, plant), wished, what, next_beat - now)
+                out.reached += goals - len(driver.goals)
+                plant.command(*wished, r.uniform(0, 0.02))
+            else:
+                wished = (0.0, 0.0)
+        if step % 10 == 0 and what.rules.broken(outline, plant.x, plant.y, plant.yaw):
+            out.crossed = now
+            break
+        if stopped and abs(plant.v) < 0.005 and not plant.coming:
+            break
+    return out
+
+
+def _limited(wish: tuple[float, float], now: tuple[float, float], what: Made, passed: float) -> tuple[float, float]:
+    """Commands do not change faster than the tracks may."""
+    most = what.tracks.forward.acceleration * passed, what.tracks.turning.acceleration * passed
+    v, w = (one + max(-d, min(d, to - one)) for to, one, d in zip(wish, now, most, strict=True))
+    return v, w

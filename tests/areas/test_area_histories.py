@@ -1,0 +1,19 @@
+"""Some seeds of the histories of machines between areas; `python -m areas.run` tries thousands."""
+
+import pytest
+
+from areas.history import made, run
+from tms_areas.guard import Guard, Verdict
+
+SEEDS = range(12)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_no_machine_is_ever_where_it_must_not_be(seed: int) -> None:
+    found = run(seed)
+    assert found.crossed is None
+
+
+def test_without_the_law_some_of_them_would_be(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Guard, "look", lambda *_, **__: Verdict())
+    assert any(run(seed).crossed is not None for seed in SEEDS if made(seed).wild)
