@@ -2,6 +2,8 @@
 
 NAMES = {
     **dict.fromkeys(("x", "y", "z", "goal_x", "goal_y", "goal_z", "offset", "depth", "drag", "lift"), "m"),
+    **dict.fromkeys(("area_x", "area_y", "floor", "near", "far", "deepest"), "m"),
+    **dict.fromkeys(("volume", "moved", "bank", "before"), "m3"),
     **dict.fromkeys(("theta_w", "target_angle", "goal_position"), "rad"),
     "yaw": "deg",
 }

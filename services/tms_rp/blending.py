@@ -22,6 +22,7 @@ from tms_rp.trajectory import STEP, Joints, Trajectory, TrajectorySample, check_
 SIGNS = (1.0, -1.0, -1.0, 1.0)  # of the four differences
 GROWTH = 1.01  # least factor by which a window that is too short grows
 SLIVER = 1e-6  # s; times that differ by less are the same
+STILL = 1e-9  # rad; a joint that goes less far does not move: its windows would be as good as nothing
 
 Array = NDArray[np.float64]
 
@@ -94,7 +95,7 @@ def blended(
     moved = {
         i: _averaged(_Line(times, angles[:, i] - angles[0, i]), joint)
         for i, joint in enumerate(joints.values())
-        if np.ptp(angles[:, i]) > 0
+        if np.ptp(angles[:, i]) > STILL
     }
     if not moved:
         return trajectory(dict(joints), poses[0], list(poses[1:]))

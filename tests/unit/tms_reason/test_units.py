@@ -24,6 +24,9 @@ TEXTS = {
     "retime",
     "output",
     "blade_hold",
+    "excavator",
+    "job",
+    "trucks",
 }  # inputs, and what is picked from another field
 MODELS = sorted(path.stem for path in (CONFIGS / "machines").glob("*.yaml"))
 

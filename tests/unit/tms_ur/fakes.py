@@ -179,10 +179,13 @@ class FakeAudit:
         return self.last
 
 
+ZX200 = {"zx200": {"model": "zx200"}}
+
+
 def site(**changes: Any) -> Site:
-    """The demo's site, changed."""
+    """The demo's site with its excavator only, changed."""
     demo = load_site()
-    file = SiteFile.model_validate({**demo.file.model_dump(exclude_unset=True), **changes})
+    file = SiteFile.model_validate({**demo.file.model_dump(exclude_unset=True), "machines": ZX200, **changes})
     truck = parse(CONFIGS / "machines" / "ic120.yaml", MachineModel)
     return Site(demo.path, file, {**demo.models, "ic120": truck}, demo.state)
 
