@@ -123,7 +123,8 @@ class Yard:
                 raise SubtaskFailed(WaitingFor(GROUND))
             sleep(LOOKS)
         x0, y0, x1, y1 = bounds
-        answer = self._ros.call(GetHeights, HEIGHTS, GetHeights.Request(x0=x0, y0=y0, x1=x1, y1=y1))
+        request = GetHeights.Request(x0=x0, y0=y0, x1=x1, y1=y1)
+        answer = self._ros.call(GetHeights, HEIGHTS, request, COMES_BACK)
         if answer.error_code:
             raise SubtaskFailed(refusal(answer.error_code, answer.error_msg))
         now = heights(answer.ground)
