@@ -87,12 +87,13 @@ class Keeper:
     def look(self) -> None:
         """Take what has come since the last look."""
         self._listener.take()
-        with self.lock:
-            for name in self._machines:
+        for name in self._machines:
+            with self.lock:  # one at a time: who asks for heights comes in between
                 self._take(name)
-            now = monotonic()
-            if now - self._told >= TELLS:
-                self._told = now
+        now = monotonic()
+        if now - self._told >= TELLS:
+            self._told = now
+            with self.lock:
                 self.teller.tell()
 
     def _take(self, name: str) -> None:
