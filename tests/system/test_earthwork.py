@@ -1,4 +1,4 @@
-"""A zx200 and two trucks move the earth of a job, ten times as fast as real ones; no bucket counts twice."""
+"""A zx200 and two trucks move the earth of a job, five times as fast as real ones; no bucket counts twice."""
 
 import itertools
 import json
@@ -15,8 +15,8 @@ from test_stop import state_of
 from conftest import CLI, NO_CONSOLE, PROJECT, Mesh, ports_of, running, site_data, wait_until
 
 pytestmark = [pytest.mark.system, pytest.mark.timeout(300)]
-SPEED = 10.0  # times real time
-VOLUME = float(os.environ.get("TMS_EARTH", "12"))  # m3 as it lay
+SPEED = 5.0  # times real time; twice as fast needs a PC that does nothing else
+VOLUME = float(os.environ.get("TMS_EARTH", "6"))  # m3 as it lay
 RECORDS = ("zx200", "shared", "earthwork")
 MACHINES = {
     "zx200": {"model": "zx200"},
@@ -73,7 +73,8 @@ def check(mesh: Mesh) -> None:
     found = job(mesh)
     assert found["done"] and VOLUME <= found["moved"] <= VOLUME + BUCKET[1]
     rows = json.loads(mesh.tms("param", "history", "/EARTHWORK", "--limit", "10000", "--json").stdout)
-    told = {(int(row["values"]["counted"]), row["values"]["moved"]) for row in rows}
+    sums = [row["values"] for row in rows if "counted" in row["values"]]
+    told = {(int(one["counted"]), one["moved"]) for one in sums}
     counts, moved = zip(*sorted(told), strict=True)
     wanted = list(range(counts[0], int(found["counted"]) + 1))  # the database keeps the last changes of a record
     assert list(counts) == wanted, "one sum a bucket, and no bucket is left out"
