@@ -21,6 +21,7 @@ from tms_ros.goals import Outcome
 from tms_soil import patches
 from tms_soil.surface import Heights
 
+# At real speed: a fast stand-in moves far while a busy PC lets tms:ground wait; soil is not followed over such gaps.
 pytestmark = [
     pytest.mark.ros,
     pytest.mark.filterwarnings("ignore:module 'sre_:DeprecationWarning"),  # a parser that the ROS wheels bring
@@ -31,7 +32,7 @@ SITE = """
 name: groundtest
 domain: {domain}
 ports: {{metrics: {metrics}, console: {console}, store: {store}}}
-sim: {{speed: 5.0, seed: 1, scanners: {{mast: {{x: -6.0, y: 6.0, range: 6.0}}}}}}
+sim: {{speed: 1.0, seed: 1, scanners: {{mast: {{x: -6.0, y: 6.0, range: 6.0}}}}}}
 services: {{db: {{role: cps}}, sp: {{role: cps}}}}
 sensing: sensing.yaml
 machines: {{zx200: {{model: zx200, start: [0.0, 0.0, 0.0]}}}}
@@ -74,12 +75,12 @@ class Earth(Mesh):
         answer = self.call(GetHeights, "/tms/ground/get_heights")
         return np.array(answer.ages).reshape(answer.ground.rows, answer.ground.columns)
 
-    def move(self, poses: list[Arm]) -> Outcome:
+    def move(self, poses: list[Arm], begin: Arm = START) -> Outcome:
         """Bring the arm through poses, with a stop at each."""
         peer = self.ros.peer(FollowJointTrajectory, "/zx200/upper_arm_controller/follow_joint_trajectory")
         self.until(peer.ready, "the arm")
         seconds = [1.5 * max(abs(b - a) / v for a, b, v in zip(*pair, SPEEDS, strict=True)) + 1.0
-                   for pair in pairwise([START, *poses])]  # fmt: skip
+                   for pair in pairwise([begin, *poses])]  # fmt: skip
         points = [
             JointTrajectoryPoint(
                 positions=[*pose, 0.0], velocities=[0.0] * len(JOINTS),
@@ -102,14 +103,25 @@ def earth(tmp_path: Path, own_domain: int, monkeypatch: pytest.MonkeyPatch) -> I
         yield mesh
 
 
+def dug(earth: Earth) -> bool:
+    """Dig, again if need be: on a busy PC soil slows the arm late, and it digs less deep than it was asked to."""
+    for _ in range(3):
+        assert earth.move(dig_poses()[1:]) is Outcome.SUCCEEDED
+        seen = len(earth.loads) + 2
+        earth.until(lambda least=seen: len(earth.loads) > least, "loads of the pose at the end")  # type: ignore[misc]
+        if earth.loads[-1].loose > 0.3:
+            return True
+        assert earth.move([START], dig_poses()[-1]) is Outcome.SUCCEEDED
+    return False
+
+
 def test_from_a_stored_ground_over_a_dig_to_the_next_one(earth: Earth) -> None:
     earth.until(lambda: bool((earth.ground().z == LEVEL).all()), "the stored ground")
     scanned = np.s_[70:90, 10:30]  # around the mast
     first = earth.ages()[scanned].max()
     earth.until(lambda: earth.ages()[scanned].max() < first, "a scan")
     earth.until(lambda: abs(earth.heights.get("zx200/base_link", 0.0) - LEVEL) < 1e-6, "a machine that stands on it")
-    assert earth.move(dig_poses()[1:]) is Outcome.SUCCEEDED
-    earth.until(lambda: earth.loads[-1].loose > 0.3, "a load")
+    assert dug(earth)
     assert earth.loads[-1].soil == "earth" and max(one.resistance for one in earth.felt) > 1000.0
     now = earth.ground()
     assert (now.z[140:180, 20:60] == LEVEL).all(), "the noise of scans moves nothing"
