@@ -54,6 +54,16 @@ def cut(window: Window, cells: Swept) -> Array:
     layers, thickness = window.of(rows, columns)
     # Nothing is taken where the height is unknown.
     depth = np.fmax(window.datum + (layers * thickness).sum(axis=0) - level, 0.0)
+    taken = take_off(layers, thickness, depth)
+    window.layers[:, rows, columns] = layers
+    return window.by_soil(rows, columns, taken * AREA)
+
+
+def take_off(layers: Array, thickness: Array, depth: Array) -> Array:
+    """Take so much [m] off the top of some cells, loose soil first; returns the mass [kg/m2] of each.
+
+    `layers` [kg/m2], which this changes, and `thickness` [m3/kg] are layer by layer.
+    """
     taken = np.zeros(depth.shape)
     for layer in (LOOSE, COMPACTED, BANK):
         part = depth / thickness[layer]
@@ -62,8 +72,7 @@ def cut(window: Window, cells: Swept) -> Array:
         layers[layer] -= part
         depth = np.fmax(depth - part * thickness[layer], 0.0)
         taken += part
-    window.layers[:, rows, columns] = layers
-    return window.by_soil(rows, columns, taken * AREA)
+    return taken
 
 
 def put_down(grid: Grid, edge: Array, along: Array, mass: float) -> Bounds:

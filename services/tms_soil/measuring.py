@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from tms_soil.cutting import take_off
 from tms_soil.evidence import Evidence
 from tms_soil.grid import BANK, COMPACTED, LOOSE, TILE, Grid
 from tms_soil.surface import Array, Bounds, Heights, Mask
@@ -59,13 +60,7 @@ def _measure(layers: Array, thickness: Array, wanted: Array, within: float) -> M
     loose = layers[LOOSE] > 0.0
     layers[LOOSE] += np.where(loose, np.fmax(rise, 0.0), 0.0) / thickness[LOOSE]
     layers[BANK] += np.where(loose, 0.0, np.fmax(rise, 0.0)) / thickness[BANK]
-    missing = np.fmax(-rise, 0.0)
-    for layer in (LOOSE, COMPACTED, BANK):
-        part = missing / thickness[layer]
-        if layer != BANK:
-            part = np.minimum(part, layers[layer])
-        layers[layer] -= part
-        missing = np.fmax(missing - part * thickness[layer], 0.0)
+    take_off(layers, thickness, np.fmax(-rise, 0.0))
     new = cells & unknown
     above = layers[COMPACTED] * thickness[COMPACTED] + layers[LOOSE] * thickness[LOOSE]
     layers[BANK][new] = ((wanted - above) / thickness[BANK])[new]
