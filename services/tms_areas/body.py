@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tms_config.models import MachineModel
-from tms_control.from_above import from_above, hull
-from tms_control.links import Links, box_place, reach
+from tms_control.from_above import around_circle, from_above, hull
+from tms_control.links import Links, box_corners, reach
 
 SIDES = 32  # of a polygon around a circle: at most half a percent larger
 FINEST = 0.05  # rad between two looks at an arm on its way: in between it reaches millimetres further at most
@@ -45,7 +45,7 @@ class Silhouette:
         self._fixed = tuple(_part(np.array(corners)) for corners in from_above(model).values())
         self._axis, beyond = _swinging(model)
         self._links = Links(model, beyond)
-        self._corners = {link: _corners(model, link) for link in beyond}
+        self._corners = {link: box_corners(model.shapes[link]) for link in beyond}
 
     def body(self, joints: Sequence[Mapping[str, float]]) -> Body:
         """What holds it at all of these joints [rad]; at a joint that is not told it may be anywhere."""
@@ -94,20 +94,9 @@ def _swinging(model: MachineModel) -> tuple[tuple[float, float] | None, list[str
     return axis, [link for link in model.shapes if link in wanted]
 
 
-def _corners(model: MachineModel, link: str) -> Array:
-    """Corners of a link's body in its frame: 4 x 8."""
-    box = model.shapes[link]
-    half = (np.array(box.max) - np.array(box.min)) / 2
-    signs = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, 8)
-    found: Array = box_place(box) @ np.vstack([half[:, None] * signs, np.ones(8)])
-    return found
-
-
 def _part(corners: Array) -> Part:
     return Part(corners, float(np.hypot(*corners.T).max()))
 
 
 def _circle(x: float, y: float, radius: float) -> Part:
-    turns = (np.arange(SIDES) + 0.5) * math.tau / SIDES
-    outer = radius / math.cos(math.pi / SIDES)
-    return Part(np.column_stack([x + outer * np.cos(turns), y + outer * np.sin(turns)]), math.hypot(x, y))
+    return Part(np.array(around_circle(x, y, radius, SIDES)), math.hypot(x, y))

@@ -2,12 +2,11 @@
 
 import math
 from collections.abc import Iterable, Mapping
-from itertools import product
 
 import numpy as np
 
 from tms_config.models import Box, MachineModel
-from tms_control.links import Links, box_place
+from tms_control.links import Links, box_corners
 
 SIDES = 16  # of a polygon around a circle: at most 2 % larger
 SAME = 0.1  # m by which a box may be larger than a circle on each side and still stand for it
@@ -23,11 +22,15 @@ def from_above(model: MachineModel) -> dict[str, Polygon]:
         (x0, y0), (x1, y1) = box.min[:2], box.max[:2]
         found[part] = ((x0, y0), (x1, y0), (x1, y1), (x0, y1))
         if circle is not None and _stands_for(box, *circle):
-            x, y, radius = circle
-            outer = radius / math.cos(math.pi / SIDES)
-            turns = (math.tau * (i + 0.5) / SIDES for i in range(SIDES))
-            found[part] = tuple((x + outer * math.cos(turn), y + outer * math.sin(turn)) for turn in turns)
+            found[part] = around_circle(*circle, SIDES)
     return found
+
+
+def around_circle(x: float, y: float, radius: float, sides: int) -> Polygon:
+    """A regular polygon with a circle [m] inside, as narrow as its number of sides allows."""
+    outer = radius / math.cos(math.pi / sides)
+    turns = (math.tau * (i + 0.5) / sides for i in range(sides))
+    return tuple((x + outer * math.cos(turn), y + outer * math.sin(turn)) for turn in turns)
 
 
 def arm_from_above(model: MachineModel, links: Links, angles: Mapping[str, float]) -> list[tuple[float, float]]:
@@ -35,11 +38,8 @@ def arm_from_above(model: MachineModel, links: Links, angles: Mapping[str, float
     places = links.places(np.array([[angles[name] for name in links.names]]))
     found = list[tuple[float, float]]()
     for link in sorted(links.moved & model.shapes.keys()):
-        box, place = model.shapes[link], places[link][0] @ box_place(model.shapes[link])
-        half = [(high - low) / 2 for low, high in zip(box.min, box.max, strict=True)]
-        for signs in product((1, -1), repeat=3):
-            x, y, *_ = place @ [*(sign * one for sign, one in zip(signs, half, strict=True)), 1.0]
-            found.append((float(x), float(y)))
+        x, y, *_ = (places[link][0] @ box_corners(model.shapes[link])).tolist()
+        found += zip(x, y, strict=True)
     return found
 
 

@@ -54,6 +54,13 @@ def box_place(box: Box) -> Matrix:
     return found
 
 
+def box_corners(box: Box) -> Array:
+    """Corners of a box in the frame that it belongs to [m], each a column with a 1 below: 4 x 8."""
+    found = np.ones((4, 8))
+    found[:3] = turned("y", box.pitch) @ np.array(_corners(box)).T
+    return found
+
+
 class Links:
     """Some links of one machine, and those that carry them."""
 
