@@ -4,6 +4,9 @@ The shortest delay of the last seconds counts as none, so the offset includes th
 beyond that is the age of a message.
 """
 
+from tms_sp.mapping import MessageRefused
+from tms_sp.reasons import MeasuredEarlier, StampInFuture
+
 WINDOW = 10.0  # s
 
 
@@ -29,6 +32,18 @@ class SourceClock:
     def ahead(self, stamp: float, now: float) -> float:
         """Seconds that a stamp lies further in the future than allowed; 0 if it does not."""
         return max(0.0, stamp - now - self._limit)
+
+    def check(self, stamp: float, before: float | None, now: float) -> None:
+        """Refuse what must not follow a message of the same source with the stamp `before`.
+
+        Raises:
+            MessageRefused: StampInFuture, MeasuredEarlier.
+        """
+        if (ahead := self.ahead(stamp, now)) > 0:
+            raise MessageRefused(StampInFuture(ahead + self._limit))
+        set_back = before is not None and self.ahead(before, now) > 0  # our clock was, after the stamp came
+        if before is not None and stamp < before and not set_back:
+            raise MessageRefused(MeasuredEarlier(before - stamp))
 
     def age(self, stamp: float, now: float) -> float:
         """Seconds between measurement and arrival, beyond the usual delay."""

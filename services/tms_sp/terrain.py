@@ -1,7 +1,5 @@
 """Terrain that sensing PCs measure: clouds of points become heights for tms:ground."""
 
-from collections import deque
-
 import numpy as np
 from numpy.typing import NDArray
 from sensor_msgs.msg import PointCloud2, PointField
@@ -17,10 +15,11 @@ from tms_runtime.app import App
 from tms_soil.patches import patch
 from tms_soil.scanning import gathered
 from tms_soil.surface import Array
+from tms_sp.arrivals import Arrivals
 from tms_sp.clock import SourceClock
-from tms_sp.inputs import ARRIVALS, MESSAGES, SILENT_PERIODS
+from tms_sp.inputs import MESSAGES
 from tms_sp.mapping import MessageRefused
-from tms_sp.reasons import CloudFrame, CloudNotPoints, MeasuredEarlier, StampInFuture
+from tms_sp.reasons import CloudFrame, CloudNotPoints
 
 SEEN = "/tms/ground/seen"
 FRAME = "map"
@@ -33,9 +32,8 @@ class TerrainSensing:
 
     def __init__(self, app: App, name: str, given: TerrainInput, clock_limit: float) -> None:
         self.name, self.given = name, given
-        self._log, self._clock, self._limit = app.log, SourceClock(clock_limit), clock_limit
-        self._stamp = 0.0  # s since 1970, of the last cloud that was taken
-        self._arrivals: deque[float] = deque(maxlen=ARRIVALS)
+        self._log, self._clock, self._arrivals = app.log, SourceClock(clock_limit), Arrivals(given.hz)
+        self._stamp: float | None = None  # s since 1970, of the last cloud that was taken
         self._accepted = self._refused = 0
         self._why: Reason | None = None
         self._patches = app.ros.publisher(HeightPatch, SEEN, depth=5)
@@ -54,7 +52,7 @@ class TerrainSensing:
             return
         self._patches.publish(message)
         self._accepted += 1
-        self._arrivals.append(monotonic())
+        self._arrivals.add(monotonic())
         MESSAGES.labels(self.name, "accepted").inc()
 
     def _heights(self, cloud: PointCloud2) -> HeightPatch:
@@ -66,10 +64,7 @@ class TerrainSensing:
         if cloud.header.frame_id != FRAME:
             raise MessageRefused(CloudFrame(cloud.header.frame_id))
         stamp, now = seconds(cloud.header.stamp), unix_time()
-        if (ahead := self._clock.ahead(stamp, now)) > 0:
-            raise MessageRefused(StampInFuture(ahead + self._limit))
-        if stamp < self._stamp and not self._clock.ahead(self._stamp, now) > 0:
-            raise MessageRefused(MeasuredEarlier(self._stamp - stamp))
+        self._clock.check(stamp, self._stamp, now)
         try:
             found = patch(gathered(points(cloud), self.given.cell))
         except ValueError as error:
@@ -80,14 +75,11 @@ class TerrainSensing:
 
     def state(self) -> InputState:
         """The message for the topic of input states."""
-        last, now = self._arrivals[-1] if self._arrivals else None, monotonic()
-        silent = last is not None and self.given.hz > 0 and now - last > SILENT_PERIODS / self.given.hz
-        count = len(self._arrivals)
+        now = monotonic()
         return InputState(
             name=self.name, topic=self.given.topic, type="sensor_msgs/msg/PointCloud2", hz_expected=self.given.hz,
-            hz=(count - 1) / max(now - self._arrivals[0], 1e-3) if count > 1 else 0.0,
-            state="waiting" if last is None else "silent" if silent else "clock" if self._clock.off else "alive",
-            age=-1.0 if last is None else now - last, clock_offset=_or_nan(self._clock.offset),
+            hz=self._arrivals.rate(now), state=self._arrivals.state(now, self._clock.off), age=self._arrivals.age(now),
+            clock_offset=_or_nan(self._clock.offset),
             accepted=self._accepted, written=self._accepted, refused=self._refused, last_refusal=to_line(self._why),
         )  # fmt: skip
 
