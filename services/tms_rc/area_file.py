@@ -10,6 +10,7 @@ from pathlib import Path
 
 from tms_areas.areas import AreaSet
 from tms_areas.geojson import gathered, read, written
+from tms_rc.area_path import area_path
 from tms_rc.reasons import AreasNotEnabled, AreasUnreadable
 from tms_reason.errors import ConfigError, TmsError
 from tms_runtime import durable
@@ -27,12 +28,8 @@ class Enabled:
 class AreaFile:
     """The file of one machine."""
 
-    def __init__(self, folder: Path, machine: str) -> None:
-        self._path = folder / "rc" / f"{machine}.areas"
-
-    def exists(self) -> bool:
-        """Whether areas were ever enabled here."""
-        return self._path.exists()
+    def __init__(self, state: Path, machine: str) -> None:
+        self._path = area_path(state, machine)
 
     def read(self) -> Enabled:
         """The areas that are enabled.

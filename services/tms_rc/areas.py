@@ -10,6 +10,7 @@ from rcl_interfaces.msg import ParameterType, ParameterValue, SetParametersResul
 from rcl_interfaces.srv import GetParameters, SetParametersAtomically
 
 from tms_decision.gateway.state import Gateway
+from tms_rc.area_path import area_path
 from tms_rc.motion_servers import MotionServers
 from tms_rc.stop_receipt import ReceiptTopic
 from tms_reason.errors import TmsError
@@ -19,7 +20,7 @@ from tms_runtime.app import App
 
 def begin(app: App, gateway: Gateway, servers: MotionServers, receipts: ReceiptTopic) -> None:
     """Watch the machine by its areas, where it has any; without them nothing is loaded, heard or served."""
-    if not app.site.area_files and not (app.site.state / "rc" / f"{app.machine}.areas").exists():
+    if not app.site.area_files and not area_path(app.site.state, app.machine).exists():
         return
     from tms_rc.area_watch import AreaWatch
 

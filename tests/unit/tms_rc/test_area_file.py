@@ -8,6 +8,7 @@ import pytest
 from tms_areas.areas import Area, AreaSet
 from tms_areas.braking import MOST
 from tms_rc.area_file import AreaFile, Enabled
+from tms_rc.area_path import area_path
 from tms_rc.braking_file import BrakingFile
 from tms_rc.reasons import AreasNotEnabled, AreasUnreadable
 from tms_reason.errors import TmsError
@@ -24,9 +25,9 @@ def reason(file: AreaFile) -> Reason:
 
 def test_what_was_enabled_is_read_again(tmp_path: Path) -> None:
     file = AreaFile(tmp_path, "zx200")
-    assert reason(file) == AreasNotEnabled() and not file.exists()
+    assert reason(file) == AreasNotEnabled() and not area_path(tmp_path, "zx200").exists()
     file.keep(Enabled(SET, "a person", 7.0))
-    assert file.read() == Enabled(SET, "a person", 7.0) and file.exists()
+    assert file.read() == Enabled(SET, "a person", 7.0) and area_path(tmp_path, "zx200").exists()
 
 
 @pytest.mark.parametrize("spoil", [lambda text: text[:-9], lambda _: "[]", lambda _: "", lambda t: t.replace("9", "8")])
