@@ -8,6 +8,7 @@ from tms_msg_ground.srv import ReadSnapshot, TakeSnapshot, WriteSnapshot
 from tms_config.clock import utc_now
 from tms_ground.reasons import GroundFromFuture
 from tms_ground.watching import GroundWatch
+from tms_machine.asking import ask
 from tms_reason.errors import TmsError
 from tms_reason.reason import Reason
 from tms_reason.wire import refusal, to_line
@@ -93,9 +94,7 @@ class Snapshots:
             message = patches.patch(self._watch.earth.grid.heights(self._watch.area))
             self._watch.touched = False
         try:
-            answer = self._ros.call(WriteSnapshot, WRITE, WriteSnapshot.Request(ground=message, source=source), LIMIT)
-            if answer.error_code:
-                raise TmsError(refusal(answer.error_code, answer.error_msg), answer.error_code)
+            answer = ask(self._ros, WriteSnapshot, WRITE, WriteSnapshot.Request(ground=message, source=source), LIMIT)
         except TmsError:
             self._watch.touched = True
             raise

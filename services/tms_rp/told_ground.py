@@ -2,10 +2,9 @@
 
 from tms_msg_ground.srv import GetHeights
 
+from tms_machine.asking import ask
 from tms_machine.places import PERIOD, Places
 from tms_reason.errors import RosError
-from tms_reason.reason import Reason
-from tms_reason.wire import refusal
 from tms_rp.reasons import GroundUnread
 from tms_rp.terrain import REACH, Terrain
 from tms_runtime.app import App
@@ -42,13 +41,6 @@ class ToldGround:
     def _read(self, x: float, y: float) -> None:
         request = GetHeights.Request(x0=x - AROUND, y0=y - AROUND, x1=x + AROUND, y1=y + AROUND)
         try:
-            answer = self._app.ros.call(GetHeights, SERVICE, request, LIMIT)
+            self._last = heights(ask(self._app.ros, GetHeights, SERVICE, request, LIMIT).ground)
         except RosError as error:
-            return self._unread(error.reason)
-        if answer.error_code:
-            return self._unread(refusal(answer.error_code, answer.error_msg))
-        self._last = heights(answer.ground)
-        return None
-
-    def _unread(self, why: Reason) -> None:
-        self._app.log.warning("ground_unread", reason=GroundUnread(why))
+            self._app.log.warning("ground_unread", reason=GroundUnread(error.reason))

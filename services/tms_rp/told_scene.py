@@ -8,11 +8,10 @@ from tms_msg_db.srv import ListParameters
 
 from tms_config.clock import unix_time
 from tms_machine import stamps
+from tms_machine.asking import ask
 from tms_machine.reasons import BadRecord
 from tms_machine.values import Value, from_parameters
 from tms_reason.errors import RosError, SubtaskFailed
-from tms_reason.reason import Reason
-from tms_reason.wire import refusal
 from tms_rp.meshes import Mesh
 from tms_rp.reasons import MeshAsFile, MeshSimplified, SceneUnread
 from tms_rp.scene import Scene
@@ -86,13 +85,6 @@ class ToldScene:
     def _read(self) -> None:
         request = ListParameters.Request(model_name=self._app.machine)
         try:
-            answer = self._app.ros.call(ListParameters, SERVICE, request, LIMIT)
+            self._records = list(ask(self._app.ros, ListParameters, SERVICE, request, LIMIT).records)
         except RosError as error:
-            return self._unread(error.reason)
-        if answer.error_code:
-            return self._unread(refusal(answer.error_code, answer.error_msg))
-        self._records = list(answer.records)
-        return None
-
-    def _unread(self, why: Reason) -> None:
-        self._app.log.warning("scene_unread", reason=SceneUnread(why))
+            self._app.log.warning("scene_unread", reason=SceneUnread(error.reason))

@@ -12,13 +12,12 @@ from tms_config.clock import monotonic, sleep, unix_time
 from tms_config.models import MachineModel
 from tms_kit.subtask import load
 from tms_machine import stamps
+from tms_machine.asking import ask
 from tms_machine.goal_inputs import Inputs
 from tms_machine.leaf_forms import misfit, own_action
 from tms_machine.values import from_parameters
-from tms_reason.errors import RosError
 from tms_reason.reason import Reason
 from tms_reason.validation import explain
-from tms_reason.wire import refusal
 from tms_runtime.app import App
 from tms_ts.preflight import Refusal, StoredRecord
 from tms_ts.reasons import JointUnfit
@@ -64,9 +63,7 @@ class PreflightContext:
         writers: Callable[[str, str], bool],
     ) -> None:
         self._app, self._sensing, self.problem, self._writers = app, sensing, problem, writers
-        answer = app.ros.call(ListParameters, "/tms/db/list_parameters", ListParameters.Request(), DB_LIMIT)
-        if answer.error_code:
-            raise RosError(refusal(answer.error_code, answer.error_msg), answer.error_code)
+        answer = ask(app.ros, ListParameters, "/tms/db/list_parameters", ListParameters.Request(), DB_LIMIT)
         now = unix_time()
         self._found_by = monotonic() + DISCOVERY_LIMIT
         self._records = {(record.model_name, record.record_name): _stored(record, now) for record in answer.records}
