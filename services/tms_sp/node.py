@@ -10,13 +10,13 @@ from tms_msg_sp.msg import InputState, InputStates
 
 from tms_config.clock import monotonic
 from tms_config.yaml_file import located
+from tms_interfaces.generated import Message
 from tms_machine.sensing import Input, load_sensing, sensing_path
 from tms_machine.values import to_parameters
 from tms_reason.errors import ConfigError
 from tms_reason.reason import Reason
 from tms_reason.validation import Wrong
 from tms_reason.wire import refusal
-from tms_ros.interface_types import Message
 from tms_runtime.app import App
 from tms_sp.field_types import Fields
 from tms_sp.inputs import SensingInput
