@@ -63,7 +63,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Mesh, Ros, 
         folder = mesh.site.with_suffix("") / "areas"
         folder.mkdir(parents=True)
         (folder / "yard.geojson").write_text(document())
-        mesh.tms("up", expect=None)
+        mesh.tms("up", "--no-wait")  # without areas it is not ready
         try:
             ros = Ros("tms_tests_areas")
             yield mesh, ros, Seen(ros)
@@ -91,7 +91,7 @@ def gateway_pid(mesh: Mesh) -> int:
 
 def test_a_machine_and_its_areas(site: tuple[Mesh, Ros, Seen]) -> None:
     mesh, ros, seen = site
-    wait_until(lambda: seen.state is not None and seen.state.reason, 30, "it says why it is not ready")
+    wait_until(lambda: seen.state is not None and seen.state.reason, 60, "it says why it is not ready")
     wait_until(lambda: "AREAS_NOT_ENABLED" in seen.state.reason, 20, "no areas are enabled")
     mesh.tms("areas", "enable", "--yes", "--by", "a person")
     told = json.loads(mesh.tms("areas", "show", "--json").stdout)
