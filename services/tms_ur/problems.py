@@ -22,8 +22,9 @@ TEXTS = {
 
 
 def problems(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    """The error `responses` of an endpoint for OpenAPI."""
-    return {status: {"model": ReasonView, "description": TEXTS[status]} for status in statuses}
+    """The error `responses` of an endpoint for OpenAPI; a `model` would make a validator for each of some 250."""
+    content = {"application/json": {"schema": {"$ref": f"#/components/schemas/{ReasonView.__name__}"}}}
+    return {status: {"content": content, "description": TEXTS[status]} for status in statuses}
 
 
 def problem(error: TmsError, status: int | None = None) -> JSONResponse:
