@@ -38,13 +38,12 @@ class _Service:
     def _set(
         self, request: SetParametersAtomically.Request, response: SetParametersAtomically.Response
     ) -> SetParametersAtomically.Response:
-        """Enable `areas` (GeoJSON in map), for `who`; with `only_check` see whether that would be refused."""
-        from tms_areas.geojson import gathered, read
+        """Enable areas, or with `only_check` see whether that would be refused: area_request.py."""
+        from tms_rc.area_request import area_request
 
-        told = {one.name: one.value for one in request.parameters}
         try:
-            areas = gathered([read(told["areas"].string_value, "areas", None)])
-            self._watch.enable(areas, told["who"].string_value, told["only_check"].bool_value)
+            asked = area_request(request.parameters)
+            self._watch.enable(asked.areas, asked.who, asked.only_check)
             response.result = SetParametersResult(successful=True)
         except TmsError as error:
             response.result = SetParametersResult(successful=False, reason=to_line(error.reason))
