@@ -22,9 +22,10 @@ def begin(app: App, gateway: Gateway, servers: MotionServers, receipts: ReceiptT
     """Watch the machine by its areas, where it has any; without them nothing is loaded, heard or served."""
     if not app.site.area_files and not area_path(app.site.state, app.machine).exists():
         return
+    from tms_rc.acts import Acts
     from tms_rc.area_watch import AreaWatch
 
-    servers.areas = watch = AreaWatch(app, gateway, servers.drives)
+    servers.areas = watch = AreaWatch(app, gateway, servers.drives, Acts(app).tell)
     receipts.heard = watch.stops.put
     _Service(app, watch)
 
