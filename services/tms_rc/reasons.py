@@ -46,6 +46,11 @@ class AreasNotKept(Reason, text="the areas cannot be written: make room on the d
     problem: str
 class TrapsMachine(Reason, text="{machine} moves where these areas would stop it: {why}", action=RETRY):
     machine: str; why: Reason
+class AreaRequestBad(Reason, text="the request to enable areas is incomplete or wrong: {why}"): why: Reason
+class ParameterTwice(Reason, text="{name} is given twice"): name: str
+class AreasOfOtherId(Reason, text="the areas are not those that were shown: their content is {found}, shown was {told}",
+    action=ENABLE): told: str; found: str
+class Unsigned(Reason, text="say who enables them"): pass
 class GoalNotInMap(Reason, text="its poses are in the frame '{frame}', areas are in map"): frame: str
 
 # its own life
