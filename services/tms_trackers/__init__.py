@@ -1,0 +1,1 @@
+"""Receives what trackers of people, vehicles and gates tell. No protective device."""
