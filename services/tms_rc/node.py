@@ -75,7 +75,8 @@ def _serve(app: App, claim: Claim) -> None:
     shell.begin(effects, monitor.samples, look)
     for motion in motions(border):
         servers.serve(motion, getattr(border, motion.field))
-    People(app, shell, border)
+    people = People(app, shell, border)
+    areas.look_for_intruders(app, gateway, servers, people)
     relayed_goals.watch(app, servers)
     app.ros.on_executor(lambda: permits.listen(app, shell))  # no callback may come before all of them exist
     permit = Permit(app.ros, app.pulse, machine, "rc")
