@@ -45,6 +45,8 @@ class NothingUsable(Reason, text="other areas cover every unmanned one: no machi
 # people and vehicles
 class TrackerTypeWrong(Reason, text="a tracker of the kind {kind} sends one of {types}", action=EDIT_CONFIG):
     kind: str; types: tuple[str, ...]
+class NoTracker(Reason, text="sensing.yaml has no tracker {name}; it has {known}", action=EDIT_CONFIG):
+    name: str; known: tuple[str, ...]
 class GateNeedsArea(Reason, text="a gate names the unmanned areas that it leads to", action=EDIT_CONFIG): pass
 class APerson(Reason, text="a person"): pass
 class AVehicle(Reason, text="a vehicle"): pass

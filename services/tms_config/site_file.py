@@ -129,6 +129,22 @@ class Scanner(Settings):
     hz: float = Field(gt=0, le=5, default=1.0)
 
 
+class Walk(Settings):
+    """Somebody whom a tracker sees: to the end of a path and back again, for ever."""
+
+    path: tuple[tuple[float, float], ...] = Field(min_length=1)  # m, map
+    speed: float = Field(ge=0, le=20, default=1.2)  # m/s
+    after: float = Field(ge=0, default=0.0)  # s until the first step
+
+
+class TrackerStandIn(Settings):
+    """What a tracker of sensing.yaml is told by its stand-in; times count from its last change."""
+
+    walks: tuple[Walk, ...] = ()
+    open: bool = False  # of a gate
+    silent: bool = False  # a fault: it says nothing
+
+
 class Simulator(Settings):
     """How the stand-ins of the site move."""
 
@@ -138,6 +154,7 @@ class Simulator(Settings):
     names: Backend = "sim"  # whose names and joint names the stand-ins use
     faults: dict[str, Fault] = Field(default_factory=dict)  # machine -> its faults from the start
     scanners: dict[Annotated[str, Field(pattern=NAME)], Scanner] = Field(default_factory=dict)  # of a site with ground
+    trackers: dict[Annotated[str, Field(pattern=NAME)], TrackerStandIn] = Field(default_factory=dict)
 
 
 class Groot(Settings):
