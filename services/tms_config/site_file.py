@@ -41,6 +41,7 @@ class MachineUse(Settings):
     model: str = Field(pattern=NAME)
     role: Role = "machine"
     start: tuple[float, float, float] | None = None  # x m, y m, yaw rad: start of its stand-in, if not the model's
+    hardware: dict[str, Any] = Field(default_factory=dict)  # tms_hardware/settings.py reads it
 
 
 class Ports(Settings):
@@ -115,6 +116,8 @@ class Fault(Settings):
     creep: float = 0.0  # m/s or rad/s of a motion that begins after 3 s of stand-still
     ignore_cancel: bool = False
     ignore_emg_stop: bool = False
+    hardware: tuple[str, ...] = ()  # sources of `hardware:` that tell what forbids motion; a counter stands still
+    hardware_mute: tuple[str, ...] = ()  # those that tell nothing
 
 
 class Scanner(Settings):

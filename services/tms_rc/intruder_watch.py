@@ -13,7 +13,7 @@ from tms_rc.area_watch import AreaWatch
 from tms_rc.reasons import IntrudersLate
 from tms_reason.reason import Reason
 from tms_runtime.app import App
-from tms_trackers.hearing import Hearing
+from tms_sensors.trackers import Hearing
 
 PERIOD = 0.03  # s between looks; with the beats and the executor a message becomes a command within 0.2 s
 LATE = 0.3  # s; an older verdict is none

@@ -6,8 +6,8 @@ from std_msgs.msg import Bool, Header
 
 from tms_areas.trackers import Tracker
 from tms_config.site_file import TrackerStandIn, Walk
+from tms_sensors.trackers import places_of
 from tms_sim.trackers import messages, place_on
-from tms_trackers.hearing import places_of
 
 WALK = Walk(path=((0, 0), (3, 0), (3, 4)), speed=1.0, after=2.0)
 MAP = Header(frame_id="map")

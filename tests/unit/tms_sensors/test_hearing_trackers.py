@@ -14,7 +14,7 @@ from tms_config.clock import monotonic
 from tms_machine import stamps
 from tms_reason.errors import TmsError
 from tms_ros.topics import Arrival
-from tms_trackers.hearing import MOST, Hearing, age_of, places_of
+from tms_sensors.trackers import MOST, Hearing, age_of, places_of
 
 MAP = Header(frame_id="map")
 

@@ -1,1 +1,0 @@
-"""Receives what trackers of people, vehicles and gates tell. No protective device."""
