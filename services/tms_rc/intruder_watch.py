@@ -10,6 +10,7 @@ from tms_decision.reasons import ProcessLost
 from tms_machine.sensing import load_sensing
 from tms_rc.area_file import Enabled
 from tms_rc.area_watch import AreaWatch
+from tms_rc.latch_order import LatchOrder
 from tms_rc.reasons import IntrudersLate
 from tms_reason.reason import Reason
 from tms_runtime.app import App
@@ -17,7 +18,6 @@ from tms_sensors.trackers import Hearing
 
 PERIOD = 0.03  # s between looks; with the beats and the executor a message becomes a command within 0.2 s
 LATE = 0.3  # s; an older verdict is none
-AGAIN = 0.5  # s until a stop is asked for again that has not latched the machine yet
 
 
 class IntruderWatch:
@@ -25,11 +25,10 @@ class IntruderWatch:
 
     def __init__(self, app: App, gateway: Gateway, areas: AreaWatch, stop: Callable[[Reason], None]) -> None:
         """`stop`: has the machine stopped and latched, without waiting."""
-        self._app, self._gateway, self._areas, self._stop = app, gateway, areas, stop
+        self._app, self._areas, self._order = app, areas, LatchOrder(gateway, stop)
         self._hearing = Hearing(app.ros, load_sensing(app.site).trackers)
         self._enabled: Enabled | None = None
         self._zones: Zones | None = None
-        self._latched, self._openings, self._asked = False, 0, float("-inf")
         self.danger, self._at = Danger(), monotonic()  # replaced, never changed: read without a lock
         app.ros.poll_in_thread(PERIOD, self._look, "intruders")
 
@@ -58,25 +57,15 @@ class IntruderWatch:
         intruders, enabled = self._hearing.take(), self._areas.enabled
         if enabled is not self._enabled:
             self._enabled, self._zones = enabled, None if enabled is None else Zones(enabled.areas)
-        latched = self._gateway.latch.cause is not None
-        if self._latched and not latched:
+        if self._order.armed():
             intruders.looked()
-        self._latched, now = latched, monotonic()
+        now = monotonic()
         if self._zones is not None:
             self._tell(intruders.look(now, self._zones, self._app.machine, self._areas.here))
         self._at = now
-        self._order(now, intruders.openings)
+        self._order.give(now, self.danger.stop or self.danger.passed, intruders.openings)
 
     def _tell(self, danger: Danger) -> None:
         before, self.danger = self.danger, danger
         if danger.warn is not None and before.warn is None:
             self._app.log.warning("intruder", reason=danger.warn)
-
-    def _order(self, now: float, openings: int) -> None:
-        """Have the machine latched, once each time that it is armed or a gate opens; no command opposes a person."""
-        why = self.danger.stop or self.danger.passed
-        if why is None or self._gateway.by_hand is not None or now - self._asked < AGAIN:
-            return
-        if not self._latched or openings != self._openings:
-            self._openings, self._asked = openings, now
-            self._stop(why)

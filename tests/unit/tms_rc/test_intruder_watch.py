@@ -14,7 +14,8 @@ from tms_config.clock import monotonic
 from tms_config.config import load_site
 from tms_decision.reasons import Cancelled, ProcessLost
 from tms_rc.area_file import Enabled
-from tms_rc.intruder_watch import AGAIN, LATE, IntruderWatch
+from tms_rc.intruder_watch import LATE, IntruderWatch
+from tms_rc.latch_order import AGAIN
 from tms_rc.reasons import IntrudersLate
 from tms_reason.reason import Reason
 from tms_ros.topics import Arrival
