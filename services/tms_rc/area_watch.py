@@ -8,7 +8,7 @@ from dataclasses import replace
 from queue import SimpleQueue
 from typing import Any
 
-from tms_areas.areas import SHOWN, AreaSet
+from tms_areas.areas import SHOWN, AreaSet, Point
 from tms_areas.body import Silhouette
 from tms_areas.braking import tracks_of
 from tms_areas.fix import Fix, Seen
@@ -67,6 +67,12 @@ class AreaWatch:
         app.ros.poll_in_thread(PERIOD, self._look, "areas")
 
     # what others ask; none of it waits
+
+    @property
+    def here(self) -> Point | None:
+        """Where the machine is believed to be [m, map]."""
+        motion = self._seen.motion
+        return None if motion is None or self._seen.unsure is not None else (motion.x, motion.y)
 
     def unready(self) -> Reason | None:
         """Why the machine must not be moved at all now."""
