@@ -100,7 +100,8 @@ class Keeper:
             return
         self.told[report.machine] = now, report
         known = {place for _, one in self.told.values() for place in one.places} | set(self.book.claims)
-        inside = {**self.book.inside, report.machine: tuple(sorted(report.inside))}
+        seen_last = frozenset() if report.sure else frozenset(self.book.inside.get(report.machine, ()))
+        inside = {**self.book.inside, report.machine: tuple(sorted(report.inside | seen_last))}
         self.book = replace(self.book, places=tuple(sorted(known | set(self._unheard()))), inside=inside)
         for place in report.using | report.inside:
             self._take(place, report.machine, unix)

@@ -15,6 +15,14 @@ class NoPlace(Reason, text="there is no shared place '{place}' (there: {places})
 class PlaceFree(Reason, text="nobody holds {place}", action=SHOW_PLACES): place: str
 class PlacesUnread(Reason, text="who holds which place was not read from the database yet", action=PROCESSES): pass
 
+# goals of a gateway
+class PlacesNeeded(Reason, text="{machine} must hold {places} first: a node HoldPlace does that, and so do subtasks",
+    action=SHOW_PLACES): machine: str; places: tuple[str, ...]
+class LeaseOver(Reason, text="{machine} may not go on in {place}: its lease is over, and tms:db has not renewed it",
+    action=PROCESSES): machine: str; place: str
+class OnlyOut(Reason, text="{machine} has lost {place}: it may only drive out of it", action=SHOW_PLACES):
+    machine: str; place: str
+
 # waiting
 class WaitsForPlace(Reason, text="{machine} waits for {place}, which {holder} has held since {since}",
     action=SHOW_PLACES): machine: str; place: str; holder: str; since: str

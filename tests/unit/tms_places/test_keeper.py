@@ -183,6 +183,17 @@ def test_a_machine_that_a_restart_hears_no_more_is_still_where_it_was_seen_last(
     assert site.holder("road") == "a"
 
 
+def test_a_machine_whose_new_gateway_does_not_know_yet_where_it_is_stays_where_it_was() -> None:
+    site = Site("a", "b")
+    site.hold("b", "road")
+    site.report("b", using="road")
+    site.report("a", inside="road")
+    site.report("a", sure=False)
+    site.free("b")
+    site.report("b")
+    assert site.holder("road") == "a"
+
+
 def test_a_lease_that_the_book_does_not_know_counts() -> None:
     site = Site("a", "b")
     site.report("a", using="road")
