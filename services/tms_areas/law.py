@@ -17,7 +17,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
-from tms_areas.areas import FORBIDDEN, AreaSet
+from tms_areas.areas import FORBIDDEN, Area, AreaSet
 from tms_areas.body import Body
 from tms_areas.braking import Axis, Tracks
 from tms_areas.fix import WINDOW, Motion
@@ -61,13 +61,17 @@ class Covered:
     shape: BaseGeometry
     around: float
 
+    def touches(self, area: Area) -> bool:
+        """Whether a part of the machine may be in an area."""
+        return bool(shapely.dwithin(area.polygon, self.shape, self.around))
+
 
 class Law:
     """The areas that are enabled, for one machine."""
 
     def __init__(self, areas: AreaSet, machine: str, tracks: Tracks | None, held: frozenset[str] = frozenset()) -> None:
         """`held`: the release areas whose holder the machine is."""
-        self.areas, self.machine, self.tracks = areas, machine, tracks
+        self.areas, self.machine, self.tracks, self.held = areas, machine, tracks, held
         self._usable = areas.usable(held)
         self._border = self._usable.boundary
         self._pieces = shapely.get_parts(self._usable)
@@ -83,10 +87,19 @@ class Law:
 
     def driving(self, body: Body, motion: Motion) -> Reason | None:
         """Why tracks must stop now; None if they may go on until the next look."""
-        reach = self._reach(motion)
-        covered = _covered(body, _places(motion, reach), (reach.left - reach.right) / 4, reach.around)
+        reach, covered = self._reach(motion), self.until_it_stands(body, motion)
         wrong = self._outside(covered, body, motion, reach.most)
         return wrong if wrong is not None else self._too_fast(covered, math.hypot(motion.vx, motion.vy))
+
+    def until_it_stands(self, body: Body, motion: Motion) -> list[Covered]:
+        """All that a machine on tracks may cover until a stop that is commanded at the next look has worked."""
+        reach = self._reach(motion)
+        return _covered(body, _places(motion, reach), (reach.left - reach.right) / 4, reach.around)
+
+    @staticmethod
+    def now(body: Body, motion: Motion) -> list[Covered]:
+        """What a machine covers where it is, with what its pose may be off."""
+        return _covered(body, _place(motion), 0.0, motion.off)
 
     def working(self, body: Body, motion: Motion, more: float = 0.0) -> Reason | None:
         """Why a machine must not move its joints, standing; `more`: m around it in addition to what its pose is off."""
@@ -183,7 +196,7 @@ class Law:
     def _why(self, one: Covered, body: Body, motion: Motion, needed: float) -> Reason:
         """Which area is the next one that it must not enter, or leave; where, how far, and how far it needs."""
         now = shapely.union_all([part.shape for part in _covered(body, _place(motion), 0.0, 0.0)])
-        entered = [area for area in self._closed if shapely.dwithin(area.polygon, one.shape, one.around)]
+        entered = [area for area in self._closed if one.touches(area)]
         if entered:
             area = min(entered, key=lambda area: float(shapely.distance(area.polygon, now)))
             gap, x, y = _nearest(area.polygon, now)

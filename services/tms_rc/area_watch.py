@@ -24,6 +24,7 @@ from tms_proof.standstill import HEADING, ODOM, PLACE
 from tms_rc.area_file import AreaFile, Enabled
 from tms_rc.braking_file import BrakingFile
 from tms_rc.motion_goals import frame_of, places_of, way_of
+from tms_rc.place_watch import PlaceWatch
 from tms_rc.reasons import AreasLate, AreasNotKept, GoalNotInMap, TrapsMachine
 from tms_reason.errors import TmsError
 from tms_reason.reason import Reason
@@ -48,6 +49,7 @@ class AreaWatch:
         self._model, self._border = site.model_of(machine), site.border(machine)
         self._file, self._silhouette = AreaFile(site.state, machine), Silhouette(self._model)
         self._places = Places(app.ros, {machine: self._border})
+        self._shared = PlaceWatch(app)
         drive = self._model.drive
         self._fix, self._fixing = Fix(drive.turn_velocity if drive is not None else 0.0), threading.Lock()
         self._told = 0.0  # when the last pose that was taken came
@@ -106,7 +108,7 @@ class AreaWatch:
             frame = frame_of(request)
             if frame:
                 return GoalNotInMap(frame)
-            return guard.may_drive(seen, joints, places, told=motion.field in TOLD)
+            return self._shared.judged(self._holding, seen, joints, places, told=motion.field in TOLD)
         return guard.may_work(seen, [joints, *way_of(request, self._model.turned(motion.field))])
 
     # people
@@ -127,6 +129,7 @@ class AreaWatch:
                 self._file.keep(enabled)
             except OSError as error:
                 raise TmsError(AreasNotKept(str(error.strerror))) from error
+            self._shared.enable(areas)
             self._enabled(enabled, guard)
         self._app.log.info("areas_enabled", set=areas.id, who=who)
 
@@ -153,10 +156,20 @@ class AreaWatch:
         except TmsError as error:
             self._problem = error.reason
             return
+        self._shared.enable(found.areas)
         self._enabled(found, self._made(found.areas))
 
     def _made(self, areas: AreaSet) -> Guard:
-        return Guard(Law(areas, self._app.machine, self._tracks), self._silhouette)
+        return self._guard_of(areas, self._shared.open)
+
+    def _guard_of(self, areas: AreaSet, held: frozenset[str]) -> Guard:
+        return Guard(Law(areas, self._app.machine, self._tracks, held), self._silhouette)
+
+    def _holding(self, held: frozenset[str]) -> Guard:
+        """The guard that counts for a holder of some places."""
+        guard = self._guard
+        assert guard is not None, "areas are enabled"
+        return guard if guard.law.held == held else self._guard_of(guard.law.areas, held)
 
     def _now(self) -> Seen:
         with self._fixing:
@@ -179,10 +192,24 @@ class AreaWatch:
         while not self.stops.empty():
             self._learn(self.stops.get())
         active, guard = self._gateway.active, self._guard
+        drives = active is not None and self._drives(active.number)
+        lease = None if guard is None else self._leases(guard, seen, drives)
+        guard = self._guard
         if active is not None and guard is not None:
             at = monotonic()
-            verdict = guard.look(seen, self._gateway.watch.positions, self._drives(active.number))
+            verdict = guard.look(seen, self._gateway.watch.positions, drives)
+            if lease is not None and verdict.stop is None:
+                verdict = Verdict(hold=lease)
             self._verdict = at, active.number, verdict
+
+    def _leases(self, guard: Guard, seen: Seen, drives: bool) -> Reason | None:
+        """Why the tracks must be held for a lease; places that were got or given back count from now on."""
+        lease = self._shared.look(guard.law, guard.body(self._gateway.watch.positions), seen, drives)
+        if self._shared.open != guard.law.held:
+            with self._enabling:
+                if self.enabled is not None:
+                    self._guard = self._made(self.enabled.areas)
+        return lease
 
     def _learn(self, stop: Receipt) -> None:
         """Enlarge the distances if a stop from a known speed took longer than the model says."""
