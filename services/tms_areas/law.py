@@ -72,6 +72,7 @@ class Law:
         self._border = self._usable.boundary
         self._pieces = shapely.get_parts(self._usable)
         self._closed = [one for one in areas.of(*FORBIDDEN, "release") if one.id not in held]
+        self._unmanned = shapely.union_all([one.polygon for one in areas.of("unmanned")])
         self._limits = areas.of("speed_limit")
         ends = [pair for line in shapely.get_parts(self._border) for pair in itertools.pairwise(line.coords)]
         self._sides = shapely.linestrings(ends)  # of the border: a tree of them finds the nearest one at once
@@ -109,10 +110,8 @@ class Law:
         for old, new in itertools.pairwise(places):
             way, turn = math.dist(old[:2], new[:2]), math.remainder(new[2] - old[2], math.tau)
             backward = math.cos(old[2]) * (new[0] - old[0]) + math.sin(old[2]) * (new[1] - old[1]) < 0
-            for share in np.linspace(0.0, 1.0, 2 + int(max(way / STEP, abs(turn) / TURN))).tolist():
-                x, y = old[0] + share * (new[0] - old[0]), old[1] + share * (new[1] - old[1])
+            for share, (x, y, yaw) in between(old, new):
                 speed, turning = self._paced(left - share * way, way, turn, 1.0 - share)
-                yaw = old[2] + share * turn
                 speed = -speed if backward else speed
                 motion = Motion(x, y, yaw, speed * math.cos(yaw), speed * math.sin(yaw), turning, age=PLANNED)
                 if (wrong := self._planned(body, motion, self._reach(motion))) is not None:
@@ -141,6 +140,23 @@ class Law:
         """Why no way at all leads from one place to another: both must be in one piece of where it may be."""
         inside = [shapely.contains_xy(self._pieces, *one[:2]) for one in (here, there)]
         return None if (inside[0] & inside[1]).any() else NoWay(self.machine, *there[:2])
+
+    # out of where it may be
+
+    def trespasses(self, shape: BaseGeometry) -> list[BaseGeometry]:
+        """What of a shape is in each closed area, and at last what is beside the unmanned ones."""
+        return [*(shape.intersection(one.polygon) for one in self._closed), shape.difference(self._unmanned)]
+
+    def away(self, corners: Array) -> float:
+        """How far the farthest of some places (N x 2) is from where the machine may be [m]; 0 for none."""
+        return float(shapely.distance(shapely.points(corners), self._usable).max(initial=0.0))
+
+    def stopped(self, motion: Motion) -> Motion:
+        """Where a machine will stand that is stopped at the next look, if it goes on as it does."""
+        reach = self._reach(motion)
+        turn, ahead = (reach.right + reach.left) / 2, (reach.back + reach.ahead) / 2
+        course = motion.yaw + turn / 2
+        return Motion(motion.x + math.cos(course) * ahead, motion.y + math.sin(course) * ahead, motion.yaw + turn)
 
     # how far
 
@@ -182,7 +198,7 @@ class Law:
 
     def _why(self, one: Covered, body: Body, motion: Motion, needed: float) -> Reason:
         """Which area is the next one that it must not enter, or leave; where, how far, and how far it needs."""
-        now = shapely.union_all([part.shape for part in _covered(body, _place(motion), 0.0, 0.0)])
+        now = shape_of(body, motion)
         entered = [area for area in self._closed if shapely.dwithin(area.polygon, one.shape, one.around)]
         if entered:
             area = min(entered, key=lambda area: float(shapely.distance(area.polygon, now)))
@@ -212,6 +228,21 @@ def _ends(axis: Axis, speed: float, blind: float, factor: float) -> tuple[float,
     low, high = max(speed - gain, min(speed, -axis.top)), min(speed + gain, max(speed, axis.top))
     ends = [one * blind + math.copysign(axis.braking(one), one) * factor for one in (low, high)]
     return ends[0], ends[1]
+
+
+def between(old: Place, new: Place) -> list[tuple[float, Place]]:
+    """Places on the straight way from one to another, both included, each with its share of the way."""
+    way, turn = math.dist(old[:2], new[:2]), math.remainder(new[2] - old[2], math.tau)
+    shares = np.linspace(0.0, 1.0, 2 + int(max(way / STEP, abs(turn) / TURN))).tolist()
+    return [
+        (share, (old[0] + share * (new[0] - old[0]), old[1] + share * (new[1] - old[1]), old[2] + share * turn))
+        for share in shares
+    ]
+
+
+def shape_of(body: Body, motion: Motion) -> BaseGeometry:
+    """What a machine covers where it is."""
+    return shapely.union_all([part.shape for part in _covered(body, _place(motion), 0.0, 0.0)])
 
 
 def _place(motion: Motion) -> Array:

@@ -41,6 +41,9 @@ class MachineUse(Settings):
     model: str = Field(pattern=NAME)
     role: Role = "machine"
     start: tuple[float, float, float] | None = None  # x m, y m, yaw rad: start of its stand-in, if not the model's
+    fix: str | None = Field(
+        pattern=r"^[A-Za-z][A-Za-z0-9_/]*$", default=None
+    )  # NavSatFix of its GNSS, below its name, if it has RTK
 
 
 class Ports(Settings):

@@ -50,6 +50,15 @@ def place_of(message: PoseStamped | Odometry) -> tuple[float, float, float] | No
     return at.x, at.y, yaw_of(turn)
 
 
+def deviation_of(message: PoseStamped | Odometry) -> float:
+    """The deviation [m] in a message of a pose topic, along the worst direction; 0: not said, infinite: no number."""
+    if not isinstance(message, Odometry):
+        return 0.0
+    xx, xy, _, _, _, _, _, yy, *_ = message.pose.covariance
+    worst = (xx + yy) / 2 + math.hypot((xx - yy) / 2, xy)
+    return math.sqrt(worst) if min(xx, yy, worst) >= 0 and math.isfinite(worst) else math.inf
+
+
 class PoseTopic:
     """The last place that a machine's pose topic has told."""
 
@@ -65,7 +74,7 @@ class PoseTopic:
         for arrival in self._arrivals():
             self._frame = arrival.message.header.frame_id
             if (place := place_of(arrival.message)) is not None:
-                self.place = FramePose(*place, arrival.received)
+                self.place = FramePose(*place, arrival.received, deviation_of(arrival.message))
         return self.place is not before
 
     def missing(self, now: float, limit: float) -> Reason | None:
