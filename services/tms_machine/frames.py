@@ -19,7 +19,6 @@ class FramePose(NamedTuple):
     y: float  # m
     yaw: float  # rad
     received: float  # monotonic, s; infinite for fixed frames
-    deviation: float = 0.0  # m, as who tells it says, along the worst direction; 0 where that is not said
 
 
 class Frames:

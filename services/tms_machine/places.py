@@ -66,6 +66,7 @@ class PoseTopic:
         self._topic = topic
         self._arrivals: Callable[[], list[Arrival[Any]]] = ros.sample_arrivals(POSES[source.message], topic)
         self._frame = MAP  # of the last message
+        self.deviation = 0.0  # m, of the last place
         self.place: FramePose | None = None  # replaced, never changed: other threads read it without a lock
 
     def take(self) -> bool:
@@ -74,7 +75,8 @@ class PoseTopic:
         for arrival in self._arrivals():
             self._frame = arrival.message.header.frame_id
             if (place := place_of(arrival.message)) is not None:
-                self.place = FramePose(*place, arrival.received, deviation_of(arrival.message))
+                self.place = FramePose(*place, arrival.received)
+                self.deviation = deviation_of(arrival.message)
         return self.place is not before
 
     def missing(self, now: float, limit: float) -> Reason | None:
@@ -110,6 +112,11 @@ class Places:
         """Where the base of a machine was last told to be; None if it never was."""
         topic = self._topics.get(machine)
         return topic.place if topic is not None else self._frames.place(self._bases[machine])
+
+    def deviation(self, machine: str) -> float:
+        """The deviation [m] that the last place of a machine was told with; 0: it was told without."""
+        topic = self._topics.get(machine)
+        return 0.0 if topic is None else topic.deviation
 
     def missing(self, machine: str, now: float, limit: float) -> Reason | None:
         """Why the pose topic of a machine tells no place younger than `limit` [s] at `now` [s, monotonic].

@@ -213,7 +213,7 @@ class AreaWatch:
 
     def _look(self) -> None:
         self._places.take()
-        place = self._places.place(self._app.machine)
+        place, deviation = self._places.place(self._app.machine), self._places.deviation(self._app.machine)
         odom = self._gateway.watch.sources.get(ODOM)
         last = {} if odom is None else {name: one.last for name, one in odom.channels.items()}
         speed, turning = (one.speed or 0.0 if (one := last.get(name)) else 0.0 for name in (PLACE, HEADING))
@@ -221,7 +221,7 @@ class AreaWatch:
             self._fix.odometry(speed, turning)
             if place is not None and place.received > self._told:
                 self._told = place.received
-                self._fix.heard(place.received, place.x, place.y, place.yaw, place.deviation)
+                self._fix.heard(place.received, place.x, place.y, place.yaw, deviation)
             for fix in self._fixes() if self._fixes is not None else ():
                 self._fix.fixed(fix.received, fix.message.status.status)
             seen = self._seen = self._fix.look(monotonic())
