@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from tms_places.claims import Book
+from tms_places.claims import Book, Request
 
 
 @dataclass(frozen=True)
@@ -18,13 +18,42 @@ class Step:
 Order = tuple[str, str]  # a place that is held while the other one is taken
 
 
+def missing(book: Book, one: Request) -> set[str]:
+    """What a request still needs."""
+    held = book.held(one.machine)
+    return {place for place in one.places if place not in held or held[place].revoked}
+
+
+def holders(book: Book, one: Request) -> set[str]:
+    """Machines that hold what a request needs, and those that hold what these machines need, and so on."""
+    found: set[str] = set()
+    new = [one]
+    while new:
+        ahead = {book.claims[place].machine for each in new for place in missing(book, each) & book.claims.keys()}
+        new = [each for each in book.queue if each.machine in ahead - found]
+        found |= ahead
+    return found
+
+
+def first(book: Book, one: Request, earlier: Iterable[Request]) -> list[Request]:
+    """Those of earlier requests that must be served before this one.
+
+    Not those that wait themselves for its machine: they would wait for ever.
+    """
+    needs = missing(book, one)
+    return [
+        each
+        for each in earlier
+        if not needs.isdisjoint(missing(book, each)) and one.machine not in holders(book, each) | {each.machine}
+    ]
+
+
 def waiting_for(book: Book) -> dict[str, set[str]]:
-    """Machines, and those for which each waits: holders of what it wants, and who came first for the same."""
+    """Machines, and those for which each waits: holders of what it wants, and who is first for the same."""
     found: dict[str, set[str]] = {}
     for number, one in enumerate(book.queue):
-        missing = set(one.places) - book.held(one.machine).keys()
-        ahead = {book.claims[place].machine for place in missing & book.claims.keys()}
-        ahead |= {before.machine for before in book.queue[:number] if not missing.isdisjoint(before.places)}
+        ahead = {book.claims[place].machine for place in missing(book, one) & book.claims.keys()}
+        ahead |= {each.machine for each in first(book, one, book.queue[:number])}
         found.setdefault(one.machine, set()).update(ahead - {one.machine})
     return found
 

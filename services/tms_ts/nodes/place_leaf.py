@@ -29,8 +29,5 @@ class PlaceLeaf(Asking):
             NameMissing(self.registration_name, port) for port in ("place", "model_name") if self.literal(port) == ""
         ]
 
-    def preflight(self, keys: Keys) -> list[Reason]:
-        return []
-
     def synchronous_outcomes(self, children: list[AtOnce]) -> AtOnce:
         return False, False
