@@ -123,6 +123,7 @@ def enable(node: "Ros", machine: str, areas: "AreaSet", who: str, only_check: bo
     document = json.dumps(written(areas), ensure_ascii=False)
     flag = ParameterValue(type=ParameterType.PARAMETER_BOOL, bool_value=only_check)
     told = [
+        Parameter(name="id", value=ParameterValue(type=text, string_value=areas.id)),
         Parameter(name="areas", value=ParameterValue(type=text, string_value=document)),
         Parameter(name="who", value=ParameterValue(type=text, string_value=who)),
         Parameter(name="only_check", value=flag),

@@ -8,7 +8,7 @@ from dataclasses import replace
 from queue import SimpleQueue
 from typing import Any
 
-from tms_areas.areas import AreaSet
+from tms_areas.areas import SHOWN, AreaSet, Point
 from tms_areas.body import Silhouette
 from tms_areas.braking import tracks_of
 from tms_areas.fix import Fix, Seen
@@ -40,10 +40,12 @@ TOLD = ("follow_path",)  # actions whose poses are the way itself; for others a 
 class AreaWatch:
     """The law of areas in one gateway."""
 
-    def __init__(self, app: App, gateway: Gateway, drives: Callable[[int], bool]) -> None:
-        """`drives`: whether the goal with a number moves the tracks."""
+    def __init__(
+        self, app: App, gateway: Gateway, drives: Callable[[int], bool], tell: Callable[[str, str, str, float], None]
+    ) -> None:
+        """`drives`: whether the goal with a number moves the tracks; `tell`: of acts of persons (acts.py)."""
         site, machine = app.site, app.machine
-        self._app, self._gateway, self._drives = app, gateway, drives
+        self._app, self._gateway, self._drives, self._tell = app, gateway, drives, tell
         self._model, self._border = site.model_of(machine), site.border(machine)
         self._file, self._silhouette = AreaFile(site.state, machine), Silhouette(self._model)
         self._places = Places(app.ros, {machine: self._border})
@@ -67,6 +69,12 @@ class AreaWatch:
         app.ros.poll_in_thread(PERIOD, self._look, "areas")
 
     # what others ask; none of it waits
+
+    @property
+    def here(self) -> Point | None:
+        """Where the machine is believed to be [m, map]."""
+        motion = self._seen.motion
+        return None if motion is None or self._seen.unsure is not None else (motion.x, motion.y)
 
     def unready(self) -> Reason | None:
         """Why the machine must not be moved at all now."""
@@ -122,8 +130,13 @@ class AreaWatch:
             except OSError as error:
                 raise TmsError(AreasNotKept(str(error.strerror))) from error
             self._shared.enable(areas)
-            self.enabled, self._guard, self._problem = enabled, guard, None
+            self._enabled(enabled, guard)
         self._app.log.info("areas_enabled", set=areas.id, who=who)
+
+    def _enabled(self, enabled: Enabled, guard: Guard) -> None:
+        self.enabled, self._guard, self._problem = enabled, guard, None
+        target = f"{self._app.machine} {enabled.areas.id[:SHOWN]}"
+        self._tell("enable_areas", target, enabled.who, enabled.at)  # at each start again: the audit may be new
 
     def _check_free(self, guard: Guard) -> None:
         active = self._gateway.active
@@ -144,7 +157,7 @@ class AreaWatch:
             self._problem = error.reason
             return
         self._shared.enable(found.areas)
-        self.enabled, self._guard = found, self._made(found.areas)
+        self._enabled(found, self._made(found.areas))
 
     def _made(self, areas: AreaSet) -> Guard:
         return self._guard_of(areas, self._shared.open)

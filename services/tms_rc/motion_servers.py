@@ -4,7 +4,7 @@ import threading
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from itertools import count
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from tms_decision.gateway.effects import Cancel, End, GiveUp, Lose, Send
 from tms_decision.gateway.events import (
@@ -34,6 +34,16 @@ CLOSING_CHECK_PERIOD = 1.0  # s
 CANCELED = 0  # error code of a goal that its client has cancelled
 
 
+class Watch(Protocol):
+    """Looks for what forbids motions. No answer waits."""
+
+    def unready(self) -> Reason | None:
+        """Why nothing may begin to move."""
+
+    def astray(self) -> Reason | None:
+        """Why what moves must stop; a loss, if that may pass by itself."""
+
+
 @dataclass
 class Served:
     """A goal of a client, and its call of the machine's own server."""
@@ -57,6 +67,7 @@ class MotionServers:
         self._numbers = count(1)
         self.peers: list[AnyPeer] = []
         self.areas: AreaWatch | None = None  # where the site has areas
+        self.watches: list[Watch] = []  # what else may forbid motions
         ours = app.site.border(app.machine).controller == "ours"
         self._controller = RemotePermit(app.ros, app.pulse, app.machine, "mc", lambda _: None) if ours else None
         shell.does(Send, lambda effect: self._send(self._served[effect.number]))
@@ -85,6 +96,7 @@ class MotionServers:
         escaped = self._check.escaped(gateway, active.start)
         if escaped is None and self.areas is not None:
             escaped = self.areas.astray(gateway)
+        escaped = escaped or next(filter(None, (one.astray() for one in self.watches)), None)
         return served.peer.ready(), gone, escaped
 
     def _lost(self, peer: AnyPeer, call: AnyCall) -> bool:
@@ -110,9 +122,14 @@ class MotionServers:
     def _wrong(self, motion: MotionAction, request: Any) -> Reason | None:
         """Why the machine must not do what a goal asks; its areas take longer than the shell's lock may be held."""
         wrong = self._shell.read(lambda gateway, _: self._check.problem(motion, request, gateway))
+        wrong = wrong or self.forbidden()
         if wrong is not None or self.areas is None:
             return wrong
         return self.areas.problem(motion, request, self._shell.read(lambda gateway, _: gateway.watch.positions))
+
+    def forbidden(self) -> Reason | None:
+        """Why nothing may begin to move, whatever a goal asks."""
+        return next(filter(None, (one.unready() for one in self.watches)), None)
 
     def drives(self, number: int) -> bool:
         """Whether a goal moves the tracks; also for one that is gone meanwhile."""

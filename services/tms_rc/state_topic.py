@@ -46,6 +46,8 @@ class StateTopic:
         areas, machine = self._servers.areas, self._app.machine
         if areas is not None and (unwatched := areas.unready()) is not None:
             return unwatched
+        if (forbidden := self._servers.forbidden()) is not None:
+            return forbidden
         return next((ControllerAway(machine, peer.name) for peer in self._servers.peers if not peer.ready()), None)
 
     def _state(self, gateway: Gateway, now: float) -> MachineState:

@@ -30,6 +30,7 @@ from tms_msg_ts.srv import AnswerQuestion, CancelRun, CheckTask
 from tms_config.clock import monotonic
 from tms_config.config import Site
 from tms_decision.gateway.stops import RECEIPT_LIMIT
+from tms_interfaces.generated import Coded, Reply, Req, ServiceType
 from tms_machine.places import PERIOD, Places
 from tms_machine.values import to_parameters
 from tms_reason import wire
@@ -37,7 +38,6 @@ from tms_reason.errors import RosError, TmsError
 from tms_reason.names import check_sent
 from tms_reason.reason import Foreign, Reason
 from tms_ros.client import Call
-from tms_ros.interface_types import Coded, Reply, Req, ServiceType
 from tms_ros.node import Ros
 from tms_ur import messages
 from tms_ur.board import Board

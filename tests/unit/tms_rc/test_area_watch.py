@@ -47,7 +47,9 @@ class Goal(Data):
     since: float
 
 
-def watch(folder: Path, monkeypatch: pytest.MonkeyPatch, enabled: AreaSet | None = YARD) -> AreaWatch:
+def watch(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, enabled: AreaSet | None = YARD, acts: list[Any] | None = None
+) -> AreaWatch:
     monkeypatch.setenv("TMS_STATE", str(folder))
     site = load_site("configs/sites/drill.yaml")
     if enabled is not None:
@@ -56,7 +58,8 @@ def watch(folder: Path, monkeypatch: pytest.MonkeyPatch, enabled: AreaSet | None
     still = SimpleNamespace(moving=lambda: False, positions=JOINTS, sources={})
     gateway: Any = SimpleNamespace(active=None, watch=still)
     app: Any = SimpleNamespace(site=site, machine="ic120_1", ros=Ros(), log=log)
-    return AreaWatch(app, gateway, lambda _: True)
+    told = [] if acts is None else acts
+    return AreaWatch(app, gateway, lambda _: True, lambda *act: told.append(act))
 
 
 def at(made: AreaWatch, x: float, speed: float = 0.0) -> None:
@@ -79,6 +82,18 @@ def test_without_enabled_areas_nothing_moves(tmp_path: Path, monkeypatch: pytest
     assert made.unready() == AreasNotEnabled()
     made.enable(YARD, "a person", only_check=False)
     assert made.unready() is None and AreaFile(tmp_path, "ic120_1").read().areas == YARD
+
+
+def test_who_enabled_areas_is_told_and_after_a_restart_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    acts: list[Any] = []
+    made = watch(tmp_path, monkeypatch, None, acts)
+    made.enable(YARD, "T. Yamada", only_check=True)
+    assert acts == []
+    made.enable(YARD, "T. Yamada", only_check=False)
+    ((what, target, who, at),) = acts
+    assert (what, target, who) == ("enable_areas", f"ic120_1 {YARD.id[:8]}", "T. Yamada")
+    watch(tmp_path, monkeypatch, None, acts)
+    assert acts[1] == acts[0] and at == AreaFile(tmp_path, "ic120_1").read().at
 
 
 def test_a_beat_takes_the_verdict_of_its_goal(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
