@@ -23,7 +23,7 @@ from tms_places.reasons import PlacesUnread
 from tms_places.telling import alarms, kept, queue
 from tms_reason.errors import DbError, TmsError
 from tms_reason.wire import to_line
-from tms_ros.interface_types import Coded
+from tms_interfaces.generated import Coded
 from tms_runtime.app import App
 
 TICK = 1.0  # s between looks whether something is to be granted or told

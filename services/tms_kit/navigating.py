@@ -14,7 +14,7 @@ from tms_machine.reasons import Driving, DrivingThrough, DrivingTo, MissedWaypoi
 from tms_places.reasons import PlacesNeeded
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
-from tms_ros.interface_types import ActionType, F, G, R
+from tms_interfaces.generated import ActionType, F, G, R
 
 
 class Navigating(Acting):

@@ -24,28 +24,16 @@ def missing(book: Book, one: Request) -> set[str]:
     return {place for place in one.places if place not in held or held[place].revoked}
 
 
-def holders(book: Book, one: Request) -> set[str]:
-    """Machines that hold what a request needs, and those that hold what these machines need, and so on."""
-    found: set[str] = set()
-    new = [one]
-    while new:
-        ahead = {book.claims[place].machine for each in new for place in missing(book, each) & book.claims.keys()}
-        new = [each for each in book.queue if each.machine in ahead - found]
-        found |= ahead
-    return found
-
-
 def first(book: Book, one: Request, earlier: Iterable[Request]) -> list[Request]:
     """Those of earlier requests that must be served before this one.
 
-    Not those that wait themselves for its machine: they would wait for ever.
+    None, where its machine holds what somebody else waits for: each would wait for the other.
     """
+    held = book.held(one.machine).keys()
+    if any(not missing(book, each).isdisjoint(held) for each in book.queue if each.machine != one.machine):
+        return []
     needs = missing(book, one)
-    return [
-        each
-        for each in earlier
-        if not needs.isdisjoint(missing(book, each)) and one.machine not in holders(book, each) | {each.machine}
-    ]
+    return [each for each in earlier if each.machine != one.machine and not needs.isdisjoint(missing(book, each))]
 
 
 def waiting_for(book: Book) -> dict[str, set[str]]:

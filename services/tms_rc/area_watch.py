@@ -129,11 +129,11 @@ class AreaWatch:
                 self._file.keep(enabled)
             except OSError as error:
                 raise TmsError(AreasNotKept(str(error.strerror))) from error
-            self._shared.enable(areas)
             self._enabled(enabled, guard)
         self._app.log.info("areas_enabled", set=areas.id, who=who)
 
     def _enabled(self, enabled: Enabled, guard: Guard) -> None:
+        self._shared.enable(enabled.areas)
         self.enabled, self._guard, self._problem = enabled, guard, None
         target = f"{self._app.machine} {enabled.areas.id[:SHOWN]}"
         self._tell("enable_areas", target, enabled.who, enabled.at)  # at each start again: the audit may be new
@@ -156,7 +156,6 @@ class AreaWatch:
         except TmsError as error:
             self._problem = error.reason
             return
-        self._shared.enable(found.areas)
         self._enabled(found, self._made(found.areas))
 
     def _made(self, areas: AreaSet) -> Guard:

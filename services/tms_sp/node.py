@@ -9,7 +9,6 @@ from tms_msg_sp.msg import InputState, InputStates
 
 from tms_config.clock import monotonic
 from tms_config.yaml_file import located
-from tms_interfaces.generated import Message
 from tms_machine.sensing import Input, load_sensing, sensing_path
 from tms_machine.values import to_parameters
 from tms_reason.errors import ConfigError

@@ -134,7 +134,7 @@ class Machine:
     latched: bool = False
     dead_until: float = 0.0
     inside: frozenset[str] = frozenset()
-    seen: Seen = Seen(None, None)
+    seen: Seen = field(default_factory=lambda: Seen(None, None))
     due: float = 0.0
     speed: float = 0.0
     outline: Array = field(default_factory=lambda: np.zeros((0, 2)))
@@ -307,7 +307,9 @@ def _judge(
 ) -> None:  # fmt: skip
     """Two machines truly in one place; machines that wait in a circle and nobody is told."""
     for place, shape in shapes.items():
-        there = [one.name for one in machines if inside(one.outline + (one.plant.x, one.plant.y), shape).any()]
+        there = [
+            one.name for one in machines if inside(one.outline + np.array([one.plant.x, one.plant.y]), shape).any()
+        ]
         if len(there) > 1:
             result.two_inside = f"{place} {there} at {world.now:.1f} s"
     keeper = machines[0].store.keeper
