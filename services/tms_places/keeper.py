@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 from tms_places.claims import Book, Claim, Request
 from tms_places.reasons import NoPlace, PlaceFree
+from tms_places.waits import first, missing
 from tms_reason.errors import TmsError
 
 LEASE = 10.0  # s from the moment a gateway sent its report
@@ -139,25 +140,19 @@ class Keeper:
         return self._machines <= set(self.told) or now - self._began >= LEASE
 
     def grant(self, now: float, unix: float) -> None:
-        """Give places to those who wait, the first one first; who waits reserves what it waits for."""
+        """Give places to those who wait, the first one first: who waits reserves what it waits for."""
         if not self.ready(now):
             return
-        reserved: set[str] = set()
-        waiting = []
+        waiting: list[Request] = []
         for one in self.book.queue:
-            missing = [place for place in one.places if not self._has(one.machine, place)]
-            if any(place in reserved or not self._open(place, one.machine) for place in missing):
-                reserved.update(missing)
+            closed = any(not self._open(place, one.machine) for place in missing(self.book, one))
+            if closed or first(self.book, one, waiting):
                 waiting.append(one)
                 continue
             for place in one.places:
                 claim = self.book.claims.get(place) or Claim(one.machine, frozenset(), unix)
                 self.book = self.book.with_claim(place, replace(claim, wants=claim.wants | {one.run}))
         self.book = replace(self.book, queue=tuple(waiting))
-
-    def _has(self, machine: str, place: str) -> bool:
-        claim = self.book.claims.get(place)
-        return claim is not None and claim.machine == machine and not claim.revoked
 
     def _open(self, place: str, machine: str) -> bool:
         return place not in self.book.claims and not self.book.others_inside(place, machine)

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from tms_places.claims import Book
+from tms_places.claims import Book, Request
 
 
 @dataclass(frozen=True)
@@ -18,13 +18,30 @@ class Step:
 Order = tuple[str, str]  # a place that is held while the other one is taken
 
 
+def missing(book: Book, one: Request) -> set[str]:
+    """What a request still needs."""
+    held = book.held(one.machine)
+    return {place for place in one.places if place not in held or held[place].revoked}
+
+
+def first(book: Book, one: Request, earlier: Iterable[Request]) -> list[Request]:
+    """Those of earlier requests that must be served before this one.
+
+    None, where its machine holds what somebody else waits for: each would wait for the other.
+    """
+    held = book.held(one.machine).keys()
+    if any(not missing(book, each).isdisjoint(held) for each in book.queue if each.machine != one.machine):
+        return []
+    needs = missing(book, one)
+    return [each for each in earlier if each.machine != one.machine and not needs.isdisjoint(missing(book, each))]
+
+
 def waiting_for(book: Book) -> dict[str, set[str]]:
-    """Machines, and those for which each waits: holders of what it wants, and who came first for the same."""
+    """Machines, and those for which each waits: holders of what it wants, and who is first for the same."""
     found: dict[str, set[str]] = {}
     for number, one in enumerate(book.queue):
-        missing = set(one.places) - book.held(one.machine).keys()
-        ahead = {book.claims[place].machine for place in missing & book.claims.keys()}
-        ahead |= {before.machine for before in book.queue[:number] if not missing.isdisjoint(before.places)}
+        ahead = {book.claims[place].machine for place in missing(book, one) & book.claims.keys()}
+        ahead |= {each.machine for each in first(book, one, book.queue[:number])}
         found.setdefault(one.machine, set()).update(ahead - {one.machine})
     return found
 

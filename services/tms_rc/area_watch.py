@@ -129,10 +129,9 @@ class AreaWatch:
             frame = frame_of(request)
             if frame:
                 return GoalNotInMap(frame)
-            told = motion.field in TOLD
             if escape is not None:
-                return escape.may_drive(seen, joints, places, told=told)
-            return self._shared.judged(self._holding, seen, joints, places, told=told)
+                return escape.may_drive(seen, joints, places, told=motion.field in TOLD)
+            return self._shared.judged(self._holding, seen, joints, places, told=motion.field in TOLD)
         return (escape or guard).may_work(seen, [joints, *way_of(request, self._model.turned(motion.field))])
 
     # people
@@ -153,11 +152,11 @@ class AreaWatch:
                 self._file.keep(enabled)
             except OSError as error:
                 raise TmsError(AreasNotKept(str(error.strerror))) from error
-            self._shared.enable(areas)
             self._enabled(enabled, guard)
         self._app.log.info("areas_enabled", set=areas.id, who=who)
 
     def _enabled(self, enabled: Enabled, guard: Guard) -> None:
+        self._shared.enable(enabled.areas)
         self.enabled, self._guard, self._problem = enabled, guard, None
         self._end_escape()
         target = f"{self._app.machine} {enabled.areas.id[:SHOWN]}"
@@ -214,7 +213,6 @@ class AreaWatch:
         except TmsError as error:
             self._problem = error.reason
             return
-        self._shared.enable(found.areas)
         self._enabled(found, self._made(found.areas))
 
     def _made(self, areas: AreaSet) -> Guard:

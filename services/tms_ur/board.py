@@ -4,9 +4,11 @@ import threading
 from collections.abc import Callable, Iterable
 
 from tms_config.clock import monotonic, utc_now
-from tms_ur.models import ActiveRun, Host, Machine, Place, Process, Question, Scheduler, State
+from tms_ur.models import ActiveRun, Host, Machine, Place, Process, Question, Scheduler
+from tms_ur.place_models import SharedPlaces
 from tms_ur.reason_view import view
 from tms_ur.reasons import MachineSilent, MachineUnheard
+from tms_ur.state_models import State
 
 MACHINE_SILENT = 2.0  # s, four periods of a machine's gateway
 SCHEDULER_SILENT = 5.0  # s, five periods of the scheduler's list of runs
@@ -23,6 +25,7 @@ class Board:
         self._runs: list[ActiveRun] = []
         self._questions: list[Question] = []
         self._places: dict[str, tuple[Place, float]] = {}
+        self._shared = SharedPlaces()
         self._runs_at: float | None = None
         self._hosts: dict[str, tuple[Host, float]] = {}
         self._listeners: list[Callable[[], None]] = []
@@ -54,6 +57,12 @@ class Board:
             self._runs, self._questions, self._runs_at = runs, asked, self._clock()
         if changed:
             self._publish()
+
+    def put_shared(self, shared: SharedPlaces) -> None:
+        """Take all shared places."""
+        with self._lock:
+            self._shared = shared
+        self._publish()
 
     def put_host(self, host: Host) -> None:
         """Take all processes of one PC; its agent publishes them at every change, and every 2 s without one."""
@@ -91,6 +100,7 @@ class Board:
                 runs=self._runs,
                 questions=self._questions,
                 hosts=[_host(host, now - at) for _, (host, at) in sorted(self._hosts.items())],
+                shared=self._shared,
             )
 
     def _publish(self) -> None:

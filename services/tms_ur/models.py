@@ -111,17 +111,6 @@ class Host(Model):
     processes: list[Process] = []
 
 
-class State(Model):
-    """Everything that goes on now."""
-
-    time: datetime = Field(description="when this was put together, by the clock of this PC")
-    machines: list[Machine]
-    scheduler: Scheduler
-    runs: list[ActiveRun] = Field(description="active runs")
-    questions: list[Question] = []
-    hosts: list[Host]
-
-
 class Task(Model):
     """A stored task (behaviour tree)."""
 

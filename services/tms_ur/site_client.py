@@ -4,6 +4,8 @@ from typing import Any
 
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParametersAtomically
+from tms_msg_areas.msg import Places as SharedPlaces
+from tms_msg_areas.srv import RevokePlace
 from tms_msg_db.srv import (
     AddTask,
     AddTemplate,
@@ -68,6 +70,7 @@ class SiteClient:
             ros.prepare(StopMachine, f"/{name}/rc/stop")
         ros.subscribe(RunStates, "/tms/runs", self._on_runs, latched=True)
         ros.subscribe(Processes, "/tms/host/processes", self._on_processes, depth=10, latched=True)
+        ros.subscribe(SharedPlaces, "/tms/places", self._on_shared, latched=True)
         ros.subscribe(InputStates, "/tms/sp/inputs", self._on_inputs, latched=True)
         ros.poll_in_thread(PERIOD, self._update_places, "places")
 
@@ -82,6 +85,9 @@ class SiteClient:
 
     def _on_processes(self, message: Processes) -> None:
         self.board.put_host(Host(name=message.host, processes=[messages.process(row) for row in message.processes]))
+
+    def _on_shared(self, message: SharedPlaces) -> None:
+        self.board.put_shared(messages.shared_places(message))
 
     def _on_inputs(self, message: InputStates) -> None:
         self._inputs = (list(message.inputs), monotonic())
@@ -208,6 +214,14 @@ class SiteClient:
         self._ask(AnswerQuestion, "/tms/answer", id=question, yes=yes, by=by)
 
     # machines
+
+    def revoke_place(self, place: str, who: str) -> str:
+        """Take a shared place from its holder, which is returned.
+
+        Raises:
+            TmsError: nobody holds it, or tms:db is away.
+        """
+        return str(self._ask(RevokePlace, "/tms/places/revoke", place=place, who=who).holder)
 
     def stop(self, machine: str, cause: Reason) -> Receipt:
         """Stop one machine by a call of its gateway; where no answer comes, the receipt says that."""

@@ -100,6 +100,18 @@ def test_several_places_are_granted_together_or_not_at_all() -> None:
     assert site.holder("road") == site.holder("yard") == "b"
 
 
+def test_who_waits_for_a_machine_does_not_keep_from_it_what_that_one_needs() -> None:
+    site = Site("a", "b", "c")
+    site.hold("a", "yard")
+    site.hold("b", "road", "yard")
+    site.hold("c", "road")
+    site.hold("a", "road")  # the road is free; b, which came first for it, waits for the yard of a
+    assert site.holder("road") == "a"
+    site.free("a")
+    site.report("a")
+    assert site.holder("road") == site.holder("yard") == "b"
+
+
 def test_asking_twice_changes_nothing_and_a_holder_need_not_queue() -> None:
     site = Site("a", "b")
     site.hold("a", "road")

@@ -1,0 +1,20 @@
+"""The state of the whole site, as the API shows it."""
+
+from datetime import datetime
+
+from pydantic import Field
+
+from tms_ur.models import ActiveRun, Host, Machine, Model, Question, Scheduler
+from tms_ur.place_models import SharedPlaces
+
+
+class State(Model):
+    """Everything that goes on now."""
+
+    time: datetime = Field(description="when this was put together, by the clock of this PC")
+    machines: list[Machine]
+    scheduler: Scheduler
+    runs: list[ActiveRun] = Field(description="active runs")
+    questions: list[Question] = Field(default=[])
+    hosts: list[Host]
+    shared: SharedPlaces = SharedPlaces()
