@@ -2,6 +2,8 @@
 
 from collections.abc import Callable
 
+from diagnostic_msgs.msg import DiagnosticStatus
+
 from tms_areas.intruders import Danger
 from tms_areas.zones import Zones
 from tms_config.clock import monotonic
@@ -12,6 +14,7 @@ from tms_rc.area_file import Enabled
 from tms_rc.area_watch import AreaWatch
 from tms_rc.latch_order import LatchOrder
 from tms_rc.reasons import IntrudersLate
+from tms_rc.watches import status
 from tms_reason.reason import Reason
 from tms_runtime.app import App
 from tms_sensors.trackers import Hearing
@@ -50,6 +53,10 @@ class IntruderWatch:
         if age > LATE:
             return ProcessLost(IntrudersLate(age))
         return None if danger.hold is None else ProcessLost(danger.hold)
+
+    def report(self) -> DiagnosticStatus:
+        """Who is in the way, or near."""
+        return status("people", self.danger.present or self.danger.passed, self.danger.warn)
 
     # the watch
 

@@ -9,12 +9,12 @@ from tms_config.config import load_site
 from tms_hardware.hardware import Condition, Hardware
 from tms_hardware.reasons import (
     CounterFrozen,
+    EmergencyStopPressed,
     EngineOff,
     LeverLocked,
     SignalSilent,
     SignalUnheard,
     SignalUnreadable,
-    StopPressed,
     SwitchedToManual,
 )
 from tms_hardware.settings import HardwareSettings, Signal, Value, hardware_of
@@ -49,7 +49,7 @@ def test_a_machine_that_may_move() -> None:
 @pytest.mark.parametrize(
     ("source", "value", "condition"),
     [
-        ("emergency_stop", True, Condition(stop=StopPressed("zx200"))),
+        ("emergency_stop", True, Condition(stop=EmergencyStopPressed("zx200"))),
         ("lock_lever", True, Condition(hold=LeverLocked("zx200"))),
         ("manual", 0, Condition(hold=SwitchedToManual("zx200"))),
         ("engine", 500, Condition(hold=EngineOff("zx200"))),
