@@ -34,7 +34,7 @@ TRACKERS = {
     },
 }
 HARDWARE = {"emergency_stop": {"topic": "relay"}, "lock_lever": {"topic": "lever"}, "alive": {"topic": "alive"}}
-OUTSIDE, WALK = {"walks": [{"path": [[0, 40]]}]}, {"walks": [{"path": [[0, 40], [0, -40]], "speed": 4.0}]}
+OUTSIDE, WALK = {"walks": [{"path": [[0, 40]]}]}, {"walks": [{"path": [[0, 40], [0, 0]], "speed": 4.0}]}
 
 
 class Site:

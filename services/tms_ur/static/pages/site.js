@@ -58,8 +58,8 @@ export function update(state) {
 /** Who is among the machines or near, and what its hardware says that is not known or forbids motion. */
 function warnings(machine) {
   const { people, hardware } = machine.watched;
-  const said = Object.entries(hardware).map(([name, says]) => `${t(`hw_${name}`)}: ${t(`says_${says}`)}`);
-  return [...(people === null ? [] : [said(people)]), ...(said.length > 0 ? [`${machine.name}: ${said.join(", ")}`] : [])];
+  const signals = Object.entries(hardware).map(([name, says]) => `${t(`hw_${name}`)}: ${t(`says_${says}`)}`);
+  return [...(people === null ? [] : [said(people)]), ...(signals.length > 0 ? [`${machine.name}: ${signals.join(", ")}`] : [])];
 }
 
 const isOld = (machine) => machine.place_age > PLACE_OLD;
