@@ -30,11 +30,11 @@ def main(histories: int, seed: int, workers: int) -> None:
     """Drive machines between areas in virtual time."""
     with ProcessPoolExecutor(workers) as pool:
         done = list(pool.map(judged, range(seed, seed + histories), chunksize=20))
-    crossed = [one for one in done if one.crossed is not None]
+    crossed = [one for one in done if one.violation]
     planned = [one for one in done if not one.wild]
     needless = [one for one in planned if one.stopped is not None and not one.would_cross]
     for one in crossed[:10]:
-        click.echo(f"seed {one.seed}: crossed at {one.crossed:.2f} s, {one}")
+        click.echo(f"seed {one.seed}: {one.violation}, {one}")
     for name, some in (("planned", planned), ("wild", [one for one in done if one.wild])):
         stops = [one for one in some if one.stopped is not None]
         click.echo(
