@@ -2,6 +2,8 @@
 
 from typing import Any
 
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import SetParametersAtomically
 from tms_msg_db.srv import (
     AddTask,
     AddTemplate,
@@ -230,6 +232,18 @@ class SiteClient:
         """
         answer = self._ask(Rearm, f"/{machine}/rearm", token=token)
         return Rearmed(token=answer.token, cause=of_line(answer.cause), armed=answer.armed)
+
+    def let_back(self, machine: str, who: str) -> None:
+        """Let a machine that stands outside its areas be moved back in.
+
+        Raises:
+            TmsError: refused, with the reason.
+        """
+        value = ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=who)
+        request = SetParametersAtomically.Request(parameters=[Parameter(name="who", value=value)])
+        result = self._ros.call(SetParametersAtomically, f"/{machine}/rc/areas/escape", request, CALL_LIMIT).result
+        if not result.successful:
+            raise TmsError(wire.refusal("", result.reason))
 
     def scene(self, machine: str) -> Scene:
         """What the planner of a machine plans among now.

@@ -40,11 +40,11 @@ def main(histories: int, seed: int, workers: int) -> None:
         f"{len(walks)} histories of people, {sum(one.entered for one in walks)} entries, "
         f"{sum(one.stops for one in walks)} stops, {len(late)} too late"
     )
-    crossed = [one for one in done if one.crossed is not None]
+    crossed = [one for one in done if one.violation]
     planned = [one for one in done if not one.wild]
     needless = [one for one in planned if one.stopped is not None and not one.would_cross]
     for one in crossed[:10]:
-        click.echo(f"seed {one.seed}: crossed at {one.crossed:.2f} s, {one}")
+        click.echo(f"seed {one.seed}: {one.violation}, {one}")
     for name, some in (("planned", planned), ("wild", [one for one in done if one.wild])):
         stops = [one for one in some if one.stopped is not None]
         click.echo(

@@ -12,9 +12,13 @@ WALKS = range(6)
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_no_machine_is_ever_where_it_must_not_be(seed: int) -> None:
-    found = run(seed)
-    assert found.crossed is None
+def test_no_machine_is_ever_where_it_must_not_be_or_drives_blind(seed: int) -> None:
+    assert run(seed).violation == ""
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_no_machine_that_dashes_at_a_border_crosses_it(seed: int) -> None:
+    assert run(seed, dash=True).violation == ""
 
 
 def test_without_the_law_some_of_them_would_be(monkeypatch: pytest.MonkeyPatch) -> None:
