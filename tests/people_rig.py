@@ -7,8 +7,10 @@ from pathlib import Path
 from typing import Any
 
 import yaml
+from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseArray, PoseStamped
 from nav2_msgs.action import NavigateToPose
+from nav_msgs.msg import Odometry
 from std_msgs.msg import String
 from tms_msg_rc.msg import MachineState, StopReceipt
 from tms_msg_rc.srv import Rearm
@@ -34,7 +36,8 @@ TRACKERS = {
     },
 }
 HARDWARE = {"emergency_stop": {"topic": "relay"}, "lock_lever": {"topic": "lever"}, "alive": {"topic": "alive"}}
-OUTSIDE, WALK = {"walks": [{"path": [[0, 40]]}]}, {"walks": [{"path": [[0, 40], [0, 0]], "speed": 4.0}]}
+OUTSIDE, NEAR = {"walks": [{"path": [[0, 40]]}]}, {"walks": [{"path": [[0, 25]]}]}
+WALK = {"walks": [{"path": [[0, 40], [0, 0]], "speed": 4.0}]}
 
 
 class Site:
@@ -43,16 +46,26 @@ class Site:
     def __init__(self, mesh: Mesh, ros: Ros) -> None:
         self.mesh, self.ros, self.far = mesh, ros, 0.0
         self.state: Any = None
+        self.lamp, self.speed, self.reports = "", 0.0, dict[str, Any]()
         self.receipts: list[Any] = []
         self.people: list[tuple[float, float]] = []  # when, y
         self._trackers = ros.publisher(String, "/sim/trackers")
         self._fault = ros.publisher(String, f"/{MACHINE}/sim/fault")
         ros.subscribe(MachineState, f"/{MACHINE}/rc/state", lambda one: setattr(self, "state", one), latched=True)
         ros.subscribe(StopReceipt, f"/{MACHINE}/rc/receipts", self.receipts.append, depth=20, latched=True)
+        ros.subscribe(String, f"/{MACHINE}/sim/lamp", lambda one: setattr(self, "lamp", one.data), latched=True)
+        ros.subscribe(DiagnosticArray, f"/{MACHINE}/rc/watches", self._watches, latched=True)
+        ros.subscribe(Odometry, f"/{MACHINE}/odom_pose", self._odometry)
         ros.subscribe(PoseArray, "/eye/people", self._saw, depth=10)
 
     def _saw(self, message: PoseArray) -> None:
         self.people += [(stamps.seconds(message.header.stamp), one.position.y) for one in message.poses]
+
+    def _watches(self, message: DiagnosticArray) -> None:
+        self.reports = {one.name: one for one in message.status}
+
+    def _odometry(self, message: Odometry) -> None:
+        self.speed = abs(message.twist.twist.linear.x)
 
     def be(self, **told: object) -> None:
         self._trackers.publish(String(data=json.dumps(told)))

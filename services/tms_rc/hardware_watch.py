@@ -34,7 +34,7 @@ class HardwareWatch:
 
     # what others ask; none of it waits
 
-    def unready(self) -> Reason | None:
+    def unready(self, drives: bool = True) -> Reason | None:
         """Why nothing may begin to move, and no person may arm the machine."""
         return self.condition.wrong or self._late()
 

@@ -113,14 +113,14 @@ class MotionServers:
     def _wrong(self, motion: MotionAction, request: Any) -> Reason | None:
         """Why the machine must not do what a goal asks; its areas take longer than the shell's lock may be held."""
         wrong = self._shell.read(lambda gateway, _: self._check.problem(motion, request, gateway))
-        wrong = wrong or self.forbidden()
+        wrong = wrong or self.forbidden(motion.drives)
         if wrong is not None or self.areas is None:
             return wrong
         return self.areas.problem(motion, request, self._shell.read(lambda gateway, _: gateway.watch.positions))
 
-    def forbidden(self) -> Reason | None:
-        """Why nothing may begin to move, whatever a goal asks."""
-        return next(filter(None, (one.unready() for one in self.watches)), None)
+    def forbidden(self, drives: bool = True) -> Reason | None:
+        """Why nothing may begin to move; `drives`: by its tracks."""
+        return next(filter(None, (one.unready(drives) for one in self.watches)), None)
 
     def drives(self, number: int) -> bool:
         """Whether a goal moves the tracks; also for one that is gone meanwhile."""

@@ -17,8 +17,8 @@ PERIOD = 0.5  # s between messages without one
 class Watch(Protocol):
     """Looks for what forbids motions. No answer waits."""
 
-    def unready(self) -> Reason | None:
-        """Why nothing may begin to move."""
+    def unready(self, drives: bool) -> Reason | None:
+        """Why nothing may begin to move; `drives`: by its tracks."""
 
     def astray(self) -> Reason | None:
         """Why what moves must stop; a loss, if that may pass by itself."""
