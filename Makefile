@@ -157,6 +157,7 @@ nightly: setup ## what takes hours: properties with 400 examples, 100,000 schedu
 	@$(MAKE) coverage
 	@$(MAKE) simulate SCHEDULES=100000
 	@$(MAKE) areas
+	TMS_AREA_HISTORIES=30 $(PY) -m pytest tests/ros/test_areas.py
 	@$(MAKE) mutants
 	@$(MAKE) mutmut
 	TMS_POWER_CUTS=30 $(PY) -m pytest tests/system/test_power_cut.py

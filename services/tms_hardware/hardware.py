@@ -6,9 +6,9 @@ from typing import Literal
 
 from tms_hardware.reasons import (
     CounterFrozen,
+    EmergencyStopPressed,
     EngineOff,
     LeverLocked,
-    OwnStopPressed,
     SignalSilent,
     SignalUnheard,
     SignalUnreadable,
@@ -18,7 +18,7 @@ from tms_hardware.settings import Counter, HardwareSettings, Signal, Source, Val
 from tms_reason.reason import Reason
 
 Known = Literal["yes", "no", "unknown"]
-FORBIDS = {"emergency_stop": OwnStopPressed, "lock_lever": LeverLocked, "manual": SwitchedToManual}  # with a yes
+FORBIDS = {"emergency_stop": EmergencyStopPressed, "lock_lever": LeverLocked, "manual": SwitchedToManual}  # with a yes
 
 
 @dataclass(frozen=True)

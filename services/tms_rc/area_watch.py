@@ -9,7 +9,6 @@ from queue import SimpleQueue
 from typing import Any
 
 from sensor_msgs.msg import NavSatFix
-from std_msgs.msg import Float64
 
 from tms_areas.areas import SHOWN, AreaSet, Point
 from tms_areas.body import Silhouette
@@ -22,7 +21,7 @@ from tms_config.clock import monotonic, unix_time
 from tms_decision.gateway.effects import Receipt
 from tms_decision.gateway.state import Gateway
 from tms_decision.reasons import ProcessLost
-from tms_machine.border import MotionAction, speed_limit
+from tms_machine.border import MotionAction
 from tms_machine.places import Places
 from tms_proof.standstill import HEADING, ODOM, PLACE
 from tms_rc.area_file import AreaFile, Enabled
@@ -38,6 +37,7 @@ from tms_rc.reasons import (
     NothingToEscape,
     TrapsMachine,
 )
+from tms_rc.speed_limit import SpeedLimit
 from tms_reason.errors import TmsError
 from tms_reason.reason import Reason
 from tms_runtime.app import App
@@ -70,9 +70,7 @@ class AreaWatch:
         self._fixes = None if gnss is None else app.ros.sample_arrivals(NavSatFix, f"/{machine}/{gnss}", FIXES)
         self._told = 0.0  # when the last pose that was taken came
         self._enabling = threading.Lock()
-        self._slow = site.file.backend == "sim" or self._border.controller == "ours"  # what drives takes a speed limit
-        self._limits = app.ros.publisher(Float64, speed_limit(machine), depth=1, latched=True)
-        self._limit = 0.0  # m/s, as told last
+        self.speed = SpeedLimit(app)
         self.stops: SimpleQueue[Receipt] = SimpleQueue()  # receipts that may show worse brakes
         self._braking = BrakingFile(site.state, machine)
         tracks = tracks_of(self._model, self._border)
@@ -177,23 +175,17 @@ class AreaWatch:
                 raise TmsError(EscapesAtRest(machine))
             if seen.unsure is not None:
                 raise TmsError(seen.unsure)
-            escape = Escape(guard.law, self._silhouette, self._slow)
+            escape = Escape(guard.law, self._silhouette, self.speed.able)
             if escape.over(seen, gateway.watch.positions):
                 raise TmsError(NothingToEscape(machine))
             self._escape, self._escape_since = escape, unix_time()
-            self._pace(SPEED)
+            self.speed.set("escape", SPEED)
         self._tell("escape", machine, who, self._escape_since)
         self._app.log.warning("escape", who=who)
 
     def _end_escape(self) -> None:
         self._escape = None
-        self._pace(math.inf)
-
-    def _pace(self, limit: float) -> None:
-        """Tell what drives the tracks how fast they may go [m/s]."""
-        if limit != self._limit:
-            self._limit = limit
-            self._limits.publish(Float64(data=limit))
+        self.speed.set("escape", math.inf)
 
     def _check_free(self, guard: Guard) -> None:
         active = self._gateway.active

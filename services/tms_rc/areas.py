@@ -38,7 +38,7 @@ def look_for_intruders(app: App, gateway: Gateway, servers: MotionServers, peopl
         return
     from tms_rc.intruder_watch import IntruderWatch
 
-    watch = IntruderWatch(app, gateway, servers.areas, people.stop)
+    watch = IntruderWatch(app, gateway, servers.areas, servers.drives, people.stop)
     servers.watches.append(watch)
     people.unarmed.append(watch.unarmed)
 

@@ -1,5 +1,7 @@
 """Watches what the hardware of a machine tells, in a thread of its own."""
 
+from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+
 from tms_config.clock import monotonic
 from tms_decision.gateway.events import Manual
 from tms_decision.gateway.state import Gateway
@@ -10,6 +12,7 @@ from tms_rc.motion_servers import MotionServers
 from tms_rc.people import People
 from tms_rc.reasons import HardwareLate
 from tms_rc.shell import Shell
+from tms_rc.watches import status
 from tms_reason.reason import Reason
 from tms_runtime.app import App
 from tms_sensors.hardware import HardwareHearing
@@ -31,7 +34,7 @@ class HardwareWatch:
 
     # what others ask; none of it waits
 
-    def unready(self) -> Reason | None:
+    def unready(self, drives: bool = True) -> Reason | None:
         """Why nothing may begin to move, and no person may arm the machine."""
         return self.condition.wrong or self._late()
 
@@ -42,6 +45,12 @@ class HardwareWatch:
             return condition.stop
         held = condition.hold or condition.lost
         return self._late() if held is None else ProcessLost(held)
+
+    def report(self) -> DiagnosticStatus:
+        """What the hardware says: yes, no or unknown."""
+        found = status("hardware", self.condition.wrong)
+        found.values = [KeyValue(key=name, value=says) for name, says in self.state.items()]
+        return found
 
     def _late(self) -> Reason | None:
         age = monotonic() - self._at
@@ -62,11 +71,10 @@ class HardwareWatch:
             self._shell.happened(Manual(manual))
 
 
-def begin(app: App, shell: Shell, gateway: Gateway, servers: MotionServers, people: People) -> HardwareWatch | None:
+def begin(app: App, shell: Shell, gateway: Gateway, servers: MotionServers, people: People) -> None:
     """Watch the hardware of the machine, where the site file names what tells of it."""
     if not app.site.file.machines[app.machine].hardware:
-        return None
+        return
     watch = HardwareWatch(app, shell, gateway, people)
     servers.watches.append(watch)
     people.unarmed.append(watch.unready)
-    return watch

@@ -1,6 +1,9 @@
 """Watches for people and vehicles among the machines, in a thread of its own: no stop waits for geometry."""
 
+import math
 from collections.abc import Callable
+
+from diagnostic_msgs.msg import DiagnosticStatus
 
 from tms_areas.intruders import Danger
 from tms_areas.zones import Zones
@@ -12,19 +15,25 @@ from tms_rc.area_file import Enabled
 from tms_rc.area_watch import AreaWatch
 from tms_rc.latch_order import LatchOrder
 from tms_rc.reasons import IntrudersLate
+from tms_rc.watches import status
 from tms_reason.reason import Reason
 from tms_runtime.app import App
 from tms_sensors.trackers import Hearing
 
 PERIOD = 0.03  # s between looks; with the beats and the executor a message becomes a command within 0.2 s
+NEAR = 0.3  # m/s of tracks while somebody is in a restricted area: our choice, slower than people walk
 LATE = 0.3  # s; an older verdict is none
 
 
 class IntruderWatch:
     """The trackers of the site, as one gateway sees them."""
 
-    def __init__(self, app: App, gateway: Gateway, areas: AreaWatch, stop: Callable[[Reason], None]) -> None:
-        """`stop`: has the machine stopped and latched, without waiting."""
+    def __init__(
+        self, app: App, gateway: Gateway, areas: AreaWatch, drives: Callable[[int], bool],
+        stop: Callable[[Reason], None],
+    ) -> None:  # fmt: skip
+        """`drives`: whether the goal with a number moves the tracks; `stop`: stops and latches, without waiting."""
+        self._gateway, self._drives = gateway, drives
         self._app, self._areas, self._order = app, areas, LatchOrder(gateway, stop)
         self._hearing = Hearing(app.ros, load_sensing(app.site).trackers)
         self._enabled: Enabled | None = None
@@ -34,9 +43,9 @@ class IntruderWatch:
 
     # what others ask; none of it waits
 
-    def unready(self) -> Reason | None:
-        """Why nothing may begin to move."""
-        return self.astray() or self.danger.passed
+    def unready(self, drives: bool) -> Reason | None:
+        """Why nothing may begin to move; `drives`: by its tracks."""
+        return self._forbids(drives) or self.danger.passed
 
     def unarmed(self) -> Reason | None:
         """Why no person may arm the machine: an area must be seen free."""
@@ -44,12 +53,22 @@ class IntruderWatch:
 
     def astray(self) -> Reason | None:
         """Why what moves must stop; a loss, if that may pass by itself."""
+        active = self._gateway.active
+        return self._forbids(active is None or self._drives(active.number))
+
+    def _forbids(self, drives: bool) -> Reason | None:
         danger, age = self.danger, monotonic() - self._at
         if danger.stop is not None:
             return danger.stop
         if age > LATE:
             return ProcessLost(IntrudersLate(age))
-        return None if danger.hold is None else ProcessLost(danger.hold)
+        near = None if drives and self._areas.speed.able else danger.warn  # else tracks go slowly
+        held = danger.hold or near
+        return None if held is None else ProcessLost(held)
+
+    def report(self) -> DiagnosticStatus:
+        """Who is in the way, or near."""
+        return status("people", self.danger.present or self.danger.passed, self.danger.warn)
 
     # the watch
 
@@ -67,5 +86,6 @@ class IntruderWatch:
 
     def _tell(self, danger: Danger) -> None:
         before, self.danger = self.danger, danger
+        self._areas.speed.set("people", math.inf if danger.warn is None else NEAR)
         if danger.warn is not None and before.warn is None:
             self._app.log.warning("intruder", reason=danger.warn)

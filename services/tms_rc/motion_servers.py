@@ -4,7 +4,7 @@ import threading
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from itertools import count
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from tms_decision.gateway.effects import Cancel, End, GiveUp, Lose, Send
 from tms_decision.gateway.events import (
@@ -21,6 +21,7 @@ from tms_machine.permit import RemotePermit
 from tms_rc.goal_check import GoalCheck
 from tms_rc.motion_goals import duration, reason_of, with_reason
 from tms_rc.shell import Shell
+from tms_rc.watches import Watch
 from tms_reason.reason import Reason
 from tms_ros.client import AnyCall, AnyPeer
 from tms_ros.goals import Ended, Outcome
@@ -32,16 +33,6 @@ if TYPE_CHECKING:  # its libraries are loaded only where a site has areas
 
 CLOSING_CHECK_PERIOD = 1.0  # s
 CANCELED = 0  # error code of a goal that its client has cancelled
-
-
-class Watch(Protocol):
-    """Looks for what forbids motions. No answer waits."""
-
-    def unready(self) -> Reason | None:
-        """Why nothing may begin to move."""
-
-    def astray(self) -> Reason | None:
-        """Why what moves must stop; a loss, if that may pass by itself."""
 
 
 @dataclass
@@ -122,14 +113,14 @@ class MotionServers:
     def _wrong(self, motion: MotionAction, request: Any) -> Reason | None:
         """Why the machine must not do what a goal asks; its areas take longer than the shell's lock may be held."""
         wrong = self._shell.read(lambda gateway, _: self._check.problem(motion, request, gateway))
-        wrong = wrong or self.forbidden()
+        wrong = wrong or self.forbidden(motion.drives)
         if wrong is not None or self.areas is None:
             return wrong
         return self.areas.problem(motion, request, self._shell.read(lambda gateway, _: gateway.watch.positions))
 
-    def forbidden(self) -> Reason | None:
-        """Why nothing may begin to move, whatever a goal asks."""
-        return next(filter(None, (one.unready() for one in self.watches)), None)
+    def forbidden(self, drives: bool = True) -> Reason | None:
+        """Why nothing may begin to move; `drives`: by its tracks."""
+        return next(filter(None, (one.unready(drives) for one in self.watches)), None)
 
     def drives(self, number: int) -> bool:
         """Whether a goal moves the tracks; also for one that is gone meanwhile."""

@@ -24,6 +24,7 @@ from tms_rc.receipts import Receipts
 from tms_rc.shell import Shell
 from tms_rc.state_topic import StateTopic
 from tms_rc.stop_receipt import ReceiptTopic
+from tms_rc.watches import WatchTopic
 from tms_runtime.app import App
 
 GATEWAY = bytes([255]) * 16  # the goal in the gateway's own permit: it stands behind the machine itself
@@ -78,6 +79,8 @@ def _serve(app: App, claim: Claim) -> None:
     people = People(app, shell, border)
     areas.look_for_intruders(app, gateway, servers, people)
     hardware_watch.begin(app, shell, gateway, servers, people)
+    if servers.watches:
+        WatchTopic(app, servers.watches)
     relayed_goals.watch(app, servers)
     app.ros.on_executor(lambda: permits.listen(app, shell))  # no callback may come before all of them exist
     permit = Permit(app.ros, app.pulse, machine, "rc")

@@ -9,6 +9,7 @@ from tms_ur.place_models import SharedPlaces
 from tms_ur.reason_view import view
 from tms_ur.reasons import MachineSilent, MachineUnheard
 from tms_ur.state_models import State
+from tms_ur.watch_models import SeenBy, Watched
 
 MACHINE_SILENT = 2.0  # s, four periods of a machine's gateway
 SCHEDULER_SILENT = 5.0  # s, five periods of the scheduler's list of runs
@@ -26,6 +27,8 @@ class Board:
         self._questions: list[Question] = []
         self._places: dict[str, tuple[Place, float]] = {}
         self._shared = SharedPlaces()
+        self._watched: dict[str, Watched] = {}
+        self._seen: list[SeenBy] = []
         self._runs_at: float | None = None
         self._hosts: dict[str, tuple[Host, float]] = {}
         self._listeners: list[Callable[[], None]] = []
@@ -47,6 +50,20 @@ class Board:
             before, _ = self._places.get(name, (None, None))
             self._places[name] = (place, self._clock() - age)
         if before != place:
+            self._publish()
+
+    def put_watched(self, name: str, watched: Watched) -> None:
+        """Take what a gateway watches besides motion."""
+        with self._lock:
+            before, self._watched[name] = self._watched.get(name), watched
+        if before != watched:
+            self._publish()
+
+    def put_seen(self, seen: list[SeenBy]) -> None:
+        """Take what all trackers tell."""
+        with self._lock:
+            before, self._seen = self._seen, seen
+        if before != seen:
             self._publish()
 
     def put_runs(self, runs: list[ActiveRun], questions: list[Question] | None = None) -> None:
@@ -94,8 +111,12 @@ class Board:
             return State(
                 time=utc_now(),
                 machines=[
-                    _aged(machine, now, at, self._places.get(name)) for name, (machine, at) in self._machines.items()
+                    _aged(machine, now, at, self._places.get(name)).model_copy(
+                        update={"watched": self._watched.get(name, Watched())}
+                    )
+                    for name, (machine, at) in self._machines.items()
                 ],
+                seen=self._seen,
                 scheduler=_scheduler(now, self._runs_at),
                 runs=self._runs,
                 questions=self._questions,
@@ -120,7 +141,7 @@ def _aged(machine: Machine, now: float, at: float | None, place: tuple[Place, fl
     joint_age = None if machine.joint_age is None else round(machine.joint_age + age, 1)
     update: dict[str, object] = {"age": round(age, 1), "joint_age": joint_age, **_placed(now, place)}
     if age > MACHINE_SILENT:
-        update |= {"state": "silent", "reason": view(MachineSilent(f"{machine.name}:rc", round(age)))}
+        update |= {"state": "silent", "lamp": "fault", "reason": view(MachineSilent(f"{machine.name}:rc", round(age)))}
     return machine.model_copy(update=update)
 
 

@@ -12,6 +12,7 @@ from tms_msg_rc import msg as rc
 from tms_msg_sp import msg as sp
 from tms_msg_ts import msg as ts
 
+from tms_hardware.lamp import mode
 from tms_machine import stamps
 from tms_machine.values import from_parameters
 from tms_reason import wire
@@ -72,6 +73,7 @@ def machine(message: rc.MachineState) -> Machine:
         joints=[Joint(name=name, position=round(p, 4), velocity=round(v, 4)) for name, p, v in joints],
         joint_age=message.age if message.age < NEVER else None,
         armed=message.armed, latch=of_line(message.latch), hold=of_line(message.hold), by_hand=message.by_hand,
+        lamp=mode(bool(message.by_hand), message.armed, message.ready),
     )  # fmt: skip
 
 

@@ -41,6 +41,7 @@ from tms_ur.reasons import JournalCut, NoTree
 from tms_ur.scene_models import Scene
 from tms_ur.state_models import State
 from tms_ur.stream import Stream, StreamResponse
+from tms_ur.watch_models import EnabledAreas
 
 if TYPE_CHECKING:
     from tms_ur.audit import Audit
@@ -193,6 +194,10 @@ def _tasks(app: FastAPI, client: "SiteClient") -> None:
 
 def _scenes(app: FastAPI, client: "SiteClient", site: Site) -> None:
     names = tuple(site.file.machines)
+
+    @app.get("/api/areas", summary="The enabled areas, as a gateway holds its machine in them")
+    def areas() -> EnabledAreas:
+        return client.areas()
 
     @app.get("/api/machines/{name}/scene", summary="What the planner of an excavator plans among now",
              responses=problems(404, 409, 503))  # fmt: skip

@@ -6,6 +6,7 @@ from pydantic import Field
 
 from tms_ur.models import ActiveRun, Host, Machine, Model, Question, Scheduler
 from tms_ur.place_models import SharedPlaces
+from tms_ur.watch_models import SeenBy
 
 
 class State(Model):
@@ -16,5 +17,6 @@ class State(Model):
     scheduler: Scheduler
     runs: list[ActiveRun] = Field(description="active runs")
     questions: list[Question] = Field(default=[])
+    seen: list[SeenBy] = Field(default=[], description="what trackers of people, vehicles and gates tell")
     hosts: list[Host]
     shared: SharedPlaces = SharedPlaces()

@@ -9,9 +9,9 @@ from tms_config.config import load_site
 from tms_hardware.hardware import Condition, Hardware
 from tms_hardware.reasons import (
     CounterFrozen,
+    EmergencyStopPressed,
     EngineOff,
     LeverLocked,
-    OwnStopPressed,
     SignalSilent,
     SignalUnheard,
     SignalUnreadable,
@@ -49,7 +49,7 @@ def test_a_machine_that_may_move() -> None:
 @pytest.mark.parametrize(
     ("source", "value", "condition"),
     [
-        ("emergency_stop", True, Condition(stop=OwnStopPressed("zx200"))),
+        ("emergency_stop", True, Condition(stop=EmergencyStopPressed("zx200"))),
         ("lock_lever", True, Condition(hold=LeverLocked("zx200"))),
         ("manual", 0, Condition(hold=SwitchedToManual("zx200"))),
         ("engine", 500, Condition(hold=EngineOff("zx200"))),

@@ -11,9 +11,9 @@ from tms_config.clock import monotonic
 from tms_config.config import load_site
 from tms_decision.gateway.events import Event, Manual
 from tms_decision.reasons import ProcessLost
-from tms_hardware.reasons import LeverLocked, OwnStopPressed, SwitchedToManual
+from tms_hardware.reasons import EmergencyStopPressed, LeverLocked, SwitchedToManual
 from tms_rc import hardware_watch
-from tms_rc.hardware_watch import LATE, HardwareWatch
+from tms_rc.hardware_watch import LATE
 from tms_rc.motion_servers import MotionServers
 from tms_rc.reasons import HardwareLate
 from tms_reason.errors import ConfigError
@@ -41,9 +41,8 @@ class Rig:
         self.people: Any = SimpleNamespace(stop=self.stop, unarmed=[])
         self.servers: Any = SimpleNamespace(watches=[])
         shell: Any = SimpleNamespace(happened=self.events.append)
-        made = hardware_watch.begin(self.app, shell, self.gateway, self.servers, self.people)
-        assert made is not None
-        self.watch: HardwareWatch = made
+        hardware_watch.begin(self.app, shell, self.gateway, self.servers, self.people)
+        (self.watch,) = self.servers.watches
 
     def stop(self, cause: Reason) -> None:
         self.stops.append(cause)
@@ -86,7 +85,7 @@ def test_a_machine_that_may_move(rig: Rig) -> None:
 def test_a_pressed_stop_latches_and_keeps_from_arming_until_it_is_released(rig: Rig) -> None:
     rig.told("relay")
     rig.told("relay")
-    pressed = OwnStopPressed("zx200")
+    pressed = EmergencyStopPressed("zx200")
     assert rig.stops == [pressed] and rig.watch.astray() == rig.watch.unready() == pressed
     assert MotionServers.forbidden(rig.servers) == pressed
     rig.told()

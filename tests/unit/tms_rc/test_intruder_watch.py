@@ -1,5 +1,6 @@
 """The gateway's side of trackers: who is inside has the machine latched, and keeps it so; an old look is a loss."""
 
+import math
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -14,7 +15,7 @@ from tms_config.clock import monotonic
 from tms_config.config import load_site
 from tms_decision.reasons import Cancelled, ProcessLost
 from tms_rc.area_file import Enabled
-from tms_rc.intruder_watch import LATE, IntruderWatch
+from tms_rc.intruder_watch import LATE, NEAR, IntruderWatch
 from tms_rc.latch_order import AGAIN
 from tms_rc.reasons import IntrudersLate
 from tms_reason.reason import Reason
@@ -46,11 +47,13 @@ class Rig:
         )
         self.waiting: dict[str, list[Any]] = {}
         self.stops: list[Reason] = []
-        self.gateway: Any = SimpleNamespace(latch=SimpleNamespace(cause=None), by_hand=None)
-        areas: Any = SimpleNamespace(enabled=Enabled(AREAS, "a person", 0.0), here=(0.0, 0.0))
+        self.gateway: Any = SimpleNamespace(latch=SimpleNamespace(cause=None), by_hand=None, active=None)
+        self.speed = SimpleNamespace(able=True, set=lambda _, limit: self.limits.append(limit))
+        self.limits: list[float] = []
+        areas: Any = SimpleNamespace(enabled=Enabled(AREAS, "a person", 0.0), here=(0.0, 0.0), speed=self.speed)
         log = SimpleNamespace(warning=lambda *_, **__: None)
         app: Any = SimpleNamespace(site=load_site(str(file)), machine="ic120", ros=self, log=log)
-        self.watch = IntruderWatch(app, self.gateway, areas, self.stop)
+        self.watch = IntruderWatch(app, self.gateway, areas, lambda number: number == 1, self.stop)
 
     def stop(self, cause: Reason) -> None:
         self.stops.append(cause)
@@ -94,7 +97,7 @@ def inside(x: float, y: float) -> Reason:
 
 def test_a_person_inside_latches_once_and_keeps_from_arming(rig: Rig) -> None:
     rig.told()
-    assert rig.watch.unready() is None and rig.watch.unarmed() is None and rig.stops == []
+    assert rig.watch.unready(True) is None and rig.watch.unarmed() is None and rig.stops == []
     rig.told((3.0, 4.0))
     rig.told((3.0, 4.0))
     assert rig.stops == [rig.watch.astray()] == [rig.watch.unarmed()] == [inside(3.0, 4.0)]
@@ -120,22 +123,30 @@ def test_a_machine_in_a_persons_hands_is_left_to_that_person(rig: Rig) -> None:
     assert rig.stops == [GateOpened("ic120", "gate", ("yard",))]
 
 
-def test_who_comes_near_warns_only(rig: Rig) -> None:
+def test_who_comes_near_slows_tracks_and_stops_what_cannot_be_slowed(rig: Rig) -> None:
     rig.told((14.0, 0.0))
-    assert isinstance(rig.watch.danger.warn, IntruderNear)
-    assert rig.watch.unready() is None and rig.stops == []
+    near = rig.watch.danger.warn
+    assert isinstance(near, IntruderNear) and rig.limits == [NEAR] and rig.stops == []
+    assert rig.watch.unready(True) is None and rig.watch.unready(False) == ProcessLost(near)
+    for number, wrong in ((1, None), (2, ProcessLost(near))):
+        rig.gateway.active = SimpleNamespace(number=number)
+        assert rig.watch.astray() == wrong
+    rig.speed.able = False
+    assert rig.watch.unready(True) == ProcessLost(near)
+    rig.told()
+    assert rig.limits == [NEAR, math.inf] and rig.watch.unready(True) is None
 
 
 def test_a_gate_counts_until_the_machine_is_armed(rig: Rig) -> None:
     rig.told()
     rig.told(gate=(True, False))
     opened = GateOpened("ic120", "gate", ("yard",))
-    assert rig.stops == [opened] and rig.watch.unready() == opened and rig.watch.unarmed() is None
+    assert rig.stops == [opened] and rig.watch.unready(True) == opened and rig.watch.unarmed() is None
     rig.told()
-    assert rig.watch.unready() == opened and len(rig.stops) == 1
+    assert rig.watch.unready(True) == opened and len(rig.stops) == 1
     rig.gateway.latch.cause = None
     rig.told()
-    assert rig.watch.unready() is None and len(rig.stops) == 1
+    assert rig.watch.unready(True) is None and len(rig.stops) == 1
 
 
 def test_a_gate_that_opens_between_the_steps_of_a_rearm_voids_it(rig: Rig, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -161,5 +172,5 @@ def test_a_look_that_is_old_is_a_loss(rig: Rig) -> None:
     rig.told()
     rig.watch._at -= LATE + 0.1
     assert rig.watch.astray() is not None
-    wrong = rig.watch.unready()
+    wrong = rig.watch.unready(True)
     assert isinstance(wrong, ProcessLost) and wrong.find(IntrudersLate) is not None

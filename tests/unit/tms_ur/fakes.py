@@ -29,6 +29,7 @@ from tms_ur.data_models import Change, Record, Sensing, SensingInput
 from tms_ur.models import AddedTemplate, Event, Rearmed, Receipt, Run, Task, TaskText, Template
 from tms_ur.reason_view import of_line, view
 from tms_ur.scene_models import Scene, scene
+from tms_ur.watch_models import EnabledAreas
 
 NOON = datetime(2026, 1, 31, 12, tzinfo=timezone.utc)
 HERE = "http://127.0.0.1:8080"
@@ -89,6 +90,13 @@ class FakeSiteClient:
     def parameter_history(self, model_name: str, record_name: str, limit: int) -> list[Change]:
         self._called("parameter_history", model_name, record_name, limit)
         return [Change(stamp=NOON, source="sensing", values={"d": float("nan"), "s": "3"})]
+
+    def areas(self) -> EnabledAreas:
+        self._called("areas")
+        ring = [[-5.0, -5.0], [20.0, -5.0], [20.0, 20.0], [-5.0, 20.0], [-5.0, -5.0]]
+        geometry = {"type": "Polygon", "coordinates": [ring]}
+        yard = {"type": "Feature", "properties": {"id": "yard", "type": "unmanned"}, "geometry": geometry}
+        return EnabledAreas(id="9f", by="a person", areas={"type": "FeatureCollection", "features": [yard]})
 
     def scene(self, machine: str) -> Scene:
         self._called("scene", machine)

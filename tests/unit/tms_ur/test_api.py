@@ -552,7 +552,7 @@ def test_every_endpoint_is_in_the_document(client: Client) -> None:
         "/api/tasks/{task_id}/diff", "/api/tasks/{task_id}/remove", "/api/runs/{run_id}/tree",
         "/api/runs/{run_id}/export", "/api/audit", "/api/machines/{name}/scene",
         "/api/processes/{name}/log", "/api/processes/{name}/restart",
-        "/api/templates",
+        "/api/templates", "/api/areas",
     }  # fmt: skip
     assert {method for path in document["paths"].values() for method in path} == {
         "get",
@@ -561,3 +561,12 @@ def test_every_endpoint_is_in_the_document(client: Client) -> None:
     problem = document["paths"]["/api/runs"]["post"]["responses"]["409"]["content"]["application/json"]["schema"]
     assert problem == {"$ref": "#/components/schemas/ReasonView"}
     assert document["components"]["schemas"]["Joint"]["properties"]["position"]["description"] == "rad"
+
+
+# areas
+
+
+def test_the_enabled_areas(client: Client) -> None:
+    found = client.get("/api/areas").json()
+    assert found["id"] == "9f" and found["by"] == "a person"
+    assert found["areas"]["features"][0]["properties"] == {"id": "yard", "type": "unmanned"}
