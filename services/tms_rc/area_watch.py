@@ -147,7 +147,7 @@ class AreaWatch:
 
     def _enabled(self, enabled: Enabled, guard: Guard) -> None:
         self.enabled, self._guard, self._problem = enabled, guard, None
-        self._end_escape()
+        self._escape = None
         target = f"{self._app.machine} {enabled.areas.id[:SHOWN]}"
         self._tell("enable_areas", target, enabled.who, enabled.at)  # at each start again: the audit may be new
 
@@ -166,20 +166,20 @@ class AreaWatch:
                 raise TmsError(EscapesAtRest(machine))
             if seen.unsure is not None:
                 raise TmsError(seen.unsure)
-            escape = Escape(guard.law, self._silhouette, self._slow)
+            escape = Escape(guard.law, self._silhouette)
             if escape.over(seen, gateway.watch.positions):
                 raise TmsError(NothingToEscape(machine))
             self._escape, self._escape_since = escape, unix_time()
-            self._pace(SPEED)
         self._tell("escape", machine, who, self._escape_since)
         self._app.log.warning("escape", who=who)
 
-    def _end_escape(self) -> None:
-        self._escape = None
-        self._pace(math.inf)
-
-    def _pace(self, limit: float) -> None:
-        """Tell what drives the tracks how fast they may go [m/s]."""
+    def _pace(self, seen: Seen) -> None:
+        """Tell what drives the tracks how fast they may go, if that has changed."""
+        guard = self._guard
+        if guard is None:
+            return
+        limit = guard.pace(seen, self._gateway.watch.positions)
+        limit = min(limit, SPEED) if self._escape is not None else limit
         if limit != self._limit:
             self._limit = limit
             self._limits.publish(Float64(data=limit))
@@ -205,7 +205,7 @@ class AreaWatch:
         self._enabled(found, self._made(found.areas))
 
     def _made(self, areas: AreaSet) -> Guard:
-        return Guard(Law(areas, self._app.machine, self._tracks), self._silhouette)
+        return Guard(Law(areas, self._app.machine, self._tracks, slow=self._slow), self._silhouette)
 
     def _now(self) -> Seen:
         with self._fixing:
@@ -230,6 +230,7 @@ class AreaWatch:
         self._take_stops()
         if (escape := self._escape) is not None and escape.over(seen, self._gateway.watch.positions):
             self._escaped()
+        self._pace(seen)
         active, guard = self._gateway.active, self._escape or self._guard
         if active is not None and guard is not None:
             at = monotonic()
@@ -245,7 +246,7 @@ class AreaWatch:
 
     def _escaped(self) -> None:
         with self._enabling:
-            self._end_escape()
+            self._escape = None
         self._app.log.info("escape_over")
 
     def _learn(self, stop: Receipt) -> None:
