@@ -4,12 +4,14 @@ While its place is not believed, tracks are stopped and held; until then each lo
 stopped inside. An arm may finish where it would be inside even if the last believed place were off some more.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from tms_areas.body import Body, Silhouette
 from tms_areas.fix import Seen
-from tms_areas.law import Law, Place
+from tms_areas.law import Law
+from tms_areas.reach import Place
 from tms_reason.reason import Reason
 
 UNSURE = 0.5  # m around an arm that works although the place of its machine is not believed
@@ -43,6 +45,10 @@ class Guard:
             return Verdict(stop=self.law.driving(body, motion))
         wrong = self.law.working(body, motion, 0.0 if unsure is None else UNSURE)
         return Verdict(stop=wrong) if unsure is None or wrong is None else Verdict(hold=unsure)
+
+    def pace(self, seen: Seen, joints: Mapping[str, float]) -> float:
+        """How fast the tracks may go now [m/s]; infinite where nothing limits them."""
+        return math.inf if seen.motion is None else self.law.pace(self._silhouette.body([joints]), seen.motion)
 
     def may_drive(self, seen: Seen, joints: Mapping[str, float], way: Sequence[Place], told: bool) -> Reason | None:
         """Why tracks must not go to the last of some places by way of the others.

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 import shapely
 
 from tms_areas.areas import Area, Point
-from tms_areas.law import Covered
+from tms_areas.reach import Covered
 from tms_areas.reasons import EntersArea, NoWay
 from tms_reason.reason import Reason
 

@@ -156,7 +156,7 @@ class AreaWatch:
     def _enabled(self, enabled: Enabled, guard: Guard) -> None:
         self._shared.enable(enabled.areas)
         self.enabled, self._guard, self._problem = enabled, guard, None
-        self._end_escape()
+        self._escape = None
         target = f"{self._app.machine} {enabled.areas.id[:SHOWN]}"
         self._tell("enable_areas", target, enabled.who, enabled.at)  # at each start again: the audit may be new
 
@@ -175,17 +175,18 @@ class AreaWatch:
                 raise TmsError(EscapesAtRest(machine))
             if seen.unsure is not None:
                 raise TmsError(seen.unsure)
-            escape = Escape(guard.law, self._silhouette, self.speed.able)
+            escape = Escape(guard.law, self._silhouette)
             if escape.over(seen, gateway.watch.positions):
                 raise TmsError(NothingToEscape(machine))
             self._escape, self._escape_since = escape, unix_time()
-            self.speed.set("escape", SPEED)
         self._tell("escape", machine, who, self._escape_since)
         self._app.log.warning("escape", who=who)
 
-    def _end_escape(self) -> None:
-        self._escape = None
-        self.speed.set("escape", math.inf)
+    def _pace(self, seen: Seen) -> None:
+        """Limit the speed of the tracks: before an area that limits it, and on the way back."""
+        if (guard := self._guard) is not None:
+            self.speed.set("areas", guard.pace(seen, self._gateway.watch.positions))
+            self.speed.set("escape", math.inf if self._escape is None else SPEED)
 
     def _check_free(self, guard: Guard) -> None:
         active = self._gateway.active
@@ -211,7 +212,7 @@ class AreaWatch:
         return self._guard_of(areas, self._shared.open)
 
     def _guard_of(self, areas: AreaSet, held: frozenset[str]) -> Guard:
-        return Guard(Law(areas, self._app.machine, self._tracks, held), self._silhouette)
+        return Guard(Law(areas, self._app.machine, self._tracks, held, slow=self.speed.able), self._silhouette)
 
     def _holding(self, held: frozenset[str]) -> Guard:
         """The guard that counts for a holder of some places."""
@@ -242,6 +243,7 @@ class AreaWatch:
         self._take_stops()
         if (escape := self._escape) is not None and escape.over(seen, self._gateway.watch.positions):
             self._escaped()
+        self._pace(seen)
         active, guard = self._gateway.active, self._guard
         drives = active is not None and self._drives(active.number)
         lease = None if guard is None else self._leases(guard, seen, drives)
@@ -271,7 +273,7 @@ class AreaWatch:
 
     def _escaped(self) -> None:
         with self._enabling:
-            self._end_escape()
+            self._escape = None
         self._app.log.info("escape_over")
 
     def _learn(self, stop: Receipt) -> None:
