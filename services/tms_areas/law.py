@@ -34,6 +34,7 @@ SPOT = 0.05  # m; a turn over a shorter way is one on the spot
 STRAY = 0.05  # m that tracks may slip to any side while they brake
 
 Array = NDArray[np.float64]
+Shapes = NDArray[np.object_]
 Place = tuple[float, float, float]  # x, y [m], yaw [rad] in `map`
 
 
@@ -56,14 +57,19 @@ class Reach:
 
 @dataclass(frozen=True)
 class Covered:
-    """A convex polygon, and how much around it [m] a part of the machine may cover too."""
+    """A convex polygon for each part of a machine, and how much around it [m] the part may cover too."""
 
-    shape: BaseGeometry
-    around: float
+    shapes: Shapes
+    around: Array
+
+    @property
+    def parts(self) -> list[tuple[BaseGeometry, float]]:
+        """Each with what is around it."""
+        return list(zip(self.shapes, self.around.tolist(), strict=True))
 
     def touches(self, area: Area) -> bool:
         """Whether a part of the machine may be in an area."""
-        return bool(shapely.dwithin(area.polygon, self.shape, self.around))
+        return bool(shapely.dwithin(area.polygon, self.shapes, self.around).any())
 
 
 class Law:
@@ -76,7 +82,9 @@ class Law:
         self._border = self._usable.boundary
         self._pieces = shapely.get_parts(self._usable)
         self._closed = [one for one in areas.of(*FORBIDDEN, "release") if one.id not in held]
+        self._unmanned = shapely.union_all([one.polygon for one in areas.of("unmanned")])
         self._limits = areas.of("speed_limit")
+        self._closed_tree = shapely.STRtree([one.polygon for one in self._closed])
         ends = [pair for line in shapely.get_parts(self._border) for pair in itertools.pairwise(line.coords)]
         self._sides = shapely.linestrings(ends)  # of the border: a tree of them finds the nearest one at once
         self._tree = shapely.STRtree(self._sides)
@@ -91,13 +99,13 @@ class Law:
         wrong = self._outside(covered, body, motion, reach.most)
         return wrong if wrong is not None else self._too_fast(covered, math.hypot(motion.vx, motion.vy))
 
-    def until_it_stands(self, body: Body, motion: Motion) -> list[Covered]:
+    def until_it_stands(self, body: Body, motion: Motion) -> Covered:
         """All that a machine on tracks may cover until a stop that is commanded at the next look has worked."""
         reach = self._reach(motion)
         return _covered(body, _places(motion, reach), (reach.left - reach.right) / 4, reach.around)
 
     @staticmethod
-    def now(body: Body, motion: Motion) -> list[Covered]:
+    def now(body: Body, motion: Motion) -> Covered:
         """What a machine covers where it is, with what its pose may be off."""
         return _covered(body, _place(motion), 0.0, motion.off)
 
@@ -122,10 +130,8 @@ class Law:
         for old, new in itertools.pairwise(places):
             way, turn = math.dist(old[:2], new[:2]), math.remainder(new[2] - old[2], math.tau)
             backward = math.cos(old[2]) * (new[0] - old[0]) + math.sin(old[2]) * (new[1] - old[1]) < 0
-            for share in np.linspace(0.0, 1.0, 2 + int(max(way / STEP, abs(turn) / TURN))).tolist():
-                x, y = old[0] + share * (new[0] - old[0]), old[1] + share * (new[1] - old[1])
+            for share, (x, y, yaw) in between(old, new):
                 speed, turning = self._paced(left - share * way, way, turn, 1.0 - share)
-                yaw = old[2] + share * turn
                 speed = -speed if backward else speed
                 motion = Motion(x, y, yaw, speed * math.cos(yaw), speed * math.sin(yaw), turning, age=PLANNED)
                 if (wrong := self._planned(body, motion, self._reach(motion))) is not None:
@@ -154,6 +160,23 @@ class Law:
         """Why no way at all leads from one place to another: both must be in one piece of where it may be."""
         inside = [shapely.contains_xy(self._pieces, *one[:2]) for one in (here, there)]
         return None if (inside[0] & inside[1]).any() else NoWay(self.machine, *there[:2])
+
+    # out of where it may be
+
+    def trespasses(self, shape: BaseGeometry) -> list[BaseGeometry]:
+        """What of a shape is in each closed area, and at last what is beside the unmanned ones."""
+        return [*(shape.intersection(one.polygon) for one in self._closed), shape.difference(self._unmanned)]
+
+    def away(self, corners: Array) -> float:
+        """How far the farthest of some places (N x 2) is from where the machine may be [m]; 0 for none."""
+        return float(shapely.distance(shapely.points(corners), self._usable).max(initial=0.0))
+
+    def stopped(self, motion: Motion) -> Motion:
+        """Where a machine will stand that is stopped at the next look, if it goes on as it does."""
+        reach = self._reach(motion)
+        turn, ahead = (reach.right + reach.left) / 2, (reach.back + reach.ahead) / 2
+        course = motion.yaw + turn / 2
+        return Motion(motion.x + math.cos(course) * ahead, motion.y + math.sin(course) * ahead, motion.yaw + turn)
 
     # how far
 
@@ -187,18 +210,18 @@ class Law:
 
     # where
 
-    def _outside(self, covered: list[Covered], body: Body, motion: Motion, needed: float) -> Reason | None:
-        for one in covered:
-            if not self._usable.contains(one.shape) or shapely.dwithin(self._border, one.shape, one.around):
-                return self._why(one, body, motion, needed)
-        return None
+    def _outside(self, covered: Covered, body: Body, motion: Motion, needed: float) -> Reason | None:
+        out = ~shapely.contains(self._usable, covered.shapes)
+        out |= shapely.dwithin(self._border, covered.shapes, covered.around)
+        return self._why(*covered.parts[int(out.argmax())], body, motion, needed) if out.any() else None
 
-    def _why(self, one: Covered, body: Body, motion: Motion, needed: float) -> Reason:
+    def _why(self, shape: BaseGeometry, around: float, body: Body, motion: Motion, needed: float) -> Reason:
         """Which area is the next one that it must not enter, or leave; where, how far, and how far it needs."""
-        now = shapely.union_all([part.shape for part in _covered(body, _place(motion), 0.0, 0.0)])
-        entered = [area for area in self._closed if one.touches(area)]
-        if entered:
-            area = min(entered, key=lambda area: float(shapely.distance(area.polygon, now)))
+        now = shape_of(body, motion)
+        entered = self._closed_tree.query(shape, predicate="dwithin", distance=around)
+        if len(entered):
+            gaps = shapely.distance(self._closed_tree.geometries[entered], now)
+            area = self._closed[int(entered[gaps.argmin()])]
             gap, x, y = _nearest(area.polygon, now)
             return EntersArea(self.machine, area.id, gap, needed, x, y)
         gap, x, y = _nearest(self._sides[self._tree.query_nearest(now, all_matches=False)[0]], now)
@@ -206,15 +229,15 @@ class Law:
         left = min(self.areas.of("unmanned"), key=lambda area: float(shapely.distance(area.polygon, at)))
         return LeavesArea(self.machine, left.id, gap if self._usable.contains(now) else 0.0, needed, x, y)
 
-    def _too_fast(self, covered: list[Covered], speed: float) -> Reason | None:
+    def _too_fast(self, covered: Covered, speed: float) -> Reason | None:
         """The speed limit that a machine breaks where it is, or may soon be."""
         for area in self._limits:
             limit = area.speed or 0.0
-            if speed > limit * FASTER and any(area.polygon.intersects(one.shape) for one in covered):
+            if speed > limit * FASTER and shapely.intersects(area.polygon, covered.shapes).any():
                 return TooFastFor(self.machine, area.id, speed, limit)
         return None
 
-    def _slow(self, covered: list[Covered]) -> Reason | None:
+    def _slow(self, covered: Covered) -> Reason | None:
         """A goal tells no speed, so what drives it may take the machine's top speed anywhere."""
         return None if self.tracks is None else self._too_fast(covered, self.tracks.forward.top)
 
@@ -227,6 +250,21 @@ def _ends(axis: Axis, speed: float, blind: float, factor: float) -> tuple[float,
     return ends[0], ends[1]
 
 
+def between(old: Place, new: Place) -> list[tuple[float, Place]]:
+    """Places on the straight way from one to another, both included, each with its share of the way."""
+    way, turn = math.dist(old[:2], new[:2]), math.remainder(new[2] - old[2], math.tau)
+    shares = np.linspace(0.0, 1.0, 2 + int(max(way / STEP, abs(turn) / TURN))).tolist()
+    return [
+        (share, (old[0] + share * (new[0] - old[0]), old[1] + share * (new[1] - old[1]), old[2] + share * turn))
+        for share in shares
+    ]
+
+
+def shape_of(body: Body, motion: Motion) -> BaseGeometry:
+    """What a machine covers where it is."""
+    return shapely.union_all(_covered(body, _place(motion), 0.0, 0.0).shapes)
+
+
 def _place(motion: Motion) -> Array:
     return np.array([[motion.x, motion.y, motion.yaw]])
 
@@ -234,28 +272,24 @@ def _place(motion: Motion) -> Array:
 def _places(motion: Motion, reach: Reach) -> Array:
     """Places (N x 3) between and around which the base is until it stands."""
     turns = sorted({reach.right, (reach.right + reach.left) / 2, reach.left})
-    places = [(motion.x, motion.y, motion.yaw)]
-    for turn in turns:
-        for way in {reach.back, reach.ahead}:
-            for share in (0.5, 1.0):
-                chord = motion.yaw + turn * share / 2
-                c, s = math.cos(chord), math.sin(chord)
-                ahead, side = way * share, reach.side * share
-                at = motion.x + c * ahead - s * side, motion.y + s * ahead + c * side
-                places.append((*at, motion.yaw + turn * share))
-    return np.array(places)
+    ends = [(turn, way) for turn in turns for way in {reach.back, reach.ahead}]
+    turn, ahead = np.array([(turn * share, way * share) for turn, way in ends for share in (0.5, 1.0)]).T
+    side = np.tile([0.5 * reach.side, reach.side], len(ends))
+    c, s = np.cos(motion.yaw + turn / 2), np.sin(motion.yaw + turn / 2)
+    x, y = motion.x + c * ahead - s * side, motion.y + s * ahead + c * side
+    return np.concatenate([_place(motion), np.stack([x, y, motion.yaw + turn], axis=1)])
 
 
-def _covered(body: Body, places: Array, between: float, around: float) -> list[Covered]:
+def _covered(body: Body, places: Array, between: float, around: float) -> Covered:
     """What each part covers at places (N x 3), between them, and at headings that are `between` [rad] off."""
     c, s = np.cos(places[:, 2, None]), np.sin(places[:, 2, None])
-    found = []
-    for part in body.parts:
-        (px, py), bulge = part.corners.T, part.spin * (1.0 - math.cos(min(between, math.pi)))
-        x, y = places[:, 0, None] + c * px - s * py, places[:, 1, None] + s * px + c * py
-        corners = shapely.multipoints(np.column_stack([x.ravel(), y.ravel()]))
-        found.append(Covered(shapely.convex_hull(corners), around + bulge))
-    return found
+    px, py = np.concatenate([part.corners for part in body.parts]).T
+    x, y = places[:, 0, None] + c * px - s * py, places[:, 1, None] + s * px + c * py
+    part_of = np.repeat(np.arange(len(body.parts)), [len(part.corners) for part in body.parts])
+    corners = np.stack([x.T.ravel(), y.T.ravel()], axis=1)  # by corner of a part, then by place
+    shapes = shapely.convex_hull(shapely.linestrings(corners, indices=np.repeat(part_of, len(places))))
+    bulge = 1.0 - math.cos(min(between, math.pi))
+    return Covered(shapes, np.array([around + part.spin * bulge for part in body.parts]))
 
 
 def _nearest(line: BaseGeometry, shape: BaseGeometry) -> tuple[float, float, float]:

@@ -2,7 +2,7 @@
 
 from tms_reason.quantities import Metres, MetresPerSecond, Seconds, SquareMetres
 from tms_reason.reason import Reason
-from tms_reason.remedies import EDIT_CONFIG, INSPECT, Remedy
+from tms_reason.remedies import EDIT_CONFIG, ESCAPE, INSPECT, Remedy
 
 DRAW_AGAIN = Remedy("draw", "", "Draw the area again, and export the file anew")
 LOOK_AROUND = Remedy("look", "", "Look who is in the area, and re-arm once it is free")
@@ -69,18 +69,29 @@ class TrackerClockAhead(Reason, text="its stamp is {ahead} ahead of the clock of
 
 # a machine
 class LeavesArea(Reason, text="{machine} must not leave the unmanned area {area}: its border near ({x}, {y}) is"
-    " {gap} away, to stop takes {needed}", action=DRIVE_OUT):
+    " {gap} away, to stop takes {needed}", action=ESCAPE):
     machine: str; area: str; gap: Metres; needed: Metres; x: Metres; y: Metres
 class EntersArea(Reason, text="{machine} must not enter the area {area}: its border near ({x}, {y}) is {gap} away,"
-    " to stop takes {needed}", action=DRIVE_OUT):
+    " to stop takes {needed}", action=ESCAPE):
     machine: str; area: str; gap: Metres; needed: Metres; x: Metres; y: Metres
 class TooFastFor(Reason, text="{machine} would be in the area {area} at {speed}, {limit} are allowed there",
     action=DRIVE_OUT): machine: str; area: str; speed: MetresPerSecond; limit: MetresPerSecond
 class NoWay(Reason, text="no way inside the unmanned areas leads {machine} to ({x}, {y})"):
     machine: str; x: Metres; y: Metres
+class ComesFurtherOut(Reason, text="{machine} may only come back in, but would be {depth} out of where it may be"
+    " instead of {before}, or further in another area", action=ESCAPE): machine: str; depth: Metres; before: Metres
+class NotFurtherIn(Reason, text="{machine} may only come back in: it is {now} out of where it may be, and would be"
+    " {then}"): machine: str; now: Metres; then: Metres
+class EscapesTooFast(Reason, text="{machine} comes back in at {speed}, {limit} are allowed", action=ESCAPE):
+    machine: str; speed: MetresPerSecond; limit: MetresPerSecond
+class TracksNotSlow(Reason, text="what drives {machine} cannot be told to go slowly", action=DRIVE_OUT): machine: str
 class PoseUnknown(Reason, text="its place in the map is not told", action=INSPECT): pass
 class PoseOld(Reason, text="its place in the map is {age} old", action=INSPECT): age: Seconds
 class PoseJumped(Reason, text="its place in the map has jumped", action=INSPECT): pass
 class PoseStuck(Reason, text="its place in the map does not change while its tracks move", action=INSPECT): pass
+class PoseVague(Reason, text="its localisation tells a deviation of {deviation}, {limit} are allowed", action=INSPECT):
+    deviation: Metres; limit: Metres
+class FixLost(Reason, text="its GNSS has no RTK fix", action=INSPECT): pass
+class FixOld(Reason, text="its GNSS tells nothing of its fix", action=INSPECT): pass
 class PoseSettles(Reason, text="{why}: it is believed again after {left} without that"): why: Reason; left: Seconds
 # fmt: on

@@ -11,9 +11,9 @@ from tms_areas.reasons import EntersArea, NoWay
 from tms_reason.reason import Reason
 
 
-def touched(covered: Sequence[Covered], areas: Iterable[Area]) -> frozenset[str]:
+def touched(covered: Covered, areas: Iterable[Area]) -> frozenset[str]:
     """The areas in which a part of a machine may be."""
-    return frozenset(area.id for area in areas if any(one.touches(area) for one in covered))
+    return frozenset(area.id for area in areas if covered.touches(area))
 
 
 def straight(areas: Iterable[Area], points: Sequence[Point], around: float) -> frozenset[str]:

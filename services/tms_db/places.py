@@ -16,6 +16,7 @@ from tms_config.clock import monotonic, unix_time
 from tms_db.connection import StoreConnection
 from tms_db.place_book import PlaceBook
 from tms_db.store import Db
+from tms_interfaces.generated import Coded
 from tms_machine import stamps
 from tms_places.claims import Claim
 from tms_places.keeper import LEASE, Keeper, Report
@@ -23,7 +24,6 @@ from tms_places.reasons import PlacesUnread
 from tms_places.telling import alarms, kept, queue
 from tms_reason.errors import DbError, TmsError
 from tms_reason.wire import to_line
-from tms_interfaces.generated import Coded
 from tms_runtime.app import App
 
 TICK = 1.0  # s between looks whether something is to be granted or told

@@ -8,17 +8,17 @@ from tms_hardware.reasons import (
     CounterFrozen,
     EngineOff,
     LeverLocked,
+    OwnStopPressed,
     SignalSilent,
     SignalUnheard,
     SignalUnreadable,
-    StopPressed,
     SwitchedToManual,
 )
 from tms_hardware.settings import Counter, HardwareSettings, Signal, Source, Value
 from tms_reason.reason import Reason
 
 Known = Literal["yes", "no", "unknown"]
-FORBIDS = {"emergency_stop": StopPressed, "lock_lever": LeverLocked, "manual": SwitchedToManual}  # with a yes
+FORBIDS = {"emergency_stop": OwnStopPressed, "lock_lever": LeverLocked, "manual": SwitchedToManual}  # with a yes
 
 
 @dataclass(frozen=True)

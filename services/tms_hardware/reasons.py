@@ -11,7 +11,7 @@ START_ENGINE = Remedy("look", "", "Start the engine")
 
 
 # fmt: off
-class StopPressed(Reason, text="{machine}: its own emergency stop is pressed", action=RELEASE): machine: str
+class OwnStopPressed(Reason, text="{machine}: its own emergency stop is pressed", action=RELEASE): machine: str
 class LeverLocked(Reason, text="{machine}: its lock lever is locked", action=UNLOCK): machine: str
 class SwitchedToManual(Reason, text="{machine}: its switch stands on manual", action=TO_REMOTE): machine: str
 class EngineOff(Reason, text="{machine}: its engine does not run", action=START_ENGINE): machine: str

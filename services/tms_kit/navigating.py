@@ -7,6 +7,7 @@ from nav2_msgs.action import ComputePathToPose, FollowPath, FollowWaypoints, Nav
 from nav_msgs.msg import Path
 
 from tms_config.clock import monotonic
+from tms_interfaces.generated import ActionType, F, G, R
 from tms_kit.acting import Acting, Progress, missed
 from tms_kit.place_holding import holding
 from tms_machine.frames import MAP
@@ -14,7 +15,6 @@ from tms_machine.reasons import Driving, DrivingThrough, DrivingTo, MissedWaypoi
 from tms_places.reasons import PlacesNeeded
 from tms_reason.errors import SubtaskFailed
 from tms_reason.reason import Reason
-from tms_interfaces.generated import ActionType, F, G, R
 
 
 class Navigating(Acting):

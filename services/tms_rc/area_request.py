@@ -1,13 +1,13 @@
-"""What a gateway is asked when areas are to be enabled: nothing of it is taken for granted."""
+"""What persons ask a gateway about areas: nothing of it is taken for granted."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 from pydantic import Field, ValidationError
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 
-from tms_areas.areas import AreaSet
+from tms_areas.areas import SHOWN, AreaSet
 from tms_areas.geojson import gathered, read
 from tms_config.models import Settings
 from tms_rc.reasons import AreaRequestBad, AreasOfOtherId, ParameterTwice, Unsigned
@@ -24,11 +24,17 @@ class AreaRequest:
     only_check: bool
 
 
-class _Told(Settings):
+class _Who(Settings):
+    who: str = Field(strict=True)
+
+
+class _Told(_Who):
     id: str = Field(strict=True)
     areas: str = Field(strict=True)  # GeoJSON in map
-    who: str = Field(strict=True)
     only_check: bool = Field(strict=True)
+
+
+W = TypeVar("W", bound=_Who)
 
 
 def area_request(parameters: Sequence[Parameter]) -> AreaRequest:
@@ -39,20 +45,34 @@ def area_request(parameters: Sequence[Parameter]) -> AreaRequest:
     Raises:
         TmsError: something is missing, of another type, unknown or wrong.
     """
+    told = _read(_Told, parameters)
+    areas = gathered([read(told.areas, "areas", None)])
+    if areas.id != told.id:
+        raise TmsError(AreasOfOtherId(told.id[:SHOWN], areas.id[:SHOWN]))
+    return AreaRequest(areas, told.who, told.only_check)
+
+
+def escape_request(parameters: Sequence[Parameter]) -> str:
+    """Who lets a machine back in: the parameter `who`.
+
+    Raises:
+        TmsError: as for a request to enable areas.
+    """
+    return _read(_Who, parameters).who
+
+
+def _read(kind: type[W], parameters: Sequence[Parameter]) -> W:
     names = [one.name for one in parameters]
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
         raise TmsError(AreaRequestBad(ParameterTwice(twice)))
     try:
-        told = _Told.model_validate({one.name: _value(one.value) for one in parameters})
+        told = kind.model_validate({one.name: _value(one.value) for one in parameters})
     except ValidationError as error:
         raise TmsError(AreaRequestBad(explain(error))) from error
     if not told.who.strip() or not told.who.isprintable():
         raise TmsError(Unsigned())
-    areas = gathered([read(told.areas, "areas", None)])
-    if areas.id != told.id:
-        raise TmsError(AreasOfOtherId(told.id[:12], areas.id[:12]))
-    return AreaRequest(areas, told.who, told.only_check)
+    return told
 
 
 def _value(value: ParameterValue) -> Any:

@@ -8,9 +8,13 @@ from dataclasses import replace
 from queue import SimpleQueue
 from typing import Any
 
+from sensor_msgs.msg import NavSatFix
+from std_msgs.msg import Float64
+
 from tms_areas.areas import SHOWN, AreaSet, Point
 from tms_areas.body import Silhouette
 from tms_areas.braking import tracks_of
+from tms_areas.escape import SPEED, Escape
 from tms_areas.fix import Fix, Seen
 from tms_areas.guard import Guard, Verdict
 from tms_areas.law import Law
@@ -18,19 +22,28 @@ from tms_config.clock import monotonic, unix_time
 from tms_decision.gateway.effects import Receipt
 from tms_decision.gateway.state import Gateway
 from tms_decision.reasons import ProcessLost
-from tms_machine.border import MotionAction
+from tms_machine.border import MotionAction, speed_limit
 from tms_machine.places import Places
 from tms_proof.standstill import HEADING, ODOM, PLACE
 from tms_rc.area_file import AreaFile, Enabled
 from tms_rc.braking_file import BrakingFile
 from tms_rc.motion_goals import frame_of, places_of, way_of
 from tms_rc.place_watch import PlaceWatch
-from tms_rc.reasons import AreasLate, AreasNotKept, GoalNotInMap, TrapsMachine
+from tms_rc.reasons import (
+    AreasLate,
+    AreasNotEnabled,
+    AreasNotKept,
+    EscapesAtRest,
+    GoalNotInMap,
+    NothingToEscape,
+    TrapsMachine,
+)
 from tms_reason.errors import TmsError
 from tms_reason.reason import Reason
 from tms_runtime.app import App
 
 PERIOD = 0.04  # s between looks; with the beats it stays within tms_areas.law.BEAT
+FIXES = 10  # messages of a GNSS that may come between two looks
 SPEEDS = 500  # looks that are kept until a receipt comes: it waits for the proof of the stop, and for the disk
 AROUND = 0.3  # s around the begin of a stop whose highest speed counts
 LATE = 0.3  # s; an older verdict is none
@@ -51,9 +64,15 @@ class AreaWatch:
         self._places = Places(app.ros, {machine: self._border})
         self._shared = PlaceWatch(app)
         drive = self._model.drive
-        self._fix, self._fixing = Fix(drive.turn_velocity if drive is not None else 0.0), threading.Lock()
+        gnss = site.file.machines[machine].fix
+        self._fix = Fix(drive.turn_velocity if drive is not None else 0.0, rtk=gnss is not None)
+        self._fixing = threading.Lock()
+        self._fixes = None if gnss is None else app.ros.sample_arrivals(NavSatFix, f"/{machine}/{gnss}", FIXES)
         self._told = 0.0  # when the last pose that was taken came
         self._enabling = threading.Lock()
+        self._slow = site.file.backend == "sim" or self._border.controller == "ours"  # what drives takes a speed limit
+        self._limits = app.ros.publisher(Float64, speed_limit(machine), depth=1, latched=True)
+        self._limit = 0.0  # m/s, as told last
         self.stops: SimpleQueue[Receipt] = SimpleQueue()  # receipts that may show worse brakes
         self._braking = BrakingFile(site.state, machine)
         tracks = tracks_of(self._model, self._border)
@@ -62,6 +81,8 @@ class AreaWatch:
         # Replaced, never changed: read without a lock.
         self.enabled: Enabled | None = None
         self._guard: Guard | None = None
+        self._escape: Escape | None = None  # in its place, while a person lets the machine back in
+        self._escape_since = 0.0  # s since 1970
         self._problem: Reason | None = None
         self._verdict: tuple[float, int, Verdict] | None = None  # when, of which goal
         self._seen = Seen(None, None)
@@ -100,7 +121,7 @@ class AreaWatch:
 
     def problem(self, motion: MotionAction, request: Any, joints: Mapping[str, float]) -> Reason | None:
         """Why a goal must not begin, from where the machine is now."""
-        guard = self._guard
+        escape, guard = self._escape, self._guard
         if guard is None:
             return self._problem
         seen = self._now()
@@ -108,8 +129,11 @@ class AreaWatch:
             frame = frame_of(request)
             if frame:
                 return GoalNotInMap(frame)
-            return self._shared.judged(self._holding, seen, joints, places, told=motion.field in TOLD)
-        return guard.may_work(seen, [joints, *way_of(request, self._model.turned(motion.field))])
+            told = motion.field in TOLD
+            if escape is not None:
+                return escape.may_drive(seen, joints, places, told=told)
+            return self._shared.judged(self._holding, seen, joints, places, told=told)
+        return (escape or guard).may_work(seen, [joints, *way_of(request, self._model.turned(motion.field))])
 
     # people
 
@@ -135,8 +159,42 @@ class AreaWatch:
     def _enabled(self, enabled: Enabled, guard: Guard) -> None:
         self._shared.enable(enabled.areas)
         self.enabled, self._guard, self._problem = enabled, guard, None
+        self._end_escape()
         target = f"{self._app.machine} {enabled.areas.id[:SHOWN]}"
         self._tell("enable_areas", target, enabled.who, enabled.at)  # at each start again: the audit may be new
+
+    def escape(self, who: str) -> None:
+        """Let the machine, which stands outside, be moved back in, until it is there or is stopped: escape.py.
+
+        Raises:
+            TmsError: it is inside, is not armed, moves, or its place is not believed.
+        """
+        gateway, machine = self._gateway, self._app.machine
+        with self._enabling:
+            guard, seen = self._guard, self._now()
+            if guard is None:
+                raise TmsError(self._problem or AreasNotEnabled())
+            if gateway.latch.cause is not None or gateway.active is not None or gateway.watch.moving():
+                raise TmsError(EscapesAtRest(machine))
+            if seen.unsure is not None:
+                raise TmsError(seen.unsure)
+            escape = Escape(guard.law, self._silhouette, self._slow)
+            if escape.over(seen, gateway.watch.positions):
+                raise TmsError(NothingToEscape(machine))
+            self._escape, self._escape_since = escape, unix_time()
+            self._pace(SPEED)
+        self._tell("escape", machine, who, self._escape_since)
+        self._app.log.warning("escape", who=who)
+
+    def _end_escape(self) -> None:
+        self._escape = None
+        self._pace(math.inf)
+
+    def _pace(self, limit: float) -> None:
+        """Tell what drives the tracks how fast they may go [m/s]."""
+        if limit != self._limit:
+            self._limit = limit
+            self._limits.publish(Float64(data=limit))
 
     def _check_free(self, guard: Guard) -> None:
         active = self._gateway.active
@@ -176,7 +234,7 @@ class AreaWatch:
 
     def _look(self) -> None:
         self._places.take()
-        place = self._places.place(self._app.machine)
+        place, deviation = self._places.place(self._app.machine), self._places.deviation(self._app.machine)
         odom = self._gateway.watch.sources.get(ODOM)
         last = {} if odom is None else {name: one.last for name, one in odom.channels.items()}
         speed, turning = (one.speed or 0.0 if (one := last.get(name)) else 0.0 for name in (PLACE, HEADING))
@@ -184,20 +242,23 @@ class AreaWatch:
             self._fix.odometry(speed, turning)
             if place is not None and place.received > self._told:
                 self._told = place.received
-                self._fix.heard(place.received, place.x, place.y, place.yaw)
+                self._fix.heard(place.received, place.x, place.y, place.yaw, deviation)
+            for fix in self._fixes() if self._fixes is not None else ():
+                self._fix.fixed(fix.received, fix.message.status.status)
             seen = self._seen = self._fix.look(monotonic())
         if seen.unsure is None and seen.motion is not None:
             self._speeds.append((unix_time(), math.hypot(seen.motion.vx, seen.motion.vy)))
-        while not self.stops.empty():
-            self._learn(self.stops.get())
+        self._take_stops()
+        if (escape := self._escape) is not None and escape.over(seen, self._gateway.watch.positions):
+            self._escaped()
         active, guard = self._gateway.active, self._guard
         drives = active is not None and self._drives(active.number)
         lease = None if guard is None else self._leases(guard, seen, drives)
-        guard = self._guard
+        escape, guard = self._escape, self._guard
         if active is not None and guard is not None:
             at = monotonic()
-            verdict = guard.look(seen, self._gateway.watch.positions, drives)
-            if lease is not None and verdict.stop is None:
+            verdict = (escape or guard).look(seen, self._gateway.watch.positions, drives)
+            if lease is not None and escape is None and verdict.stop is None:
                 verdict = Verdict(hold=lease)
             self._verdict = at, active.number, verdict
 
@@ -209,6 +270,18 @@ class AreaWatch:
                 if self.enabled is not None:
                     self._guard = self._made(self.enabled.areas)
         return lease
+
+    def _take_stops(self) -> None:
+        while not self.stops.empty():
+            stop = self.stops.get()
+            self._learn(stop)
+            if self._escape is not None and stop.stamp >= self._escape_since:
+                self._escaped()
+
+    def _escaped(self) -> None:
+        with self._enabling:
+            self._end_escape()
+        self._app.log.info("escape_over")
 
     def _learn(self, stop: Receipt) -> None:
         """Enlarge the distances if a stop from a known speed took longer than the model says."""

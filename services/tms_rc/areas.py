@@ -47,6 +47,7 @@ class _Service:
     def __init__(self, app: App, watch: Any) -> None:
         self._watch = watch
         app.ros.offer_slow(SetParametersAtomically, f"/{app.machine}/rc/areas/set", self._set)
+        app.ros.offer_slow(SetParametersAtomically, f"/{app.machine}/rc/areas/escape", self._escape)
         app.ros.offer_slow(GetParameters, f"/{app.machine}/rc/areas/get", self._get)
 
     def _set(
@@ -58,6 +59,19 @@ class _Service:
         try:
             asked = area_request(request.parameters)
             self._watch.enable(asked.areas, asked.who, asked.only_check)
+            response.result = SetParametersResult(successful=True)
+        except TmsError as error:
+            response.result = SetParametersResult(successful=False, reason=to_line(error.reason))
+        return response
+
+    def _escape(
+        self, request: SetParametersAtomically.Request, response: SetParametersAtomically.Response
+    ) -> SetParametersAtomically.Response:
+        """Let the machine back in, for `who`."""
+        from tms_rc.area_request import escape_request
+
+        try:
+            self._watch.escape(escape_request(request.parameters))
             response.result = SetParametersResult(successful=True)
         except TmsError as error:
             response.result = SetParametersResult(successful=False, reason=to_line(error.reason))

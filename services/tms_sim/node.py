@@ -12,6 +12,7 @@ from tms_msg_ground.msg import GroundContact
 
 from tms_config.models import Border
 from tms_config.site_file import Fault
+from tms_machine.border import speed_limit
 from tms_reason.validation import explain
 from tms_runtime.app import App
 from tms_sim.arm_server import trajectory_server
@@ -37,6 +38,8 @@ def start(app: App) -> None:
     for handler in _handlers(machine, border):
         server = ActionServer(app, machine, handler)
         app.ros.serve(handler.type, f"/{name}/{getattr(border, handler.field)}", server.run, server.accept)
+    if (base := machine.base) is not None:
+        app.ros.subscribe(Float64, speed_limit(name), lambda m: base.limit(m.data), latched=True)
     if border.compute_path_to_pose and machine.navigator is not None:
         app.ros.serve(ComputePathToPose, f"/{name}/{border.compute_path_to_pose}", PathServer(machine.navigator).run)
     if border.emg_stop:

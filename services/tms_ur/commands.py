@@ -131,6 +131,12 @@ def _machines(app: FastAPI, client: "SiteClient", note: _Note, site: Site) -> No
         note(request, person, "rearm" if asked.token else "rearm_asked", _known(name, names))
         return client.rearm(name, asked.token)
 
+    @app.post("/api/machines/{name}/escape", summary="Let a machine that stands outside its areas back in, slowly",
+              responses=ANSWERS)  # fmt: skip
+    def escape(request: Request, name: MachineName, _: Nothing, person: Operator) -> Nothing:
+        client.let_back(name, note(request, person, "escape_asked", _known(name, names)))
+        return Nothing()
+
 
 def _known(machine: str, names: list[str]) -> str:
     if machine not in names:
@@ -206,7 +212,7 @@ def _places(app: FastAPI, client: "SiteClient", note: _Note) -> None:
     @app.post("/api/places/{name}/revoke", summary="Take a shared place from its holder", responses=ANSWERS)
     def revoke(request: Request, name: PlaceName, _: Nothing, person: Operator) -> Revoked:
         who = note(request, person, "revoke_place", name)
-        return Revoked(place=name, holder=client.revoke_place(name, who))
+        return Revoked(place=name, holder=client.shared.revoke(name, who))
 
 
 def _processes(app: FastAPI, client: "SiteClient", note: _Note) -> None:

@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from tms_msg_areas.msg import Places as SharedPlaces
-from tms_msg_areas.srv import RevokePlace
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import SetParametersAtomically
 from tms_msg_db.srv import (
     AddTask,
     AddTemplate,
@@ -43,6 +43,7 @@ from tms_ur import messages
 from tms_ur.board import Board
 from tms_ur.data_models import Change, Record, Sensing
 from tms_ur.models import AddedTemplate, Event, Host, Place, Rearmed, Receipt, Run, Task, TaskText, Template
+from tms_ur.place_client import PlaceClient
 from tms_ur.reason_view import of_error, of_line, view
 from tms_ur.reasons import RunNotBegun, StartRefused, UnknownProcess
 from tms_ur.scene_models import Scene, scene
@@ -60,6 +61,7 @@ class SiteClient:
         names = list(site.file.machines)
         self._ros = ros
         self.board = Board(names)
+        self.shared = PlaceClient(ros, self.board)
         self._inputs: tuple[list[InputState], float] | None = None  # read and replaced in one step
         self._scheduler = ros.peer(ExecuteTask, "/tms/execute_task")
         self._places = Places(ros, {name: site.border(name) for name in names})
@@ -68,7 +70,6 @@ class SiteClient:
             ros.prepare(StopMachine, f"/{name}/rc/stop")
         ros.subscribe(RunStates, "/tms/runs", self._on_runs, latched=True)
         ros.subscribe(Processes, "/tms/host/processes", self._on_processes, depth=10, latched=True)
-        ros.subscribe(SharedPlaces, "/tms/places", self._on_shared, latched=True)
         ros.subscribe(InputStates, "/tms/sp/inputs", self._on_inputs, latched=True)
         ros.poll_in_thread(PERIOD, self._update_places, "places")
 
@@ -83,9 +84,6 @@ class SiteClient:
 
     def _on_processes(self, message: Processes) -> None:
         self.board.put_host(Host(name=message.host, processes=[messages.process(row) for row in message.processes]))
-
-    def _on_shared(self, message: SharedPlaces) -> None:
-        self.board.put_shared(messages.shared_places(message))
 
     def _on_inputs(self, message: InputStates) -> None:
         self._inputs = (list(message.inputs), monotonic())
@@ -213,14 +211,6 @@ class SiteClient:
 
     # machines
 
-    def revoke_place(self, place: str, who: str) -> str:
-        """Take a shared place from its holder, which is returned.
-
-        Raises:
-            TmsError: nobody holds it, or tms:db is away.
-        """
-        return str(self._ask(RevokePlace, "/tms/places/revoke", place=place, who=who).holder)
-
     def stop(self, machine: str, cause: Reason) -> Receipt:
         """Stop one machine by a call of its gateway; where no answer comes, the receipt says that."""
         try:
@@ -241,6 +231,18 @@ class SiteClient:
         """
         answer = self._ask(Rearm, f"/{machine}/rearm", token=token)
         return Rearmed(token=answer.token, cause=of_line(answer.cause), armed=answer.armed)
+
+    def let_back(self, machine: str, who: str) -> None:
+        """Let a machine that stands outside its areas be moved back in.
+
+        Raises:
+            TmsError: refused, with the reason.
+        """
+        value = ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=who)
+        request = SetParametersAtomically.Request(parameters=[Parameter(name="who", value=value)])
+        result = self._ros.call(SetParametersAtomically, f"/{machine}/rc/areas/escape", request, CALL_LIMIT).result
+        if not result.successful:
+            raise TmsError(wire.refusal("", result.reason))
 
     def scene(self, machine: str) -> Scene:
         """What the planner of a machine plans among now.

@@ -27,14 +27,14 @@ AREAS = {  # it starts at (0, -3.77) and looks along x
 }
 
 
-def document() -> str:
+def document(areas: dict[str, Any]) -> str:
     features = [
         {
             "type": "Feature",
             "properties": {"id": name, "type": kind},
             "geometry": {"type": "Polygon", "coordinates": [[*corners, corners[0]]]},
         }
-        for name, (kind, corners) in AREAS.items()
+        for name, (kind, corners) in areas.items()
     ]
     return json.dumps({"type": "FeatureCollection", "frame": "map", "features": features})
 
@@ -62,7 +62,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Mesh, Ros, 
     with mesh_apart(tmp_path_factory.mktemp("areas"), **changes) as mesh:
         folder = mesh.site.with_suffix("") / "areas"
         folder.mkdir(parents=True)
-        (folder / "yard.geojson").write_text(document())
+        (folder / "yard.geojson").write_text(document(AREAS))
         mesh.tms("up", expect=None)
         try:
             ros = Ros("tms_tests_areas")
@@ -110,6 +110,18 @@ def test_a_machine_and_its_areas(site: tuple[Mesh, Ros, Seen]) -> None:
     places.take()
     place = places.place(MACHINE)
     assert place is not None and 5.0 < place.x < 12.0 - FRONT
+
+    # its tail stands outside of other areas: it may come in, and only that
+    file = mesh.site.with_suffix("") / "areas" / "yard.geojson"
+    file.write_text(document({"yard": ("unmanned", [(place.x, -20), (40, -20), (40, 20), (place.x, 20)])}))
+    mesh.tms("areas", "enable", "--yes", "--by", "a person")
+    rearm(ros, MACHINE)
+    assert "LEAVES_AREA" in go(ros, place.x + 4.0, -3.77).result.error_msg
+    mesh.tms("rearm", MACHINE, "--escape", "--yes", "--by", "a person")
+    assert "NOT_FURTHER_IN" in go(ros, place.x, -3.77).result.error_msg
+    inside = go(ros, place.x + 4.0, -3.77)  # at a slow speed, or it were stopped
+    assert inside.outcome is Outcome.SUCCEEDED, inside.result
+    wait_until(lambda: mesh.tms("rearm", MACHINE, "--escape", expect=None).returncode == 1, 20, "it is over", every=CLI)
 
     pid = gateway_pid(mesh)
     os.kill(pid, signal.SIGKILL)

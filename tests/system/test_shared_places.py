@@ -1,4 +1,4 @@
-"""Two trucks and a road for one of them: they take turns, nobody crosses, nobody waits for ever. No law sleeps meanwhile.
+"""Two trucks and a road for one of them: they take turns, never are both on it, and both come to an end.
 
 TMS_ROUNDS: how often each drives to and fro. One holds the road by nodes of its tree, the other by its goals alone.
 """
@@ -11,7 +11,7 @@ from collections.abc import Iterator
 import pytest
 from tms_msg_areas.msg import Place, Places
 
-from conftest import NO_CONSOLE, Mesh, mesh_apart, node_in, rearm, running, wait_until
+from conftest import NO_CONSOLE, Mesh, mesh_apart, node_in, wait_until
 from tms_config.config import load_site
 from tms_machine.places import Places as Poses
 
@@ -100,15 +100,14 @@ def test_two_trucks_take_turns_on_a_road(mesh: Mesh) -> None:
     for name in LANES:
         file = mesh.state / f"{name}.xml"
         file.write_text(task(name, by_nodes=name == "ic120_1"))
-        added = json.loads(mesh.tms("task", "add", str(file), "--json").stdout)
-        numbers.append(str(added["task"] if "task" in added else added[0]["task"]))
+        numbers.append(str(json.loads(mesh.tms("task", "add", str(file), "--json").stdout)["task_id"]))
     ends: dict[str, int] = {}
     with node_in(mesh) as node:
         watch = Watch(node)
         wait_until(lambda: watch.looks > 0, 20, "both trucks tell where they are")
 
         def go(number: str) -> None:
-            ends[number] = mesh.tms("run", number, expect=None, limit=2 * ROUNDS * CROSSING).returncode
+            ends[number] = mesh.tms("run", number, "--wait", expect=None, limit=2 * ROUNDS * CROSSING).returncode
 
         threads = [threading.Thread(target=go, args=(number,)) for number in numbers]
         for one in threads:

@@ -11,10 +11,10 @@ from tms_hardware.reasons import (
     CounterFrozen,
     EngineOff,
     LeverLocked,
+    OwnStopPressed,
     SignalSilent,
     SignalUnheard,
     SignalUnreadable,
-    StopPressed,
     SwitchedToManual,
 )
 from tms_hardware.settings import HardwareSettings, Signal, Value, hardware_of
@@ -49,7 +49,7 @@ def test_a_machine_that_may_move() -> None:
 @pytest.mark.parametrize(
     ("source", "value", "condition"),
     [
-        ("emergency_stop", True, Condition(stop=StopPressed("zx200"))),
+        ("emergency_stop", True, Condition(stop=OwnStopPressed("zx200"))),
         ("lock_lever", True, Condition(hold=LeverLocked("zx200"))),
         ("manual", 0, Condition(hold=SwitchedToManual("zx200"))),
         ("engine", 500, Condition(hold=EngineOff("zx200"))),

@@ -11,7 +11,7 @@ from tms_config.clock import monotonic
 from tms_config.config import load_site
 from tms_decision.gateway.events import Event, Manual
 from tms_decision.reasons import ProcessLost
-from tms_hardware.reasons import LeverLocked, StopPressed, SwitchedToManual
+from tms_hardware.reasons import LeverLocked, OwnStopPressed, SwitchedToManual
 from tms_rc import hardware_watch
 from tms_rc.hardware_watch import LATE, HardwareWatch
 from tms_rc.motion_servers import MotionServers
@@ -86,7 +86,7 @@ def test_a_machine_that_may_move(rig: Rig) -> None:
 def test_a_pressed_stop_latches_and_keeps_from_arming_until_it_is_released(rig: Rig) -> None:
     rig.told("relay")
     rig.told("relay")
-    pressed = StopPressed("zx200")
+    pressed = OwnStopPressed("zx200")
     assert rig.stops == [pressed] and rig.watch.astray() == rig.watch.unready() == pressed
     assert MotionServers.forbidden(rig.servers) == pressed
     rig.told()

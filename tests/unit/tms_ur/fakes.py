@@ -138,6 +138,9 @@ class FakeSiteClient:
         self._called("rearm", machine, token)
         return Rearmed(token="" if token else "t-1", cause=view(SoftwareStop()), armed=bool(token))
 
+    def let_back(self, machine: str, who: str) -> None:
+        self._called("let_back", machine, who)
+
     def restart(self, process: str) -> None:
         self._called("restart", process)
 

@@ -25,6 +25,7 @@ COMMANDS = [
     ("/api/machines/zx200/rearm", {}), ("/api/tasks", {"xml": XML}), ("/api/tasks/4/remove", {}),
     ("/api/tasks/check", {"xml": XML}), ("/api/tasks/4/diff", {"xml": XML}), ("/api/parameters", RECORD),
     ("/api/processes/zx200:rc/restart", {}), ("/api/templates", {"name": "Dig", "xml": XML}),
+    ("/api/machines/zx200/escape", {}),
 ]  # fmt: skip
 
 
@@ -132,6 +133,12 @@ def test_rearm_has_two_steps(client: Client) -> None:
     assert (first["armed"], first["token"]) == (False, "t-1")
     assert client.post("/api/machines/zx200/rearm", json={"token": "t-1"}).json()["armed"]
     assert client.post("/api/machines/ic120/rearm", json={}).status_code == 404
+
+
+def test_who_lets_a_machine_back_is_told_its_gateway(client: Client, site_client: FakeSiteClient) -> None:
+    assert client.post("/api/machines/zx200/escape", json={}).is_success
+    assert site_client.calls == [("let_back", "zx200", "local at 127.0.0.1")]
+    assert client.post("/api/machines/ic120/escape", json={}).status_code == 404
 
 
 def test_answer_a_question(client: Client, site_client: FakeSiteClient) -> None:
@@ -282,8 +289,8 @@ def test_every_command_is_audited(site_client: FakeSiteClient) -> None:
     for path, body in [*COMMANDS, ("/api/stop", {})]:
         assert client.post(path, json=body).is_success, path
     assert {what for _, _, what, _ in audit.notes} == {
-        "start_run", "cancel_run", "answer", "rearm_asked", "add_task", "remove_task", "set_parameter", "restart",
-        "stop", "add_template",
+        "start_run", "cancel_run", "answer", "rearm_asked", "escape_asked", "add_task", "remove_task", "set_parameter",
+        "restart", "stop", "add_template",
     }  # fmt: skip
     assert {(who, where) for who, where, _, _ in audit.notes} == {("local", "127.0.0.1")}
 
@@ -540,7 +547,8 @@ def test_every_endpoint_is_in_the_document(client: Client) -> None:
         "/api/state", "/api/events", "/api/tasks", "/api/tasks/{task_id}", "/api/runs", "/api/runs/{run_id}/events",
         "/api/runs/{run_id}/cancel", "/api/parameters",
         "/api/parameters/history", "/api/sensing", "/api/site", "/api/session", "/api/login", "/api/logout",
-        "/api/stop", "/api/machines/{name}/rearm", "/api/questions/{question_id}", "/api/tasks/check",
+        "/api/stop", "/api/machines/{name}/rearm", "/api/machines/{name}/escape",
+        "/api/questions/{question_id}", "/api/tasks/check",
         "/api/tasks/{task_id}/diff", "/api/tasks/{task_id}/remove", "/api/runs/{run_id}/tree",
         "/api/runs/{run_id}/export", "/api/audit", "/api/machines/{name}/scene",
         "/api/processes/{name}/log", "/api/processes/{name}/restart",
