@@ -125,7 +125,7 @@ def test_two_trucks_take_turns_on_a_road(mesh: Mesh) -> None:
 def test_unknown_places_and_places_of_nobody(mesh: Mesh) -> None:
     file = mesh.state / "unknown.xml"
     file.write_text(task("ic120_1", by_nodes=True).replace('place="road"', 'place="rood"'))
-    found = mesh.tms("check", str(file), expect=None)
+    found = mesh.tms("task", "check", str(file), expect=None)
     assert found.returncode != 0 and "rood" in found.stdout + found.stderr
     nobody = mesh.tms("places", "revoke", "road", "--yes", expect=None)
     assert nobody.returncode != 0 and "nobody holds road" in nobody.stderr
