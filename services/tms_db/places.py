@@ -11,6 +11,7 @@ from typing import TypeVar
 from prometheus_client import Gauge
 from tms_msg_areas.msg import Place, PlaceRequest, Places
 from tms_msg_areas.srv import AskPlaces, ReportPlaces, RevokePlace
+from tms_msg_db.msg import Event
 
 from tms_config.clock import monotonic, unix_time
 from tms_db.connection import StoreConnection
@@ -26,6 +27,7 @@ from tms_reason.errors import DbError, TmsError
 from tms_reason.wire import to_line
 from tms_runtime.app import App
 
+ACTS = 20  # of persons that are told to an audit that comes later
 TICK = 1.0  # s between looks whether something is to be granted or told
 ALARMS = Gauge(
     "tms_db_place_alarms", "Machines that wait for each other in a circle, and machines in a place of another"
@@ -42,6 +44,7 @@ class PlaceServices:
         self._keeper: Keeper | None = None  # until the book was read
         self._told: Places | None = None  # also an empty one is told: nobody need wait for more
         self._publisher = app.ros.publisher(Places, "/tms/places", depth=1, latched=True)
+        self._acts = app.ros.publisher(Event, "/tms/places/acts", depth=ACTS, latched=True)
 
     def offer(self) -> None:
         ros = self._app.ros
@@ -84,6 +87,9 @@ class PlaceServices:
     def revoke(self, request: RevokePlace.Request, response: RevokePlace.Response) -> RevokePlace.Response:
         def answer() -> None:
             response.holder = self._change(lambda keeper: keeper.revoke(request.place, request.who))
+            act = Event(stamp=stamps.time(unix_time()), kind="revoke_place", text=request.who)
+            act.node = f"{request.place} of {response.holder}"
+            self._acts.publish(act)
             self._app.log.warning("place_revoked", place=request.place, holder=response.holder, who=request.who)
 
         self._answer(response, answer)

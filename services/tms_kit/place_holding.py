@@ -29,7 +29,7 @@ def holding(
 
     `waits` is called with the reason, again and again; what it raises ends the wait.
     """
-    request = AskPlaces.Request(machine=machine, places=places, hold=True)
+    request = AskPlaces.Request(machine=machine, places=list(places), hold=True)
     try:
         _ask(ros, request, lambda: waits(WaitsForKeeper(machine, places[0])))
         while (why := next(filter(None, (site.waits(machine, place) for place in places)), None)) is not None:

@@ -37,10 +37,10 @@ class SitePlaces:
                 return WaitsForLease(machine, place)
         if told is None or machine not in queue:
             return WaitsForKeeper(machine, place)
-        if told.holder:
+        if told.holder not in ("", machine):
             return WaitsForPlace(machine, place, told.holder, _clock(told.since))
         ahead = queue[: queue.index(machine)]
-        return WaitsItsTurn(machine, place, ahead[0]) if ahead else WaitsForKeeper(machine, place)
+        return WaitsItsTurn(machine, place, ahead[0]) if ahead else WaitsForLease(machine, place)
 
     def _heard(self, told: Places) -> None:
         self._told = {one.name: one for one in told.places}

@@ -1,5 +1,6 @@
 """Who waits for whom: among machines that wait now, and among those that may come to wait."""
 
+import itertools
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -19,9 +20,20 @@ Order = tuple[str, str]  # a place that is held while the other one is taken
 
 
 def missing(book: Book, one: Request) -> set[str]:
-    """What a request still needs."""
-    held = book.held(one.machine)
-    return {place for place in one.places if place not in held or held[place].revoked}
+    """What a request still needs.
+
+    A place that its machine gives back is needed again, if somebody else came first: else the fastest would keep it.
+    Not while the machine is inside, as nobody else could get it then.
+    """
+    held, inside = book.held(one.machine), book.inside.get(one.machine, ())
+    earlier = itertools.takewhile(lambda each: each != one, book.queue)
+    wanted = {place for each in earlier if each.machine != one.machine for place in each.places}
+    kept = {
+        place
+        for place, claim in held.items()
+        if not claim.revoked and (claim.wants or place in inside or place not in wanted)
+    }
+    return set(one.places) - kept
 
 
 def first(book: Book, one: Request, earlier: Iterable[Request]) -> list[Request]:

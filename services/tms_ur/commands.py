@@ -211,8 +211,8 @@ def _fits(kind: str, value: Any) -> bool:
 def _places(app: FastAPI, client: "SiteClient", note: _Note) -> None:
     @app.post("/api/places/{name}/revoke", summary="Take a shared place from its holder", responses=ANSWERS)
     def revoke(request: Request, name: PlaceName, _: Nothing, person: Operator) -> Revoked:
-        who = note(request, person, "revoke_place", name)
-        return Revoked(place=name, holder=client.revoke_place(name, who))
+        who = note(request, person, "revoke_place_asked", name)
+        return Revoked(place=name, holder=client.shared.revoke(name, who))
 
 
 def _processes(app: FastAPI, client: "SiteClient", note: _Note) -> None:

@@ -4,8 +4,6 @@ from typing import Any
 
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParametersAtomically
-from tms_msg_areas.msg import Places as SharedPlaces
-from tms_msg_areas.srv import RevokePlace
 from tms_msg_db.srv import (
     AddTask,
     AddTemplate,
@@ -45,6 +43,7 @@ from tms_ur import messages
 from tms_ur.board import Board
 from tms_ur.data_models import Change, Record, Sensing
 from tms_ur.models import AddedTemplate, Event, Host, Place, Rearmed, Receipt, Run, Task, TaskText, Template
+from tms_ur.place_client import PlaceClient
 from tms_ur.reason_view import of_error, of_line, view
 from tms_ur.reasons import RunNotBegun, StartRefused, UnknownProcess
 from tms_ur.scene_models import Scene, scene
@@ -65,6 +64,7 @@ class SiteClient:
         self._ros = ros
         self.board = Board(names)
         self._watching = Watching(ros, site, self.board)
+        self.shared = PlaceClient(ros, self.board)
         self._inputs: tuple[list[InputState], float] | None = None  # read and replaced in one step
         self._scheduler = ros.peer(ExecuteTask, "/tms/execute_task")
         self._places = Places(ros, {name: site.border(name) for name in names})
@@ -73,7 +73,6 @@ class SiteClient:
             ros.prepare(StopMachine, f"/{name}/rc/stop")
         ros.subscribe(RunStates, "/tms/runs", self._on_runs, latched=True)
         ros.subscribe(Processes, "/tms/host/processes", self._on_processes, depth=10, latched=True)
-        ros.subscribe(SharedPlaces, "/tms/places", self._on_shared, latched=True)
         ros.subscribe(InputStates, "/tms/sp/inputs", self._on_inputs, latched=True)
         ros.poll_in_thread(PERIOD, self._update_places, "places")
 
@@ -88,9 +87,6 @@ class SiteClient:
 
     def _on_processes(self, message: Processes) -> None:
         self.board.put_host(Host(name=message.host, processes=[messages.process(row) for row in message.processes]))
-
-    def _on_shared(self, message: SharedPlaces) -> None:
-        self.board.put_shared(messages.shared_places(message))
 
     def _on_inputs(self, message: InputStates) -> None:
         self._inputs = (list(message.inputs), monotonic())
@@ -217,14 +213,6 @@ class SiteClient:
         self._ask(AnswerQuestion, "/tms/answer", id=question, yes=yes, by=by)
 
     # machines
-
-    def revoke_place(self, place: str, who: str) -> str:
-        """Take a shared place from its holder, which is returned.
-
-        Raises:
-            TmsError: nobody holds it, or tms:db is away.
-        """
-        return str(self._ask(RevokePlace, "/tms/places/revoke", place=place, who=who).holder)
 
     def stop(self, machine: str, cause: Reason) -> Receipt:
         """Stop one machine by a call of its gateway; where no answer comes, the receipt says that."""

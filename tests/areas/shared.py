@@ -34,7 +34,7 @@ QUIET = 100.0  # ... of which the last part has no new losses
 LOOK = 0.1  # s between looks of a gateway
 AGAIN = 1.0  # s after which a message is sent again
 UNSEEN = 4.0  # s that a circle of machines may stay untold, while the keeper lives
-ENDS = 42.0  # m, where machines turn round
+ENDS = 32.0  # m, where machines turn round
 LANES = (-8.0, 0.0, 8.0)  # m; they never meet, but places are as wide as the road
 TRACKS = Tracks(Axis(3.0, 1.0, 0.3), Axis(0.5, 0.5, 0.3), 0.3)
 
@@ -344,9 +344,9 @@ def _made(world: World, result: Result) -> tuple[list[Machine], AreaSet]:
     """A road with places across it, two or three machines, and what befalls them."""
     r = world.random
     found = [Area("road", "unmanned", ring([(-60, -15), (60, -15), (60, 15), (-60, 15)]))]
-    x = -22.0
+    x = -17.0
     for number in range(r.choice([1, 2, 2, 3])):
-        wide = r.uniform(6.0, 14.0)
+        wide = r.uniform(4.0, 9.0)
         loss = r.choice(["stop", "evacuate"])
         corners = ring([(x, -14), (x + wide, -14), (x + wide, 14), (x, 14)])
         found.append(Area(f"p{number}", "release", corners, on_loss=loss))  # type: ignore[arg-type]

@@ -89,9 +89,9 @@ def _told(node: "Ros") -> "Places":
 
 def _show(place: "Place") -> None:
     """One line for people, and one for each who waits."""
-    state = say(STATES[place.state])
+    words = (say("free"), say("granted"), say("held"), say("leaving"), say("revoked"))
     since = f"{place.holder} {_when(place.since)}" if place.holder else ""
-    click.echo(f"{padded(place.name, 16)} {padded(state, 12)} {since}  {reason(place.reason)}".rstrip())
+    click.echo(f"{padded(place.name, 16)} {padded(words[place.state], 12)} {since}  {reason(place.reason)}".rstrip())
     for one in place.queue:
         click.echo("  " + say("{machine} waits since {since}", machine=one.machine, since=_when(one.since)))
 

@@ -44,12 +44,14 @@ class Site:
 
     def start(self) -> None:
         self.told: list[Any] = []
-        publisher = SimpleNamespace(publish=self.told.append)
+        self.acts: list[Any] = []
+        lists = {"/tms/places": self.told, "/tms/places/acts": self.acts}
         nothing = SimpleNamespace(
             info=lambda *_, **__: None, warning=lambda *_, **__: None, error=lambda *_, **__: None
         )
+        publisher = lambda _, topic, **__: SimpleNamespace(publish=lists[topic].append)  # noqa: E731
         app: Any = SimpleNamespace(
-            ros=SimpleNamespace(publisher=lambda *_, **__: publisher), log=nothing,
+            ros=SimpleNamespace(publisher=publisher), log=nothing,
             site=SimpleNamespace(file=SimpleNamespace(machines={"a": None, "b": None})),
         )  # fmt: skip
         self.keeper = PlaceServices(app, self.db, self.connection)  # type: ignore[arg-type]
@@ -135,6 +137,8 @@ def test_a_person_revokes(site: Site) -> None:
     site.ask("a", "road")
     site.report("a", in_use=("road",))
     assert site.keeper.revoke(request, RevokePlace.Response()).holder == "a"
+    (act,) = site.acts
+    assert (act.kind, act.node, act.text) == ("revoke_place", "road of a", "T. Yamada")
     assert site.road.state == Place.REVOKED and wire.of(site.road.reason).person == "T. Yamada"  # type: ignore[union-attr]
     assert list(site.report("a", in_use=("road",)).revoked) == ["road"]
     site.report("a")

@@ -145,6 +145,29 @@ def test_who_is_in_a_free_place_holds_it_and_the_next_one_inside_after_it() -> N
     assert site.holder("road") == "c"
 
 
+def test_who_gives_a_place_back_and_wants_it_again_waits_for_those_who_came_first() -> None:
+    site = Site("a", "b")
+    site.hold("a", "road")
+    site.report("a", using="road")
+    site.free("a")
+    site.hold("a", "road")
+    assert site.keeper.leases("a").held == _set("road"), "nobody else wants it"
+    site.hold("b", "road")
+    site.report("a", inside="road", using="road")
+    site.free("a")
+    site.hold("a", "road")
+    assert site.keeper.leases("a").held == _set("road"), "it is inside"
+    site.report("a", using="road")
+    site.free("a")
+    site.hold("a", "road")
+    assert site.keeper.leases("a") == Leases(leaving=_set("road"))
+    site.report("a")
+    assert site.holder("road") == "b"
+    site.free("b")
+    site.report("b")
+    assert site.holder("road") == "a"
+
+
 def test_a_run_that_ends_frees_all_its_places_and_requests() -> None:
     site = Site("a", "b")
     site.hold("a", "road")

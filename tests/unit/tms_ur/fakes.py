@@ -43,6 +43,17 @@ class WrongLine(Reason, text="line {line}: there is no node '{node}'", action=ED
     node: str
 
 
+class FakePlaces:
+    """The keeper of shared places."""
+
+    def __init__(self, client: "FakeSiteClient") -> None:
+        self._client = client
+
+    def revoke(self, place: str, who: str) -> str:
+        self._client._called("revoke", place, who)
+        return "zx200"
+
+
 class FakeSiteClient:
     """Same methods as the real one; `error` is what the next call raises, `calls` what was asked."""
 
@@ -50,6 +61,7 @@ class FakeSiteClient:
         self.board = Board(["zx200"])
         self.error: TmsError | None = None
         self.calls: list[tuple[object, ...]] = []
+        self.shared = FakePlaces(self)
 
     def tasks(self) -> list[Task]:
         self._called("tasks")
