@@ -14,7 +14,8 @@ from tms_areas.areas import Area, AreaSet
 from tms_areas.body import Body
 from tms_areas.fix import Seen
 from tms_areas.guard import Guard
-from tms_areas.law import Law, Place
+from tms_areas.law import Law
+from tms_areas.reach import Place
 from tms_areas.release import corners_of, needed, straight, touched
 from tms_config.clock import monotonic, unix_ns
 from tms_machine.asking import ask

@@ -5,7 +5,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from tms_ur.models import Model
+from tms_ur.base_model import Model
 from tms_ur.reason_view import ReasonView
 
 PlaceState = Literal["free", "granted", "held", "leaving", "revoked"]

@@ -4,7 +4,8 @@ from datetime import datetime
 
 from pydantic import Field
 
-from tms_ur.models import ActiveRun, Host, Machine, Model, Question, Scheduler
+from tms_ur.base_model import Model
+from tms_ur.models import ActiveRun, Host, Machine, Question, Scheduler
 from tms_ur.place_models import SharedPlaces
 from tms_ur.watch_models import SeenBy
 
