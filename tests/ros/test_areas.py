@@ -56,7 +56,8 @@ class Rig:
     def _truth(self, message: Any) -> None:
         told = dict(zip(message.name, message.position, strict=True))
         self.place = told["x"], told["y"], told["yaw"]
-        if self.rules is not None and any(self.rules.broken(one, *self.place) for one in self._edges):
+        rules = self.rules
+        if rules is not None and any(rules.broken(one, *self.place) for one in self._edges):
             self.broken = self.place
 
     def ready(self) -> bool:
