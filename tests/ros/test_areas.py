@@ -134,7 +134,7 @@ def rig(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Rig]:
         folder = mesh.site.with_suffix("") / "areas"
         folder.mkdir(parents=True)
         (folder / "yard.geojson").write_text("{}")
-        mesh.tms("up", expect=None)
+        mesh.tms("up", "--no-wait")  # without areas it is not ready
         try:
             ros = Ros("tms_tests_areas")
             made = Rig(mesh, ros)
