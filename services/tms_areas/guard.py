@@ -8,7 +8,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from tms_areas.body import Silhouette
+from tms_areas.body import Body, Silhouette
 from tms_areas.fix import Seen
 from tms_areas.law import Law
 from tms_areas.reach import Place
@@ -31,12 +31,16 @@ class Guard:
     def __init__(self, law: Law, silhouette: Silhouette) -> None:
         self.law, self._silhouette = law, silhouette
 
+    def body(self, joints: Mapping[str, float]) -> Body:
+        """What holds the machine at some joints [rad]."""
+        return self._silhouette.body([joints])
+
     def look(self, seen: Seen, joints: Mapping[str, float], tracks: bool) -> Verdict:
         """Whether a goal may go on; `joints` [rad] now, `tracks`: it drives."""
         unsure, motion = seen.unsure, seen.motion
         if motion is None or (tracks and unsure is not None):
             return Verdict(hold=unsure)
-        body = self._silhouette.body([joints])
+        body = self.body(joints)
         if tracks:
             return Verdict(stop=self.law.driving(body, motion))
         wrong = self.law.working(body, motion, 0.0 if unsure is None else UNSURE)
@@ -57,7 +61,7 @@ class Guard:
         if wrong is not None or motion is None:
             return wrong
         here = (motion.x, motion.y, motion.yaw)
-        body = self._silhouette.body([joints])
+        body = self.body(joints)
         if told:
             return self.law.path(body, (here, *way)) or self.law.arriving(body, way[-1])
         found = (self.law.arriving(body, place) or self.law.apart(here, place) for place in way)

@@ -59,7 +59,8 @@ class Law:
         slow: bool = False,
     ) -> None:
         """`held`: the release areas whose holder the machine is; `slow`: what drives its tracks takes speed limits."""
-        self.areas, self.machine, self.tracks, self.slow = areas, machine, tracks, slow
+        self.areas, self.machine, self.tracks = areas, machine, tracks
+        self.held, self.slow = held, slow
         self._usable = areas.usable(held)
         self._border = self._usable.boundary
         self._pieces = shapely.get_parts(self._usable)
@@ -78,10 +79,19 @@ class Law:
 
     def driving(self, body: Body, motion: Motion) -> Reason | None:
         """Why tracks must stop now; None if they may go on until the next look."""
-        reach = self._reach(motion)
-        covered = covered_by(body, places_of(motion, reach), (reach.left - reach.right) / 4, reach.around)
+        reach, covered = self._reach(motion), self.until_it_stands(body, motion)
         wrong = self._outside(covered, body, motion, reach.most)
         return wrong if wrong is not None else self._too_fast(covered, math.hypot(motion.vx, motion.vy))
+
+    def until_it_stands(self, body: Body, motion: Motion) -> Covered:
+        """All that a machine on tracks may cover until a stop that is commanded at the next look has worked."""
+        reach = self._reach(motion)
+        return covered_by(body, places_of(motion, reach), (reach.left - reach.right) / 4, reach.around)
+
+    @staticmethod
+    def now(body: Body, motion: Motion) -> Covered:
+        """What a machine covers where it is, with what its pose may be off."""
+        return covered_by(body, place_of(motion), 0.0, motion.off)
 
     def pace(self, body: Body, motion: Motion) -> float:
         """How fast tracks may go [m/s]: as a speed limit says that is nearer than they need to slow down."""

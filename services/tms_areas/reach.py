@@ -8,6 +8,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
+from tms_areas.areas import Area
 from tms_areas.body import Body
 from tms_areas.braking import Axis
 from tms_areas.fix import WINDOW, Motion
@@ -47,6 +48,10 @@ class Covered:
     def parts(self) -> list[tuple[BaseGeometry, float]]:
         """Each with what is around it."""
         return list(zip(self.shapes, self.around.tolist(), strict=True))
+
+    def touches(self, area: Area) -> bool:
+        """Whether a part of the machine may be in an area."""
+        return bool(shapely.dwithin(area.polygon, self.shapes, self.around).any())
 
 
 def ends(axis: Axis, speed: float, blind: float, factor: float) -> tuple[float, float]:

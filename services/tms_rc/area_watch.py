@@ -9,9 +9,8 @@ from queue import SimpleQueue
 from typing import Any
 
 from sensor_msgs.msg import NavSatFix
-from std_msgs.msg import Float64
 
-from tms_areas.areas import SHOWN, AreaSet
+from tms_areas.areas import SHOWN, AreaSet, Point
 from tms_areas.body import Silhouette
 from tms_areas.braking import tracks_of
 from tms_areas.escape import SPEED, Escape
@@ -22,12 +21,13 @@ from tms_config.clock import monotonic, unix_time
 from tms_decision.gateway.effects import Receipt
 from tms_decision.gateway.state import Gateway
 from tms_decision.reasons import ProcessLost
-from tms_machine.border import MotionAction, speed_limit
+from tms_machine.border import MotionAction
 from tms_machine.places import Places
 from tms_proof.standstill import HEADING, ODOM, PLACE
 from tms_rc.area_file import AreaFile, Enabled
 from tms_rc.braking_file import BrakingFile
 from tms_rc.motion_goals import frame_of, places_of, way_of
+from tms_rc.place_watch import PlaceWatch
 from tms_rc.reasons import (
     AreasLate,
     AreasNotEnabled,
@@ -37,6 +37,7 @@ from tms_rc.reasons import (
     NothingToEscape,
     TrapsMachine,
 )
+from tms_rc.speed_limit import SpeedLimit
 from tms_reason.errors import TmsError
 from tms_reason.reason import Reason
 from tms_runtime.app import App
@@ -61,6 +62,7 @@ class AreaWatch:
         self._model, self._border = site.model_of(machine), site.border(machine)
         self._file, self._silhouette = AreaFile(site.state, machine), Silhouette(self._model)
         self._places = Places(app.ros, {machine: self._border})
+        self._shared = PlaceWatch(app)
         drive = self._model.drive
         gnss = site.file.machines[machine].fix
         self._fix = Fix(drive.turn_velocity if drive is not None else 0.0, rtk=gnss is not None)
@@ -68,9 +70,7 @@ class AreaWatch:
         self._fixes = None if gnss is None else app.ros.sample_arrivals(NavSatFix, f"/{machine}/{gnss}", FIXES)
         self._told = 0.0  # when the last pose that was taken came
         self._enabling = threading.Lock()
-        self._slow = site.file.backend == "sim" or self._border.controller == "ours"  # what drives takes a speed limit
-        self._limits = app.ros.publisher(Float64, speed_limit(machine), depth=1, latched=True)
-        self._limit = 0.0  # m/s, as told last
+        self.speed = SpeedLimit(app)
         self.stops: SimpleQueue[Receipt] = SimpleQueue()  # receipts that may show worse brakes
         self._braking = BrakingFile(site.state, machine)
         tracks = tracks_of(self._model, self._border)
@@ -88,6 +88,12 @@ class AreaWatch:
         app.ros.poll_in_thread(PERIOD, self._look, "areas")
 
     # what others ask; none of it waits
+
+    @property
+    def here(self) -> Point | None:
+        """Where the machine is believed to be [m, map]."""
+        motion = self._seen.motion
+        return None if motion is None or self._seen.unsure is not None else (motion.x, motion.y)
 
     def unready(self) -> Reason | None:
         """Why the machine must not be moved at all now."""
@@ -113,7 +119,7 @@ class AreaWatch:
 
     def problem(self, motion: MotionAction, request: Any, joints: Mapping[str, float]) -> Reason | None:
         """Why a goal must not begin, from where the machine is now."""
-        guard = self._escape or self._guard
+        escape, guard = self._escape, self._guard
         if guard is None:
             return self._problem
         seen = self._now()
@@ -121,8 +127,10 @@ class AreaWatch:
             frame = frame_of(request)
             if frame:
                 return GoalNotInMap(frame)
-            return guard.may_drive(seen, joints, places, told=motion.field in TOLD)
-        return guard.may_work(seen, [joints, *way_of(request, self._model.turned(motion.field))])
+            if escape is not None:
+                return escape.may_drive(seen, joints, places, told=motion.field in TOLD)
+            return self._shared.judged(self._holding, seen, joints, places, told=motion.field in TOLD)
+        return (escape or guard).may_work(seen, [joints, *way_of(request, self._model.turned(motion.field))])
 
     # people
 
@@ -146,6 +154,7 @@ class AreaWatch:
         self._app.log.info("areas_enabled", set=areas.id, who=who)
 
     def _enabled(self, enabled: Enabled, guard: Guard) -> None:
+        self._shared.enable(enabled.areas)
         self.enabled, self._guard, self._problem = enabled, guard, None
         self._escape = None
         target = f"{self._app.machine} {enabled.areas.id[:SHOWN]}"
@@ -174,15 +183,10 @@ class AreaWatch:
         self._app.log.warning("escape", who=who)
 
     def _pace(self, seen: Seen) -> None:
-        """Tell what drives the tracks how fast they may go, if that has changed."""
-        guard = self._guard
-        if guard is None:
-            return
-        limit = guard.pace(seen, self._gateway.watch.positions)
-        limit = min(limit, SPEED) if self._escape is not None else limit
-        if limit != self._limit:
-            self._limit = limit
-            self._limits.publish(Float64(data=limit))
+        """Limit the speed of the tracks: before an area that limits it, and on the way back."""
+        if (guard := self._guard) is not None:
+            self.speed.set("areas", guard.pace(seen, self._gateway.watch.positions))
+            self.speed.set("escape", math.inf if self._escape is None else SPEED)
 
     def _check_free(self, guard: Guard) -> None:
         active = self._gateway.active
@@ -205,7 +209,16 @@ class AreaWatch:
         self._enabled(found, self._made(found.areas))
 
     def _made(self, areas: AreaSet) -> Guard:
-        return Guard(Law(areas, self._app.machine, self._tracks, slow=self._slow), self._silhouette)
+        return self._guard_of(areas, self._shared.open)
+
+    def _guard_of(self, areas: AreaSet, held: frozenset[str]) -> Guard:
+        return Guard(Law(areas, self._app.machine, self._tracks, held, slow=self.speed.able), self._silhouette)
+
+    def _holding(self, held: frozenset[str]) -> Guard:
+        """The guard that counts for a holder of some places."""
+        guard = self._guard
+        assert guard is not None, "areas are enabled"
+        return guard if guard.law.held == held else self._guard_of(guard.law.areas, held)
 
     def _now(self) -> Seen:
         with self._fixing:
@@ -231,11 +244,25 @@ class AreaWatch:
         if (escape := self._escape) is not None and escape.over(seen, self._gateway.watch.positions):
             self._escaped()
         self._pace(seen)
-        active, guard = self._gateway.active, self._escape or self._guard
+        active, guard = self._gateway.active, self._guard
+        drives = active is not None and self._drives(active.number)
+        lease = None if guard is None else self._leases(guard, seen, drives)
+        escape, guard = self._escape, self._guard
         if active is not None and guard is not None:
             at = monotonic()
-            verdict = guard.look(seen, self._gateway.watch.positions, self._drives(active.number))
+            verdict = (escape or guard).look(seen, self._gateway.watch.positions, drives)
+            if lease is not None and escape is None and verdict.stop is None:
+                verdict = Verdict(hold=lease)
             self._verdict = at, active.number, verdict
+
+    def _leases(self, guard: Guard, seen: Seen, drives: bool) -> Reason | None:
+        """Why the tracks must be held for a lease; places that were got or given back count from now on."""
+        lease = self._shared.look(guard.law, guard.body(self._gateway.watch.positions), seen, drives)
+        if self._shared.open != guard.law.held:
+            with self._enabling:
+                if self.enabled is not None:
+                    self._guard = self._made(self.enabled.areas)
+        return lease
 
     def _take_stops(self) -> None:
         while not self.stops.empty():

@@ -42,6 +42,8 @@ class NoteUnreadable(Reason, text="the note of how the machine was left cannot b
 class AreasNotEnabled(Reason, text="no areas are enabled for this site", action=ENABLE): pass
 class AreasUnreadable(Reason, text="its enabled areas cannot be read", action=ENABLE): pass
 class AreasLate(Reason, text="its areas have not been looked at for {seconds}"): seconds: Moments
+class IntrudersLate(Reason, text="nobody has looked for people for {seconds}"): seconds: Moments
+class HardwareLate(Reason, text="nobody has looked at its hardware for {seconds}"): seconds: Moments
 class AreasNotKept(Reason, text="the areas cannot be written: make room on the disk of this PC", details="{problem}"):
     problem: str
 class TrapsMachine(Reason, text="{machine} moves where these areas would stop it: {why}", action=RETRY):
