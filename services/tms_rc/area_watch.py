@@ -257,7 +257,7 @@ class AreaWatch:
 
     def _leases(self, guard: Guard, seen: Seen, drives: bool) -> Reason | None:
         """Why the tracks must be held for a lease; places that were got or given back count from now on."""
-        lease = self._shared.look(guard.law, guard.body(self._gateway.watch.positions), seen, drives)
+        lease = self._shared.look(guard, self._gateway.watch.positions, seen, drives)
         if self._shared.open != guard.law.held:
             with self._enabling:
                 if self.enabled is not None:

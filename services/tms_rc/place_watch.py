@@ -11,7 +11,6 @@ from tms_msg_areas.msg import Places
 from tms_msg_areas.srv import ReportPlaces
 
 from tms_areas.areas import Area, AreaSet
-from tms_areas.body import Body
 from tms_areas.fix import Seen
 from tms_areas.guard import Guard
 from tms_areas.law import Law
@@ -56,26 +55,32 @@ class PlaceWatch:
 
     # the look
 
-    def look(self, law: Law, body: Body, seen: Seen, drives: bool) -> Reason | None:
-        """Where the machine is now; and why its tracks must be held: a lease that is over, where it is or may come."""
-        motion, sure = seen.motion, seen.unsure is None
-        with self._lock:
-            if not self._areas:
-                return None
-            inside = self._inside
-            if motion is not None and sure:
-                inside = touched(law.now(body, motion), self._areas)
-            if (inside, sure) != (self._inside, self._sure):
-                self._inside, self._sure, self._due = inside, sure, 0.0
-            before = self._own.open
-            self._own.give_back(inside, sure, drives)
-            if self._own.open != before:
-                self._due = 0.0
-            lost = self._own.lost(monotonic()) - self._own.evacuates
+    def look(self, guard: Guard, joints: Mapping[str, float], seen: Seen, drives: bool) -> Reason | None:
+        """Where the machine is now; and why its tracks must be held: a lease that is over, where it is or may come.
+
+        Geometry is done outside of the lock, for which the executor thread may wait.
+        """
+        areas, motion, sure = self._areas, seen.motion, seen.unsure is None
+        if not areas:
+            return None
+        inside, body = self._inside, guard.body(joints)
+        if motion is not None and sure:
+            inside = touched(guard.law.now(body, motion), areas)
+        lost = self._seen_inside(inside, sure, drives) - self._own.evacuates
         if not lost or not drives or motion is None:
             return None
-        there = touched(law.until_it_stands(body, motion), [one for one in self._areas if one.id in lost])
+        there = touched(guard.law.until_it_stands(body, motion), [one for one in areas if one.id in lost])
         return LeaseOver(self._app.machine, min(there)) if there else None
+
+    def _seen_inside(self, inside: frozenset[str], sure: bool, drives: bool) -> frozenset[str]:
+        """Note where the machine is, and give back what nobody wants; the places whose lease is over."""
+        with self._lock:
+            before = (self._inside, self._sure, self._own.open)
+            self._inside, self._sure = inside, sure
+            self._own.give_back(inside, sure, drives)
+            if before != (inside, sure, self._own.open):
+                self._due = 0.0
+            return self._own.lost(monotonic())
 
     # goals
 

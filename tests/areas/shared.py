@@ -324,7 +324,7 @@ def _judge(
         result.unseen = f"{stuck} at {world.now:.1f} s"
     if world.now - since[stuck] > UNSEEN:  # a person cancels one of the runs
         result.circles += 1
-        next(one for one in machines if one.name in told).give_up()
+        next(one for one in machines if one.name in stuck).give_up()
         since.clear()
 
 

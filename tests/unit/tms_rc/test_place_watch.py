@@ -60,7 +60,7 @@ class Gateway:
 
     def look(self, x: float, drives: bool = False, sure: bool = True, speed: float = 0.0) -> Any:
         seen = Seen(None if sure else PoseOld(1.0), Motion(x, 0.0, 0.0, speed))
-        return self.watch.look(self.guard(self.watch.open).law, self.outline.body(()), seen, drives)
+        return self.watch.look(self.guard(self.watch.open), {}, seen, drives)
 
     def report(self, **answer: list[str]) -> Any:
         self.answer = ReportPlaces.Response(lease=LEASE, **answer)
