@@ -13,7 +13,6 @@ from tms_msg_areas.srv import ReportPlaces
 from tms_areas.areas import Area, AreaSet
 from tms_areas.fix import Seen
 from tms_areas.guard import Guard
-from tms_areas.law import Law
 from tms_areas.reach import Place
 from tms_areas.release import corners_of, needed, straight, touched
 from tms_config.clock import monotonic, unix_ns
