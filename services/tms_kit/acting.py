@@ -36,6 +36,7 @@ ACCEPT_LIMIT = 3.0  # s for the server to answer a goal
 MOTION_END_LIMIT = STOP_PROVEN + 2.5  # s for a cancelled motion to end
 SERVER_CHECK_PERIOD = 0.2  # s between checks whether the server is still there
 UNANSWERED_LIMIT = 1.0  # s for a goal to be accepted after all
+REQUEST = "request_wait_ur"  # asks a person; as the C++ system's version 6 calls it; the scheduler serves it
 
 Progress = Callable[[Reason | str], None]  # a subtask's own texts are shown as they are
 ENDED = {Outcome.ABORTED: Aborted, Outcome.CANCELED: Canceled, Outcome.REJECTED: Rejected}
@@ -116,7 +117,7 @@ class Acting:
         peer = self._ros.peer(action_type, f"/{self.name}/{action}")
         peer.wait_ready(SERVER_LIMIT)
         self.check()
-        if (watch := self._watches.get("rc" if action.startswith("rc/") else "rp")) is not None:
+        if (watch := self._watches.get(_process_of(action))) is not None:
             watch(peer)
         call = peer.send(goal, goal_id=derived(self._goal_id), on_feedback=received)
         self._calls.append((peer, call))
@@ -185,3 +186,8 @@ def _why(call: AnyCall) -> Reason:
         waypoints = Missed(tuple(lost))
         return waypoints if reported is None else Several((waypoints, reported))
     return reported or NoReason()
+
+
+def _process_of(action: str) -> str:
+    """Whose loss ends a call: the gateway's, the scheduler's or, for all other actions, the planner's."""
+    return "rc" if action.startswith("rc/") else "ts" if action == REQUEST else "rp"

@@ -2,11 +2,9 @@
 
 from tms_msg_ur.action import NextStepPermission
 
-from tms_kit.acting import Acting, Progress
+from tms_kit.acting import REQUEST, Acting, Progress
 from tms_machine.reasons import Aborted, PersonSaysNo, WaitsForPerson
 from tms_reason.errors import SubtaskFailed
-
-REQUEST = "request_wait_ur"  # as the C++ system's version 6 calls it; the scheduler serves it
 
 
 class Permitting(Acting):

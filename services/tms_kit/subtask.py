@@ -38,6 +38,7 @@ class Subtask:
     """
 
     timeout: float = 60.0  # s for the whole goal
+    waits: bool = False  # for long, while nothing moves: such a goal ends when its scheduler is lost, as motions do
     params: type[Params] | None = None  # when given, the goal's record is checked before the goal is accepted
 
     def __init__(

@@ -9,8 +9,8 @@ from tms_msg_db.srv import GetParameter, SetParameter
 from tms_msg_ts.action import LeafNodeBase
 
 from tms_config.clock import monotonic
-from tms_kit.foreign_goals import ForeignGoals
 from tms_kit.machine import Machine, SubtaskCancelled
+from tms_kit.senders import Senders
 from tms_kit.subtask import Params, Subtask, load
 from tms_kit.yard import Yard
 from tms_machine.goal_inputs import KINDS, parted
@@ -51,7 +51,7 @@ class _Server:
         self._app, self._kind, self._inputs, self._max_age = app, kind, inputs, max_age
         self._permit = Permit(app.ros, app.pulse, app.machine, str(app.process.action))
         self._watches: dict[str, Callable[[AnyPeer], None]] = {}
-        self._foreign = ForeignGoals(app)
+        self._senders = Senders(app, waits=kind.waits)
         self._yard: Yard | None = None
         self._action = own_action(app.site, app.machine, str(app.process.action))  # its type and its name
         self._reserved = False
@@ -120,15 +120,15 @@ class _Server:
     def run(self, goal: LeafGoal) -> Ended[LeafNodeBase.Result]:
         outcome = Outcome.ABORTED
         self._permit.hold(goal.uuid)
-        self._foreign.watch(goal)
+        self._senders.watch(goal)
         try:
-            if (why := self._foreign.refusal(goal)) is None:
+            if (why := self._senders.refusal(goal)) is None:
                 outcome = self._execute(goal)
             else:
                 self._app.log.warning("rejected", goal=goal.id, reason=why)
                 _Feedback(goal).last(why)
         finally:
-            self._foreign.watch(None)
+            self._senders.watch(None)
             self._permit.drop()
             self._reserved = False
         result = self._action[0].Result()
@@ -196,7 +196,8 @@ class _Server:
         """Begin with the first goal: the gateway's lease, ten times a second, must not wake an unused process."""
         if not self._watches:
             self._watches = {
-                name: watch_server(self._app.ros, self._app.pulse, self._app.machine, name) for name in ("rc", "rp")
+                name: watch_server(self._app.ros, self._app.pulse, self._app.machine, name)
+                for name in ("rc", "rp", *(["ts"] if self._kind.waits else []))
             }
         return self._watches
 

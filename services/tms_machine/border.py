@@ -65,6 +65,11 @@ def standby(machine: str) -> str:
     return f"/{machine}/rc/standby"
 
 
+def speed_limit(machine: str) -> str:
+    """Latched topic of the gateway: how fast the tracks may go now [m/s], for what drives them; infinite: no limit."""
+    return f"/{machine}/rc/speed_limit"
+
+
 class Controls:
     """Direct access to a machine; only for the gateway and for the standby of a lost one."""
 

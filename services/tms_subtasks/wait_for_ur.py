@@ -10,6 +10,7 @@ class WaitForUr(Subtask):
     """Yes succeeds, No fails; a Timeout above the leaf, or a cancel, ends the question."""
 
     timeout = DAY
+    waits = True
 
     def execute(self, model_name: str, record_name: str, progress: Progress) -> None:
         self.machine.ask_person(progress, record_name)

@@ -20,6 +20,7 @@ class WaitUntilLoaded(Subtask):
     """A bucket over it is one that was chosen for it and is not counted yet."""
 
     timeout = 7200.0
+    waits = True
     params = Loading
 
     def execute(self, model_name: str, record_name: str, progress: Progress) -> None:

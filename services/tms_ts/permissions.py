@@ -6,7 +6,7 @@ from collections.abc import Callable
 from tms_msg_ur.action import NextStepPermission
 
 from tms_decision.owner import parse
-from tms_kit.permitting import REQUEST
+from tms_kit.acting import REQUEST
 from tms_reason.reason import Reason
 from tms_ros.goals import Ended, Outcome
 from tms_ros.server import Goal

@@ -38,12 +38,16 @@ from tms_reason.reason import Foreign, Reason
 from tms_ros.client import Call
 from tms_ros.node import Ros
 from tms_ur import messages
+from tms_ur.area_client import let_back
 from tms_ur.board import Board
 from tms_ur.data_models import Change, Record, Sensing
 from tms_ur.models import AddedTemplate, Event, Host, Place, Rearmed, Receipt, Run, Task, TaskText, Template
+from tms_ur.place_client import PlaceClient
 from tms_ur.reason_view import of_error, of_line, view
 from tms_ur.reasons import RunNotBegun, StartRefused, UnknownProcess
 from tms_ur.scene_models import Scene, scene
+from tms_ur.watch_models import EnabledAreas
+from tms_ur.watching import Watching
 
 SCHEDULER = "tms:ts"
 CALL_LIMIT = 4.0  # s for an answer of a module
@@ -58,6 +62,8 @@ class SiteClient:
         names = list(site.file.machines)
         self._ros = ros
         self.board = Board(names)
+        self._watching = Watching(ros, site, self.board)
+        self.shared = PlaceClient(ros, self.board)
         self._inputs: tuple[list[InputState], float] | None = None  # read and replaced in one step
         self._scheduler = ros.peer(ExecuteTask, "/tms/execute_task")
         self._places = Places(ros, {name: site.border(name) for name in names})
@@ -228,6 +234,10 @@ class SiteClient:
         answer = self._ask(Rearm, f"/{machine}/rearm", token=token)
         return Rearmed(token=answer.token, cause=of_line(answer.cause), armed=answer.armed)
 
+    def let_back(self, machine: str, who: str) -> None:
+        """Let a machine that stands outside its areas be moved back in; a TmsError says why not."""
+        let_back(self._ros, machine, who)
+
     def scene(self, machine: str) -> Scene:
         """What the planner of a machine plans among now.
 
@@ -235,6 +245,10 @@ class SiteClient:
             TmsError: something of it is not known, or the planner is away.
         """
         return scene(machine, self._ask(GetScene, f"/{machine}/rp/get_scene"))
+
+    def areas(self) -> EnabledAreas:
+        """The enabled areas, as a gateway tells them."""
+        return self._watching.areas()
 
     # processes
 

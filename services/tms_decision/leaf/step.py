@@ -22,8 +22,7 @@ def ask(goals: LeafGoals, asked: e.GoalAsked, now: float) -> tuple[LeafGoal, lis
     else:
         goals.open.append(goal)
         if goal.key in goals.failed:
-            goal.not_before = goals.failed[goal.key] + ASK_AGAIN
-            goal.reason = r.SentAgainSoon()
+            goal.not_before, goal.reason = goals.failed[goal.key] + ASK_AGAIN, r.SentAgainSoon()
         _try(goals, goal, asked.seen, now)
     return goal, goals.taken()
 
@@ -138,6 +137,7 @@ def _ended(goals: LeafGoals, goal: LeafGoal | None, event: e.Ended, now: float) 
     elif _may_ask_again(goal, event.failure, now):
         goal.reason, goal.state = event.why, GoalState.SENDING
         goal.call, goal.begun, goal.not_before = 0, now, now + ASK_AGAIN
+        goals.note(goal, event.why, "again")
     elif e.Failure.LOST in event.failure:
         _lost(goals, goal, r.GoalLost(goal.name, event.why), now)
     elif event.outcome == "REJECTED":

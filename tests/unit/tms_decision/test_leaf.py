@@ -277,6 +277,7 @@ def test_a_database_that_is_away_is_waited_for_and_no_longer(site: Goals) -> Non
             site.end("REJECTED", failure=e.Failure.NO_STORE)
         site.pass_time(ASK_AGAIN)
     assert DATABASE_LIMIT <= site.now < DATABASE_LIMIT + 3 * ASK_AGAIN
+    assert set(site.notes("again")) == {"again: rain"}, "the history tells why a goal was sent again"
     assert words(site.goal.reason) == "zx200:subtask_zx200_change_pose refused the goal: rain"
 
 

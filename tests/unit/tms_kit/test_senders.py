@@ -1,4 +1,4 @@
-"""Foreign goals of a subtask: which are begun, and which end with the border that has passed them on."""
+"""Goals of a subtask: which foreign ones are begun, and which goals end with the process that has sent them."""
 
 from types import SimpleNamespace
 from typing import Any
@@ -7,11 +7,13 @@ import pytest
 import structlog
 
 from tms_decision.owner import Owner
-from tms_kit import foreign_goals
-from tms_kit.foreign_goals import ForeignGoals
+from tms_decision.permit_link import NOBODY
+from tms_kit import senders
+from tms_kit.senders import Senders
 from tms_reason.reason import Foreign
 
-FOREIGN, OF_A_RUN = bytes(range(16)), Owner(7).goal_id(b"abc")
+FOREIGN, OF_A_RUN = bytes(range(16)), Owner(7, 1).goal_id(b"abc")
+SCHEDULED = Owner(7).goal_id(b"ts0")  # the scheduler stands behind that run
 
 
 class Goal:
@@ -24,15 +26,15 @@ class Goal:
         self.cancels += 1
 
 
-class Border:
-    """The permit of `zx200:if` as a subtask sees it."""
+class Sender:
+    """The permit of a process that has sent the goal."""
 
-    made: list["Border"]
+    made: list["Sender"]
 
     def __init__(self, _ros: Any, _pulse: Any, machine: str, process: str, changed: Any) -> None:
-        assert (machine, process) == ("zx200", "if_dig")
-        self.goal, self.alive, self._changed = b"", True, changed
-        Border.made.append(self)
+        assert machine == "zx200"
+        self.process, self.goal, self.alive, self._changed = process, b"", True, changed
+        Sender.made.append(self)
 
     def lost(self, goal: bytes) -> bool:
         return self.goal == goal and not self.alive
@@ -42,16 +44,16 @@ class Border:
         self._changed(self)
 
 
-def goals(monkeypatch: pytest.MonkeyPatch, form: str) -> ForeignGoals:
-    Border.made = []
-    monkeypatch.setattr(foreign_goals, "RemotePermit", Border)
-    monkeypatch.setattr(foreign_goals, "misfit", lambda *_, servers: Foreign("misread"))
+def goals(monkeypatch: pytest.MonkeyPatch, form: str, *, waits: bool = False) -> Senders:
+    Sender.made = []
+    monkeypatch.setattr(senders, "RemotePermit", Sender)
+    monkeypatch.setattr(senders, "misfit", lambda *_, servers: Foreign("misread"))
     site = SimpleNamespace(other_form=lambda _: form)
     app: Any = SimpleNamespace(
         site=site, machine="zx200", process=SimpleNamespace(action="dig"), ros=None, pulse=None,
         log=structlog.stdlib.get_logger("test"),
     )  # fmt: skip
-    return ForeignGoals(app)
+    return Senders(app, waits=waits)
 
 
 def test_a_misread_client_refuses_foreign_goals_and_none_of_a_run(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -70,7 +72,8 @@ def test_a_goal_ends_with_the_border_that_has_passed_it_on(monkeypatch: pytest.M
     foreign, goal = goals(monkeypatch, "v6b"), Goal(FOREIGN)
     whole: Any = goal
     foreign.watch(whole)
-    (border,) = Border.made
+    (border,) = Sender.made
+    assert border.process == "if_dig"
     border.be(FOREIGN, alive=True)
     border.be(b"another", alive=False)
     assert goal.cancels == 0
@@ -85,4 +88,32 @@ def test_a_goal_ends_with_the_border_that_has_passed_it_on(monkeypatch: pytest.M
 def test_goals_that_no_border_passes_are_not_watched(monkeypatch: pytest.MonkeyPatch, form: str, uuid: bytes) -> None:
     whole: Any = Goal(uuid)
     goals(monkeypatch, form).watch(whole)
-    assert Border.made == []
+    assert Sender.made == []
+
+
+@pytest.mark.parametrize("then", [(SCHEDULED, False), (Owner(8).goal_id(b"ts1"), True), (NOBODY, False)])
+def test_a_goal_that_waits_ends_with_its_scheduler(monkeypatch: pytest.MonkeyPatch, then: tuple[bytes, bool]) -> None:
+    goal = Goal(OF_A_RUN)
+    whole: Any = goal
+    watched = goals(monkeypatch, "", waits=True)
+    watched.watch(whole)
+    (scheduler,) = Sender.made
+    assert scheduler.process == "ts"
+    scheduler.be(SCHEDULED, alive=False)  # not heard of yet
+    scheduler.be(SCHEDULED, alive=True)
+    assert goal.cancels == 0
+    scheduler.be(*then)
+    assert goal.cancels == 1
+
+
+def test_the_next_goal_is_seen_by_the_permit_that_is_there(monkeypatch: pytest.MonkeyPatch) -> None:
+    first, second = Goal(OF_A_RUN), Goal(Owner(7, 2).goal_id(b"abd"))
+    whole: list[Any] = [first, second]
+    watched = goals(monkeypatch, "", waits=True)
+    watched.watch(whole[0])
+    (scheduler,) = Sender.made
+    scheduler.be(SCHEDULED, alive=True)
+    watched.watch(None)
+    watched.watch(whole[1])
+    scheduler.be(SCHEDULED, alive=False)
+    assert (first.cancels, second.cancels, len(Sender.made)) == (0, 1, 1)
