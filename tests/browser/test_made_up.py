@@ -117,7 +117,7 @@ def event(number: int, kind: str = "node", **values: Any) -> Event:
 
 def test_one_yes_arms_one_machine(page: Page, address: str, yard: Yard) -> None:
     yard.receive(latch=view(SoftwareStop()))
-    page.goto(f"{address}/#run")
+    page.goto(f"{address}/#board")
     late = page.get_by_role("button", name="Re-arm zx200")
     late.click()
     page.get_by_role("button", name="Re-arm ic120").click()
@@ -135,7 +135,7 @@ def test_a_reason_has_what_helps_and_its_details(page: Page, address: str, yard:
     yard.slow.set()
     latched = PageLatch("zx200", "/zx200/rc/state")
     yard.board.put_runs([RUN.model_copy(update={"reason": view(latched)})])
-    page.goto(f"{address}/#run")
+    page.goto(f"{address}/#board")
     row = page.locator("#list_active [data-part=reason]")
     expect(row).to_contain_text("zx200 is made to wait")
     expect(row.locator("details span")).to_be_hidden()
@@ -150,7 +150,10 @@ def test_a_reason_has_what_helps_and_its_details(page: Page, address: str, yard:
     expect(row.get_by_role("button", name="機械を確認してから")).to_be_visible()
     yard.error = TmsError(PageInterruption("r-1"))
     page.locator("#list_tasks button").first.click()
-    expect(page.locator("#message code")).to_have_text("tms resume r-1")
+    expect(page.locator("#message button")).to_be_visible()
+    yard.error = None
+    page.locator("#message button").click()
+    expect(page.locator("#dialog_text")).to_contain_text("タスク 4 を再開しますか")
 
 
 def test_a_silent_scheduler_is_told_on_panel_and_tree(page: Page, address: str, yard: Yard) -> None:
