@@ -23,5 +23,5 @@ export default defineConfig(({ command }) => ({
     assetsInlineLimit: 0, // the policy of the site lets no data: address in
     modulePreload: { polyfill: false },
   },
-  test: { environment: "jsdom", cache: false, fsModuleCache: false }, // nothing is written beside the sources,
+  test: { environment: "jsdom", cache: false, fsModuleCache: false, testTimeout: 120_000 }, // nothing is written beside the sources,
 }));

@@ -1,4 +1,4 @@
-import { fireEvent, render, screen, waitFor } from "@testing-library/react";
+import { configure, fireEvent, render, screen, waitFor } from "@testing-library/react";
 import { afterEach, beforeEach, expect, test, vi } from "vitest";
 import { Command } from "./command";
 import { Confirm, confirmed } from "./confirm";
@@ -7,6 +7,8 @@ import type { ReasonView, State } from "./models";
 import { Said } from "./said";
 import { filled } from "./server";
 import { texts, timeOfDay } from "./texts";
+
+configure({ asyncUtilTimeout: 60_000 }); // ms; a busy machine is no failure
 
 beforeEach(async () => {
   await texts.changeLanguage("en");

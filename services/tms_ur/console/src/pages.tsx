@@ -3,14 +3,18 @@
 import { relabelAll, say } from "old/dom.js";
 import { translatePage } from "old/strings.js";
 import { PAGE_NAMES } from "old/words.js";
-import { type ComponentType, useEffect, useRef, useSyncExternalStore } from "react";
+import { type ComponentType, lazy, Suspense, useEffect, useRef, useSyncExternalStore } from "react";
 import { useTranslation } from "react-i18next";
 import { Board } from "./board/board";
 import { current, listsChanged, subscribe } from "./live";
 import type { State } from "./models";
 import { texts } from "./texts";
 
-const REACT: Record<string, ComponentType> = { board: Board };
+// The board comes with the frame, others when they are opened.
+const REACT: Record<string, ComponentType<{ rest: string }>> = {
+  board: Board,
+  tree: lazy(() => import("./tree/tree_page")),
+};
 
 const hash = () => location.hash.slice(1);
 function onHash(listener: () => void) {
@@ -24,7 +28,7 @@ export function Pages() {
   const [asked = "", ...rest] = address.split("/");
   const name = PAGE_NAMES.includes(asked) ? asked : "board";
   const New = REACT[name];
-  // The message belongs to the page that is left.
+  // biome-ignore lint/correctness/useExhaustiveDependencies: the message belongs to the page that is left
   useEffect(() => () => say(""), [name]);
   return (
     <>
@@ -40,7 +44,9 @@ export function Pages() {
           <OldPage key={name} name={name} rest={rest.join("/")} />
         ) : (
           <div id="page" data-page={name}>
-            <New />
+            <Suspense>
+              <New rest={rest.join("/")} />
+            </Suspense>
           </div>
         )}
       </main>

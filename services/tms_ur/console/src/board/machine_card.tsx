@@ -32,7 +32,10 @@ export function MachineCard({ machine, run }: Props) {
       <Why machine={machine} run={run} />
       {run && <Work machine={machine} run={run} />}
       <p className="small">
-        <Proof machine={machine} /> {t("data_age")}: {duration(machine.joint_age ?? null)}
+        <Proof machine={machine} />{" "}
+        <span data-part="age">
+          {t("data_age")}: {duration(machine.joint_age ?? null)}
+        </span>
       </p>
       <div className="bar">
         {machine.latch && (

@@ -109,6 +109,7 @@ function Listed({ kind, found }: { kind: "errors" | "warnings"; found: Finding[]
       </h3>
       <ul className={kind}>
         {found.map((one, index) => (
+          // biome-ignore lint/suspicious/noArrayIndexKey: the list is made anew as a whole
           <li key={index}>
             <Said reason={one.reason} />
           </li>
