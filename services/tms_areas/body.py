@@ -4,7 +4,6 @@ An upper body that turns is a circle with all of its arm inside, since the swing
 a while after a stop. Heights do not count.
 """
 
-import itertools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -64,13 +63,24 @@ class Silhouette:
 
     def swept(self, way: Sequence[Mapping[str, float]]) -> Body:
         """What holds it on a way of straight lines between joints; the first one is where it is."""
-        looks = list(way[:1])
-        for old, new in itertools.pairwise(way):
-            told = {**old, **new}
-            most = max((abs(told[name] - old.get(name, told[name])) for name in told), default=0.0)
-            for share in np.linspace(0.0, 1.0, 1 + math.ceil(most / FINEST))[1:]:
-                looks.append({name: old.get(name, to) * (1 - share) + to * share for name, to in told.items()})
-        return self.body(looks)
+        return self.body(_looks(way))
+
+    def stages(self, way: Sequence[Mapping[str, float]]) -> list[Body]:
+        """It at places on such a way, one after the other."""
+        return [self.body([one]) for one in _looks(way)]
+
+
+def _looks(way: Sequence[Mapping[str, float]]) -> list[Mapping[str, float]]:
+    """Joints on a way; those that a place of it does not tell stay."""
+    looks = list(way[:1])
+    old: Mapping[str, float] = way[0] if way else {}
+    for new in way[1:]:
+        told = {**old, **new}
+        most = max((abs(told[name] - old.get(name, told[name])) for name in told), default=0.0)
+        for share in np.linspace(0.0, 1.0, 1 + math.ceil(most / FINEST))[1:]:
+            looks.append({name: old.get(name, to) * (1 - share) + to * share for name, to in told.items()})
+        old = told
+    return looks
 
 
 def _swinging(model: MachineModel) -> tuple[tuple[float, float] | None, list[str]]:

@@ -1,7 +1,8 @@
 """Where a machine is by its localisation, how it moves, and whether that can be believed.
 
 Poses that are old, or that jump further than the machine can go, are not; nor those that stand to the last bit while
-its odometry moves. Afterwards it takes `SETTLED` seconds of good ones.
+its odometry moves, those that say themselves that they are `VAGUE`, nor any while a GNSS that the site names has no
+RTK fix. Afterwards it takes `SETTLED` seconds of good ones.
 """
 
 import math
@@ -10,7 +11,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from tms_areas.reasons import PoseJumped, PoseOld, PoseSettles, PoseStuck, PoseUnknown
+from tms_areas.reasons import FixLost, FixOld, PoseJumped, PoseOld, PoseSettles, PoseStuck, PoseUnknown, PoseVague
 from tms_reason.reason import Reason
 
 WINDOW = 0.5  # s of poses whose line gives place and speed
@@ -24,6 +25,10 @@ NOISE = 3.0  # times the deviation from that line that a pose may be off in addi
 MOVES = 0.05  # m/s or rad/s of the odometry at which a pose that is the same to the last bit is no news
 LEAP, LEAP_NOISE = 0.1, 4.0  # m, and times the deviation, that a pose may be off where the motion leads
 LEAP_TURN = 0.1  # rad that its heading may be off
+TOLD = 3.0  # times the deviation that a pose tells of itself that it may be off
+VAGUE = 0.3  # m; a pose that tells a larger deviation is not believed
+RTK = 2  # status of NavSatFix with an RTK fix (STATUS_GBAS_FIX)
+FIX_OLD = 1.0  # s without word of the fix: receivers tell it 5 to 20 times a second
 SPEED_UP = 0.2  # m/s by which a machine may be faster than its last poses say
 
 
@@ -59,7 +64,10 @@ class Fix:
     """What is known from the poses so far. Times are of one monotonic clock [s]."""
 
     turn_top: float  # rad/s, of the machine
+    rtk: bool = False  # whether a GNSS has to tell of an RTK fix
     poses: deque[tuple[float, float, float, float]] = field(default_factory=deque)  # when, x, y, yaw (unwrapped)
+    deviation: float = 0.0  # m, that the last pose tells
+    fix_at: float = float("-inf")  # when word of the fix came
     wrong: Reason | None = field(default_factory=PoseUnknown)
     wrong_at: float = float("-inf")  # when it was last wrong
     repeated_at: float = float("-inf")  # when a pose last was no news
@@ -67,10 +75,13 @@ class Fix:
     motion: Motion | None = None  # by the last pose that was believed ...
     motion_at: float = 0.0  # ... and when that came
 
-    def heard(self, at: float, x: float, y: float, yaw: float) -> None:
-        """Take a pose that arrived at a time."""
+    def heard(self, at: float, x: float, y: float, yaw: float, deviation: float = 0.0) -> None:
+        """Take a pose that arrived at a time; `deviation` [m] as it tells itself, 0: it does not."""
         if not all(map(math.isfinite, (x, y, yaw))):
             return self._doubt(PoseUnknown(), at)
+        if not deviation <= VAGUE:
+            self._doubt(PoseVague(deviation, VAGUE), at)
+        self.deviation = deviation
         if self.poses:
             when, _, _, before = self.poses[-1]
             if at <= when:
@@ -91,6 +102,12 @@ class Fix:
             self.motion, self.motion_at = self._line(), at
         return None
 
+    def fixed(self, at: float, status: int) -> None:
+        """Take the status of the GNSS, as NavSatFix numbers it, that arrived at a time."""
+        self.fix_at = at
+        if status != RTK:
+            self._doubt(FixLost(), at)
+
     def odometry(self, forward: float, turning: float) -> None:
         """Take what the tracks say of their own speed [m/s, rad/s]."""
         self.moves = abs(forward) > MOVES or abs(turning) > MOVES
@@ -108,6 +125,8 @@ class Fix:
         if age > self._limit:
             unknown = PoseOld(age) if self.poses else PoseUnknown()
             self._doubt(PoseStuck() if now - self.repeated_at <= OLD else unknown, now)
+        if self.rtk and now - self.fix_at > FIX_OLD:
+            self._doubt(FixOld(), now)
         if self.wrong is not None:
             left = self.wrong_at + SETTLED - now
             if left > 0 or len(self.poses) < LEAST:
@@ -138,7 +157,7 @@ class Fix:
         at = np.column_stack([np.ones_like(t), t])
         line, *_ = np.linalg.lstsq(at, found[:, 1:], rcond=None)
         rest = found[:, 1:3] - (at @ line)[:, :2]
-        off = SURE + NOISE * float(np.sqrt((rest**2).sum() / len(t)))
+        off = SURE + NOISE * float(np.sqrt((rest**2).sum() / len(t))) + TOLD * self.deviation
         (x, y, yaw), (vx, vy, turning) = line.tolist()
         if not self.moves and max(math.hypot(vx, vy), abs(turning)) < RESTS:
             vx = vy = turning = 0.0

@@ -61,12 +61,23 @@ class _Feature(Settings):
     bbox: tuple[float, ...] = ()
 
 
+class _CrsName(Settings):
+    name: str
+
+
+class _Crs(Settings):
+    """Older writers say with it what RFC 7946 means anyway."""
+
+    type: str = "name"
+    properties: _CrsName
+
+
 class _File(Settings):
     type: Literal["FeatureCollection"]
     frame: Literal["map", "WGS84"] = "WGS84"
     features: tuple[_Feature, ...]
     name: str = ""
-    crs: dict[str, Any] = Field(default_factory=dict)  # older writers say with it what RFC 7946 means anyway
+    crs: _Crs | None = None
     bbox: tuple[float, ...] = ()
 
 
@@ -80,7 +91,7 @@ def read(text: str, file: str, to_map: ToMap | None) -> list[Area]:
         found = _File.model_validate(_json(text, file))
     except ValidationError as error:
         raise _wrong(file, explain(error)) from error
-    crs = str(found.crs.get("properties", {}).get("name", "")) if found.crs else ""
+    crs = "" if found.crs is None else found.crs.properties.name
     if crs and (found.frame == "map" or crs not in CRS84):
         raise _wrong(file, OtherCoordinates(crs))
     if found.frame == "map":

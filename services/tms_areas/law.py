@@ -9,70 +9,66 @@ to both sides as far as tracks can change their course meanwhile; and around all
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
 from tms_areas.areas import FORBIDDEN, AreaSet
 from tms_areas.body import Body
-from tms_areas.braking import Axis, Tracks
-from tms_areas.fix import WINDOW, Motion
+from tms_areas.braking import Tracks
+from tms_areas.fix import Motion
+from tms_areas.reach import (
+    Array,
+    Covered,
+    Place,
+    Reach,
+    between,
+    covered_by,
+    ends,
+    nearest,
+    place_of,
+    places_of,
+    shape_of,
+)
 from tms_areas.reasons import EntersArea, LeavesArea, NoWay, TooFastFor
 from tms_reason.reason import Reason
 
 DELAY = 0.15  # s from where a machine is to the message that says so
 BEAT = 0.15  # s from one look at the newest pose to the next one, and until its command has left
 FASTER = 1.15  # times a speed limit that a measured speed may be
+HEED, GENTLE = 1.5, 0.4  # s until tracks obey a speed limit, and share of their acceleration with which they slow down
+HEEDED = 0.9  # times a limit that they are told: what is measured varies
 SPARE = 0.15  # m more for what is planned: poses vary while it drives
 PLANNED = 0.1  # s, age of a pose that plans reckon with
-STEP, TURN = 0.5, 0.1  # m and rad between looks at a path
 SPOT = 0.05  # m; a turn over a shorter way is one on the spot
 STRAY = 0.05  # m that tracks may slip to any side while they brake
-
-Array = NDArray[np.float64]
-Place = tuple[float, float, float]  # x, y [m], yaw [rad] in `map`
-
-
-@dataclass(frozen=True)
-class Reach:
-    """How far the base can come until it stands: the least and the most forward [m], to the left [m], and turned."""
-
-    back: float
-    ahead: float
-    side: float
-    right: float  # rad
-    left: float  # rad
-    around: float  # m in any direction in addition
-
-    @property
-    def most(self) -> float:
-        """For people: what it needs to stop [m]."""
-        return max(abs(self.back), abs(self.ahead), abs(self.side)) + self.around
-
-
-@dataclass(frozen=True)
-class Covered:
-    """A convex polygon, and how much around it [m] a part of the machine may cover too."""
-
-    shape: BaseGeometry
-    around: float
 
 
 class Law:
     """The areas that are enabled, for one machine."""
 
-    def __init__(self, areas: AreaSet, machine: str, tracks: Tracks | None, held: frozenset[str] = frozenset()) -> None:
-        """`held`: the release areas whose holder the machine is."""
+    def __init__(
+        self,
+        areas: AreaSet,
+        machine: str,
+        tracks: Tracks | None,
+        held: frozenset[str] = frozenset(),
+        slow: bool = False,
+    ) -> None:
+        """`held`: the release areas whose holder the machine is; `slow`: what drives its tracks takes speed limits."""
         self.areas, self.machine, self.tracks = areas, machine, tracks
+        self.held, self.slow = held, slow
         self._usable = areas.usable(held)
         self._border = self._usable.boundary
         self._pieces = shapely.get_parts(self._usable)
         self._closed = [one for one in areas.of(*FORBIDDEN, "release") if one.id not in held]
+        self._unmanned = shapely.union_all([one.polygon for one in areas.of("unmanned")])
         self._limits = areas.of("speed_limit")
+        self._limited = np.array([one.polygon for one in self._limits], dtype=object)
+        self._closed_tree = shapely.STRtree([one.polygon for one in self._closed])
         ends = [pair for line in shapely.get_parts(self._border) for pair in itertools.pairwise(line.coords)]
         self._sides = shapely.linestrings(ends)  # of the border: a tree of them finds the nearest one at once
         self._tree = shapely.STRtree(self._sides)
@@ -83,15 +79,32 @@ class Law:
 
     def driving(self, body: Body, motion: Motion) -> Reason | None:
         """Why tracks must stop now; None if they may go on until the next look."""
-        reach = self._reach(motion)
-        covered = _covered(body, _places(motion, reach), (reach.left - reach.right) / 4, reach.around)
+        reach, covered = self._reach(motion), self.until_it_stands(body, motion)
         wrong = self._outside(covered, body, motion, reach.most)
         return wrong if wrong is not None else self._too_fast(covered, math.hypot(motion.vx, motion.vy))
+
+    def until_it_stands(self, body: Body, motion: Motion) -> Covered:
+        """All that a machine on tracks may cover until a stop that is commanded at the next look has worked."""
+        reach = self._reach(motion)
+        return covered_by(body, places_of(motion, reach), (reach.left - reach.right) / 4, reach.around)
+
+    @staticmethod
+    def now(body: Body, motion: Motion) -> Covered:
+        """What a machine covers where it is, with what its pose may be off."""
+        return covered_by(body, place_of(motion), 0.0, motion.off)
+
+    def pace(self, body: Body, motion: Motion) -> float:
+        """How fast tracks may go [m/s]: as a speed limit says that is nearer than they need to slow down."""
+        if self.tracks is None or not self._limits:
+            return math.inf
+        near = shapely.dwithin(self._limited, shape_of(body, motion), self._slowing)
+        return min((HEEDED * (one.speed or 0.0) for one, slow in zip(self._limits, near, strict=True) if slow),
+                   default=math.inf)  # fmt: skip
 
     def working(self, body: Body, motion: Motion, more: float = 0.0) -> Reason | None:
         """Why a machine must not move its joints, standing; `more`: m around it in addition to what its pose is off."""
         around = motion.off + more
-        return self._outside(_covered(body, _place(motion), 0.0, around), body, motion, around)
+        return self._outside(covered_by(body, place_of(motion), 0.0, around), body, motion, around)
 
     # before a goal
 
@@ -109,10 +122,8 @@ class Law:
         for old, new in itertools.pairwise(places):
             way, turn = math.dist(old[:2], new[:2]), math.remainder(new[2] - old[2], math.tau)
             backward = math.cos(old[2]) * (new[0] - old[0]) + math.sin(old[2]) * (new[1] - old[1]) < 0
-            for share in np.linspace(0.0, 1.0, 2 + int(max(way / STEP, abs(turn) / TURN))).tolist():
-                x, y = old[0] + share * (new[0] - old[0]), old[1] + share * (new[1] - old[1])
+            for share, (x, y, yaw) in between(old, new):
                 speed, turning = self._paced(left - share * way, way, turn, 1.0 - share)
-                yaw = old[2] + share * turn
                 speed = -speed if backward else speed
                 motion = Motion(x, y, yaw, speed * math.cos(yaw), speed * math.sin(yaw), turning, age=PLANNED)
                 if (wrong := self._planned(body, motion, self._reach(motion))) is not None:
@@ -134,13 +145,30 @@ class Law:
         return speed, turn / way * speed
 
     def _planned(self, body: Body, motion: Motion, reach: Reach) -> Reason | None:
-        covered = _covered(body, _places(motion, reach), (reach.left - reach.right) / 4, reach.around + SPARE)
+        covered = covered_by(body, places_of(motion, reach), (reach.left - reach.right) / 4, reach.around + SPARE)
         return self._outside(covered, body, motion, reach.most) or self._slow(covered)
 
     def apart(self, here: Place, there: Place) -> Reason | None:
         """Why no way at all leads from one place to another: both must be in one piece of where it may be."""
         inside = [shapely.contains_xy(self._pieces, *one[:2]) for one in (here, there)]
         return None if (inside[0] & inside[1]).any() else NoWay(self.machine, *there[:2])
+
+    # out of where it may be
+
+    def trespasses(self, shape: BaseGeometry) -> list[BaseGeometry]:
+        """What of a shape is in each closed area, and at last what is beside the unmanned ones."""
+        return [*(shape.intersection(one.polygon) for one in self._closed), shape.difference(self._unmanned)]
+
+    def away(self, corners: Array) -> float:
+        """How far the farthest of some places (N x 2) is from where the machine may be [m]; 0 for none."""
+        return float(shapely.distance(shapely.points(corners), self._usable).max(initial=0.0))
+
+    def stopped(self, motion: Motion) -> Motion:
+        """Where a machine will stand that is stopped at the next look, if it goes on as it does."""
+        reach = self._reach(motion)
+        turn, ahead = (reach.right + reach.left) / 2, (reach.back + reach.ahead) / 2
+        course = motion.yaw + turn / 2
+        return Motion(motion.x + math.cos(course) * ahead, motion.y + math.sin(course) * ahead, motion.yaw + turn)
 
     # how far
 
@@ -160,6 +188,21 @@ class Law:
         ]
         return float(max(ahead))
 
+    @cached_property
+    def _slowing(self) -> Array:
+        """How far before each speed limit tracks at top speed must be told it [m].
+
+        They must have obeyed before the limit is in what they could reach until they stand.
+        """
+        if self.tracks is None:
+            return np.zeros(len(self._limits))
+        forward = self.tracks.forward
+        stop = self._reach(Motion(0.0, 0.0, 0.0, forward.top, age=PLANNED)).most
+        limits = np.array([one.speed or 0.0 for one in self._limits])
+        slower = np.maximum(forward.top**2 - limits**2, 0.0) / (2 * GENTLE * forward.acceleration)
+        way: Array = stop + HEED * forward.top + slower
+        return way
+
     def _reach(self, motion: Motion) -> Reach:
         if self.tracks is None:
             return Reach(0.0, 0.0, 0.0, 0.0, 0.0, motion.off)
@@ -167,86 +210,42 @@ class Law:
         forward, aside = c * motion.vx + s * motion.vy, c * motion.vy - s * motion.vx
         blind = motion.age + DELAY + BEAT + self.tracks.dead_time
         factor = self.tracks.factor
-        back, ahead = _ends(self.tracks.forward, forward, blind, factor)
-        right, left = _ends(self.tracks.turning, motion.turning, blind, factor)
+        back, ahead = ends(self.tracks.forward, forward, blind, factor)
+        right, left = ends(self.tracks.turning, motion.turning, blind, factor)
         side = aside * blind + math.copysign(self.tracks.forward.braking(aside), aside) * factor
         return Reach(back, ahead, side, right, left, motion.off + STRAY)
 
     # where
 
-    def _outside(self, covered: list[Covered], body: Body, motion: Motion, needed: float) -> Reason | None:
-        for one in covered:
-            if not self._usable.contains(one.shape) or shapely.dwithin(self._border, one.shape, one.around):
-                return self._why(one, body, motion, needed)
-        return None
+    def _outside(self, covered: Covered, body: Body, motion: Motion, needed: float) -> Reason | None:
+        out = ~shapely.contains(self._usable, covered.shapes)
+        out |= shapely.dwithin(self._border, covered.shapes, covered.around)
+        return self._why(*covered.parts[int(out.argmax())], body, motion, needed) if out.any() else None
 
-    def _why(self, one: Covered, body: Body, motion: Motion, needed: float) -> Reason:
+    def _why(self, shape: BaseGeometry, around: float, body: Body, motion: Motion, needed: float) -> Reason:
         """Which area is the next one that it must not enter, or leave; where, how far, and how far it needs."""
-        now = shapely.union_all([part.shape for part in _covered(body, _place(motion), 0.0, 0.0)])
-        entered = [area for area in self._closed if shapely.dwithin(area.polygon, one.shape, one.around)]
-        if entered:
-            area = min(entered, key=lambda area: float(shapely.distance(area.polygon, now)))
-            gap, x, y = _nearest(area.polygon, now)
+        now = shape_of(body, motion)
+        entered = self._closed_tree.query(shape, predicate="dwithin", distance=around)
+        if len(entered):
+            gaps = shapely.distance(self._closed_tree.geometries[entered], now)
+            area = self._closed[int(entered[gaps.argmin()])]
+            gap, x, y = nearest(area.polygon, now)
             return EntersArea(self.machine, area.id, gap, needed, x, y)
-        gap, x, y = _nearest(self._sides[self._tree.query_nearest(now, all_matches=False)[0]], now)
+        gap, x, y = nearest(self._sides[self._tree.query_nearest(now, all_matches=False)[0]], now)
         at = shapely.Point(x, y)
         left = min(self.areas.of("unmanned"), key=lambda area: float(shapely.distance(area.polygon, at)))
         return LeavesArea(self.machine, left.id, gap if self._usable.contains(now) else 0.0, needed, x, y)
 
-    def _too_fast(self, covered: list[Covered], speed: float) -> Reason | None:
+    def _too_fast(self, covered: Covered, speed: float) -> Reason | None:
         """The speed limit that a machine breaks where it is, or may soon be."""
         for area in self._limits:
             limit = area.speed or 0.0
-            if speed > limit * FASTER and any(area.polygon.intersects(one.shape) for one in covered):
+            if speed > limit * FASTER and shapely.intersects(area.polygon, covered.shapes).any():
                 return TooFastFor(self.machine, area.id, speed, limit)
         return None
 
-    def _slow(self, covered: list[Covered]) -> Reason | None:
-        """A goal tells no speed, so what drives it may take the machine's top speed anywhere."""
-        return None if self.tracks is None else self._too_fast(covered, self.tracks.forward.top)
-
-
-def _ends(axis: Axis, speed: float, blind: float, factor: float) -> tuple[float, float]:
-    """The least and the most that an axis can go on from a measured speed until it stands [m or rad]."""
-    gain = axis.acceleration * (blind + WINDOW / 2)
-    low, high = max(speed - gain, min(speed, -axis.top)), min(speed + gain, max(speed, axis.top))
-    ends = [one * blind + math.copysign(axis.braking(one), one) * factor for one in (low, high)]
-    return ends[0], ends[1]
-
-
-def _place(motion: Motion) -> Array:
-    return np.array([[motion.x, motion.y, motion.yaw]])
-
-
-def _places(motion: Motion, reach: Reach) -> Array:
-    """Places (N x 3) between and around which the base is until it stands."""
-    turns = sorted({reach.right, (reach.right + reach.left) / 2, reach.left})
-    places = [(motion.x, motion.y, motion.yaw)]
-    for turn in turns:
-        for way in {reach.back, reach.ahead}:
-            for share in (0.5, 1.0):
-                chord = motion.yaw + turn * share / 2
-                c, s = math.cos(chord), math.sin(chord)
-                ahead, side = way * share, reach.side * share
-                at = motion.x + c * ahead - s * side, motion.y + s * ahead + c * side
-                places.append((*at, motion.yaw + turn * share))
-    return np.array(places)
-
-
-def _covered(body: Body, places: Array, between: float, around: float) -> list[Covered]:
-    """What each part covers at places (N x 3), between them, and at headings that are `between` [rad] off."""
-    c, s = np.cos(places[:, 2, None]), np.sin(places[:, 2, None])
-    found = []
-    for part in body.parts:
-        (px, py), bulge = part.corners.T, part.spin * (1.0 - math.cos(min(between, math.pi)))
-        x, y = places[:, 0, None] + c * px - s * py, places[:, 1, None] + s * px + c * py
-        corners = shapely.multipoints(np.column_stack([x.ravel(), y.ravel()]))
-        found.append(Covered(shapely.convex_hull(corners), around + bulge))
-    return found
-
-
-def _nearest(line: BaseGeometry, shape: BaseGeometry) -> tuple[float, float, float]:
-    """How far a shape is from a line or an area [m], and the place there that is nearest to it."""
-    way = shapely.shortest_line(line, shape)
-    x, y = shapely.get_coordinates(way)[0]
-    return float(way.length), float(x), float(y)
+    def _slow(self, covered: Covered) -> Reason | None:
+        """A goal tells no speed: what takes no limit may drive at the machine's top speed anywhere."""
+        if self.tracks is None or self.slow:
+            return None
+        return self._too_fast(covered, self.tracks.forward.top)

@@ -2,9 +2,11 @@
 
 from tms_reason.quantities import Metres, MetresPerSecond, Seconds, SquareMetres
 from tms_reason.reason import Reason
-from tms_reason.remedies import EDIT_CONFIG, INSPECT, Remedy
+from tms_reason.remedies import EDIT_CONFIG, ESCAPE, INSPECT, Remedy
 
 DRAW_AGAIN = Remedy("draw", "", "Draw the area again, and export the file anew")
+LOOK_AROUND = Remedy("look", "", "Look who is in the area, and re-arm once it is free")
+SEE_TRACKER = Remedy("look", "", "Look at the tracker and at its PC")
 DRIVE_OUT = Remedy("take", "tms take {machine}", "Drive the machine by hand to where it may be")
 
 
@@ -40,20 +42,56 @@ class NoUnmanned(Reason, text="no area is unmanned: no machine could move anywhe
 class NothingUsable(Reason, text="other areas cover every unmanned one: no machine could move anywhere",
     action=EDIT_CONFIG): pass
 
+# people and vehicles
+class TrackerTypeWrong(Reason, text="a tracker of the kind {kind} sends one of {types}", action=EDIT_CONFIG):
+    kind: str; types: tuple[str, ...]
+class NoTracker(Reason, text="sensing.yaml has no tracker {name}; it has {known}", action=EDIT_CONFIG):
+    name: str; known: tuple[str, ...]
+class GateNeedsArea(Reason, text="a gate names the unmanned areas that it leads to", action=EDIT_CONFIG): pass
+class APerson(Reason, text="a person"): pass
+class AVehicle(Reason, text="a vehicle"): pass
+class IntruderInside(Reason, text="{machine}: {who} is in the unmanned area {area} near ({x}, {y}), as {tracker} says",
+    action=LOOK_AROUND): machine: str; who: Reason; area: str; tracker: str; x: Metres; y: Metres
+class IntruderNear(Reason, text="{machine}: {who} is in the restricted area {area} near ({x}, {y}), as {tracker} says",
+    action=LOOK_AROUND): machine: str; who: Reason; area: str; tracker: str; x: Metres; y: Metres
+class GateOpened(Reason, text="{machine}: {gate} was opened, somebody may be in {areas}", action=LOOK_AROUND):
+    machine: str; gate: str; areas: tuple[str, ...]
+class TrackerSilent(Reason, text="{tracker} has told nothing for {age}: somebody may be inside", action=SEE_TRACKER):
+    tracker: str; age: Seconds
+class TrackerUnheard(Reason, text="{tracker} has not told yet whether somebody is inside", action=SEE_TRACKER):
+    tracker: str
+class TrackerUnreadable(Reason, text="{tracker} tells what cannot be used ({why}): somebody may be inside",
+    action=SEE_TRACKER): tracker: str; why: Reason
+class NotInMapFrame(Reason, text="its places are in the frame '{frame}', not in map"): frame: str
+class PlaceNoNumber(Reason, text="a place is not a number"): pass
+class ManyIntruders(Reason, text="it tells {count} places, {limit} are allowed"): count: int; limit: int
+class TrackerClockAhead(Reason, text="its stamp is {ahead} ahead of the clock of this PC"): ahead: Seconds
+
 # a machine
 class LeavesArea(Reason, text="{machine} must not leave the unmanned area {area}: its border near ({x}, {y}) is"
-    " {gap} away, to stop takes {needed}", action=DRIVE_OUT):
+    " {gap} away, to stop takes {needed}", action=ESCAPE):
     machine: str; area: str; gap: Metres; needed: Metres; x: Metres; y: Metres
 class EntersArea(Reason, text="{machine} must not enter the area {area}: its border near ({x}, {y}) is {gap} away,"
-    " to stop takes {needed}", action=DRIVE_OUT):
+    " to stop takes {needed}", action=ESCAPE):
     machine: str; area: str; gap: Metres; needed: Metres; x: Metres; y: Metres
 class TooFastFor(Reason, text="{machine} would be in the area {area} at {speed}, {limit} are allowed there",
     action=DRIVE_OUT): machine: str; area: str; speed: MetresPerSecond; limit: MetresPerSecond
 class NoWay(Reason, text="no way inside the unmanned areas leads {machine} to ({x}, {y})"):
     machine: str; x: Metres; y: Metres
+class ComesFurtherOut(Reason, text="{machine} may only come back in, but would be {depth} out of where it may be"
+    " instead of {before}, or further in another area", action=ESCAPE): machine: str; depth: Metres; before: Metres
+class NotFurtherIn(Reason, text="{machine} may only come back in: it is {now} out of where it may be, and would be"
+    " {then}"): machine: str; now: Metres; then: Metres
+class EscapesTooFast(Reason, text="{machine} comes back in at {speed}, {limit} are allowed", action=ESCAPE):
+    machine: str; speed: MetresPerSecond; limit: MetresPerSecond
+class TracksNotSlow(Reason, text="what drives {machine} cannot be told to go slowly", action=DRIVE_OUT): machine: str
 class PoseUnknown(Reason, text="its place in the map is not told", action=INSPECT): pass
 class PoseOld(Reason, text="its place in the map is {age} old", action=INSPECT): age: Seconds
 class PoseJumped(Reason, text="its place in the map has jumped", action=INSPECT): pass
 class PoseStuck(Reason, text="its place in the map does not change while its tracks move", action=INSPECT): pass
+class PoseVague(Reason, text="its localisation tells a deviation of {deviation}, {limit} are allowed", action=INSPECT):
+    deviation: Metres; limit: Metres
+class FixLost(Reason, text="its GNSS has no RTK fix", action=INSPECT): pass
+class FixOld(Reason, text="its GNSS tells nothing of its fix", action=INSPECT): pass
 class PoseSettles(Reason, text="{why}: it is believed again after {left} without that"): why: Reason; left: Seconds
 # fmt: on

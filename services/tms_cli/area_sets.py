@@ -11,7 +11,7 @@ from tms_cli.words import padded, say
 from tms_config.config import Site
 from tms_reason import wire
 from tms_reason.errors import RosError, TmsError
-from tms_reason.reason import Foreign
+from tms_reason.reason import Foreign, Reason
 
 if TYPE_CHECKING:
     from tms_areas.areas import Area, AreaSet
@@ -114,26 +114,42 @@ def enable(node: "Ros", machine: str, areas: "AreaSet", who: str, only_check: bo
     Raises:
         TmsError: it does not answer, or refuses.
     """
+    from tms_areas.geojson import written
+
+    document = json.dumps(written(areas), ensure_ascii=False)
+    refused = _ask(node, machine, "set", id=areas.id, areas=document, who=who, only_check=only_check)
+    if refused is not None:
+        raise TmsError(AreasNotEnabledBy(machine, refused))
+
+
+def let_back(node: "Ros", machine: str, who: str) -> None:
+    """Have a gateway let its machine, which stands outside, be moved back in.
+
+    Raises:
+        TmsError: it does not answer, or refuses.
+    """
+    refused = _ask(node, machine, "escape", who=who)
+    if refused is not None:
+        raise TmsError(refused)
+
+
+def _ask(node: "Ros", machine: str, what: str, **told: str | bool) -> Reason | None:
+    """Ask a gateway for something about areas; returns why it refuses."""
     from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
     from rcl_interfaces.srv import SetParametersAtomically
 
-    from tms_areas.geojson import written
+    def value(one: str | bool) -> ParameterValue:
+        if isinstance(one, bool):
+            return ParameterValue(type=ParameterType.PARAMETER_BOOL, bool_value=one)
+        return ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=one)
 
-    text = ParameterType.PARAMETER_STRING
-    document = json.dumps(written(areas), ensure_ascii=False)
-    flag = ParameterValue(type=ParameterType.PARAMETER_BOOL, bool_value=only_check)
-    told = [
-        Parameter(name="areas", value=ParameterValue(type=text, string_value=document)),
-        Parameter(name="who", value=ParameterValue(type=text, string_value=who)),
-        Parameter(name="only_check", value=flag),
-    ]
-    request = SetParametersAtomically.Request(parameters=told)
+    parameters = [Parameter(name=name, value=value(one)) for name, one in told.items()]
+    request = SetParametersAtomically.Request(parameters=parameters)
     try:
-        answer = node.call(SetParametersAtomically, f"/{machine}/rc/areas/set", request, LIMIT).result
+        answer = node.call(SetParametersAtomically, f"/{machine}/rc/areas/{what}", request, LIMIT).result
     except RosError as error:
         raise TmsError(AreasNotReached(machine, error.reason, f"{machine}:rc")) from error
-    if not answer.successful:
-        raise TmsError(AreasNotEnabledBy(machine, wire.of(answer.reason) or Foreign(answer.reason)))
+    return None if answer.successful else wire.of(answer.reason) or Foreign(answer.reason)
 
 
 def as_dict(one: "Area") -> dict[str, Any]:

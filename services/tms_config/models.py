@@ -173,6 +173,8 @@ class Border(Settings):
     emg_stop: str | None = None
     emg_stop_at_once: bool = False  # emg_stop acts without the machine's dead time
     manual: str | None = None  # std_msgs/Bool, true while a person drives the machine by its own levers
+    # std_msgs/String of the mode lamp: automatic, manual, stopped or fault; a lamp that hears nothing shows fault.
+    lamp: str | None = None
     controller: Literal["ours", "theirs"] = "theirs"  # who serves the actions and commands the drives
     response: dict[str, Response] = {}  # where drives answer otherwise than the model's
     joint_cmd: str | None = None  # com3_msgs/JointCmd, published by the controller

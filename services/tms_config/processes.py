@@ -23,6 +23,7 @@ PURPOSES = {  # what they and the other processes are for; `tms ps` shows it in 
     "discovery": "lets the PCs' processes find each other",
     "sim": "stand-in for {machine}",
     "scanners": "stand-in for scanners of the ground",
+    "trackers": "stand-in for trackers of people and vehicles",
     "operasim": "stand-in for OperaSim-PhysX",
     "rc": "gateway: every motion passes it",
     "readers": "templates and records for the C++ system's version 6",
@@ -141,6 +142,8 @@ def _services(site: Site) -> list[Process]:
         rows.append(Process("tms", "ground", "cps", "tms_ground.node", 0, PURPOSES["ground"]))
         if site.file.backend == "sim" and site.file.sim.scanners:
             rows.append(Process("sim", "scanners", "sim", "tms_sim.scanners", 0, PURPOSES["scanners"]))
+    if site.file.backend == "sim" and site.file.sim.trackers:
+        rows.append(Process("sim", "trackers", "sim", "tms_sim.trackers", 0, PURPOSES["trackers"]))
     for name, service in site.file.services.items():
         if name not in SERVICES:
             raise ConfigError(located(site.path, reasons.NoService(name, SERVICES), "services", name))

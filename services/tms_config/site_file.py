@@ -41,6 +41,9 @@ class MachineUse(Settings):
     model: str = Field(pattern=NAME)
     role: Role = "machine"
     start: tuple[float, float, float] | None = None  # x m, y m, yaw rad: start of its stand-in, if not the model's
+    hardware: dict[str, Any] = Field(default_factory=dict)  # tms_hardware/settings.py reads it
+    # NavSatFix of its GNSS, below its name, if it has RTK
+    fix: str | None = Field(pattern=r"^[A-Za-z][A-Za-z0-9_/]*$", default=None)
 
 
 class Ports(Settings):
@@ -115,6 +118,8 @@ class Fault(Settings):
     creep: float = 0.0  # m/s or rad/s of a motion that begins after 3 s of stand-still
     ignore_cancel: bool = False
     ignore_emg_stop: bool = False
+    hardware: tuple[str, ...] = ()  # sources of `hardware:` that tell what forbids motion; a counter stands still
+    hardware_mute: tuple[str, ...] = ()  # those that tell nothing
 
 
 class Scanner(Settings):
@@ -129,6 +134,22 @@ class Scanner(Settings):
     hz: float = Field(gt=0, le=5, default=1.0)
 
 
+class Walk(Settings):
+    """Somebody whom a tracker sees: to the end of a path and back again, for ever."""
+
+    path: tuple[tuple[float, float], ...] = Field(min_length=1)  # m, map
+    speed: float = Field(ge=0, le=20, default=1.2)  # m/s
+    after: float = Field(ge=0, default=0.0)  # s until the first step
+
+
+class TrackerStandIn(Settings):
+    """What a tracker of sensing.yaml is told by its stand-in; times count from its last change."""
+
+    walks: tuple[Walk, ...] = ()
+    open: bool = False  # of a gate
+    silent: bool = False  # a fault: it says nothing
+
+
 class Simulator(Settings):
     """How the stand-ins of the site move."""
 
@@ -138,6 +159,7 @@ class Simulator(Settings):
     names: Backend = "sim"  # whose names and joint names the stand-ins use
     faults: dict[str, Fault] = Field(default_factory=dict)  # machine -> its faults from the start
     scanners: dict[Annotated[str, Field(pattern=NAME)], Scanner] = Field(default_factory=dict)  # of a site with ground
+    trackers: dict[Annotated[str, Field(pattern=NAME)], TrackerStandIn] = Field(default_factory=dict)
 
 
 class Groot(Settings):

@@ -111,7 +111,7 @@ class Pursuit:
             self._braking = True
             return ZERO
         curvature = self._curvature(run, state)
-        v = run.direction * min(self._speed(run, left), self._in_curve(curvature))
+        v = run.direction * min(self._speed(run, left), self._in_curve(curvature), self._servo.fastest)
         return self._servo.lead(state, v, abs(v) * curvature)
 
     def _curvature(self, run: Run, state: TrackState) -> float:

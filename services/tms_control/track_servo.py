@@ -14,11 +14,13 @@ class TrackServo:
 
     def __init__(self, drive: Drive, estimate: TrackEstimate) -> None:
         self._drive, self._estimate = drive, estimate
+        self.fastest = drive.velocity  # m/s, as far as somebody limits it
 
     @property
     def fastest_turn(self) -> float:
-        """Yaw rate that the tracks can reach [rad/s]."""
-        return self._drive.turn_velocity * min(self._estimate.yaw_gain, 1.0)
+        """Yaw rate that the tracks can reach [rad/s]; a limit of the speed slows it by the same share."""
+        share = min(self.fastest / self._drive.velocity, 1.0)
+        return self._drive.turn_velocity * min(self._estimate.yaw_gain, 1.0) * share
 
     def lead(self, state: TrackState, v: float, r: float) -> Command:
         """The command for a wanted speed [m/s] and yaw rate [rad/s], both reached with limited acceleration."""

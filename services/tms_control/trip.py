@@ -77,6 +77,10 @@ class Trip:
         self._estimate.sent(now, command)
         return command
 
+    def limit(self, speed: float) -> None:
+        """Go no faster than this [m/s] from now on, and turn slower by the same share."""
+        self._servo.fastest = min(speed, self._drive.velocity)
+
     def cancel(self) -> None:
         """Ramp down; the goal ends as soon as the machine stands. Asked again, it goes on to come to stand."""
         if self._ending != CANCELLED:

@@ -50,6 +50,15 @@ def place_of(message: PoseStamped | Odometry) -> tuple[float, float, float] | No
     return at.x, at.y, yaw_of(turn)
 
 
+def deviation_of(message: PoseStamped | Odometry) -> float:
+    """The deviation [m] in a message of a pose topic, along the worst direction; 0: not said, infinite: no number."""
+    if not isinstance(message, Odometry):
+        return 0.0
+    xx, xy, _, _, _, _, _, yy, *_ = message.pose.covariance
+    worst = (xx + yy) / 2 + math.hypot((xx - yy) / 2, xy)
+    return math.sqrt(worst) if min(xx, yy, worst) >= 0 and math.isfinite(worst) else math.inf
+
+
 class PoseTopic:
     """The last place that a machine's pose topic has told."""
 
@@ -57,6 +66,7 @@ class PoseTopic:
         self._topic = topic
         self._arrivals: Callable[[], list[Arrival[Any]]] = ros.sample_arrivals(POSES[source.message], topic)
         self._frame = MAP  # of the last message
+        self.deviation = 0.0  # m, of the last place
         self.place: FramePose | None = None  # replaced, never changed: other threads read it without a lock
 
     def take(self) -> bool:
@@ -66,6 +76,7 @@ class PoseTopic:
             self._frame = arrival.message.header.frame_id
             if (place := place_of(arrival.message)) is not None:
                 self.place = FramePose(*place, arrival.received)
+                self.deviation = deviation_of(arrival.message)
         return self.place is not before
 
     def missing(self, now: float, limit: float) -> Reason | None:
@@ -101,6 +112,11 @@ class Places:
         """Where the base of a machine was last told to be; None if it never was."""
         topic = self._topics.get(machine)
         return topic.place if topic is not None else self._frames.place(self._bases[machine])
+
+    def deviation(self, machine: str) -> float:
+        """The deviation [m] that the last place of a machine was told with; 0: it was told without."""
+        topic = self._topics.get(machine)
+        return 0.0 if topic is None else topic.deviation
 
     def missing(self, machine: str, now: float, limit: float) -> Reason | None:
         """Why the pose topic of a machine tells no place younger than `limit` [s] at `now` [s, monotonic].

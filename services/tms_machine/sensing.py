@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
+from tms_areas.trackers import Tracker
 from tms_config.config import CONFIGS, Site
 from tms_config.models import NAME, Settings
 from tms_config.reasons import NoField, NotOrdered, NoUnit
@@ -112,6 +113,7 @@ class SensingFile(Settings):
     machine_state: MachineState = MachineState()
     inputs: dict[Annotated[str, Field(pattern=NAME)], Input] = Field(default_factory=dict)
     terrain: dict[Annotated[str, Field(pattern=NAME)], TerrainInput] = Field(default_factory=dict)
+    trackers: dict[Annotated[str, Field(pattern=NAME)], Tracker] = Field(default_factory=dict)  # gateways hear them
 
 
 def sensing_path(site: Site) -> Path:

@@ -7,6 +7,7 @@ from typing import Any
 
 from geometry_msgs.msg import Twist
 from prometheus_client import Gauge
+from std_msgs.msg import Float64
 
 from tms_config.clock import monotonic
 from tms_config.models import DRIVE, Drive
@@ -22,6 +23,7 @@ from tms_control.trip import Trip
 from tms_control.trip_task import Task
 from tms_decision.permit_link import LEASE
 from tms_machine import stamps
+from tms_machine.border import speed_limit
 from tms_machine.places import POSES, place_of
 from tms_mc.gateway_watch import GatewayWatch
 from tms_mc.joints import Joints
@@ -54,6 +56,8 @@ class Tracks:
         self._cmd_vel = app.ros.publisher(Twist, f"/{machine}/{border.cmd_vel}", 1)
         self._clock, self._estimate = MachineClock(), TrackEstimate(self._response)
         self._trip: Trip | None = None
+        self._fastest = math.inf  # m/s, as the gateway says
+        app.ros.subscribe(Float64, speed_limit(machine), self._limited, latched=True)
         self._lock = threading.RLock()  # guards the trip and the estimate
         self._turns = Turns(app.ros, self._step, PERIOD, "tracks")
 
@@ -128,6 +132,9 @@ class Tracks:
             else:
                 trip.cancel()
 
+    def _limited(self, speed: Float64) -> None:
+        self._fastest = speed.data
+
     def _time(self) -> float:
         """The machine's time [s]; only after it was heard of."""
         return self._clock.time(monotonic())
@@ -149,6 +156,7 @@ class Tracks:
                 trip.cancel()
             for sample in samples[:-1]:
                 self._estimate.measured(sample)
+            trip.limit(self._fastest)
             self._send(trip.step(self._time(), samples[-1] if samples else None))
             YAW_GAIN.set(self._estimate.yaw_gain)
             return True

@@ -8,9 +8,12 @@ from dataclasses import replace
 from queue import SimpleQueue
 from typing import Any
 
-from tms_areas.areas import AreaSet
+from sensor_msgs.msg import NavSatFix
+
+from tms_areas.areas import SHOWN, AreaSet, Point
 from tms_areas.body import Silhouette
 from tms_areas.braking import tracks_of
+from tms_areas.escape import SPEED, Escape
 from tms_areas.fix import Fix, Seen
 from tms_areas.guard import Guard, Verdict
 from tms_areas.law import Law
@@ -24,12 +27,23 @@ from tms_proof.standstill import HEADING, ODOM, PLACE
 from tms_rc.area_file import AreaFile, Enabled
 from tms_rc.braking_file import BrakingFile
 from tms_rc.motion_goals import frame_of, places_of, way_of
-from tms_rc.reasons import AreasLate, AreasNotKept, GoalNotInMap, TrapsMachine
+from tms_rc.place_watch import PlaceWatch
+from tms_rc.reasons import (
+    AreasLate,
+    AreasNotEnabled,
+    AreasNotKept,
+    EscapesAtRest,
+    GoalNotInMap,
+    NothingToEscape,
+    TrapsMachine,
+)
+from tms_rc.speed_limit import SpeedLimit
 from tms_reason.errors import TmsError
 from tms_reason.reason import Reason
 from tms_runtime.app import App
 
 PERIOD = 0.04  # s between looks; with the beats it stays within tms_areas.law.BEAT
+FIXES = 10  # messages of a GNSS that may come between two looks
 SPEEDS = 500  # looks that are kept until a receipt comes: it waits for the proof of the stop, and for the disk
 AROUND = 0.3  # s around the begin of a stop whose highest speed counts
 LATE = 0.3  # s; an older verdict is none
@@ -39,17 +53,24 @@ TOLD = ("follow_path",)  # actions whose poses are the way itself; for others a 
 class AreaWatch:
     """The law of areas in one gateway."""
 
-    def __init__(self, app: App, gateway: Gateway, drives: Callable[[int], bool]) -> None:
-        """`drives`: whether the goal with a number moves the tracks."""
+    def __init__(
+        self, app: App, gateway: Gateway, drives: Callable[[int], bool], tell: Callable[[str, str, str, float], None]
+    ) -> None:
+        """`drives`: whether the goal with a number moves the tracks; `tell`: of acts of persons (acts.py)."""
         site, machine = app.site, app.machine
-        self._app, self._gateway, self._drives = app, gateway, drives
+        self._app, self._gateway, self._drives, self._tell = app, gateway, drives, tell
         self._model, self._border = site.model_of(machine), site.border(machine)
         self._file, self._silhouette = AreaFile(site.state, machine), Silhouette(self._model)
         self._places = Places(app.ros, {machine: self._border})
+        self._shared = PlaceWatch(app)
         drive = self._model.drive
-        self._fix, self._fixing = Fix(drive.turn_velocity if drive is not None else 0.0), threading.Lock()
+        gnss = site.file.machines[machine].fix
+        self._fix = Fix(drive.turn_velocity if drive is not None else 0.0, rtk=gnss is not None)
+        self._fixing = threading.Lock()
+        self._fixes = None if gnss is None else app.ros.sample_arrivals(NavSatFix, f"/{machine}/{gnss}", FIXES)
         self._told = 0.0  # when the last pose that was taken came
         self._enabling = threading.Lock()
+        self.speed = SpeedLimit(app)
         self.stops: SimpleQueue[Receipt] = SimpleQueue()  # receipts that may show worse brakes
         self._braking = BrakingFile(site.state, machine)
         tracks = tracks_of(self._model, self._border)
@@ -58,6 +79,8 @@ class AreaWatch:
         # Replaced, never changed: read without a lock.
         self.enabled: Enabled | None = None
         self._guard: Guard | None = None
+        self._escape: Escape | None = None  # in its place, while a person lets the machine back in
+        self._escape_since = 0.0  # s since 1970
         self._problem: Reason | None = None
         self._verdict: tuple[float, int, Verdict] | None = None  # when, of which goal
         self._seen = Seen(None, None)
@@ -65,6 +88,12 @@ class AreaWatch:
         app.ros.poll_in_thread(PERIOD, self._look, "areas")
 
     # what others ask; none of it waits
+
+    @property
+    def here(self) -> Point | None:
+        """Where the machine is believed to be [m, map]."""
+        motion = self._seen.motion
+        return None if motion is None or self._seen.unsure is not None else (motion.x, motion.y)
 
     def unready(self) -> Reason | None:
         """Why the machine must not be moved at all now."""
@@ -90,7 +119,7 @@ class AreaWatch:
 
     def problem(self, motion: MotionAction, request: Any, joints: Mapping[str, float]) -> Reason | None:
         """Why a goal must not begin, from where the machine is now."""
-        guard = self._guard
+        escape, guard = self._escape, self._guard
         if guard is None:
             return self._problem
         seen = self._now()
@@ -98,8 +127,10 @@ class AreaWatch:
             frame = frame_of(request)
             if frame:
                 return GoalNotInMap(frame)
-            return guard.may_drive(seen, joints, places, told=motion.field in TOLD)
-        return guard.may_work(seen, [joints, *way_of(request, self._model.turned(motion.field))])
+            if escape is not None:
+                return escape.may_drive(seen, joints, places, told=motion.field in TOLD)
+            return self._shared.judged(self._holding, seen, joints, places, told=motion.field in TOLD)
+        return (escape or guard).may_work(seen, [joints, *way_of(request, self._model.turned(motion.field))])
 
     # people
 
@@ -119,8 +150,43 @@ class AreaWatch:
                 self._file.keep(enabled)
             except OSError as error:
                 raise TmsError(AreasNotKept(str(error.strerror))) from error
-            self.enabled, self._guard, self._problem = enabled, guard, None
+            self._enabled(enabled, guard)
         self._app.log.info("areas_enabled", set=areas.id, who=who)
+
+    def _enabled(self, enabled: Enabled, guard: Guard) -> None:
+        self._shared.enable(enabled.areas)
+        self.enabled, self._guard, self._problem = enabled, guard, None
+        self._escape = None
+        target = f"{self._app.machine} {enabled.areas.id[:SHOWN]}"
+        self._tell("enable_areas", target, enabled.who, enabled.at)  # at each start again: the audit may be new
+
+    def escape(self, who: str) -> None:
+        """Let the machine, which stands outside, be moved back in, until it is there or is stopped: escape.py.
+
+        Raises:
+            TmsError: it is inside, is not armed, moves, or its place is not believed.
+        """
+        gateway, machine = self._gateway, self._app.machine
+        with self._enabling:
+            guard, seen = self._guard, self._now()
+            if guard is None:
+                raise TmsError(self._problem or AreasNotEnabled())
+            if gateway.latch.cause is not None or gateway.active is not None or gateway.watch.moving():
+                raise TmsError(EscapesAtRest(machine))
+            if seen.unsure is not None:
+                raise TmsError(seen.unsure)
+            escape = Escape(guard.law, self._silhouette)
+            if escape.over(seen, gateway.watch.positions):
+                raise TmsError(NothingToEscape(machine))
+            self._escape, self._escape_since = escape, unix_time()
+        self._tell("escape", machine, who, self._escape_since)
+        self._app.log.warning("escape", who=who)
+
+    def _pace(self, seen: Seen) -> None:
+        """Limit the speed of the tracks: before an area that limits it, and on the way back."""
+        if (guard := self._guard) is not None:
+            self.speed.set("areas", guard.pace(seen, self._gateway.watch.positions))
+            self.speed.set("escape", math.inf if self._escape is None else SPEED)
 
     def _check_free(self, guard: Guard) -> None:
         active = self._gateway.active
@@ -140,10 +206,19 @@ class AreaWatch:
         except TmsError as error:
             self._problem = error.reason
             return
-        self.enabled, self._guard = found, self._made(found.areas)
+        self._enabled(found, self._made(found.areas))
 
     def _made(self, areas: AreaSet) -> Guard:
-        return Guard(Law(areas, self._app.machine, self._tracks), self._silhouette)
+        return self._guard_of(areas, self._shared.open)
+
+    def _guard_of(self, areas: AreaSet, held: frozenset[str]) -> Guard:
+        return Guard(Law(areas, self._app.machine, self._tracks, held, slow=self.speed.able), self._silhouette)
+
+    def _holding(self, held: frozenset[str]) -> Guard:
+        """The guard that counts for a holder of some places."""
+        guard = self._guard
+        assert guard is not None, "areas are enabled"
+        return guard if guard.law.held == held else self._guard_of(guard.law.areas, held)
 
     def _now(self) -> Seen:
         with self._fixing:
@@ -151,7 +226,7 @@ class AreaWatch:
 
     def _look(self) -> None:
         self._places.take()
-        place = self._places.place(self._app.machine)
+        place, deviation = self._places.place(self._app.machine), self._places.deviation(self._app.machine)
         odom = self._gateway.watch.sources.get(ODOM)
         last = {} if odom is None else {name: one.last for name, one in odom.channels.items()}
         speed, turning = (one.speed or 0.0 if (one := last.get(name)) else 0.0 for name in (PLACE, HEADING))
@@ -159,17 +234,47 @@ class AreaWatch:
             self._fix.odometry(speed, turning)
             if place is not None and place.received > self._told:
                 self._told = place.received
-                self._fix.heard(place.received, place.x, place.y, place.yaw)
+                self._fix.heard(place.received, place.x, place.y, place.yaw, deviation)
+            for fix in self._fixes() if self._fixes is not None else ():
+                self._fix.fixed(fix.received, fix.message.status.status)
             seen = self._seen = self._fix.look(monotonic())
         if seen.unsure is None and seen.motion is not None:
             self._speeds.append((unix_time(), math.hypot(seen.motion.vx, seen.motion.vy)))
-        while not self.stops.empty():
-            self._learn(self.stops.get())
+        self._take_stops()
+        if (escape := self._escape) is not None and escape.over(seen, self._gateway.watch.positions):
+            self._escaped()
+        self._pace(seen)
         active, guard = self._gateway.active, self._guard
+        drives = active is not None and self._drives(active.number)
+        lease = None if guard is None else self._leases(guard, seen, drives)
+        escape, guard = self._escape, self._guard
         if active is not None and guard is not None:
             at = monotonic()
-            verdict = guard.look(seen, self._gateway.watch.positions, self._drives(active.number))
+            verdict = (escape or guard).look(seen, self._gateway.watch.positions, drives)
+            if lease is not None and escape is None and verdict.stop is None:
+                verdict = Verdict(hold=lease)
             self._verdict = at, active.number, verdict
+
+    def _leases(self, guard: Guard, seen: Seen, drives: bool) -> Reason | None:
+        """Why the tracks must be held for a lease; places that were got or given back count from now on."""
+        lease = self._shared.look(guard, self._gateway.watch.positions, seen, drives)
+        if self._shared.open != guard.law.held:
+            with self._enabling:
+                if self.enabled is not None:
+                    self._guard = self._made(self.enabled.areas)
+        return lease
+
+    def _take_stops(self) -> None:
+        while not self.stops.empty():
+            stop = self.stops.get()
+            self._learn(stop)
+            if self._escape is not None and stop.stamp >= self._escape_since:
+                self._escaped()
+
+    def _escaped(self) -> None:
+        with self._enabling:
+            self._escape = None
+        self._app.log.info("escape_over")
 
     def _learn(self, stop: Receipt) -> None:
         """Enlarge the distances if a stop from a known speed took longer than the model says."""

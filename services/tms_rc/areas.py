@@ -10,8 +10,10 @@ from rcl_interfaces.msg import ParameterType, ParameterValue, SetParametersResul
 from rcl_interfaces.srv import GetParameters, SetParametersAtomically
 
 from tms_decision.gateway.state import Gateway
+from tms_machine.sensing import load_sensing
 from tms_rc.area_path import area_path
 from tms_rc.motion_servers import MotionServers
+from tms_rc.people import People
 from tms_rc.stop_receipt import ReceiptTopic
 from tms_reason.errors import TmsError
 from tms_reason.wire import to_line
@@ -22,29 +24,54 @@ def begin(app: App, gateway: Gateway, servers: MotionServers, receipts: ReceiptT
     """Watch the machine by its areas, where it has any; without them nothing is loaded, heard or served."""
     if not app.site.area_files and not area_path(app.site.state, app.machine).exists():
         return
+    from tms_rc.acts import Acts
     from tms_rc.area_watch import AreaWatch
 
-    servers.areas = watch = AreaWatch(app, gateway, servers.drives)
+    servers.areas = watch = AreaWatch(app, gateway, servers.drives, Acts(app).tell)
     receipts.heard = watch.stops.put
     _Service(app, watch)
+
+
+def look_for_intruders(app: App, gateway: Gateway, servers: MotionServers, people: People) -> None:
+    """Watch for people and vehicles in the areas, where the site has trackers of them."""
+    if servers.areas is None or not load_sensing(app.site).trackers:
+        return
+    from tms_rc.intruder_watch import IntruderWatch
+
+    watch = IntruderWatch(app, gateway, servers.areas, servers.drives, people.stop)
+    servers.watches.append(watch)
+    people.unarmed.append(watch.unarmed)
 
 
 class _Service:
     def __init__(self, app: App, watch: Any) -> None:
         self._watch = watch
         app.ros.offer_slow(SetParametersAtomically, f"/{app.machine}/rc/areas/set", self._set)
+        app.ros.offer_slow(SetParametersAtomically, f"/{app.machine}/rc/areas/escape", self._escape)
         app.ros.offer_slow(GetParameters, f"/{app.machine}/rc/areas/get", self._get)
 
     def _set(
         self, request: SetParametersAtomically.Request, response: SetParametersAtomically.Response
     ) -> SetParametersAtomically.Response:
-        """Enable `areas` (GeoJSON in map), for `who`; with `only_check` see whether that would be refused."""
-        from tms_areas.geojson import gathered, read
+        """Enable areas, or with `only_check` see whether that would be refused: area_request.py."""
+        from tms_rc.area_request import area_request
 
-        told = {one.name: one.value for one in request.parameters}
         try:
-            areas = gathered([read(told["areas"].string_value, "areas", None)])
-            self._watch.enable(areas, told["who"].string_value, told["only_check"].bool_value)
+            asked = area_request(request.parameters)
+            self._watch.enable(asked.areas, asked.who, asked.only_check)
+            response.result = SetParametersResult(successful=True)
+        except TmsError as error:
+            response.result = SetParametersResult(successful=False, reason=to_line(error.reason))
+        return response
+
+    def _escape(
+        self, request: SetParametersAtomically.Request, response: SetParametersAtomically.Response
+    ) -> SetParametersAtomically.Response:
+        """Let the machine back in, for `who`."""
+        from tms_rc.area_request import escape_request
+
+        try:
+            self._watch.escape(escape_request(request.parameters))
             response.result = SetParametersResult(successful=True)
         except TmsError as error:
             response.result = SetParametersResult(successful=False, reason=to_line(error.reason))

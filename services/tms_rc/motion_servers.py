@@ -21,6 +21,7 @@ from tms_machine.permit import RemotePermit
 from tms_rc.goal_check import GoalCheck
 from tms_rc.motion_goals import duration, reason_of, with_reason
 from tms_rc.shell import Shell
+from tms_rc.watches import Watch
 from tms_reason.reason import Reason
 from tms_ros.client import AnyCall, AnyPeer
 from tms_ros.goals import Ended, Outcome
@@ -57,6 +58,7 @@ class MotionServers:
         self._numbers = count(1)
         self.peers: list[AnyPeer] = []
         self.areas: AreaWatch | None = None  # where the site has areas
+        self.watches: list[Watch] = []  # what else may forbid motions
         ours = app.site.border(app.machine).controller == "ours"
         self._controller = RemotePermit(app.ros, app.pulse, app.machine, "mc", lambda _: None) if ours else None
         shell.does(Send, lambda effect: self._send(self._served[effect.number]))
@@ -85,6 +87,7 @@ class MotionServers:
         escaped = self._check.escaped(gateway, active.start)
         if escaped is None and self.areas is not None:
             escaped = self.areas.astray(gateway)
+        escaped = escaped or next(filter(None, (one.astray() for one in self.watches)), None)
         return served.peer.ready(), gone, escaped
 
     def _lost(self, peer: AnyPeer, call: AnyCall) -> bool:
@@ -110,9 +113,14 @@ class MotionServers:
     def _wrong(self, motion: MotionAction, request: Any) -> Reason | None:
         """Why the machine must not do what a goal asks; its areas take longer than the shell's lock may be held."""
         wrong = self._shell.read(lambda gateway, _: self._check.problem(motion, request, gateway))
+        wrong = wrong or self.forbidden(motion.drives)
         if wrong is not None or self.areas is None:
             return wrong
         return self.areas.problem(motion, request, self._shell.read(lambda gateway, _: gateway.watch.positions))
+
+    def forbidden(self, drives: bool = True) -> Reason | None:
+        """Why nothing may begin to move; `drives`: by its tracks."""
+        return next(filter(None, (one.unready(drives) for one in self.watches)), None)
 
     def drives(self, number: int) -> bool:
         """Whether a goal moves the tracks; also for one that is gone meanwhile."""

@@ -2,6 +2,7 @@
 
 import secrets
 import threading
+from collections.abc import Callable
 from itertools import count
 from typing import Any
 
@@ -23,6 +24,7 @@ from tms_decision.gateway.events import (
     TakeAsked,
 )
 from tms_decision.gateway.stops import DISK_LIMIT, STOP_PROVEN
+from tms_decision.reasons import CausePersists
 from tms_machine.border import standby, stood_in
 from tms_rc.shell import Shell
 from tms_rc.stop_receipt import message_of
@@ -46,6 +48,7 @@ class People:
     def __init__(self, app: App, shell: Shell, border: Border) -> None:
         self._app, self._shell = app, shell
         self._calls = count(1)
+        self.unarmed: list[Callable[[], Reason | None]] = []  # why no person may arm the machine now
         self._answers: dict[int, tuple[threading.Event, list[Answer]]] = {}
         shell.does(Stopped, self._answered)
         shell.does(Rearmed, self._answered)
@@ -72,10 +75,15 @@ class People:
         if message.data:
             self._shell.happened(Pressed())
 
+    def stop(self, cause: Reason) -> None:
+        """Stop and latch the machine, without waiting for that."""
+        self._shell.happened(StopAsked(next(self._calls), cause, orderly=False))
+
     def _answered(self, answer: Answer) -> None:
-        done, answers = self._answers[answer.request]
+        done, answers = self._answers.get(answer.request, (None, []))
         answers.append(answer)
-        done.set()
+        if done is not None:
+            done.set()
 
     def _ask(self, request: int, event: Event) -> Any:
         """Let a call happen, and wait for its answer."""
@@ -96,6 +104,9 @@ class People:
         return response
 
     def _rearm(self, request: Rearm.Request, response: Rearm.Response) -> Rearm.Response:
+        if (wrong := next(filter(None, (one() for one in self.unarmed)), None)) is not None:
+            response.error_code, response.error_msg = _wrong(CausePersists(wrong))
+            return response
         number = next(self._calls)
         answer = self._ask(number, RearmAsked(number, request.token, secrets.token_hex(TOKEN)))
         response.cause, response.token, response.armed = to_line(answer.cause), answer.token, answer.armed

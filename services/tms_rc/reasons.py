@@ -2,7 +2,7 @@
 
 from tms_reason.quantities import Moments, Number, Radians, RadiansPerSecond
 from tms_reason.reason import Reason
-from tms_reason.remedies import EDIT_CONFIG, INSPECT, PROCESSES, RETRY, Remedy
+from tms_reason.remedies import EDIT_CONFIG, INSPECT, PROCESSES, REARM, RETRY, Remedy
 
 ENABLE = Remedy("enable_areas", "tms areas enable", "Look at the areas, then enable them")
 
@@ -42,10 +42,20 @@ class NoteUnreadable(Reason, text="the note of how the machine was left cannot b
 class AreasNotEnabled(Reason, text="no areas are enabled for this site", action=ENABLE): pass
 class AreasUnreadable(Reason, text="its enabled areas cannot be read", action=ENABLE): pass
 class AreasLate(Reason, text="its areas have not been looked at for {seconds}"): seconds: Moments
+class IntrudersLate(Reason, text="nobody has looked for people for {seconds}"): seconds: Moments
+class HardwareLate(Reason, text="nobody has looked at its hardware for {seconds}"): seconds: Moments
 class AreasNotKept(Reason, text="the areas cannot be written: make room on the disk of this PC", details="{problem}"):
     problem: str
 class TrapsMachine(Reason, text="{machine} moves where these areas would stop it: {why}", action=RETRY):
     machine: str; why: Reason
+class AreaRequestBad(Reason, text="the request is incomplete or wrong: {why}"): why: Reason
+class ParameterTwice(Reason, text="{name} is given twice"): name: str
+class AreasOfOtherId(Reason, text="the areas are not those that were shown: their content is {found}, shown was {told}",
+    action=ENABLE): told: str; found: str
+class Unsigned(Reason, text="say who asks for this"): pass
+class NothingToEscape(Reason, text="{machine} is where it may be, with its margin: it may move as ever"): machine: str
+class EscapesAtRest(Reason, text="{machine} is let back in only once it stands, is armed and has no goal",
+    action=REARM): machine: str
 class GoalNotInMap(Reason, text="its poses are in the frame '{frame}', areas are in map"): frame: str
 
 # its own life

@@ -7,6 +7,7 @@ from tms_decision.gateway.effects import Publish
 from tms_decision.gateway.state import Gateway
 from tms_decision.reasons import ControllerAway, Recovering
 from tms_rc.claim import Claim
+from tms_rc.lamp import Lamp
 from tms_rc.machine_monitor import MachineMonitor
 from tms_rc.motion_servers import MotionServers
 from tms_rc.shell import Shell
@@ -29,7 +30,14 @@ class StateTopic:
     def __init__(self, app: App, shell: Shell, monitor: MachineMonitor, servers: MotionServers, claim: Claim) -> None:
         self._app, self._shell, self._monitor, self._servers, self._claim = app, shell, monitor, servers, claim
         publisher = app.ros.publisher(MachineState, f"/{app.machine}/rc/state", depth=1, latched=True)
-        shell.does(Publish, lambda _: publisher.publish(shell.read(self._state)))
+        lamp = Lamp(app)
+
+        def publish() -> None:
+            state = shell.read(self._state)
+            publisher.publish(state)
+            lamp.show(state)
+
+        shell.does(Publish, lambda _: publish())
 
     def unready(self) -> Reason | None:
         """Why the machine cannot be moved now, apart from a stop."""
@@ -46,6 +54,8 @@ class StateTopic:
         areas, machine = self._servers.areas, self._app.machine
         if areas is not None and (unwatched := areas.unready()) is not None:
             return unwatched
+        if (forbidden := self._servers.forbidden()) is not None:
+            return forbidden
         return next((ControllerAway(machine, peer.name) for peer in self._servers.peers if not peer.ready()), None)
 
     def _state(self, gateway: Gateway, now: float) -> MachineState:

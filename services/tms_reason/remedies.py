@@ -13,6 +13,7 @@ class Remedy:
 
 
 REARM = Remedy("rearm", "tms rearm {machine}", "Look at the machine, then re-arm it")
+ESCAPE = Remedy("escape", "tms rearm {machine} --escape", "If it stands outside, let it back in by slow motions")
 RESUME = Remedy("resume", "tms resume {run}", "Resume the run, or abandon it")
 GIVE_BACK = Remedy("give_back", "tms give-back {machine}", "Give the machine back")
 CANCEL = Remedy("cancel", "tms cancel {run}", "Cancel the run that holds it")

@@ -29,6 +29,7 @@ class Base(Tracks):
 
     def __init__(self, drive: Drive, start: tuple[float, float, float], response: Response | None = None) -> None:
         super().__init__(drive, start, response)
+        self.fastest = drive.velocity  # m/s of a way
         self.stuck = False  # the tracks do not move, whatever is commanded
         self.legs: list[Leg] = []
         self._aligning = False
@@ -38,6 +39,10 @@ class Base(Tracks):
         """Take velocities that stay until the next command, as in the simulator; a way has priority."""
         if math.isfinite(v) and math.isfinite(w) and not self.legs:
             self.send(cut(v, self.drive.velocity), cut(w, self.drive.turn_velocity))
+
+    def limit(self, speed: float) -> None:
+        """Keep ways to a speed [m/s]; turns are slowed by the same share."""
+        self.fastest = min(speed, self.drive.velocity)
 
     def go(self, legs: Sequence[Leg]) -> None:
         """Begin a way from the present place of the machine."""
@@ -93,7 +98,7 @@ class Base(Tracks):
             return 0.0, self._align(leg)
         off = math.remainder(math.atan2(leg.y - self.y, leg.x - self.x) - self.yaw, math.tau)
         slow = _braking(away, self.drive.acceleration) if last or leg.yaw is not None else math.inf
-        v = min(self.drive.velocity, slow) * math.cos(off) if abs(off) < STEERS else 0.0
+        v = min(self.fastest, slow) * math.cos(off) if abs(off) < STEERS else 0.0
         return v, self._turning(off)
 
     def _align(self, leg: Leg) -> float:
@@ -105,7 +110,8 @@ class Base(Tracks):
         return self._turning(off)
 
     def _turning(self, off: float) -> float:
-        most = min(self.drive.turn_velocity, _braking(abs(off), self.drive.turn_acceleration))
+        turning = self.drive.turn_velocity * self.fastest / self.drive.velocity
+        most = min(turning, _braking(abs(off), self.drive.turn_acceleration))
         return math.copysign(most, off)
 
 

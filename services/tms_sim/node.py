@@ -12,11 +12,14 @@ from tms_msg_ground.msg import GroundContact
 
 from tms_config.models import Border
 from tms_config.site_file import Fault
+from tms_machine.border import speed_limit
 from tms_reason.validation import explain
 from tms_runtime.app import App
 from tms_sim.arm_server import trajectory_server
 from tms_sim.blade_server import blade_server
+from tms_sim.hardware import PERIOD, HardwareStandIn
 from tms_sim.joint_commands import POSITION
+from tms_sim.lamp import LampStandIn
 from tms_sim.machine import StandIn
 from tms_sim.nav_servers import nav_servers
 from tms_sim.path_server import PathServer
@@ -36,6 +39,8 @@ def start(app: App) -> None:
     for handler in _handlers(machine, border):
         server = ActionServer(app, machine, handler)
         app.ros.serve(handler.type, f"/{name}/{getattr(border, handler.field)}", server.run, server.accept)
+    if (base := machine.base) is not None:
+        app.ros.subscribe(Float64, speed_limit(name), lambda m: base.limit(m.data), latched=True)
     if border.compute_path_to_pose and machine.navigator is not None:
         app.ros.serve(ComputePathToPose, f"/{name}/{border.compute_path_to_pose}", PathServer(machine.navigator).run)
     if border.emg_stop:
@@ -53,6 +58,11 @@ def start(app: App) -> None:
     app.ros.subscribe(String, f"/{name}/sim/fault", lambda m: _break(app, machine, m.data), depth=10)
     if site.file.ground is not None:
         app.ros.subscribe(GroundContact, f"/{name}/ground_contact", lambda m: _feel(machine, m), latched=True)
+    if border.lamp:
+        LampStandIn(app, name, border.lamp)
+    if site.file.machines[name].hardware:
+        hardware = HardwareStandIn(app, name)
+        app.ros.every(PERIOD, lambda: hardware.tell(machine.fault))
     app.ros.every(STEP_PERIOD, Telemetry(app, machine, name).tick)
     app.ready_when(lambda: None)
 

@@ -1,6 +1,5 @@
 """`tms:sp`: receives the declared sensing inputs and updates parameter records; does not wait for machines."""
 
-import importlib
 from collections.abc import Callable
 from typing import Any
 
@@ -16,14 +15,14 @@ from tms_reason.errors import ConfigError
 from tms_reason.reason import Reason
 from tms_reason.validation import Wrong
 from tms_reason.wire import refusal
-from tms_ros.interface_types import Message
 from tms_runtime.app import App
+from tms_sensors.message_types import message_class
 from tms_sp.field_types import Fields
 from tms_sp.inputs import SensingInput
 from tms_sp.machine_states import MachineStateSampler
 from tms_sp.mapping import Mapping
 from tms_sp.outbox import InputUpdate, Outbox
-from tms_sp.reasons import DatabaseAway, DatabaseSilent, NoMessageType
+from tms_sp.reasons import DatabaseAway, DatabaseSilent
 from tms_sp.terrain import TerrainSensing
 
 GAP = 0.015  # s between batches; the values that arrive in between are sent together
@@ -59,20 +58,6 @@ def start(app: App) -> None:
 
     app.ros.every(STATE_PERIOD, tell)
     app.ready_when(sender.unready)
-
-
-def message_class(name: str) -> type[Message]:
-    """The class of `package/msg/Name`.
-
-    Raises:
-        Wrong: it is not installed.
-    """
-    package, _, kind = name.split("/")
-    try:
-        found: type[Message] = getattr(importlib.import_module(f"{package}.msg"), kind)
-        return found
-    except (ImportError, AttributeError) as error:
-        raise Wrong(NoMessageType(name)) from error
 
 
 def fields_inside(kind: str) -> Fields:

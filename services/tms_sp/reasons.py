@@ -6,7 +6,6 @@ from tms_reason.remedies import EDIT_CONFIG, PROCESSES, Remedy
 
 SET_CLOCK = Remedy("set_clock", "", "Set the clock of the sensing PC")
 NAME_FIELDS = Remedy("edit_config", "", "Name under `fields` what is wanted")
-BUILD = Remedy("edit_config", "", "Correct the type, or build its package")
 
 
 # fmt: off
@@ -35,7 +34,6 @@ class CloudFrame(Reason, text="its points are in the frame '{frame}', not in `ma
 class CloudNotPoints(Reason, text="it is no cloud of points of the site: {problem}"): problem: str
 
 # an input
-class NoMessageType(Reason, text="there is no message type {name}", action=BUILD): name: str
 class NoMessageField(Reason, text="the message has no field '{path}'; it has {fields}", action=EDIT_CONFIG):
     path: str; fields: tuple[str, ...]
 class NoFieldInside(Reason, text="the message has no field '{path}': there is no '{name}' in a {kind}",

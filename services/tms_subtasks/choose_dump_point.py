@@ -18,6 +18,7 @@ class ChooseDumpPoint(Subtask):
     """Each part of the vessel in turn, by its load; the record tells which truck, and what was in the bucket."""
 
     timeout = 3600.0
+    waits = True
     params = Earthwork
 
     def execute(self, model_name: str, record_name: str, progress: Progress) -> None:

@@ -4,9 +4,12 @@ import threading
 from collections.abc import Callable, Iterable
 
 from tms_config.clock import monotonic, utc_now
-from tms_ur.models import ActiveRun, Host, LastStop, Machine, Place, Process, Question, Scheduler, State
+from tms_ur.models import ActiveRun, Host, LastStop, Machine, Place, Process, Question, Scheduler
+from tms_ur.place_models import SharedPlaces
 from tms_ur.reason_view import view
 from tms_ur.reasons import MachineSilent, MachineUnheard
+from tms_ur.state_models import State
+from tms_ur.watch_models import SeenBy, Watched
 
 MACHINE_SILENT = 2.0  # s, four periods of a machine's gateway
 SCHEDULER_SILENT = 5.0  # s, five periods of the scheduler's list of runs
@@ -24,6 +27,9 @@ class Board:
         self._questions: list[Question] = []
         self._places: dict[str, tuple[Place, float]] = {}
         self._stops: dict[str, LastStop] = {}
+        self._shared = SharedPlaces()
+        self._watched: dict[str, Watched] = {}
+        self._seen: list[SeenBy] = []
         self._runs_at: float | None = None
         self._hosts: dict[str, tuple[Host, float]] = {}
         self._listeners: list[Callable[[], None]] = []
@@ -55,6 +61,20 @@ class Board:
             self._stops[name] = stop
         self._publish()
 
+    def put_watched(self, name: str, watched: Watched) -> None:
+        """Take what a gateway watches besides motion."""
+        with self._lock:
+            before, self._watched[name] = self._watched.get(name), watched
+        if before != watched:
+            self._publish()
+
+    def put_seen(self, seen: list[SeenBy]) -> None:
+        """Take what all trackers tell."""
+        with self._lock:
+            before, self._seen = self._seen, seen
+        if before != seen:
+            self._publish()
+
     def put_runs(self, runs: list[ActiveRun], questions: list[Question] | None = None) -> None:
         """Take the scheduler's lists, which are complete."""
         asked = questions or []
@@ -65,6 +85,12 @@ class Board:
             self._runs, self._questions, self._runs_at = runs, asked, self._clock()
         if changed:
             self._publish()
+
+    def put_shared(self, shared: SharedPlaces) -> None:
+        """Take all shared places."""
+        with self._lock:
+            self._shared = shared
+        self._publish()
 
     def put_host(self, host: Host) -> None:
         """Take all processes of one PC; its agent publishes them at every change, and every 2 s without one."""
@@ -96,13 +122,17 @@ class Board:
             return State(
                 time=utc_now(),
                 machines=[
-                    _aged(machine, now, at, self._places.get(name), self._stops.get(name))
+                    _aged(machine, now, at, self._places.get(name), self._stops.get(name)).model_copy(
+                        update={"watched": self._watched.get(name, Watched())}
+                    )
                     for name, (machine, at) in self._machines.items()
                 ],
+                seen=self._seen,
                 scheduler=_scheduler(now, self._runs_at),
                 runs=self._runs,
                 questions=self._questions,
                 hosts=[_host(host, now - at) for _, (host, at) in sorted(self._hosts.items())],
+                shared=self._shared,
             )
 
     def _publish(self) -> None:
@@ -137,7 +167,7 @@ def _aged(
     joint_age = None if machine.joint_age is None else round(machine.joint_age + age, 1)
     update |= {"age": round(age, 1), "joint_age": joint_age}
     if age > MACHINE_SILENT:
-        update |= {"state": "silent", "reason": view(MachineSilent(f"{machine.name}:rc", round(age)))}
+        update |= {"state": "silent", "lamp": "fault", "reason": view(MachineSilent(f"{machine.name}:rc", round(age)))}
     return machine.model_copy(update=update)
 
 

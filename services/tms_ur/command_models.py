@@ -3,7 +3,8 @@
 from pydantic import ConfigDict, Field
 
 from tms_reason.names import Name, Text
-from tms_ur.models import INT32, Model
+from tms_ur.base_model import Model
+from tms_ur.models import INT32
 
 
 class Command(Model):

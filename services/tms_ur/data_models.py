@@ -6,8 +6,9 @@ from typing import Literal
 from pydantic import Field
 
 from tms_reason.names import Name
+from tms_ur.base_model import Model
 from tms_ur.command_models import Command
-from tms_ur.models import Model, Plain, Value
+from tms_ur.models import Plain, Value
 from tms_ur.reason_view import ReasonView
 
 

@@ -3,21 +3,17 @@
 from datetime import datetime
 from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
+from tms_ur.base_model import Model
 from tms_ur.reason_view import ReasonView
+from tms_ur.watch_models import Watched
 
 Document = dict[str, Any]
 Plain = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
 Value = Plain | Document | list[Document]
 MachineState = Literal["moving", "standing", "not_ready", "silent"]
 INT32 = 2**31 - 1
-
-
-class Model(BaseModel):
-    """Base of all answers; what a client sends is checked as strictly as configuration."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=True)
 
 
 class Joint(Model):
@@ -61,9 +57,11 @@ class Machine(Model):
         default=None, description="since when this console knows its state, latch, hold and reason as they are"
     )
     last_stop: LastStop | None = Field(default=None, description="null: none since its gateway began")
+    lamp: Literal["automatic", "manual", "stopped", "fault"] = Field(default="fault", description="what its lamp shows")
+    watched: Watched = Watched()
     place: Place | None = Field(default=None, description="null: never told")
     place_age: float | None = Field(default=None, description="s since the place was told, null: never")
-    joints: list[Joint] = []
+    joints: list[Joint] = Field(default=[])
     joint_age: float | None = Field(default=None, description="s since the last joint states, null: never")
     age: float | None = Field(default=None, description="s since the gateway last reported, null: never")
 
@@ -74,7 +72,7 @@ class ActiveRun(Model):
     run_id: str
     task_id: int
     state: str = Field(description="preparing, running or stopping")
-    machines: list[str] = []
+    machines: list[str] = Field(default=[])
     reason: ReasonView | None = Field(default=None, description="why it does not move on")
     reason_since: datetime | None = Field(default=None, description="since when this console knows this reason")
     started_at: datetime | None = None
@@ -120,18 +118,7 @@ class Host(Model):
 
     name: str
     age: float = Field(default=0.0, description="s since its agent last reported")
-    processes: list[Process] = []
-
-
-class State(Model):
-    """Everything that goes on now."""
-
-    time: datetime = Field(description="when this was put together, by the clock of this PC")
-    machines: list[Machine]
-    scheduler: Scheduler
-    runs: list[ActiveRun] = Field(description="active runs")
-    questions: list[Question] = []
-    hosts: list[Host]
+    processes: list[Process] = Field(default=[])
 
 
 class Task(Model):

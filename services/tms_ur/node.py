@@ -8,6 +8,7 @@ from tms_reason.errors import ConfigError
 from tms_runtime.app import App
 from tms_ur import address
 from tms_ur.access import Access
+from tms_ur.acts import Acts
 from tms_ur.api import create_app
 from tms_ur.audit import Audit
 from tms_ur.buttons import Buttons
@@ -25,6 +26,7 @@ def start(app: App) -> None:
     access = Access(address.users(app.site))
     listener = _listen(app.site)
     client, audit = SiteClient(app.ros, app.site), Audit(app.ros, app.site.state / "audit.db")
+    Acts(app.ros, audit, app.site.state / "audit.acts", list(file.machines))
     if app.site.file.console.buttons:
         Buttons(app.ros, client, audit, app.site.file.console.buttons)
     server = Server(create_app(client, audit, app.site, access), listener, tls)

@@ -29,19 +29,21 @@ from tms_ur.models import (
     Run,
     SiteInfo,
     SiteMachine,
-    State,
     Task,
     TaskText,
     Template,
     Tree,
 )
+from tms_ur.place_models import SharedPlaces
 from tms_ur.problems import Viewer, problems
 from tms_ur.reason_view import view
 from tms_ur.reasons import JournalCut, NoTree
 from tms_ur.scene_models import Scene
 from tms_ur.start_models import ResumePlan, TaskMachines
+from tms_ur.state_models import State
 from tms_ur.stream import Stream, StreamResponse
 from tms_ur.task_machines import machines_of
+from tms_ur.watch_models import EnabledAreas
 
 if TYPE_CHECKING:
     from tms_ur.audit import Audit
@@ -55,6 +57,7 @@ BEGINNING = 50  # first events of a run, which include the shape of the tree
 RunId = Annotated[str, Path(pattern=r"^[0-9A-Za-z_-]{1,64}$", description="id of a run")]
 TaskId = Annotated[int, Path(ge=1, le=INT32)]
 MachineName = Annotated[str, Path(pattern=r"^[a-z][a-z0-9_]{0,63}$")]
+PlaceName = Annotated[str, Path(min_length=1, max_length=64, description="id of a release area")]
 ProcessName = Annotated[str, Path(pattern=r"^[0-9A-Za-z_]{1,64}:[0-9A-Za-z_]{1,64}$", description="group:name")]
 
 
@@ -80,6 +83,10 @@ def _live(app: FastAPI, client: "SiteClient", site: Site) -> None:
     @app.get("/api/site", summary="The site's machines and their bodies")
     async def site_info() -> SiteInfo:
         return shown
+
+    @app.get("/api/places", summary="Shared places: who holds them, since when, and who waits")
+    async def places() -> SharedPlaces:
+        return client.board.snapshot().shared
 
     @app.get(
         "/api/events",
@@ -197,6 +204,10 @@ def _tasks(app: FastAPI, client: "SiteClient", site: Site) -> None:
 
 def _scenes(app: FastAPI, client: "SiteClient", site: Site) -> None:
     names = tuple(site.file.machines)
+
+    @app.get("/api/areas", summary="The enabled areas, as a gateway holds its machine in them")
+    def areas() -> EnabledAreas:
+        return client.areas()
 
     @app.get("/api/machines/{name}/scene", summary="What the planner of an excavator plans among now",
              responses=problems(404, 409, 503))  # fmt: skip

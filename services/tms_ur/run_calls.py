@@ -5,12 +5,12 @@ from typing import Any
 from tms_msg_ts import srv
 from tms_msg_ts.action import ExecuteTask
 
+from tms_interfaces.generated import Coded, Reply, Req, ServiceType
 from tms_reason import wire
 from tms_reason.errors import RosError, TmsError
 from tms_reason.names import check_sent
 from tms_reason.reason import Foreign
 from tms_ros.client import Call
-from tms_ros.interface_types import Coded, Reply, Req, ServiceType
 from tms_ros.node import Ros
 from tms_ur.reasons import RunNotBegun, StartRefused
 from tms_ur.start_models import ResumePlan

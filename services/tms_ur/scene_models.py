@@ -5,7 +5,7 @@ from typing import Protocol
 from pydantic import Field
 from tms_msg_rp.srv import GetScene
 
-from tms_ur.models import Model
+from tms_ur.base_model import Model
 from tms_ur.reason_view import ReasonView, of_line
 
 Numbers = list[float]

@@ -7,9 +7,9 @@ from pydantic import Field
 
 from tms_reason.errors import TmsError
 from tms_ur.access import Access, Person
+from tms_ur.base_model import Model
 from tms_ur.command_models import Login, Nothing
 from tms_ur.hashing import Hashing
-from tms_ur.models import Model
 from tms_ur.problems import problems
 from tms_ur.reasons import NoUsers
 from tms_ur.security import COOKIE, source

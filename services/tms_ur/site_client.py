@@ -2,6 +2,8 @@
 
 from typing import Any
 
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import SetParametersAtomically
 from tms_msg_db.srv import (
     AddTask,
     AddTemplate,
@@ -38,10 +40,13 @@ from tms_ur import messages
 from tms_ur.board import Board
 from tms_ur.data_models import Change, Record, Sensing
 from tms_ur.models import AddedTemplate, Event, Host, Place, Rearmed, Receipt, Run, Task, TaskText, Template
+from tms_ur.place_client import PlaceClient
 from tms_ur.reason_view import of_error, of_line, view
 from tms_ur.reasons import UnknownProcess
 from tms_ur.run_calls import CALL_LIMIT, RunCalls, checked
 from tms_ur.scene_models import Scene, scene
+from tms_ur.watch_models import EnabledAreas
+from tms_ur.watching import Watching
 
 PROCESS_LIMIT = 15.0  # s for a process to end and to be started
 
@@ -53,6 +58,8 @@ class SiteClient(RunCalls):
         super().__init__(ros)
         names = list(site.file.machines)
         self.board = Board(names)
+        self._watching = Watching(ros, site, self.board)
+        self.shared = PlaceClient(ros, self.board)
         self._inputs: tuple[list[InputState], float] | None = None  # read and replaced in one step
         self._places = Places(ros, {name: site.border(name) for name in names})
         for name in names:
@@ -194,6 +201,18 @@ class SiteClient(RunCalls):
         answer = self._ask(Rearm, f"/{machine}/rearm", token=token)
         return Rearmed(token=answer.token, cause=of_line(answer.cause), armed=answer.armed)
 
+    def let_back(self, machine: str, who: str) -> None:
+        """Let a machine that stands outside its areas be moved back in.
+
+        Raises:
+            TmsError: refused, with the reason.
+        """
+        value = ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=who)
+        request = SetParametersAtomically.Request(parameters=[Parameter(name="who", value=value)])
+        result = self._ros.call(SetParametersAtomically, f"/{machine}/rc/areas/escape", request, CALL_LIMIT).result
+        if not result.successful:
+            raise TmsError(wire.refusal("", result.reason))
+
     def scene(self, machine: str) -> Scene:
         """What the planner of a machine plans among now.
 
@@ -201,6 +220,10 @@ class SiteClient(RunCalls):
             TmsError: something of it is not known, or the planner is away.
         """
         return scene(machine, self._ask(GetScene, f"/{machine}/rp/get_scene"))
+
+    def areas(self) -> EnabledAreas:
+        """The enabled areas, as a gateway tells them."""
+        return self._watching.areas()
 
     # processes
 

@@ -2,7 +2,7 @@
 
 from pydantic import Field
 
-from tms_ur.models import Model
+from tms_ur.base_model import Model
 
 
 class ResumePlan(Model):

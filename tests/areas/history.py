@@ -1,24 +1,31 @@
 """One seeded history of a machine between areas, watched by the gateway's law, against where it truly is."""
 
+import itertools
 import math
 import random
 from dataclasses import dataclass, field
 
 import numpy as np
+from shapely import Point as Point2
 
 from areas.plant import STEP, TROUBLES, Ground, Localisation, Plant, Trouble
 from areas.truth import Array, Rules, edge
 from tms_areas.areas import Area, AreaSet, Point, ring
 from tms_areas.body import Body, Part, Silhouette
 from tms_areas.braking import Axis, Tracks
-from tms_areas.fix import Fix
+from tms_areas.fix import SURE, Fix
 from tms_areas.guard import Guard, Verdict
-from tms_areas.law import Law, Place
+from tms_areas.law import Law
+from tms_areas.reach import Place
 
 SECONDS = 60.0  # of a history
+BLIND, MOVES = 1.2, 0.1  # s without a right pose after which a machine must not be driven any more, at more than m/s
 BEAT = 0.05  # s between looks of the gateway
 LINK = 0.08  # s at most from a decision to the command at the machine
 GENTLE = 0.8  # share of the acceleration with which a driver brakes for its goal
+WRONG = 0.45  # m that no pose is off but one after a jump: drift, noise, and what it travels until it is heard
+DASHES = 5  # kinds of dashes, by turns
+SLOWEST = 0.15  # s of the slowest poses
 NEAR = 0.3  # m, rad: there
 
 
@@ -77,12 +84,23 @@ class Result:
     seed: int
     wild: bool
     crossed: float | None = None  # when the machine truly was where it must not be
+    blind: float | None = None  # when it drove although nobody could know where it was
+    misled: float | None = None  # when it was stopped for good by a pose that was wrong by more than poses may be
     stopped: float | None = None  # when the law stopped it
     why: str = ""
     held: int = 0
     would_cross: bool = False  # without the law
     refused: bool = False
     reached: int = 0  # goals
+
+    @property
+    def violation(self) -> str:
+        """What must never happen and did, in words."""
+        if self.crossed is not None:
+            return f"the machine is where it must not be, at {self.crossed:.2f} s"
+        if self.blind is not None:
+            return f"nobody knows where it drives, at {self.blind:.2f} s"
+        return "" if self.misled is None else f"a wrong pose is believed, at {self.misled:.2f} s"
 
 
 @dataclass
@@ -101,8 +119,8 @@ class Made:
     goals: list[Point] = field(default_factory=list)
 
 
-def made(seed: int) -> Made:
-    """A site, a machine in it, and what goes wrong."""
+def made(seed: int, dash: bool = False) -> Made:
+    """A site, a machine in it, and what goes wrong. `dash`: tracks as slow as their model says, and no goals."""
     r = random.Random(seed)
     corners = _machine(r)
     areas, polygons, closed = _areas(r)
@@ -120,22 +138,40 @@ def made(seed: int) -> Made:
     law = Law(areas, "machine", tracks)
     body = Outline(corners).body(())
     places = [one for _ in range(300) if law.arriving(body, one := _anywhere(r)) is None]
-    if places:
+    if dash:
+        out.lag, out.slip, out.wild = lag, 0.0, True
+        out.start = _for_a_dash(seed, places, law)
+    elif places:
         out.start = places[0]
-        straight = [
-            one
-            for one in places[1:]
-            if law.path(body, [places[0], (*places[0][:2], _facing(places[0], one)[2]), _facing(places[0], one)])
-            is None
-        ]
-        out.goals = [one[:2] for one in straight[:1]]
+        straight = (one for one in places[1:] if law.path(body, [places[0], *_turn_and_go(places[0], one)]) is None)
+        out.goals = [one[:2] for one in itertools.islice(straight, 1)]
     return out
+
+
+def _for_a_dash(seed: int, places: list[Place], law: Law) -> Place:
+    """Where a dash begins: those that turn on the spot, at the place that is nearest to a border."""
+    if not places:
+        return 0.0, 0.0, 0.0
+    border = law.areas.usable().boundary
+    return places[0] if seed % DASHES else min(places, key=lambda one: border.distance(Point2(*one[:2])))
+
+
+def _dash(seed: int, tracks: Tracks) -> tuple[float, float]:
+    """The command of a dash: by turns on the spot, backwards, and three times ahead."""
+    kind = seed % DASHES
+    if kind == 0:
+        return 0.0, tracks.turning.top
+    return (-tracks.forward.top if kind == 1 else tracks.forward.top), 0.0
 
 
 def _way(plant: Plant, goal: Point) -> list[Place]:
     """How a driver goes to a goal: it turns, then drives straight."""
-    there = _facing((plant.x, plant.y, plant.yaw), (*goal, 0.0))
-    return [(plant.x, plant.y, there[2]), there]
+    return _turn_and_go((plant.x, plant.y, plant.yaw), (*goal, 0.0))
+
+
+def _turn_and_go(old: Place, new: Place) -> list[Place]:
+    there = _facing(old, new)
+    return [(*old[:2], there[2]), there]
 
 
 def _facing(old: Place, new: Place) -> Place:
@@ -180,10 +216,11 @@ def _areas(r: random.Random) -> tuple[AreaSet, list[Array], list[Array]]:
     return AreaSet(tuple(found)), open_ones, shapes[len(open_ones) :]
 
 
-def run(seed: int, guarded: bool = True, keeps_on: float = math.inf) -> Result:
+def run(seed: int, guarded: bool = True, keeps_on: float = math.inf, dash: bool = False) -> Result:
     """The history of a seed; not `guarded`: without the law, until it crosses. From `keeps_on` [s] on a wild driver's
-    command stays what it is."""
-    what, r = made(seed), random.Random(seed + 1)
+    command stays what it is. `dash`: it goes as fast as it can in one direction, as often as it is let, and all is as
+    late, and as far off, as it may be."""
+    what, r = made(seed, dash), random.Random(seed + 1)
     out = Result(seed, what.wild)
     fix, law = Fix(what.tracks.turning.top), Law(what.areas, "machine", what.tracks)
     guard, outline = Guard(law, Outline(what.corners)), edge(what.corners)
@@ -193,13 +230,17 @@ def run(seed: int, guarded: bool = True, keeps_on: float = math.inf) -> Result:
                         r.uniform(0, 6))  # fmt: skip
     driver = Driver(random.Random(seed + 4), what.wild, what.tracks.forward.top, what.tracks.forward.acceleration,
                     what.tracks.turning.top, list(what.goals))  # fmt: skip
-    going, stopped, next_beat = False, False, 0.0
+    if dash:
+        driver.until, driver.wish = math.inf, _dash(seed, what.tracks)
+        told.delay, told.noise, told.drift = SLOWEST, 0.002, SURE
+    going, stopped, next_beat, wrong = False, False, 0.0, False
     wished = (0.0, 0.0)
     for step in range(round(SECONDS / STEP)):
         plant.step()
         now = plant.now
         for at, pose in told.take(now, (plant.x, plant.y, plant.yaw)):
             fix.heard(at, *pose)
+            wrong = math.dist(pose[:2], (plant.x, plant.y)) > WRONG
         fix.odometry(plant.v, plant.w)
         if now >= next_beat:
             next_beat = now + BEAT * r.uniform(0.8, 1.4)
@@ -207,8 +248,9 @@ def run(seed: int, guarded: bool = True, keeps_on: float = math.inf) -> Result:
             verdict = guard.look(seen, {}, tracks=True) if guarded else Verdict()
             if verdict.stop is not None and going:
                 out.stopped, out.why = now, verdict.stop.code
+                out.misled = now if wrong else None
                 stopped, going = True, False
-                plant.command(0.0, 0.0, r.uniform(0, LINK))
+                plant.command(0.0, 0.0, LINK if dash else r.uniform(0, LINK))
             elif verdict.hold is not None and going:
                 out.held, going = out.held + 1, False
                 plant.command(0.0, 0.0, r.uniform(0, LINK))
@@ -225,6 +267,9 @@ def run(seed: int, guarded: bool = True, keeps_on: float = math.inf) -> Result:
                 plant.command(*wished, r.uniform(0, 0.02))
             else:
                 wished = (0.0, 0.0)
+        if guarded and going and abs(plant.v) > MOVES and now - told.right_at > BLIND:
+            out.blind = now
+            break
         if step % 10 == 0 and what.rules.broken(outline, plant.x, plant.y, plant.yaw):
             out.crossed = now
             break

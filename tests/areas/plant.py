@@ -90,6 +90,7 @@ class Localisation:
     due: float = 0.0
     under_way: deque[tuple[float, Pose]] = field(default_factory=deque)
     last: Pose = (0.0, 0.0, 0.0)
+    right_at: float = 0.0  # when it last told where the machine was
 
     def take(self, now: float, true: Pose) -> list[tuple[float, Pose]]:
         """Measure if it is time; returns what has arrived, and when."""
@@ -118,5 +119,7 @@ class Localisation:
                 if one.kind == "nan":
                     return (math.nan, y, yaw)
                 x, y, yaw = x + one.dx, y + one.dy, yaw + one.turn
+        if not any(one.begins <= now < one.ends for one in self.troubles):
+            self.right_at = now
         self.last = (x, y, yaw)
         return self.last

@@ -73,6 +73,7 @@ def measure() -> Iterable[Figure]:
     yield _true("bucket, from 0.7 m3", "m3", abs(worst - 0.7), 0.2, f"{worst:.2f} m3")
     yield _true("passes that fill an ic120, from 8", "", abs(len(volumes) - 8), 1.0, str(len(volumes)))
     yield _true("cells that differ for the same log", "", _differing(), 0.0)
+    yield _true("loads off at ten times the speed", "", _off_at_speed(), 0.03)
 
 
 def _true(name: str, unit: str, value: float, limit: float, note: str = "") -> Figure:
@@ -80,12 +81,12 @@ def _true(name: str, unit: str, value: float, limit: float, note: str = "") -> F
     return Figure(name, unit, value, limit, max(LEAST, value), note=note)
 
 
-def _log() -> list[Report]:
+def _log(rate: float = 50.0) -> list[Report]:
     poses = [OPEN]
     for turn in TURNS[:PASSES]:
         poses += dig_poses(turn, now=poses[-1])[1:]
         poses += [ABOVE, OPEN]
-    return [vessel(0.0, 0.0), *reports(moved(poses))]
+    return [vessel(0.0, 0.0), *reports(moved(poses, rate=rate))]
 
 
 def _updates() -> tuple[list[float], list[float]]:
@@ -189,6 +190,14 @@ def _vectors() -> float:
             off = abs(force(soil, math.radians(rake), WIDTH, np.array([depth])) / 1e3 - wanted) - ROUNDING
             worst = max(worst, off / wanted)
     return worst
+
+
+def _off_at_speed() -> float:
+    """How far loads are off when machines tell their joints a tenth as often in their own time."""
+    once, fast = (loading_site() for _ in range(2))
+    run(once, _log())
+    run(fast, _log(rate=5.0))
+    return abs(moved_by(fast, "ic120") / moved_by(once, "ic120") - 1)
 
 
 def _differing() -> int:

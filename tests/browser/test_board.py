@@ -10,6 +10,7 @@ from playwright.sync_api import Page, expect
 
 from tms_decision.reasons import SoftwareStop
 from tms_ur.models import Host, LastStop, Machine, Process, Run
+from tms_ur.place_models import PlaceRequest, SharedPlace, SharedPlaces
 from tms_ur.reason_view import of_line, view
 from unit.tms_ur.fakes import NOON
 from yard import Yard, serving
@@ -101,6 +102,21 @@ def test_a_process_that_cannot_be_kept_up_is_an_alarm(page: Page, address: str, 
     yard.now += 7
     yard.receive()
     expect(page.locator("#list_alarms li")).to_contain_text(["PC pc says nothing."])
+
+
+def test_a_shared_place_is_taken_from_its_holder(page: Page, address: str, yard: Waiting) -> None:
+    facts = {"run": "", "since": NOON}
+    waits = PlaceRequest(machine="ic120", **facts)
+    held = SharedPlace(name="ramp", state="held", holder="zx200", queue=[waits], reason=None, **facts)
+    yard.board.put_shared(SharedPlaces(places=[held]))
+    page.goto(f"{address}/#board")
+    row = page.locator("[data-place=ramp]")
+    expect(row).to_contain_text("zx200 (since 31 Jan")
+    expect(row).to_contain_text("ic120 waits since 31 Jan")
+    row.get_by_role("button", name="Take ramp from its holder").click()
+    page.get_by_role("button", name="Do it").click()
+    expect(page.locator("#message")).to_have_text("ramp: taken from zx200")
+    assert ("revoke", "ramp") in [call[:2] for call in yard.calls]
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

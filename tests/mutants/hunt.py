@@ -1,5 +1,7 @@
 """Simulated schedules until one violates an invariant, in the process of one mutant; `run.py` starts it.
 
+For a mutant of the areas these are histories of `tests/areas`, of machines that dash at the borders.
+
 Each seed is printed before its schedule, so that it is known where a defect has ended the process.
 """
 
@@ -9,19 +11,26 @@ import sys
 from importlib.util import find_spec
 from pathlib import Path
 
+from areas.history import run
 from simulation.schedule import Schedule
 
-LONGEST = 10  # s of CPU time of a schedule, which takes 0.03 s: a defect may let it go on for ever
+LONGEST = 10  # s of CPU time of a schedule, which takes 0.03 s to 0.5 s: a defect may let it go on for ever
+AREAS = "tms_areas"
 
 
-def hunt(seed: int, schedules: int) -> None:
+def violation(package: str, seed: int) -> str:
+    """What goes wrong with a seed; empty if nothing does."""
+    return run(seed, dash=True).violation if package == AREAS else Schedule(seed).run().violation
+
+
+def hunt(package: str, seed: int, schedules: int) -> None:
     """Print the first violation, if there is one."""
     for one in range(seed, seed + schedules):
         print(json.dumps({"seed": one}), flush=True)
         _limit()
-        violation = Schedule(one).run().violation
-        if violation:
-            print(json.dumps({"violation": violation}), flush=True)
+        found = violation(package, one)
+        if found:
+            print(json.dumps({"violation": found}), flush=True)
             return
 
 
@@ -36,4 +45,4 @@ if __name__ == "__main__":
     spec = find_spec(package)
     if spec is None or spec.origin is None or not Path(spec.origin).is_relative_to(Path.cwd()):
         sys.exit(f"{package} is not the planted one")
-    hunt(int(seed), int(schedules))
+    hunt(package, int(seed), int(schedules))

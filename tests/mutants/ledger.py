@@ -14,7 +14,8 @@ from mutants.plant import TESTS, Verdict
 def code() -> str:
     """A digest of what decides, and of what simulates."""
     digest = hashlib.sha256()
-    for folder in (SERVICES / "tms_decision", SERVICES / "tms_proof", TESTS / "simulation"):
+    packages = (SERVICES / name for name in ("tms_areas", "tms_decision", "tms_proof"))
+    for folder in (*packages, TESTS / "simulation", TESTS / "areas"):
         for path in sorted(folder.rglob("*.py")):
             digest.update(path.read_bytes())
     return digest.hexdigest()

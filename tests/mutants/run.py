@@ -12,9 +12,9 @@ from pathlib import Path
 import click
 
 from mutants.catalogue import DoesNotApply, Mutant, mutants
+from mutants.hunt import violation
 from mutants.ledger import Ledger
 from mutants.plant import HuntFailed, Verdict, look_for
-from simulation.schedule import Schedule
 
 SEED = 1  # the same for all, so that the schedules are the same each time
 
@@ -39,15 +39,15 @@ def verdicts(some: Sequence[Mutant], seed: int, schedules: int, workers: int, le
         todo = {pool.submit(look_for, one, seed, schedules): one for one in some if known[one.name] is None}
         for future in as_completed(todo):
             verdict = future.result()
-            check_seed(verdict)
+            check_seed(todo[future], verdict)
             ledger.keep(todo[future], verdict)
             yield verdict
 
 
-def check_seed(verdict: Verdict) -> None:
+def check_seed(mutant: Mutant, verdict: Verdict) -> None:
     """The code itself must violate nothing with the seed that has found a mutant."""
-    if verdict.seed is not None and (violation := Schedule(verdict.seed).run().violation):
-        raise click.ClickException(f"without any defect, seed {verdict.seed} violates: {violation}")
+    if verdict.seed is not None and (found := violation(mutant.package, verdict.seed)):
+        raise click.ClickException(f"without any defect, seed {verdict.seed} violates: {found}")
 
 
 def told(verdict: Verdict, wrong: str) -> str:

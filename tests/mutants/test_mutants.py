@@ -13,7 +13,7 @@ import click
 import pytest
 from click.testing import CliRunner
 
-from mutants import run
+from mutants import hunt, run
 from mutants.catalogue import SERVICES, DoesNotApply, Mutant, mutants
 from mutants.ledger import Ledger
 from mutants.plant import HuntFailed, Verdict, look_for, plant, read
@@ -172,7 +172,7 @@ def test_a_seed_that_violates_without_a_defect_finds_no_mutant(
         def run(self) -> "Violates":
             return self
 
-    monkeypatch.setattr(run, "Schedule", Violates)
+    monkeypatch.setattr(hunt, "Schedule", Violates)
     result = CliRunner().invoke(run.main, ["-n", "9"])
     assert result.exit_code == 1 and "without any defect, seed 2 violates: it moves anyway" in result.output
 

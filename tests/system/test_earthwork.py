@@ -37,6 +37,7 @@ KILLED = (  # one after the other, a bucket later each
 )
 ACTIVE = ("preparing", "running", "stopping", "held")
 BUCKET = (0.4, 0.75)  # m3 as it lay: 0.5 to 0.95 loose
+LOST = 2  # sums of the last seconds before tms:db was killed: it keeps the past of records in memory for so long
 
 
 @pytest.fixture
@@ -68,17 +69,27 @@ def job(mesh: Mesh) -> dict[str, float]:
     return values
 
 
-def check(mesh: Mesh) -> None:
+def check(mesh: Mesh, *, killed: bool = False) -> None:
     """The volume is moved, by buckets of a usual size, of which each has counted once."""
     found = job(mesh)
     assert found["done"] and VOLUME <= found["moved"] <= VOLUME + BUCKET[1]
     rows = json.loads(mesh.tms("param", "history", "/EARTHWORK", "--limit", "10000", "--json").stdout)
     sums = [row["values"] for row in rows if "counted" in row["values"]]
-    told = {(int(one["counted"]), one["moved"]) for one in sums}
-    counts, moved = zip(*sorted(told), strict=True)
-    wanted = list(range(counts[0], int(found["counted"]) + 1))  # the database keeps the last changes of a record
-    assert list(counts) == wanted, "one sum a bucket, and no bucket is left out"
-    assert all(0.0 <= after - before <= BUCKET[1] for before, after in itertools.pairwise(moved))
+    counts, moved = zip(*sorted({(int(one["counted"]), one["moved"]) for one in sums}), strict=True)
+    assert len(set(counts)) == len(counts), "one sum a bucket"
+    steps = [after - before for before, after in itertools.pairwise(counts)]
+    assert set(steps) == {1} or (killed and sum(steps) - len(steps) <= LOST), "no bucket is left out"
+    brought = zip(itertools.pairwise(moved), steps, strict=True)
+    assert all(0.0 <= after - before <= step * BUCKET[1] for (before, after), step in brought)
+
+
+def ended(mesh: Mesh, run_id: str) -> bool:
+    """A full PC may keep the database from being found in time: then it is not known."""
+    told = mesh.tms("runs", "--limit", "5", "--json", expect=None)
+    return (
+        told.returncode == 0
+        and next(r["state"] for r in json.loads(told.stdout) if r["run_id"] == run_id) not in ACTIVE
+    )
 
 
 def test_two_trucks_move_the_volume_of_the_job(mesh: Mesh) -> None:
@@ -102,6 +113,6 @@ def test_it_goes_on_whatever_is_killed(mesh: Mesh) -> None:
             mesh.wait_ready()
             mesh.tms("rearm", "--all", "--yes")
             mesh.tms("resume", run_id, "--yes")
-    wait_until(lambda: state_of(mesh, run_id) not in ACTIVE, 3000, "the run ends", every=5.0)
+    wait_until(lambda: ended(mesh, run_id), 3000, "the run ends", every=5.0)
     assert state_of(mesh, run_id) == "success", mesh.tms("events", run_id).stdout[-2000:]
-    check(mesh)
+    check(mesh, killed=True)

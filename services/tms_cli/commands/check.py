@@ -7,6 +7,7 @@ from tms_cli.words import say
 from tms_config.config import load_site
 from tms_config.processes import table
 from tms_ground.settings import ground_of, soils_of
+from tms_hardware.settings import hardware_of
 from tms_machine.sensing import load_sensing
 from tms_ur.address import certificate, users
 
@@ -27,6 +28,8 @@ def command(chosen: str | None, as_json: bool) -> None:
     if any(row.name == "ur" and row.pc in ("", site.pc) for row in rows):  # other PCs do not have the console's files
         certificate(site)
         users(site)
+    for machine in site.file.machines:
+        hardware_of(site, machine)
     if (ground := ground_of(site)) is not None:
         soils_of(site, ground)
     if site.area_files:

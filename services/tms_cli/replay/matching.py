@@ -14,7 +14,7 @@ from tms_config.models import Border
 from tms_machine.sensing import Input, sensing_path
 from tms_reason.errors import TmsError
 from tms_reason.validation import Wrong
-from tms_sp.node import message_class
+from tms_sensors.message_types import message_class
 
 
 @dataclass

@@ -11,7 +11,7 @@ from tms_cli.replay.recording import Recording, Track
 from tms_cli.replay.stamps import Stamps
 from tms_config.clock import monotonic, sleep
 from tms_reason.errors import TmsError
-from tms_sp.node import message_class
+from tms_sensors.message_types import message_class
 
 if TYPE_CHECKING:
     from tms_ros.node import Ros

@@ -6,6 +6,7 @@ import { said, t } from "./strings.js";
 /** Commands by action, from its arguments; each resolves to the text to show. */
 export const COMMANDS = {
   rearm: ({ machine }) => rearmMachine(machine),
+  escape: ({ machine }) => letBack(machine),
   cancel: ({ run }) => cancelRun(run),
   restart: ({ process }) => restartProcess(process),
 };
@@ -22,6 +23,25 @@ export async function rearmMachine(name) {
   }
   await ask(path, { token: first.token });
   return t("rearmed", { name });
+}
+
+/** Re-arms a machine that stands outside its areas, if it is stopped, and lets it be moved back in. */
+export async function letBack(name) {
+  const path = `/api/machines/${encodeURIComponent(name)}`;
+  if (!(await confirmed(t("escape_ask", { name })))) {
+    return "";
+  }
+  const first = await ask(`${path}/rearm`, {}).catch((error) => {
+    if (error.reason?.code !== "NOT_STOPPED") {
+      throw error;
+    }
+    return null;
+  });
+  if (first !== null) {
+    await ask(`${path}/rearm`, { token: first.token });
+  }
+  await ask(`${path}/escape`, {});
+  return t("escapes", { name });
 }
 
 export async function cancelRun(id) {

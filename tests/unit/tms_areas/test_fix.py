@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from tms_areas.fix import OLD, SETTLED, Fix, Seen
-from tms_areas.reasons import PoseJumped, PoseOld, PoseSettles, PoseStuck, PoseUnknown
+from tms_areas.fix import FIX_OLD, OLD, RTK, SETTLED, TOLD, VAGUE, Fix, Seen
+from tms_areas.reasons import FixLost, FixOld, PoseJumped, PoseOld, PoseSettles, PoseStuck, PoseUnknown, PoseVague
 from tms_reason.reason import Reason
 
 PERIOD = 0.06  # s
@@ -110,3 +110,44 @@ def test_a_machine_that_stands_may_tell_its_place_less_often() -> None:
     assert fix.look(at + 0.39) == Seen(None, fix.motion) and fix.motion is not None and fix.motion.rests
     fix.odometry(0.3, 0.0)  # it leaves, and nobody says where to
     assert isinstance(fix.look(at + OLD + 0.01).unsure, PoseOld)
+
+
+def test_a_deviation_that_poses_tell_counts_and_a_large_one_is_not_believed() -> None:
+    fix, now, x = driving()
+    before = fix.look(now).motion
+    fix.heard(now + PERIOD, x + 0.5 * PERIOD, 0.0, 0.0, VAGUE - 0.1)
+    after = fix.look(now + PERIOD)
+    assert before is not None and after.motion is not None and after.unsure is None
+    assert after.motion.off == pytest.approx(before.off + TOLD * (VAGUE - 0.1), abs=1e-3)
+    for deviation in (VAGUE + 0.01, math.inf, math.nan):
+        fix, now, x = driving()
+        fix.heard(now + PERIOD, x + 0.5 * PERIOD, 0.0, 0.0, deviation)
+        unsure = fix.look(now + PERIOD).unsure
+        assert isinstance(unsure, PoseSettles | PoseVague) and unsure.find(PoseVague) is not None
+        assert drive(fix, now + PERIOD, SETTLED + 0.3, x + 0.5 * PERIOD)[2] is None
+
+
+def rtk(status: int, seconds: float, silent: float = 0.0) -> Reason | None:
+    """What is wrong after 8 s with a fix, and some with another status, or without word of it."""
+    fix, x = Fix(0.4, rtk=True), 0.0
+    fix.odometry(0.5, 0.0)
+    now, ends = 0.0, 8.0 + seconds + silent
+    while now < ends:
+        now, x = now + PERIOD, x + 0.5 * PERIOD
+        fix.heard(now, x, 0.0, 0.0)
+        if now < 8.0 + seconds:
+            fix.fixed(now, RTK if now < 8.0 else status)
+        fix.look(now)
+    return fix.look(now).unsure
+
+
+def test_without_an_rtk_fix_no_pose_is_believed_where_one_is_asked_for() -> None:
+    assert rtk(RTK, 1.0) is None
+    for status in (-1, 0, 1):
+        lost = rtk(status, 0.5)
+        assert lost is not None and lost.find(FixLost) is not None
+    silent = rtk(RTK, 0.0, FIX_OLD + 0.2)
+    assert silent is not None and silent.find(FixOld) is not None
+    assert rtk(RTK, 0.0, FIX_OLD - 0.2) is None
+    unheard = Fix(0.4, rtk=True)
+    assert drive(unheard, 0.0, 8.0)[2] == FixOld()

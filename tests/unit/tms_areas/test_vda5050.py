@@ -1,15 +1,21 @@
 """The export as a zoneSet of VDA 5050 3.0.0: what its schema asks for, and the same places are closed."""
 
+import copy
+import json
+from collections.abc import Callable
+from typing import Any
+
+import jsonschema_rs
+import pytest
 from shapely import Point, Polygon
 
+from conftest import PROJECT
 from tms_areas.areas import Area, AreaSet
 from tms_areas.vda5050 import zone_set
 
-# Of the schema zoneSet of VDA 5050 3.0.0: required keys by object, and those of a type of zone.
-HEADER = {"headerId", "timestamp", "version", "manufacturer", "serialNumber", "zoneSet"}
-SET, ZONE = {"mapId", "zoneSetId", "zones"}, {"zoneId", "zoneType", "vertices"}
-BY_TYPE = {"BLOCKED": set[str](), "RELEASE": set[str](), "SPEED_LIMIT": {"maximumSpeed"}}
-
+SCHEMA = jsonschema_rs.validator_for(
+    json.loads((PROJECT / "tests/data" / "vda5050_zone_set.json").read_text(encoding="utf-8"))
+)
 RING = Area("ring", "unmanned", ((0, 0), (40, 0), (40, 30), (0, 30), (0, 20), (30, 20), (30, 10), (0, 10)))
 LID = Area("lid", "unmanned", ((-5, 0), (0, 0), (0, 30), (-5, 30)))  # closes the ring: a hole remains
 AREAS = AreaSet((
@@ -21,15 +27,33 @@ AREAS = AreaSet((
 
 def test_it_has_what_the_schema_asks_for() -> None:
     told = zone_set(AREAS, "yard", "2026-11-26T00:00:00.000Z")
-    assert set(told) == HEADER and set(told["zoneSet"]) >= SET
+    SCHEMA.validate(json.loads(json.dumps(told)))
     zones = told["zoneSet"]["zones"]
     assert len({zone["zoneId"] for zone in zones}) == len(zones)
     for zone in zones:
-        assert set(zone) >= ZONE | BY_TYPE[zone["zoneType"]]
         shape = Polygon([(one["x"], one["y"]) for one in zone["vertices"]])
         assert shape.is_valid and shape.exterior.is_ccw
     release = next(zone for zone in zones if zone["zoneType"] == "RELEASE")
     assert (release["releaseLossBehavior"], release["zoneDescriptor"]) == ("EVACUATE", "積込場")
+
+
+SPOILED: list[Callable[[Any], object]] = [
+    lambda told: told.pop("headerId"), lambda told: told.update(timestamp="yesterday"),
+    lambda told: told["zoneSet"].pop("zoneSetId"), lambda told: told["zoneSet"].update(zones={}),
+    lambda told: told["zoneSet"]["zones"][0].update(zoneType="MOAT"),
+    lambda told: told["zoneSet"]["zones"][0].update(vertices=[{"x": 0.0, "y": 0.0}] * 2),
+    lambda told: told["zoneSet"]["zones"][0]["vertices"][0].pop("y"),
+    lambda told: [zone.pop("maximumSpeed", None) for zone in told["zoneSet"]["zones"]],
+    lambda told: [zone.update(releaseLossBehavior="STOP") for zone in told["zoneSet"]["zones"]],
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("spoil", SPOILED)
+def test_the_schema_refuses_what_is_spoiled(spoil: Callable[[Any], object]) -> None:
+    told = copy.deepcopy(zone_set(AREAS, "yard", "2026-11-26T00:00:00.000Z"))
+    assert SCHEMA.is_valid(told)
+    spoil(told)
+    assert not SCHEMA.is_valid(told)
 
 
 def test_its_zones_close_what_our_areas_close() -> None:

@@ -9,7 +9,7 @@ from nav_msgs.msg import Odometry
 from tf2_msgs.msg import TFMessage
 
 from tms_config.models import Border
-from tms_machine.places import Places, pose_of
+from tms_machine.places import Places, deviation_of, pose_of
 from tms_machine.reasons import NotInMap
 from tms_proof.reasons import Old, Pose, Unheard
 from tms_ros.topics import Arrival
@@ -143,3 +143,16 @@ def test_a_pose_without_numbers_or_orientation_leaves_the_machine_where_it_was(x
     assert places.take() == {"digger"}
     place = places.place("digger")
     assert place is not None and place.x == 7.0
+
+
+def test_the_deviation_of_a_pose_is_that_of_its_worst_direction() -> None:
+    message = Odometry()
+    assert deviation_of(message) == deviation_of(PoseStamped()) == 0.0
+    for (xx, xy, yy), wanted in {
+        (0.04, 0.0, 0.01): 0.2, (0.05, 0.04, 0.05): 0.3, (-1.0, 0.0, 0.01): math.inf, (math.nan, 0.0, 0.0): math.inf,
+        (0.01, math.inf, 0.01): math.inf,
+    }.items():  # fmt: skip
+        message.pose.covariance[0] = xx
+        message.pose.covariance[1] = message.pose.covariance[6] = xy
+        message.pose.covariance[7] = yy
+        assert deviation_of(message) == pytest.approx(wanted)

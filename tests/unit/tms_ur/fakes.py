@@ -30,6 +30,7 @@ from tms_ur.models import AddedTemplate, Event, Rearmed, Receipt, Run, Task, Tas
 from tms_ur.reason_view import of_line, view
 from tms_ur.scene_models import Scene, scene
 from tms_ur.start_models import ResumePlan
+from tms_ur.watch_models import EnabledAreas
 
 NOON = datetime(2026, 1, 31, 12, tzinfo=timezone.utc)
 HERE = "http://127.0.0.1:8080"
@@ -43,6 +44,17 @@ class WrongLine(Reason, text="line {line}: there is no node '{node}'", action=ED
     node: str
 
 
+class FakePlaces:
+    """The keeper of shared places."""
+
+    def __init__(self, client: "FakeSiteClient") -> None:
+        self._client = client
+
+    def revoke(self, place: str, who: str) -> str:
+        self._client._called("revoke", place, who)
+        return "zx200"
+
+
 class FakeSiteClient:
     """Same methods as the real one; `error` is what the next call raises, `calls` what was asked."""
 
@@ -50,6 +62,7 @@ class FakeSiteClient:
         self.board = Board(["zx200"])
         self.error: TmsError | None = None
         self.calls: list[tuple[object, ...]] = []
+        self.shared = FakePlaces(self)
 
     def tasks(self) -> list[Task]:
         self._called("tasks")
@@ -94,6 +107,13 @@ class FakeSiteClient:
     def parameter_history(self, model_name: str, record_name: str, limit: int) -> list[Change]:
         self._called("parameter_history", model_name, record_name, limit)
         return [Change(stamp=NOON, source="sensing", values={"d": float("nan"), "s": "3"})]
+
+    def areas(self) -> EnabledAreas:
+        self._called("areas")
+        ring = [[-5.0, -5.0], [20.0, -5.0], [20.0, 20.0], [-5.0, 20.0], [-5.0, -5.0]]
+        geometry = {"type": "Polygon", "coordinates": [ring]}
+        yard = {"type": "Feature", "properties": {"id": "yard", "type": "unmanned"}, "geometry": geometry}
+        return EnabledAreas(id="9f", by="a person", areas={"type": "FeatureCollection", "features": [yard]})
 
     def scene(self, machine: str) -> Scene:
         self._called("scene", machine)
@@ -142,6 +162,9 @@ class FakeSiteClient:
     def rearm(self, machine: str, token: str) -> Rearmed:
         self._called("rearm", machine, token)
         return Rearmed(token="" if token else "t-1", cause=view(SoftwareStop()), armed=bool(token))
+
+    def let_back(self, machine: str, who: str) -> None:
+        self._called("let_back", machine, who)
 
     def restart(self, process: str) -> None:
         self._called("restart", process)

@@ -5,11 +5,16 @@ from collections.abc import AsyncIterator
 from datetime import datetime, timedelta
 
 import pytest
+from builtin_interfaces.msg import Time
+from tms_msg_areas import msg as areas
 
 from tms_config.clock import utc_now
 from tms_decision.reasons import SoftwareStopBy
+from tms_places.reasons import WaitingCircle
 from tms_reason.errors import TmsError
 from tms_reason.reason import Foreign
+from tms_reason.wire import to_line
+from tms_ur import messages
 from tms_ur.models import ActiveRun, Event, Host, Joint, Machine, Process
 from tms_ur.reason_view import view
 from tms_ur.security import SECURITY, is_loopback
@@ -27,6 +32,7 @@ COMMANDS = [
     ("/api/machines/zx200/rearm", {}), ("/api/tasks", {"xml": XML}), ("/api/tasks/4/remove", {}),
     ("/api/tasks/check", {"xml": XML}), ("/api/tasks/4/diff", {"xml": XML}), ("/api/parameters", RECORD),
     ("/api/processes/zx200:rc/restart", {}), ("/api/templates", {"name": "Dig", "xml": XML}),
+    ("/api/machines/zx200/escape", {}), ("/api/places/road/revoke", {}),
 ]  # fmt: skip
 
 
@@ -134,6 +140,12 @@ def test_rearm_has_two_steps(client: Client) -> None:
     assert (first["armed"], first["token"]) == (False, "t-1")
     assert client.post("/api/machines/zx200/rearm", json={"token": "t-1"}).json()["armed"]
     assert client.post("/api/machines/ic120/rearm", json={}).status_code == 404
+
+
+def test_who_lets_a_machine_back_is_told_its_gateway(client: Client, site_client: FakeSiteClient) -> None:
+    assert client.post("/api/machines/zx200/escape", json={}).is_success
+    assert site_client.calls == [("let_back", "zx200", "local at 127.0.0.1")]
+    assert client.post("/api/machines/ic120/escape", json={}).status_code == 404
 
 
 def test_answer_a_question(client: Client, site_client: FakeSiteClient) -> None:
@@ -245,6 +257,21 @@ def test_processes(client: Client, site_client: FakeSiteClient) -> None:
     assert client.get("/api/processes/a%2Fb/log").status_code in (404, 422)
 
 
+def test_shared_places(client: Client, site_client: FakeSiteClient) -> None:
+    assert client.get("/api/places").json() == {"places": [], "alarms": []}
+    queue = [areas.PlaceRequest(machine="ic120", run="r-2", since=Time(sec=100))]
+    place = areas.Place(name="road", state=areas.Place.HELD, holder="zx200", run="r-1", since=Time(sec=60), queue=queue)
+    circle = to_line(WaitingCircle(("zx200", "ic120", "zx200")))
+    site_client.board.put_shared(messages.shared_places(areas.Places(places=[place], alarms=[circle])))
+    told = client.get("/api/places").json()
+    (road,) = told["places"]
+    assert (road["state"], road["holder"], road["since"]) == ("held", "zx200", "1970-01-01T00:01:00Z")
+    assert [one["machine"] for one in road["queue"]] == ["ic120"] and told["alarms"][0]["code"] == "WAITING_CIRCLE"
+    assert client.get("/api/state").json()["shared"] == told
+    assert client.post("/api/places/road/revoke", json={}).json() == {"place": "road", "holder": "zx200"}
+    assert site_client.calls == [("revoke", "road", "local at 127.0.0.1")]
+
+
 def test_tree_of_a_run(client: Client, site_client: FakeSiteClient) -> None:
     tree = client.get("/api/runs/r-1/tree").json()
     assert (tree["names"], tree["templates"]) == (["all"], []), "journals of earlier releases know no templates"
@@ -284,8 +311,8 @@ def test_every_command_is_audited(site_client: FakeSiteClient) -> None:
     for path, body in [*COMMANDS, ("/api/stop", {})]:
         assert client.post(path, json=body).is_success, path
     assert {what for _, _, what, _ in audit.notes} == {
-        "start_run", "cancel_run", "answer", "rearm_asked", "add_task", "remove_task", "set_parameter", "restart",
-        "stop", "add_template", "resume_run", "abandon_run",
+        "start_run", "cancel_run", "answer", "rearm_asked", "escape_asked", "add_task", "remove_task", "set_parameter",
+        "restart", "stop", "add_template", "revoke_place_asked", "resume_run", "abandon_run",
     }  # fmt: skip
     assert {(who, where) for who, where, _, _ in audit.notes} == {("local", "127.0.0.1")}
 
@@ -555,11 +582,12 @@ def test_every_endpoint_is_in_the_document(client: Client) -> None:
         "/api/runs/{run_id}/cancel", "/api/runs/{run_id}/resume", "/api/runs/{run_id}/abandon", "/api/parameters",
         "/api/tasks/{task_id}/machines",
         "/api/parameters/history", "/api/sensing", "/api/site", "/api/session", "/api/login", "/api/logout",
-        "/api/stop", "/api/machines/{name}/rearm", "/api/questions/{question_id}", "/api/tasks/check",
+        "/api/stop", "/api/machines/{name}/rearm", "/api/machines/{name}/escape",
+        "/api/questions/{question_id}", "/api/tasks/check",
         "/api/tasks/{task_id}/diff", "/api/tasks/{task_id}/remove", "/api/runs/{run_id}/tree",
         "/api/runs/{run_id}/export", "/api/audit", "/api/machines/{name}/scene",
         "/api/processes/{name}/log", "/api/processes/{name}/restart",
-        "/api/templates",
+        "/api/templates", "/api/areas", "/api/places", "/api/places/{name}/revoke",
     }  # fmt: skip
     assert {method for path in document["paths"].values() for method in path} == {
         "get",
@@ -568,3 +596,12 @@ def test_every_endpoint_is_in_the_document(client: Client) -> None:
     problem = document["paths"]["/api/runs"]["post"]["responses"]["409"]["content"]["application/json"]["schema"]
     assert problem == {"$ref": "#/components/schemas/ReasonView"}
     assert document["components"]["schemas"]["Joint"]["properties"]["position"]["description"] == "rad"
+
+
+# areas
+
+
+def test_the_enabled_areas(client: Client) -> None:
+    found = client.get("/api/areas").json()
+    assert found["id"] == "9f" and found["by"] == "a person"
+    assert found["areas"]["features"][0]["properties"] == {"id": "yard", "type": "unmanned"}

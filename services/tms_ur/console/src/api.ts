@@ -38,6 +38,23 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/places": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** Shared places: who holds them, since when, and who waits */
+        get: operations["places_api_places_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/events": {
         parameters: {
             query?: never;
@@ -332,6 +349,23 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/areas": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The enabled areas, as a gateway holds its machine in them */
+        get: operations["areas_api_areas_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/machines/{name}/scene": {
         parameters: {
             query?: never;
@@ -417,6 +451,23 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/machines/{name}/escape": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Let a machine that stands outside its areas back in, slowly */
+        post: operations["escape_api_machines__name__escape_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/tasks/{task_id}/remove": {
         parameters: {
             query?: never;
@@ -428,6 +479,23 @@ export interface paths {
         put?: never;
         /** Take a task out; its number becomes free */
         post: operations["remove_task_api_tasks__task_id__remove_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/places/{name}/revoke": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Take a shared place from its holder */
+        post: operations["revoke_api_places__name__revoke_post"];
         delete?: never;
         options?: never;
         head?: never;
@@ -684,6 +752,31 @@ export interface components {
             text: string;
         };
         /**
+         * EnabledAreas
+         * @description The areas that a person has enabled. They are no protective device.
+         */
+        EnabledAreas: {
+            /**
+             * Id
+             * @description of the set; null: none is enabled
+             */
+            id: string | null;
+            /**
+             * By
+             * @description who enabled them
+             * @default
+             */
+            by: string;
+            /**
+             * Areas
+             * @description GeoJSON, its coordinates in the frame `map`, m
+             * @default {}
+             */
+            areas: {
+                [key: string]: unknown;
+            };
+        };
+        /**
          * Event
          * @description One entry of a run's journal.
          */
@@ -900,6 +993,19 @@ export interface components {
             since?: string | null;
             /** @description null: none since its gateway began */
             last_stop?: components["schemas"]["LastStop"] | null;
+            /**
+             * Lamp
+             * @description what its lamp shows
+             * @default fault
+             * @enum {string}
+             */
+            lamp: "automatic" | "manual" | "stopped" | "fault";
+            /**
+             * @default {
+             *       "hardware": {}
+             *     }
+             */
+            watched: components["schemas"]["Watched"];
             /** @description null: never told */
             place?: components["schemas"]["Place"] | null;
             /**
@@ -948,6 +1054,21 @@ export interface components {
              * @description rad
              */
             yaw: number;
+        };
+        /**
+         * PlaceRequest
+         * @description A machine waits for a shared place.
+         */
+        PlaceRequest: {
+            /** Machine */
+            machine: string;
+            /**
+             * Run
+             * @description empty: for a goal of the machine
+             */
+            run: string;
+            /** Since */
+            since: string | null;
         };
         /**
          * Process
@@ -1209,6 +1330,16 @@ export interface components {
             next: string[];
         };
         /**
+         * Revoked
+         * @description Whose place was taken.
+         */
+        Revoked: {
+            /** Place */
+            place: string;
+            /** Holder */
+            holder: string;
+        };
+        /**
          * Run
          * @description A run as the history keeps it.
          */
@@ -1347,6 +1478,34 @@ export interface components {
             age?: number | null;
         };
         /**
+         * SeenBy
+         * @description What a tracker of people, vehicles or a gate has told last.
+         */
+        SeenBy: {
+            /** Tracker */
+            tracker: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "person" | "vehicle" | "gate";
+            /**
+             * Silent
+             * @description it tells nothing, or nothing that can be used
+             */
+            silent: boolean;
+            /**
+             * Opened
+             * @description of a gate: somebody may pass
+             */
+            opened: boolean;
+            /**
+             * Places
+             * @description where somebody is; of a silent tracker, where somebody was
+             */
+            places: components["schemas"]["Spot"][];
+        };
+        /**
          * Sensing
          * @description The inputs of sensing, and how old this report is.
          */
@@ -1419,6 +1578,58 @@ export interface components {
             login: boolean;
         };
         /**
+         * SharedPlace
+         * @description A release area, which one machine holds at a time.
+         */
+        SharedPlace: {
+            /** Name */
+            name: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "free" | "granted" | "held" | "leaving" | "revoked";
+            /**
+             * Holder
+             * @description machine, empty if nobody holds it
+             */
+            holder: string;
+            /**
+             * Run
+             * @description for which run, empty: the machine itself
+             */
+            run: string;
+            /**
+             * Since
+             * @description null: nobody holds it
+             */
+            since: string | null;
+            /**
+             * Queue
+             * @description who waits, the next one first
+             */
+            queue: components["schemas"]["PlaceRequest"][];
+            /** @description why it is not given on */
+            reason: components["schemas"]["ReasonView"] | null;
+        };
+        /**
+         * SharedPlaces
+         * @description All shared places, as tms:db told them last.
+         */
+        SharedPlaces: {
+            /**
+             * Places
+             * @default []
+             */
+            places: components["schemas"]["SharedPlace"][];
+            /**
+             * Alarms
+             * @description machines that wait for each other in a circle
+             * @default []
+             */
+            alarms: components["schemas"]["ReasonView"][];
+        };
+        /**
          * SiteInfo
          * @description What does not change while the console runs.
          */
@@ -1451,6 +1662,22 @@ export interface components {
              * @description from the turning body to the tool, empty if it has no arm
              */
             arm: components["schemas"]["Link"][];
+        };
+        /**
+         * Spot
+         * @description A place in `map`.
+         */
+        Spot: {
+            /**
+             * X
+             * @description m
+             */
+            x: number;
+            /**
+             * Y
+             * @description m
+             */
+            y: number;
         };
         /**
          * StartRun
@@ -1490,8 +1717,21 @@ export interface components {
              * @default []
              */
             questions: components["schemas"]["Question"][];
+            /**
+             * Seen
+             * @description what trackers of people, vehicles and gates tell
+             * @default []
+             */
+            seen: components["schemas"]["SeenBy"][];
             /** Hosts */
             hosts: components["schemas"]["Host"][];
+            /**
+             * @default {
+             *       "places": [],
+             *       "alarms": []
+             *     }
+             */
+            shared: components["schemas"]["SharedPlaces"];
         };
         /**
          * StopAsked
@@ -1636,6 +1876,22 @@ export interface components {
             templates: string[];
         };
         /**
+         * Watched
+         * @description What a gateway watches besides the motion of its machine.
+         */
+        Watched: {
+            /** @description who is among the machines, or near; null: nobody */
+            people?: components["schemas"]["ReasonView"] | null;
+            /**
+             * Hardware
+             * @description what its hardware says: yes, no or unknown
+             * @default {}
+             */
+            hardware: {
+                [key: string]: string;
+            };
+        };
+        /**
          * Xml
          * @description A tree to check or to compare.
          */
@@ -1715,6 +1971,53 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["SiteInfo"];
+                };
+            };
+            /** @description the request cannot be read */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description log in first */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a value is wrong */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+        };
+    };
+    places_api_places_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SharedPlaces"];
                 };
             };
             /** @description the request cannot be read */
@@ -3513,6 +3816,53 @@ export interface operations {
             };
         };
     };
+    areas_api_areas_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["EnabledAreas"];
+                };
+            };
+            /** @description the request cannot be read */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description log in first */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a value is wrong */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+        };
+    };
     scene_api_machines__name__scene_get: {
         parameters: {
             query?: never;
@@ -4034,6 +4384,122 @@ export interface operations {
             };
         };
     };
+    escape_api_machines__name__escape_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Nothing"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Nothing"];
+                };
+            };
+            /** @description the request cannot be read */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description log in first */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description you may not do this */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description there is no such thing */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description refused; the message says why */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description no length */
+            411: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description too large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description not JSON */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a value is wrong */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a module of the site is away or does not answer */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+        };
+    };
     remove_task_api_tasks__task_id__remove_post: {
         parameters: {
             query?: never;
@@ -4056,6 +4522,123 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Nothing"];
+                };
+            };
+            /** @description the request cannot be read */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description log in first */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description you may not do this */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description there is no such thing */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description refused; the message says why */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description no length */
+            411: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description too large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description not JSON */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a value is wrong */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+            /** @description a module of the site is away or does not answer */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReasonView"];
+                };
+            };
+        };
+    };
+    revoke_api_places__name__revoke_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description id of a release area */
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Nothing"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Revoked"];
                 };
             };
             /** @description the request cannot be read */

@@ -6,7 +6,15 @@ import { lightOf } from "./light";
 
 const WHY = { code: "SOFTWARE_STOP", text: { en: "stop", ja: "停止" } } as ReasonView;
 const machine = (name: string, facts: Partial<Machine> = {}) =>
-  ({ name, state: "standing", latch: null, hold: null, by_hand: "", ...facts }) as Machine;
+  ({
+    name,
+    state: "standing",
+    latch: null,
+    hold: null,
+    by_hand: "",
+    watched: { people: null, hardware: {} },
+    ...facts,
+  }) as Machine;
 const site = (machines: Machine[], facts: Partial<State> = {}) =>
   ({ machines, runs: [], questions: [], hosts: [], scheduler: { alive: true, age: 0 }, ...facts }) as unknown as State;
 
@@ -18,6 +26,7 @@ describe("the light of the site", () => {
     ["attention", [armed, machine("b", { hold: WHY })], 0],
     ["attention", [machine("a", { state: "silent" })], 0],
     ["attention", [armed], 1],
+    ["attention", [machine("a", { watched: { people: WHY, hardware: {} } })], 0],
     ["stopped", [machine("a", { state: "moving" }), machine("b", { latch: WHY })], 1],
   ])("is %s", (light, machines, needed) => {
     expect(lightOf(site(machines), true, needed).light).toBe(light);

@@ -10,6 +10,7 @@ import { type Alarm, alarmsOf } from "./alarms";
 import { Interrupted } from "./interrupted";
 import { lightOf, markOf } from "./light";
 import { MachineCard } from "./machine_card";
+import { Places } from "./places";
 import { Tasks } from "./tasks";
 
 const LATEST = 200; // runs of the history among which interrupted ones are looked for
@@ -26,7 +27,7 @@ export function Board() {
   const runs = interrupted.list ?? [];
   return (
     <div className="board">
-      <SiteLight state={state} link={link} needed={alarms.length + runs.length} />
+      <SiteLight state={state} link={link} needed={alarms.length + runs.length + state.shared.alarms.length} />
       <Alarms alarms={alarms} />
       <Interrupted runs={runs} changed={interrupted.again} />
       <div className="halves">
@@ -34,7 +35,10 @@ export function Board() {
           <ActiveRuns runs={state.runs} />
           <Tasks />
         </div>
-        <Machines state={state} />
+        <div>
+          <Machines state={state} />
+          <Places shared={state.shared} />
+        </div>
       </div>
     </div>
   );

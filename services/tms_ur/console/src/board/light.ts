@@ -13,7 +13,11 @@ const MARKS: Record<Light, string> = { unknown: "?", stopped: "⬣", attention: 
 export const markOf = (light: Light) => MARKS[light];
 
 const waits = (machine: Machine) =>
-  machine.state === "silent" || machine.state === "not_ready" || machine.hold !== null || machine.by_hand !== "";
+  machine.state === "silent" ||
+  machine.state === "not_ready" ||
+  machine.hold !== null ||
+  machine.by_hand !== "" ||
+  machine.watched.people !== null;
 
 /** `needed`: how many things beside the machines wait for a person. */
 export function lightOf(state: State, link: boolean | null, needed: number): Shown {

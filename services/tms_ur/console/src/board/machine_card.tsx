@@ -71,6 +71,11 @@ function Why({ machine, run }: Props) {
           <Said reason={machine.reason} text={said(machine.reason) + since} done="rearm" />
         </p>
       )}
+      {machine.watched.people && (
+        <p className="bad">
+          <Said reason={machine.watched.people} />
+        </p>
+      )}
       {machine.hold && (
         <p>
           <Said reason={machine.hold} text={said(machine.hold) + since} />

@@ -1,0 +1,40 @@
+"""Areas, people and hardware, as the API shows them."""
+
+from typing import Any, Literal
+
+from pydantic import Field
+
+from tms_ur.base_model import Model
+from tms_ur.reason_view import ReasonView
+
+
+class Spot(Model):
+    """A place in `map`."""
+
+    x: float = Field(description="m")
+    y: float = Field(description="m")
+
+
+class SeenBy(Model):
+    """What a tracker of people, vehicles or a gate has told last."""
+
+    tracker: str
+    kind: Literal["person", "vehicle", "gate"]
+    silent: bool = Field(description="it tells nothing, or nothing that can be used")
+    opened: bool = Field(description="of a gate: somebody may pass")
+    places: list[Spot] = Field(description="where somebody is; of a silent tracker, where somebody was")
+
+
+class EnabledAreas(Model):
+    """The areas that a person has enabled. They are no protective device."""
+
+    id: str | None = Field(description="of the set; null: none is enabled")
+    by: str = Field(default="", description="who enabled them")
+    areas: dict[str, Any] = Field(default={}, description="GeoJSON, its coordinates in the frame `map`, m")
+
+
+class Watched(Model):
+    """What a gateway watches besides the motion of its machine."""
+
+    people: ReasonView | None = Field(default=None, description="who is among the machines, or near; null: nobody")
+    hardware: dict[str, str] = Field(default={}, description="what its hardware says: yes, no or unknown")
