@@ -11,9 +11,12 @@ THICK = 3.0  # m beyond a border: no step of a search leads over it
 SIMPLER = 0.2  # m that a wall may be off: fewer corners make a search faster
 
 
-def walls(areas: AreaSet, held: frozenset[str] = frozenset()) -> list[tuple[Point, ...]]:
-    """Polygons (corners [m] in `map`) along every border that a machine must not cross."""
-    usable = areas.usable(held).simplify(SIMPLER)
+def walls(areas: AreaSet) -> list[tuple[Point, ...]]:
+    """Polygons (corners [m] in `map`) along every border that a machine must never cross.
+
+    Release areas have none: a way may lead through them, and who may drive it is settled when a goal begins.
+    """
+    usable = areas.usable(frozenset(one.id for one in areas.of("release"))).simplify(SIMPLER)
     found = []
     for line in shapely.get_parts(usable.boundary):
         for side in itertools.pairwise(line.coords):

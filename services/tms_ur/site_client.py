@@ -2,8 +2,6 @@
 
 from typing import Any
 
-from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
-from rcl_interfaces.srv import SetParametersAtomically
 from tms_msg_db.srv import (
     AddTask,
     AddTemplate,
@@ -37,6 +35,7 @@ from tms_reason.errors import RosError, TmsError
 from tms_reason.reason import Reason
 from tms_ros.node import Ros
 from tms_ur import messages
+from tms_ur.area_client import let_back
 from tms_ur.board import Board
 from tms_ur.data_models import Change, Record, Sensing
 from tms_ur.models import AddedTemplate, Event, Host, Place, Rearmed, Receipt, Run, Task, TaskText, Template
@@ -202,16 +201,8 @@ class SiteClient(RunCalls):
         return Rearmed(token=answer.token, cause=of_line(answer.cause), armed=answer.armed)
 
     def let_back(self, machine: str, who: str) -> None:
-        """Let a machine that stands outside its areas be moved back in.
-
-        Raises:
-            TmsError: refused, with the reason.
-        """
-        value = ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=who)
-        request = SetParametersAtomically.Request(parameters=[Parameter(name="who", value=value)])
-        result = self._ros.call(SetParametersAtomically, f"/{machine}/rc/areas/escape", request, CALL_LIMIT).result
-        if not result.successful:
-            raise TmsError(wire.refusal("", result.reason))
+        """Let a machine that stands outside its areas be moved back in; a TmsError says why not."""
+        let_back(self._ros, machine, who)
 
     def scene(self, machine: str) -> Scene:
         """What the planner of a machine plans among now.

@@ -30,6 +30,7 @@ from tms_mc.area_walls import AreaWalls
 TRUCK = parse(CONFIGS / "machines" / "ic120.yaml", MachineModel)
 BENT = AreaSet((
     Area("bent", "unmanned", ((0, 0), (40, 0), (40, 40), (26, 40), (26, 14), (0, 14))),
+    Area("place", "release", ((16, 5), (20, 5), (20, 9), (16, 9)), on_loss="stop"),
     Area("hut", "manned", ((12, 0), (14, 0), (14, 3), (12, 3))),
 ))  # fmt: skip
 START, GOAL = Pose(7.0, 8.0, 0.0), Pose(33.0, 33.0, math.pi / 2)
@@ -59,12 +60,15 @@ def way(ground: Ground) -> Plan:
     return found
 
 
+USABLE = BENT.usable(frozenset({"place"}))
+
+
 def leaves(found: Plan) -> bool:
     """Whether the machine is outside somewhere on a way, by the geometry library."""
-    outline, usable = shapely.Polygon(Outline.of(TRUCK).polygon), BENT.usable()
+    outline = shapely.Polygon(Outline.of(TRUCK).polygon)
     for x, y, yaw in found.path.poses(0.1):
         turned = shapely.affinity.rotate(outline, yaw, origin=(0, 0), use_radians=True)
-        if not usable.contains(shapely.affinity.translate(turned, x, y)):
+        if not USABLE.contains(shapely.affinity.translate(turned, x, y)):
             return True
     return False
 
@@ -73,7 +77,7 @@ def test_a_way_stays_inside_where_the_straight_one_leaves() -> None:
     assert leaves(way(Ground()))
     found = way(Ground(tuple(made(Gateway(BENT)).read(START))))
     assert not leaves(found)
-    law = Law(BENT, "ic120", tracks_of(TRUCK, TRUCK.borders["opera"]))
+    law = Law(BENT, "ic120", tracks_of(TRUCK, TRUCK.borders["opera"]), frozenset({"place"}))
     guard, joints = Guard(law, Silhouette(TRUCK)), {"vessel_pin_joint": 0.0}
     for x, y, yaw in found.path.poses(0.5):  # the gateway does not stop it there
         motion = Motion(x, y, yaw, 0.5 * math.cos(yaw), 0.5 * math.sin(yaw))
@@ -82,10 +86,10 @@ def test_a_way_stays_inside_where_the_straight_one_leaves() -> None:
 
 def test_a_wall_lies_along_each_border_and_outside() -> None:
     found = [shapely.Polygon(one) for one in walls(BENT)]
-    assert all(one.is_valid for one in found) and shapely.union_all(found).intersection(BENT.usable()).area < 1e-6
-    ring = BENT.usable().buffer(0.9 * THICK, join_style="bevel").difference(BENT.usable())
+    assert all(one.is_valid for one in found) and shapely.union_all(found).intersection(USABLE).area < 1e-6
+    ring = USABLE.buffer(0.9 * THICK, join_style="bevel").difference(USABLE)
     assert ring.difference(shapely.union_all(found).buffer(1e-6)).area < 0.2 * ring.area
-    assert shapely.union_all(found).buffer(1e-6).contains(BENT.usable().boundary)
+    assert shapely.union_all(found).buffer(1e-6).contains(USABLE.boundary)
 
 
 def test_walls_in_which_it_stands_do_not_keep_it() -> None:
@@ -111,4 +115,6 @@ def test_a_site_without_areas_asks_nobody() -> None:
 
 
 def test_what_is_closed_inside_has_walls_too() -> None:
-    assert shapely.union_all([shapely.Polygon(one) for one in walls(BENT)]).intersects(shapely.Point(13.0, 1.5))
+    found = shapely.union_all([shapely.Polygon(one) for one in walls(BENT)])
+    assert found.intersects(shapely.Point(13.0, 1.5))
+    assert not found.intersects(BENT.of("release")[0].polygon)  # a way may lead through it
